@@ -1,0 +1,2 @@
+//! The `eomgen` program.
+fn main() {}

@@ -1,0 +1,355 @@
+//! The checked model: every name looked up, every unit consistent. This is what the
+//! derivation reads; it knows nothing of TOML, and nothing of how equations are derived.
+//!
+//! All numbers are in coherent SI units. The state of a model of order S is the
+//! coordinates in the order of the specification, then each field's S modes, then the
+//! rates of all these in the same order.
+
+use crate::ast::BinaryOperator;
+use crate::source::Source;
+use crate::span::Span;
+use crate::unit::Unit;
+
+/// The highest modal truncation order accepted.
+pub const MAX_ORDER: usize = 128;
+
+/// A mechanical system: parameters, coordinates and the terms of its Lagrangian.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Identifier of the model (a valid Rust and C identifier).
+    pub name: String,
+    /// One line for people.
+    pub title: String,
+    /// The text the model was read from.
+    pub source: Source,
+    /// Parameters in the order of the specification.
+    pub parameters: Vec<Parameter>,
+    /// Generalised coordinates in the order of the specification, without the modes.
+    pub coordinates: Vec<Coordinate>,
+    /// Signals supplied at run time.
+    pub inputs: Vec<Input>,
+    /// Flexible fields.
+    pub fields: Vec<Field>,
+    /// Named expressions; a definition refers only to definitions before it in
+    /// [`Model::definition_order`].
+    pub definitions: Vec<Definition>,
+    /// Terms of the kinetic energy, in J.
+    pub kinetic: Vec<Term>,
+    /// Terms of the potential energy, in J.
+    pub potential: Vec<Term>,
+    /// Rayleigh functions, in W: the force on coordinate j is minus the derivative by
+    /// its rate.
+    pub dissipation: Vec<Term>,
+    /// Forces acting by virtual work.
+    pub forces: Vec<Force>,
+    /// Quantities to be reported. `energy` and `power` are added to these for every
+    /// model and are not in this list.
+    pub observables: Vec<Observable>,
+    /// Names the specification gives to coefficients of the derived equations.
+    pub coefficients: Vec<Coefficient>,
+    /// Indices into `parameters` such that each comes after those it refers to.
+    pub parameter_order: Vec<usize>,
+    /// Indices into `definitions` such that each comes after those it refers to.
+    pub definition_order: Vec<usize>,
+}
+
+/// A parameter of the model.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// ASCII name.
+    pub name: String,
+    /// The unit the specification declares; the value below is already in SI.
+    pub unit: Unit,
+    /// What it is.
+    pub doc: String,
+    /// Where its value comes from ("Table I", "assumed: ...", "fitted to ...").
+    pub origin: String,
+    /// A number in SI, or an expression in other parameters.
+    pub value: ParameterValue,
+    /// Smallest admissible value in SI, if stated.
+    pub min: Option<f64>,
+    /// Largest admissible value in SI, if stated.
+    pub max: Option<f64>,
+    /// Where its name stands.
+    pub span: Span,
+}
+
+/// The value of a parameter.
+#[derive(Clone, Debug)]
+pub enum ParameterValue {
+    /// A number in SI.
+    Number(f64),
+    /// An expression in other parameters (no coordinate, input, time or field).
+    Expression(Expr),
+}
+
+/// A generalised coordinate.
+#[derive(Clone, Debug)]
+pub struct Coordinate {
+    /// ASCII name.
+    pub name: String,
+    /// Its unit (coherent SI).
+    pub unit: Unit,
+    /// What it is.
+    pub doc: String,
+    /// Initial value (parameters only), 0 if absent.
+    pub initial: Option<Expr>,
+    /// Initial rate (parameters only), 0 if absent.
+    pub initial_rate: Option<Expr>,
+    /// Where its name stands.
+    pub span: Span,
+}
+
+/// A signal supplied at run time.
+#[derive(Clone, Debug)]
+pub struct Input {
+    /// ASCII name.
+    pub name: String,
+    /// Its unit (coherent SI).
+    pub unit: Unit,
+    /// What it is.
+    pub doc: String,
+    /// Where its name stands.
+    pub span: Span,
+}
+
+/// A flexible field w(x, t) = sum over i of phi_i(x) q_i(t), x from `from` to `to`.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// ASCII name, `w` in the paper.
+    pub name: String,
+    /// Unit of the field and of its mode coordinates (phi is dimensionless).
+    pub unit: Unit,
+    /// Name of the position variable inside the field's functions.
+    pub along: String,
+    /// Start of the domain (parameters only).
+    pub from: Expr,
+    /// End of the domain (parameters only).
+    pub to: Expr,
+    /// The mode shapes.
+    pub basis: Basis,
+    /// Name of the mode coordinates: `q` gives `q_1 .. q_S`.
+    pub coordinates: String,
+    /// The specification's default order.
+    pub order: usize,
+    /// What it is.
+    pub doc: String,
+    /// Where its name stands.
+    pub span: Span,
+}
+
+/// The mode shapes of a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Basis {
+    /// Clamped-free beam, beta_r l the roots of cos z cosh z = -1, in the paper's
+    /// normalisation, Eq. (17) with the corrected xi_r. In a specification
+    /// `"clamped_free"`.
+    ClampedFree,
+    /// Eq. (17) with beta_r and xi_r as Eq. (18) and (19) print them, for comparison
+    /// only: these shapes are not orthogonal and violate the free end's conditions.
+    /// In a specification `"clamped_free_printed"`.
+    ClampedFreePrinted,
+}
+
+/// A named expression of coordinates, rates, parameters and time (no bare field or
+/// position: a field appears through `at`, `integral` or `sum`).
+#[derive(Clone, Debug)]
+pub struct Definition {
+    /// ASCII name.
+    pub name: String,
+    /// What it stands for.
+    pub value: Expr,
+    /// Its unit, inferred.
+    pub unit: Unit,
+    /// Where its name stands.
+    pub span: Span,
+}
+
+/// A named term of an energy or of the dissipation.
+#[derive(Clone, Debug)]
+pub struct Term {
+    /// The term's own name.
+    pub name: String,
+    /// Its value.
+    pub value: Expr,
+    /// Where its name stands.
+    pub span: Span,
+}
+
+/// A force that acts by virtual work: Q_j = value * d(on)/d(q_j).
+#[derive(Clone, Debug)]
+pub struct Force {
+    /// The force's own name.
+    pub name: String,
+    /// What it does work on: an expression of coordinates (often a coordinate or a
+    /// definition), free of rates and inputs.
+    pub on: Expr,
+    /// The force or torque.
+    pub value: Expr,
+    /// Where its name stands.
+    pub span: Span,
+}
+
+/// A quantity to be reported.
+#[derive(Clone, Debug)]
+pub struct Observable {
+    /// ASCII name.
+    pub name: String,
+    /// Its value (no accelerations).
+    pub value: Expr,
+    /// Its unit (coherent SI), inferred, and checked against the declared one if any.
+    pub unit: Unit,
+    /// What it is.
+    pub doc: String,
+    /// Where its name stands.
+    pub span: Span,
+}
+
+/// A name for a coefficient of the derived accelerations, as Eq. (22) names them.
+#[derive(Clone, Debug)]
+pub struct Coefficient {
+    /// ASCII name; for one per mode the names are listed by the derivation as
+    /// `name_1 ..` unless `names` says otherwise.
+    pub name: String,
+    /// What it names.
+    pub kind: CoefficientKind,
+    /// What it is.
+    pub doc: String,
+    /// Where its name stands.
+    pub span: Span,
+}
+
+/// What a coefficient names.
+#[derive(Clone, Debug)]
+pub enum CoefficientKind {
+    /// An expression of parameters and of coefficients listed before it.
+    Value(Expr),
+    /// The factor with which `by` enters the acceleration of `of`, times `times`.
+    Factor {
+        /// The coordinate (or, with a field's mode coordinates, every mode) whose
+        /// acceleration is meant.
+        of: Expr,
+        /// The quantity it multiplies: a coordinate, a rate, `deadzone(p, b)`,
+        /// `contact(p, b)*dot(p)`, a field's mode coordinates, or 1 for what is left.
+        by: Expr,
+        /// A factor to multiply with (parameters and earlier coefficients), if any.
+        times: Option<Expr>,
+    },
+}
+
+/// An expression with every name looked up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expr {
+    /// What stands here.
+    pub kind: ExprKind,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The forms of a checked expression. Indices refer to the lists of [`Model`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExprKind {
+    /// A number (literals carry no unit; in SI).
+    Number(f64),
+    /// The constant pi.
+    Pi,
+    /// The time t, in s.
+    Time,
+    /// The position along a field, inside that field's functions only.
+    Position(usize),
+    /// A parameter.
+    Parameter(usize),
+    /// A generalised coordinate (not a mode).
+    Coordinate(usize),
+    /// An input.
+    Input(usize),
+    /// A definition.
+    Definition(usize),
+    /// An earlier entry of [`Model::coefficients`], inside coefficients only.
+    Coefficient(usize),
+    /// A field w(x, t), inside that field's `integral`, `at` or `diff` only.
+    Field(usize),
+    /// A field's mode coordinate `q[i]`, i the index of the innermost enclosing sum
+    /// over that field.
+    ModeCoordinate(usize),
+    /// A field's mode shape `phi[i]`, a function of the position, i as above.
+    ModeShape(usize),
+    /// The time derivative of a coordinate, definition, field or mode coordinate.
+    Dot(Box<Expr>),
+    /// The derivative of an expression in the field (`w`, `dot(w)` or `phi[i]`) by the
+    /// position, this many times (1 to 4).
+    Diff(Box<Expr>, u8),
+    /// `at(expression, position)` of field `field`: a function of the position,
+    /// evaluated at `position` (parameters only).
+    At {
+        /// The field whose position is replaced.
+        field: usize,
+        /// The function of the position.
+        value: Box<Expr>,
+        /// Where to evaluate it.
+        position: Box<Expr>,
+    },
+    /// The integral of an expression over the field's domain.
+    Integral {
+        /// The field whose domain is meant.
+        field: usize,
+        /// The integrand, a function of the position.
+        integrand: Box<Expr>,
+    },
+    /// The sum over the field's modes; 0 at order 0.
+    Sum {
+        /// The field whose modes are meant.
+        field: usize,
+        /// The summand, with `q[i]` and `phi[i]`.
+        summand: Box<Expr>,
+    },
+    /// `-operand`.
+    Negate(Box<Expr>),
+    /// `left operator right`.
+    Binary(BinaryOperator, Box<Expr>, Box<Expr>),
+    /// A function of one or two scalar arguments.
+    Call(Function, Vec<Expr>),
+}
+
+/// The functions of the expression language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Function {
+    /// Sine of an angle.
+    Sin,
+    /// Cosine of an angle.
+    Cos,
+    /// Tangent of an angle.
+    Tan,
+    /// Inverse sine.
+    Asin,
+    /// Inverse cosine.
+    Acos,
+    /// Inverse tangent.
+    Atan,
+    /// `atan2(y, x)`, the angle of the point (x, y); both of one unit.
+    Atan2,
+    /// Hyperbolic sine.
+    Sinh,
+    /// Hyperbolic cosine.
+    Cosh,
+    /// Hyperbolic tangent.
+    Tanh,
+    /// Exponential function.
+    Exp,
+    /// Natural logarithm.
+    Ln,
+    /// Square root.
+    Sqrt,
+    /// Absolute value; switches at 0.
+    Abs,
+    /// Sign, with sign(0) = 0; switches at 0.
+    Sign,
+    /// The smaller of two; switches where they are equal.
+    Min,
+    /// The larger of two; switches where they are equal.
+    Max,
+    /// `deadzone(p, b)`, f_k of Eq. (7).
+    Deadzone,
+    /// `contact(p, b)`, 1 where |p| > b and 0 elsewhere, Eq. (8) without the rate.
+    Contact,
+}
