@@ -1,1 +1,2 @@
-//! To be written.
+//! Criterion benches of the generated equations against hand-written ones; they are in
+//! `benches/`, this library is empty.

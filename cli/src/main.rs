@@ -1,2 +1,36 @@
-//! The `eomgen` program.
-fn main() {}
+//! The `eomgen` program: arguments, messages and files. Physics and numbers come from the
+//! libraries.
+//!
+//! `arguments` says what can be typed, `commands` has one file per command, `variant` loads
+//! a specification and derives it, `output` writes files whole or not at all, `problem`
+//! is what can go wrong and with which exit status.
+
+mod arguments;
+mod commands;
+mod output;
+mod problem;
+mod progress;
+mod table;
+mod variant;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+use problem::Outcome;
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let outcome: Outcome = match arguments.command {
+        Command::Check(options) => commands::check::run(&options),
+        Command::Derive(options) => commands::derive::run(&options),
+        Command::Generate(options) => commands::generate::run(&options),
+        Command::Validate(options) => commands::validate::run(&options),
+        Command::Simulate(options) => commands::simulate::run(&options),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(problem) => problem.report(),
+    }
+}

@@ -1,1 +1,33 @@
-//! To be written.
+//! From a checked model to equations of motion, and from these to programs and source.
+//!
+//! The pipeline, one file each: `translate` and `field_function` (expressions to the
+//! hash-consed `graph`, whose constructors in `simplify` apply the algebraic laws), `modes`,
+//! `tables` and `quadrature` (constants of a basis), `differentiate` and `matrix`
+//! (derivatives that keep their structure), `equations` (Lagrange's equations), `solve` (the
+//! accelerations), `coefficients` (names as in Eq. (22)), `lower` (to the `program`),
+//! `evaluator` and `rust` (backends), `print` and `report` (for people).
+//!
+//! The arrows are two functions: [`equations::derive`] from a model to equations and
+//! [`lower::lower`] from equations to a program.
+
+pub mod coefficients;
+mod degree;
+pub mod describe;
+pub mod differentiate;
+pub mod equations;
+pub mod evaluator;
+mod field_function;
+pub mod graph;
+pub mod lower;
+pub mod matrix;
+pub mod modes;
+pub mod print;
+pub mod program;
+pub mod quadrature;
+pub mod report;
+pub mod rust;
+mod simplify;
+pub mod solve;
+mod substitute;
+pub mod tables;
+pub mod translate;

@@ -1,11 +1,34 @@
 //! Reads and checks a declarative specification of a mechanical system.
 //!
-//! The pipeline, one file each: `source` (text and places), `lexer`, `parser` (tokens to
-//! [`ast`]), `document` (TOML tables to raw entries), `resolve` (names), `units_check`
-//! (units of every expression), [`model`] (the result). What is wrong is said by
-//! [`diagnostic`]; [`edit`] changes a specification and keeps its comments. Nothing here
-//! knows how equations are derived.
+//! The pipeline, one file each: `source` (text and places), [`lexer`], [`parser`] (tokens
+//! to [`ast`]), `document` (TOML tables to raw entries), `names` and `resolve` (names),
+//! `motion` (what may stand where), `units_check` (units of every expression), `checks`,
+//! [`model`] (the result). [`load()`] and [`check`] go all the way. What is wrong is said by
+//! [`diagnostic`]; [`variant`] sets numbers. Nothing here knows how equations are derived.
 
 pub mod ast;
+mod checks;
+pub mod diagnostic;
+pub mod dimension;
+mod document;
+pub mod evaluate;
+mod functions;
+pub mod lexer;
+mod load;
 pub mod model;
+mod motion;
+mod names;
+mod order;
+pub mod parser;
+mod resolve;
+mod resolve_expression;
+mod scale;
+pub mod source;
 pub mod span;
+mod suggest;
+mod table;
+pub mod unit;
+mod units_check;
+pub mod variant;
+
+pub use load::{Checked, MAX_SIZE, check, load};

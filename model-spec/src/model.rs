@@ -47,6 +47,8 @@ pub struct Model {
     pub observables: Vec<Observable>,
     /// Names the specification gives to coefficients of the derived equations.
     pub coefficients: Vec<Coefficient>,
+    /// How measured channels differ from the quantities of the model.
+    pub sensors: Vec<Sensor>,
     /// Indices into `parameters` such that each comes after those it refers to.
     pub parameter_order: Vec<usize>,
     /// Indices into `definitions` such that each comes after those it refers to.
@@ -151,7 +153,7 @@ pub enum Basis {
     ClampedFreePrinted,
 }
 
-/// A named expression of coordinates, rates, parameters and time (no bare field or
+/// A named expression of coordinates, rates, inputs, parameters and time (no bare field or
 /// position: a field appears through `at`, `integral` or `sum`).
 #[derive(Clone, Debug)]
 pub struct Definition {
@@ -161,6 +163,8 @@ pub struct Definition {
     pub value: Expr,
     /// Its unit, inferred.
     pub unit: Unit,
+    /// What it is.
+    pub doc: String,
     /// Where its name stands.
     pub span: Span,
 }
@@ -172,6 +176,10 @@ pub struct Term {
     pub name: String,
     /// Its value.
     pub value: Expr,
+    /// What it is.
+    pub doc: String,
+    /// Where it comes from ("Eq. (21)", "fitted to ...").
+    pub origin: String,
     /// Where its name stands.
     pub span: Span,
 }
@@ -186,6 +194,10 @@ pub struct Force {
     pub on: Expr,
     /// The force or torque.
     pub value: Expr,
+    /// What it is.
+    pub doc: String,
+    /// Where it comes from ("Eq. (11)", "fitted to ...").
+    pub origin: String,
     /// Where its name stands.
     pub span: Span,
 }
@@ -213,6 +225,9 @@ pub struct Coefficient {
     pub name: String,
     /// What it names.
     pub kind: CoefficientKind,
+    /// The field for each of whose modes it is given, if its specification says so
+    /// (`each = "w[i]"`); `phi[i]` then stands outside any sum.
+    pub each: Option<usize>,
     /// What it is.
     pub doc: String,
     /// Where its name stands.
@@ -237,6 +252,21 @@ pub enum CoefficientKind {
     },
 }
 
+/// A measured channel: measured(t) = gain * quantity(t - delay) + bias.
+#[derive(Clone, Debug)]
+pub struct Sensor {
+    /// A coordinate, a rate (`NAME_dot`), an observable, `energy` or `power`.
+    pub channel: String,
+    /// Dimensionless, 1 for a true sensor.
+    pub gain: f64,
+    /// In the channel's SI unit.
+    pub bias: f64,
+    /// In s, not negative.
+    pub delay: f64,
+    /// Where the channel's name stands.
+    pub span: Span,
+}
+
 /// An expression with every name looked up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expr {
@@ -244,6 +274,47 @@ pub struct Expr {
     pub kind: ExprKind,
     /// Where it stands.
     pub span: Span,
+}
+
+impl Expr {
+    /// Shows this expression and all its parts to `see`, the whole before its parts.
+    pub fn visit(&self, see: &mut impl FnMut(&Expr)) {
+        see(self);
+        match &self.kind {
+            ExprKind::Number(_)
+            | ExprKind::Pi
+            | ExprKind::Time
+            | ExprKind::Position(_)
+            | ExprKind::Parameter(_)
+            | ExprKind::Coordinate(_)
+            | ExprKind::Input(_)
+            | ExprKind::Definition(_)
+            | ExprKind::Coefficient(_)
+            | ExprKind::Field(_)
+            | ExprKind::ModeCoordinate(_)
+            | ExprKind::ModeShape(_) => {}
+            ExprKind::Dot(part) | ExprKind::Diff(part, _) | ExprKind::Negate(part) => {
+                part.visit(see);
+            }
+            ExprKind::Integral { integrand, .. } => integrand.visit(see),
+            ExprKind::Sum { summand, .. } => summand.visit(see),
+            ExprKind::At {
+                value, position, ..
+            } => {
+                value.visit(see);
+                position.visit(see);
+            }
+            ExprKind::Binary(_, left, right) => {
+                left.visit(see);
+                right.visit(see);
+            }
+            ExprKind::Call(_, arguments) => {
+                for argument in arguments {
+                    argument.visit(see);
+                }
+            }
+        }
+    }
 }
 
 /// The forms of a checked expression. Indices refer to the lists of [`Model`].

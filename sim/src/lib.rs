@@ -1,1 +1,15 @@
-//! To be written.
+//! Simulation, hand-written references and validation of derived models.
+//!
+//! [`reference`] holds equations written by hand, [`by_hand`] says which belong to which
+//! model; [`validate`] checks a derived model against them and against an oracle of its
+//! own, [`certificates`] runs it on a model. [`derived`] lets the solver in [`solve`] and
+//! the checks see a derived model, [`record`] reads the inputs of a measured record, and
+//! [`plot`] draws.
+
+pub mod by_hand;
+pub mod certificates;
+pub mod derived;
+pub mod record;
+pub mod reference;
+pub mod solve;
+pub mod validate;

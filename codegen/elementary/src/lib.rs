@@ -1,1 +1,79 @@
-//! To be written.
+//! Elementary functions as plain floating-point operations: the same bits everywhere.
+//!
+//! `core` has no sine, not even a square root, and the last bit of those in system libraries differs
+//! from one to the next. Here each function is written once, as a branch-free straight line of
+//! IEEE 754 double-precision operations in a fixed order, generic over [`Real`]:
+//!
+//! * on `f64` it is an ordinary function, without allocation or the standard library;
+//! * with the feature `trace`, `Function::kernel` gives the operations as data (a `Kernel`) for
+//!   code generators to print or compile. Native value and kernel agree in every bit.
+//!
+//! There is no fused multiply-add, no conversion or rounding instruction, no table and no branch: a
+//! compiler may vectorise the code but cannot change a result. NaN is NaN everywhere, but its sign
+//! and payload are not specified. The rounding mode must be to nearest and subnormals must not be
+//! flushed, as Rust presumes.
+//!
+//! # The pipeline
+//! `real` (the primitive operations) -> `approximation`, `pair` (polynomials, reductions, error-free
+//! sums and products) -> `sine`, `exponential`, `logarithm`, `root`, `inverse_trigonometric`,
+//! `power`, `trivial` (the functions) -> `record` -> `kernel` -> `function` (tracing).
+//!
+//! # Accuracy and size
+//! Errors are the largest measured, in units in the last place of the result, against 128-bit
+//! arithmetic over 150 000 pseudo-random arguments per range (all magnitudes, and densely where
+//! a method changes) together with the hard cases: doubles nearest to multiples of pi/2, results near
+//! overflow and in the subnormal range, arguments next to 1. Operations are those of the kernel; a
+//! selection counts as one.
+//!
+//! | function | domain | largest error (ulp) | operations |
+//! | --- | --- | --- | --- |
+//! | [`sin`] | `abs(x) <= 1e9`, NaN beyond | 0.76 | 67 |
+//! | [`cos`] | as `sin` | 0.77 | 68 |
+//! | [`sin_cos`] | as `sin` | as both | 71 |
+//! | [`tan`] | as `sin` | 0.94 | 103 |
+//! | [`exp`] | all | 0.76 | 50 |
+//! | [`exp_minus_one`] | all | 1.10 | 56 |
+//! | [`sinh`] | all | 1.15 | 81 |
+//! | [`cosh`] | all | 0.88 | 53 |
+//! | [`tanh`] | all | 0.91 | 93 |
+//! | [`ln`] | `x >= 0`, NaN below | 0.81 | 42 |
+//! | [`sqrt`] | `x >= 0`, NaN below | 0.5: correctly rounded | 84 |
+//! | [`asin`] | `[-1, 1]`, NaN beyond | 0.63 | 116 |
+//! | [`acos`] | `[-1, 1]`, NaN beyond | 0.60 | 120 |
+//! | [`atan`] | all | 0.75 | 62 |
+//! | [`atan2`] | all | 1.45 | 77 |
+//! | [`pow`] | all; `x < 0` with integral `y` | 0.76 | 228 |
+//! | [`abs`], [`sign`], [`min`], [`max`] | all | exact | 1, 2, 2, 2 |
+#![cfg_attr(not(feature = "trace"), no_std)]
+
+mod approximation;
+mod exponential;
+mod inverse_trigonometric;
+mod logarithm;
+mod pair;
+mod power;
+mod real;
+mod root;
+mod sine;
+mod trivial;
+
+#[cfg(feature = "trace")]
+mod function;
+#[cfg(feature = "trace")]
+mod kernel;
+#[cfg(feature = "trace")]
+mod record;
+
+pub use exponential::{cosh, exp, exp_minus_one, sinh, tanh};
+pub use inverse_trigonometric::{acos, asin, atan, atan2};
+pub use logarithm::ln;
+pub use power::pow;
+pub use real::Real;
+pub use root::sqrt;
+pub use sine::{LARGEST_ANGLE, cos, sin, sin_cos, tan};
+pub use trivial::{abs, max, min, sign};
+
+#[cfg(feature = "trace")]
+pub use function::{Function, sin_cos_kernel};
+#[cfg(feature = "trace")]
+pub use kernel::{Kernel, Operation};

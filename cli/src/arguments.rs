@@ -1,0 +1,179 @@
+//! What can be typed, with an example for every command.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// From a specification of a mechanical system's energies to fast, checked equations of
+/// motion in Rust.
+#[derive(Parser)]
+#[command(name = "eomgen", version, arg_required_else_help = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Subcommand)]
+pub enum Command {
+    /// Read and check a specification: grammar, names, units, inertia, unused parameters.
+    #[command(after_help = "Example:\n  eomgen check model-spec/models/planetary_arm.toml")]
+    Check(Check),
+    /// Print the equations of motion and what each coefficient is.
+    #[command(
+        after_help = "Example:\n  eomgen derive model-spec/models/planetary_arm.toml --order 4 --format latex"
+    )]
+    Derive(Derive),
+    /// Emit the equations of motion as source.
+    #[command(
+        after_help = "Examples:\n  eomgen generate model-spec/models/planetary_arm.toml --order 5 --out arm5\n  eomgen generate --all --check"
+    )]
+    Generate(Generate),
+    /// Check derived equations against independent ones and write a certificate.
+    #[command(
+        after_help = "Example:\n  eomgen validate model-spec/models/planetary_arm.toml --order 16 --out certificate.json"
+    )]
+    Validate(Validate),
+    /// Simulate and write a trajectory.
+    #[command(
+        after_help = "Example:\n  eomgen simulate model-spec/models/planetary_arm.toml --order 4 --until 2 --sample 0.001 --set b_sp=50e-6 --out arm.csv"
+    )]
+    Simulate(Simulate),
+}
+
+/// Options of `check`.
+#[derive(Args)]
+pub struct Check {
+    /// The specification.
+    pub spec: PathBuf,
+    /// Modal truncation order of every field, instead of the specification's.
+    #[arg(long)]
+    pub order: Option<String>,
+    /// Print one JSON document.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// How equations are printed.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// Plain text.
+    Text,
+    /// A LaTeX document.
+    Latex,
+    /// One JSON document.
+    Json,
+}
+
+/// Options of `derive`.
+#[derive(Args)]
+pub struct Derive {
+    /// The specification.
+    pub spec: PathBuf,
+    /// Modal truncation order of every field, instead of the specification's.
+    #[arg(long)]
+    pub order: Option<String>,
+    /// How to print.
+    #[arg(long, value_enum, default_value = "text")]
+    pub format: Format,
+    /// The same as `--format json`.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What source is emitted.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Target {
+    /// Rust, `no_std`, without dependencies.
+    Rust,
+}
+
+/// Options of `generate`.
+#[derive(Args)]
+pub struct Generate {
+    /// The specification.
+    #[arg(required_unless_present = "all")]
+    pub spec: Option<PathBuf>,
+    /// Modal truncation order of every field, instead of the specification's.
+    #[arg(long)]
+    pub order: Option<String>,
+    /// The language.
+    #[arg(long, value_enum, default_value = "rust")]
+    pub target: Target,
+    /// The folder to write `lib.rs` to.
+    #[arg(long, required_unless_present = "all")]
+    pub out: Option<PathBuf>,
+    /// Regenerate the checked-in variants in `generated/src` (from the project's folder).
+    #[arg(long, conflicts_with_all = ["spec", "out", "order"])]
+    pub all: bool,
+    /// With --all: compare instead of writing; exit status 1 on a difference.
+    #[arg(long, requires = "all")]
+    pub check: bool,
+    /// Print one JSON document on what was written.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `validate`.
+#[derive(Args)]
+pub struct Validate {
+    /// The specification.
+    pub spec: PathBuf,
+    /// Modal truncation order of every field, instead of the specification's.
+    #[arg(long)]
+    pub order: Option<String>,
+    /// The file to write the certificate to; without it only the summary is printed.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Print the certificate on stdout instead of the summary.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// How to integrate.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Solver {
+    /// The best there is for the model.
+    Auto,
+    /// Runge-Kutta of order 8 with location of the switching surfaces.
+    Rk,
+}
+
+/// Options of `simulate`.
+#[derive(Args)]
+pub struct Simulate {
+    /// The specification.
+    pub spec: PathBuf,
+    /// Modal truncation order of every field, instead of the specification's.
+    #[arg(long)]
+    pub order: Option<String>,
+    /// Simulated time, in s. With --record the record's by default.
+    #[arg(long, required_unless_present = "record")]
+    pub until: Option<f64>,
+    /// The file to write: CSV, or Parquet if its name ends in `.parquet`.
+    #[arg(long)]
+    pub out: PathBuf,
+    /// Another value for a parameter, in the unit the specification declares (repeatable).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// A dataset file whose record feeds the inputs.
+    #[arg(long, value_name = "DATASET.toml")]
+    pub record: Option<PathBuf>,
+    /// Which record of the dataset.
+    #[arg(long, default_value = "train[0]", requires = "record")]
+    pub record_name: String,
+    /// Time from one row to the next, in s: a thousandth of the whole by default, with
+    /// --record the record's times.
+    #[arg(long)]
+    pub sample: Option<f64>,
+    /// How to integrate.
+    #[arg(long, value_enum, default_value = "auto")]
+    pub solver: Solver,
+    /// Relative tolerance of every state variable.
+    #[arg(long, default_value_t = 1e-9)]
+    pub tolerance: f64,
+    /// Print one JSON document on the work done.
+    #[arg(long)]
+    pub json: bool,
+}

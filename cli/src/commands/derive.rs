@@ -1,0 +1,29 @@
+//! `eomgen derive`: the equations of motion on stdout.
+
+use codegen::print::Notation;
+use codegen::report::Report;
+
+use crate::arguments::{Derive, Format};
+use crate::problem::{Outcome, Problem, say};
+use crate::variant::Variant;
+
+/// Runs the command.
+pub fn run(options: &Derive) -> Outcome {
+    let variant = Variant::load(&options.spec, options.order.as_deref())?;
+    let format = if options.json { Format::Json } else { options.format };
+    let notation = match format {
+        Format::Latex => Notation::latex(&variant.model),
+        _ => Notation::text(&variant.model),
+    };
+    let evaluator = variant.evaluator();
+    let report = Report::new(&variant.model, &variant.equations, &evaluator, &notation);
+    match format {
+        Format::Text => say(&report.text()),
+        Format::Latex => say(&report.latex()),
+        Format::Json => {
+            let text = serde_json::to_string_pretty(&report)
+                .map_err(|error| Problem::input(error.to_string()))?;
+            say(&format!("{text}\n"))
+        }
+    }
+}

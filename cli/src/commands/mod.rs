@@ -1,0 +1,7 @@
+//! One file per command.
+
+pub mod check;
+pub mod derive;
+pub mod generate;
+pub mod simulate;
+pub mod validate;

@@ -1,0 +1,63 @@
+//! `eomgen validate`: the certificate of a variant.
+
+use codegen::rust::Packaging;
+use model_spec::model::Model;
+use sim::certificates::certificate;
+use sim::validate::certificate::{Certificate, Check};
+
+use super::generate::source;
+use crate::arguments::Validate;
+use crate::output::write_file;
+use crate::problem::{Outcome, Problem, say};
+use crate::progress::Note;
+use crate::variant::{derive_variant, load, orders};
+
+/// Runs the command.
+pub fn run(options: &Validate) -> Outcome {
+    let model = load(&options.spec)?.model;
+    let orders = orders(&model, options.order.as_deref())?;
+    let certificate = {
+        let _note = Note::new(format!("validating {}", model.name));
+        of(&model, &orders)?
+    };
+    let text = serde_json::to_string_pretty(&certificate)
+        .map_err(|error| Problem::input(error.to_string()))?;
+    if let Some(path) = &options.out {
+        write_file(path, format!("{text}\n").as_bytes())?;
+    }
+    if options.json {
+        say(&format!("{text}\n"))?;
+    } else {
+        say(&summary(&certificate))?;
+    }
+    if certificate.passed { Ok(()) } else { Err(Problem::Failed) }
+}
+
+/// The certificate of a model at the given orders (all fields share one).
+pub fn of(model: &Model, orders: &[usize]) -> Outcome<Certificate> {
+    let order = orders.first().copied().unwrap_or(0);
+    let variant = derive_variant(model.clone(), orders)?;
+    let emitted = source(&variant.program, Packaging::Crate)?;
+    certificate(model, order, emitted).map_err(|error| Problem::model(&model.source, error))
+}
+
+/// One line per check.
+pub fn summary(certificate: &Certificate) -> String {
+    let mut text = format!("{}, order {}\n", certificate.model, certificate.order);
+    let width = certificate.checks.iter().map(|check| check.name.len()).max().unwrap_or(0);
+    for check in &certificate.checks {
+        text.push_str(&format!("  {:width$}  {}\n", check.name, verdict(check)));
+    }
+    text.push_str(if certificate.passed { "passed\n" } else { "FAILED\n" });
+    text
+}
+
+fn verdict(check: &Check) -> String {
+    let detail = if check.detail.is_empty() { String::new() } else { format!("  ({})", check.detail) };
+    if check.skipped {
+        return format!("skipped{detail}");
+    }
+    let value = check.value.map_or("not finite".to_owned(), |value| format!("{value:.1e}"));
+    let word = if check.passed { "passed" } else { "FAILED" };
+    format!("{word}   {value} of {:.0e}{detail}", check.tolerance)
+}

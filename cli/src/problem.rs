@@ -1,0 +1,74 @@
+//! What can go wrong, the message on stderr and the exit status: 2 for a usage or input
+//! error, 1 when a command ran and the answer is no.
+
+use std::io::{IsTerminal, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+use codegen::translate::DeriveError;
+use model_spec::diagnostic::{Diagnostic, Diagnostics};
+use model_spec::source::Source;
+use model_spec::variant::ModelError;
+
+/// A command's end.
+pub type Outcome<T = ()> = Result<T, Problem>;
+
+/// Why a command stopped.
+pub enum Problem {
+    /// The input or its use is wrong; the message says what would be right.
+    Input(String),
+    /// A specification is wrong.
+    Specification(Diagnostics),
+    /// The command ran and the answer is no; what there is to say is said.
+    Failed,
+}
+
+impl Problem {
+    /// An input error.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::Input(message.into())
+    }
+
+    /// A file that could not be read or written.
+    pub fn file(action: &str, path: &Path, error: &dyn std::fmt::Display) -> Self {
+        Self::Input(format!("cannot {action} {}: {error}", path.display()))
+    }
+
+    /// A specification that could not be derived.
+    pub fn derivation(source: &Source, error: &DeriveError) -> Self {
+        let mut diagnostic = Diagnostic::error(&error.message).at(error.span, "");
+        if let Some(help) = &error.help {
+            diagnostic = diagnostic.help(help);
+        }
+        Self::Specification(Diagnostics::one(source.clone(), diagnostic))
+    }
+
+    /// A model that cannot be had with the numbers asked for.
+    pub fn model(source: &Source, error: ModelError) -> Self {
+        Self::Specification(Diagnostics::one(source.clone(), error.diagnostic()))
+    }
+
+    /// Says what is wrong on stderr and gives the exit status.
+    pub fn report(&self) -> ExitCode {
+        let text = match self {
+            Self::Input(message) => format!("error: {message}"),
+            Self::Specification(diagnostics) => {
+                diagnostics.render(std::io::stderr().is_terminal())
+            }
+            Self::Failed => return ExitCode::from(1),
+        };
+        // Nothing is left to do if stderr is closed.
+        let _ = writeln!(std::io::stderr(), "{text}");
+        ExitCode::from(2)
+    }
+}
+
+/// Writes to stdout; a closed pipe ends the program quietly.
+pub fn say(text: &str) -> Outcome {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Ok(()) => Ok(()),
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        Err(error) => Err(Problem::input(format!("cannot write to stdout: {error}"))),
+    }
+}

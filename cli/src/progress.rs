@@ -1,0 +1,77 @@
+//! Progress on stderr, for work that takes more than two seconds, and only on a terminal.
+
+use std::cell::Cell;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Work shorter than this shows nothing.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Parts of the whole that the bar distinguishes.
+const PARTS: f64 = 1000.0;
+
+/// A bar that appears once the work has lasted a while.
+pub struct Bar {
+    bar: ProgressBar,
+    whole: f64,
+    started: Instant,
+    shown: Cell<bool>,
+}
+
+impl Bar {
+    /// A bar for `whole` units of work.
+    pub fn new(what: &'static str, whole: f64, unit: &str) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(PARTS as u64), ProgressDrawTarget::hidden());
+        let template = format!("{{msg}} [{{bar:40}}] {{percent}} % of {whole} {unit}, {{eta}} left");
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            bar.set_style(style);
+        }
+        bar.set_message(what);
+        Self {
+            bar,
+            whole,
+            started: Instant::now(),
+            shown: Cell::new(false),
+        }
+    }
+
+    /// So much is done.
+    pub fn set(&self, done: f64) {
+        if !self.shown.get() {
+            if self.started.elapsed() < PATIENCE {
+                return;
+            }
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+            self.shown.set(true);
+        }
+        self.bar.set_position((PARTS * done / self.whole) as u64);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// A line that says what is being done, on a terminal.
+pub struct Note {
+    bar: ProgressBar,
+}
+
+impl Note {
+    /// Shows `what` until dropped.
+    pub fn new(what: impl Into<String>) -> Self {
+        let bar = ProgressBar::new_spinner();
+        bar.set_message(what.into());
+        bar.enable_steady_tick(Duration::from_millis(120));
+        Self { bar }
+    }
+}
+
+impl Drop for Note {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,58 @@
+//! A table of numbers on its way to a file.
+
+use std::path::Path;
+
+use crate::commands::simulate::is_parquet;
+use crate::problem::{Outcome, Problem};
+
+/// Named columns of numbers.
+pub struct Table {
+    names: Vec<String>,
+    columns: Vec<Vec<f64>>,
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(names: Vec<String>) -> Self {
+        let columns = vec![Vec::new(); names.len()];
+        Self { names, columns }
+    }
+
+    /// Adds a row, one number per column.
+    pub fn push(&mut self, row: &[f64]) {
+        for (column, value) in self.columns.iter_mut().zip(row) {
+            column.push(*value);
+        }
+    }
+
+    /// How many rows there are.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, Vec::len)
+    }
+
+    /// A column by its name.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let place = self.names.iter().position(|known| known == name)?;
+        Some(&self.columns[place])
+    }
+
+    /// The bytes of the file: Parquet or CSV, by the path's ending.
+    pub fn encode(&self, path: &Path) -> Outcome<Vec<u8>> {
+        if is_parquet(path) {
+            return Err(Problem::input("Parquet is not written yet: give a name that ends in .csv"));
+        }
+        self.csv()
+    }
+
+    /// Numbers with the fewest digits that give them back exactly.
+    fn csv(&self) -> Outcome<Vec<u8>> {
+        let failed = |error: &dyn std::fmt::Display| Problem::input(format!("cannot write CSV: {error}"));
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(&self.names).map_err(|error| failed(&error))?;
+        for row in 0..self.rows() {
+            let fields = self.columns.iter().map(|column| format!("{:?}", column[row]));
+            writer.write_record(fields).map_err(|error| failed(&error))?;
+        }
+        writer.into_inner().map_err(|error| failed(&error))
+    }
+}

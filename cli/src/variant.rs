@@ -1,0 +1,76 @@
+//! From the path of a specification to a derived variant, with messages for people.
+
+use std::path::Path;
+
+use codegen::equations::{Equations, derive};
+use codegen::evaluator::Evaluator;
+use codegen::lower::lower;
+use codegen::program::Program;
+use model_spec::Checked;
+use model_spec::model::Model;
+
+use crate::problem::{Outcome, Problem};
+
+/// A model derived at one order.
+pub struct Variant {
+    /// The checked model.
+    pub model: Model,
+    /// Its equations.
+    pub equations: Equations,
+    /// Its program.
+    pub program: Program,
+}
+
+/// Reads and checks a specification; warnings go to stderr.
+pub fn load(path: &Path) -> Outcome<Checked> {
+    let checked = model_spec::load(path).map_err(Problem::Specification)?;
+    if !checked.warnings.is_empty() {
+        eprintln!("{}", checked.warnings.render(std::io::IsTerminal::is_terminal(&std::io::stderr())));
+    }
+    Ok(checked)
+}
+
+/// The orders of a model's fields. A text that is no order is refused with what would be.
+pub fn orders(model: &Model, text: Option<&str>) -> Outcome<Vec<usize>> {
+    let order = match text {
+        None => None,
+        Some(text) => Some(text.trim().parse::<usize>().map_err(|_| {
+            Problem::input(format!(
+                "--order {text}: expected a whole number from 0 to {}",
+                model_spec::model::MAX_ORDER
+            ))
+        })?),
+    };
+    model
+        .orders(order)
+        .map_err(|error| Problem::model(&model.source, error))
+}
+
+/// Derives a model at the given orders.
+pub fn derive_variant(model: Model, orders: &[usize]) -> Outcome<Variant> {
+    let values = model
+        .parameter_values()
+        .map_err(|error| Problem::model(&model.source, error))?;
+    let equations =
+        derive(&model, orders).map_err(|error| Problem::derivation(&model.source, &error))?;
+    let program = lower(&model, &equations, &values);
+    Ok(Variant {
+        model,
+        equations,
+        program,
+    })
+}
+
+impl Variant {
+    /// Loads, checks and derives.
+    pub fn load(path: &Path, order: Option<&str>) -> Outcome<Self> {
+        let checked = load(path)?;
+        let orders = orders(&checked.model, order)?;
+        derive_variant(checked.model, &orders)
+    }
+
+    /// An evaluator of the program, at the specification's parameters.
+    pub fn evaluator(&self) -> Evaluator {
+        Evaluator::new(self.program.clone())
+    }
+}

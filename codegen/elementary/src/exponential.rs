@@ -1,0 +1,150 @@
+//! The exponential and what is made of it: `exp`, `exp_minus_one`, `sinh`, `cosh`, `tanh`.
+//!
+//! `x = k ln 2 + r`, `|r| <= ln(2)/2`, with the remainder as a pair; a polynomial for `e^r`; then
+//! the scaling by `2^k`, in two steps where the result may be subnormal. The hyperbolic functions
+//! use a quarter of `e^x - 1` so that nothing overflows before the result does.
+
+use crate::approximation::{clamp, nearest_integer, polynomial, scale_by_power_of_two};
+use crate::pair::{Pair, exact_sum, ordered_sum, quotient};
+use crate::real::Real;
+
+/// `ln 2` rounded to a multiple of 2^-42: times an integer of 11 bits it is exact.
+pub(crate) const LN_2_HIGH: f64 = 0.693_147_180_559_890_3;
+/// What [`LN_2_HIGH`] misses.
+pub(crate) const LN_2_LOW: f64 = 5.497_923_018_708_371e-14;
+
+/// `(e^r - 1 - r)/r^2`, `|r| <= ln(2)/2`: `e^r - 1` to 2^-61.6.
+const EXPONENTIAL: [f64; 11] = [
+    0.5,
+    0.166_666_666_666_666_77,
+    0.041_666_666_666_666_68,
+    0.008_333_333_333_321_454,
+    0.001_388_888_888_887_710_2,
+    0.000_198_412_698_865_142_7,
+    2.480_158_734_179_433e-5,
+    2.755_724_386_281_276e-6,
+    2.755_725_790_496_236e-7,
+    2.510_914_570_771_847e-8,
+    2.091_996_652_279_279_6e-9,
+];
+
+/// From here on `e^x` is infinite.
+const OVERFLOW: f64 = 710.0;
+/// From here down `e^x` is zero.
+const UNDERFLOW: f64 = -746.0;
+
+/// `e^x`.
+///
+/// Largest error measured: 0.76 ulp.
+#[inline]
+pub fn exp<R: Real>(x: R) -> R {
+    exponential_of_pair(Pair {
+        high: clamp(x, UNDERFLOW, OVERFLOW),
+        low: R::constant(0.0),
+    })
+}
+
+/// `e^(high + low)` for `high` in `[-746, 710]` and `low` no more than its last place.
+#[inline(always)]
+pub(crate) fn exponential_of_pair<R: Real>(x: Pair<R>) -> R {
+    let (k, r, rest) = reduce(x);
+    let value = ordered_sum(R::constant(1.0), r).plus_low(rest).round();
+    scale_by_power_of_two(value, k)
+}
+
+/// `e^x - 1`, accurate for small `x` too.
+///
+/// Largest error measured: 1.10 ulp.
+#[inline]
+pub fn exp_minus_one<R: Real>(x: R) -> R {
+    let value = quarter_exp_minus_one(clamp(x, -40.0, OVERFLOW)).round();
+    let value = value * R::constant(4.0);
+    // Below this the function is its argument, signed zero and subnormals included.
+    let tiny = R::constant(f64::EPSILON / 4.0);
+    R::select_less(x.abs(), tiny, x, value)
+}
+
+/// The hyperbolic sine.
+///
+/// Largest error measured: 1.15 ulp.
+#[inline]
+pub fn sinh<R: Real>(x: R) -> R {
+    let one = R::constant(1.0);
+    // With w = (e^|x| - 1)/4: sinh|x| = 2 (w + w/(1 + 4 w)).
+    let w = quarter_exp_minus_one(clamp(x.abs(), 0.0, LARGEST_HYPERBOLIC)).normalised();
+    let four = R::constant(4.0);
+    let growth = w.high * four;
+    let denominator = exact_sum(one, growth);
+    let inverse = one / denominator.high;
+    let decaying = w.high / denominator.high;
+    let relative_rest = (denominator.low + w.low * four) * inverse;
+    let rest = w.low + (w.low * inverse - decaying * relative_rest);
+    // An infinite denominator makes this rest NaN; the decaying part is nothing long before.
+    let rest = R::select_less(growth, R::constant(1e300), rest, w.low);
+    let sum = ordered_sum(w.high, decaying).plus_low(rest);
+    let magnitude = sum.round() * R::constant(2.0);
+    odd_extension(x, magnitude)
+}
+
+/// The hyperbolic cosine.
+///
+/// Largest error measured: 0.88 ulp.
+#[inline]
+pub fn cosh<R: Real>(x: R) -> R {
+    let (k, r, rest) = reduce(Pair {
+        high: clamp(x.abs(), 0.0, LARGEST_HYPERBOLIC),
+        low: R::constant(0.0),
+    });
+    // With w = e^|x|/4: cosh x = 2 (w + 1/(16 w)).
+    let w = ordered_sum(R::constant(1.0), r).plus_low(rest).normalised();
+    let quarter = (k - R::constant(2.0)).power_of_two();
+    let (high, low) = (w.high * quarter, w.low * quarter);
+    let decaying = R::constant(0.0625) / high;
+    (high + (low + decaying)) * R::constant(2.0)
+}
+
+/// The hyperbolic tangent.
+///
+/// Largest error measured: 0.91 ulp.
+#[inline]
+pub fn tanh<R: Real>(x: R) -> R {
+    // With w = (e^(2|x|) - 1)/4: tanh|x| = w/(w + 1/2). Beyond 22 it is 1 to the last bit.
+    let doubled = clamp(x.abs(), 0.0, 22.0) * R::constant(2.0);
+    let w = quarter_exp_minus_one(doubled).normalised();
+    let denominator = exact_sum(w.high, R::constant(0.5)).plus_low(w.low);
+    odd_extension(x, quotient(w, denominator).round())
+}
+
+/// Above this both hyperbolic functions are infinite, while `k` still fits.
+const LARGEST_HYPERBOLIC: f64 = 710.5;
+
+/// An odd function from its values for positive arguments; `x` itself where that is exact to less
+/// than 2^-56, signed zero and subnormals included.
+#[inline(always)]
+fn odd_extension<R: Real>(x: R, magnitude: R) -> R {
+    let tiny = R::constant(1.0 / (1_u64 << 28) as f64);
+    R::select_less(x.abs(), tiny, x, magnitude.copysign(x))
+}
+
+/// `(e^x - 1)/4` for `x` in `[-40, 711]`, as a pair yet to be normalised.
+#[inline(always)]
+fn quarter_exp_minus_one<R: Real>(x: R) -> Pair<R> {
+    let (k, r, rest) = reduce(Pair {
+        high: x,
+        low: R::constant(0.0),
+    });
+    let quarter = (k - R::constant(2.0)).power_of_two();
+    let offset = exact_sum(quarter, R::constant(-0.25));
+    // |offset| exceeds |r| quarter unless k = 0, where it is zero.
+    ordered_sum(offset.high, r * quarter).plus_low(offset.low + rest * quarter)
+}
+
+/// `k`, `r` and a small rest with `e^(x.high + x.low) = 2^k (1 + r + rest)`.
+#[inline(always)]
+fn reduce<R: Real>(x: Pair<R>) -> (R, R, R) {
+    let k = nearest_integer(x.high * R::constant(core::f64::consts::LOG2_E));
+    let leading = x.high - k * R::constant(LN_2_HIGH);
+    let r = ordered_sum(leading, x.low - k * R::constant(LN_2_LOW));
+    let curved = (r.high * r.high) * polynomial(r.high, &EXPONENTIAL);
+    (k, r.high, curved + r.low)
+}

@@ -1,0 +1,167 @@
+//! Recording: running a generic function on handles that write down what is done to them.
+//!
+//! Repeated operations and constants are merged as they arrive (same operation, same operands,
+//! same bits); what no output needs is dropped at the end. Nothing is rewritten.
+
+use crate::kernel::{Kernel, Operation};
+use crate::real::Real;
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A value of the recording under way on this thread, by the number of its operation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Traced(usize);
+
+/// Records `body` applied to `inputs` arguments.
+pub(crate) fn record(inputs: usize, body: impl FnOnce(&[Traced]) -> Vec<Traced>) -> Kernel {
+    let outer = RECORDER.take();
+    let arguments: Vec<Traced> = (0..inputs).map(|i| emit(Operation::Input(i))).collect();
+    let outputs: Vec<usize> = body(&arguments).into_iter().map(|t| t.0).collect();
+    let recorder = RECORDER.replace(outer);
+    without_dead_operations(inputs, &recorder.operations, &outputs)
+}
+
+thread_local! {
+    static RECORDER: RefCell<Recorder> = RefCell::default();
+}
+
+#[derive(Default)]
+struct Recorder {
+    operations: Vec<Operation>,
+    known: HashMap<Key, usize>,
+}
+
+/// What makes two operations the same: constants compare by their bits.
+#[derive(PartialEq, Eq, Hash)]
+struct Key {
+    kind: std::mem::Discriminant<Operation>,
+    payload: u64,
+    operands: Vec<usize>,
+}
+
+impl Key {
+    fn of(operation: Operation) -> Key {
+        let mut operands = Vec::new();
+        operation.map_operands(|i| {
+            operands.push(i);
+            i
+        });
+        let payload = match operation {
+            Operation::Constant(value) => value.to_bits(),
+            Operation::Input(i) => i as u64,
+            _ => 0,
+        };
+        Key {
+            kind: std::mem::discriminant(&operation),
+            payload,
+            operands,
+        }
+    }
+}
+
+/// The handle of `operation`, recorded if it is new.
+fn emit(operation: Operation) -> Traced {
+    RECORDER.with_borrow_mut(|recorder| {
+        let Recorder { operations, known } = recorder;
+        let index = *known.entry(Key::of(operation)).or_insert_with(|| {
+            operations.push(operation);
+            operations.len() - 1
+        });
+        Traced(index)
+    })
+}
+
+/// Keeps what the outputs need, renumbered in the same order.
+fn without_dead_operations(inputs: usize, all: &[Operation], outputs: &[usize]) -> Kernel {
+    let mut needed = vec![false; all.len()];
+    for &output in outputs {
+        needed[output] = true;
+    }
+    for (index, operation) in all.iter().enumerate().rev() {
+        if needed[index] {
+            operation.map_operands(|operand| {
+                needed[operand] = true;
+                operand
+            });
+        }
+    }
+    let mut renumbered = vec![0; all.len()];
+    let mut operations = Vec::new();
+    for (index, operation) in all.iter().enumerate().filter(|(i, _)| needed[*i]) {
+        renumbered[index] = operations.len();
+        operations.push(operation.map_operands(|operand| renumbered[operand]));
+    }
+    Kernel {
+        inputs,
+        operations,
+        outputs: outputs.iter().map(|&output| renumbered[output]).collect(),
+    }
+}
+
+macro_rules! record_operator {
+    ($($operator:ident $method:ident),*) => {$(
+        impl $operator for Traced {
+            type Output = Traced;
+            fn $method(self, other: Traced) -> Traced {
+                emit(Operation::$operator(self.0, other.0))
+            }
+        }
+    )*};
+}
+
+record_operator!(Add add, Sub sub, Mul mul, Div div);
+
+impl Neg for Traced {
+    type Output = Traced;
+    fn neg(self) -> Traced {
+        emit(Operation::Neg(self.0))
+    }
+}
+
+impl Real for Traced {
+    fn constant(value: f64) -> Traced {
+        emit(Operation::Constant(value))
+    }
+
+    fn abs(self) -> Traced {
+        emit(Operation::Abs(self.0))
+    }
+
+    fn copysign(self, sign: Traced) -> Traced {
+        emit(Operation::CopySign {
+            magnitude: self.0,
+            sign: sign.0,
+        })
+    }
+
+    fn select_less(left: Traced, right: Traced, then: Traced, otherwise: Traced) -> Traced {
+        emit(Operation::SelectLess {
+            left: left.0,
+            right: right.0,
+            then: then.0,
+            otherwise: otherwise.0,
+        })
+    }
+
+    fn select_equal(left: Traced, right: Traced, then: Traced, otherwise: Traced) -> Traced {
+        emit(Operation::SelectEqual {
+            left: left.0,
+            right: right.0,
+            then: then.0,
+            otherwise: otherwise.0,
+        })
+    }
+
+    fn power_of_two(self) -> Traced {
+        emit(Operation::PowerOfTwo(self.0))
+    }
+
+    fn exponent(self) -> Traced {
+        emit(Operation::Exponent(self.0))
+    }
+
+    fn significand(self) -> Traced {
+        emit(Operation::Significand(self.0))
+    }
+}

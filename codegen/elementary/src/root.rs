@@ -1,0 +1,110 @@
+//! The square root, correctly rounded: the very bits of a hardware square root.
+//!
+//! `x = 4^h m` with `m` in `[1, 4)`; a polynomial for `1/sqrt m`, two Newton steps, one step with
+//! the exact remainder, and a last comparison of the exact remainder with half a unit in the last
+//! place.
+
+use crate::approximation::{nearest_integer, polynomial, take_apart};
+use crate::pair::{Pair, exact_square};
+use crate::real::Real;
+
+/// `1/sqrt m`, `m` in `[1, 4]`, to 2^-12.2.
+const INVERSE_ROOT: [f64; 7] = [
+    2.081_649_629_276_674,
+    -2.032_425_431_582_041_6,
+    1.427_860_208_912_750_3,
+    -0.612_114_372_530_438,
+    0.154_845_229_307_336_9,
+    -0.021_231_322_940_888_833,
+    0.001_215_380_137_694_336,
+];
+
+/// One unit in the last place of a number in `[1, 2)`.
+const LAST_PLACE: f64 = f64::EPSILON;
+
+/// The square root, correctly rounded; NaN for negative arguments, `-0` for `-0`.
+#[inline]
+pub fn sqrt<R: Real>(x: R) -> R {
+    let zero = R::constant(0.0);
+    let centred = Centred::new(x);
+    let root = centred.rounded_root() * centred.scale;
+    let root = R::select_less(x, R::constant(f64::INFINITY), root, x);
+    let root = R::select_less(x, zero, R::constant(f64::NAN), root);
+    R::select_equal(x, zero, x, root)
+}
+
+/// The square root of a finite `x` as a pair, to some 90 bits; NaN for negative `x`.
+#[inline(always)]
+pub(crate) fn root_pair<R: Real>(x: R) -> Pair<R> {
+    let zero = R::constant(0.0);
+    let centred = Centred::new(x);
+    let root = centred.root().normalised();
+    let high = R::select_less(zero, x, root.high * centred.scale, x);
+    Pair {
+        high: R::select_less(x, zero, R::constant(f64::NAN), high),
+        low: R::select_equal(x, zero, zero, root.low * centred.scale),
+    }
+}
+
+/// A positive finite number `m scale^2` with `m` in `[1, 4)`, and half of `1/sqrt m`.
+struct Centred<R> {
+    m: R,
+    scale: R,
+    half_inverse: R,
+}
+
+impl<R: Real> Centred<R> {
+    #[inline(always)]
+    fn new(x: R) -> Self {
+        let half = R::constant(0.5);
+        let (significand, exponent) = take_apart(x);
+        let halved = nearest_integer(exponent * half - R::constant(0.25));
+        let odd = exponent - (halved + halved);
+        let m = significand * (odd + R::constant(1.0));
+        let inverse = newton(m, newton(m, polynomial(m, &INVERSE_ROOT)));
+        Centred {
+            m,
+            scale: halved.power_of_two(),
+            half_inverse: inverse * half,
+        }
+    }
+
+    /// The root of `m`: a value right to 2^-46 and its correction, to 2^-91.
+    #[inline(always)]
+    fn root(&self) -> Pair<R> {
+        let high = self.m * (self.half_inverse + self.half_inverse);
+        Pair {
+            high,
+            low: self.remainder(high) * self.half_inverse,
+        }
+    }
+
+    /// The correctly rounded root of `m`.
+    ///
+    /// The rounded pair may be on the wrong side of a tie it nearly hits. Its remainder is exact,
+    /// and the root lies more than half a last place above it just if the remainder exceeds
+    /// it times the last place; below likewise.
+    #[inline(always)]
+    fn rounded_root(&self) -> R {
+        let root = self.root().round();
+        let last_place = R::constant(LAST_PLACE);
+        let threshold = root * last_place;
+        let left = self.remainder(root);
+        let not_above = R::select_less(-threshold, left, root, root - last_place);
+        R::select_less(threshold, left, root + last_place, not_above)
+    }
+
+    /// `m - root^2`.
+    #[inline(always)]
+    fn remainder(&self, root: R) -> R {
+        let square = exact_square(root);
+        (self.m - square.high) - square.low
+    }
+}
+
+/// One Newton step for `1/sqrt m`.
+#[inline(always)]
+fn newton<R: Real>(m: R, inverse: R) -> R {
+    let defect = R::constant(1.0) - (m * inverse) * inverse;
+    inverse + (inverse * R::constant(0.5)) * defect
+}

@@ -1,0 +1,9 @@
+//! Accuracy against 128-bit arithmetic, special values, and native values against kernels.
+
+mod exponential;
+mod hard_cases;
+mod kernels;
+mod oracle;
+mod powers_and_roots;
+mod special_values;
+mod trigonometric;

@@ -1,0 +1,307 @@
+//! Derivatives of graph nodes: by a scalar variable, along a direction (forward mode),
+//! and by a field's modes, where the result of a scalar is a vector (its gradient) and
+//! that of a vector a structured matrix (diagonal, outer products and tables). Shared
+//! nodes are differentiated once; nothing is multiplied out.
+
+use std::collections::HashMap;
+
+use model_spec::model::Function;
+
+use crate::graph::{Graph, Id, Operation, Shape, Space};
+use crate::matrix::StructuredMatrix;
+
+/// Values that the leaves of the graph have as derivatives.
+pub struct Direction<'a> {
+    tangent: &'a dyn Fn(&mut Graph, Id) -> Id,
+    known: HashMap<Id, Id>,
+}
+
+impl<'a> Direction<'a> {
+    /// A direction given by the derivative of every leaf (0 for those that are constant).
+    pub fn new(tangent: &'a dyn Fn(&mut Graph, Id) -> Id) -> Self {
+        Self {
+            tangent,
+            known: HashMap::new(),
+        }
+    }
+
+    /// Treats `id` as a variable whose derivative is `tangent`.
+    pub fn seed(&mut self, id: Id, tangent: Id) {
+        self.known.insert(id, tangent);
+    }
+
+    /// The derivative of `id` along the direction.
+    pub fn derivative(&mut self, graph: &mut Graph, id: Id) -> Id {
+        if let Some(&known) = self.known.get(&id) {
+            return known;
+        }
+        let result = self.compute(graph, id);
+        self.known.insert(id, result);
+        result
+    }
+
+    fn compute(&mut self, graph: &mut Graph, id: Id) -> Id {
+        let operation = graph.operation(id).clone();
+        if graph.operands(&operation).is_empty() {
+            return (self.tangent)(graph, id);
+        }
+        match operation {
+            Operation::Total(a) => {
+                let inner = self.derivative(graph, a);
+                match graph.shape(a) {
+                    Shape::Vector(space) => graph.total_over(space, inner),
+                    _ => inner,
+                }
+            }
+            Operation::Apply {
+                matrix,
+                transposed,
+                vector,
+            } => {
+                let inner = self.derivative(graph, vector);
+                graph.apply(matrix, transposed, inner)
+            }
+            Operation::CholeskySolve(factor, vector) => {
+                let inner = self.derivative(graph, vector);
+                graph.cholesky_solve(factor, inner)
+            }
+            _ => {
+                let partials = partial_derivatives(graph, id);
+                let mut terms = Vec::with_capacity(partials.len());
+                for (operand, partial) in partials {
+                    let inner = self.derivative(graph, operand);
+                    if !graph.is_zero(inner) {
+                        terms.push((1.0, graph.multiply(partial, inner)));
+                    }
+                }
+                graph.combine(&terms)
+            }
+        }
+    }
+}
+
+/// The derivative of a node by a scalar leaf.
+pub fn by_scalar(graph: &mut Graph, id: Id, variable: Id) -> Id {
+    let tangent = |graph: &mut Graph, leaf: Id| {
+        if leaf == variable { graph.one() } else { graph.zero() }
+    };
+    Direction::new(&tangent).derivative(graph, id)
+}
+
+/// For an element-wise operation: each operand with the partial derivative by it.
+/// Matrix operations, which depend on parameters alone, have none.
+fn partial_derivatives(graph: &mut Graph, id: Id) -> Vec<(Id, Id)> {
+    match graph.operation(id).clone() {
+        Operation::Sum(terms) => terms
+            .iter()
+            .map(|&(factor, term)| (term, graph.constant(factor.value())))
+            .collect(),
+        Operation::Product(factors) => factors
+            .iter()
+            .map(|&(factor, exponent)| {
+                let lowered: Vec<(Id, i32)> = factors
+                    .iter()
+                    .map(|&(other, power)| (other, if other == factor { power - 1 } else { power }))
+                    .collect();
+                let rest = graph.product(&lowered);
+                (factor, graph.scale(f64::from(exponent), rest))
+            })
+            .collect(),
+        Operation::Power(base, exponent) => power_derivatives(graph, id, base, exponent),
+        Operation::Call(function, arguments) => {
+            function_derivatives(graph, id, function, &arguments)
+        }
+        Operation::Select {
+            a,
+            b,
+            then,
+            otherwise,
+        } => {
+            let (zero, one) = (graph.zero(), graph.one());
+            let taken = graph.select(a, b, one, zero);
+            let skipped = graph.select(a, b, zero, one);
+            vec![(then, taken), (otherwise, skipped)]
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn power_derivatives(graph: &mut Graph, id: Id, base: Id, exponent: Id) -> Vec<(Id, Id)> {
+    let minus_one = graph.constant(-1.0);
+    let lowered = graph.add(exponent, minus_one);
+    let power = graph.power(base, lowered);
+    let by_base = graph.multiply(exponent, power);
+    let logarithm = graph.call(Function::Ln, &[base]);
+    let by_exponent = graph.multiply(id, logarithm);
+    vec![(base, by_base), (exponent, by_exponent)]
+}
+
+fn function_derivatives(
+    graph: &mut Graph,
+    id: Id,
+    function: Function,
+    arguments: &[Id],
+) -> Vec<(Id, Id)> {
+    match (function, arguments) {
+        (Function::Atan2, &[y, x]) => {
+            let squares = [graph.integer_power(y, 2), graph.integer_power(x, 2)];
+            let radius = graph.add(squares[0], squares[1]);
+            let by_y = graph.divide(x, radius);
+            let by_x = graph.divide(y, radius);
+            vec![(y, by_y), (x, graph.negate(by_x))]
+        }
+        (Function::Min | Function::Max, &[a, b]) => {
+            let (zero, one) = (graph.zero(), graph.one());
+            let (high, low) = if function == Function::Max { (a, b) } else { (b, a) };
+            let first = graph.select(high, low, one, zero);
+            let second = graph.select(high, low, zero, one);
+            vec![(a, first), (b, second)]
+        }
+        (Function::Deadzone, &[p, b]) => {
+            let contact = graph.call(Function::Contact, arguments);
+            let side = graph.call(Function::Sign, &[p]);
+            let by_b = graph.multiply(contact, side);
+            vec![(p, contact), (b, graph.negate(by_b))]
+        }
+        (_, &[a]) => match derivative_of_function(graph, id, function, a) {
+            Some(derivative) => vec![(a, derivative)],
+            None => Vec::new(),
+        },
+        _ => Vec::new(),
+    }
+}
+
+/// The derivative of a function of one argument; `None` where it is 0 almost everywhere.
+fn derivative_of_function(graph: &mut Graph, id: Id, function: Function, a: Id) -> Option<Id> {
+    let one = graph.one();
+    let square = |graph: &mut Graph, x: Id| graph.integer_power(x, 2);
+    Some(match function {
+        Function::Sin => graph.call(Function::Cos, &[a]),
+        Function::Cos => {
+            let sine = graph.call(Function::Sin, &[a]);
+            graph.negate(sine)
+        }
+        Function::Tan => {
+            let tangent = square(graph, id);
+            graph.add(one, tangent)
+        }
+        Function::Asin | Function::Acos => {
+            let argument = square(graph, a);
+            let rest = graph.subtract(one, argument);
+            let root = graph.call(Function::Sqrt, &[rest]);
+            let slope = graph.integer_power(root, -1);
+            if function == Function::Acos { graph.negate(slope) } else { slope }
+        }
+        Function::Atan => {
+            let argument = square(graph, a);
+            let sum = graph.add(one, argument);
+            graph.integer_power(sum, -1)
+        }
+        Function::Sinh => graph.call(Function::Cosh, &[a]),
+        Function::Cosh => graph.call(Function::Sinh, &[a]),
+        Function::Tanh => {
+            let value = square(graph, id);
+            graph.subtract(one, value)
+        }
+        Function::Exp => id,
+        Function::Ln => graph.integer_power(a, -1),
+        Function::Sqrt => {
+            let reciprocal = graph.integer_power(id, -1);
+            graph.scale(0.5, reciprocal)
+        }
+        Function::Abs => graph.call(Function::Sign, &[a]),
+        _ => return None,
+    })
+}
+
+/// Derivatives by the modes of one field.
+pub struct ModalDerivative {
+    variable: Id,
+    space: Space,
+    gradients: HashMap<Id, Id>,
+    jacobians: HashMap<Id, StructuredMatrix>,
+}
+
+impl ModalDerivative {
+    /// Derivatives by the vector leaf `variable` (a field's mode coordinates or rates).
+    pub fn new(graph: &Graph, variable: Id) -> Option<Self> {
+        match graph.shape(variable) {
+            Shape::Vector(space) => Some(Self {
+                variable,
+                space,
+                gradients: HashMap::new(),
+                jacobians: HashMap::new(),
+            }),
+            _ => None,
+        }
+    }
+
+    /// The gradient of a scalar node: a vector over the modes, or 0.
+    pub fn gradient(&mut self, graph: &mut Graph, id: Id) -> Id {
+        if let Some(&known) = self.gradients.get(&id) {
+            return known;
+        }
+        let result = match graph.operation(id).clone() {
+            Operation::Total(a) => {
+                let jacobian = self.jacobian(graph, a);
+                jacobian.column_totals(graph)
+            }
+            _ => {
+                let partials = partial_derivatives(graph, id);
+                let mut terms = Vec::with_capacity(partials.len());
+                for (operand, partial) in partials {
+                    let inner = self.gradient(graph, operand);
+                    if !graph.is_zero(inner) {
+                        terms.push((1.0, graph.multiply(partial, inner)));
+                    }
+                }
+                graph.combine(&terms)
+            }
+        };
+        self.gradients.insert(id, result);
+        result
+    }
+
+    /// The Jacobian of a vector node: rows its own index, columns the modes.
+    pub fn jacobian(&mut self, graph: &mut Graph, id: Id) -> StructuredMatrix {
+        if let Some(known) = self.jacobians.get(&id) {
+            return known.clone();
+        }
+        let result = self.compute_jacobian(graph, id);
+        self.jacobians.insert(id, result.clone());
+        result
+    }
+
+    fn compute_jacobian(&mut self, graph: &mut Graph, id: Id) -> StructuredMatrix {
+        let rows = match graph.shape(id) {
+            Shape::Vector(space) => space,
+            _ => self.space,
+        };
+        let mut result = StructuredMatrix::zero(rows, self.space);
+        if id == self.variable {
+            result.add_diagonal(graph, 1.0);
+            return result;
+        }
+        if let Operation::Apply {
+            matrix,
+            transposed,
+            vector,
+        } = *graph.operation(id)
+        {
+            return self.jacobian(graph, vector).applied(graph, matrix, transposed);
+        }
+        for (operand, partial) in partial_derivatives(graph, id) {
+            match graph.shape(operand) {
+                Shape::Scalar => {
+                    let gradient = self.gradient(graph, operand);
+                    result.add_outer(graph, partial, gradient);
+                }
+                _ => {
+                    let inner = self.jacobian(graph, operand);
+                    result.add_scaled(graph, partial, &inner);
+                }
+            }
+        }
+        result
+    }
+}

@@ -1,0 +1,486 @@
+//! Functions of the position along a field, and their integrals over its domain.
+//!
+//! An integrand is kept as a sum of terms: a scalar, a power of s = (x - from)/(to - from),
+//! an optional weight given at quadrature nodes, and at most two field atoms (w, its rate,
+//! a mode shape, or a derivative of one by the position). Terms without a weight have
+//! exact dimensionless integrals (`modes`), so that lengths and stiffnesses stay
+//! parameters; a weight that depends on parameters alone is integrated once, when the
+//! coefficients are prepared. What does not fit, an integrand that is not quadratic in the
+//! field, is evaluated at the quadrature nodes.
+
+use model_spec::ast::BinaryOperator;
+use model_spec::model::Function;
+
+use crate::graph::{Graph, Id, Operation, Space};
+use crate::modes::is_orthogonal;
+use crate::tables::TableKind;
+use crate::translate::Domain;
+
+/// A field, its rate or a mode shape, with the number of derivatives by the position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Atom {
+    /// w
+    Coordinates(u8),
+    /// dot(w)
+    Rates(u8),
+    /// phi[i]
+    Shapes(u8),
+}
+
+impl Atom {
+    /// The atom differentiated `times` more by the position.
+    pub fn differentiated(self, times: u8) -> Self {
+        match self {
+            Self::Coordinates(d) => Self::Coordinates(d + times),
+            Self::Rates(d) => Self::Rates(d + times),
+            Self::Shapes(d) => Self::Shapes(d + times),
+        }
+    }
+
+    fn derivative(self) -> u8 {
+        match self {
+            Self::Coordinates(d) | Self::Rates(d) | Self::Shapes(d) => d,
+        }
+    }
+
+    /// The vector over the modes that multiplies the shapes; `None` for a bare shape.
+    fn amplitudes(self, graph: &mut Graph, field: usize) -> Option<Id> {
+        match self {
+            Self::Coordinates(_) => Some(graph.intern(Operation::ModeCoordinates(field))),
+            Self::Rates(_) => Some(graph.intern(Operation::ModeRates(field))),
+            Self::Shapes(_) => None,
+        }
+    }
+}
+
+/// scalar s^power weight atom_1 atom_2; the derivatives in the atoms are by s.
+#[derive(Clone, Debug)]
+struct Term {
+    scalar: Id,
+    power: u32,
+    weight: Option<Id>,
+    atoms: Vec<Atom>,
+}
+
+/// A function of the position along a field.
+#[derive(Clone, Debug)]
+pub struct FieldFunction {
+    terms: Vec<Term>,
+}
+
+/// The most terms an integrand may have when products of its sums are formed.
+const MAX_TERMS: usize = 4096;
+
+type Outcome<T> = Result<T, String>;
+
+impl FieldFunction {
+    /// Something that does not vary along the field.
+    pub fn constant(scalar: Id) -> Self {
+        Self {
+            terms: vec![Term {
+                scalar,
+                power: 0,
+                weight: None,
+                atoms: Vec::new(),
+            }],
+        }
+    }
+
+    /// The position x = from + length s.
+    pub fn position(graph: &mut Graph, domain: &Domain) -> Self {
+        let mut function = Self::constant(domain.length);
+        function.terms[0].power = 1;
+        if !graph.is_zero(domain.from) {
+            function.terms.extend(Self::constant(domain.from).terms);
+        }
+        function
+    }
+
+    /// A field atom whose derivatives are by x.
+    pub fn atom(graph: &mut Graph, domain: &Domain, atom: Atom) -> Self {
+        let scale = graph.integer_power(domain.length, -i32::from(atom.derivative()));
+        let mut function = Self::constant(scale);
+        function.terms[0].atoms.push(atom);
+        function
+    }
+
+    /// A multiple.
+    pub fn scaled(mut self, graph: &mut Graph, factor: f64) -> Self {
+        for term in &mut self.terms {
+            term.scalar = graph.scale(factor, term.scalar);
+        }
+        self
+    }
+
+    /// A sum, difference, product, quotient or power.
+    pub fn binary(
+        &self,
+        graph: &mut Graph,
+        domain: &Domain,
+        operator: BinaryOperator,
+        other: &Self,
+    ) -> Outcome<Self> {
+        match operator {
+            BinaryOperator::Add => self.plus(other.clone()),
+            BinaryOperator::Subtract => self.plus(other.clone().scaled(graph, -1.0)),
+            BinaryOperator::Multiply => self.times(graph, domain, other),
+            BinaryOperator::Divide => match other.as_scalar() {
+                Some(scalar) => {
+                    let reciprocal = graph.integer_power(scalar, -1);
+                    self.times(graph, domain, &Self::constant(reciprocal))
+                }
+                None => {
+                    let values = other.values(graph, domain)?;
+                    let reciprocal = graph.integer_power(values, -1);
+                    let weight = Self::weight(graph, reciprocal);
+                    self.times(graph, domain, &weight)
+                }
+            },
+            BinaryOperator::Power => self.to_the_power(graph, domain, other),
+        }
+    }
+
+    /// A function applied at every position.
+    pub fn call(
+        graph: &mut Graph,
+        domain: &Domain,
+        function: Function,
+        arguments: &[Self],
+    ) -> Outcome<Self> {
+        let scalars: Option<Vec<Id>> = arguments.iter().map(Self::as_scalar).collect();
+        if let Some(scalars) = scalars {
+            return Ok(Self::constant(graph.call(function, &scalars)));
+        }
+        let values = arguments
+            .iter()
+            .map(|a| a.values(graph, domain))
+            .collect::<Outcome<Vec<Id>>>()?;
+        let result = graph.call(function, &values);
+        Ok(Self::weight(graph, result))
+    }
+
+    /// The value at a position (parameters only).
+    pub fn at(&self, graph: &mut Graph, domain: &Domain, position: Id) -> Outcome<Id> {
+        let from_start = graph.subtract(position, domain.from);
+        let s = graph.divide(from_start, domain.length);
+        let mut terms = Vec::new();
+        for term in &self.terms {
+            if term.weight.is_some() {
+                return Err("at(...) takes the field, its derivatives and polynomials of the position".into());
+            }
+            let mut factors = vec![(term.scalar, 1), (s, term.power as i32)];
+            for atom in &term.atoms {
+                let shapes = shapes_at(graph, domain, s, atom.derivative());
+                let value = match atom.amplitudes(graph, domain.field) {
+                    Some(amplitudes) => {
+                        let product = graph.multiply(shapes, amplitudes);
+                        graph.total_over(Space::Modes(domain.field), product)
+                    }
+                    None => shapes,
+                };
+                factors.push((value, 1));
+            }
+            terms.push((1.0, graph.product(&factors)));
+        }
+        Ok(graph.combine(&terms))
+    }
+
+    /// The integral over the domain.
+    pub fn integral(&self, graph: &mut Graph, domain: &Domain) -> Outcome<Id> {
+        let mut terms = Vec::new();
+        for term in &self.terms {
+            let value = integral_of_term(graph, domain, term);
+            let product = graph.product(&[(term.scalar, 1), (domain.length, 1), (value, 1)]);
+            terms.push((1.0, product));
+        }
+        Ok(graph.combine(&terms))
+    }
+
+    fn weight(graph: &mut Graph, values: Id) -> Self {
+        let mut function = Self::constant(graph.one());
+        function.terms[0].weight = Some(values);
+        function
+    }
+
+    /// The scalar, if this does not vary along the field.
+    fn as_scalar(&self) -> Option<Id> {
+        match self.terms.as_slice() {
+            [term] if term.power == 0 && term.weight.is_none() && term.atoms.is_empty() => {
+                Some(term.scalar)
+            }
+            _ => None,
+        }
+    }
+
+    fn plus(&self, other: Self) -> Outcome<Self> {
+        let mut terms = self.terms.clone();
+        terms.extend(other.terms);
+        bounded(terms)
+    }
+
+    fn times(&self, graph: &mut Graph, domain: &Domain, other: &Self) -> Outcome<Self> {
+        let atoms = |function: &Self| function.terms.iter().map(|t| t.atoms.len()).max().unwrap_or(0);
+        if atoms(self) + atoms(other) > 2 {
+            let values = [self.values(graph, domain)?, other.values(graph, domain)?];
+            let product = graph.multiply(values[0], values[1]);
+            return Ok(Self::weight(graph, product));
+        }
+        if self.terms.len() * other.terms.len() > MAX_TERMS {
+            return Err(too_many_terms());
+        }
+        let mut terms = Vec::new();
+        for a in &self.terms {
+            for b in &other.terms {
+                let weight = match (a.weight, b.weight) {
+                    (Some(a), Some(b)) => Some(graph.multiply(a, b)),
+                    (a, b) => a.or(b),
+                };
+                let mut atoms = [a.atoms.clone(), b.atoms.clone()].concat();
+                atoms.sort();
+                terms.push(Term {
+                    scalar: graph.multiply(a.scalar, b.scalar),
+                    power: a.power + b.power,
+                    weight,
+                    atoms,
+                });
+            }
+        }
+        bounded(collect_like_terms(graph, terms))
+    }
+
+    fn to_the_power(&self, graph: &mut Graph, domain: &Domain, exponent: &Self) -> Outcome<Self> {
+        let number = exponent.as_scalar().and_then(|e| graph.as_constant(e));
+        if let (Some(base), Some(exponent)) = (self.as_scalar(), exponent.as_scalar()) {
+            return Ok(Self::constant(graph.power(base, exponent)));
+        }
+        match number {
+            Some(n) if n == n.round() && (0.0..=8.0).contains(&n) => {
+                let mut result = Self::constant(graph.one());
+                for _ in 0..n as u32 {
+                    result = result.times(graph, domain, self)?;
+                }
+                Ok(result)
+            }
+            _ => {
+                let base = self.values(graph, domain)?;
+                let exponent = exponent.values(graph, domain)?;
+                let result = graph.power(base, exponent);
+                Ok(Self::weight(graph, result))
+            }
+        }
+    }
+
+    /// The values at the quadrature nodes: a vector over the nodes, or a scalar.
+    fn values(&self, graph: &mut Graph, domain: &Domain) -> Outcome<Id> {
+        let s = domain.table(graph, TableKind::NodePosition);
+        let mut terms = Vec::new();
+        for term in &self.terms {
+            let mut factors = vec![(term.scalar, 1), (s, term.power as i32)];
+            factors.extend(term.weight.map(|weight| (weight, 1)));
+            for atom in &term.atoms {
+                let matrix = domain.table(graph, TableKind::ShapeAtNodes(atom.derivative()));
+                let Some(amplitudes) = atom.amplitudes(graph, domain.field) else {
+                    return Err("phi[i] enters an integrand as a factor, at most twice".into());
+                };
+                factors.push((graph.apply(matrix, false, amplitudes), 1));
+            }
+            terms.push((1.0, graph.product(&factors)));
+        }
+        Ok(graph.combine(&terms))
+    }
+}
+
+fn collect_like_terms(graph: &mut Graph, terms: Vec<Term>) -> Vec<Term> {
+    let mut collected: Vec<Term> = Vec::new();
+    for term in terms {
+        let alike = collected.iter().position(|other| {
+            other.power == term.power && other.weight == term.weight && other.atoms == term.atoms
+        });
+        match alike {
+            Some(index) => {
+                collected[index].scalar = graph.add(collected[index].scalar, term.scalar);
+            }
+            None => collected.push(term),
+        }
+    }
+    collected
+}
+
+fn bounded(terms: Vec<Term>) -> Outcome<FieldFunction> {
+    if terms.len() > MAX_TERMS {
+        return Err(too_many_terms());
+    }
+    Ok(FieldFunction { terms })
+}
+
+fn too_many_terms() -> String {
+    format!("this integrand has more than {MAX_TERMS} terms when multiplied out")
+}
+
+/// phi_r^(a) at s, a vector over the modes: tables at the ends, formulas elsewhere.
+fn shapes_at(graph: &mut Graph, domain: &Domain, s: Id, derivative: u8) -> Id {
+    match graph.as_constant(s) {
+        Some(0.0) => return domain.table(graph, TableKind::ShapeAtStart(derivative)),
+        Some(1.0) => return domain.table(graph, TableKind::ShapeAtEnd(derivative)),
+        _ => {}
+    }
+    let beta = domain.table(graph, TableKind::Wavenumber);
+    let xi = domain.table(graph, TableKind::Mixing);
+    let growing = domain.table(graph, TableKind::GrowingAmplitude);
+    let one = graph.one();
+    let z = graph.multiply(beta, s);
+    let sine = graph.call(Function::Sin, &[z]);
+    let cosine = graph.call(Function::Cos, &[z]);
+    let (first, second, sign) = match derivative % 4 {
+        0 => (sine, cosine, [1.0, 1.0]),
+        1 => (cosine, sine, [1.0, -1.0]),
+        2 => (sine, cosine, [-1.0, -1.0]),
+        _ => (cosine, sine, [-1.0, 1.0]),
+    };
+    let second = graph.multiply(xi, second);
+    let left = graph.negate(z);
+    let falling = graph.call(Function::Exp, &[left]);
+    let right = graph.subtract(z, beta);
+    let rising = graph.call(Function::Exp, &[right]);
+    let rising = graph.multiply(growing, rising);
+    let mixed = graph.subtract(one, xi);
+    let falling = graph.multiply(mixed, falling);
+    let falling_sign = if derivative.is_multiple_of(2) { 0.5 } else { -0.5 };
+    let shape = graph.combine(&[
+        (sign[0], first),
+        (sign[1], second),
+        (-0.5, rising),
+        (falling_sign, falling),
+    ]);
+    graph.product(&[(beta, i32::from(derivative)), (shape, 1)])
+}
+
+/// The integral over s of s^power weight atom_1 atom_2; a vector over the modes where a
+/// bare shape is left.
+fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &Term) -> Id {
+    if let Some(weight) = term.weight {
+        return weighted_integral(graph, domain, term, weight);
+    }
+    let modes = Space::Modes(domain.field);
+    match *term.atoms.as_slice() {
+        [a, b] => {
+            let (left, right) = (a.derivative(), b.derivative());
+            let orthogonal = is_orthogonal(domain.basis, term.power, left, right);
+            let amplitudes = [a.amplitudes(graph, domain.field), b.amplitudes(graph, domain.field)];
+            let own = TableKind::OwnMoment {
+                power: term.power,
+                left,
+                right,
+            };
+            let pair = TableKind::PairMoment {
+                power: term.power,
+                left,
+                right,
+            };
+            match amplitudes {
+                [None, None] => domain.table(graph, own),
+                [Some(u), Some(v)] if orthogonal => {
+                    let table = domain.table(graph, own);
+                    let product = graph.product(&[(table, 1), (u, 1), (v, 1)]);
+                    graph.total_over(modes, product)
+                }
+                [Some(u), Some(v)] => {
+                    let table = domain.table(graph, pair);
+                    let applied = graph.apply(table, false, v);
+                    let product = graph.multiply(u, applied);
+                    graph.total_over(modes, product)
+                }
+                [Some(u), None] if orthogonal => {
+                    let table = domain.table(graph, own);
+                    graph.multiply(table, u)
+                }
+                [None, Some(u)] if orthogonal => {
+                    let table = domain.table(graph, own);
+                    graph.multiply(table, u)
+                }
+                [Some(u), None] => {
+                    let table = domain.table(graph, pair);
+                    graph.apply(table, true, u)
+                }
+                [None, Some(u)] => {
+                    let table = domain.table(graph, pair);
+                    graph.apply(table, false, u)
+                }
+            }
+        }
+        [a] => {
+            let table = domain.table(
+                graph,
+                TableKind::Moment {
+                    power: term.power,
+                    derivative: a.derivative(),
+                },
+            );
+            match a.amplitudes(graph, domain.field) {
+                Some(u) => {
+                    let product = graph.multiply(table, u);
+                    graph.total_over(modes, product)
+                }
+                None => table,
+            }
+        }
+        _ => graph.constant(1.0 / f64::from(term.power + 1)),
+    }
+}
+
+fn weighted_integral(graph: &mut Graph, domain: &Domain, term: &Term, weight: Id) -> Id {
+    let s = domain.table(graph, TableKind::NodePosition);
+    let quadrature = domain.table(graph, TableKind::NodeWeight);
+    let weight = graph.product(&[(quadrature, 1), (s, term.power as i32), (weight, 1)]);
+    let modes = Space::Modes(domain.field);
+    let nodes = Space::Nodes(domain.field);
+    let amplitudes: Vec<Option<Id>> = term
+        .atoms
+        .iter()
+        .map(|atom| atom.amplitudes(graph, domain.field))
+        .collect();
+    let shapes: Vec<Id> = term
+        .atoms
+        .iter()
+        .map(|atom| domain.table(graph, TableKind::ShapeAtNodes(atom.derivative())))
+        .collect();
+    match (amplitudes.as_slice(), shapes.as_slice()) {
+        (&[Some(u), Some(v)], &[left, right]) if graph.dependence(weight).is_prepared() => {
+            let gram = graph.intern(Operation::Gram {
+                left,
+                weight,
+                right,
+            });
+            let applied = graph.apply(gram, false, v);
+            let product = graph.multiply(u, applied);
+            graph.total_over(modes, product)
+        }
+        (&[Some(u), Some(v)], &[left, right]) => {
+            let at_nodes = [graph.apply(left, false, u), graph.apply(right, false, v)];
+            let product = graph.product(&[(weight, 1), (at_nodes[0], 1), (at_nodes[1], 1)]);
+            graph.total_over(nodes, product)
+        }
+        (&[Some(u), None], &[left, right]) => {
+            let at_nodes = graph.apply(left, false, u);
+            let product = graph.multiply(weight, at_nodes);
+            graph.apply(right, true, product)
+        }
+        (&[None, Some(v)], &[left, right]) => {
+            let at_nodes = graph.apply(right, false, v);
+            let product = graph.multiply(weight, at_nodes);
+            graph.apply(left, true, product)
+        }
+        (&[None, None], &[left, right]) => graph.intern(Operation::GramDiagonal {
+            left,
+            weight,
+            right,
+        }),
+        (&[Some(u)], &[shape]) => {
+            let moment = graph.apply(shape, true, weight);
+            let product = graph.multiply(moment, u);
+            graph.total_over(modes, product)
+        }
+        (&[None], &[shape]) => graph.apply(shape, true, weight),
+        _ => graph.total_over(nodes, weight),
+    }
+}

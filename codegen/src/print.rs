@@ -1,0 +1,470 @@
+//! Formulas for people, as plain text and as LaTeX, straight from the graph.
+//!
+//! Sums over modes are printed as sums over an index i; a node that the specification
+//! names is printed by its name, except where its own formula is asked for.
+
+use model_spec::model::{Function, Model};
+
+use crate::graph::{Graph, Id, Operation, Shape};
+use crate::tables::{Table, TableKind};
+
+/// How names and operators are written.
+pub struct Notation {
+    latex: bool,
+    parameters: Vec<String>,
+    coordinates: Vec<String>,
+    inputs: Vec<String>,
+    modes: Vec<String>,
+}
+
+impl Notation {
+    /// Plain text with the specification's names.
+    pub fn text(model: &Model) -> Self {
+        Self::new(model, false)
+    }
+
+    /// LaTeX.
+    pub fn latex(model: &Model) -> Self {
+        Self::new(model, true)
+    }
+
+    fn new(model: &Model, latex: bool) -> Self {
+        let write = |name: &String| if latex { latex_name(name) } else { name.clone() };
+        Self {
+            latex,
+            parameters: model.parameters.iter().map(|p| write(&p.name)).collect(),
+            coordinates: model.coordinates.iter().map(|c| write(&c.name)).collect(),
+            inputs: model.inputs.iter().map(|i| write(&i.name)).collect(),
+            modes: model.fields.iter().map(|f| write(&f.coordinates)).collect(),
+        }
+    }
+
+    /// A name of the specification; a rate ends in `_dot`, an acceleration in `_ddot`.
+    pub fn name(&self, name: &str) -> String {
+        if let Some(stem) = name.strip_suffix("_dot") {
+            return self.rate(&self.name(stem));
+        }
+        if let Some(stem) = name.strip_suffix("_ddot") {
+            return self.acceleration(&self.name(stem));
+        }
+        if self.latex { latex_name(name) } else { name.to_owned() }
+    }
+
+    fn rate(&self, name: &str) -> String {
+        if self.latex { format!("\\dot{{{name}}}") } else { format!("dot({name})") }
+    }
+
+    /// The second derivative by time of a coordinate, or of a field's mode coordinates.
+    pub fn acceleration(&self, name: &str) -> String {
+        if self.latex { format!("\\ddot{{{name}}}") } else { format!("ddot({name})") }
+    }
+
+    /// A coordinate.
+    pub fn coordinate(&self, index: usize) -> &str {
+        &self.coordinates[index]
+    }
+
+    /// A field's mode coordinates with the index i.
+    pub fn mode(&self, field: usize) -> String {
+        format!("{}_i", self.modes[field])
+    }
+}
+
+const GREEK: [&str; 12] = [
+    "alpha", "beta", "gamma", "delta", "epsilon", "eta", "theta", "kappa", "mu", "rho", "phi", "omega",
+];
+
+/// `theta_s` as `\theta_{s}`; further underscores become commas.
+fn latex_name(name: &str) -> String {
+    let mut parts = name.split('_');
+    let head = parts.next().unwrap_or_default();
+    let head = match head {
+        "dtheta" => "\\Delta\\theta".to_owned(),
+        _ if GREEK.contains(&head) => format!("\\{head}"),
+        _ if head.len() > 1 => format!("\\mathrm{{{head}}}"),
+        _ => head.to_owned(),
+    };
+    let rest: Vec<&str> = parts.collect();
+    if rest.is_empty() { head } else { format!("{head}_{{{}}}", rest.join(",")) }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    Sum,
+    Product,
+    Power,
+}
+
+/// The formula of a node, whether or not it has a name.
+pub fn formula(graph: &Graph, notation: &Notation, id: Id) -> String {
+    Printer { graph, notation }.operation(id, Level::Sum)
+}
+
+/// The node by its name, or its formula.
+pub fn expression(graph: &Graph, notation: &Notation, id: Id) -> String {
+    Printer { graph, notation }.node(id, Level::Sum)
+}
+
+struct Printer<'a> {
+    graph: &'a Graph,
+    notation: &'a Notation,
+}
+
+impl Printer<'_> {
+    fn node(&self, id: Id, level: Level) -> String {
+        match self.graph.name(id) {
+            Some(name) => self.indexed(self.notation.name(name), id),
+            None => self.operation(id, level),
+        }
+    }
+
+    fn indexed(&self, name: String, id: Id) -> String {
+        match (self.graph.shape(id), self.notation.latex) {
+            (Shape::Scalar, _) => name,
+            (Shape::Vector(_), _) => format!("{name}_i"),
+            (Shape::Matrix(..), false) => format!("{name}_ij"),
+            (Shape::Matrix(..), true) => format!("{name}_{{ij}}"),
+        }
+    }
+
+    fn operation(&self, id: Id, level: Level) -> String {
+        let notation = self.notation;
+        match self.graph.operation(id) {
+            Operation::Constant(bits) => number(bits.value()),
+            Operation::Parameter(index) => notation.parameters[*index].clone(),
+            Operation::Coordinate(index) => notation.coordinates[*index].clone(),
+            Operation::Rate(index) => notation.rate(&notation.coordinates[*index]),
+            Operation::Input(index) => notation.inputs[*index].clone(),
+            Operation::Time => "t".to_owned(),
+            Operation::ModeCoordinates(field) => notation.mode(*field),
+            Operation::ModeRates(field) => notation.rate(&notation.mode(*field)),
+            Operation::Table(index) => self.table(self.graph.table(*index)),
+            Operation::Sum(terms) => parenthesised(self.sum(terms), level > Level::Sum, notation.latex),
+            Operation::Product(factors) => self.product(factors, level),
+            Operation::Call(function, arguments) => self.call(*function, arguments),
+            Operation::Power(base, exponent) => {
+                let base = self.node(*base, Level::Power);
+                let exponent = self.node(*exponent, Level::Sum);
+                if notation.latex {
+                    format!("{base}^{{{exponent}}}")
+                } else {
+                    format!("{base}^({exponent})")
+                }
+            }
+            Operation::Select {
+                a,
+                b,
+                then,
+                otherwise,
+            } => {
+                let [a, b, then, otherwise] =
+                    [a, b, then, otherwise].map(|id| self.node(*id, Level::Sum));
+                if notation.latex {
+                    format!("\\begin{{cases}}{then} & {a} > {b}\\\\ {otherwise} & \\text{{else}}\\end{{cases}}")
+                } else {
+                    format!("if({a} > {b}, {then}, {otherwise})")
+                }
+            }
+            Operation::Total(a) => {
+                let inner = self.node(*a, Level::Product);
+                if notation.latex {
+                    format!("\\sum_{{i=1}}^{{S}} {inner}")
+                } else {
+                    format!("sum_i({inner})")
+                }
+            }
+            other => self.matrix_operation(other),
+        }
+    }
+
+    fn matrix_operation(&self, operation: &Operation) -> String {
+        let node = |id: &Id| self.node(*id, Level::Sum);
+        match operation {
+            Operation::Apply { matrix, vector, .. } => {
+                format!("({} . {})_i", node(matrix), node(vector))
+            }
+            Operation::Gram {
+                left,
+                weight,
+                right,
+            } => format!("gram({}, {}, {})", node(left), node(weight), node(right)),
+            Operation::GramDiagonal {
+                left,
+                weight,
+                right,
+            } => format!("gram_ii({}, {}, {})", node(left), node(weight), node(right)),
+            Operation::Assemble(assembly) => {
+                let mut parts = Vec::new();
+                if let Some(diagonal) = assembly.diagonal {
+                    parts.push(format!("diag({})", node(&diagonal)));
+                }
+                for (u, v) in &assembly.outer {
+                    parts.push(format!("[{}]_i [{}]_j", node(u), node(v)));
+                }
+                for m in &assembly.matrices {
+                    parts.push(format!("[{}]_i {} [{}]_j", node(&m.row), node(&m.matrix), node(&m.column)));
+                }
+                parts.join(" + ")
+            }
+            Operation::Cholesky(matrix) => format!("cholesky({})", node(matrix)),
+            Operation::CholeskySolve(factor, vector) => {
+                format!("solve({}, {})", node(factor), node(vector))
+            }
+            Operation::PivotReciprocal(pivot) if self.notation.latex => {
+                format!("\\frac{{1}}{{{}}}", node(pivot))
+            }
+            Operation::PivotReciprocal(pivot) => format!("1/({})", node(pivot)),
+            _ => String::new(),
+        }
+    }
+
+    fn sum(&self, terms: &[(crate::graph::Bits, Id)]) -> String {
+        let mut text = String::new();
+        for (place, (factor, id)) in terms.iter().enumerate() {
+            let factor = factor.value();
+            let sign = match (factor < 0.0, place) {
+                (true, 0) => "-",
+                (false, 0) => "",
+                (true, _) => " - ",
+                (false, _) => " + ",
+            };
+            text.push_str(sign);
+            let magnitude = factor.abs();
+            let level = if magnitude == 1.0 && factor > 0.0 { Level::Sum } else { Level::Product };
+            let inner = self.node(*id, level);
+            if magnitude == 1.0 {
+                text.push_str(&inner);
+            } else if self.graph.as_constant(*id).is_some() {
+                text.push_str(&number(magnitude));
+            } else {
+                text.push_str(&format!("{}{}{inner}", number(magnitude), self.times()));
+            }
+        }
+        text
+    }
+
+    fn times(&self) -> &'static str {
+        if self.notation.latex { "\\," } else { "*" }
+    }
+
+    fn product(&self, factors: &[(Id, i32)], level: Level) -> String {
+        let factors: Vec<(Id, i32)> = factors
+            .iter()
+            .map(|&(id, exponent)| match self.graph.operation(id) {
+                Operation::PivotReciprocal(pivot) => (*pivot, -exponent),
+                _ => (id, exponent),
+            })
+            .collect();
+        let side = |above: bool| {
+            factors
+                .iter()
+                .filter(|(_, exponent)| (*exponent > 0) == above)
+                .map(|(id, exponent)| self.factor(*id, exponent.abs()))
+                .collect::<Vec<_>>()
+        };
+        let (above, below) = (side(true), side(false));
+        let numerator = if above.is_empty() { "1".to_owned() } else { above.join(self.times()) };
+        if below.is_empty() {
+            return parenthesised(numerator, level > Level::Product, self.notation.latex);
+        }
+        if self.notation.latex {
+            return format!("\\frac{{{numerator}}}{{{}}}", below.join(self.times()));
+        }
+        let denominator = below.join("*");
+        let text = if below.len() > 1 {
+            format!("{numerator}/({denominator})")
+        } else {
+            format!("{numerator}/{denominator}")
+        };
+        parenthesised(text, level > Level::Product, false)
+    }
+
+    fn factor(&self, id: Id, exponent: i32) -> String {
+        if exponent == 1 {
+            return self.node(id, Level::Product);
+        }
+        let base = self.node(id, Level::Power);
+        if self.notation.latex {
+            format!("{{{base}}}^{{{exponent}}}")
+        } else {
+            format!("{base}^{exponent}")
+        }
+    }
+
+    fn call(&self, function: Function, arguments: &[Id]) -> String {
+        let arguments: Vec<String> = arguments.iter().map(|a| self.node(*a, Level::Sum)).collect();
+        let list = arguments.join(", ");
+        if !self.notation.latex {
+            return format!("{}({list})", function_name(function));
+        }
+        match (function, arguments.as_slice()) {
+            (Function::Deadzone, _) => format!("f_k({list})"),
+            (Function::Contact, [p, b]) => format!("\\left[|{p}| > {b}\\right]"),
+            (Function::Sqrt, [a]) => format!("\\sqrt{{{a}}}"),
+            (Function::Abs, [a]) => format!("\\left|{a}\\right|"),
+            (Function::Exp, [a]) => format!("e^{{{a}}}"),
+            (
+                Function::Sin | Function::Cos | Function::Tan | Function::Sinh | Function::Cosh
+                | Function::Tanh | Function::Ln | Function::Min | Function::Max,
+                _,
+            ) => format!("\\{}\\left({list}\\right)", function_name(function)),
+            _ => format!("\\operatorname{{{}}}\\left({list}\\right)", function_name(function)),
+        }
+    }
+
+    fn table(&self, table: &Table) -> String {
+        if self.notation.latex { table_latex(table.kind) } else { table_text(table.kind) }
+    }
+}
+
+fn parenthesised(text: String, needed: bool, latex: bool) -> String {
+    match (needed, latex) {
+        (false, _) => text,
+        (true, false) => format!("({text})"),
+        (true, true) => format!("\\left({text}\\right)"),
+    }
+}
+
+fn number(value: f64) -> String {
+    let magnitude = value.abs();
+    if magnitude != 0.0 && !(1e-4..1e6).contains(&magnitude) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
+/// A function's name in the expression language.
+pub fn function_name(function: Function) -> &'static str {
+    match function {
+        Function::Sin => "sin",
+        Function::Cos => "cos",
+        Function::Tan => "tan",
+        Function::Asin => "asin",
+        Function::Acos => "acos",
+        Function::Atan => "atan",
+        Function::Atan2 => "atan2",
+        Function::Sinh => "sinh",
+        Function::Cosh => "cosh",
+        Function::Tanh => "tanh",
+        Function::Exp => "exp",
+        Function::Ln => "ln",
+        Function::Sqrt => "sqrt",
+        Function::Abs => "abs",
+        Function::Sign => "sign",
+        Function::Min => "min",
+        Function::Max => "max",
+        Function::Deadzone => "deadzone",
+        Function::Contact => "contact",
+    }
+}
+
+fn primes(derivative: u8) -> String {
+    "'".repeat(usize::from(derivative))
+}
+
+fn power_of_s(power: u32) -> String {
+    match power {
+        0 => String::new(),
+        1 => "s ".to_owned(),
+        n => format!("s^{n} "),
+    }
+}
+
+/// What a table holds, in plain text: integrals run over s from 0 to 1, primes are
+/// derivatives by s.
+fn table_text(kind: TableKind) -> String {
+    match kind {
+        TableKind::Wavenumber => "betal_i".to_owned(),
+        TableKind::Mixing => "xi_i".to_owned(),
+        TableKind::GrowingAmplitude => "((1 + xi_i)*exp(betal_i))".to_owned(),
+        TableKind::ShapeAtStart(d) => format!("phi_i{}(0)", primes(d)),
+        TableKind::ShapeAtEnd(d) => format!("phi_i{}(1)", primes(d)),
+        TableKind::Moment { power, derivative } => {
+            format!("int[{}phi_i{}]", power_of_s(power), primes(derivative))
+        }
+        TableKind::OwnMoment { power, left, right } if left == right => {
+            format!("int[{}phi_i{}^2]", power_of_s(power), primes(left))
+        }
+        TableKind::OwnMoment { power, left, right } => {
+            format!("int[{}phi_i{} phi_i{}]", power_of_s(power), primes(left), primes(right))
+        }
+        TableKind::PairMoment { power, left, right } => {
+            format!("int[{}phi_i{} phi_j{}]", power_of_s(power), primes(left), primes(right))
+        }
+        TableKind::NodePosition => "s_g".to_owned(),
+        TableKind::NodeWeight => "weight_g".to_owned(),
+        TableKind::ShapeAtNodes(d) => format!("phi_i{}(s_g)", primes(d)),
+    }
+}
+
+fn table_latex(kind: TableKind) -> String {
+    let integral = |inner: String| format!("\\int_0^1 {inner}\\,ds");
+    let s = |power: u32| match power {
+        0 => String::new(),
+        1 => "s\\,".to_owned(),
+        n => format!("s^{{{n}}}\\,"),
+    };
+    let phi = |index: &str, d: u8| format!("\\varphi_{index}{}", primes(d));
+    match kind {
+        TableKind::Wavenumber => "(\\beta l)_i".to_owned(),
+        TableKind::Mixing => "\\xi_i".to_owned(),
+        TableKind::GrowingAmplitude => "(1 + \\xi_i)e^{(\\beta l)_i}".to_owned(),
+        TableKind::ShapeAtStart(d) => format!("{}(0)", phi("i", d)),
+        TableKind::ShapeAtEnd(d) => format!("{}(1)", phi("i", d)),
+        TableKind::Moment { power, derivative } => integral(format!("{}{}", s(power), phi("i", derivative))),
+        TableKind::OwnMoment { power, left, right } => {
+            integral(format!("{}{}{}", s(power), phi("i", left), phi("i", right)))
+        }
+        TableKind::PairMoment { power, left, right } => {
+            integral(format!("{}{}{}", s(power), phi("i", left), phi("j", right)))
+        }
+        TableKind::NodePosition => "s_g".to_owned(),
+        TableKind::NodeWeight => "w_g".to_owned(),
+        TableKind::ShapeAtNodes(d) => format!("{}(s_g)", phi("i", d)),
+    }
+}
+
+/// One line on what a table holds.
+pub fn table_doc(table: &Table) -> String {
+    match table.kind {
+        TableKind::Wavenumber => "beta_r l of the modes".to_owned(),
+        TableKind::Mixing => "xi_r of the modes, Eq. (17)".to_owned(),
+        TableKind::GrowingAmplitude => "(1 + xi_r) exp(beta_r l) of the modes".to_owned(),
+        TableKind::NodePosition => "Gauss-Legendre nodes on [0, 1]".to_owned(),
+        TableKind::NodeWeight => "Gauss-Legendre weights on [0, 1]".to_owned(),
+        kind => format!(
+            "{}, with s = x/l from 0 to 1 and primes for derivatives by s",
+            table_text(kind)
+        ),
+    }
+}
+
+/// A table's name as a constant.
+pub fn table_name(table: &Table) -> String {
+    let derivative = |d: u8| if d == 0 { String::new() } else { format!("_D{d}") };
+    let power = |k: u32| if k == 0 { String::new() } else { format!("S{k}_") };
+    let name = match table.kind {
+        TableKind::Wavenumber => "BETA_L".to_owned(),
+        TableKind::Mixing => "XI".to_owned(),
+        TableKind::GrowingAmplitude => "GROWING_AMPLITUDE".to_owned(),
+        TableKind::ShapeAtStart(d) => format!("PHI{}_AT_START", derivative(d)),
+        TableKind::ShapeAtEnd(d) => format!("PHI{}_AT_END", derivative(d)),
+        TableKind::Moment { power: k, derivative: d } => {
+            format!("INTEGRAL_{}PHI{}", power(k), derivative(d))
+        }
+        TableKind::OwnMoment { power: k, left, right } if left == right => {
+            format!("INTEGRAL_{}PHI{}_SQUARED", power(k), derivative(left))
+        }
+        TableKind::OwnMoment { power: k, left, right } => {
+            format!("INTEGRAL_{}PHI{}_PHI{}", power(k), derivative(left), derivative(right))
+        }
+        TableKind::PairMoment { power: k, left, right } => {
+            format!("INTEGRAL_{}PHI{}_BY_PHI{}", power(k), derivative(left), derivative(right))
+        }
+        TableKind::NodePosition => "NODES".to_owned(),
+        TableKind::NodeWeight => "WEIGHTS".to_owned(),
+        TableKind::ShapeAtNodes(d) => format!("PHI{}_AT_NODES", derivative(d)),
+    };
+    if table.field == 0 { name } else { format!("{name}_{}", table.field + 1) }
+}

@@ -1,0 +1,570 @@
+//! The statements of one stage: which values get a name, which stand inside the
+//! expressions that use them, and which become loops over modes.
+//!
+//! Expressions keep the operations and operands of the program as they are, so nesting
+//! them changes no bit.
+
+use std::collections::{HashMap, HashSet};
+
+use elementary::Function as Elementary;
+use model_spec::model::Function;
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::EmitError;
+use super::functions::Needed;
+use super::expression::Expression;
+use super::literals::{count, identifier};
+use super::names::Names;
+use crate::evaluator::elementary_function;
+use crate::program::{Extent, Op, Program, ValueId};
+
+/// The most operations in one emitted expression.
+const EXPRESSION_SIZE: usize = 8;
+
+/// Where a stage finds what was prepared.
+pub enum Access<'a> {
+    /// It prepares the coefficients itself, from `parameters`.
+    Prepare,
+    /// In these fields of `coefficients`.
+    Coefficients(&'a HashMap<ValueId, Ident>),
+}
+
+/// Writes one stage.
+pub struct Body<'a> {
+    program: &'a Program,
+    access: Access<'a>,
+    names: Names,
+    uses: HashMap<ValueId, usize>,
+    in_loops: HashMap<ValueId, bool>,
+    bound: HashMap<ValueId, Ident>,
+    statements: Vec<TokenStream>,
+    needed: &'a mut Needed,
+    /// Vectors that the caller reads as arrays.
+    arrays: HashSet<ValueId>,
+}
+
+type Emitted<T> = Result<T, EmitError>;
+
+impl<'a> Body<'a> {
+    /// A stage that computes `roots`; its values are bound where several need them.
+    pub fn new(
+        program: &'a Program,
+        access: Access<'a>,
+        roots: &[ValueId],
+        needed: &'a mut Needed,
+    ) -> Emitted<Self> {
+        let mut body = Self {
+            program,
+            access,
+            names: Names::new(),
+            uses: HashMap::new(),
+            in_loops: HashMap::new(),
+            bound: HashMap::new(),
+            statements: Vec::new(),
+            needed,
+            arrays: HashSet::new(),
+        };
+        if matches!(body.access, Access::Prepare) {
+            body.arrays.extend(roots);
+        }
+        let steps = body.steps(roots);
+        body.count_uses(&steps, roots);
+        for id in steps {
+            body.step(id)?;
+        }
+        Ok(body)
+    }
+
+    /// The values this stage computes, operands first.
+    fn steps(&self, roots: &[ValueId]) -> Vec<ValueId> {
+        let prepare = matches!(self.access, Access::Prepare);
+        self.program
+            .reachable(roots)
+            .into_iter()
+            .filter(|id| self.program.value(*id).prepared == prepare)
+            .collect()
+    }
+
+    fn count_uses(&mut self, steps: &[ValueId], roots: &[ValueId]) {
+        for id in steps {
+            let value = self.program.value(*id);
+            let loops = value.extent != Extent::Scalar || matches!(value.op, Op::Total(_));
+            for operand in value.op.operands() {
+                *self.uses.entry(operand).or_insert(0) += 1;
+                *self.in_loops.entry(operand).or_insert(false) |= loops;
+            }
+        }
+        for root in roots {
+            *self.uses.entry(*root).or_insert(0) += 1;
+        }
+    }
+
+    /// The statements so far.
+    pub fn statements(self) -> Vec<TokenStream> {
+        self.statements
+    }
+
+    /// Adds a statement of the caller's.
+    pub fn push(&mut self, statement: TokenStream) {
+        self.statements.push(statement);
+    }
+
+    /// Prefers a name for a value of this stage.
+    fn bind(&mut self, id: ValueId, expression: TokenStream) -> Emitted<()> {
+        let name = self.names.of(self.program, id, "s")?;
+        self.statements.push(quote!(let #name = #expression;));
+        self.bound.insert(id, name);
+        Ok(())
+    }
+
+    fn step(&mut self, id: ValueId) -> Emitted<()> {
+        let value = self.program.value(id);
+        let uses = self.uses.get(&id).copied().unwrap_or(0);
+        match (&value.op, value.extent) {
+            (Op::Constant(_) | Op::Table(_) | Op::ModeCoordinates(_) | Op::ModeRates(_) | Op::Time, _) => {
+                Ok(())
+            }
+            (Op::Coordinate(_) | Op::Rate(_) | Op::Input(_) | Op::Parameter(_), _) => {
+                let expression = self.leaf(id)?;
+                let name = self.leaf_name(id);
+                let name = self.names.assign(id, &name, "s")?;
+                self.statements.push(quote!(let #name = #expression;));
+                self.bound.insert(id, name);
+                Ok(())
+            }
+            (_, Extent::Scalar) => self.scalar_step(id, uses),
+            (_, Extent::Vector(length)) => self.vector_step(id, uses, length),
+            (_, Extent::Matrix(rows, columns)) => self.matrix_step(id, rows, columns),
+        }
+    }
+
+    fn leaf_name(&self, id: ValueId) -> String {
+        let program = self.program;
+        match program.value(id).op {
+            Op::Coordinate(index) => program.coordinates[index].name.clone(),
+            Op::Rate(index) => format!("{}_dot", program.coordinates[index].name),
+            Op::Input(index) => program.inputs[index].name.clone(),
+            Op::Parameter(place) => program.parameters[place].quantity.name.clone(),
+            _ => String::from("s"),
+        }
+    }
+
+    fn scalar_step(&mut self, id: ValueId, uses: usize) -> Emitted<()> {
+        let value = self.program.value(id);
+        if let Op::Total(vector) = value.op {
+            return self.total(id, vector);
+        }
+        let expression = self.own_expression(id, None)?;
+        let looped = self.in_loops.get(&id).copied().unwrap_or(false);
+        if uses > 1 || value.name.is_some() || looped || expression.size > EXPRESSION_SIZE {
+            self.bind(id, expression.tokens())
+        } else {
+            Ok(())
+        }
+    }
+
+    fn total(&mut self, id: ValueId, vector: ValueId) -> Emitted<()> {
+        let name = self.names.of(self.program, id, "s")?;
+        let length = count(self.program.value(vector).extent.length());
+        let element = self.element(vector)?;
+        self.statements.push(quote! {
+            let mut #name = 0.0;
+            for i in 0..#length {
+                #name += #element;
+            }
+        });
+        self.bound.insert(id, name);
+        Ok(())
+    }
+
+    fn vector_step(&mut self, id: ValueId, uses: usize, length: usize) -> Emitted<()> {
+        let elementwise = is_elementwise(&self.program.value(id).op);
+        let as_array = self.arrays.contains(&id) || self.is_operand_of_matrix(id);
+        if elementwise && uses <= 1 && !as_array {
+            let expression = self.own_expression(id, Some(&format_ident!("i")))?;
+            if expression.size <= EXPRESSION_SIZE {
+                return Ok(());
+            }
+        }
+        let length = count(length);
+        if let Op::CholeskySolve(factor, vector) = self.program.value(id).op {
+            self.needed.cholesky = true;
+            let name = self.names.of(self.program, id, "s")?;
+            let factor = self.array(factor)?;
+            let vector = self.vector_array(vector, &length)?;
+            self.statements.push(quote!(let #name = cholesky_solve(&#factor, &#vector);));
+            self.bound.insert(id, name);
+            return Ok(());
+        }
+        let fill = if elementwise {
+            let element = self.element(id)?;
+            let name = self.names.of(self.program, id, "s")?;
+            (quote!(#name[i] = #element;), name)
+        } else {
+            self.summed_element(id)?
+        };
+        let (statement, name) = fill;
+        self.statements.push(quote! {
+            let mut #name = [0.0; #length];
+            for i in 0..#length {
+                #statement
+            }
+        });
+        self.bound.insert(id, name);
+        Ok(())
+    }
+
+    /// Matrix operations read their vectors as arrays.
+    fn is_operand_of_matrix(&self, id: ValueId) -> bool {
+        self.program.values.iter().any(|value| {
+            !is_elementwise(&value.op)
+                && !matches!(value.op, Op::Total(_))
+                && value.op.operands().contains(&id)
+        })
+    }
+
+    /// An element of a matrix-vector product or of the diagonal of a Gram matrix.
+    fn summed_element(&mut self, id: ValueId) -> Emitted<(TokenStream, Ident)> {
+        let name = self.names.of(self.program, id, "s")?;
+        let (summand, length) = match self.program.value(id).op.clone() {
+            Op::Apply {
+                matrix,
+                transposed,
+                vector,
+            } => {
+                let (rows, columns) = self.matrix_size(matrix);
+                let entry = self.array(matrix)?;
+                let vector = self.element_at(vector, &format_ident!("k"))?;
+                let (entry, length) = if transposed {
+                    (quote!(#entry[k][i]), rows)
+                } else {
+                    (quote!(#entry[i][k]), columns)
+                };
+                let entry = Expression::atom(entry);
+                (Expression::multiply(&entry, &vector).tokens(), length)
+            }
+            Op::GramDiagonal {
+                left,
+                weight,
+                right,
+            } => {
+                let (nodes, _) = self.matrix_size(left);
+                let (left, right) = (self.array(left)?, self.array(right)?);
+                let weight = self.element_at(weight, &format_ident!("k"))?;
+                let left = Expression::atom(quote!(#left[k][i]));
+                let right = Expression::atom(quote!(#right[k][i]));
+                let weighted = Expression::multiply(&left, &weight);
+                (Expression::multiply(&weighted, &right).tokens(), nodes)
+            }
+            _ => (quote!(f64::NAN), 1),
+        };
+        let length = count(length);
+        let statement = quote! {
+            for k in 0..#length {
+                #name[i] += #summand;
+            }
+        };
+        Ok((statement, name))
+    }
+
+    fn matrix_size(&self, id: ValueId) -> (usize, usize) {
+        match self.program.value(id).extent {
+            Extent::Matrix(rows, columns) => (rows, columns),
+            other => (other.length(), 1),
+        }
+    }
+
+    fn matrix_step(&mut self, id: ValueId, rows: usize, columns: usize) -> Emitted<()> {
+        let name = self.names.of(self.program, id, "s")?;
+        let (rows, columns) = (count(rows), count(columns));
+        match self.program.value(id).op.clone() {
+            Op::Cholesky(matrix) => {
+                self.needed.cholesky = true;
+                let matrix = self.array(matrix)?;
+                self.statements.push(quote!(let #name = cholesky(&#matrix);));
+            }
+            Op::Gram {
+                left,
+                weight,
+                right,
+            } => {
+                let nodes = count(self.matrix_size(left).0);
+                let (left, right) = (self.array(left)?, self.array(right)?);
+                let weight = self.element_at(weight, &format_ident!("k"))?;
+                let left = Expression::atom(quote!(#left[k][i]));
+                let right = Expression::atom(quote!(#right[k][j]));
+                let weighted = Expression::multiply(&left, &weight);
+                let summand = Expression::multiply(&weighted, &right).tokens();
+                self.statements.push(quote! {
+                    let mut #name = [[0.0; #columns]; #rows];
+                    for i in 0..#rows {
+                        for j in 0..#columns {
+                            for k in 0..#nodes {
+                                #name[i][j] += #summand;
+                            }
+                        }
+                    }
+                });
+            }
+            block => self.assemble(&name, (&rows, &columns), &block)?,
+        }
+        self.bound.insert(id, name);
+        Ok(())
+    }
+
+    fn assemble(
+        &mut self,
+        name: &Ident,
+        (rows, columns): (&Literal, &Literal),
+        block: &Op,
+    ) -> Emitted<()> {
+        self.statements.push(quote!(let mut #name = [[0.0; #columns]; #rows];));
+        let loops = self.block_loops(block, (rows, columns), &|i, j| quote!(#name[#i][#j]))?;
+        self.statements.push(loops);
+        Ok(())
+    }
+
+    /// Loops that add the parts of an assembled matrix to what stands at `place(i, j)`.
+    pub fn block_loops(
+        &mut self,
+        block: &Op,
+        (rows, columns): (&Literal, &Literal),
+        place: &dyn Fn(&Ident, &Ident) -> TokenStream,
+    ) -> Emitted<TokenStream> {
+        let Op::Assemble {
+            diagonal,
+            outer,
+            matrices,
+        } = block
+        else {
+            return Ok(TokenStream::new());
+        };
+        let (i, j) = (format_ident!("i"), format_ident!("j"));
+        let (on_diagonal, entry) = (place(&i, &i), place(&i, &j));
+        let mut statements = Vec::new();
+        if let Some(diagonal) = diagonal {
+            let element = self.element(*diagonal)?;
+            statements.push(quote!(#on_diagonal += #element;));
+        }
+        let mut entries = Vec::new();
+        for (u, v) in outer {
+            let (u, v) = (self.element_at(*u, &i)?, self.element_at(*v, &j)?);
+            let product = Expression::multiply(&u, &v).tokens();
+            entries.push(quote!(#entry += #product;));
+        }
+        for scaled in matrices {
+            let matrix = self.array(scaled.matrix)?;
+            let (row, column) = (self.element_at(scaled.row, &i)?, self.element_at(scaled.column, &j)?);
+            let element = if scaled.transposed { quote!(#matrix[j][i]) } else { quote!(#matrix[i][j]) };
+            let scaled_row = Expression::multiply(&row, &Expression::atom(element));
+            let product = Expression::multiply(&scaled_row, &column).tokens();
+            entries.push(quote!(#entry += #product;));
+        }
+        if !entries.is_empty() {
+            statements.push(quote! {
+                for j in 0..#columns {
+                    #(#entries)*
+                }
+            });
+        }
+        Ok(quote! {
+            for i in 0..#rows {
+                #(#statements)*
+            }
+        })
+    }
+
+    /// A scalar.
+    pub fn scalar(&mut self, id: ValueId) -> Emitted<TokenStream> {
+        Ok(self.expression(id, None)?.tokens())
+    }
+
+    /// Element i of a vector, or a scalar.
+    pub fn element(&mut self, id: ValueId) -> Emitted<TokenStream> {
+        Ok(self.element_at(id, &format_ident!("i"))?.tokens())
+    }
+
+    /// Element `index` of a vector, or a scalar.
+    fn element_at(&mut self, id: ValueId, index: &Ident) -> Emitted<Expression> {
+        let scalar = self.program.value(id).extent == Extent::Scalar;
+        self.expression(id, (!scalar).then_some(index))
+    }
+
+    /// A scalar, or the element of a vector: by its name if it has one by now.
+    fn expression(&mut self, id: ValueId, index: Option<&Ident>) -> Emitted<Expression> {
+        match (self.bound.get(&id), index) {
+            (Some(name), Some(index)) => Ok(Expression::atom(quote!(#name[#index]))),
+            (Some(name), None) => Ok(Expression::atom(quote!(#name))),
+            (None, _) => self.own_expression(id, index),
+        }
+    }
+
+    /// The expression that computes a value.
+    fn own_expression(&mut self, id: ValueId, index: Option<&Ident>) -> Emitted<Expression> {
+        if let Some(leaf) = self.leaf_or_prepared(id, index)? {
+            return Ok(leaf);
+        }
+        let op = self.program.value(id).op.clone();
+        let operands = op
+            .operands()
+            .into_iter()
+            .map(|operand| {
+                let scalar = self.program.value(operand).extent == Extent::Scalar;
+                self.expression(operand, if scalar { None } else { index })
+            })
+            .collect::<Emitted<Vec<_>>>()?;
+        Ok(self.operation(&op, &operands))
+    }
+
+    /// An operation of scalars or elements.
+    fn operation(&mut self, op: &Op, operands: &[Expression]) -> Expression {
+        match (op, operands) {
+            (Op::Negate(_), [a]) => Expression::negate(a),
+            (Op::Add(..), [a, b]) => Expression::add(a, b),
+            (Op::Subtract(..), [a, b]) => Expression::subtract(a, b),
+            (Op::Multiply(..), [a, b]) => Expression::multiply(a, b),
+            (Op::Divide(..), [a, b]) => Expression::divide(a, b),
+            (Op::Power(..), _) => {
+                self.needed.elementary.insert(Elementary::Pow);
+                Expression::call(&format_ident!("pow"), operands)
+            }
+            (Op::PivotReciprocal(_), _) => {
+                self.needed.pivot_reciprocal = true;
+                Expression::call(&format_ident!("pivot_reciprocal"), operands)
+            }
+            (Op::Select { .. }, [a, b, then, otherwise]) => {
+                Expression::choice(quote!(>), [a, b, then, otherwise])
+            }
+            (Op::Call(function, _), _) => self.call(*function, operands),
+            _ => Expression::number(f64::NAN),
+        }
+    }
+
+    fn call(&mut self, function: Function, arguments: &[Expression]) -> Expression {
+        let name = match (function, elementary_function(function)) {
+            (_, Some(elementary)) => {
+                self.needed.elementary.insert(elementary);
+                elementary.name()
+            }
+            (Function::Deadzone, None) => {
+                self.needed.deadzone = true;
+                "deadzone"
+            }
+            (_, None) => {
+                self.needed.contact = true;
+                "contact"
+            }
+        };
+        Expression::call(&format_ident!("{name}"), arguments)
+    }
+
+    /// Constants, tables, state, and what was prepared before this stage.
+    fn leaf_or_prepared(
+        &self,
+        id: ValueId,
+        index: Option<&Ident>,
+    ) -> Emitted<Option<Expression>> {
+        let value = self.program.value(id);
+        let program = self.program;
+        Ok(Some(Expression::atom(match value.op {
+            Op::Constant(value) => return Ok(Some(Expression::number(value))),
+            Op::Time => quote!(t),
+            Op::Table(place) => {
+                let name = identifier(&program.tables[place].name)?;
+                quote!(#name[#index])
+            }
+            Op::ModeCoordinates(field) => {
+                let offset = count(program.mode_offset(field));
+                quote!(state[#offset + #index])
+            }
+            Op::ModeRates(field) => {
+                let offset = count(program.degrees_of_freedom() + program.mode_offset(field));
+                quote!(state[#offset + #index])
+            }
+            _ => match &self.access {
+                Access::Coefficients(fields) if value.prepared => {
+                    let Some(name) = fields.get(&id) else {
+                        return Err(EmitError::Syntax(format!("value {} was not prepared", id.index())));
+                    };
+                    match index {
+                        Some(index) => quote!(coefficients.#name[#index]),
+                        None => quote!(coefficients.#name),
+                    }
+                }
+                _ => return Ok(None),
+            },
+        })))
+    }
+
+    fn leaf(&self, id: ValueId) -> Emitted<TokenStream> {
+        let program = self.program;
+        Ok(match program.value(id).op {
+            Op::Coordinate(index) => {
+                let place = count(index);
+                quote!(state[#place])
+            }
+            Op::Rate(index) => {
+                let place = count(program.degrees_of_freedom() + index);
+                quote!(state[#place])
+            }
+            Op::Input(index) => {
+                let name = identifier(&program.inputs[index].name)?;
+                quote!(inputs.#name)
+            }
+            Op::Parameter(place) => {
+                let name = identifier(&program.parameters[place].quantity.name)?;
+                quote!(parameters.#name)
+            }
+            _ => quote!(f64::NAN),
+        })
+    }
+
+    /// A vector or matrix as a whole.
+    pub fn array(&mut self, id: ValueId) -> Emitted<TokenStream> {
+        if let Some(name) = self.bound.get(&id) {
+            return Ok(quote!(#name));
+        }
+        if let Op::Table(place) = self.program.value(id).op {
+            let name = identifier(&self.program.tables[place].name)?;
+            return Ok(quote!(#name));
+        }
+        match &self.access {
+            Access::Coefficients(fields) if fields.contains_key(&id) => {
+                let name = &fields[&id];
+                Ok(quote!(coefficients.#name))
+            }
+            _ => Err(EmitError::Syntax(format!("value {} is no array", id.index()))),
+        }
+    }
+
+    /// A vector as a whole array, copied where it is none.
+    fn vector_array(&mut self, id: ValueId, length: &Literal) -> Emitted<TokenStream> {
+        if let Ok(array) = self.array(id) {
+            return Ok(array);
+        }
+        let element = self.element(id)?;
+        let name = self.names.of(self.program, id, "s")?;
+        self.statements.push(quote! {
+            let mut #name = [0.0; #length];
+            for i in 0..#length {
+                #name[i] = #element;
+            }
+        });
+        Ok(quote!(#name))
+    }
+}
+
+/// Whether each element depends on the operands' elements of the same index alone.
+fn is_elementwise(op: &Op) -> bool {
+    !matches!(
+        op,
+        Op::Total(_)
+            | Op::Apply { .. }
+            | Op::Gram { .. }
+            | Op::GramDiagonal { .. }
+            | Op::Assemble { .. }
+            | Op::Cholesky(_)
+            | Op::CholeskySolve(..)
+    )
+}

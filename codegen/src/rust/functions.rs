@@ -1,0 +1,311 @@
+//! The elementary functions as emitted Rust: their kernels, printed operation by
+//! operation, and the small functions they and the stages call.
+
+use std::collections::BTreeSet;
+
+use elementary::{Function as Elementary, Kernel, Operation};
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{format_ident, quote};
+
+use super::expression::Expression;
+
+/// What a file needs besides the operators.
+#[derive(Clone, Debug, Default)]
+pub struct Needed {
+    /// Elementary functions.
+    pub elementary: BTreeSet<Elementary>,
+    /// f_k of Eq. (7).
+    pub deadzone: bool,
+    /// The indicator of Eq. (8).
+    pub contact: bool,
+    /// Reciprocals of pivots.
+    pub pivot_reciprocal: bool,
+    /// Cholesky factors and their solutions.
+    pub cholesky: bool,
+}
+
+/// The items of every function needed.
+pub fn items(needed: &Needed) -> TokenStream {
+    let mut elementary = needed.elementary.clone();
+    if needed.cholesky {
+        elementary.insert(Elementary::Sqrt);
+    }
+    let kernels: Vec<(Elementary, Kernel)> = elementary.iter().map(|f| (*f, f.kernel())).collect();
+    let functions = kernels.iter().map(|(function, kernel)| elementary_function(*function, kernel));
+    let primitives = primitives(&kernels);
+    let deadzone = needed.deadzone.then(deadzone);
+    let contact = needed.contact.then(contact);
+    let pivot = needed.pivot_reciprocal.then(pivot_reciprocal);
+    let cholesky = needed.cholesky.then(cholesky);
+    quote!(#deadzone #contact #pivot #cholesky #(#functions)* #primitives)
+}
+
+fn deadzone() -> TokenStream {
+    quote! {
+        #[doc = " Deflection beyond the backlash: f_k of Eq. (7)."]
+        #[inline(always)]
+        fn deadzone(p: f64, b: f64) -> f64 {
+            if p > b {
+                p - b
+            } else if p < -b {
+                p + b
+            } else {
+                0.0
+            }
+        }
+    }
+}
+
+fn contact() -> TokenStream {
+    quote! {
+        #[doc = " 1 where |p| > b and 0 elsewhere: the contact of Eq. (8)."]
+        #[inline(always)]
+        fn contact(p: f64, b: f64) -> f64 {
+            if p > b || p < -b { 1.0 } else { 0.0 }
+        }
+    }
+}
+
+fn pivot_reciprocal() -> TokenStream {
+    quote! {
+        #[doc = " 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite."]
+        #[inline(always)]
+        fn pivot_reciprocal(pivot: f64) -> f64 {
+            if pivot > 0.0 { 1.0 / pivot } else { f64::NAN }
+        }
+    }
+}
+
+fn cholesky() -> TokenStream {
+    quote! {
+        #[doc = " Lower factor L of a symmetric matrix L L^T; NaN where it is not positive definite."]
+        fn cholesky<const N: usize>(matrix: &[[f64; N]; N]) -> [[f64; N]; N] {
+            let mut factor = [[0.0; N]; N];
+            for i in 0..N {
+                for j in 0..i + 1 {
+                    let mut rest = matrix[i][j];
+                    for k in 0..j {
+                        rest -= factor[i][k] * factor[j][k];
+                    }
+                    factor[i][j] = if i == j {
+                        if rest > 0.0 { sqrt(rest) } else { f64::NAN }
+                    } else {
+                        rest / factor[j][j]
+                    };
+                }
+            }
+            factor
+        }
+
+        #[doc = " Solution of L L^T x = right."]
+        fn cholesky_solve<const N: usize>(factor: &[[f64; N]; N], right: &[f64; N]) -> [f64; N] {
+            let mut x = [0.0; N];
+            for i in 0..N {
+                let mut rest = right[i];
+                for k in 0..i {
+                    rest -= factor[i][k] * x[k];
+                }
+                x[i] = rest / factor[i][i];
+            }
+            for j in 0..N {
+                let i = N - 1 - j;
+                let mut rest = x[i];
+                for k in i + 1..N {
+                    rest -= factor[k][i] * x[k];
+                }
+                x[i] = rest / factor[i][i];
+            }
+            x
+        }
+    }
+}
+
+fn describe(function: Elementary) -> &'static str {
+    match function {
+        Elementary::Abs => "Absolute value.",
+        Elementary::Sign => "Sign, with sign(0) = 0.",
+        Elementary::Min => "The smaller of two, NaN if either is.",
+        Elementary::Max => "The larger of two, NaN if either is.",
+        Elementary::Sqrt => "Square root.",
+        Elementary::Exp => "Exponential function.",
+        Elementary::ExpMinusOne => "exp(x) - 1.",
+        Elementary::Ln => "Natural logarithm.",
+        Elementary::Sinh => "Hyperbolic sine.",
+        Elementary::Cosh => "Hyperbolic cosine.",
+        Elementary::Tanh => "Hyperbolic tangent.",
+        Elementary::Sin => "Sine for |x| up to 1e9, NaN beyond.",
+        Elementary::Cos => "Cosine for |x| up to 1e9, NaN beyond.",
+        Elementary::Tan => "Tangent for |x| up to 1e9, NaN beyond.",
+        Elementary::Asin => "Inverse sine.",
+        Elementary::Acos => "Inverse cosine.",
+        Elementary::Atan => "Inverse tangent.",
+        Elementary::Atan2 => "Angle of the point (x, y).",
+        Elementary::Pow => "x to the power y.",
+    }
+}
+
+fn elementary_function(function: Elementary, kernel: &Kernel) -> TokenStream {
+    let name = format_ident!("{}", function.name());
+    let doc = format!(
+        " {} Plain operations in a fixed order: the same bits on every machine.",
+        describe(function)
+    );
+    let arguments: Vec<Ident> = ["x", "y"][..function.arity()]
+        .iter()
+        .map(|name| Ident::new(name, Span::call_site()))
+        .collect();
+    let arguments = if function == Elementary::Atan2 {
+        arguments.into_iter().rev().collect()
+    } else {
+        arguments
+    };
+    let body = KernelBody::new(kernel, &arguments).tokens();
+    quote! {
+        #[doc = #doc]
+        #[inline]
+        fn #name(#(#arguments: f64),*) -> f64 {
+            #body
+        }
+    }
+}
+
+/// The statements of a kernel: operations used once stand inside the expression that uses
+/// them, up to a size, the others get a name.
+struct KernelBody<'k> {
+    kernel: &'k Kernel,
+    arguments: &'k [Ident],
+    uses: Vec<usize>,
+    expressions: Vec<Expression>,
+    statements: Vec<TokenStream>,
+}
+
+/// The most operations in one emitted expression of a kernel.
+const EXPRESSION_SIZE: usize = 6;
+
+impl<'k> KernelBody<'k> {
+    fn new(kernel: &'k Kernel, arguments: &'k [Ident]) -> Self {
+        let mut uses = vec![0; kernel.operations.len()];
+        for operation in &kernel.operations {
+            operation.map_operands(|operand| {
+                uses[operand] += 1;
+                operand
+            });
+        }
+        Self {
+            kernel,
+            arguments,
+            uses,
+            expressions: Vec::new(),
+            statements: Vec::new(),
+        }
+    }
+
+    fn tokens(mut self) -> TokenStream {
+        for index in 0..self.kernel.operations.len() {
+            let operation = self.kernel.operations[index];
+            let expression = self.expression(operation);
+            let single = self.uses[index] <= 1 && expression.size <= EXPRESSION_SIZE;
+            if !operation.is_computed() || single {
+                self.expressions.push(expression);
+            } else {
+                let name = format_ident!("v{}", index);
+                let value = expression.tokens();
+                self.statements.push(quote!(let #name = #value;));
+                self.expressions.push(Expression::atom(quote!(#name)));
+            }
+        }
+        let statements = &self.statements;
+        let result = self.kernel.outputs.first().map(|output| self.expressions[*output].tokens());
+        quote!(#(#statements)* #result)
+    }
+
+    fn expression(&self, operation: Operation) -> Expression {
+        let o = |index: usize| &self.expressions[index];
+        let call = |name: &str, arguments: &[usize]| {
+            let arguments: Vec<Expression> = arguments.iter().map(|a| o(*a).clone()).collect();
+            Expression::call(&Ident::new(name, Span::call_site()), &arguments)
+        };
+        match operation {
+            Operation::Input(index) => {
+                let argument = &self.arguments[index.min(self.arguments.len() - 1)];
+                Expression::atom(quote!(#argument))
+            }
+            Operation::Constant(value) => Expression::number(value),
+            Operation::Add(a, b) => Expression::add(o(a), o(b)),
+            Operation::Sub(a, b) => Expression::subtract(o(a), o(b)),
+            Operation::Mul(a, b) => Expression::multiply(o(a), o(b)),
+            Operation::Div(a, b) => Expression::divide(o(a), o(b)),
+            Operation::Neg(a) => Expression::negate(o(a)),
+            Operation::Abs(a) => call("magnitude_of", &[a]),
+            Operation::CopySign { magnitude, sign } => call("copy_sign", &[magnitude, sign]),
+            Operation::SelectLess {
+                left,
+                right,
+                then,
+                otherwise,
+            } => Expression::choice(quote!(<), [o(left), o(right), o(then), o(otherwise)]),
+            Operation::SelectEqual {
+                left,
+                right,
+                then,
+                otherwise,
+            } => Expression::choice(quote!(==), [o(left), o(right), o(then), o(otherwise)]),
+            Operation::PowerOfTwo(a) => call("power_of_two", &[a]),
+            Operation::Exponent(a) => call("exponent_of", &[a]),
+            Operation::Significand(a) => call("significand_of", &[a]),
+        }
+    }
+}
+
+/// The bit operations that the kernels need.
+fn primitives(kernels: &[(Elementary, Kernel)]) -> TokenStream {
+    let uses = |wanted: fn(&Operation) -> bool| {
+        kernels.iter().any(|(_, kernel)| kernel.operations.iter().any(wanted))
+    };
+    let magnitude = uses(|o| matches!(o, Operation::Abs(_))).then(|| {
+        quote! {
+            #[doc = " The sign bit cleared."]
+            #[inline(always)]
+            fn magnitude_of(x: f64) -> f64 {
+                f64::from_bits(x.to_bits() & !(1 << 63))
+            }
+        }
+    });
+    let copy_sign = uses(|o| matches!(o, Operation::CopySign { .. })).then(|| {
+        quote! {
+            #[doc = " A magnitude with the sign bit of another number."]
+            #[inline(always)]
+            fn copy_sign(magnitude: f64, sign: f64) -> f64 {
+                f64::from_bits((magnitude.to_bits() & !(1 << 63)) | (sign.to_bits() & (1 << 63)))
+            }
+        }
+    });
+    let power_of_two = uses(|o| matches!(o, Operation::PowerOfTwo(_))).then(|| {
+        quote! {
+            #[doc = " 2^k for an integral k: 2^52 + 1023 brings it to the place of the exponent."]
+            #[inline(always)]
+            fn power_of_two(k: f64) -> f64 {
+                f64::from_bits((k + 4503599627371519.0).to_bits() << 52)
+            }
+        }
+    });
+    let exponent = uses(|o| matches!(o, Operation::Exponent(_))).then(|| {
+        quote! {
+            #[doc = " The unbiased exponent field."]
+            #[inline(always)]
+            fn exponent_of(x: f64) -> f64 {
+                ((x.to_bits() >> 52) & 0x7ff) as f64 - 1023.0
+            }
+        }
+    });
+    let significand = uses(|o| matches!(o, Operation::Significand(_))).then(|| {
+        quote! {
+            #[doc = " The mantissa under the exponent of 1."]
+            #[inline(always)]
+            fn significand_of(x: f64) -> f64 {
+                f64::from_bits((x.to_bits() & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000)
+            }
+        }
+    });
+    quote!(#magnitude #copy_sign #power_of_two #exponent #significand)
+}

@@ -1,0 +1,34 @@
+//! The Rust backend: one source file per variant, `no_std`, without dependency,
+//! allocation or panic, that compiles on its own with any edition.
+//!
+//! `file` lays the items out, `body` writes the statements of a stage out of `expression`s,
+//! `functions` the elementary functions, `literals` numbers and names. All of it reads the program alone.
+
+mod body;
+mod expression;
+mod file;
+mod functions;
+mod literals;
+mod names;
+
+pub use file::{Packaging, emit};
+
+/// Why a program could not be emitted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum EmitError {
+    /// A name is no Rust identifier.
+    Name(String),
+    /// The emitted tokens are no Rust file: a defect of the generator.
+    Syntax(String),
+}
+
+impl std::fmt::Display for EmitError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Name(name) => write!(f, "`{name}` is no Rust identifier"),
+            Self::Syntax(message) => write!(f, "the emitted source does not parse: {message}"),
+        }
+    }
+}
+
+impl std::error::Error for EmitError {}

@@ -1,0 +1,115 @@
+//! Checks of a model as a whole that are neither about names nor about units: things that
+//! are never used, and channels that do not exist.
+
+use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
+use crate::model::{CoefficientKind, Expr, ExprKind, Model, ParameterValue};
+use crate::suggest::did_you_mean;
+
+/// Reports sensors on channels that the model does not have.
+pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
+    if model.sensors.is_empty() {
+        return;
+    }
+    let rates = model.coordinates.iter().map(|c| format!("{}_dot", c.name));
+    let mut channels: Vec<String> = vec!["energy".to_owned(), "power".to_owned()];
+    channels.extend(model.observables.iter().map(|observable| observable.name.clone()));
+    channels.extend(model.coordinates.iter().map(|coordinate| coordinate.name.clone()));
+    channels.extend(rates);
+    for sensor in &model.sensors {
+        if !channels.contains(&sensor.channel) {
+            let message = format!("no quantity {} to be measured", quoted(&sensor.channel));
+            let near = did_you_mean(&sensor.channel, channels.iter().map(String::as_str));
+            let rule = "a channel is an observable, a coordinate or a rate (NAME_dot)";
+            found.push(
+                Diagnostic::error(message)
+                    .at(sensor.span, "not a channel of this model")
+                    .help(near.unwrap_or_else(|| rule.to_owned())),
+            );
+        }
+    }
+}
+
+/// Warns of parameters, inputs and definitions that nothing refers to.
+pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
+    let mut used = Used {
+        parameters: vec![false; model.parameters.len()],
+        inputs: vec![false; model.inputs.len()],
+        definitions: vec![false; model.definitions.len()],
+    };
+    for_each_expression(model, &mut |expr| expr.visit(&mut |part| used.mark(part)));
+    let parameters = model.parameters.iter().map(|p| (&p.name, p.span));
+    let inputs = model.inputs.iter().map(|i| (&i.name, i.span));
+    let definitions = model.definitions.iter().map(|d| (&d.name, d.span));
+    let mut warn = |kind: &str, name: &str, span| {
+        warnings.push(
+            Diagnostic::warning(format!("the {kind} `{name}` is not used"))
+                .at(span, "nothing refers to it")
+                .help("remove it, or use it where it was meant"),
+        );
+    };
+    for ((name, span), used) in parameters.zip(used.parameters) {
+        if !used {
+            warn("parameter", name, span);
+        }
+    }
+    for ((name, span), used) in inputs.zip(used.inputs) {
+        if !used {
+            warn("input", name, span);
+        }
+    }
+    for ((name, span), used) in definitions.zip(used.definitions) {
+        if !used {
+            warn("definition", name, span);
+        }
+    }
+}
+
+struct Used {
+    parameters: Vec<bool>,
+    inputs: Vec<bool>,
+    definitions: Vec<bool>,
+}
+
+impl Used {
+    fn mark(&mut self, part: &Expr) {
+        match part.kind {
+            ExprKind::Parameter(index) => self.parameters[index] = true,
+            ExprKind::Input(index) => self.inputs[index] = true,
+            ExprKind::Definition(index) => self.definitions[index] = true,
+            _ => {}
+        }
+    }
+}
+
+fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
+    for parameter in &model.parameters {
+        if let ParameterValue::Expression(expr) = &parameter.value {
+            see(expr);
+        }
+    }
+    for coordinate in &model.coordinates {
+        coordinate.initial.iter().chain(&coordinate.initial_rate).for_each(&mut *see);
+    }
+    for field in &model.fields {
+        see(&field.from);
+        see(&field.to);
+    }
+    model.definitions.iter().for_each(|definition| see(&definition.value));
+    let terms = model.kinetic.iter().chain(&model.potential).chain(&model.dissipation);
+    terms.for_each(|term| see(&term.value));
+    for force in &model.forces {
+        see(&force.on);
+        see(&force.value);
+    }
+    model.observables.iter().for_each(|observable| see(&observable.value));
+    for coefficient in &model.coefficients {
+        match &coefficient.kind {
+            CoefficientKind::Value(value) => see(value),
+            CoefficientKind::Factor { of, by, times } => {
+                see(of);
+                see(by);
+                times.iter().for_each(&mut *see);
+            }
+        }
+    }
+}

@@ -1,0 +1,333 @@
+//! What is wrong with a specification, as data, and how it is shown: to people with the
+//! text underlined, to programs as one record for each finding. Which findings there are
+//! is decided elsewhere.
+
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+use serde::Serialize;
+
+use crate::source::Source;
+use crate::span::Span;
+
+/// The most findings listed; one bad file can hold thousands.
+pub const MAX_LISTED: usize = 20;
+
+/// How bad a finding is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// The specification cannot be used.
+    Error,
+    /// It can be used, and is perhaps not what was meant.
+    Warning,
+}
+
+/// A remark on a part of the text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// The part.
+    pub span: Span,
+    /// The remark, may be empty.
+    pub text: String,
+}
+
+/// One finding.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// What is wrong, in one line.
+    pub message: String,
+    /// Where it is wrong; None where it is the file as a whole.
+    pub primary: Option<Label>,
+    /// Other places that explain it.
+    pub secondary: Vec<Label>,
+    /// What would be right, if known.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error, so far without a place.
+    pub fn error(message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            message: message.into(),
+            primary: None,
+            secondary: Vec::new(),
+            help: None,
+        }
+    }
+
+    /// A warning, so far without a place.
+    pub fn warning(message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Warning,
+            ..Self::error(message)
+        }
+    }
+
+    /// The same finding, placed here.
+    pub fn at(mut self, span: Span, label: impl Into<String>) -> Self {
+        self.primary = Some(Label {
+            span,
+            text: label.into(),
+        });
+        self
+    }
+
+    /// The same finding with a further place.
+    pub fn also(mut self, span: Span, label: impl Into<String>) -> Self {
+        self.secondary.push(Label {
+            span,
+            text: label.into(),
+        });
+        self
+    }
+
+    /// The same finding with what would be right.
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    /// The same finding with what would be right, if that is known.
+    pub fn help_if(mut self, help: Option<String>) -> Self {
+        self.help = help.or(self.help);
+        self
+    }
+}
+
+/// Findings on one source.
+#[derive(Clone, Debug)]
+pub struct Diagnostics {
+    source: Source,
+    list: Vec<Diagnostic>,
+    omitted: usize,
+}
+
+/// A finding as programs read it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Record {
+    /// The file.
+    pub file: String,
+    /// Line from 1, if there is a place.
+    pub line: Option<usize>,
+    /// Column in characters from 1, if there is a place.
+    pub column: Option<usize>,
+    /// Line of the first character after the place.
+    pub end_line: Option<usize>,
+    /// Column of the first character after the place.
+    pub end_column: Option<usize>,
+    /// How bad it is.
+    pub severity: Severity,
+    /// What is wrong.
+    pub message: String,
+    /// What would be right, if known.
+    pub help: Option<String>,
+}
+
+impl Diagnostics {
+    /// No findings yet.
+    pub fn new(source: Source) -> Self {
+        Self {
+            source,
+            list: Vec::new(),
+            omitted: 0,
+        }
+    }
+
+    /// One finding.
+    pub fn one(source: Source, diagnostic: Diagnostic) -> Self {
+        let mut diagnostics = Self::new(source);
+        diagnostics.push(diagnostic);
+        diagnostics
+    }
+
+    /// Adds a finding; beyond [`MAX_LISTED`] it is only counted.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        if self.is_full() {
+            self.omitted += 1;
+        } else {
+            self.list.push(diagnostic);
+        }
+    }
+
+    /// Adds the error, if it is one, and passes on what is not.
+    pub fn keep<T>(&mut self, result: Result<T, Diagnostic>) -> Option<T> {
+        result.map_err(|diagnostic| self.push(diagnostic)).ok()
+    }
+
+    /// Whether further findings are only counted.
+    pub fn is_full(&self) -> bool {
+        self.list.len() >= MAX_LISTED
+    }
+
+    /// Whether there is nothing to say.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// The findings, in the order in which they were made.
+    pub fn list(&self) -> &[Diagnostic] {
+        &self.list
+    }
+
+    /// The text they are about.
+    pub fn source(&self) -> &Source {
+        &self.source
+    }
+
+    /// All findings for people: file, line and column, the text underlined, what is wrong
+    /// and what would be right. With `colour`, with terminal escapes.
+    pub fn render(&self, colour: bool) -> String {
+        let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
+        let mut parts: Vec<String> = self
+            .list
+            .iter()
+            .map(|diagnostic| renderer.render(&[self.group(diagnostic)]))
+            .collect();
+        if self.omitted > 0 {
+            parts.push(format!("and {} more", self.omitted));
+        }
+        parts.join("\n\n")
+    }
+
+    /// All findings for programs.
+    pub fn records(&self) -> Vec<Record> {
+        self.list.iter().map(|d| self.record(d)).collect()
+    }
+
+    fn record(&self, diagnostic: &Diagnostic) -> Record {
+        let span = diagnostic.primary.as_ref().map(|label| label.span);
+        let start = span.map(|span| self.source.place(span.start));
+        let end = span.map(|span| self.source.place(span.end));
+        Record {
+            file: self.source.path.clone(),
+            line: start.map(|place| place.line),
+            column: start.map(|place| place.column),
+            end_line: end.map(|place| place.line),
+            end_column: end.map(|place| place.column),
+            severity: diagnostic.severity,
+            message: diagnostic.message.clone(),
+            help: diagnostic.help.clone(),
+        }
+    }
+
+    fn group<'a>(&'a self, diagnostic: &'a Diagnostic) -> Group<'a> {
+        let level = match diagnostic.severity {
+            Severity::Error => Level::ERROR,
+            Severity::Warning => Level::WARNING,
+        };
+        let title = level.primary_title(diagnostic.message.as_str());
+        let group = match &diagnostic.primary {
+            Some(primary) => title.element(self.snippet(primary, &diagnostic.secondary)),
+            None => title.element(Origin::path(self.source.path.as_str())),
+        };
+        match &diagnostic.help {
+            Some(help) => group.element(Level::HELP.message(help.as_str())),
+            None => group,
+        }
+    }
+
+    fn snippet<'a>(
+        &'a self,
+        primary: &'a Label,
+        secondary: &'a [Label],
+    ) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
+        let annotation = |kind: AnnotationKind, label: &'a Label| {
+            let annotation = kind.span(self.inside(label.span));
+            if label.text.is_empty() {
+                annotation
+            } else {
+                annotation.label(label.text.as_str())
+            }
+        };
+        let others = secondary
+            .iter()
+            .map(|label| annotation(AnnotationKind::Context, label));
+        Snippet::source(&*self.source.text)
+            .path(self.source.path.as_str())
+            .annotation(annotation(AnnotationKind::Primary, primary))
+            .annotations(others)
+    }
+
+    /// The span as byte offsets of whole characters within the text.
+    fn inside(&self, span: Span) -> std::ops::Range<usize> {
+        let text = &self.source.text;
+        let start = text.floor_char_boundary(span.start);
+        let end = text.floor_char_boundary(span.end);
+        start..end.max(start)
+    }
+}
+
+impl std::fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.render(false))
+    }
+}
+
+impl std::error::Error for Diagnostics {}
+
+/// A piece of somebody's text for use in a message: at most 48 characters, control
+/// characters replaced, in backquotes.
+pub fn quoted(text: &str) -> String {
+    let clean = |letter: char| if letter.is_control() { ' ' } else { letter };
+    let mut shown: String = text.chars().take(48).map(clean).collect();
+    if text.chars().nth(48).is_some() {
+        shown.push_str("...");
+    }
+    format!("`{shown}`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_finding_shows_place_text_and_advice() {
+        let source = Source::new("arm.toml", "[a]\nb = \"k_s*x\"\n");
+        let diagnostic = Diagnostic::error("unknown name `k_s`")
+            .at(Span::new(9, 12), "not declared")
+            .help("did you mean `k_sp`?");
+        let shown = Diagnostics::one(source.clone(), diagnostic.clone()).render(false);
+        for part in ["error: unknown name `k_s`", "arm.toml:2:6", "^^^ not declared", "k_sp"] {
+            assert!(shown.contains(part), "{part} is missing in\n{shown}");
+        }
+        let coloured = Diagnostics::one(source, diagnostic).render(true);
+        assert!(coloured.contains('\u{1b}') && !shown.contains('\u{1b}'));
+    }
+
+    #[test]
+    fn findings_without_a_place_name_the_file() {
+        let source = Source::new("arm.toml", "");
+        let diagnostics = Diagnostics::one(source, Diagnostic::error("no such file"));
+        assert!(diagnostics.render(false).contains("arm.toml"));
+        assert_eq!(diagnostics.records()[0].line, None);
+    }
+
+    #[test]
+    fn records_hold_lines_and_columns() {
+        let source = Source::new("arm.toml", "ab\ncd\n");
+        let diagnostic = Diagnostic::warning("odd").at(Span::new(4, 5), "");
+        let record = Diagnostics::one(source, diagnostic).records().remove(0);
+        assert_eq!((record.line, record.column), (Some(2), Some(2)));
+        assert_eq!((record.end_line, record.end_column), (Some(2), Some(3)));
+        assert_eq!(record.severity, Severity::Warning);
+    }
+
+    #[test]
+    fn thousands_of_findings_are_counted_not_listed() {
+        let mut diagnostics = Diagnostics::new(Source::new("arm.toml", "a"));
+        for _ in 0..1000 {
+            diagnostics.push(Diagnostic::error("wrong").at(Span::new(0, 1), ""));
+        }
+        assert_eq!(diagnostics.list().len(), MAX_LISTED);
+        assert!(diagnostics.render(false).ends_with("and 980 more"));
+    }
+
+    #[test]
+    fn places_outside_the_text_are_shown_at_its_end() {
+        let diagnostic = Diagnostic::error("odd").at(Span::new(900, 7), "");
+        let shown = Diagnostics::one(Source::new("a.toml", "µ"), diagnostic).render(false);
+        assert!(shown.contains("a.toml:1:2"), "{shown}");
+    }
+}

@@ -1,0 +1,108 @@
+//! The value of expressions that hold parameters only, in double precision with the
+//! standard library's functions. Everything that moves is evaluated elsewhere, by programs
+//! derived from the model.
+
+use crate::ast::BinaryOperator;
+use crate::model::{Expr, ExprKind, Function};
+
+/// The value of an expression of parameters, given their values in SI. NaN where it holds
+/// anything else, which a checked model's parameters do not.
+pub fn evaluate(expr: &Expr, parameters: &[f64]) -> f64 {
+    match &expr.kind {
+        ExprKind::Number(value) => *value,
+        ExprKind::Pi => std::f64::consts::PI,
+        ExprKind::Parameter(index) => parameters.get(*index).copied().unwrap_or(f64::NAN),
+        ExprKind::Negate(operand) => -evaluate(operand, parameters),
+        ExprKind::Binary(operator, left, right) => {
+            let (left, right) = (evaluate(left, parameters), evaluate(right, parameters));
+            binary(*operator, left, right)
+        }
+        ExprKind::Call(function, arguments) => {
+            let argument = |index: usize| {
+                let found = arguments.get(index);
+                found.map_or(f64::NAN, |expr| evaluate(expr, parameters))
+            };
+            call(*function, argument(0), argument(1))
+        }
+        _ => f64::NAN,
+    }
+}
+
+fn binary(operator: BinaryOperator, left: f64, right: f64) -> f64 {
+    match operator {
+        BinaryOperator::Add => left + right,
+        BinaryOperator::Subtract => left - right,
+        BinaryOperator::Multiply => left * right,
+        BinaryOperator::Divide => left / right,
+        BinaryOperator::Power if right == 2.0 => left * left,
+        BinaryOperator::Power => left.powf(right),
+    }
+}
+
+fn call(function: Function, x: f64, second: f64) -> f64 {
+    match function {
+        Function::Sin => x.sin(),
+        Function::Cos => x.cos(),
+        Function::Tan => x.tan(),
+        Function::Asin => x.asin(),
+        Function::Acos => x.acos(),
+        Function::Atan => x.atan(),
+        Function::Atan2 => x.atan2(second),
+        Function::Sinh => x.sinh(),
+        Function::Cosh => x.cosh(),
+        Function::Tanh => x.tanh(),
+        Function::Exp => x.exp(),
+        Function::Ln => x.ln(),
+        Function::Sqrt => x.sqrt(),
+        Function::Abs => x.abs(),
+        Function::Sign if x > 0.0 => 1.0,
+        Function::Sign if x < 0.0 => -1.0,
+        Function::Sign => x * 0.0,
+        Function::Min => x.min(second),
+        Function::Max => x.max(second),
+        // Eq. (7): 0 inside the dead band, the distance from its edge outside.
+        Function::Deadzone if x > second => x - second,
+        Function::Deadzone if x < -second => x + second,
+        Function::Deadzone => (x + second) * 0.0,
+        Function::Contact if x.abs() > second => 1.0,
+        Function::Contact => (x + second) * 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::span::Span;
+
+    fn number(value: f64) -> Expr {
+        Expr {
+            kind: ExprKind::Number(value),
+            span: Span::default(),
+        }
+    }
+
+    fn called(function: Function, x: f64, second: f64) -> f64 {
+        let arguments = vec![number(x), number(second)];
+        let kind = ExprKind::Call(function, arguments);
+        evaluate(&Expr { kind, span: Span::default() }, &[])
+    }
+
+    #[test]
+    fn piecewise_functions_follow_their_definitions() {
+        assert_eq!(called(Function::Deadzone, 3.0, 1.0), 2.0);
+        assert_eq!(called(Function::Deadzone, -3.0, 1.0), -2.0);
+        assert_eq!(called(Function::Deadzone, 1.0, 1.0), 0.0);
+        assert_eq!(called(Function::Contact, -3.0, 1.0), 1.0);
+        assert_eq!(called(Function::Contact, 1.0, 1.0), 0.0);
+        assert_eq!(called(Function::Sign, -0.5, 0.0), -1.0);
+        assert_eq!(called(Function::Sign, 0.0, 0.0), 0.0);
+        assert_eq!(called(Function::Atan2, 1.0, 0.0), std::f64::consts::FRAC_PI_2);
+    }
+
+    #[test]
+    fn not_a_number_does_not_disappear() {
+        for function in [Function::Sign, Function::Deadzone, Function::Contact] {
+            assert!(called(function, f64::NAN, 1.0).is_nan(), "{function:?}");
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! The names the language itself has: functions, special forms, constants, and the words
+//! that no model may use for its own things.
+
+use crate::model::Function;
+
+/// The functions of scalar arguments, with how they are called.
+const FUNCTIONS: [(&str, Function, &[&str]); 19] = [
+    ("sin", Function::Sin, &["x"]),
+    ("cos", Function::Cos, &["x"]),
+    ("tan", Function::Tan, &["x"]),
+    ("asin", Function::Asin, &["x"]),
+    ("acos", Function::Acos, &["x"]),
+    ("atan", Function::Atan, &["x"]),
+    ("atan2", Function::Atan2, &["y", "x"]),
+    ("sinh", Function::Sinh, &["x"]),
+    ("cosh", Function::Cosh, &["x"]),
+    ("tanh", Function::Tanh, &["x"]),
+    ("exp", Function::Exp, &["x"]),
+    ("ln", Function::Ln, &["x"]),
+    ("sqrt", Function::Sqrt, &["x"]),
+    ("abs", Function::Abs, &["x"]),
+    ("sign", Function::Sign, &["x"]),
+    ("min", Function::Min, &["a", "b"]),
+    ("max", Function::Max, &["a", "b"]),
+    ("deadzone", Function::Deadzone, &["p", "b"]),
+    ("contact", Function::Contact, &["p", "b"]),
+];
+
+/// The forms that are no functions of scalars.
+pub const FORMS: [&str; 5] = ["dot", "diff", "at", "integral", "sum"];
+
+/// Words with a meaning of their own that are not called.
+const CONSTANTS: [&str; 4] = ["t", "pi", "energy", "power"];
+
+/// Keywords of Rust and C99: names end up as identifiers of emitted code.
+const KEYWORDS: [&str; 73] = [
+    "abstract", "as", "async", "auto", "await", "become", "box", "break", "case", "char",
+    "const", "continue", "crate", "default", "do", "double", "dyn", "else", "enum", "extern",
+    "false", "final", "float", "fn", "for", "gen", "goto", "if", "impl", "in", "inline", "int",
+    "let", "long", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
+    "ref", "register", "restrict", "return", "self", "Self", "short", "signed", "sizeof",
+    "static", "struct", "super", "switch", "trait", "true", "try", "type", "typedef", "typeof",
+    "union", "unsafe", "unsigned", "unsized", "use", "virtual", "void", "volatile", "where",
+    "while", "yield",
+];
+
+impl Function {
+    /// The function of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        let found = FUNCTIONS.iter().find(|(known, ..)| *known == name);
+        found.map(|(_, function, _)| *function)
+    }
+
+    /// Its name in a specification.
+    pub fn name(self) -> &'static str {
+        self.entry().map_or("", |(name, ..)| name)
+    }
+
+    /// What its arguments are called.
+    pub fn arguments(self) -> &'static [&'static str] {
+        self.entry().map_or(&[], |(_, _, arguments)| arguments)
+    }
+
+    fn entry(self) -> Option<&'static (&'static str, Self, &'static [&'static str])> {
+        FUNCTIONS.iter().find(|(_, function, _)| *function == self)
+    }
+}
+
+/// The names of all functions and forms.
+pub fn callable() -> impl Iterator<Item = &'static str> {
+    FUNCTIONS.iter().map(|(name, ..)| *name).chain(FORMS)
+}
+
+/// What a word means already, so that it cannot be a name.
+pub fn reserved(word: &str) -> Option<&'static str> {
+    if callable().any(|name| name == word) {
+        Some("is a function of the language")
+    } else if CONSTANTS.contains(&word) {
+        Some("has a meaning in every model")
+    } else if KEYWORDS.contains(&word) {
+        Some("is a keyword of Rust or C")
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_function_is_found_by_its_own_name() {
+        for (name, function, arguments) in FUNCTIONS {
+            assert_eq!(Function::named(name), Some(function));
+            assert_eq!((function.name(), function.arguments()), (name, arguments));
+            assert!(reserved(name).is_some());
+        }
+        assert_eq!(Function::named("dot"), None);
+    }
+}

@@ -1,0 +1,224 @@
+//! From the text of an expression to tokens. Another front end may make the same tokens
+//! of its own text: positions are opaque to everything behind this module.
+
+use crate::diagnostic::{Diagnostic, quoted};
+use crate::span::Span;
+
+/// A smallest part of an expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Token {
+    /// What it is.
+    pub kind: TokenKind,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// The kinds of tokens.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TokenKind {
+    /// A finite number, not negative.
+    Number(f64),
+    /// A name or a function's name.
+    Name(String),
+    /// `+`
+    Plus,
+    /// `-`
+    Minus,
+    /// `*`
+    Star,
+    /// `/`
+    Slash,
+    /// `^`
+    Caret,
+    /// `(`
+    Open,
+    /// `)`
+    Close,
+    /// `[`
+    OpenIndex,
+    /// `]`
+    CloseIndex,
+    /// `,`
+    Comma,
+}
+
+impl TokenKind {
+    /// The token as a person would name it.
+    pub fn shown(&self) -> String {
+        match self {
+            Self::Number(value) => format!("`{value}`"),
+            Self::Name(name) => quoted(name),
+            Self::Plus => "`+`".to_owned(),
+            Self::Minus => "`-`".to_owned(),
+            Self::Star => "`*`".to_owned(),
+            Self::Slash => "`/`".to_owned(),
+            Self::Caret => "`^`".to_owned(),
+            Self::Open => "`(`".to_owned(),
+            Self::Close => "`)`".to_owned(),
+            Self::OpenIndex => "`[`".to_owned(),
+            Self::CloseIndex => "`]`".to_owned(),
+            Self::Comma => "`,`".to_owned(),
+        }
+    }
+}
+
+/// The tokens of an expression. `place` turns a range of byte offsets in `text` into a
+/// place in the source.
+///
+/// # Errors
+/// Says which character or number is not part of the language.
+pub fn tokens(text: &str, place: impl Fn(usize, usize) -> Span) -> Result<Vec<Token>, Diagnostic> {
+    let mut found = Vec::new();
+    let mut start = 0;
+    while let Some(first) = text[start..].chars().next() {
+        let rest = &text[start..];
+        let length = match first {
+            ' ' | '\t' | '\n' | '\r' => {
+                start += 1;
+                continue;
+            }
+            '0'..='9' | '.' => number_length(rest),
+            'a'..='z' | 'A'..='Z' | '_' => name_length(rest),
+            _ => first.len_utf8(),
+        };
+        let span = place(start, start + length);
+        let kind = token(&rest[..length], first, span, &rest[length..])?;
+        found.push(Token { kind, span });
+        start += length;
+    }
+    Ok(found)
+}
+
+fn token(text: &str, first: char, span: Span, rest: &str) -> Result<TokenKind, Diagnostic> {
+    Ok(match first {
+        '0'..='9' | '.' => TokenKind::Number(number(text, span)?),
+        'a'..='z' | 'A'..='Z' | '_' => TokenKind::Name(text.to_owned()),
+        '+' => TokenKind::Plus,
+        '-' => TokenKind::Minus,
+        '*' if rest.starts_with('*') => {
+            return Err(Diagnostic::error("`**` is not an operator")
+                .at(span, "here")
+                .help("a power is written `^`: x^2"));
+        }
+        '*' => TokenKind::Star,
+        '/' => TokenKind::Slash,
+        '^' => TokenKind::Caret,
+        '(' => TokenKind::Open,
+        ')' => TokenKind::Close,
+        '[' => TokenKind::OpenIndex,
+        ']' => TokenKind::CloseIndex,
+        ',' => TokenKind::Comma,
+        other => return Err(stray(other, span)),
+    })
+}
+
+fn stray(letter: char, span: Span) -> Diagnostic {
+    let help = match letter {
+        '\'' => "a rate is written dot(x); an expression holds no strings".to_owned(),
+        '"' => "an expression holds no strings".to_owned(),
+        '=' | '<' | '>' | '!' => {
+            "switching is written with deadzone, contact, abs, sign, min or max".to_owned()
+        }
+        '{' | '}' => "group with ( and )".to_owned(),
+        '·' | '×' => "a product is written with `*`".to_owned(),
+        '−' | '–' => "this is not the minus sign `-` of the keyboard".to_owned(),
+        _ if letter.is_alphabetic() => "names are of letters a-z, digits and `_`".to_owned(),
+        _ => "an expression is made of numbers, names and + - * / ^ ( ) , [ ]".to_owned(),
+    };
+    let shown = quoted(letter.encode_utf8(&mut [0; 4]));
+    Diagnostic::error(format!("{shown} is not part of an expression"))
+        .at(span, "unexpected character")
+        .help(help)
+}
+
+fn name_length(text: &str) -> usize {
+    let part = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
+    text.bytes().take_while(|&byte| part(byte)).count()
+}
+
+/// Digits, an optional point, an optional exponent if digits follow it.
+fn number_length(text: &str) -> usize {
+    let digits = |from: usize| {
+        let rest = text.as_bytes().get(from..).unwrap_or_default();
+        rest.iter().take_while(|byte| byte.is_ascii_digit()).count()
+    };
+    let at = |index: usize| text.as_bytes().get(index).copied();
+    let mut length = digits(0);
+    if at(length) == Some(b'.') {
+        length += 1;
+        length += digits(length);
+    }
+    if matches!(at(length), Some(b'e' | b'E')) {
+        let signed = usize::from(matches!(at(length + 1), Some(b'+' | b'-')));
+        let exponent = digits(length + 1 + signed);
+        if exponent > 0 {
+            length += 1 + signed + exponent;
+        }
+    }
+    length
+}
+
+fn number(text: &str, span: Span) -> Result<f64, Diagnostic> {
+    let value: f64 = text.parse().map_err(|_| {
+        Diagnostic::error(format!("{} is not a number", quoted(text)))
+            .at(span, "here")
+            .help("numbers are written 1, 0.5, .5 or 1e-3")
+    })?;
+    if value.is_infinite() {
+        return Err(Diagnostic::error(format!("the number {} is too large", quoted(text)))
+            .at(span, "beyond 1.8e308"));
+    }
+    let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
+    if value == 0.0 && mantissa.bytes().any(|byte| matches!(byte, b'1'..=b'9')) {
+        return Err(Diagnostic::error(format!("the number {} is too small", quoted(text)))
+            .at(span, "below 4.9e-324, it would be read as 0"));
+    }
+    Ok(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn kinds(text: &str) -> Vec<TokenKind> {
+        let tokens = tokens(text, Span::new).unwrap();
+        tokens.into_iter().map(|token| token.kind).collect()
+    }
+
+    #[test]
+    fn numbers_are_read_in_every_form() {
+        for (text, value) in [("1", 1.0), (".5", 0.5), ("2.", 2.0), ("1e-3", 1e-3), ("3.5E+2", 350.0)]
+        {
+            assert_eq!(kinds(text), [TokenKind::Number(value)]);
+        }
+        let name = TokenKind::Name("e".to_owned());
+        assert_eq!(kinds("1e"), [TokenKind::Number(1.0), name]);
+    }
+
+    #[test]
+    fn numbers_out_of_range_are_refused() {
+        for text in ["1e999", "1e-999", "."] {
+            assert!(tokens(text, Span::new).is_err(), "{text}");
+        }
+        assert_eq!(kinds("0e-999"), [TokenKind::Number(0.0)]);
+    }
+
+    #[test]
+    fn places_are_byte_ranges() {
+        let spans: Vec<_> = tokens("a_1 *\t(b", Span::new)
+            .unwrap()
+            .iter()
+            .map(|token| (token.span.start, token.span.end))
+            .collect();
+        assert_eq!(spans, [(0, 3), (4, 5), (6, 7), (7, 8)]);
+    }
+
+    #[test]
+    fn foreign_characters_are_refused_with_advice() {
+        for (text, help) in [("x'", "dot(x)"), ("x**2", "x^2"), ("θ", "a-z"), ("a·b", "`*`")] {
+            let diagnostic = tokens(text, Span::new).expect_err(text);
+            let given = diagnostic.help.unwrap_or_default();
+            assert!(given.contains(help), "{text}: {given}");
+        }
+    }
+}

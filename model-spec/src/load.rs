@@ -1,0 +1,111 @@
+//! The way in: a file or a text to a checked model, or to all that is wrong with it.
+
+use std::io::Read;
+use std::path::Path;
+
+use crate::checks::{check_sensors, warn_unused};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::document;
+use crate::model::Model;
+use crate::motion;
+use crate::resolve::resolve;
+use crate::source::Source;
+use crate::span::Span;
+use crate::units_check;
+use crate::variant::ModelError;
+
+/// The largest specification read, in bytes.
+pub const MAX_SIZE: u64 = 1 << 20;
+
+/// A model that passed all checks.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    /// The model.
+    pub model: Model,
+    /// What may not be as it was meant.
+    pub warnings: Diagnostics,
+}
+
+/// Reads and checks the specification in a file.
+///
+/// # Errors
+/// A file that cannot be read, is larger than [`MAX_SIZE`] or is not UTF-8, and all that
+/// [`check`] finds.
+pub fn load(path: &Path) -> Result<Checked, Diagnostics> {
+    let shown = path.display().to_string();
+    let text = read(path).map_err(|(text, diagnostic)| {
+        Diagnostics::one(Source::new(shown.clone(), text), diagnostic)
+    })?;
+    check(Source::new(shown, text))
+}
+
+/// Checks a specification.
+///
+/// # Errors
+/// All that is wrong with it, found in stages: grammar and keys; names and expressions;
+/// what may stand where, inertia and units; values. A stage with errors is the last.
+pub fn check(source: Source) -> Result<Checked, Diagnostics> {
+    if source.text.len() as u64 > MAX_SIZE {
+        let size = source.text.len() as u64;
+        return Err(Diagnostics::one(source, too_large(size)));
+    }
+    let document = document::read(&source)?;
+    let mut resolved = resolve(document, &source)?;
+    let mut found = Diagnostics::new(source.clone());
+    motion::check(&resolved.model, &mut found);
+    units_check::check(&mut resolved, &mut found);
+    let model = resolved.model;
+    check_sensors(&model, &mut found);
+    if found.is_empty() {
+        found.keep(model.check_numbers().map_err(ModelError::diagnostic));
+    }
+    if !found.is_empty() {
+        return Err(found);
+    }
+    let mut warnings = Diagnostics::new(source);
+    warn_unused(&model, &mut warnings);
+    Ok(Checked { model, warnings })
+}
+
+/// What could be read as text, and why it is not a specification.
+type Unreadable = (String, Diagnostic);
+
+fn read(path: &Path) -> Result<String, Unreadable> {
+    let unreadable = |message: String, help: &str| {
+        (String::new(), Diagnostic::error(message).help(help))
+    };
+    let metadata = std::fs::metadata(path).map_err(|error| {
+        let message = format!("the specification cannot be read: {error}");
+        unreadable(message, "give the path of a TOML file")
+    })?;
+    if !metadata.is_file() {
+        let message = "the specification is not a file".to_owned();
+        return Err(unreadable(message, "give the path of a TOML file"));
+    }
+    if metadata.len() > MAX_SIZE {
+        return Err((String::new(), too_large(metadata.len())));
+    }
+    let mut bytes = Vec::new();
+    // The file may have grown since; reading never goes far beyond the limit.
+    let opened = std::fs::File::open(path);
+    opened
+        .and_then(|file| file.take(MAX_SIZE + 1).read_to_end(&mut bytes))
+        .map_err(|error| {
+            let message = format!("the specification cannot be read: {error}");
+            unreadable(message, "check that it may be read")
+        })?;
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
+        let diagnostic = Diagnostic::error("the specification is not UTF-8 text")
+            .at(Span::new(valid, valid + 1), "this byte is not part of a character")
+            .help("save the file as UTF-8");
+        (text, diagnostic)
+    })
+}
+
+fn too_large(size: u64) -> Diagnostic {
+    Diagnostic::error(format!("the specification is too large: {size} bytes"))
+        .at(Span::new(0, 0), "not read")
+        .help(format!("at most {MAX_SIZE} bytes (1 MiB) are read"))
+}

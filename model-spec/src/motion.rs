@@ -1,0 +1,251 @@
+//! Which coordinates, rates and inputs each expression depends on, through definitions too,
+//! and what of that is allowed where: energies hold no inputs, potentials no rates, a force
+//! works on something that moves, and every coordinate has inertia.
+
+use std::collections::BTreeSet;
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::model::{Expr, ExprKind, Model, Term};
+use crate::span::Span;
+
+/// The deepest expression accepted once definitions are written out.
+pub const MAX_EXPANDED_DEPTH: usize = 600;
+
+/// Something with a rate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Moving {
+    Coordinate(usize),
+    Field(usize),
+}
+
+/// What an expression depends on.
+#[derive(Clone, Debug, Default)]
+struct Motion {
+    /// By their values.
+    values: BTreeSet<Moving>,
+    /// By their rates.
+    rates: BTreeSet<Moving>,
+    /// Where a rate enters, if one does.
+    rate: Option<Span>,
+    /// Where an input enters, if one does.
+    input: Option<Span>,
+    /// Whether time enters.
+    time: bool,
+    /// Depth of the expression with definitions written out.
+    depth: usize,
+}
+
+/// Checks what every expression of a model depends on.
+pub fn check(model: &Model, found: &mut Diagnostics) {
+    let mut checker = Checker {
+        definitions: vec![Motion::default(); model.definitions.len()],
+        model,
+        found,
+    };
+    for &index in &model.definition_order {
+        let definition = &model.definitions[index];
+        checker.definitions[index] = checker.motion(&definition.value);
+    }
+    checker.energies();
+    checker.forces();
+    for observable in &model.observables {
+        checker.motion(&observable.value);
+    }
+}
+
+struct Checker<'m, 'f> {
+    model: &'m Model,
+    definitions: Vec<Motion>,
+    found: &'f mut Diagnostics,
+}
+
+impl Checker<'_, '_> {
+    fn energies(&mut self) {
+        let model = self.model;
+        let mut inertial = BTreeSet::new();
+        for term in &model.kinetic {
+            let motion = self.motion(&term.value);
+            self.refuse_input(term, &motion, "the kinetic energy");
+            inertial.extend(motion.rates);
+        }
+        for term in &model.potential {
+            let motion = self.motion(&term.value);
+            self.refuse_input(term, &motion, "the potential energy");
+            if let Some(place) = motion.rate {
+                self.found.push(
+                    Diagnostic::error(format!("the potential energy `{}` holds a rate", term.name))
+                        .at(place, "this is a rate")
+                        .help("energies of motion belong in [kinetic], losses in [dissipation]"),
+                );
+            }
+        }
+        for term in &model.dissipation {
+            let motion = self.motion(&term.value);
+            self.refuse_input(term, &motion, "the dissipation");
+        }
+        if self.found.is_empty() {
+            self.refuse_massless(&inertial);
+        }
+    }
+
+    fn refuse_input(&mut self, term: &Term, motion: &Motion, what: &str) {
+        if let Some(place) = motion.input {
+            self.found.push(
+                Diagnostic::error(format!("{what} `{}` holds an input", term.name))
+                    .at(place, "this is an input")
+                    .help("inputs act through [forces]"),
+            );
+        }
+    }
+
+    /// Without inertia there is no acceleration to solve for.
+    fn refuse_massless(&mut self, inertial: &BTreeSet<Moving>) {
+        let mut refuse = |name: &str, kind: &str, span: Span| {
+            self.found.push(
+                Diagnostic::error(format!("the {kind} `{name}` has no inertia"))
+                    .at(span, "its rate is in no term of [kinetic]")
+                    .help(format!("add a kinetic energy such as 1/2*m*dot({name})^2")),
+            );
+        };
+        for (index, coordinate) in self.model.coordinates.iter().enumerate() {
+            if !inertial.contains(&Moving::Coordinate(index)) {
+                refuse(&coordinate.name, "coordinate", coordinate.span);
+            }
+        }
+        for (index, field) in self.model.fields.iter().enumerate() {
+            if !inertial.contains(&Moving::Field(index)) {
+                refuse(&field.name, "field", field.span);
+            }
+        }
+    }
+
+    fn forces(&mut self) {
+        let model = self.model;
+        for force in &model.forces {
+            self.motion(&force.value);
+            let on = self.motion(&force.on);
+            let problem = if let Some(place) = on.rate {
+                Some((place, "a rate"))
+            } else if let Some(place) = on.input {
+                Some((place, "an input"))
+            } else if on.values.is_empty() {
+                Some((force.on.span, "nothing that moves"))
+            } else {
+                None
+            };
+            if let Some((place, what)) = problem {
+                let message = format!("the force `{}` cannot work on {what}", force.name);
+                self.found.push(
+                    Diagnostic::error(message)
+                        .at(place, format!("this is {what}"))
+                        .help("`on` is a coordinate, or an expression of coordinates"),
+                );
+            }
+        }
+    }
+
+    /// What an expression depends on; reports what `dot` is used on wrongly.
+    fn motion(&mut self, expr: &Expr) -> Motion {
+        let mut motion = Motion::default();
+        self.add(expr, &mut motion, 1);
+        if motion.depth > MAX_EXPANDED_DEPTH {
+            self.found.push(
+                Diagnostic::error(format!(
+                    "with its definitions written out this is more than {MAX_EXPANDED_DEPTH} deep"
+                ))
+                .at(expr.span, "too deep"),
+            );
+            motion.depth = 0;
+        }
+        motion
+    }
+
+    fn add(&mut self, expr: &Expr, motion: &mut Motion, depth: usize) {
+        motion.depth = motion.depth.max(depth);
+        match &expr.kind {
+            ExprKind::Time => motion.time = true,
+            ExprKind::Input(_) => motion.input = motion.input.or(Some(expr.span)),
+            ExprKind::Coordinate(index) => {
+                motion.values.insert(Moving::Coordinate(*index));
+            }
+            ExprKind::Field(field) | ExprKind::ModeCoordinate(field) => {
+                motion.values.insert(Moving::Field(*field));
+            }
+            ExprKind::Definition(index) => {
+                if let Some(known) = self.definitions.get(*index) {
+                    motion.include(known, expr.span, depth);
+                }
+            }
+            ExprKind::Dot(operand) => self.add_rate(operand, motion, depth),
+            ExprKind::Diff(part, _) | ExprKind::Negate(part) => self.add(part, motion, depth + 1),
+            ExprKind::Integral { integrand, .. } => self.add(integrand, motion, depth + 1),
+            ExprKind::Sum { summand, .. } => self.add(summand, motion, depth + 1),
+            ExprKind::At { value, .. } => self.add(value, motion, depth + 1),
+            ExprKind::Binary(_, left, right) => {
+                self.add(left, motion, depth + 1);
+                self.add(right, motion, depth + 1);
+            }
+            ExprKind::Call(_, arguments) => {
+                for argument in arguments {
+                    self.add(argument, motion, depth + 1);
+                }
+            }
+            ExprKind::Number(_)
+            | ExprKind::Pi
+            | ExprKind::Position(_)
+            | ExprKind::Parameter(_)
+            | ExprKind::Coefficient(_)
+            | ExprKind::ModeShape(_) => {}
+        }
+    }
+
+    fn add_rate(&mut self, operand: &Expr, motion: &mut Motion, depth: usize) {
+        let mut inner = Motion::default();
+        self.add(operand, &mut inner, depth + 1);
+        if let Some(diagnostic) = rate_error(operand.span, &inner) {
+            self.found.push(diagnostic);
+        }
+        motion.rate = motion.rate.or(Some(operand.span));
+        motion.rates.extend(inner.values.iter().copied());
+        // The rate of a definition depends on the coordinates too.
+        if matches!(operand.kind, ExprKind::Definition(_)) {
+            motion.values.extend(inner.values);
+        }
+        motion.time |= inner.time;
+        motion.depth = motion.depth.max(inner.depth);
+    }
+}
+
+impl Motion {
+    /// Adds what a definition depends on that is named at `span`.
+    fn include(&mut self, known: &Self, span: Span, depth: usize) {
+        self.values.extend(known.values.iter().copied());
+        self.rates.extend(known.rates.iter().copied());
+        self.rate = self.rate.or(known.rate.map(|_| span));
+        self.input = self.input.or(known.input.map(|_| span));
+        self.time |= known.time;
+        self.depth = self.depth.max(depth + known.depth);
+    }
+}
+
+fn rate_error(span: Span, inner: &Motion) -> Option<Diagnostic> {
+    if inner.rate.is_some() {
+        let diagnostic = Diagnostic::error("dot() of a rate is an acceleration")
+            .at(span, "this holds a rate")
+            .help("accelerations follow from the energies and appear nowhere in them");
+        return Some(diagnostic);
+    }
+    if inner.input.is_some() {
+        let diagnostic = Diagnostic::error("the rate of an input is not known")
+            .at(span, "this holds an input")
+            .help("if the rate is measured, declare it as an input of its own");
+        return Some(diagnostic);
+    }
+    if inner.values.is_empty() && !inner.time {
+        let diagnostic = Diagnostic::error("dot() of something that has no rate")
+            .at(span, "this holds no coordinate")
+            .help("dot() takes a coordinate, a definition that holds one, or a field");
+        return Some(diagnostic);
+    }
+    None
+}

@@ -1,0 +1,239 @@
+//! Which names a specification declares, that they are fit to be identifiers, and that no
+//! two things, written or generated (`q_1`, `theta_dot`), share one.
+
+use std::collections::HashMap;
+
+use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
+use crate::document::Document;
+use crate::functions::reserved;
+use crate::span::Span;
+use crate::table::Name;
+
+/// The longest name accepted.
+pub const MAX_NAME: usize = 64;
+
+/// What a name in an expression stands for; indices as in [`crate::model::Model`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symbol {
+    /// A parameter.
+    Parameter(usize),
+    /// A coordinate.
+    Coordinate(usize),
+    /// An input.
+    Input(usize),
+    /// A field.
+    Field(usize),
+    /// The mode coordinates of a field.
+    Modes(usize),
+    /// The position along one or more fields.
+    Position,
+    /// A definition.
+    Definition(usize),
+    /// A coefficient.
+    Coefficient(usize),
+}
+
+impl Symbol {
+    /// The kind of thing, for a message.
+    pub fn kind(self) -> &'static str {
+        match self {
+            Self::Parameter(_) => "a parameter",
+            Self::Coordinate(_) => "a coordinate",
+            Self::Input(_) => "an input",
+            Self::Field(_) => "a field",
+            Self::Modes(_) => "a field's mode coordinates",
+            Self::Position => "a field's position",
+            Self::Definition(_) => "a definition",
+            Self::Coefficient(_) => "a coefficient",
+        }
+    }
+}
+
+/// The names an expression may use.
+pub struct Names {
+    symbols: HashMap<String, (Symbol, Span)>,
+    /// Name, position and mode coordinates of each field.
+    pub fields: Vec<FieldNames>,
+}
+
+/// The names that belong to one field.
+pub struct FieldNames {
+    /// The field.
+    pub field: String,
+    /// The position along it.
+    pub along: String,
+    /// Its mode coordinates.
+    pub modes: String,
+}
+
+impl Names {
+    /// Declares all names of a specification and reports those that are unfit.
+    pub fn declare(document: &Document, found: &mut Diagnostics) -> Self {
+        found.keep(identifier(&document.name));
+        let mut names = Self {
+            symbols: HashMap::new(),
+            fields: Vec::new(),
+        };
+        names.declare_quantities(document, found);
+        names.declare_fields(document, found);
+        for (index, definition) in document.definitions.iter().enumerate() {
+            names.add(&definition.name, Symbol::Definition(index), found);
+        }
+        for (index, coefficient) in document.coefficients.iter().enumerate() {
+            names.add(&coefficient.name, Symbol::Coefficient(index), found);
+        }
+        names.check_terms(document, found);
+        names.check_observables(document, found);
+        names.check_generated(document, found);
+        names
+    }
+
+    /// What a name stands for.
+    pub fn get(&self, name: &str) -> Option<Symbol> {
+        self.symbols.get(name).map(|(symbol, _)| *symbol)
+    }
+
+    /// All names.
+    pub fn known(&self) -> impl Iterator<Item = &str> {
+        self.symbols.keys().map(String::as_str)
+    }
+
+    fn declare_quantities(&mut self, document: &Document, found: &mut Diagnostics) {
+        for (index, parameter) in document.parameters.iter().enumerate() {
+            self.add(&parameter.name, Symbol::Parameter(index), found);
+        }
+        for (index, coordinate) in document.coordinates.iter().enumerate() {
+            self.add(&coordinate.name, Symbol::Coordinate(index), found);
+        }
+        for (index, (name, ..)) in document.inputs.iter().enumerate() {
+            self.add(name, Symbol::Input(index), found);
+        }
+    }
+
+    fn declare_fields(&mut self, document: &Document, found: &mut Diagnostics) {
+        for (index, field) in document.fields.iter().enumerate() {
+            self.add(&field.name, Symbol::Field(index), found);
+            self.add(&field.coordinates, Symbol::Modes(index), found);
+            // Fields may share the name of their positions.
+            if self.get(&field.along.text) != Some(Symbol::Position) {
+                self.add(&field.along, Symbol::Position, found);
+            }
+            self.fields.push(FieldNames {
+                field: field.name.text.clone(),
+                along: field.along.text.clone(),
+                modes: field.coordinates.text.clone(),
+            });
+        }
+        if !document.fields.is_empty()
+            && let Some((symbol, span)) = self.symbols.get("phi")
+        {
+            found.push(
+                Diagnostic::error("`phi` is the name of the mode shapes")
+                    .at(*span, format!("here it is {}", symbol.kind()))
+                    .help("a model with a field needs another name here"),
+            );
+        }
+    }
+
+    fn add(&mut self, name: &Name, symbol: Symbol, found: &mut Diagnostics) {
+        if found.keep(identifier(name)).is_none() {
+            return;
+        }
+        if let Some((other, place)) = self.symbols.get(&name.text) {
+            found.push(taken(name, &format!("{} has it", other.kind())).also(*place, "here"));
+            return;
+        }
+        self.symbols.insert(name.text.clone(), (symbol, name.span));
+    }
+
+    /// Terms and forces have names of their own that no expression uses.
+    fn check_terms(&self, document: &Document, found: &mut Diagnostics) {
+        let terms = document.kinetic.iter();
+        let terms = terms.chain(&document.potential).chain(&document.dissipation);
+        for term in terms.chain(document.forces.iter().map(|(term, _)| term)) {
+            found.keep(identifier(&term.name));
+        }
+    }
+
+    /// An observable may report the definition of the same name; it shares no other name.
+    fn check_observables(&self, document: &Document, found: &mut Diagnostics) {
+        for (observable, _) in &document.observables {
+            let name = &observable.name;
+            if found.keep(identifier(name)).is_none() {
+                continue;
+            }
+            match self.symbols.get(&name.text) {
+                None | Some((Symbol::Definition(_) | Symbol::Coefficient(_), _)) => {}
+                Some((other, place)) => {
+                    let owner = format!("{} has it", other.kind());
+                    found.push(taken(name, &owner).also(*place, "here"));
+                }
+            }
+        }
+    }
+
+    /// No declared name may be one the program makes: `q_3`, `theta_dot`, `q_3_dot`.
+    fn check_generated(&self, document: &Document, found: &mut Diagnostics) {
+        let mut declared: Vec<(&str, Span)> = self
+            .symbols
+            .iter()
+            .map(|(name, (_, span))| (name.as_str(), *span))
+            .collect();
+        let observables = document.observables.iter().map(|(term, _)| &term.name);
+        declared.extend(observables.map(|name| (name.text.as_str(), name.span)));
+        declared.sort_by_key(|(_, span)| span.start);
+        for (name, span) in declared {
+            if let Some(meaning) = self.generated(name) {
+                found.push(
+                    Diagnostic::error(format!("the name `{name}` is taken"))
+                        .at(span, format!("it is generated for {meaning}"))
+                        .help("choose another name"),
+                );
+            }
+        }
+    }
+
+    /// What a generated name means.
+    fn generated(&self, name: &str) -> Option<String> {
+        let (stem, what) = match name.strip_suffix("_dot") {
+            Some(stem) => (stem, "the rate of"),
+            None => (name, "a mode of"),
+        };
+        if what == "the rate of" && matches!(self.get(stem), Some(Symbol::Coordinate(_))) {
+            return Some(format!("{what} `{stem}`"));
+        }
+        let (modes, number) = stem.rsplit_once('_')?;
+        let numbered = !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit());
+        let Some(Symbol::Modes(field)) = self.get(modes).filter(|_| numbered) else {
+            return None;
+        };
+        Some(format!("{what} the field `{}`", self.fields[field].field))
+    }
+}
+
+fn taken(name: &Name, owner: &str) -> Diagnostic {
+    Diagnostic::error(format!("the name {} is taken", quoted(&name.text)))
+        .at(name.span, owner)
+        .help("choose another name")
+}
+
+/// Checks that a name is an identifier in every language that code is emitted in.
+fn identifier(name: &Name) -> Result<(), Diagnostic> {
+    let text = name.text.as_str();
+    let error = |message: String| Diagnostic::error(message).at(name.span, "this name");
+    let fit = text.starts_with(|first: char| first.is_ascii_alphabetic())
+        && text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
+    if !fit {
+        return Err(error(format!("{} cannot be a name", quoted(text)))
+            .help("a name is a letter a-z or A-Z, then letters, digits and `_`"));
+    }
+    if text.len() > MAX_NAME {
+        let message = format!("the name {} is too long", quoted(text));
+        return Err(error(message).help(format!("at most {MAX_NAME} characters")));
+    }
+    match reserved(text) {
+        Some(why) => Err(error(format!("`{text}` cannot be a name: it {why}"))
+            .help(format!("for example `{text}_1`"))),
+        None => Ok(()),
+    }
+}

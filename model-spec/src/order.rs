@@ -1,0 +1,94 @@
+//! In which order things that refer to each other can be worked out, and where they go
+//! round in a circle. Iterative: a chain may be as long as a specification.
+
+use crate::span::Span;
+
+/// One reference: to which entry, and where it stands.
+pub type Reference = (usize, Span);
+
+/// Indices such that each comes after those it refers to.
+///
+/// # Errors
+/// A circle: its entries in order, each with the place that refers to the next.
+pub fn order(references: &[Vec<Reference>]) -> Result<Vec<usize>, Vec<Reference>> {
+    let mut state = vec![State::Untouched; references.len()];
+    let mut sorted = Vec::with_capacity(references.len());
+    for start in 0..references.len() {
+        if state[start] == State::Untouched {
+            visit(start, references, &mut state, &mut sorted)?;
+        }
+    }
+    Ok(sorted)
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    Untouched,
+    Open,
+    Done,
+}
+
+fn visit(
+    start: usize,
+    references: &[Vec<Reference>],
+    state: &mut [State],
+    sorted: &mut Vec<usize>,
+) -> Result<(), Vec<Reference>> {
+    // Entries on the way from `start`, each with the number of its next reference.
+    let mut path = vec![(start, 0)];
+    state[start] = State::Open;
+    while let Some((entry, next)) = path.last_mut() {
+        let entry = *entry;
+        let Some(&(target, _)) = references[entry].get(*next) else {
+            state[entry] = State::Done;
+            sorted.push(entry);
+            path.pop();
+            continue;
+        };
+        *next += 1;
+        match state[target] {
+            State::Done => {}
+            State::Untouched => {
+                state[target] = State::Open;
+                path.push((target, 0));
+            }
+            State::Open => {
+                let from = path.iter().position(|(entry, _)| *entry == target).unwrap_or(0);
+                let place = |&(entry, next): &(usize, usize)| (entry, references[entry][next - 1].1);
+                return Err(path[from..].iter().map(place).collect());
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn to(targets: &[usize]) -> Vec<Reference> {
+        targets.iter().map(|&target| (target, Span::new(target, target))).collect()
+    }
+
+    #[test]
+    fn each_comes_after_what_it_refers_to() {
+        let references = [to(&[2]), to(&[]), to(&[1])];
+        assert_eq!(order(&references), Ok(vec![1, 2, 0]));
+    }
+
+    #[test]
+    fn a_circle_is_given_without_the_way_into_it() {
+        let references = [to(&[1]), to(&[2]), to(&[1])];
+        let circle = order(&references).expect_err("1 and 2 refer to each other");
+        let entries: Vec<usize> = circle.iter().map(|(entry, _)| *entry).collect();
+        assert_eq!(entries, [1, 2]);
+    }
+
+    #[test]
+    fn long_chains_do_not_exhaust_the_stack() {
+        let count = 100_000;
+        let mut references: Vec<_> = (1..count).map(|next| to(&[next])).collect();
+        references.push(Vec::new());
+        assert_eq!(order(&references).map(|sorted| sorted[0]), Ok(count - 1));
+    }
+}

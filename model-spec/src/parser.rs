@@ -1,0 +1,361 @@
+//! From tokens to a syntax tree: operator precedence as in mathematics. `^` binds tightest
+//! and to the right, above unary minus, so -x^2 is -(x^2); 2^-1 is allowed. The depth of
+//! the tree is bounded, because everything behind this module walks it recursively.
+
+use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
+use crate::diagnostic::Diagnostic;
+use crate::lexer::{Token, TokenKind};
+use crate::span::Span;
+
+/// The deepest tree accepted; a sum of 200 terms is as deep.
+pub const MAX_DEPTH: usize = 200;
+
+/// How tightly the operators bind.
+const ADDITIVE: u8 = 1;
+const MULTIPLICATIVE: u8 = 2;
+const UNARY: u8 = 3;
+const POWER: u8 = 4;
+
+/// The syntax tree of a whole expression; `end` is the place behind its last token.
+///
+/// # Errors
+/// Says which token is unexpected or missing.
+pub fn parse(tokens: &[Token], end: Span) -> Result<Syntax, Diagnostic> {
+    let mut parser = Parser {
+        tokens,
+        next: 0,
+        end,
+        nesting: 0,
+    };
+    let tree = parser.expression(ADDITIVE)?;
+    match parser.peek() {
+        None => Ok(tree.syntax),
+        Some(token) => Err(left_over(token, tree.syntax.span)),
+    }
+}
+
+struct Parser<'t> {
+    tokens: &'t [Token],
+    next: usize,
+    end: Span,
+    nesting: usize,
+}
+
+/// A tree and its depth.
+struct Tree {
+    syntax: Syntax,
+    depth: usize,
+}
+
+type Parsed = Result<Tree, Diagnostic>;
+
+impl<'t> Parser<'t> {
+    fn peek(&self) -> Option<&'t Token> {
+        self.tokens.get(self.next)
+    }
+
+    fn take(&mut self) -> Option<&'t Token> {
+        let token = self.tokens.get(self.next)?;
+        self.next += 1;
+        Some(token)
+    }
+
+    /// An expression of operators that bind at least this tightly.
+    fn expression(&mut self, tightest: u8) -> Parsed {
+        self.nesting += 1;
+        if self.nesting > MAX_DEPTH {
+            let place = self.peek().map_or(self.end, |token| token.span);
+            return Err(too_deep(place));
+        }
+        let mut left = self.operand()?;
+        while let Some((operator, binding)) = self.peek().and_then(|token| infix(&token.kind)) {
+            if binding < tightest {
+                break;
+            }
+            self.next += 1;
+            let right = match binding {
+                POWER => self.expression(UNARY)?,
+                _ => self.expression(binding + 1)?,
+            };
+            left = combined(operator, left, right)?;
+        }
+        self.nesting -= 1;
+        Ok(left)
+    }
+
+    fn operand(&mut self) -> Parsed {
+        let Some(token) = self.take() else {
+            let what = if self.tokens.is_empty() { "is empty" } else { "is not finished" };
+            return Err(Diagnostic::error(format!("the expression {what}"))
+                .at(self.end, "expected a number, a name or `(`"));
+        };
+        match &token.kind {
+            TokenKind::Number(value) => Ok(leaf(SyntaxKind::Number(*value), token.span)),
+            TokenKind::Name(name) => self.named(name, token.span),
+            TokenKind::Minus => self.negated(token.span),
+            TokenKind::Open => {
+                let inner = self.expression(ADDITIVE)?;
+                let close = self.closing(&TokenKind::Close, token.span)?;
+                let span = token.span.join(close);
+                let syntax = Syntax { span, ..inner.syntax };
+                Ok(Tree { syntax, ..inner })
+            }
+            other => Err(Diagnostic::error(format!("unexpected {}", other.shown()))
+                .at(token.span, "expected a number, a name or `(`")),
+        }
+    }
+
+    /// `-operand`: all that binds at least as tightly as a power belongs to the operand.
+    fn negated(&mut self, minus: Span) -> Parsed {
+        let operand = self.expression(UNARY)?;
+        let span = minus.join(operand.syntax.span);
+        let kind = SyntaxKind::Negate(Box::new(operand.syntax));
+        deeper(Syntax { kind, span }, operand.depth)
+    }
+
+    fn named(&mut self, name: &str, span: Span) -> Parsed {
+        match self.peek().map(|token| &token.kind) {
+            Some(TokenKind::Open) => self.call(name, span),
+            Some(TokenKind::OpenIndex) => self.element(name, span),
+            _ => Ok(leaf(SyntaxKind::Name(name.to_owned()), span)),
+        }
+    }
+
+    fn call(&mut self, function: &str, function_span: Span) -> Parsed {
+        let open = self.take().map_or(self.end, |token| token.span);
+        let mut arguments = Vec::new();
+        let mut depth = 0;
+        if self.peek().is_none_or(|token| token.kind != TokenKind::Close) {
+            loop {
+                let argument = self.expression(ADDITIVE)?;
+                depth = depth.max(argument.depth);
+                arguments.push(argument.syntax);
+                match self.peek() {
+                    Some(token) if token.kind == TokenKind::Comma => self.next += 1,
+                    _ => break,
+                }
+            }
+        }
+        let close = self.closing(&TokenKind::Close, open)?;
+        let kind = SyntaxKind::Call {
+            function: function.to_owned(),
+            function_span,
+            arguments,
+        };
+        let span = function_span.join(close);
+        deeper(Syntax { kind, span }, depth)
+    }
+
+    fn element(&mut self, name: &str, span: Span) -> Parsed {
+        let open = self.take().map_or(self.end, |token| token.span);
+        let (index, index_span) = match self.take() {
+            Some(Token {
+                kind: TokenKind::Name(index),
+                span,
+            }) => (index.clone(), *span),
+            other => {
+                let place = other.map_or(self.end, |token| token.span);
+                return Err(Diagnostic::error("the index of a mode is a name")
+                    .at(place, "expected a name")
+                    .help("modes appear inside a sum: sum(i, w, q[i]^2)"));
+            }
+        };
+        let close = self.closing(&TokenKind::CloseIndex, open)?;
+        let kind = SyntaxKind::Element {
+            name: name.to_owned(),
+            index,
+            index_span,
+        };
+        Ok(leaf(kind, span.join(close)))
+    }
+
+    fn closing(&mut self, expected: &TokenKind, open: Span) -> Result<Span, Diagnostic> {
+        match self.take() {
+            Some(token) if token.kind == *expected => Ok(token.span),
+            Some(token) => {
+                let shown = expected.shown();
+                let unexpected = format!("expected {shown}, found {}", token.kind.shown());
+                let diagnostic = Diagnostic::error(unexpected).at(token.span, "here");
+                let diagnostic = diagnostic.also(open, "to close this bracket");
+                Err(diagnostic.help_if(missing_operator(&token.kind)))
+            }
+            None => Err(Diagnostic::error(format!("a {} is missing", expected.shown()))
+                .at(self.end, "the expression ends here")
+                .also(open, "this bracket is not closed")),
+        }
+    }
+}
+
+fn infix(kind: &TokenKind) -> Option<(BinaryOperator, u8)> {
+    Some(match kind {
+        TokenKind::Plus => (BinaryOperator::Add, ADDITIVE),
+        TokenKind::Minus => (BinaryOperator::Subtract, ADDITIVE),
+        TokenKind::Star => (BinaryOperator::Multiply, MULTIPLICATIVE),
+        TokenKind::Slash => (BinaryOperator::Divide, MULTIPLICATIVE),
+        TokenKind::Caret => (BinaryOperator::Power, POWER),
+        _ => return None,
+    })
+}
+
+fn leaf(kind: SyntaxKind, span: Span) -> Tree {
+    Tree {
+        syntax: Syntax { kind, span },
+        depth: 1,
+    }
+}
+
+fn combined(operator: BinaryOperator, left: Tree, right: Tree) -> Parsed {
+    let span = left.syntax.span.join(right.syntax.span);
+    let depth = left.depth.max(right.depth);
+    let kind = SyntaxKind::Binary(operator, Box::new(left.syntax), Box::new(right.syntax));
+    deeper(Syntax { kind, span }, depth)
+}
+
+fn deeper(syntax: Syntax, below: usize) -> Parsed {
+    let depth = below + 1;
+    if depth > MAX_DEPTH {
+        return Err(too_deep(syntax.span));
+    }
+    Ok(Tree { syntax, depth })
+}
+
+fn too_deep(place: Span) -> Diagnostic {
+    Diagnostic::error(format!(
+        "the expression is nested more than {MAX_DEPTH} deep, or a sum or product has more parts"
+    ))
+    .at(place, "too deep from here on")
+    .help("name parts of it in [definitions]")
+}
+
+fn left_over(token: &Token, before: Span) -> Diagnostic {
+    let diagnostic = match token.kind {
+        TokenKind::Close | TokenKind::CloseIndex => {
+            Diagnostic::error(format!("{} closes nothing", token.kind.shown()))
+                .at(token.span, "no bracket is open here")
+        }
+        TokenKind::Comma => Diagnostic::error("a comma outside a function's brackets")
+            .at(token.span, "unexpected here")
+            .help("decimal fractions are written with a point"),
+        _ => Diagnostic::error(format!("an operator is missing before {}", token.kind.shown()))
+            .at(token.span, "expected + - * / or ^")
+            .also(before, "the expression so far"),
+    };
+    diagnostic.help_if(missing_operator(&token.kind))
+}
+
+fn missing_operator(found: &TokenKind) -> Option<String> {
+    let starts = matches!(
+        found,
+        TokenKind::Number(_) | TokenKind::Name(_) | TokenKind::Open
+    );
+    starts.then(|| "products are written out: 2*x, not 2 x".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lexer::tokens;
+
+    fn parsed(text: &str) -> Result<Syntax, Diagnostic> {
+        let end = Span::new(text.len(), text.len());
+        parse(&tokens(text, Span::new)?, end)
+    }
+
+    /// The tree with every operation in brackets.
+    fn bracketed(syntax: &Syntax) -> String {
+        match &syntax.kind {
+            SyntaxKind::Number(value) => value.to_string(),
+            SyntaxKind::Name(name) => name.clone(),
+            SyntaxKind::Element { name, index, .. } => format!("{name}[{index}]"),
+            SyntaxKind::Call {
+                function,
+                arguments,
+                ..
+            } => {
+                let arguments: Vec<_> = arguments.iter().map(bracketed).collect();
+                format!("{function}({})", arguments.join(","))
+            }
+            SyntaxKind::Negate(operand) => format!("(-{})", bracketed(operand)),
+            SyntaxKind::Binary(operator, left, right) => {
+                let sign = match operator {
+                    BinaryOperator::Add => '+',
+                    BinaryOperator::Subtract => '-',
+                    BinaryOperator::Multiply => '*',
+                    BinaryOperator::Divide => '/',
+                    BinaryOperator::Power => '^',
+                };
+                format!("({}{sign}{})", bracketed(left), bracketed(right))
+            }
+        }
+    }
+
+    #[test]
+    fn operators_bind_as_in_mathematics() {
+        for (text, expected) in [
+            ("-x^2", "(-(x^2))"),
+            ("2^-1", "(2^(-1))"),
+            ("2^-x^2", "(2^(-(x^2)))"),
+            ("a^b^c", "(a^(b^c))"),
+            ("a-b-c", "((a-b)-c)"),
+            ("a/b/c", "((a/b)/c)"),
+            ("a/b*c", "((a/b)*c)"),
+            ("1/2*m*v^2", "(((1/2)*m)*(v^2))"),
+            ("a+b*c^d", "(a+(b*(c^d)))"),
+            ("-a*b", "((-a)*b)"),
+            ("a*-b", "(a*(-b))"),
+            ("a*-b^2*c", "((a*(-(b^2)))*c)"),
+            ("a--b", "(a-(-b))"),
+            ("2^-1*c", "((2^(-1))*c)"),
+            ("(a+b)*c", "((a+b)*c)"),
+            ("sum(i, w, q[i]^2)", "sum(i,w,(q[i]^2))"),
+            ("f()", "f()"),
+        ] {
+            assert_eq!(bracketed(&parsed(text).unwrap()), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn mistakes_are_placed() {
+        for (text, message, place) in [
+            ("", "is empty", 0),
+            ("a+", "is not finished", 2),
+            ("(a+b", "`)` is missing", 4),
+            ("a+b)", "closes nothing", 3),
+            ("2 x", "operator is missing", 2),
+            ("f(a b)", "expected `)`", 4),
+            ("*a", "unexpected `*`", 0),
+            ("q[1]", "index", 2),
+            ("1,5", "comma", 1),
+            ("f(a,)", "unexpected `)`", 4),
+            ("+a", "unexpected `+`", 0),
+        ] {
+            let diagnostic = parsed(text).expect_err(text);
+            assert!(diagnostic.message.contains(message), "{text}: {diagnostic:?}");
+            assert_eq!(diagnostic.primary.map(|label| label.span.start), Some(place), "{text}");
+        }
+    }
+
+    #[test]
+    fn depth_is_bounded_in_every_direction() {
+        let many = 10_000;
+        for text in [
+            "(".repeat(many),
+            "-".repeat(many),
+            "2^".repeat(many),
+            "f(".repeat(many),
+            "1+".repeat(many) + "1",
+            format!("{}1{}", "(".repeat(many), ")".repeat(many)),
+        ] {
+            let message = parsed(&text).expect_err("too deep").message;
+            assert!(message.contains("more than 200 deep"), "{message}");
+        }
+        let allowed = "1+".repeat(MAX_DEPTH - 1) + "1";
+        assert!(parsed(&allowed).is_ok());
+    }
+
+    #[test]
+    fn brackets_belong_to_the_place_of_what_they_hold() {
+        let tree = parsed("2*(a + b)").unwrap();
+        assert_eq!(tree.span, Span::new(0, 9));
+    }
+}

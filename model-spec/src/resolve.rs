@@ -1,0 +1,422 @@
+//! From raw entries to a model: units read, names looked up, references put in order. What
+//! the expressions mean physically is checked afterwards, by `motion`, `units_check` and
+//! `checks`.
+
+use crate::ast::SyntaxKind;
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::document::{
+    Document, RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawParameter,
+    RawSensor, RawTerm,
+};
+use crate::dimension::Dimension;
+use crate::model::{
+    Coefficient, CoefficientKind, Coordinate, Definition, Expr, ExprKind, Field, Force, Input,
+    MAX_ORDER, Model, Observable, Parameter, ParameterValue, Sensor, Term,
+};
+use crate::names::{Names, Symbol};
+use crate::order::{Reference, order};
+use crate::resolve_expression::{Resolver, Scope};
+use crate::source::Source;
+use crate::span::Span;
+use crate::table::{Number, Quantity, Written};
+use crate::unit::Unit;
+
+/// A model whose units are not checked yet: those of definitions and observables stand as
+/// pure numbers.
+pub struct Resolved {
+    /// The model.
+    pub model: Model,
+    /// The units that observables declare, in their order.
+    pub declared: Vec<Option<Unit>>,
+}
+
+/// The model of a document.
+///
+/// # Errors
+/// Unfit names, unknown names, unreadable units and expressions, references in a circle.
+pub fn resolve(document: Document, source: &Source) -> Result<Resolved, Diagnostics> {
+    let mut found = Diagnostics::new(source.clone());
+    let names = Names::declare(&document, &mut found);
+    let mut builder = Builder { names, found };
+    let resolved = builder.model(document, source);
+    if builder.found.is_empty() { Ok(resolved) } else { Err(builder.found) }
+}
+
+struct Builder {
+    names: Names,
+    found: Diagnostics,
+}
+
+impl Builder {
+    fn model(&mut self, document: Document, source: &Source) -> Resolved {
+        let observables = self.all(document.observables, Self::observable);
+        let (observables, declared) = observables.into_iter().unzip();
+        let parameters = self.all(document.parameters, Self::parameter);
+        let definitions = self.all(document.definitions, Self::definition);
+        let mut model = Model {
+            name: document.name.text,
+            title: document.title,
+            source: source.clone(),
+            coordinates: self.all(document.coordinates, Self::coordinate),
+            inputs: self.all(document.inputs, |own, (name, unit, doc)| {
+                Some(Input {
+                    unit: own.coherent_unit(unit)?,
+                    name: name.text,
+                    doc,
+                    span: name.span,
+                })
+            }),
+            fields: self.all(document.fields, Self::field),
+            kinetic: self.all(document.kinetic, Self::term),
+            potential: self.all(document.potential, Self::term),
+            dissipation: self.all(document.dissipation, Self::term),
+            forces: self.all(document.forces, Self::force),
+            observables,
+            coefficients: self.coefficients(document.coefficients),
+            sensors: self.all(document.sensors, Self::sensor),
+            parameter_order: Vec::new(),
+            definition_order: Vec::new(),
+            parameters,
+            definitions,
+        };
+        if model.title.is_empty() {
+            model.title.clone_from(&model.name);
+        }
+        if self.found.is_empty() {
+            self.put_in_order(&mut model);
+        }
+        Resolved { model, declared }
+    }
+
+    fn all<R, T>(&mut self, raw: Vec<R>, build: impl Fn(&mut Self, R) -> Option<T>) -> Vec<T> {
+        let mut built = Vec::with_capacity(raw.len());
+        for entry in raw {
+            if self.found.is_full() {
+                break;
+            }
+            built.extend(build(self, entry));
+        }
+        built
+    }
+
+    fn put_in_order(&mut self, model: &mut Model) {
+        let references: Vec<_> = model.parameters.iter().map(parameter_references).collect();
+        let named = |index: usize| model.parameters[index].name.as_str();
+        match order(&references) {
+            Ok(sorted) => model.parameter_order = sorted,
+            Err(circle) => self.found.push(circular("parameter", &circle, named)),
+        }
+        let references: Vec<_> = model.definitions.iter().map(definition_references).collect();
+        let named = |index: usize| model.definitions[index].name.as_str();
+        match order(&references) {
+            Ok(sorted) => model.definition_order = sorted,
+            Err(circle) => self.found.push(circular("definition", &circle, named)),
+        }
+    }
+
+    fn unit(&mut self, written: Option<Written>) -> Option<Unit> {
+        let Some(written) = written else {
+            return Some(Unit::coherent(Dimension::NONE));
+        };
+        let unit = Unit::parse(&written.text).map_err(|error| {
+            Diagnostic::error(error.message)
+                .at(written.span, "not a unit")
+                .help_if(error.help)
+        });
+        self.found.keep(unit)
+    }
+
+    /// A unit in which a number is the number in SI.
+    fn coherent_unit(&mut self, written: Option<Written>) -> Option<Unit> {
+        let span = written.as_ref().map_or_else(Span::default, |written| written.span);
+        let unit = self.unit(written)?;
+        if unit.is_coherent() {
+            return Some(unit);
+        }
+        let right = match unit.text.as_str() {
+            "deg" => "rad".to_owned(),
+            _ => unit.dimension.to_string(),
+        };
+        self.found.push(
+            Diagnostic::error(format!("the unit `{unit}` is not an SI unit without a factor"))
+                .at(span, "only parameters may be in such a unit")
+                .help(format!("use unit = \"{right}\"")),
+        );
+        None
+    }
+
+    fn expression(&mut self, quantity: &Quantity, scope: Scope) -> Option<Expr> {
+        let resolved = quantity
+            .syntax()
+            .and_then(|syntax| Resolver::new(&self.names, scope).resolve(&syntax));
+        self.found.keep(resolved)
+    }
+
+    fn parameter(&mut self, raw: RawParameter) -> Option<Parameter> {
+        let unit = self.unit(raw.unit);
+        let value = match &raw.value {
+            Quantity::Number(number) => {
+                let unit = unit.as_ref()?;
+                ParameterValue::Number(self.in_si(unit, *number)?)
+            }
+            Quantity::Expression(_) => {
+                ParameterValue::Expression(self.expression(&raw.value, Scope::Parameters)?)
+            }
+        };
+        let unit = unit?;
+        let mut bound = |number: Option<Number>| number.and_then(|n| self.in_si(&unit, n));
+        let (min, max) = (bound(raw.min), bound(raw.max));
+        if let (Some(low), Some(high), Some(number)) = (min, max, raw.max)
+            && low > high
+        {
+            self.found.push(
+                Diagnostic::error(format!("no value of `{}` lies between", raw.name.text))
+                    .at(number.span, "max is less than min"),
+            );
+        }
+        Some(Parameter {
+            name: raw.name.text,
+            unit,
+            doc: raw.doc,
+            origin: raw.origin,
+            value,
+            min,
+            max,
+            span: raw.name.span,
+        })
+    }
+
+    fn in_si(&mut self, unit: &Unit, number: Number) -> Option<f64> {
+        let value = unit.to_si(number.value);
+        if value.is_finite() {
+            return Some(value);
+        }
+        let message = format!("{} {unit} is too large in SI units", number.value);
+        self.found.push(Diagnostic::error(message).at(number.span, "here"));
+        None
+    }
+
+    fn coordinate(&mut self, raw: RawCoordinate) -> Option<Coordinate> {
+        let unit = self.coherent_unit(raw.unit);
+        let mut initial = |quantity: Option<Quantity>| match quantity {
+            Some(quantity) => self.expression(&quantity, Scope::Parameters).map(Some),
+            None => Some(None),
+        };
+        let (value, rate) = (initial(raw.initial), initial(raw.initial_rate));
+        Some(Coordinate {
+            name: raw.name.text,
+            unit: unit?,
+            doc: raw.doc,
+            initial: value?,
+            initial_rate: rate?,
+            span: raw.name.span,
+        })
+    }
+
+    fn field(&mut self, raw: RawField) -> Option<Field> {
+        let unit = self.coherent_unit(raw.unit);
+        let from = self.expression(&raw.from, Scope::Parameters);
+        let to = self.expression(&raw.to, Scope::Parameters);
+        let order = self.found.keep(field_order(raw.order));
+        Some(Field {
+            name: raw.name.text,
+            unit: unit?,
+            along: raw.along.text,
+            from: from?,
+            to: to?,
+            basis: raw.basis,
+            coordinates: raw.coordinates.text,
+            order: order?,
+            doc: raw.doc,
+            span: raw.name.span,
+        })
+    }
+
+    fn definition(&mut self, raw: RawTerm) -> Option<Definition> {
+        Some(Definition {
+            value: self.expression(&raw.value, Scope::Motion)?,
+            name: raw.name.text,
+            unit: Unit::coherent(Dimension::NONE),
+            doc: raw.doc,
+            span: raw.name.span,
+        })
+    }
+
+    fn term(&mut self, raw: RawTerm) -> Option<Term> {
+        Some(Term {
+            value: self.expression(&raw.value, Scope::Motion)?,
+            name: raw.name.text,
+            doc: raw.doc,
+            origin: raw.origin,
+            span: raw.name.span,
+        })
+    }
+
+    fn force(&mut self, (raw, on): (RawTerm, Quantity)) -> Option<Force> {
+        let on = self.expression(&on, Scope::Motion);
+        let term = self.term(raw)?;
+        Some(Force {
+            name: term.name,
+            on: on?,
+            value: term.value,
+            doc: term.doc,
+            origin: term.origin,
+            span: term.span,
+        })
+    }
+
+    fn observable(
+        &mut self,
+        (raw, unit): (RawTerm, Option<Written>),
+    ) -> Option<(Observable, Option<Unit>)> {
+        let declared = match unit {
+            Some(written) => Some(self.coherent_unit(Some(written))?),
+            None => None,
+        };
+        let observable = Observable {
+            value: self.expression(&raw.value, Scope::Motion)?,
+            name: raw.name.text,
+            unit: Unit::coherent(Dimension::NONE),
+            doc: raw.doc,
+            span: raw.name.span,
+        };
+        Some((observable, declared))
+    }
+
+    fn coefficients(&mut self, raw: Vec<RawCoefficient>) -> Vec<Coefficient> {
+        let mut built = Vec::with_capacity(raw.len());
+        for (index, entry) in raw.into_iter().enumerate() {
+            built.extend(self.coefficient(index, entry));
+        }
+        built
+    }
+
+    fn coefficient(&mut self, index: usize, raw: RawCoefficient) -> Option<Coefficient> {
+        let each = match &raw.each {
+            Some(written) => Some(self.each(written)?),
+            None => None,
+        };
+        let resolved = |quantity: &Quantity, scope: Scope| {
+            let mut resolver = Resolver::new(&self.names, scope).for_each(each.clone());
+            quantity.syntax().and_then(|syntax| resolver.resolve(&syntax))
+        };
+        let known = Scope::Coefficient(index);
+        let kind = match &raw.kind {
+            RawCoefficientKind::Value(value) => resolved(value, known).map(CoefficientKind::Value),
+            RawCoefficientKind::Factor(of, by, times) => {
+                let times = times.as_ref().map(|times| resolved(times, known)).transpose();
+                resolved(of, Scope::Factor).and_then(|of| {
+                    let (of, by) = (moving_quantity(of)?, resolved(by, Scope::Factor)?);
+                    times.map(|times| CoefficientKind::Factor { of, by, times })
+                })
+            }
+        };
+        Some(Coefficient {
+            kind: self.found.keep(kind)?,
+            name: raw.name.text,
+            each: each.map(|(_, field)| field),
+            doc: raw.doc,
+            span: raw.name.span,
+        })
+    }
+
+    /// The index and field of `each = "w[i]"`.
+    fn each(&mut self, written: &Written) -> Option<(String, usize)> {
+        let syntax = self.found.keep(written.syntax())?;
+        if let SyntaxKind::Element { name, index, .. } = syntax.kind
+            && let Some(Symbol::Field(field)) = self.names.get(&name)
+        {
+            return Some((index, field));
+        }
+        self.found.push(
+            Diagnostic::error("`each` names a field and an index")
+                .at(syntax.span, "not a field with an index")
+                .help("write each = \"w[i]\" to give a coefficient for each mode of w"),
+        );
+        None
+    }
+
+    fn sensor(&mut self, raw: RawSensor) -> Option<Sensor> {
+        if raw.delay < 0.0 {
+            self.found.push(
+                Diagnostic::error("a sensor cannot be ahead of time")
+                    .at(raw.channel.span, "its delay is negative")
+                    .help("a delay is in s and at least 0"),
+            );
+        }
+        Some(Sensor {
+            channel: raw.channel.text,
+            gain: raw.gain,
+            bias: raw.bias,
+            delay: raw.delay,
+            span: raw.channel.span,
+        })
+    }
+}
+
+/// `of` names a coordinate or a field's mode coordinates.
+fn moving_quantity(of: Expr) -> Result<Expr, Diagnostic> {
+    match of.kind {
+        ExprKind::Coordinate(_) | ExprKind::ModeCoordinate(_) => Ok(of),
+        _ => Err(Diagnostic::error("`of` names a coordinate or a field's mode coordinates")
+            .at(of.span, "not one of them")
+            .help("the acceleration of what? for example of = \"theta\" or of = \"q\"")),
+    }
+}
+
+fn field_order((order, span): (i64, Span)) -> Result<usize, Diagnostic> {
+    match usize::try_from(order) {
+        Ok(order) if order <= MAX_ORDER => Ok(order),
+        Ok(_) => Err(Diagnostic::error(format!("the order {order} is above the limit"))
+            .at(span, "too high")
+            .help(format!("the highest order is {MAX_ORDER}"))),
+        Err(_) => Err(Diagnostic::error(format!("the order {order} is negative"))
+            .at(span, "negative")
+            .help("an order is 0 (rigid) or the number of modes")),
+    }
+}
+
+fn parameter_references(parameter: &Parameter) -> Vec<Reference> {
+    let mut list = Vec::new();
+    if let ParameterValue::Expression(expr) = &parameter.value {
+        expr.visit(&mut |part| {
+            if let ExprKind::Parameter(index) = part.kind {
+                list.push((index, part.span));
+            }
+        });
+    }
+    list
+}
+
+fn definition_references(definition: &Definition) -> Vec<Reference> {
+    let mut list = Vec::new();
+    definition.value.visit(&mut |part| {
+        if let ExprKind::Definition(index) = part.kind {
+            list.push((index, part.span));
+        }
+    });
+    list
+}
+
+fn circular<'n>(
+    kind: &str,
+    circle: &[Reference],
+    named: impl Fn(usize) -> &'n str,
+) -> Diagnostic {
+    let Some((&(first, place), rest)) = circle.split_first() else {
+        return Diagnostic::error(format!("a {kind} refers to itself"));
+    };
+    let mut chain: Vec<&str> = circle.iter().map(|(index, _)| named(*index)).collect();
+    chain.push(named(first));
+    // A circle of hundreds is shown by its beginning.
+    if chain.len() > 8 {
+        chain.truncate(7);
+        chain.push("...");
+    }
+    let message = format!("the {kind} `{}` refers to itself", named(first));
+    let mut diagnostic = Diagnostic::error(message).at(place, format!("here: {}", chain.join(" -> ")));
+    for &(index, place) in rest.iter().take(4) {
+        diagnostic = diagnostic.also(place, format!("in `{}`", named(index)));
+    }
+    diagnostic.help("break the circle: one of them must be known without the others")
+}

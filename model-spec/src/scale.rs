@@ -1,0 +1,178 @@
+//! The factor between a unit and its coherent SI unit, kept exactly: a fraction of whole
+//! numbers times a power of pi. A decimal factor such as 0.001 is not a binary number, so
+//! 3 mm is 3/1000 and not 3 * 0.001.
+
+use num_rational::Ratio;
+use num_traits::{CheckedDiv, CheckedMul, One};
+
+/// Upper and lower part of pi: their sum is pi to 32 digits.
+const PI_HIGH: f64 = std::f64::consts::PI;
+const PI_LOW: f64 = 1.224_646_799_147_353_2e-16;
+
+/// A positive factor `fraction * pi^pi_power`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scale {
+    fraction: Ratio<i128>,
+    pi_power: i32,
+}
+
+impl Scale {
+    /// The factor 1.
+    pub const ONE: Self = Self {
+        fraction: Ratio::new_raw(1, 1),
+        pi_power: 0,
+    };
+
+    /// The factor `numerator / denominator`; None if either is not positive.
+    pub fn fraction(numerator: i128, denominator: i128) -> Option<Self> {
+        (numerator > 0 && denominator > 0).then(|| Self {
+            fraction: Ratio::new(numerator, denominator),
+            pi_power: 0,
+        })
+    }
+
+    /// The factor pi/180 between a degree and a radian.
+    pub const DEGREE: Self = Self {
+        fraction: Ratio::new_raw(1, 180),
+        pi_power: 1,
+    };
+
+    /// `10^exponent`; None beyond 10^38.
+    pub fn power_of_ten(exponent: i32) -> Option<Self> {
+        let magnitude = 10_i128.checked_pow(exponent.unsigned_abs())?;
+        if exponent < 0 {
+            Self::fraction(1, magnitude)
+        } else {
+            Self::fraction(magnitude, 1)
+        }
+    }
+
+    /// The product; None where it is too large to be kept exactly.
+    pub fn times(self, other: Self) -> Option<Self> {
+        Some(Self {
+            fraction: self.fraction.checked_mul(&other.fraction)?,
+            pi_power: self.pi_power.checked_add(other.pi_power)?,
+        })
+    }
+
+    /// The whole power; None where it is too large to be kept exactly.
+    pub fn power(self, exponent: i32) -> Option<Self> {
+        if exponent.unsigned_abs() > 64 {
+            return (self == Self::ONE).then_some(self);
+        }
+        let mut result = Self::ONE;
+        for _ in 0..exponent.unsigned_abs() {
+            result = result.times(self)?;
+        }
+        if exponent < 0 { result.inverse() } else { Some(result) }
+    }
+
+    fn inverse(self) -> Option<Self> {
+        Some(Self {
+            fraction: Ratio::one().checked_div(&self.fraction)?,
+            pi_power: self.pi_power.checked_neg()?,
+        })
+    }
+
+    /// `value` times this factor. Correctly rounded for factors such as 1000, 1/1000 or
+    /// 1/60, within one unit in the last place otherwise.
+    pub fn apply(self, value: f64) -> f64 {
+        if self == Self::ONE {
+            return value;
+        }
+        let numerator = *self.fraction.numer() as f64;
+        let denominator = *self.fraction.denom() as f64;
+        let mut result = Doubled::product(value, numerator);
+        for _ in 0..self.pi_power.unsigned_abs() {
+            result = if self.pi_power > 0 {
+                result.times(PI_HIGH, PI_LOW)
+            } else {
+                result.over(PI_HIGH, PI_LOW)
+            };
+        }
+        result.over(denominator, 0.0).value()
+    }
+
+    /// `value` divided by this factor, rounded as [`Scale::apply`].
+    pub fn remove(self, value: f64) -> f64 {
+        self.inverse().map_or(f64::NAN, |inverse| inverse.apply(value))
+    }
+}
+
+/// A number as an unevaluated sum of two, twice as long as either.
+#[derive(Clone, Copy)]
+struct Doubled {
+    high: f64,
+    low: f64,
+}
+
+impl Doubled {
+    fn product(left: f64, right: f64) -> Self {
+        let high = left * right;
+        let low = left.mul_add(right, -high);
+        Self { high, low }
+    }
+
+    fn times(self, high: f64, low: f64) -> Self {
+        let leading = Self::product(self.high, high);
+        let low = leading.low + self.high * low + self.low * high;
+        Self {
+            high: leading.high,
+            low,
+        }
+    }
+
+    fn over(self, high: f64, low: f64) -> Self {
+        let quotient = self.high / high;
+        let rest = (-quotient).mul_add(high, self.high) + self.low - quotient * low;
+        Self {
+            high: quotient,
+            low: rest / high,
+        }
+    }
+
+    /// The nearest number; where the rest overflowed the leading part still stands.
+    fn value(self) -> f64 {
+        if self.low.is_finite() { self.high + self.low } else { self.high }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimal_factors_round_once() {
+        let milli = Scale::power_of_ten(-3).unwrap();
+        assert_eq!(milli.apply(3.0), 0.003);
+        assert_eq!(milli.apply(-0.7), -0.7 / 1000.0);
+        assert_eq!(Scale::power_of_ten(-6).unwrap().apply(25.0), 25e-6);
+        assert_eq!(Scale::power_of_ten(9).unwrap().apply(200.0), 2e11);
+    }
+
+    #[test]
+    fn degrees_are_right_to_the_last_place() {
+        // The double nearest 24.6, times pi/180 to 40 digits:
+        // 0.4293509959906051007258483593...
+        assert_eq!(Scale::DEGREE.apply(24.6), 0.429_350_995_990_605_1);
+        assert_eq!(Scale::DEGREE.apply(180.0), std::f64::consts::PI);
+        assert_eq!(Scale::DEGREE.remove(std::f64::consts::PI), 180.0);
+    }
+
+    #[test]
+    fn too_large_powers_are_refused() {
+        let tera = Scale::power_of_ten(12).unwrap();
+        assert_eq!(tera.power(3), Scale::power_of_ten(36));
+        assert_eq!(tera.power(4), None);
+        assert_eq!(Scale::power_of_ten(39), None);
+    }
+
+    #[test]
+    fn extreme_values_stay_what_they_are() {
+        let kilo = Scale::power_of_ten(3).unwrap();
+        assert_eq!(kilo.apply(0.0), 0.0);
+        assert_eq!(kilo.apply(f64::MAX), f64::INFINITY);
+        assert_eq!(kilo.apply(f64::INFINITY), f64::INFINITY);
+        assert!(kilo.apply(f64::NAN).is_nan());
+    }
+}

@@ -1,0 +1,85 @@
+//! The text of a specification and the places in it. Nothing here knows what the text
+//! means.
+
+use std::fmt::Write;
+use std::sync::Arc;
+
+use sha2::{Digest, Sha256};
+
+/// A named text.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Where the text was read from, as it is to be shown to people.
+    pub path: String,
+    /// The whole text.
+    pub text: Arc<str>,
+}
+
+/// A place in a text, both counted from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Number of the line.
+    pub line: usize,
+    /// Number of the character within the line.
+    pub column: usize,
+}
+
+impl Source {
+    /// A text with the path to show for it.
+    pub fn new(path: impl Into<String>, text: impl Into<Arc<str>>) -> Self {
+        Self {
+            path: path.into(),
+            text: text.into(),
+        }
+    }
+
+    /// SHA-256 of the text, 64 lower-case hexadecimal digits.
+    pub fn hash(&self) -> String {
+        let digest = Sha256::digest(self.text.as_bytes());
+        let mut digits = String::with_capacity(64);
+        for byte in digest {
+            // Writing to a String cannot fail.
+            let _ = write!(digits, "{byte:02x}");
+        }
+        digits
+    }
+
+    /// The line and column of a byte offset; an offset past the end is the end, one
+    /// inside a character is that character's.
+    pub fn place(&self, offset: usize) -> Place {
+        let offset = self.text.floor_char_boundary(offset);
+        let before = &self.text[..offset];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Place {
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hash_is_the_published_one() {
+        // FIPS 180-2, appendix B.1.
+        let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(Source::new("a.toml", "abc").hash(), expected);
+    }
+
+    #[test]
+    fn places_count_characters_from_one() {
+        let source = Source::new("a.toml", "ab\nµx\n");
+        let place = |offset| {
+            let Place { line, column } = source.place(offset);
+            (line, column)
+        };
+        assert_eq!(place(0), (1, 1));
+        assert_eq!(place(2), (1, 3));
+        assert_eq!(place(3), (2, 1));
+        assert_eq!(place(4), (2, 1), "inside the two bytes of µ");
+        assert_eq!(place(5), (2, 2));
+        assert_eq!(place(999), (3, 1));
+    }
+}

@@ -1,0 +1,49 @@
+//! The nearest known name to one that is not known.
+
+/// The nearest of the known names, if one is near enough to have been meant.
+pub fn nearest<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+    // Nobody means a name of 64 letters by a text of hundreds.
+    if wrong.len() > 128 {
+        return None;
+    }
+    let lowered = wrong.to_lowercase();
+    known
+        .into_iter()
+        .filter(|name| *name != wrong)
+        .map(|name| {
+            let distance = strsim::damerau_levenshtein(&lowered, &name.to_lowercase());
+            (distance, name)
+        })
+        .filter(|(distance, name)| *distance <= allowed(wrong.len().max(name.len())))
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, name)| name)
+}
+
+/// "did you mean ...?", if a known name is near enough.
+pub fn did_you_mean<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
+    nearest(wrong, known).map(|name| format!("did you mean `{name}`?"))
+}
+
+/// How many letters may differ in a name of this length.
+fn allowed(length: usize) -> usize {
+    match length {
+        0..=2 => 1,
+        3..=5 => 2,
+        _ => 3,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn misspelt_names_are_found_and_distant_ones_are_not() {
+        let known = ["theta_s", "theta_c", "k_sp", "coordinates"];
+        assert_eq!(nearest("thetas", known), Some("theta_s"));
+        assert_eq!(nearest("K_sp", known), Some("k_sp"));
+        assert_eq!(nearest("cordinates", known), Some("coordinates"));
+        assert_eq!(nearest("velocity", known), None);
+        assert_eq!(nearest(&"x".repeat(10_000), known), None);
+    }
+}

@@ -1,0 +1,300 @@
+//! Reading TOML tables with the place of every key and value, and saying what is wrong
+//! with a value of the wrong kind. Which sections and keys a specification has is the
+//! business of `document`.
+
+use toml_edit::{Item, TableLike, Value};
+
+use crate::ast::{Syntax, SyntaxKind};
+use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
+use crate::lexer::tokens;
+use crate::parser::parse;
+use crate::span::Span;
+use crate::suggest::did_you_mean;
+
+/// A key of the file.
+#[derive(Clone, Debug)]
+pub struct Name {
+    /// The key.
+    pub text: String,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A string value of the file.
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// What the string says.
+    pub text: String,
+    /// Where it stands, with its quotes.
+    pub span: Span,
+    /// Where its first character stands, if every byte of it stands in the file as it is
+    /// (there are no escapes).
+    first: Option<usize>,
+}
+
+/// A finite number of the file.
+#[derive(Clone, Copy, Debug)]
+pub struct Number {
+    /// Its value.
+    pub value: f64,
+    /// Where it stands.
+    pub span: Span,
+}
+
+/// A number or an expression.
+#[derive(Clone, Debug)]
+pub enum Quantity {
+    /// A TOML number.
+    Number(Number),
+    /// A TOML string.
+    Expression(Written),
+}
+
+impl Written {
+    /// The place of the bytes `start..end` of the string; the whole string if it holds
+    /// escapes.
+    pub fn place(&self, start: usize, end: usize) -> Span {
+        match self.first {
+            Some(first) => Span::new(first + start, first + end),
+            None => self.span,
+        }
+    }
+
+    /// The expression the string holds.
+    ///
+    /// # Errors
+    /// Underlines the very token inside the string.
+    pub fn syntax(&self) -> Result<Syntax, Diagnostic> {
+        let tokens = tokens(&self.text, |start, end| self.place(start, end))?;
+        let written = self.text.trim_end().len();
+        // An empty place is invisible: what is missing is underlined one character wide.
+        let end = self.place(written, written + 1);
+        parse(&tokens, end)
+    }
+}
+
+impl Quantity {
+    /// The expression; a number is a literal.
+    ///
+    /// # Errors
+    /// As [`Written::syntax`].
+    pub fn syntax(&self) -> Result<Syntax, Diagnostic> {
+        match self {
+            Self::Number(number) => Ok(Syntax {
+                kind: SyntaxKind::Number(number.value),
+                span: number.span,
+            }),
+            Self::Expression(written) => written.syntax(),
+        }
+    }
+}
+
+/// One `key = value` of a table.
+#[derive(Clone)]
+pub struct Entry<'d> {
+    /// The key.
+    pub name: Name,
+    item: &'d Item,
+    /// The whole text of the file.
+    text: &'d str,
+}
+
+/// A table all of whose keys are known.
+pub struct Record<'d> {
+    owner: Name,
+    entries: Vec<Entry<'d>>,
+}
+
+/// The entries of a table in the order of the file.
+pub fn entries<'d>(table: &'d dyn TableLike, text: &'d str) -> Vec<Entry<'d>> {
+    let named = |(key, item): (&str, &'d Item)| {
+        let span = table.key(key).and_then(|key| key.span());
+        Entry {
+            name: Name {
+                text: key.to_owned(),
+                span: span.map_or_else(Span::default, |range| Span::new(range.start, range.end)),
+            },
+            item,
+            text,
+        }
+    };
+    table.iter().map(named).collect()
+}
+
+impl<'d> Entry<'d> {
+    /// Where the value stands; the key where the value has no place of its own.
+    pub fn span(&self) -> Span {
+        let range = self.item.span();
+        range.map_or(self.name.span, |range| Span::new(range.start, range.end))
+    }
+
+    /// The entries of the table that is this entry's value.
+    ///
+    /// # Errors
+    /// If it is no table.
+    pub fn table(&self, example: &str) -> Result<Vec<Entry<'d>>, Diagnostic> {
+        match self.item.as_table_like() {
+            Some(table) => Ok(entries(table, self.text)),
+            None => Err(self.mismatch("a table", example)),
+        }
+    }
+
+    /// The table that is this entry's value, reporting keys that are not `known`.
+    pub fn record(&self, known: &[&str], example: &str, found: &mut Diagnostics) -> Option<Record<'d>> {
+        let entries = found.keep(self.table(example))?;
+        let (entries, others): (Vec<_>, Vec<_>) = entries
+            .into_iter()
+            .partition(|entry| known.contains(&entry.name.text.as_str()));
+        for other in others {
+            found.push(unknown_key(&other.name, known));
+        }
+        Some(Record {
+            owner: self.name.clone(),
+            entries,
+        })
+    }
+
+    /// Whether the value is a table.
+    pub fn is_table(&self) -> bool {
+        self.item.is_table_like()
+    }
+
+    /// The string that is this entry's value.
+    ///
+    /// # Errors
+    /// If it is no string.
+    pub fn written(&self) -> Result<Written, Diagnostic> {
+        match self.item.as_value() {
+            Some(Value::String(string)) => {
+                let span = self.span();
+                Ok(Written {
+                    text: string.value().clone(),
+                    span,
+                    first: first_character(self.text, span, string.value()),
+                })
+            }
+            _ => Err(self.mismatch("a string", "\"...\"")),
+        }
+    }
+
+    /// The finite number that is this entry's value.
+    ///
+    /// # Errors
+    /// If it is no number, or not finite.
+    pub fn number(&self) -> Result<Number, Diagnostic> {
+        let span = self.span();
+        let value = match self.item.as_value() {
+            Some(Value::Integer(integer)) => *integer.value() as f64,
+            Some(Value::Float(float)) => *float.value(),
+            _ => return Err(self.mismatch("a number", "0.5")),
+        };
+        if value.is_finite() {
+            return Ok(Number { value, span });
+        }
+        let shown = self.text.get(span.start..span.end).unwrap_or("this");
+        Err(
+            Diagnostic::error(format!("{} is not a finite number", quoted(shown)))
+                .at(span, "expected a finite number"),
+        )
+    }
+
+    /// The number or expression that is this entry's value.
+    ///
+    /// # Errors
+    /// If it is neither.
+    pub fn quantity(&self) -> Result<Quantity, Diagnostic> {
+        match self.item.as_value() {
+            Some(Value::String(_)) => self.written().map(Quantity::Expression),
+            Some(Value::Integer(_) | Value::Float(_)) => self.number().map(Quantity::Number),
+            _ => Err(self.mismatch("a number or an expression in quotes", "\"m*g*a\"")),
+        }
+    }
+
+    /// The whole number that is this entry's value.
+    ///
+    /// # Errors
+    /// If it is no whole number.
+    pub fn whole(&self) -> Result<(i64, Span), Diagnostic> {
+        match self.item.as_value() {
+            Some(Value::Integer(integer)) => Ok((*integer.value(), self.span())),
+            _ => Err(self.mismatch("a whole number", "4")),
+        }
+    }
+
+    fn mismatch(&self, expected: &str, example: &str) -> Diagnostic {
+        let kind = match self.item.type_name() {
+            "inline table" => "table",
+            other => other,
+        };
+        Diagnostic::error(format!("{} is not {expected}", quoted(&self.name.text)))
+            .at(self.span(), format!("this is of the kind {kind}"))
+            .help(format!("write {} = {example}", self.name.text))
+    }
+}
+
+impl<'d> Record<'d> {
+    /// The table's own key.
+    pub fn owner(&self) -> &Name {
+        &self.owner
+    }
+
+    /// The entry of this key, if it is there.
+    pub fn get(&self, key: &str) -> Option<&Entry<'d>> {
+        self.entries.iter().find(|entry| entry.name.text == key)
+    }
+
+    /// The entry of this key, reporting that it is missing.
+    pub fn require(&self, key: &str, help: &str, found: &mut Diagnostics) -> Option<&Entry<'d>> {
+        let entry = self.get(key);
+        if entry.is_none() {
+            let owner = quoted(&self.owner.text);
+            found.push(
+                Diagnostic::error(format!("{owner} has no `{key}`"))
+                    .at(self.owner.span, format!("`{key}` is missing"))
+                    .help(help),
+            );
+        }
+        entry
+    }
+
+    /// The string of this key; "" where it is absent.
+    pub fn text(&self, key: &str, found: &mut Diagnostics) -> String {
+        self.written(key, found).map_or_else(String::new, |w| w.text)
+    }
+
+    /// The string of this key, if it is there.
+    pub fn written(&self, key: &str, found: &mut Diagnostics) -> Option<Written> {
+        found.keep(self.get(key)?.written())
+    }
+
+    /// The number of this key, if it is there.
+    pub fn number(&self, key: &str, found: &mut Diagnostics) -> Option<Number> {
+        found.keep(self.get(key)?.number())
+    }
+
+    /// The number or expression of this key, if it is there.
+    pub fn quantity(&self, key: &str, found: &mut Diagnostics) -> Option<Quantity> {
+        found.keep(self.get(key)?.quantity())
+    }
+}
+
+/// The finding that a key is none of the known ones.
+pub fn unknown_key(name: &Name, known: &[&str]) -> Diagnostic {
+    let listed = format!("known here: {}", known.join(", "));
+    Diagnostic::error(format!("unknown key {}", quoted(&name.text)))
+        .at(name.span, "not known here")
+        .help(did_you_mean(&name.text, known.iter().copied()).unwrap_or(listed))
+}
+
+/// Where the first character of a string stands, if the string stands in the file as is.
+fn first_character(text: &str, span: Span, value: &str) -> Option<usize> {
+    let raw = text.get(span.start..span.end)?;
+    let opening = if raw.starts_with("\"\"\"") || raw.starts_with("'''") {
+        let newline = raw[3..].starts_with("\r\n").then_some(2);
+        3 + newline.unwrap_or(usize::from(raw[3..].starts_with('\n')))
+    } else {
+        1
+    };
+    let inside = raw.get(opening..)?;
+    inside.starts_with(value).then_some(span.start + opening)
+}

@@ -1,0 +1,378 @@
+//! Units as a specification writes them: `N s/m`, `kg/m^3`, `deg`, `mm`. A unit is a
+//! dimension and an exact scale. Grammar: factors side by side (or joined by `*`) are
+//! multiplied; at most one `/`, which divides by the one factor or the one parenthesis
+//! behind it and ends the unit, so that nothing like `N/m s` is left to be guessed.
+
+use num_rational::Ratio;
+
+use crate::dimension::{Dimension, Exponent};
+use crate::scale::Scale;
+
+/// A unit as written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unit {
+    /// As the specification writes it; inferred units are written as dimensions are.
+    pub text: String,
+    /// What it measures.
+    pub dimension: Dimension,
+    /// Its size in the coherent SI unit.
+    scale: Scale,
+}
+
+/// Why a text is no unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnitError {
+    /// What is wrong.
+    pub message: String,
+    /// What would be right, if known.
+    pub help: Option<String>,
+}
+
+/// The SI prefixes from pico to tera and their powers of ten.
+const PREFIXES: [(&str, i32); 11] = [
+    ("p", -12),
+    ("n", -9),
+    ("u", -6),
+    ("m", -3),
+    ("c", -2),
+    ("d", -1),
+    ("h", 2),
+    ("k", 3),
+    ("M", 6),
+    ("G", 9),
+    ("T", 12),
+];
+
+/// Units that take prefixes: name, power of ten, exponents of kg, m, s, A, K, mol, cd.
+const PREFIXED: [(&str, i32, [i32; 7]); 20] = [
+    ("m", 0, [0, 1, 0, 0, 0, 0, 0]),
+    ("g", -3, [1, 0, 0, 0, 0, 0, 0]),
+    ("s", 0, [0, 0, 1, 0, 0, 0, 0]),
+    ("A", 0, [0, 0, 0, 1, 0, 0, 0]),
+    ("K", 0, [0, 0, 0, 0, 1, 0, 0]),
+    ("mol", 0, [0, 0, 0, 0, 0, 1, 0]),
+    ("cd", 0, [0, 0, 0, 0, 0, 0, 1]),
+    ("rad", 0, [0, 0, 0, 0, 0, 0, 0]),
+    ("Hz", 0, [0, 0, -1, 0, 0, 0, 0]),
+    ("N", 0, [1, 1, -2, 0, 0, 0, 0]),
+    ("J", 0, [1, 2, -2, 0, 0, 0, 0]),
+    ("W", 0, [1, 2, -3, 0, 0, 0, 0]),
+    ("Pa", 0, [1, -1, -2, 0, 0, 0, 0]),
+    ("V", 0, [1, 2, -3, -1, 0, 0, 0]),
+    ("C", 0, [0, 0, 1, 1, 0, 0, 0]),
+    ("F", 0, [-1, -2, 4, 2, 0, 0, 0]),
+    ("ohm", 0, [1, 2, -3, -2, 0, 0, 0]),
+    ("Wb", 0, [1, 2, -2, -1, 0, 0, 0]),
+    ("T", 0, [1, 0, -2, -1, 0, 0, 0]),
+    ("H", 0, [1, 2, -2, -2, 0, 0, 0]),
+];
+
+/// The largest exponent accepted in a unit.
+const MAX_EXPONENT: i32 = 12;
+
+/// The longest unit accepted, in bytes.
+const MAX_LENGTH: usize = 64;
+
+impl Unit {
+    /// Reads a unit; `""` and `"1"` are pure numbers.
+    ///
+    /// # Errors
+    /// Says which part is no unit, and how it would be written.
+    pub fn parse(text: &str) -> Result<Self, UnitError> {
+        if text.len() > MAX_LENGTH {
+            return Err(UnitError::new("a unit has at most 64 characters", None));
+        }
+        let (dimension, scale) = parse_quotient(text)?;
+        Ok(Self {
+            text: text.to_owned(),
+            dimension,
+            scale,
+        })
+    }
+
+    /// The coherent SI unit of a dimension.
+    pub fn coherent(dimension: Dimension) -> Self {
+        Self {
+            text: dimension.to_string(),
+            dimension,
+            scale: Scale::ONE,
+        }
+    }
+
+    /// Whether a number in this unit is the number in SI.
+    pub fn is_coherent(&self) -> bool {
+        self.scale == Scale::ONE
+    }
+
+    /// A number in this unit, in SI; 3 mm is 3/1000, correctly rounded.
+    pub fn to_si(&self, value: f64) -> f64 {
+        self.scale.apply(value)
+    }
+
+    /// A number in SI, in this unit.
+    pub fn from_si(&self, value: f64) -> f64 {
+        self.scale.remove(value)
+    }
+}
+
+impl std::fmt::Display for Unit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(if self.text.is_empty() { "1" } else { &self.text })
+    }
+}
+
+impl UnitError {
+    fn new(message: impl Into<String>, help: Option<String>) -> Self {
+        Self {
+            message: message.into(),
+            help,
+        }
+    }
+
+    fn too_large(text: &str) -> Self {
+        Self::new(format!("the unit `{text}` is out of range"), None)
+    }
+}
+
+impl std::fmt::Display for UnitError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for UnitError {}
+
+type Parsed = (Dimension, Scale);
+
+fn parse_quotient(text: &str) -> Result<Parsed, UnitError> {
+    let Some(slash) = outer_slash(text) else {
+        return parse_product(text.trim());
+    };
+    let above = parse_product(text[..slash].trim())?;
+    let written = text[slash + 1..].trim();
+    if written.is_empty() || text[..slash].trim().is_empty() {
+        let help = "a reciprocal is written 1/s".to_owned();
+        return Err(UnitError::new("`/` stands between two units", Some(help)));
+    }
+    let below = match written.strip_prefix('(').and_then(|w| w.strip_suffix(')')) {
+        Some(inner) => parse_product(inner.trim())?,
+        None => {
+            refuse_ambiguous(text[..slash].trim(), written)?;
+            parse_product(written)?
+        }
+    };
+    let dimension = above.0.over(below.0);
+    let scale = below.1.power(-1).and_then(|inverse| above.1.times(inverse));
+    dimension.zip(scale).ok_or_else(|| UnitError::too_large(text))
+}
+
+/// The first `/` that is not part of an exponent such as `^(1/2)`.
+fn outer_slash(text: &str) -> Option<usize> {
+    let mut depth = 0_usize;
+    for (place, letter) in text.char_indices() {
+        match letter {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            '/' if depth == 0 => return Some(place),
+            _ => {}
+        }
+    }
+    None
+}
+
+fn refuse_ambiguous(above: &str, below: &str) -> Result<(), UnitError> {
+    if outer_slash(below).is_some() {
+        let help = "write all divisors in one parenthesis: kg/(m s)".to_owned();
+        return Err(UnitError::new("a unit has at most one `/`", Some(help)));
+    }
+    let mut factors = factors(below);
+    let (Some(first), Some(_)) = (factors.next(), factors.next()) else {
+        return Ok(());
+    };
+    let rest = below[first.len()..].trim_start_matches(['*', ' ']);
+    let first = first.trim();
+    let help = format!("write {above}/({below}) or {above} {rest}/{first}");
+    Err(UnitError::new("what `/` divides by is ambiguous", Some(help)))
+}
+
+/// The factors of a product, parted by spaces or `*`.
+fn factors(text: &str) -> impl Iterator<Item = &str> {
+    text.split([' ', '*']).filter(|part| !part.is_empty())
+}
+
+fn parse_product(text: &str) -> Result<Parsed, UnitError> {
+    let mut product = (Dimension::NONE, Scale::ONE);
+    for factor in factors(text) {
+        let (dimension, scale) = parse_factor(factor)?;
+        product = product
+            .0
+            .times(dimension)
+            .zip(product.1.times(scale))
+            .ok_or_else(|| UnitError::too_large(text))?;
+    }
+    Ok(product)
+}
+
+fn parse_factor(text: &str) -> Result<Parsed, UnitError> {
+    let (symbol, exponent) = match text.split_once('^') {
+        Some((symbol, exponent)) => (symbol, parse_exponent(exponent)?),
+        None => (text, Ratio::from_integer(1)),
+    };
+    let (dimension, scale) = symbol_named(symbol)?;
+    let scale = if exponent.is_integer() {
+        scale.power(exponent.to_integer())
+    } else {
+        (scale == Scale::ONE).then_some(scale)
+    };
+    dimension
+        .power(exponent)
+        .zip(scale)
+        .ok_or_else(|| UnitError::too_large(text))
+}
+
+fn parse_exponent(text: &str) -> Result<Exponent, UnitError> {
+    let bare = text
+        .strip_prefix('(')
+        .and_then(|t| t.strip_suffix(')'))
+        .unwrap_or(text);
+    let (numerator, denominator) = bare.split_once('/').unwrap_or((bare, "1"));
+    let parsed = numerator.parse::<i32>().ok().zip(denominator.parse::<i32>().ok());
+    match parsed {
+        Some((n, d)) if n.abs() <= MAX_EXPONENT && (1..=MAX_EXPONENT).contains(&d) => {
+            Ok(Ratio::new(n, d))
+        }
+        _ => {
+            let help = "exponents are whole numbers up to 12 or fractions: m^2, s^-1, m^(1/2)";
+            let message = format!("`{text}` is no exponent of a unit");
+            Err(UnitError::new(message, Some(help.to_owned())))
+        }
+    }
+}
+
+fn symbol_named(symbol: &str) -> Result<Parsed, UnitError> {
+    let whole = match symbol {
+        "1" => Some((Dimension::NONE, Scale::ONE)),
+        "deg" => Some((Dimension::NONE, Scale::DEGREE)),
+        "min" => Scale::fraction(60, 1).map(|scale| (Dimension::TIME, scale)),
+        "h" => Scale::fraction(3600, 1).map(|scale| (Dimension::TIME, scale)),
+        _ => prefixed(symbol, 0),
+    };
+    let found = whole.or_else(|| {
+        let mut candidates = PREFIXES.iter();
+        candidates.find_map(|(prefix, power)| prefixed(symbol.strip_prefix(prefix)?, *power))
+    });
+    found.ok_or_else(|| unknown(symbol))
+}
+
+fn prefixed(symbol: &str, prefix_power: i32) -> Option<Parsed> {
+    let (_, own_power, exponents) = PREFIXED.iter().find(|(name, ..)| *name == symbol)?;
+    let scale = Scale::power_of_ten(prefix_power + own_power)?;
+    Some((Dimension::base(*exponents), scale))
+}
+
+fn unknown(symbol: &str) -> UnitError {
+    let help = match symbol {
+        "rpm" => "give the speed in rad/s: 1 rpm is 2 pi/60 rad/s".to_owned(),
+        "°" => "write deg".to_owned(),
+        "Nm" => "factors are parted by a space: N m".to_owned(),
+        "Kg" => "the kilogram is written kg".to_owned(),
+        "sec" => "the second is written s".to_owned(),
+        _ if symbol.starts_with(['µ', 'μ']) => "micro is written u: um".to_owned(),
+        _ => "known are SI units with prefixes, joined as in N s/m or kg m^2".to_owned(),
+    };
+    UnitError::new(format!("unknown unit `{symbol}`"), Some(help))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn dimension(text: &str) -> String {
+        Unit::parse(text).unwrap().dimension.to_string()
+    }
+
+    #[test]
+    fn usual_units_have_their_dimensions() {
+        for (text, expected) in [
+            ("", "1"),
+            ("1", "1"),
+            ("rad", "1"),
+            ("deg", "1"),
+            ("N s/m", "N s/m"),
+            ("kg/m^3", "kg/m^3"),
+            ("J", "N m"),
+            ("kg m^2", "kg m^2"),
+            ("kg*m^2", "kg m^2"),
+            ("rad/s", "1/s"),
+            ("Hz", "1/s"),
+            ("GPa", "Pa"),
+            ("N/(m s)", "kg/s^3"),
+            ("N m s^2", "kg m^2"),
+            ("m s^-2", "m/s^2"),
+            ("N/m^(3/2)", "kg/(m^(1/2) s^2)"),
+        ] {
+            assert_eq!(dimension(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_converted_with_one_rounding() {
+        let si = |value, text: &str| Unit::parse(text).unwrap().to_si(value);
+        assert_eq!(si(3.0, "mm"), 3e-3);
+        assert_eq!(si(25.0, "um"), 25e-6);
+        assert_eq!(si(200.0, "GPa"), 2e11);
+        assert_eq!(si(7.9, "g/cm^3"), 7900.0);
+        assert_eq!(si(1.0, "kg/s"), 1.0);
+        assert_eq!(si(90.0, "deg"), std::f64::consts::FRAC_PI_2);
+        assert_eq!(si(36.0, "km/h"), 10.0);
+        assert_eq!(si(1.0, "mm^4"), 1e-12);
+    }
+
+    #[test]
+    fn coherent_units_are_known_as_such() {
+        for text in ["", "m", "kg", "N m", "rad", "kg/m^3", "mm km"] {
+            assert!(Unit::parse(text).unwrap().is_coherent(), "{text}");
+        }
+        for text in ["deg", "mm", "g", "min"] {
+            assert!(!Unit::parse(text).unwrap().is_coherent(), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_unit_is_refused_with_advice() {
+        for (text, message, help) in [
+            ("N/m s", "ambiguous", "N/(m s) or N s/m"),
+            ("kg/m/s", "at most one `/`", "kg/(m s)"),
+            ("Nm", "unknown unit `Nm`", "N m"),
+            ("furlong", "unknown unit", "SI units"),
+            ("rpm", "unknown unit", "rad/s"),
+            ("µm", "unknown unit", "um"),
+            ("m^x", "no exponent", "m^2"),
+            ("m^99", "no exponent", "up to 12"),
+            ("/s", "between two units", "1/s"),
+            ("m/", "between two units", "1/s"),
+            ("2 m", "unknown unit `2`", "SI units"),
+            ("m^2147483648", "no exponent", "up to 12"),
+        ] {
+            let error = Unit::parse(text).expect_err(text);
+            assert!(error.message.contains(message), "{text}: {error:?}");
+            assert!(error.help.as_deref().unwrap_or("").contains(help), "{text}: {error:?}");
+        }
+        assert!(Unit::parse("((((").is_err());
+        assert!(Unit::parse("N/()").is_ok_and(|unit| unit.dimension.to_string() == "N"));
+    }
+
+    #[test]
+    fn every_displayed_dimension_reads_back() {
+        for kg in -1..=1 {
+            for m in -4..=4 {
+                for s in -4..=2 {
+                    let dimension = Dimension::of([kg, m, s, 0]);
+                    let read = Unit::parse(&dimension.to_string()).unwrap();
+                    assert_eq!(read.dimension, dimension);
+                    assert!(read.is_coherent());
+                }
+            }
+        }
+    }
+}

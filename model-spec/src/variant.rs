@@ -1,0 +1,203 @@
+//! Questions to a model and changes of its numbers: the values of its parameters, one
+//! parameter set to another value, the orders of its fields, the names of its states.
+
+use crate::diagnostic::Diagnostic;
+use crate::evaluate::evaluate;
+use crate::model::{MAX_ORDER, Model, Parameter, ParameterValue};
+use crate::span::Span;
+use crate::suggest::did_you_mean;
+
+/// Why a model cannot be had with these numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ModelError {
+    /// What is wrong.
+    pub message: String,
+    /// What would be right, if known.
+    pub help: Option<String>,
+    /// The part of the specification it is about, if it is about one.
+    pub span: Option<Span>,
+}
+
+impl ModelError {
+    fn new(message: impl Into<String>) -> Self {
+        Self {
+            message: message.into(),
+            help: None,
+            span: None,
+        }
+    }
+
+    fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    fn at(mut self, span: Span) -> Self {
+        self.span = Some(span);
+        self
+    }
+
+    /// The same as a finding on the model's source.
+    pub fn diagnostic(self) -> Diagnostic {
+        let diagnostic = Diagnostic::error(self.message).help_if(self.help);
+        match self.span {
+            Some(span) => diagnostic.at(span, ""),
+            None => diagnostic,
+        }
+    }
+}
+
+impl std::fmt::Display for ModelError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)?;
+        match &self.help {
+            Some(help) => write!(f, "; {help}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for ModelError {}
+
+impl Model {
+    /// The values of all parameters in SI, in the order of [`Model::parameters`].
+    ///
+    /// # Errors
+    /// A value that is not finite or outside its parameter's bounds, by name.
+    pub fn parameter_values(&self) -> Result<Vec<f64>, ModelError> {
+        let mut values = vec![f64::NAN; self.parameters.len()];
+        for &index in &self.parameter_order {
+            let parameter = &self.parameters[index];
+            let value = match &parameter.value {
+                ParameterValue::Number(value) => *value,
+                ParameterValue::Expression(expr) => evaluate(expr, &values),
+            };
+            check_value(parameter, value)?;
+            values[index] = value;
+        }
+        Ok(values)
+    }
+
+    /// The initial state in SI at these orders: values of coordinates, modes (0), then
+    /// their rates.
+    ///
+    /// # Errors
+    /// As [`Model::parameter_values`], and initial values that are not finite.
+    pub fn initial_state(&self, orders: &[usize]) -> Result<Vec<f64>, ModelError> {
+        let parameters = self.parameter_values()?;
+        let modes: usize = orders.iter().sum();
+        let half = self.coordinates.len() + modes;
+        let mut state = vec![0.0; 2 * half];
+        for (index, coordinate) in self.coordinates.iter().enumerate() {
+            let given = [&coordinate.initial, &coordinate.initial_rate];
+            for (expr, place) in given.into_iter().zip([index, half + index]) {
+                let Some(expr) = expr else { continue };
+                let value = evaluate(expr, &parameters);
+                if !value.is_finite() {
+                    let name = &coordinate.name;
+                    let message = format!("the initial value of `{name}` comes out as {value}");
+                    return Err(ModelError::new(message).at(expr.span));
+                }
+                state[place] = value;
+            }
+        }
+        Ok(state)
+    }
+
+    /// The same model with one parameter set to a number in its declared unit; what is
+    /// computed from it follows.
+    ///
+    /// # Errors
+    /// An unknown name, a number that is not finite or outside the parameter's bounds, or
+    /// another value that then is not finite.
+    pub fn with_parameter(&self, name: &str, value: f64) -> Result<Self, ModelError> {
+        let Some(index) = self.parameters.iter().position(|known| known.name == name) else {
+            let known = self.parameters.iter().map(|parameter| parameter.name.as_str());
+            let error = ModelError::new(format!("the model has no parameter `{name}`"));
+            return Err(match did_you_mean(name, known) {
+                Some(help) => error.help(help),
+                None => error.help("`eomgen check` lists the parameters of a specification"),
+            });
+        };
+        if !value.is_finite() {
+            let message = format!("`{name}` cannot be {value}");
+            return Err(ModelError::new(message).help("give a finite number"));
+        }
+        let mut model = self.clone();
+        let parameter = &mut model.parameters[index];
+        parameter.value = ParameterValue::Number(parameter.unit.to_si(value));
+        model.check_numbers()?;
+        Ok(model)
+    }
+
+    /// The order of each field: its own, or `order` for all of them.
+    ///
+    /// # Errors
+    /// An order above [`MAX_ORDER`], or other than 0 where there is no field.
+    pub fn orders(&self, order: Option<usize>) -> Result<Vec<usize>, ModelError> {
+        match order {
+            Some(order) if order > MAX_ORDER => {
+                let message = format!("the order {order} is above the limit");
+                Err(ModelError::new(message).help(format!("the highest order is {MAX_ORDER}")))
+            }
+            Some(order) if self.fields.is_empty() && order > 0 => {
+                let message = format!("the model `{}` has no field, so no order {order}", self.name);
+                Err(ModelError::new(message).help("leave the order out, or give 0"))
+            }
+            _ => {
+                let own = self.fields.iter().map(|field| order.unwrap_or(field.order));
+                Ok(own.collect())
+            }
+        }
+    }
+
+    /// The names of the states at these orders: coordinates, modes `q_1 ..`, then the
+    /// rates `NAME_dot` in the same order.
+    pub fn state_names(&self, orders: &[usize]) -> Vec<String> {
+        let mut names: Vec<String> = self.coordinates.iter().map(|c| c.name.clone()).collect();
+        for (field, order) in self.fields.iter().zip(orders) {
+            names.extend((1..=*order).map(|mode| format!("{}_{mode}", field.coordinates)));
+        }
+        let rates: Vec<String> = names.iter().map(|name| format!("{name}_dot")).collect();
+        names.extend(rates);
+        names
+    }
+
+    /// Whether all numbers of the model have finite, admissible values.
+    pub(crate) fn check_numbers(&self) -> Result<(), ModelError> {
+        let values = self.parameter_values()?;
+        self.initial_state(&vec![0; self.fields.len()])?;
+        for field in &self.fields {
+            let (from, to) = (evaluate(&field.from, &values), evaluate(&field.to, &values));
+            let length = to - from;
+            if !(length.is_finite() && length > 0.0) {
+                let message = format!("the field `{}` has the length {length} m", field.name);
+                return Err(ModelError::new(message)
+                    .at(field.to.span)
+                    .help("`to` is greater than `from`"));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn check_value(parameter: &Parameter, value: f64) -> Result<(), ModelError> {
+    let name = &parameter.name;
+    let place = match &parameter.value {
+        ParameterValue::Expression(expr) => expr.span,
+        ParameterValue::Number(_) => parameter.span,
+    };
+    if !value.is_finite() {
+        let message = format!("the value of `{name}` comes out as {value}");
+        let error = ModelError::new(message).at(place);
+        return Err(error.help("look for a division by 0 or a root of a negative number"));
+    }
+    let shown = |value: f64| format!("{} {}", parameter.unit.from_si(value), parameter.unit);
+    let bound = match (parameter.min, parameter.max) {
+        (Some(min), _) if value < min => format!("at least {}", shown(min)),
+        (_, Some(max)) if value > max => format!("at most {}", shown(max)),
+        _ => return Ok(()),
+    };
+    let message = format!("`{name}` = {} is out of its bounds", shown(value));
+    Err(ModelError::new(message).at(place).help(bound))
+}

@@ -1,0 +1,150 @@
+//! Which hand-written equations belong to a model, as references for its certificate. The
+//! equations themselves are in [`crate::reference`].
+
+use model_spec::model::Model;
+
+use crate::reference::closed_forms::{self, Situation};
+use crate::reference::equation_22::{Coefficients, Equation22};
+use crate::reference::{Evaluation, PlanetaryArmParameters, equation_12};
+use crate::validate::certify::Reference;
+
+/// The paper's time scale omega_n = sqrt(k_sp/M_sp), in rad/s, and displacement scale b_c, in m.
+const PAPER_SCALES: (f64, f64) = (3.0885e4, 25e-6);
+
+/// The references for `model` at `order` with parameter values in SI; none for a model
+/// nobody has written by hand.
+pub fn references(model: &Model, order: usize, values: &[f64]) -> Vec<Reference> {
+    if model.name == "planetary_arm" {
+        return arm_parameters(model, values).map_or_else(Vec::new, |p| arm(p, order));
+    }
+    closed_form(model, order, values).into_iter().collect()
+}
+
+/// Eq. (12) for the rigid arm; Eq. (22) in SI and in the paper's scales for the flexible one.
+fn arm(parameters: PlanetaryArmParameters, order: usize) -> Vec<Reference> {
+    if order == 0 {
+        return vec![reference("equation_12", move |t, state, _, accelerations| {
+            match <&[f64; 6]>::try_from(state) {
+                Ok(state) => equation_12::corrected(&parameters, t, state).deviation(accelerations),
+                Err(_) => f64::INFINITY,
+            }
+        })];
+    }
+    let coefficients = Coefficients::new(&parameters, order);
+    let mut found = vec![reference("equation_22", move |t, state, _, accelerations| {
+        coefficients
+            .evaluate(t, state)
+            .map_or(f64::INFINITY, |expected| expected.deviation(accelerations))
+    })];
+    found.extend(scaled(&parameters, order));
+    found
+}
+
+/// Eq. (22) in dimensionless form; its order is fixed when it is compiled.
+fn scaled(parameters: &PlanetaryArmParameters, order: usize) -> Option<Reference> {
+    macro_rules! at_orders {
+        ($($s:literal)*) => {
+            match order {
+                $($s => Some(scaled_reference::<$s>(parameters)),)*
+                _ => None,
+            }
+        };
+    }
+    at_orders!(1 2 3 4 5 6 7 8 16 32 64 128)
+}
+
+fn scaled_reference<const S: usize>(parameters: &PlanetaryArmParameters) -> Reference {
+    let (omega_n, b_c) = PAPER_SCALES;
+    let equation = Equation22::<S>::new(parameters, omega_n, b_c);
+    let scales = Coefficients::new(parameters, S);
+    reference("equation_22_dimensionless", move |t, state, _, accelerations| {
+        let (positions, rates) = state.split_at(state.len() / 2);
+        let scaled: Vec<f64> = positions
+            .iter()
+            .map(|x| x / b_c)
+            .chain(rates.iter().map(|v| v / (b_c * omega_n)))
+            .collect();
+        let mut out = vec![0.0; scaled.len()];
+        equation.rates(omega_n * t, &scaled, &mut out);
+        let Some(dimensional) = scales.evaluate(t, state) else { return f64::INFINITY };
+        let expected = Evaluation {
+            accelerations: out[positions.len()..]
+                .iter()
+                .map(|a| a * b_c * omega_n * omega_n)
+                .collect(),
+            scales: dimensional.scales,
+        };
+        expected.deviation(accelerations)
+    })
+}
+
+fn reference(
+    name: &str,
+    deviation: impl Fn(f64, &[f64], &[f64], &[f64]) -> f64 + 'static,
+) -> Reference {
+    Reference {
+        name: name.to_owned(),
+        deviation: Box::new(deviation),
+    }
+}
+
+/// The textbook equations of the model's name, if its parameters fit them.
+fn closed_form(model: &Model, order: usize, values: &[f64]) -> Option<Reference> {
+    let form = closed_forms::find(&model.name)?;
+    let parameters: Vec<(String, f64)> = model
+        .parameters
+        .iter()
+        .map(|parameter| parameter.name.clone())
+        .zip(values.iter().copied())
+        .collect();
+    let names: Vec<String> = model.inputs.iter().map(|input| input.name.clone()).collect();
+    let evaluate = move |state: &[f64], inputs: &[f64]| {
+        form(&Situation {
+            parameter: &|name| parameters.iter().find(|(own, _)| own == name).map(|(_, value)| *value),
+            input: &|name| inputs.get(names.iter().position(|own| own == name)?).copied(),
+            order,
+            state,
+        })
+    };
+    let modes: usize = order * model.fields.len();
+    let rest = vec![0.0; 2 * (model.coordinates.len() + modes)];
+    let still = vec![0.0; model.inputs.len()];
+    evaluate(&rest, &still).ok()?;
+    Some(reference("closed_form", move |_, state, inputs, accelerations| {
+        evaluate(state, inputs).map_or(f64::INFINITY, |expected| expected.deviation(accelerations))
+    }))
+}
+
+/// The arm's parameters by their names; `None` if one is missing.
+pub fn arm_parameters(model: &Model, values: &[f64]) -> Option<PlanetaryArmParameters> {
+    let value = |name: &str| {
+        let place = model.parameters.iter().position(|parameter| parameter.name == name)?;
+        values.get(place).copied()
+    };
+    Some(PlanetaryArmParameters {
+        k_sp: value("k_sp")?,
+        k_pr: value("k_pr")?,
+        c_sp: value("c_sp")?,
+        c_pr: value("c_pr")?,
+        b_sp: value("b_sp")?,
+        b_pr: value("b_pr")?,
+        m_p: value("m_p")?,
+        I_s: value("I_s")?,
+        I_p: value("I_p")?,
+        I_c: value("I_c")?,
+        rho: value("rho")?,
+        A: value("A")?,
+        l: value("l")?,
+        E: value("E")?,
+        I: value("I")?,
+        alpha: value("alpha")?,
+        z_s: value("z_s")?,
+        z_p: value("z_p")?,
+        z_r: value("z_r")?,
+        m: value("m")?,
+        a_m: value("a_m")?,
+        b_m: value("b_m")?,
+        F_w: value("F_w")?,
+        omega: value("omega")?,
+    })
+}

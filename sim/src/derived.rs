@@ -1,0 +1,164 @@
+//! A derived model seen by the solver and by the certificate: the evaluator of its program
+//! behind their traits. No equation is written here.
+
+use std::cell::RefCell;
+
+use codegen::evaluator::{Evaluator, Point};
+
+use crate::record::HeldInputs;
+use crate::solve::System;
+use crate::validate::variant::Variant;
+
+/// A derived variant with fixed parameters.
+pub struct Derived {
+    evaluator: Evaluator,
+}
+
+impl Derived {
+    /// Takes an evaluator, prepared with the parameters to be used.
+    pub fn new(evaluator: Evaluator) -> Self {
+        Self { evaluator }
+    }
+
+    fn scalars(&self) -> usize {
+        self.evaluator.program().observables.len()
+    }
+
+    fn observable(&mut self, point: Point<'_>, from_the_end: usize) -> f64 {
+        let mut values = vec![0.0; self.scalars()];
+        self.evaluator.observables(point, &mut values);
+        values[values.len() - from_the_end]
+    }
+}
+
+/// What is said where the mass matrix is not positive definite.
+const NOT_POSITIVE: &str =
+    "the mass matrix is not positive definite: a mass, inertia or length is zero or negative";
+
+impl Variant for Derived {
+    fn coordinate_names(&self) -> Vec<String> {
+        let program = self.evaluator.program();
+        let mut names = program.state_names();
+        names.truncate(program.degrees_of_freedom());
+        names
+    }
+
+    fn rates(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+        rates: &mut [f64],
+    ) -> Result<(), String> {
+        if !self.evaluator.pivots_are_positive() {
+            return Err(NOT_POSITIVE.to_owned());
+        }
+        self.evaluator.rates(point(time, state, inputs), rates);
+        Ok(())
+    }
+
+    fn mass_matrix(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+        mass: &mut [f64],
+    ) -> Result<(), String> {
+        self.evaluator.mass_matrix(point(time, state, inputs), mass);
+        Ok(())
+    }
+
+    fn bias_and_forces(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+        bias: &mut [f64],
+        forces: &mut [f64],
+    ) -> Result<(), String> {
+        self.evaluator.bias_and_forces(point(time, state, inputs), bias, forces);
+        Ok(())
+    }
+
+    fn energy(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<f64, String> {
+        Ok(self.observable(point(time, state, inputs), 2))
+    }
+
+    fn power(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<f64, String> {
+        Ok(self.observable(point(time, state, inputs), 1))
+    }
+
+    fn guards(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<Vec<f64>, String> {
+        let mut values = vec![0.0; self.evaluator.guard_count()];
+        self.evaluator.guards(point(time, state, inputs), &mut values);
+        Ok(values)
+    }
+
+    /// `energy` and `power` stand last.
+    fn observables(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Vec<f64>, String> {
+        let mut values = vec![0.0; self.scalars()];
+        self.evaluator.observables(point(time, state, inputs), &mut values);
+        Ok(values)
+    }
+}
+
+fn point<'a>(t: f64, state: &'a [f64], inputs: &'a [f64]) -> Point<'a> {
+    Point { t, state, inputs }
+}
+
+/// A derived variant driven by inputs, as the solver sees it.
+pub struct Driven {
+    evaluator: RefCell<Evaluator>,
+    inputs: HeldInputs,
+}
+
+impl Driven {
+    /// Takes an evaluator, prepared with the parameters to be used, and its inputs.
+    ///
+    /// # Errors
+    /// If the mass matrix is not positive definite.
+    pub fn new(evaluator: Evaluator, inputs: HeldInputs) -> Result<Self, String> {
+        if !evaluator.pivots_are_positive() {
+            return Err(NOT_POSITIVE.to_owned());
+        }
+        Ok(Self {
+            evaluator: RefCell::new(evaluator),
+            inputs,
+        })
+    }
+
+    /// The observables at a state, `energy` and `power` last.
+    pub fn observables(&self, t: f64, state: &[f64], out: &mut [f64]) {
+        let inputs = self.inputs.at(t);
+        self.evaluator.borrow_mut().observables(point(t, state, inputs), out);
+    }
+}
+
+impl System for Driven {
+    fn states(&self) -> usize {
+        self.evaluator.borrow().program().states()
+    }
+
+    fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        let inputs = self.inputs.at(t);
+        self.evaluator.borrow_mut().rates(point(t, y, inputs), out);
+    }
+
+    fn guard_count(&self) -> usize {
+        self.evaluator.borrow().guard_count()
+    }
+
+    fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        let inputs = self.inputs.at(t);
+        self.evaluator.borrow_mut().guards(point(t, y, inputs), out);
+    }
+
+    fn next_breakpoint(&self, t: f64) -> Option<f64> {
+        self.inputs.next_change(t)
+    }
+}

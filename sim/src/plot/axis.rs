@@ -1,0 +1,217 @@
+//! One axis of a frame: where its values lie in pixels and where its ticks are.
+
+use super::quantity::superscript;
+
+/// How values are spaced along an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scale {
+    Linear,
+    Logarithmic,
+}
+
+/// The values an axis covers; on a logarithmic axis their decimal logarithms.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Range {
+    pub low: f64,
+    pub high: f64,
+}
+
+/// A labelled mark.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tick {
+    /// Where, in the coordinate of the [`Range`].
+    pub place: f64,
+    pub label: String,
+}
+
+/// A range laid along pixels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axis {
+    pub scale: Scale,
+    pub range: Range,
+    /// The pixels at the low and the high end.
+    pub pixels: (f64, f64),
+}
+
+impl Scale {
+    /// The coordinate along the axis: the value or its logarithm; not a number if there is none.
+    pub fn place(self, value: f64) -> f64 {
+        match self {
+            Self::Linear => value,
+            Self::Logarithmic if value > 0.0 => value.log10(),
+            Self::Logarithmic => f64::NAN,
+        }
+    }
+}
+
+impl Range {
+    /// The span of what is finite in `places`; none if nothing is.
+    pub fn of(places: impl Iterator<Item = f64>) -> Option<Self> {
+        places.filter(|place| place.is_finite()).fold(None, |range: Option<Self>, place| {
+            let Self { low, high } = range.unwrap_or(Self {
+                low: place,
+                high: place,
+            });
+            Some(Self {
+                low: low.min(place),
+                high: high.max(place),
+            })
+        })
+    }
+
+    /// Widened so that it is no point: rounding noise around a constant is not magnified.
+    pub fn opened(self) -> Self {
+        let magnitude = self.low.abs().max(self.high.abs());
+        let least = if magnitude < 1e-100 { 1.0 } else { 1e-6 * magnitude };
+        if self.high - self.low >= least {
+            return self;
+        }
+        let half = if magnitude < 1e-100 { 1.0 } else { 0.1 * magnitude };
+        let middle = self.low + (self.high - self.low) / 2.0;
+        Self {
+            low: middle - half,
+            high: middle + half,
+        }
+    }
+
+    /// With a margin of this share of the span on both sides.
+    pub fn padded(self, share: f64) -> Self {
+        let margin = share * (self.high - self.low);
+        Self {
+            low: self.low - margin,
+            high: self.high + margin,
+        }
+    }
+}
+
+impl Axis {
+    /// The pixel of a place.
+    pub fn pixel(&self, place: f64) -> f64 {
+        let (start, end) = self.pixels;
+        let share = (place - self.range.low) / (self.range.high - self.range.low);
+        start + share * (end - start)
+    }
+}
+
+/// About `count` ticks in a range.
+pub(super) fn ticks(scale: Scale, range: Range, count: usize) -> Vec<Tick> {
+    match scale {
+        Scale::Linear => linear_ticks(range, count),
+        Scale::Logarithmic => decade_ticks(range, count),
+    }
+}
+
+/// Multiples of 1, 2 or 5 times a power of ten, all with the same decimals.
+fn linear_ticks(range: Range, count: usize) -> Vec<Tick> {
+    let step = round_step((range.high - range.low) / count.max(1) as f64);
+    let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
+    multiples(range, step)
+        .map(|place| Tick {
+            place,
+            label: with_minus_sign(&format!("{place:.decimals$}")),
+        })
+        .collect()
+}
+
+/// The multiples of `step` in a range; a rounding error does not lose one at an end.
+fn multiples(range: Range, step: f64) -> impl Iterator<Item = f64> {
+    let first = (range.low / step - 1e-6).ceil();
+    let last = (range.high / step + 1e-6).floor();
+    // A range is at least 1e-6 of its magnitude and a step a fair share of it.
+    (first as i64..=last as i64).map(move |multiple| multiple as f64 * step)
+}
+
+/// The nearest of 1, 2, 5 times a power of ten, by ratio.
+fn round_step(rough: f64) -> f64 {
+    let power = 10f64.powi(rough.log10().floor() as i32);
+    let mantissa = match rough / power {
+        m if m < 2f64.sqrt() => 1.0,
+        m if m < 10f64.sqrt() => 2.0,
+        m if m < 50f64.sqrt() => 5.0,
+        _ => 10.0,
+    };
+    mantissa * power
+}
+
+/// Powers of ten; over less than two decades also 2 and 5 times these.
+fn decade_ticks(range: Range, count: usize) -> Vec<Tick> {
+    let decades = range.high.floor() - range.low.ceil();
+    if decades < 1.0 {
+        return fine_ticks(range);
+    }
+    let stride = (decades / count.max(1) as f64).ceil().max(1.0);
+    multiples(range, stride)
+        .map(|place| Tick {
+            place,
+            label: format!("10{}", superscript(place as i32)),
+        })
+        .collect()
+}
+
+fn fine_ticks(range: Range) -> Vec<Tick> {
+    let decades = range.low.floor() as i32..=range.high.floor() as i32;
+    decades
+        .flat_map(|decade| [1, 2, 5].map(|mantissa| (mantissa, decade)))
+        .map(|(mantissa, decade)| Tick {
+            place: f64::from(mantissa).log10() + f64::from(decade),
+            label: fine_label(mantissa, decade),
+        })
+        .filter(|tick| (range.low..=range.high).contains(&tick.place))
+        .collect()
+}
+
+fn fine_label(mantissa: i32, decade: i32) -> String {
+    match (mantissa, decade) {
+        (_, 0..=3) => format!("{}", f64::from(mantissa) * 10f64.powi(decade)),
+        (1, _) => format!("10{}", superscript(decade)),
+        _ => format!("{mantissa}·10{}", superscript(decade)),
+    }
+}
+
+/// A minus sign instead of a hyphen, and none before zero.
+fn with_minus_sign(number: &str) -> String {
+    match number.strip_prefix('-') {
+        Some(digits) if digits.chars().all(|c| matches!(c, '0' | '.')) => digits.to_owned(),
+        Some(digits) => format!("−{digits}"),
+        None => number.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(scale: Scale, low: f64, high: f64) -> Vec<String> {
+        let ticks = ticks(scale, Range { low, high }, 5);
+        ticks.into_iter().map(|tick| tick.label).collect()
+    }
+
+    #[test]
+    fn ticks_are_round_and_include_the_ends() {
+        assert_eq!(labels(Scale::Linear, 0.0, 2.0), ["0.0", "0.5", "1.0", "1.5", "2.0"]);
+        assert_eq!(labels(Scale::Linear, -53.0, 53.0), ["−40", "−20", "0", "20", "40"]);
+        assert_eq!(labels(Scale::Linear, 0.0, 0.3), ["0.00", "0.05", "0.10", "0.15", "0.20", "0.25", "0.30"]);
+    }
+
+    #[test]
+    fn logarithmic_ticks_are_powers_of_ten() {
+        assert_eq!(labels(Scale::Logarithmic, -12.0, -9.5), ["10⁻¹²", "10⁻¹¹", "10⁻¹⁰"]);
+        assert_eq!(labels(Scale::Logarithmic, 0.5, 1.5), ["5", "10", "20"]);
+        assert_eq!(labels(Scale::Logarithmic, -30.0, 0.0).len(), 6);
+    }
+
+    #[test]
+    fn a_constant_gets_a_range_of_its_own() {
+        let point = |value| Range { low: value, high: value }.opened();
+        assert_eq!(point(0.0), Range { low: -1.0, high: 1.0 });
+        assert_eq!(point(5.0), Range { low: 4.5, high: 5.5 });
+        let noisy = Range { low: 1.0, high: 1.0 + 1e-12 }.opened();
+        assert!(noisy.high - noisy.low > 0.19);
+    }
+
+    #[test]
+    fn what_has_no_logarithm_has_no_place() {
+        assert!(Scale::Logarithmic.place(0.0).is_nan() && Scale::Logarithmic.place(-1.0).is_nan());
+        assert_eq!(Range::of([f64::NAN, f64::INFINITY].into_iter()), None);
+    }
+}

@@ -1,0 +1,135 @@
+//! SVG elements, written one after another. Attributes are numbers and constants from this
+//! module's callers; only text comes from outside and is escaped.
+
+use std::fmt::Write;
+
+use super::decimate::Point;
+use super::lettering::{escaped, spans};
+
+/// Where a text stands relative to its point.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// The look of a line.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stroke {
+    pub colour: &'static str,
+    pub width: f64,
+    /// Lengths of dashes and gaps, empty for a full line.
+    pub dashes: &'static str,
+}
+
+/// A text with its place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Text<'a> {
+    pub text: &'a str,
+    pub at: Point,
+    pub size: f64,
+    pub anchor: Anchor,
+    pub bold: bool,
+}
+
+/// A drawing in the making.
+#[derive(Debug, Default)]
+pub(super) struct Canvas {
+    body: String,
+}
+
+impl Canvas {
+    /// Straight lines in one look.
+    pub fn segments(&mut self, segments: &[(Point, Point)], stroke: Stroke) {
+        let data: String = segments
+            .iter()
+            .map(|(from, to)| format!("M{} {}", pair(*from), pair(*to)))
+            .collect();
+        self.path(&data, stroke);
+    }
+
+    /// Lines through points; a line of one point is a dot.
+    pub fn lines(&mut self, lines: &[Vec<Point>], stroke: Stroke) {
+        let mut data = String::new();
+        for line in lines {
+            for (place, point) in line.iter().enumerate() {
+                data.push(if place == 0 { 'M' } else { ' ' });
+                data.push_str(&pair(*point));
+            }
+            if line.len() == 1 {
+                data.push_str("h0");
+            }
+        }
+        self.path(&data, stroke);
+    }
+
+    fn path(&mut self, data: &str, stroke: Stroke) {
+        if data.is_empty() {
+            return;
+        }
+        let dashes = match stroke.dashes {
+            "" => String::new(),
+            dashes => format!(" stroke-dasharray=\"{dashes}\""),
+        };
+        self.element(format_args!(
+            "<path fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\" \
+             stroke-linecap=\"round\"{dashes} d=\"{data}\"/>",
+            stroke.colour, stroke.width
+        ));
+    }
+
+    /// A level text.
+    pub fn text(&mut self, text: Text<'_>) {
+        self.turned_text(text, 0.0);
+    }
+
+    /// A text turned about its point by an angle in degrees, clockwise.
+    pub fn turned_text(&mut self, text: Text<'_>, angle: f64) {
+        let (x, y) = text.at;
+        let anchor = match text.anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let weight = if text.bold { " font-weight=\"600\"" } else { "" };
+        let turn = match angle {
+            0.0 => String::new(),
+            _ => format!(" transform=\"rotate({angle} {x:.2} {y:.2})\""),
+        };
+        self.element(format_args!(
+            "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{}\" \
+             text-anchor=\"{anchor}\"{weight}{turn} xml:space=\"preserve\">{}</text>",
+            text.size,
+            spans(text.text, text.size)
+        ));
+    }
+
+    fn element(&mut self, element: std::fmt::Arguments<'_>) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.body, "{element}");
+    }
+
+    /// The finished document.
+    pub fn document(self, title: &str, width: f64, height: f64) -> String {
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
+             width=\"{width}\" height=\"{height}\" role=\"img\" \
+             font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\" \
+             fill=\"#222222\">\n<title>{}</title>\n\
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{}</svg>\n",
+            escaped(title),
+            self.body
+        )
+    }
+}
+
+/// A point to a hundredth of a pixel, without needless zeros.
+fn pair((x, y): Point) -> String {
+    format!("{},{}", hundredths(x), hundredths(y))
+}
+
+fn hundredths(pixel: f64) -> String {
+    let text = format!("{pixel:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

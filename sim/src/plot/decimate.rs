@@ -1,0 +1,111 @@
+//! Many samples to few points that look the same: of the samples over one column of pixels
+//! only the first, the lowest, the highest and the last are kept.
+
+/// A point in pixels.
+pub(super) type Point = (f64, f64);
+
+/// A run of samples over one column.
+struct Column {
+    index: i64,
+    /// First, lowest, highest, last, each with its number in the series.
+    kept: [(usize, Point); 4],
+}
+
+impl Column {
+    fn new(index: i64, sample: (usize, Point)) -> Self {
+        Self {
+            index,
+            kept: [sample; 4],
+        }
+    }
+
+    fn include(&mut self, sample: (usize, Point)) {
+        let [_, lowest, highest, last] = &mut self.kept;
+        let (_, (_, y)) = sample;
+        if y < lowest.1.1 {
+            *lowest = sample;
+        }
+        if y > highest.1.1 {
+            *highest = sample;
+        }
+        *last = sample;
+    }
+
+    fn points(mut self) -> impl Iterator<Item = Point> {
+        self.kept.sort_by_key(|(number, _)| *number);
+        let mut previous = None;
+        self.kept.into_iter().filter_map(move |(number, point)| {
+            (previous.replace(number) != Some(number)).then_some(point)
+        })
+    }
+}
+
+/// The lines through the samples, at most four points for each column of `width` pixels.
+///
+/// A sample with a coordinate that is not finite interrupts the line. A gap inside one
+/// column cannot be seen and is not kept, so that the bound holds for every series.
+pub(super) fn polylines(samples: impl Iterator<Item = Point>, width: f64) -> Vec<Vec<Point>> {
+    let mut lines = Vec::new();
+    let mut line = Vec::new();
+    let mut column: Option<Column> = None;
+    let mut interrupted = false;
+    for (number, point) in samples.enumerate() {
+        if !(point.0.is_finite() && point.1.is_finite()) {
+            interrupted = true;
+            continue;
+        }
+        // In pixels, thus small.
+        let index = (point.0 / width).floor() as i64;
+        match &mut column {
+            Some(current) if current.index == index => current.include((number, point)),
+            _ => {
+                let full = column.replace(Column::new(index, (number, point)));
+                line.extend(full.into_iter().flat_map(Column::points));
+                if interrupted && !line.is_empty() {
+                    lines.push(std::mem::take(&mut line));
+                }
+            }
+        }
+        interrupted = false;
+    }
+    line.extend(column.into_iter().flat_map(Column::points));
+    if !line.is_empty() {
+        lines.push(line);
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_samples_are_kept_as_they_are() {
+        let samples = [(0.0, 1.0), (2.0, 3.0), (4.0, -1.0)];
+        assert_eq!(polylines(samples.into_iter(), 1.0), [samples.to_vec()]);
+    }
+
+    #[test]
+    fn a_column_keeps_its_extremes_in_order() {
+        let heights = [0.0, 5.0, 1.0, -7.0, 2.0, 3.0];
+        let samples = heights.iter().enumerate().map(|(i, y)| (0.1 * i as f64, *y));
+        let kept: Vec<f64> = polylines(samples, 1.0).concat().iter().map(|p| p.1).collect();
+        assert_eq!(kept, [0.0, 5.0, -7.0, 3.0]);
+    }
+
+    #[test]
+    fn a_gap_splits_the_line() {
+        let samples = [(0.0, 1.0), (1.0, f64::NAN), (2.0, f64::INFINITY), (3.0, 1.0), (4.0, 2.0)];
+        let lines = polylines(samples.into_iter(), 1.0);
+        assert_eq!(lines, [vec![(0.0, 1.0)], vec![(3.0, 1.0), (4.0, 2.0)]]);
+    }
+
+    #[test]
+    fn the_points_are_bounded_even_if_every_other_sample_is_missing() {
+        let samples = (0..100_000).map(|i| {
+            let y = if i % 2 == 0 { f64::from(i * 7919 % 1000) } else { f64::NAN };
+            (f64::from(i) * 1e-3, y)
+        });
+        assert!(polylines(samples, 1.0).concat().len() <= 4 * 100);
+    }
+}

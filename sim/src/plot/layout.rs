@@ -1,0 +1,238 @@
+//! Where the frames, labels and legends of a figure go. All frames have the same left and
+//! right edge, so that one time lies on one vertical line through all of them.
+
+use super::axis::{Axis, Range, Scale, Tick, ticks};
+use super::error::{PlotError, is_drawable};
+use super::figure::{Panel, Series};
+use super::lettering::{fitted, width};
+use super::quantity::Quantity;
+
+/// The width of every figure, px.
+pub(super) const WIDTH: f64 = 900.0;
+/// Font sizes, px.
+pub(super) const TICK_SIZE: f64 = 14.0;
+pub(super) const LABEL_SIZE: f64 = 15.0;
+pub(super) const TITLE_SIZE: f64 = 16.0;
+/// The length of the line beside a legend's label, px.
+pub(super) const LEGEND_LINE: f64 = 22.0;
+pub(super) const LEGEND_ROW: f64 = 20.0;
+
+const TITLE_ROW: f64 = 24.0;
+const LEFT_OF_TICKS: f64 = 36.0;
+const LARGEST_REFERENCE_LABEL: f64 = 110.0;
+const LARGEST_LEGEND_LABEL: f64 = 260.0;
+/// A bound on the characters in the curves of one figure, and those of one column of pixels:
+/// four points such as `888.88,1555.55 `.
+const CURVE_CHARACTERS: f64 = 180_000.0;
+const COLUMN_CHARACTERS: f64 = 60.0;
+
+/// The shared axis as the kind of figure has it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Abscissa {
+    pub symbol: &'static str,
+    pub unit: &'static str,
+    pub scale: Scale,
+}
+
+/// Where a figure's parts are, px.
+#[derive(Debug)]
+pub(super) struct Layout {
+    pub abscissa: Axis,
+    pub abscissa_quantity: Quantity,
+    pub abscissa_ticks: Vec<Tick>,
+    pub places: Vec<Place>,
+    pub height: f64,
+    /// The width of the columns that curves are decimated to.
+    pub column: f64,
+}
+
+/// Where a panel's parts are, px.
+#[derive(Debug)]
+pub(super) struct Place {
+    pub ordinate: Axis,
+    pub quantity: Quantity,
+    pub ticks: Vec<Tick>,
+    /// The base line of the title.
+    pub title: f64,
+    /// Where each legend entry begins, with its text; empty for one series.
+    pub legend: Vec<((f64, f64), String)>,
+}
+
+/// A panel's vertical axis before its place is known.
+struct Ordinate {
+    range: Range,
+    quantity: Quantity,
+    ticks: Vec<Tick>,
+}
+
+impl Layout {
+    /// Places checked panels.
+    pub fn new(panels: &[Panel<'_>], abscissa: &Abscissa, scale: Scale) -> Result<Self, PlotError> {
+        let ordinates = panels
+            .iter()
+            .enumerate()
+            .map(|(index, panel)| Ordinate::new(index, panel, abscissa.scale, scale))
+            .collect::<Result<Vec<_>, _>>()?;
+        let (range, quantity) = shared_range(panels, abscissa);
+        let edges = (left_edge(&ordinates), right_edge(panels));
+        let axis = Axis {
+            scale: abscissa.scale,
+            range,
+            pixels: edges,
+        };
+        let frame = frame_height(panels.len());
+        let mut top = 6.0;
+        let mut places = Vec::with_capacity(panels.len());
+        for (panel, ordinate) in panels.iter().zip(ordinates) {
+            let place = Place::new(panel, ordinate, scale, (top, frame), edges);
+            top = place.ordinate.pixels.0 + 16.0;
+            places.push(place);
+        }
+        let curves: usize = panels.iter().map(|panel| panel.series.len()).sum();
+        let span = edges.1 - edges.0;
+        Ok(Self {
+            abscissa: axis,
+            abscissa_quantity: quantity,
+            abscissa_ticks: ticks(abscissa.scale, range, 8),
+            places,
+            height: (top + 40.0).ceil(),
+            column: (span * COLUMN_CHARACTERS * curves as f64 / CURVE_CHARACTERS).max(1.0),
+        })
+    }
+}
+
+impl Ordinate {
+    fn new(index: usize, panel: &Panel<'_>, along: Scale, scale: Scale) -> Result<Self, PlotError> {
+        for series in &panel.series {
+            if drawable_values(series, along, scale).next().is_none() {
+                return Err(PlotError::Empty {
+                    panel: index,
+                    series: series.label.clone(),
+                });
+            }
+        }
+        let references = panel.references.iter().map(|reference| reference.value);
+        let values = || {
+            let curves = panel.series.iter().flat_map(|s| drawable_values(s, along, scale));
+            curves.chain(references.clone().filter(|value| is_drawable(*value)))
+        };
+        let quantity = match scale {
+            Scale::Linear => {
+                let largest = values().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+                Quantity::scaled(&panel.quantity, &panel.unit, largest)
+            }
+            Scale::Logarithmic => Quantity::plain(&panel.quantity, &panel.unit),
+        };
+        let places = values().map(|value| scale.place(value / quantity.scale));
+        let range = Range::of(places).map_or(Range { low: 0.0, high: 1.0 }, |range| {
+            range.opened().padded(0.05)
+        });
+        Ok(Self {
+            range,
+            ticks: ticks(scale, range, 5),
+            quantity,
+        })
+    }
+}
+
+impl Place {
+    /// A panel between the heights `(top, frame height)` and the left and right `edges`.
+    fn new(
+        panel: &Panel<'_>,
+        ordinate: Ordinate,
+        scale: Scale,
+        (top, frame): (f64, f64),
+        edges: (f64, f64),
+    ) -> Self {
+        let title_row = if panel.title.is_empty() { 6.0 } else { TITLE_ROW };
+        let legend = legend(panel, top + title_row, edges);
+        let legend_rows = legend.last().map_or(0.0, |((_, y), _)| y + 6.0 - (top + title_row));
+        let frame_top = top + title_row + legend_rows;
+        Self {
+            ordinate: Axis {
+                scale,
+                range: ordinate.range,
+                pixels: (frame_top + frame, frame_top),
+            },
+            quantity: ordinate.quantity,
+            ticks: ordinate.ticks,
+            title: top + title_row - 8.0,
+            legend,
+        }
+    }
+}
+
+/// The values of a series that have a place on both axes.
+fn drawable_values(series: &Series<'_>, along: Scale, scale: Scale) -> impl Iterator<Item = f64> {
+    series
+        .abscissa
+        .iter()
+        .zip(series.values)
+        .filter(move |(at, value)| {
+            along.place(**at).is_finite() && is_drawable(**value) && scale.place(**value).is_finite()
+        })
+        .map(|(_, value)| *value)
+}
+
+fn shared_range(panels: &[Panel<'_>], abscissa: &Abscissa) -> (Range, Quantity) {
+    let all = || {
+        let series = panels.iter().flat_map(|panel| &panel.series);
+        series.flat_map(|series| series.abscissa.iter().copied())
+    };
+    let quantity = match abscissa.scale {
+        Scale::Linear => {
+            let largest = all().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+            Quantity::scaled(abscissa.symbol, abscissa.unit, largest)
+        }
+        Scale::Logarithmic => Quantity::plain(abscissa.symbol, abscissa.unit),
+    };
+    let places = all().map(|value| abscissa.scale.place(value / quantity.scale));
+    let range = Range::of(places).unwrap_or(Range { low: 0.0, high: 1.0 });
+    (range.opened(), quantity)
+}
+
+fn left_edge(ordinates: &[Ordinate]) -> f64 {
+    let labels = ordinates.iter().flat_map(|ordinate| &ordinate.ticks);
+    let widest = labels.map(|tick| width(&tick.label, TICK_SIZE)).fold(0.0, f64::max);
+    LEFT_OF_TICKS + widest
+}
+
+fn right_edge(panels: &[Panel<'_>]) -> f64 {
+    let references = panels.iter().flat_map(|panel| &panel.references);
+    let widest = references
+        .map(|reference| width(&reference_label(&reference.label), TICK_SIZE))
+        .fold(0.0, f64::max);
+    WIDTH - (widest + 10.0).max(22.0)
+}
+
+/// A reference line's label as it is drawn.
+pub(super) fn reference_label(label: &str) -> String {
+    fitted(label, TICK_SIZE, LARGEST_REFERENCE_LABEL)
+}
+
+fn frame_height(panels: usize) -> f64 {
+    match panels {
+        1 => 300.0,
+        2 => 200.0,
+        _ => 150.0,
+    }
+}
+
+/// The legend's entries in rows below `top`.
+fn legend(panel: &Panel<'_>, top: f64, edges: (f64, f64)) -> Vec<((f64, f64), String)> {
+    if panel.series.len() < 2 {
+        return Vec::new();
+    }
+    let mut at = (edges.0, top + 11.0);
+    let mut entries = Vec::with_capacity(panel.series.len());
+    for series in &panel.series {
+        let label = fitted(&series.label, TICK_SIZE, LARGEST_LEGEND_LABEL);
+        let entry = LEGEND_LINE + 6.0 + width(&label, TICK_SIZE);
+        if at.0 > edges.0 && at.0 + entry > edges.1 {
+            at = (edges.0, at.1 + LEGEND_ROW);
+        }
+        entries.push((at, label));
+        at.0 += entry + 14.0;
+    }
+    entries
+}

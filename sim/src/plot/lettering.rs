@@ -1,0 +1,134 @@
+//! Text in a figure: how wide it is about, what fits, and its SVG with subscripts. The fonts
+//! of the reader are not known here, so widths are estimates on the wide side.
+
+use super::symbol::Symbol;
+
+/// The width of a character in units of the font size: that of a digit in a wide sans serif.
+const CHARACTER: f64 = 0.62;
+/// The share of the font size at which subscripts are set.
+const SUBSCRIPT: f64 = 0.85;
+
+/// The width of a text, in pixels.
+pub(super) fn width(text: &str, size: f64) -> f64 {
+    runs(text)
+        .map(|run| run.text.chars().count() as f64 * if run.lowered { SUBSCRIPT } else { 1.0 })
+        .sum::<f64>()
+        * size
+        * CHARACTER
+}
+
+/// As much of a text as fits into a width, with an ellipsis if it is not all.
+pub(super) fn fitted(text: &str, size: f64, available: f64) -> String {
+    let room = (available / (size * CHARACTER)).max(1.0) as usize;
+    if text.chars().count() <= room || width(text, size) <= available {
+        return text.to_owned();
+    }
+    let kept: String = text.chars().take(room.saturating_sub(1)).collect();
+    format!("{}…", kept.trim_end())
+}
+
+/// Text as SVG character data, with subscripts as spans.
+pub(super) fn spans(text: &str, size: f64) -> String {
+    let mut svg = String::new();
+    let mut lowered = false;
+    for run in runs(text) {
+        let shift = match (lowered, run.lowered) {
+            (false, true) => 0.22 * size,
+            (true, false) => -0.22 * size,
+            _ => 0.0,
+        };
+        lowered = run.lowered;
+        let smaller = if run.lowered { SUBSCRIPT * size } else { size };
+        if shift == 0.0 {
+            svg.push_str(&escaped(&run.text));
+        } else {
+            svg.push_str(&format!(
+                "<tspan dy=\"{shift:.1}\" font-size=\"{smaller:.1}\">{}</tspan>",
+                escaped(&run.text)
+            ));
+        }
+    }
+    svg
+}
+
+/// Text that XML takes for nothing but text.
+pub(super) fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => safe.push_str("&amp;"),
+            '<' => safe.push_str("&lt;"),
+            '>' => safe.push_str("&gt;"),
+            '"' => safe.push_str("&quot;"),
+            '\n' | '\r' | '\t' => safe.push(' '),
+            // Not allowed in XML, not even escaped.
+            '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{fffe}' | '\u{ffff}' => {
+                safe.push('\u{fffd}');
+            }
+            c => safe.push(c),
+        }
+    }
+    safe
+}
+
+/// A stretch of text on one line.
+struct Run {
+    text: String,
+    lowered: bool,
+}
+
+/// Text cut into words and what is between them; words that are names are cut into head and
+/// subscript.
+fn runs(text: &str) -> impl Iterator<Item = Run> {
+    let in_word = |c: char| c.is_alphanumeric() || c == '_';
+    let mut rest = text;
+    let mut pieces = Vec::new();
+    while let Some(first) = rest.chars().next() {
+        let word = in_word(first);
+        let end = rest.find(|c| in_word(c) != word).unwrap_or(rest.len());
+        let (piece, after) = rest.split_at(end);
+        rest = after;
+        let symbol = if word {
+            Symbol::parse(piece)
+        } else {
+            Symbol {
+                head: piece.to_owned(),
+                subscript: String::new(),
+            }
+        };
+        pieces.push((symbol.head, false));
+        pieces.push((symbol.subscript, true));
+    }
+    pieces
+        .into_iter()
+        .filter(|(text, _)| !text.is_empty())
+        .map(|(text, lowered)| Run { text, lowered })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn subscripts_become_spans_and_the_line_comes_back() {
+        assert_eq!(
+            spans("x_sp [µm]", 10.0),
+            "x<tspan dy=\"2.2\" font-size=\"8.5\">sp</tspan>\
+             <tspan dy=\"-2.2\" font-size=\"10.0\"> [</tspan>µm]"
+        );
+        assert_eq!(spans("a < b & c", 10.0), "a &lt; b &amp; c");
+    }
+
+    #[test]
+    fn long_text_is_cut() {
+        let long = "word ".repeat(1000);
+        let cut = fitted(&long, 14.0, 200.0);
+        assert!(cut.ends_with('…') && width(&cut, 14.0) <= 200.0);
+        assert_eq!(fitted("short", 14.0, 200.0), "short");
+    }
+
+    #[test]
+    fn what_xml_forbids_is_replaced() {
+        assert_eq!(escaped("a\0b\u{1b}c\nd"), "a\u{fffd}b\u{fffd}c d");
+    }
+}

@@ -1,0 +1,222 @@
+//! Drawing one panel into its place: grid, reference lines, curves, frame, ticks and text,
+//! and the axis that all panels share.
+
+use super::axis::{Axis, Scale, Tick};
+use super::canvas::{Anchor, Canvas, Stroke, Text};
+use super::decimate::{Point, polylines};
+use super::error::is_drawable;
+use super::figure::{Panel, Series};
+use super::layout::{
+    LABEL_SIZE, LEGEND_LINE, LEGEND_ROW, Layout, Place, TICK_SIZE, TITLE_SIZE, reference_label,
+};
+use super::lettering::fitted;
+
+/// Okabe and Ito's colours, told apart by colour-blind readers; without the yellow, which is
+/// too pale for thin lines.
+const COLOURS: [&str; 7] = [
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
+];
+/// When the colours are used up, dashes.
+const DASHES: [&str; 3] = ["", "7 3", "2 3"];
+
+const GRID: Stroke = full("#e6e6e6", 0.8);
+const FRAME: Stroke = full("#444444", 1.0);
+const REFERENCE: Stroke = Stroke {
+    colour: "#6a6a6a",
+    width: 1.1,
+    dashes: "6 4",
+};
+
+const fn full(colour: &'static str, width: f64) -> Stroke {
+    Stroke {
+        colour,
+        width,
+        dashes: "",
+    }
+}
+
+/// Draws a panel.
+pub(super) fn draw(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
+    draw_grid(canvas, place, layout);
+    draw_references(canvas, panel, place, layout);
+    for (index, series) in panel.series.iter().enumerate() {
+        let samples = samples(series, place, layout);
+        canvas.lines(&polylines(samples, layout.column), curve(index));
+    }
+    draw_frame(canvas, place, layout);
+    draw_text(canvas, panel, place, layout);
+}
+
+/// Draws the labels of the axis that all panels share, below the last of them.
+pub(super) fn draw_abscissa(canvas: &mut Canvas, layout: &Layout) {
+    let Some(last) = layout.places.last() else { return };
+    let (bottom, _) = last.ordinate.pixels;
+    for tick in &layout.abscissa_ticks {
+        canvas.text(Text {
+            text: &tick.label,
+            at: (layout.abscissa.pixel(tick.place), bottom + 19.0),
+            size: TICK_SIZE,
+            anchor: Anchor::Middle,
+            bold: false,
+        });
+    }
+    let (left, right) = layout.abscissa.pixels;
+    canvas.text(Text {
+        text: &layout.abscissa_quantity.label,
+        at: ((left + right) / 2.0, bottom + 42.0),
+        size: LABEL_SIZE,
+        anchor: Anchor::Middle,
+        bold: false,
+    });
+}
+
+fn curve(index: usize) -> Stroke {
+    Stroke {
+        colour: COLOURS[index % COLOURS.len()],
+        width: 1.2,
+        dashes: DASHES[index / COLOURS.len() % DASHES.len()],
+    }
+}
+
+/// A series in pixels; what cannot be drawn is not a number.
+fn samples(series: &Series<'_>, place: &Place, layout: &Layout) -> impl Iterator<Item = Point> {
+    let (x, y) = (layout.abscissa, place.ordinate);
+    let (along, up) = (layout.abscissa_quantity.scale, place.quantity.scale);
+    series.abscissa.iter().zip(series.values).map(move |(at, value)| {
+        let height = if is_drawable(*value) { pixel(&y, value / up) } else { f64::NAN };
+        (pixel(&x, at / along), height)
+    })
+}
+
+fn pixel(axis: &Axis, value: f64) -> f64 {
+    axis.pixel(axis.scale.place(value))
+}
+
+fn draw_grid(canvas: &mut Canvas, place: &Place, layout: &Layout) {
+    let (left, right) = layout.abscissa.pixels;
+    let (bottom, top) = place.ordinate.pixels;
+    let level = |tick: &Tick| {
+        let y = place.ordinate.pixel(tick.place);
+        ((left, y), (right, y))
+    };
+    let upright = |tick: &Tick| {
+        let x = layout.abscissa.pixel(tick.place);
+        ((x, bottom), (x, top))
+    };
+    let lines = place.ticks.iter().map(level);
+    let lines: Vec<_> = lines.chain(layout.abscissa_ticks.iter().map(upright)).collect();
+    canvas.segments(&lines, GRID);
+}
+
+fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
+    let (left, right) = layout.abscissa.pixels;
+    let mut lines: Vec<(f64, &str)> = panel
+        .references
+        .iter()
+        .filter(|reference| is_drawable(reference.value))
+        .map(|reference| (pixel(&place.ordinate, reference.value / place.quantity.scale), &*reference.label))
+        .filter(|(y, _)| y.is_finite())
+        .collect();
+    lines.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut free_from = f64::NEG_INFINITY;
+    for (y, label) in lines {
+        canvas.segments(&[((left, y), (right, y))], REFERENCE);
+        // Labels of lines close together are moved down, one below the other.
+        let base = (y + 0.35 * TICK_SIZE).max(free_from);
+        free_from = base + TICK_SIZE + 2.0;
+        canvas.text(Text {
+            text: &reference_label(label),
+            at: (right + 6.0, base),
+            size: TICK_SIZE,
+            anchor: Anchor::Start,
+            bold: false,
+        });
+    }
+}
+
+/// The frame with its ticks pointing inwards.
+fn draw_frame(canvas: &mut Canvas, place: &Place, layout: &Layout) {
+    let (left, right) = layout.abscissa.pixels;
+    let (bottom, top) = place.ordinate.pixels;
+    let corners = vec![(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+    canvas.lines(&[corners], FRAME);
+    let length = 5.0;
+    let across = place.ticks.iter().map(|tick| {
+        let y = place.ordinate.pixel(tick.place);
+        ((left, y), (left + length, y))
+    });
+    let up = layout.abscissa_ticks.iter().map(|tick| {
+        let x = layout.abscissa.pixel(tick.place);
+        ((x, bottom), (x, bottom - length))
+    });
+    let mut marks: Vec<_> = across.chain(up).collect();
+    marks.extend(minor_marks(&place.ordinate).map(|y| ((left, y), (left + 3.0, y))));
+    marks.extend(minor_marks(&layout.abscissa).map(|x| ((x, bottom), (x, bottom - 3.0))));
+    canvas.segments(&marks, FRAME);
+}
+
+/// The pixels of 2 to 9 times each power of ten, if there is room for them.
+fn minor_marks(axis: &Axis) -> impl Iterator<Item = f64> {
+    let (low, high) = (axis.range.low, axis.range.high);
+    let (start, end) = axis.pixels;
+    let roomy = (end - start).abs() / (high - low) > 40.0;
+    let decades = match axis.scale {
+        Scale::Logarithmic if roomy => low.floor() as i32..high.ceil() as i32,
+        _ => 0..0,
+    };
+    let axis = *axis;
+    decades
+        .flat_map(|decade| (2..10).map(move |m| f64::from(m).log10() + f64::from(decade)))
+        .filter(move |place| (low..=high).contains(place))
+        .map(move |place| axis.pixel(place))
+}
+
+fn draw_text(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Layout) {
+    let (left, right) = layout.abscissa.pixels;
+    let (bottom, top) = place.ordinate.pixels;
+    for tick in &place.ticks {
+        canvas.text(Text {
+            text: &tick.label,
+            at: (left - 7.0, place.ordinate.pixel(tick.place) + 0.35 * TICK_SIZE),
+            size: TICK_SIZE,
+            anchor: Anchor::End,
+            bold: false,
+        });
+    }
+    let label = Text {
+        text: &fitted(&place.quantity.label, LABEL_SIZE, bottom - top),
+        at: (19.0, (top + bottom) / 2.0),
+        size: LABEL_SIZE,
+        anchor: Anchor::Middle,
+        bold: false,
+    };
+    canvas.turned_text(label, -90.0);
+    if !panel.title.is_empty() {
+        canvas.text(Text {
+            text: &fitted(&panel.title, TITLE_SIZE, right - left),
+            at: (left, place.title),
+            size: TITLE_SIZE,
+            anchor: Anchor::Start,
+            bold: true,
+        });
+    }
+    draw_legend(canvas, place);
+}
+
+fn draw_legend(canvas: &mut Canvas, place: &Place) {
+    for (index, ((x, y), label)) in place.legend.iter().enumerate() {
+        let middle = y - 0.25 * LEGEND_ROW;
+        let stroke = Stroke {
+            width: 2.0,
+            ..curve(index)
+        };
+        canvas.segments(&[((*x, middle), (x + LEGEND_LINE, middle))], stroke);
+        canvas.text(Text {
+            text: label,
+            at: (x + LEGEND_LINE + 6.0, *y),
+            size: TICK_SIZE,
+            anchor: Anchor::Start,
+            bold: false,
+        });
+    }
+}

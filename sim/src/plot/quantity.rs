@@ -1,0 +1,174 @@
+//! Axis labels with SI prefixes: from the largest magnitude on an axis to the factor its
+//! values are multiplied by and the unit that goes with it.
+
+/// The name of an axis, with the unit its ticks are written in.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Quantity {
+    /// What SI values are divided by.
+    pub scale: f64,
+    /// Name and unit: `x_sp [µm]`.
+    pub label: String,
+}
+
+/// Prefixes by their exponents.
+const PREFIXES: [(i32, &str); 10] = [
+    (-15, "f"),
+    (-12, "p"),
+    (-9, "n"),
+    (-6, "µ"),
+    (-3, "m"),
+    (0, ""),
+    (3, "k"),
+    (6, "M"),
+    (9, "G"),
+    (12, "T"),
+];
+
+/// Units that take a prefix, and whether they take one above 1: nobody writes ks or krad.
+const PREFIXED: [(&str, bool); 10] = [
+    ("m", true),
+    ("N", true),
+    ("J", true),
+    ("W", true),
+    ("Hz", true),
+    ("Pa", true),
+    ("V", true),
+    ("A", true),
+    ("s", false),
+    ("rad", false),
+];
+
+impl Quantity {
+    /// Ticks without a prefix, for logarithmic axes.
+    pub fn plain(name: &str, unit: &str) -> Self {
+        Self {
+            scale: 1.0,
+            label: label(name, &pretty_unit(unit)),
+        }
+    }
+
+    /// Ticks that run to between 1 and 1000, whatever the `largest` magnitude in SI.
+    pub fn scaled(name: &str, unit: &str, largest: f64) -> Self {
+        let exponent = engineering_exponent(largest);
+        let unit = unit.trim();
+        let pretty = pretty_unit(unit);
+        let scale = 10f64.powi(exponent);
+        let unit = match prefix(unit, exponent) {
+            Some(prefix) => format!("{prefix}{pretty}"),
+            None => format!("10{} {pretty}", superscript(exponent)),
+        };
+        Self {
+            scale,
+            label: label(name, unit.trim_end()),
+        }
+    }
+}
+
+fn label(name: &str, unit: &str) -> String {
+    if unit.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{name} [{unit}]")
+    }
+}
+
+/// The multiple of 3 that leaves a magnitude between 1 and 1000; 0 for what is next to none.
+fn engineering_exponent(largest: f64) -> i32 {
+    if !(1e-100..1e100).contains(&largest) {
+        return 0;
+    }
+    let exponent = (largest.log10() / 3.0 + 1e-12).floor();
+    // Between -34 and 34 by the test above.
+    exponent as i32 * 3
+}
+
+/// The prefix before a unit, if the unit can take the one needed.
+fn prefix(unit: &str, exponent: i32) -> Option<&'static str> {
+    if exponent == 0 {
+        return Some("");
+    }
+    let end = unit.find(|c: char| !c.is_alphabetic()).unwrap_or(unit.len());
+    let (symbol, rest) = unit.split_at(end);
+    let (_, above_one) = PREFIXED.iter().find(|(name, _)| *name == symbol)?;
+    if rest.starts_with('^') || (exponent > 0 && !above_one) {
+        return None;
+    }
+    PREFIXES
+        .iter()
+        .find(|(power, _)| *power == exponent)
+        .map(|(_, prefix)| *prefix)
+}
+
+/// `N m/s^2` as `N·m/s²`.
+fn pretty_unit(unit: &str) -> String {
+    let mut pretty = String::new();
+    let mut raised = false;
+    for c in unit.trim().chars() {
+        raised = c == '^' || (raised && (c.is_ascii_digit() || c == '-'));
+        match c {
+            '^' => {}
+            ' ' | '*' => pretty.push('·'),
+            c if raised => pretty.push(raise(c)),
+            c => pretty.push(c),
+        }
+    }
+    if pretty == "1" { String::new() } else { pretty }
+}
+
+/// An integer above the line; nothing for 1, as in 10.
+pub(super) fn superscript(exponent: i32) -> String {
+    exponent.to_string().chars().map(raise).collect()
+}
+
+fn raise(c: char) -> char {
+    match c {
+        '-' => '⁻',
+        '0' => '⁰',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '4' => '⁴',
+        '5' => '⁵',
+        '6' => '⁶',
+        '7' => '⁷',
+        '8' => '⁸',
+        '9' => '⁹',
+        other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prefixes_follow_the_largest_magnitude() {
+        for (unit, largest, scale, label) in [
+            ("m", 3.2e-5, 1e-6, "x_sp [µm]"),
+            ("m", 1.0, 1.0, "x_sp [m]"),
+            ("m", 0.999, 1e-3, "x_sp [mm]"),
+            ("rad", 0.02, 1e-3, "x_sp [mrad]"),
+            ("rad", 2e4, 1e3, "x_sp [10³ rad]"),
+            ("N m", 4.5e3, 1e3, "x_sp [kN·m]"),
+            ("m/s^2", 1e3, 1e3, "x_sp [km/s²]"),
+            ("m^2", 1e-6, 1e-6, "x_sp [10⁻⁶ m²]"),
+            ("kg", 1e-3, 1e-3, "x_sp [10⁻³ kg]"),
+            ("", 2e-9, 1e-9, "x_sp [10⁻⁹]"),
+            ("1", 2.0, 1.0, "x_sp"),
+            ("1/s", 2.0, 1.0, "x_sp [1/s]"),
+            ("W", 1e-40, 1e-42, "x_sp [10⁻⁴² W]"),
+            ("m", 0.0, 1.0, "x_sp [m]"),
+        ] {
+            let quantity = Quantity::scaled("x_sp", unit, largest);
+            assert_eq!(quantity.label, label, "{largest} {unit}");
+            // One rounding in 10^n and one in the literal.
+            assert!((quantity.scale / scale - 1.0).abs() < 1e-14, "{largest} {unit}");
+        }
+    }
+
+    #[test]
+    fn a_plain_quantity_keeps_its_unit() {
+        assert_eq!(Quantity::plain("S", "m^2/Hz").label, "S [m²/Hz]");
+        assert_eq!(Quantity::plain("S", "s^-1").label, "S [s⁻¹]");
+    }
+}

@@ -1,0 +1,112 @@
+//! Names as a reader of the paper expects them: `theta_s_dot` as a dotted Greek letter with
+//! a subscript. Only the parts of the name; SVG and HTML are written elsewhere.
+
+/// The parts of a name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Symbol {
+    /// The letter or word, with the dots of a rate or an acceleration.
+    pub head: String,
+    /// What stands below the line, or nothing.
+    pub subscript: String,
+}
+
+const GREEK: [(&str, &str); 24] = [
+    ("alpha", "α"),
+    ("beta", "β"),
+    ("gamma", "γ"),
+    ("delta", "δ"),
+    ("epsilon", "ε"),
+    ("zeta", "ζ"),
+    ("eta", "η"),
+    ("theta", "θ"),
+    ("kappa", "κ"),
+    ("lambda", "λ"),
+    ("mu", "μ"),
+    ("nu", "ν"),
+    ("xi", "ξ"),
+    ("pi", "π"),
+    ("rho", "ρ"),
+    ("sigma", "σ"),
+    ("tau", "τ"),
+    ("phi", "φ"),
+    ("chi", "χ"),
+    ("psi", "ψ"),
+    ("omega", "ω"),
+    ("Omega", "Ω"),
+    ("dtheta", "Δθ"),
+    ("betal", "βl"),
+];
+
+const DOT_ABOVE: char = '\u{307}';
+const TWO_DOTS_ABOVE: char = '\u{308}';
+
+impl Symbol {
+    /// The parts of an identifier: what follows the first underscore is a subscript, with
+    /// commas for further underscores.
+    pub fn parse(name: &str) -> Self {
+        if let Some(stem) = name.strip_suffix("_ddot").filter(|stem| !stem.is_empty()) {
+            return Self::parse(stem).marked(TWO_DOTS_ABOVE);
+        }
+        if let Some(stem) = name.strip_suffix("_dot").filter(|stem| !stem.is_empty()) {
+            return Self::parse(stem).marked(DOT_ABOVE);
+        }
+        let (head, subscript) = match name.split_once('_') {
+            Some((head, rest)) if !head.is_empty() && !rest.is_empty() => (head, rest),
+            _ => (name, ""),
+        };
+        Self {
+            head: letter(head).to_owned(),
+            subscript: subscript.replace('_', ","),
+        }
+    }
+
+    /// With one dot above.
+    pub fn rate(self) -> Self {
+        self.marked(DOT_ABOVE)
+    }
+
+    /// With two dots above.
+    pub fn acceleration(self) -> Self {
+        self.marked(TWO_DOTS_ABOVE)
+    }
+
+    fn marked(mut self, mark: char) -> Self {
+        self.head.push(mark);
+        self
+    }
+}
+
+fn letter(head: &str) -> &str {
+    GREEK
+        .iter()
+        .find(|(name, _)| *name == head)
+        .map_or(head, |(_, letter)| letter)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parts(name: &str) -> (String, String) {
+        let Symbol { head, subscript } = Symbol::parse(name);
+        (head, subscript)
+    }
+
+    #[test]
+    fn names_fall_into_head_and_subscript() {
+        for (name, head, subscript) in [
+            ("t", "t", ""),
+            ("x_sp", "x", "sp"),
+            ("theta_s", "θ", "s"),
+            ("b_m_1", "b", "m,1"),
+            ("x_c_dot", "x\u{307}", "c"),
+            ("q_1_ddot", "q\u{308}", "1"),
+            ("_x", "_x", ""),
+            ("x_", "x_", ""),
+            ("_dot", "_dot", ""),
+            ("", "", ""),
+        ] {
+            assert_eq!(parts(name), (head.to_owned(), subscript.to_owned()), "{name}");
+        }
+    }
+}

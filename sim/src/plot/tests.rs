@@ -1,0 +1,225 @@
+//! Whole figures: well-formed, small, and labelled as they should be.
+
+use roxmltree::{Document, Node};
+
+use super::*;
+
+const SAMPLES: usize = 100_000;
+
+fn times() -> Vec<f64> {
+    (0..SAMPLES).map(|i| 2.0 * i as f64 / (SAMPLES - 1) as f64).collect()
+}
+
+fn noisy(times: &[f64], amplitude: f64) -> Vec<f64> {
+    times.iter().map(|t| amplitude * ((31.4 * t).sin() + (9e4 * t).sin())).collect()
+}
+
+fn series<'a>(label: &str, abscissa: &'a [f64], values: &'a [f64]) -> Series<'a> {
+    Series {
+        label: label.to_owned(),
+        abscissa,
+        values,
+    }
+}
+
+fn panel<'a>(quantity: &str, unit: &str, series: Vec<Series<'a>>) -> Panel<'a> {
+    Panel {
+        title: String::new(),
+        quantity: quantity.to_owned(),
+        unit: unit.to_owned(),
+        series,
+        references: Vec::new(),
+    }
+}
+
+fn history(panels: Vec<Panel<'_>>) -> Result<String, PlotError> {
+    time_history(&TimeHistory {
+        title: "test".to_owned(),
+        panels,
+    })
+}
+
+fn text_of(node: Node<'_, '_>) -> String {
+    node.descendants().filter(Node::is_text).filter_map(|n| n.text()).collect()
+}
+
+fn texts(document: &Document<'_>) -> Vec<String> {
+    let nodes = document.descendants().filter(|n| n.has_tag_name("text"));
+    nodes.map(text_of).collect()
+}
+
+/// The data of the paths in a colour.
+fn curves<'a>(document: &'a Document<'_>, colour: &str) -> Vec<&'a str> {
+    document
+        .descendants()
+        .filter(|n| n.has_tag_name("path") && n.attribute("stroke") == Some(colour))
+        .filter_map(|n| n.attribute("d"))
+        .collect()
+}
+
+#[test]
+fn many_samples_give_a_small_well_formed_figure() -> Result<(), Box<dyn std::error::Error>> {
+    let t = times();
+    let values = noisy(&t, 2e-5);
+    for curves_per_panel in [1, 9] {
+        let all = vec![series("run", &t, &values); curves_per_panel];
+        let svg = history(vec![panel("x_sp", "m", all.clone()), panel("x_pr", "m", all)])?;
+        assert!(svg.len() < 200_000, "{} bytes", svg.len());
+        let document = Document::parse(&svg)?;
+        let points: usize = curves(&document, "#0072b2").iter().map(|d| d.matches(',').count()).sum();
+        assert!(points > 500 && points < 2 * 2 * 4 * 900, "{points} points");
+    }
+    Ok(())
+}
+
+#[test]
+fn labels_have_prefixes_and_subscripts() -> Result<(), Box<dyn std::error::Error>> {
+    let t = [0.0, 1.0, 2.0];
+    let panels = vec![
+        panel("x_sp", "m", vec![series("", &t, &[0.0, 3e-5, -1e-5])]),
+        panel("theta_c", "rad", vec![series("", &t, &[0.0, 0.02, 0.01])]),
+    ];
+    let svg = history(panels)?;
+    let texts = texts(&Document::parse(&svg)?);
+    for label in ["xsp [µm]", "θc [mrad]", "t [s]", "−10", "30"] {
+        assert!(texts.iter().any(|text| text == label), "{label} is not in {texts:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn samples_that_are_not_finite_leave_gaps() -> Result<(), Box<dyn std::error::Error>> {
+    let t: Vec<f64> = (0..9).map(f64::from).collect();
+    let mut values = t.clone();
+    values[2] = f64::NAN;
+    values[5] = f64::INFINITY;
+    values[6] = f64::NEG_INFINITY;
+    let svg = history(vec![panel("x", "m", vec![series("", &t, &values)])])?;
+    let document = Document::parse(&svg)?;
+    let curves = curves(&document, "#0072b2");
+    let lines: Vec<usize> = curves
+        .iter()
+        .flat_map(|d| d.split('M').skip(1))
+        .map(|line| line.matches(',').count())
+        .collect();
+    assert_eq!(lines, [2, 2, 2]);
+    Ok(())
+}
+
+#[test]
+fn a_legend_is_drawn_only_if_there_is_a_choice() -> Result<(), Box<dyn std::error::Error>> {
+    let t = [0.0, 1.0];
+    let one = history(vec![panel("x", "m", vec![series("first", &t, &t)])])?;
+    let two = vec![series("first", &t, &t), series("second", &t, &t)];
+    let two = history(vec![panel("x", "m", two)])?;
+    assert!(!one.contains("first"));
+    assert!(two.contains(">first<") && two.contains(">second<"));
+    Ok(())
+}
+
+#[test]
+fn reference_lines_are_dashed_labelled_and_in_the_frame() -> Result<(), Box<dyn std::error::Error>> {
+    let t = [0.0, 1.0];
+    let mut limits = panel("x", "m", vec![series("", &t, &[0.0, 1e-6])]);
+    for (label, value) in [("+b_sp", 25e-6), ("−b_sp", -25e-6), ("nowhere", f64::NAN)] {
+        limits.references.push(Reference {
+            label: label.to_owned(),
+            value,
+        });
+    }
+    let svg = history(vec![limits])?;
+    let document = Document::parse(&svg)?;
+    let texts = texts(&document);
+    let is_written = |text: &str| texts.iter().any(|t| t == text);
+    assert!(is_written("+bsp") && is_written("−bsp") && !is_written("nowhere"));
+    assert!(is_written("20") && is_written("−20"), "{texts:?}");
+    let dashed = document.descendants().filter(|n| n.attribute("stroke-dasharray").is_some());
+    assert_eq!(dashed.count(), 2);
+    Ok(())
+}
+
+#[test]
+fn hostile_text_stays_text() -> Result<(), Box<dyn std::error::Error>> {
+    let t = [0.0, 1.0];
+    let hostile = "</text><script>alert(1)</script> & \" ' \0 \u{1b}";
+    let mut panel = panel(hostile, hostile, vec![series(hostile, &t, &t), series("", &t, &t)]);
+    panel.title = hostile.to_owned();
+    panel.references = vec![Reference {
+        label: hostile.to_owned(),
+        value: 0.5,
+    }];
+    let svg = time_history(&TimeHistory {
+        title: hostile.to_owned(),
+        panels: vec![panel],
+    })?;
+    let document = Document::parse(&svg)?;
+    let allowed = ["svg", "title", "rect", "path", "text", "tspan"];
+    for node in document.descendants().filter(Node::is_element) {
+        assert!(allowed.contains(&node.tag_name().name()), "{node:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_spectrum_leaves_out_what_has_no_logarithm() -> Result<(), Box<dyn std::error::Error>> {
+    let frequencies = [0.0, 1.0, 10.0, 100.0, 1000.0];
+    let densities = [1.0, 1e-8, 1e-10, 0.0, 1e-12];
+    let content = panel("S_x", "m^2/Hz", vec![series("", &frequencies, &densities)]);
+    let svg = spectrum(&Spectrum {
+        title: "test".to_owned(),
+        frequency: FrequencyAxis::Logarithmic,
+        panels: vec![content],
+    })?;
+    let document = Document::parse(&svg)?;
+    let texts = texts(&document);
+    for label in ["Sx [m²/Hz]", "f [Hz]", "10⁻¹⁰", "10²"] {
+        assert!(texts.iter().any(|text| text == label), "{label} is not in {texts:?}");
+    }
+    assert!(!svg.contains("NaN"));
+    let curves = curves(&document, "#0072b2");
+    assert_eq!(curves.concat().matches('M').count(), 2);
+    Ok(())
+}
+
+#[test]
+fn extreme_values_are_drawn_without_overflow() -> Result<(), Box<dyn std::error::Error>> {
+    let t = [0.0, 1.0, 2.0];
+    let cases = [
+        [0.0, 0.0, 0.0],
+        [7.0, 7.0, 7.0],
+        [1.0, 1.0 + 1e-15, 1.0],
+        [-1e99, 1e99, 0.0],
+        [5e-324, 0.0, 1e-310],
+        [f64::MAX, 1.0, f64::MIN],
+    ];
+    for values in cases {
+        let svg = history(vec![panel("x", "m", vec![series("", &t, &values)])])?;
+        Document::parse(&svg)?;
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{values:?}");
+    }
+    let single = history(vec![panel("x", "m", vec![series("", &[3.0], &[1.0])])])?;
+    assert!(single.contains("h0"));
+    Ok(())
+}
+
+#[test]
+fn what_cannot_be_drawn_is_an_error() {
+    let t = [0.0, 1.0];
+    let nothing = [f64::NAN, f64::NAN];
+    let series_of = |abscissa: &'static [f64], values: &'static [f64]| {
+        history(vec![panel("x", "m", vec![series("a", abscissa, values)])])
+    };
+    assert_eq!(history(Vec::new()), Err(PlotError::NoPanels));
+    assert_eq!(history(vec![panel("x", "m", Vec::new())]), Err(PlotError::NoSeries { panel: 0 }));
+    let empty = Err(PlotError::Empty {
+        panel: 0,
+        series: "a".to_owned(),
+    });
+    assert_eq!(series_of(&[], &[]), empty);
+    assert_eq!(history(vec![panel("x", "m", vec![series("a", &t, &nothing)])]), empty);
+    assert!(matches!(series_of(&[0.0], &[0.0, 1.0]), Err(PlotError::Lengths { .. })));
+    for abscissa in [&[0.0, f64::NAN], &[1.0, 0.0]] {
+        let wrong = series_of(abscissa, &[0.0, 1.0]);
+        assert!(matches!(wrong, Err(PlotError::Abscissa { sample: 1, .. })), "{wrong:?}");
+    }
+}

@@ -1,0 +1,54 @@
+//! Solves M(q) q'' = f for the accelerations and tells how far rounding may move them.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::Unfit;
+use crate::reference::evaluation::{Evaluation, Row};
+
+/// The balance of every coordinate: M(q) q'' = f(q, q').
+pub struct Balance {
+    mass: DMatrix<f64>,
+    force: Vec<Row>,
+}
+
+impl Balance {
+    /// A balance of `coordinates` rows with nothing in it.
+    pub fn new(coordinates: usize) -> Self {
+        Self {
+            mass: DMatrix::zeros(coordinates, coordinates),
+            force: vec![Row::new(); coordinates],
+        }
+    }
+
+    /// Adds `value` to the mass matrix at `(row, column)` and at its mirror image.
+    pub fn mass(&mut self, row: usize, column: usize, value: f64) {
+        self.mass[(row, column)] += value;
+        if row != column {
+            self.mass[(column, row)] += value;
+        }
+    }
+
+    /// Adds a term to the force of `row`.
+    pub fn force(&mut self, row: usize, term: f64) {
+        if let Some(force) = self.force.get_mut(row) {
+            force.add(term);
+        }
+    }
+
+    /// The accelerations q''. The scale of row i is that of
+    /// |M^-1| (largest term of f + |M| |q''|), the componentwise bound for the rounding
+    /// of a solve (Higham, "Accuracy and Stability of Numerical Algorithms", chapter 7).
+    pub fn solve(self) -> Result<Evaluation, Unfit> {
+        let force = DVector::from_iterator(self.force.len(), self.force.iter().map(Row::sum));
+        let inverse = self.mass.clone().try_inverse().ok_or(Unfit::Mass)?;
+        let accelerations = self.mass.clone().lu().solve(&force).ok_or(Unfit::Mass)?;
+        let largest = self.force.iter().map(Row::largest);
+        let terms = DVector::from_iterator(self.force.len(), largest)
+            + self.mass.abs() * accelerations.abs();
+        let scales = inverse.abs() * terms;
+        Ok(Evaluation {
+            accelerations: accelerations.iter().copied().collect(),
+            scales: scales.iter().copied().collect(),
+        })
+    }
+}

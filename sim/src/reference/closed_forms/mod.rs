@@ -1,0 +1,96 @@
+//! Closed forms of other machines, written by hand from textbooks: mass matrix and
+//! forces of each, in the coordinates and with the parameter names of the specification
+//! of the same name.
+//!
+//! One file per machine. [`find`] gives the closed form that belongs to a model's name;
+//! a parameter that a machine may lack (a damping, an inertia) counts as 0 where it is
+//! missing.
+
+mod balance;
+mod cart_two_arms;
+mod double_pendulum;
+mod emps;
+mod furuta_pendulum;
+mod hub_beam_tip_mass;
+mod pendulum;
+
+use std::fmt;
+
+use super::evaluation::Evaluation;
+
+/// Where a closed form is evaluated.
+pub struct Situation<'a> {
+    /// Parameters by name, SI.
+    pub parameter: &'a dyn Fn(&str) -> Option<f64>,
+    /// Inputs by name, SI; an input without a value is 0.
+    pub input: &'a dyn Fn(&str) -> Option<f64>,
+    /// The truncation order of the flexible field, 0 without one.
+    pub order: usize,
+    /// The coordinates in the specification's order, the modes, then the rates of all.
+    pub state: &'a [f64],
+}
+
+/// Accelerations of a machine, in the order of its coordinates, with row scales.
+pub type ClosedForm = fn(&Situation<'_>) -> Result<Evaluation, Unfit>;
+
+/// Why a closed form has no value in a situation.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unfit {
+    /// A parameter that every such machine has is not there.
+    Parameter(&'static str),
+    /// The state has not this many entries.
+    State(usize),
+    /// The mass matrix is singular.
+    Mass,
+}
+
+impl fmt::Display for Unfit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parameter(name) => write!(f, "the closed form needs the parameter {name}"),
+            Self::State(entries) => write!(f, "the closed form needs a state of {entries} entries"),
+            Self::Mass => write!(f, "the closed form's mass matrix is singular"),
+        }
+    }
+}
+
+impl std::error::Error for Unfit {}
+
+/// The closed form that belongs to the model called `name`.
+pub fn find(name: &str) -> Option<ClosedForm> {
+    match name {
+        "cart_two_arms" => Some(cart_two_arms::accelerations),
+        "double_pendulum" => Some(double_pendulum::accelerations),
+        "emps" => Some(emps::accelerations),
+        "furuta_pendulum" => Some(furuta_pendulum::accelerations),
+        "hub_beam_tip_mass" => Some(hub_beam_tip_mass::accelerations),
+        "pendulum" => Some(pendulum::accelerations),
+        _ => None,
+    }
+}
+
+impl Situation<'_> {
+    /// A parameter every such machine has.
+    fn required(&self, name: &'static str) -> Result<f64, Unfit> {
+        (self.parameter)(name).ok_or(Unfit::Parameter(name))
+    }
+
+    /// A parameter that counts as 0 where the machine lacks it.
+    fn optional(&self, name: &str) -> f64 {
+        (self.parameter)(name).unwrap_or(0.0)
+    }
+
+    /// An input, 0 without a value.
+    fn input(&self, name: &str) -> f64 {
+        (self.input)(name).unwrap_or(0.0)
+    }
+
+    /// Coordinates and rates of a machine with `N` coordinates and no field.
+    fn motion<const N: usize>(&self) -> Result<([f64; N], [f64; N]), Unfit> {
+        let (position, rate) = self.state.split_at(self.state.len() / 2);
+        match (position.try_into(), rate.try_into()) {
+            (Ok(position), Ok(rate)) => Ok((position, rate)),
+            _ => Err(Unfit::State(2 * N)),
+        }
+    }
+}

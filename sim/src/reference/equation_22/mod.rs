@@ -1,0 +1,11 @@
+//! The flexible arm: Eq. (22), assembled by hand for any truncation order S.
+//!
+//! [`coefficients`] computes a_01 .. a_78 under the paper's names and evaluates the
+//! equations with the scale of each row; [`rates`] is the same in dimensionless form
+//! with everything prepared once, without allocation, as a simulation would use it.
+
+pub mod coefficients;
+pub mod rates;
+
+pub use coefficients::{Coefficients, ModeRow};
+pub use rates::Equation22;

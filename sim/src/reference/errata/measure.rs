@@ -1,0 +1,122 @@
+//! Reads the coefficients of a right-hand side off its values at chosen states.
+//!
+//! Inside a regime of the meshes the accelerations are linear in the state; half the
+//! difference between a state and its mirror image gives a column of coefficients
+//! without the constant terms.
+
+use crate::reference::parameters::PlanetaryArmParameters;
+
+/// A derived right-hand side: the accelerations at (parameters, order, t, state).
+pub type Derived<'a> = dyn Fn(&PlanetaryArmParameters, usize, f64, &[f64]) -> Vec<f64> + 'a;
+
+/// How far a mesh is pressed beyond its dead band, m: its spring force then is of the
+/// order of its damping force at 1 m/s.
+const PRESS: f64 = 1e-6;
+
+/// What all accelerations gain from one unit of one quantity.
+#[derive(Clone, Debug)]
+pub struct Response(Vec<f64>);
+
+impl Response {
+    /// The entry for the acceleration of coordinate `row`, not a number if the derived
+    /// model returned too few.
+    pub fn at(&self, row: usize) -> f64 {
+        self.0.get(row).copied().unwrap_or(f64::NAN)
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        Self(self.0.iter().zip(&other.0).map(|(a, b)| a - b).collect())
+    }
+}
+
+/// The responses of a model of one order.
+#[derive(Clone, Debug)]
+pub struct Responses {
+    /// At rest, meshes open, t = 0.
+    pub constant: Response,
+    /// What a quarter of the motor's period adds to `constant`.
+    pub fluctuation: Response,
+    /// By x_sp', x_pr', x_c' with both meshes open, 1/s.
+    pub rate: [Response; 3],
+    /// By f_k(x_sp) and f_k(x_pr), 1/s^2.
+    pub spring: [Response; 2],
+    /// By f_c(x_sp) and f_c(x_pr), 1/s.
+    pub damping: [Response; 2],
+    /// By q_1 .. q_S with both meshes open, 1/s^2.
+    pub modes: Vec<Response>,
+    /// By x_sp with both meshes open, 1/s^2.
+    pub inside_dead_band: Response,
+}
+
+impl Responses {
+    /// Measures `derived` at `order`.
+    pub fn of(derived: &Derived<'_>, parameters: &PlanetaryArmParameters, order: usize) -> Self {
+        let probe = Probe {
+            derived,
+            parameters,
+            order,
+        };
+        let rate = |coordinate| probe.slope(&[(probe.rate_of(coordinate), 1.0)], 1.0, &[]);
+        let pressed = [parameters.b_sp + PRESS, parameters.b_pr + PRESS];
+        let quarter = std::f64::consts::FRAC_PI_2 / parameters.omega;
+        let constant = probe.at(0.0, &[]);
+        Self {
+            fluctuation: probe.at(quarter, &[]).minus(&constant),
+            constant,
+            rate: [0, 1, 2].map(rate),
+            spring: [0, 1].map(|mesh| probe.slope(&[(mesh, pressed[mesh])], PRESS, &[])),
+            damping: [0, 1].map(|mesh| {
+                let moving = [(probe.rate_of(mesh), 1.0)];
+                probe
+                    .slope(&moving, 1.0, &[(mesh, pressed[mesh])])
+                    .minus(&rate(mesh))
+            }),
+            modes: (0..order)
+                .map(|i| probe.slope(&[(3 + i, 1e-3)], 1e-3, &[]))
+                .collect(),
+            inside_dead_band: {
+                let inside = 0.5 * parameters.b_sp;
+                probe.slope(&[(0, inside)], inside, &[])
+            },
+        }
+    }
+}
+
+/// Evaluates the derived model at states given by their entries that are not zero.
+struct Probe<'a> {
+    derived: &'a Derived<'a>,
+    parameters: &'a PlanetaryArmParameters,
+    order: usize,
+}
+
+impl Probe<'_> {
+    /// The index of a coordinate's rate in the state.
+    fn rate_of(&self, coordinate: usize) -> usize {
+        3 + self.order + coordinate
+    }
+
+    fn at(&self, t: f64, entries: &[(usize, f64)]) -> Response {
+        let mut state = vec![0.0; 2 * (3 + self.order)];
+        for (index, value) in entries {
+            state[*index] = *value;
+        }
+        Response((self.derived)(self.parameters, self.order, t, &state))
+    }
+
+    /// Half the difference between `entries` and their negatives, per `unit`, with
+    /// `held` the same on both sides.
+    fn slope(&self, entries: &[(usize, f64)], unit: f64, held: &[(usize, f64)]) -> Response {
+        let with = |sign: f64| {
+            let signed = entries.iter().map(|(index, value)| (*index, sign * value));
+            self.at(0.0, &signed.chain(held.iter().copied()).collect::<Vec<_>>())
+        };
+        let difference = with(1.0).minus(&with(-1.0));
+        Response(
+            difference
+                .0
+                .iter()
+                .map(|value| value / (2.0 * unit))
+                .collect(),
+        )
+    }
+}

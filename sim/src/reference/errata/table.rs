@@ -1,0 +1,154 @@
+//! The table of errata: outcomes and how they are shown.
+
+use std::fmt;
+
+use crate::reference::evaluation::relative;
+
+/// A derived value agrees with a stated one up to this deviation: rounding of the
+/// differences of accelerations, a few hundred operations at 1e-16.
+const AGREEMENT: f64 = 1e-11;
+
+/// Beyond this deviation two values differ: far above rounding, and below the smallest
+/// misprint (beta_4 of Eq. (18), 3e-6).
+const DIFFERENCE: f64 = 1e-6;
+
+/// A statement of the paper, or its correction, with its value at the table's parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stated {
+    /// The formula in ASCII.
+    pub text: String,
+    /// Its value, SI.
+    pub value: f64,
+}
+
+/// One row: what is stated and what the derived model gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ErratumOutcome {
+    /// Where it stands and which quantity is compared.
+    pub place: String,
+    /// What the paper prints, if that is wrong; `None` where it is correct as printed.
+    pub printed: Option<Stated>,
+    /// What is consistent with the energies.
+    pub corrected: Stated,
+    /// What the derived model gives.
+    pub derived: f64,
+    /// |derived - corrected| relative to the larger of the stated magnitudes.
+    pub deviation_from_corrected: f64,
+    /// |derived - printed| likewise, where the printed one is wrong.
+    pub deviation_from_printed: Option<f64>,
+}
+
+impl ErratumOutcome {
+    /// The derived value is the corrected one up to rounding.
+    pub fn agrees_with_corrected(&self) -> bool {
+        self.deviation_from_corrected <= AGREEMENT
+    }
+
+    /// The derived value is not the printed one; true where nothing wrong is printed.
+    pub fn differs_from_printed(&self) -> bool {
+        self.deviation_from_printed
+            .is_none_or(|deviation| deviation > DIFFERENCE)
+    }
+
+    /// Both as they must be.
+    pub fn passed(&self) -> bool {
+        self.agrees_with_corrected() && self.differs_from_printed()
+    }
+}
+
+/// All rows in the order of the paper.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ErrataTable {
+    /// The rows.
+    pub rows: Vec<ErratumOutcome>,
+}
+
+impl ErrataTable {
+    /// Every row agrees with the correction and differs from what is misprinted.
+    pub fn passed(&self) -> bool {
+        self.rows.iter().all(ErratumOutcome::passed)
+    }
+
+    /// Adds a row whose printed statement is wrong.
+    pub(super) fn misprint(
+        &mut self,
+        place: impl Into<String>,
+        (printed_text, printed): (&str, f64),
+        (corrected_text, corrected): (&str, f64),
+        derived: f64,
+    ) {
+        let scale = printed.abs().max(corrected.abs());
+        self.rows.push(ErratumOutcome {
+            place: place.into(),
+            printed: Some(Stated {
+                text: printed_text.to_owned(),
+                value: printed,
+            }),
+            corrected: Stated {
+                text: corrected_text.to_owned(),
+                value: corrected,
+            },
+            derived,
+            deviation_from_corrected: relative(derived - corrected, scale),
+            deviation_from_printed: Some(relative(derived - printed, scale)),
+        });
+    }
+
+    /// Adds a row that is correct as printed.
+    pub(super) fn correct(
+        &mut self,
+        place: impl Into<String>,
+        (text, value): (&str, f64),
+        derived: f64,
+    ) {
+        self.rows.push(ErratumOutcome {
+            place: place.into(),
+            printed: None,
+            corrected: Stated {
+                text: text.to_owned(),
+                value,
+            },
+            derived,
+            deviation_from_corrected: relative(derived - value, value.abs()),
+            deviation_from_printed: None,
+        });
+    }
+}
+
+impl fmt::Display for ErrataTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = width(self.rows.iter().map(|row| row.place.as_str()), "where");
+        writeln!(
+            f,
+            "{:4}  {:place$}  {:>13}  {:>13}  {:>13}  {:>8}  {:>8}",
+            "", "where", "printed", "corrected", "derived", "dev.corr", "dev.prin"
+        )?;
+        for row in &self.rows {
+            let verdict = if row.passed() { "ok" } else { "FAIL" };
+            let printed = row.printed.as_ref().map_or_else(
+                || "as corrected".to_owned(),
+                |printed| format!("{:.6e}", printed.value),
+            );
+            let deviation = row
+                .deviation_from_printed
+                .map_or_else(String::new, |deviation| format!("{deviation:.1e}"));
+            writeln!(
+                f,
+                "{verdict:4}  {:place$}  {printed:>13}  {:>13.6e}  {:>13.6e}  {:>8.1e}  {deviation:>8}",
+                row.place, row.corrected.value, row.derived, row.deviation_from_corrected
+            )?;
+            if let Some(printed) = &row.printed {
+                writeln!(f, "      printed   {}", printed.text)?;
+                writeln!(f, "      corrected {}", row.corrected.text)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The width of a column.
+fn width<'a>(entries: impl Iterator<Item = &'a str>, title: &str) -> usize {
+    entries
+        .map(|entry| entry.chars().count())
+        .fold(title.len(), usize::max)
+}

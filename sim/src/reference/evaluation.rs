@@ -1,0 +1,102 @@
+//! The value of a hand-written equation together with the scale of its rounding.
+//!
+//! Two ways of evaluating the same row agree to a few units in the last place of the
+//! largest term they sum, not of the sum itself; every reference therefore reports both.
+
+/// Accelerations in the order of the coordinates, with one scale for each.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Evaluation {
+    /// The accelerations, in the unit of the coordinate per s^2.
+    pub accelerations: Vec<f64>,
+    /// The largest magnitude summed in each row, in the same units.
+    pub scales: Vec<f64>,
+}
+
+impl Evaluation {
+    /// The sums and scales of `rows`.
+    pub fn from_rows(rows: impl IntoIterator<Item = Row>) -> Self {
+        let mut evaluation = Self::default();
+        for row in rows {
+            evaluation.accelerations.push(row.sum);
+            evaluation.scales.push(row.largest);
+        }
+        evaluation
+    }
+
+    /// The largest deviation of `accelerations` from these, relative to each row's
+    /// scale; infinite if the lengths differ or a value is not a number.
+    pub fn deviation(&self, accelerations: &[f64]) -> f64 {
+        if accelerations.len() != self.accelerations.len() {
+            return f64::INFINITY;
+        }
+        let rows = self
+            .accelerations
+            .iter()
+            .zip(&self.scales)
+            .zip(accelerations);
+        rows.map(|((own, scale), other)| relative(own - other, *scale))
+            .fold(0.0, f64::max)
+    }
+}
+
+/// |difference|/scale, 0 for no difference at all, infinite where that is no number.
+pub(crate) fn relative(difference: f64, scale: f64) -> f64 {
+    if difference == 0.0 {
+        return 0.0;
+    }
+    let ratio = (difference / scale).abs();
+    if ratio.is_nan() { f64::INFINITY } else { ratio }
+}
+
+/// One row being summed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Row {
+    sum: f64,
+    largest: f64,
+}
+
+impl Row {
+    /// An empty row.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a term.
+    pub fn add(&mut self, term: f64) {
+        self.sum += term;
+        self.largest = self.largest.max(term.abs());
+    }
+
+    /// The sum of the terms so far.
+    pub fn sum(&self) -> f64 {
+        self.sum
+    }
+
+    /// The largest magnitude among the terms so far.
+    pub fn largest(&self) -> f64 {
+        self.largest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_deviation_is_relative_to_the_largest_term() {
+        let mut row = Row::new();
+        row.add(1e6);
+        row.add(-1e6);
+        row.add(1.0);
+        let evaluation = Evaluation::from_rows([row]);
+        assert_eq!(evaluation.deviation(&[1.0]), 0.0);
+        assert_eq!(evaluation.deviation(&[2.0]), 1e-6);
+    }
+
+    #[test]
+    fn what_is_no_number_never_agrees() {
+        let evaluation = Evaluation::from_rows([Row::new()]);
+        assert_eq!(evaluation.deviation(&[f64::NAN]), f64::INFINITY);
+        assert_eq!(evaluation.deviation(&[]), f64::INFINITY);
+    }
+}

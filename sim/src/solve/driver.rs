@@ -1,0 +1,253 @@
+//! The loop: steps, samples, switches and limits.
+
+use std::collections::VecDeque;
+
+use super::crossing::{approach, over};
+use super::error::SolveError;
+use super::request;
+use super::settings::Settings;
+use super::stepper::{Outcome, Point, Stepper, single_step};
+use super::system::System;
+use super::trajectory::{Switch, Trajectory};
+use super::watch::Watched;
+
+/// The first step, relative to the span; the error estimate corrects it at once.
+const FIRST_STEP: f64 = 1e-6;
+
+/// Over this many switches their rate is averaged.
+const SWITCHES_AVERAGED: usize = 256;
+
+/// Times closer to 0 than this part of the span count as so far from it when a step is
+/// judged too short.
+const SMALLEST_TIME: f64 = 1e-6;
+
+/// Simulates `system` from `initial` over `span` (begin, end; s) and returns the states
+/// at `samples` (s, ascending, inside the span). `progress` is called with the time
+/// after every step.
+///
+/// # Errors
+///
+/// If the request makes no sense, a rate is not finite, or a limit of `settings` is
+/// reached; see [`SolveError`].
+pub fn simulate<S: System + ?Sized>(
+    system: &S,
+    initial: &[f64],
+    span: (f64, f64),
+    samples: &[f64],
+    settings: &Settings,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Trajectory, SolveError> {
+    request::check(system, initial, span, samples, settings)?;
+    let start = Point {
+        t: span.0,
+        y: initial.to_vec(),
+    };
+    let watched = Watched::new(system, start.t, &start.y);
+    let step = FIRST_STEP * (span.1 - span.0);
+    let mut driver = Driver {
+        watched: &watched,
+        stepper: Stepper::new(start, step, settings.tolerance),
+        settings,
+        samples,
+        end: span.1,
+        recent: VecDeque::with_capacity(SWITCHES_AVERAGED),
+        trajectory: Trajectory::default(),
+    };
+    driver.sample_start();
+    while driver.stepper.here().t < driver.end {
+        driver.advance(system)?;
+        progress(driver.stepper.here().t);
+    }
+    Ok(driver.finish())
+}
+
+/// A simulation under way.
+struct Driver<'a, S: System + ?Sized> {
+    watched: &'a Watched<'a, S>,
+    stepper: Stepper,
+    settings: &'a Settings,
+    samples: &'a [f64],
+    end: f64,
+    recent: VecDeque<f64>,
+    trajectory: Trajectory,
+}
+
+impl<S: System + ?Sized> Driver<'_, S> {
+    /// One accepted step, or the way to and over a switching surface.
+    fn advance(&mut self, system: &S) -> Result<(), SolveError> {
+        let start = self.stepper.here().clone();
+        let next = system
+            .next_breakpoint(start.t)
+            .filter(|next| *next > start.t);
+        let until = next.map_or(self.end, |next| next.min(self.end));
+        self.watched.see_until(next.unwrap_or(f64::INFINITY));
+        loop {
+            self.check_step_size()?;
+            let outcome = self.controlled_step(until)?;
+            if self.watched.crossed().is_some() {
+                // Also when the error refused the step: it is the surface that makes it
+                // large, and ever shorter steps would creep towards it.
+                self.stepper.restart(start, outcome.length);
+                return self.cross(outcome.length);
+            }
+            if outcome.is_accepted {
+                return self.accept(&start);
+            }
+        }
+    }
+
+    /// Tries a step that ends at `until` at the latest.
+    fn controlled_step(&mut self, until: f64) -> Result<Outcome, SolveError> {
+        self.check_steps()?;
+        self.watched.reset();
+        let outcome = self.stepper.advance(self.watched, until)?;
+        if !outcome.is_accepted {
+            self.trajectory.work.rejected += 1;
+        }
+        Ok(outcome)
+    }
+
+    /// Goes to the surface that may lie within `length` of here, and over it.
+    fn cross(&mut self, length: f64) -> Result<(), SolveError> {
+        let mut window = length;
+        while window > over(length) {
+            let start = self.stepper.here().clone();
+            let found = approach(self.watched, &start, window)?;
+            self.trajectory.work.trials += found.trials;
+            window = found.rest;
+            if found.length > 0.0 {
+                self.stepper.restart(start.clone(), found.length);
+                if !self.controlled_step(f64::INFINITY)?.is_accepted {
+                    // Not the surface alone: shorter steps, and then again.
+                    return Ok(());
+                }
+                self.accept(&start)?;
+            }
+        }
+        self.step_over(window.max(over(length)), length)
+    }
+
+    /// Steps over the surface `window` ahead, wider where rounding hides it, and goes on
+    /// with steps of `length`.
+    fn step_over(&mut self, mut window: f64, length: f64) -> Result<(), SolveError> {
+        let start = self.stepper.here().clone();
+        while window < length {
+            let point = self.trial(&start, window)?;
+            if self.is_beyond(&point) {
+                self.stepper.restart(point, length);
+                return self.accept(&start);
+            }
+            window *= 4.0;
+        }
+        // The surface was touched, by a trial state or by the motion, and not crossed.
+        self.stepper.restart(start, 0.5 * length);
+        Ok(())
+    }
+
+    /// Whether a point lies beyond a surface of the present regime.
+    fn is_beyond(&self, point: &Point) -> bool {
+        let guards = self.watched.guards_at(point.t, &point.y);
+        (guards.iter().enumerate()).any(|(guard, value)| self.watched.is_beyond(guard, *value))
+    }
+
+    /// The point a step of exactly `length` s leads to.
+    fn trial(&mut self, start: &Point, length: f64) -> Result<Point, SolveError> {
+        self.check_steps()?;
+        self.trajectory.work.trials += 1;
+        self.watched.reset();
+        single_step(self.watched, start, length)
+    }
+
+    /// Samples between `start` and here, and enters the regime found here.
+    fn accept(&mut self, start: &Point) -> Result<(), SolveError> {
+        let here = self.stepper.here();
+        if let Some(state) = here.y.iter().position(|y| !y.is_finite()) {
+            return Err(SolveError::NotFinite { t: start.t, state });
+        }
+        self.trajectory.work.steps += 1;
+        let t = here.t;
+        while let Some(&sample) = self.samples.get(self.trajectory.times.len()) {
+            if sample > t {
+                break;
+            }
+            let state = if sample < t {
+                self.trial(start, sample - start.t)?.y
+            } else {
+                self.stepper.here().y.clone()
+            };
+            self.trajectory.times.push(sample);
+            self.trajectory.states.push(state);
+        }
+        self.enter_regime()
+    }
+
+    /// Takes note of the switching functions that changed sign.
+    fn enter_regime(&mut self) -> Result<(), SolveError> {
+        let here = self.stepper.here();
+        let t = here.t;
+        for guard in self.watched.enter(t, &here.y) {
+            let to_positive = self.watched.is_positive(guard);
+            self.trajectory.switches.push(Switch {
+                t,
+                guard,
+                to_positive,
+            });
+            self.check_switch_rate(t, guard)?;
+        }
+        Ok(())
+    }
+}
+
+/// Limits, samples at the start and the end.
+impl<S: System + ?Sized> Driver<'_, S> {
+    /// Whether the next step would still move the time; if not, what the last trial ran
+    /// into says why.
+    fn check_step_size(&self) -> Result<(), SolveError> {
+        let (t, step) = (self.stepper.here().t, self.stepper.step());
+        if step > f64::EPSILON * t.abs().max(SMALLEST_TIME * self.end.abs()) {
+            return Ok(());
+        }
+        Err(match (self.watched.crossed(), self.watched.not_finite()) {
+            (_, Some(state)) => SolveError::NotFinite { t, state },
+            (Some(guard), None) => SolveError::Caught { t, guard },
+            (None, None) => SolveError::StepTooSmall { t, step },
+        })
+    }
+
+    fn check_switch_rate(&mut self, t: f64, guard: usize) -> Result<(), SolveError> {
+        let rate = self.settings.max_switch_rate;
+        self.recent.push_back(t);
+        if self.recent.len() < SWITCHES_AVERAGED {
+            return Ok(());
+        }
+        let first = self.recent.pop_front().unwrap_or(t);
+        if (t - first) * rate < SWITCHES_AVERAGED as f64 {
+            return Err(SolveError::TooManySwitches { t, guard, rate });
+        }
+        Ok(())
+    }
+
+    fn check_steps(&self) -> Result<(), SolveError> {
+        let work = &self.trajectory.work;
+        if work.steps + work.rejected + work.trials < self.settings.max_steps {
+            return Ok(());
+        }
+        let (t, steps) = (self.stepper.here().t, self.settings.max_steps);
+        Err(SolveError::TooManySteps { t, steps })
+    }
+
+    fn sample_start(&mut self) {
+        let start = self.stepper.here();
+        for sample in self.samples.iter().take_while(|sample| **sample <= start.t) {
+            self.trajectory.times.push(*sample);
+            self.trajectory.states.push(start.y.clone());
+        }
+    }
+
+    fn finish(self) -> Trajectory {
+        let mut trajectory = self.trajectory;
+        trajectory.last = self.stepper.here().y.clone();
+        trajectory.work.evaluations = self.watched.evaluations();
+        trajectory
+    }
+}

@@ -1,0 +1,57 @@
+//! Whether what is asked of the solver makes sense.
+
+use super::error::SolveError;
+use super::settings::{LOOSEST_TOLERANCE, Settings, TIGHTEST_TOLERANCE};
+use super::system::System;
+
+/// Refuses a request that makes no sense: lengths, order, range, rates at the start.
+pub fn check<S: System + ?Sized>(
+    system: &S,
+    initial: &[f64],
+    (begin, end): (f64, f64),
+    samples: &[f64],
+    settings: &Settings,
+) -> Result<(), SolveError> {
+    let refuse = |problem: String| Err(SolveError::Request { problem });
+    if initial.is_empty() || initial.len() != system.states() {
+        return refuse(format!(
+            "the initial state has {} entries where the system has {}",
+            initial.len(),
+            system.states()
+        ));
+    }
+    if let Some(index) = initial.iter().position(|y| !y.is_finite()) {
+        return refuse(format!(
+            "entry {index} of the initial state is not a finite number"
+        ));
+    }
+    if !(begin.is_finite() && end.is_finite() && begin < end) {
+        return refuse(format!(
+            "the end of the simulation, {end} s, must lie after {begin} s"
+        ));
+    }
+    let ascending = samples.windows(2).all(|pair| pair[0] <= pair[1]);
+    let inside = samples.iter().all(|sample| (begin..=end).contains(sample));
+    if !(ascending && inside) {
+        return refuse(format!(
+            "sample times must ascend from {begin} s to at most {end} s"
+        ));
+    }
+    if !(TIGHTEST_TOLERANCE..=LOOSEST_TOLERANCE).contains(&settings.tolerance) {
+        return refuse(format!(
+            "the tolerance {} must lie between {TIGHTEST_TOLERANCE:e} and {LOOSEST_TOLERANCE}",
+            settings.tolerance
+        ));
+    }
+    check_rates(system, begin, initial)
+}
+
+/// The rates at the start are finite.
+fn check_rates<S: System + ?Sized>(system: &S, t: f64, y: &[f64]) -> Result<(), SolveError> {
+    let mut rates = vec![0.0; system.states()];
+    system.rates(t, y, &mut rates);
+    match rates.iter().position(|rate| !rate.is_finite()) {
+        Some(state) => Err(SolveError::NotFinite { t, state }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,43 @@
+//! How accurate, and how long to try.
+
+/// What a component that has not moved yet counts as, in its own unit.
+pub const SMALLEST_MAGNITUDE: f64 = 1e-9;
+
+/// The tightest tolerance: below it rounding hides the error estimate.
+pub(super) const TIGHTEST_TOLERANCE: f64 = 1e-14;
+
+/// The loosest tolerance that still means something.
+pub(super) const LOOSEST_TOLERANCE: f64 = 1e-1;
+
+/// Accuracy and limits of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Relative error of one step, 1e-14 to 0.1; see the module's page.
+    pub tolerance: f64,
+    /// Give up after this many steps, rejected ones and those towards a switching
+    /// surface included.
+    pub max_steps: u64,
+    /// Give up when switching surfaces are crossed faster than this, per second of
+    /// simulated time and averaged over a few hundred crossings.
+    pub max_switch_rate: f64,
+}
+
+impl Settings {
+    /// The default limits with `tolerance`.
+    pub fn with_tolerance(tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            ..Self::default()
+        }
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-9,
+            max_steps: 20_000_000,
+            max_switch_rate: 1e6,
+        }
+    }
+}

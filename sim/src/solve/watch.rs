@@ -1,0 +1,129 @@
+//! The right-hand side under watch: counts evaluations and notices when a trial state
+//! lies on another side of a switching surface than the step's start, or when a rate is
+//! not finite.
+
+use std::cell::{Cell, RefCell};
+
+use differential_equations::ode::ODE;
+
+use super::system::System;
+
+/// The side of every switching surface: -1, 1, or 0 where a step begins on it.
+pub type Regime = Vec<f64>;
+
+/// A system, the regime the present step began in and what its trials ran into.
+pub struct Watched<'a, S: System + ?Sized> {
+    system: &'a S,
+    regime: RefCell<Regime>,
+    guards: RefCell<Vec<f64>>,
+    crossed: Cell<Option<usize>>,
+    horizon: Cell<f64>,
+    not_finite: Cell<Option<usize>>,
+    evaluations: Cell<u64>,
+}
+
+impl<'a, S: System + ?Sized> Watched<'a, S> {
+    /// Watches `system`, which starts at `t` and `y`.
+    pub fn new(system: &'a S, t: f64, y: &[f64]) -> Self {
+        let watched = Self {
+            system,
+            regime: RefCell::new(vec![0.0; system.guard_count()]),
+            guards: RefCell::new(vec![0.0; system.guard_count()]),
+            crossed: Cell::new(None),
+            horizon: Cell::new(f64::INFINITY),
+            not_finite: Cell::new(None),
+            evaluations: Cell::new(0),
+        };
+        watched.enter(t, y);
+        watched
+    }
+
+    /// Forgets what earlier trials ran into.
+    pub fn reset(&self) {
+        self.crossed.set(None);
+        self.not_finite.set(None);
+    }
+
+    /// Lets trials see times before `t` only: at a breakpoint the right-hand side may
+    /// jump, and a step that ends there belongs to the time before.
+    pub fn see_until(&self, t: f64) {
+        self.horizon.set(t);
+    }
+
+    /// The switching function whose side a trial since [`Watched::reset`] left.
+    pub fn crossed(&self) -> Option<usize> {
+        self.crossed.get()
+    }
+
+    /// The state variable whose rate was not finite in a trial since the reset.
+    pub fn not_finite(&self) -> Option<usize> {
+        self.not_finite.get()
+    }
+
+    /// Evaluations of the right-hand side so far.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations.get()
+    }
+
+    /// The switching functions at `t` and `y`.
+    pub fn guards_at(&self, t: f64, y: &[f64]) -> Vec<f64> {
+        let mut guards = vec![0.0; self.system.guard_count()];
+        self.system.guards(t, y, &mut guards);
+        guards
+    }
+
+    /// Whether switching function `guard` with value `value` is beyond its surface.
+    pub fn is_beyond(&self, guard: usize, value: f64) -> bool {
+        self.regime
+            .borrow()
+            .get(guard)
+            .is_some_and(|side| side * value < 0.0)
+    }
+
+    /// Makes the regime that of `t` and `y`, and returns the functions that changed
+    /// sign. A function that is exactly 0 keeps the side it came from.
+    pub fn enter(&self, t: f64, y: &[f64]) -> Vec<usize> {
+        let guards = self.guards_at(t, y);
+        let mut regime = self.regime.borrow_mut();
+        let mut changed = Vec::new();
+        for (index, (side, guard)) in regime.iter_mut().zip(guards).enumerate() {
+            if guard == 0.0 || guard.is_nan() {
+                continue;
+            }
+            if *side * guard < 0.0 {
+                changed.push(index);
+            }
+            *side = guard.signum();
+        }
+        changed
+    }
+
+    /// Whether the switching function `guard` is positive in the present regime.
+    pub fn is_positive(&self, guard: usize) -> bool {
+        self.regime
+            .borrow()
+            .get(guard)
+            .is_some_and(|side| *side > 0.0)
+    }
+}
+
+impl<S: System + ?Sized> ODE<f64, Vec<f64>> for Watched<'_, S> {
+    fn diff(&self, t: f64, y: &Vec<f64>, out: &mut Vec<f64>) {
+        let horizon = self.horizon.get();
+        let t = if t < horizon { t } else { horizon.next_down() };
+        self.system.rates(t, y, out);
+        self.evaluations.set(self.evaluations.get() + 1);
+        if let Some(state) = out.iter().position(|rate| !rate.is_finite()) {
+            self.not_finite.set(Some(state));
+        }
+        let mut guards = self.guards.borrow_mut();
+        if guards.is_empty() || self.crossed.get().is_some() {
+            return;
+        }
+        self.system.guards(t, y, &mut guards);
+        let regime = self.regime.borrow();
+        let mut sides = guards.iter().zip(regime.iter());
+        self.crossed
+            .set(sides.position(|(guard, side)| side * guard < 0.0));
+    }
+}

@@ -1,0 +1,273 @@
+//! The emitted Rust, compiled by a compiler found on this machine, against the variant
+//! it was emitted from: the same bits at every state. Without a compiler the check is
+//! skipped and says so; source that does not compile fails it.
+
+use super::super::certificate::{Check, Worst};
+use super::super::compiler::{self, Compiler};
+use super::super::oracle::{Oracle, OracleError};
+use super::super::sampler::{Sample, Sampler};
+use super::super::variant::Variant;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Name of the check.
+const NAME: &str = "emitted_rust";
+/// States compared.
+const STATES: usize = 100;
+/// The seed of the states.
+const SEED: u64 = 0x0e31_77ed;
+
+/// Source text of a variant: a crate on its own with `Parameters`, `Coefficients` and
+/// `Inputs`, and functions of `(t, &state, &inputs, &coefficients)`.
+#[derive(Clone, Debug)]
+pub struct Emitted {
+    /// The text of the crate's root.
+    pub source: String,
+    /// The fields of its `Inputs`, in the order of the model.
+    pub input_fields: Vec<String>,
+    /// The functions to compare.
+    pub functions: Vec<EmittedFunction>,
+}
+
+/// A function of an emitted crate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EmittedFunction {
+    /// `rates`, an array of the state's length.
+    Rates,
+    /// `observables`, an array.
+    Observables,
+    /// `energy`, a number.
+    Energy,
+    /// `power`, a number.
+    Power,
+    /// `guards`, an array.
+    Guards,
+    /// `mass_matrix`, an array of rows.
+    MassMatrix,
+}
+
+impl EmittedFunction {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Rates => "rates",
+            Self::Observables => "observables",
+            Self::Energy => "energy",
+            Self::Power => "power",
+            Self::Guards => "guards",
+            Self::MassMatrix => "mass_matrix",
+        }
+    }
+
+    fn expected(self, variant: &mut dyn Variant, sample: &Sample) -> Result<Vec<f64>, String> {
+        let Sample {
+            time,
+            state,
+            inputs,
+        } = sample;
+        match self {
+            Self::Rates => {
+                let mut rates = vec![f64::NAN; state.len()];
+                variant.rates(*time, state, inputs, &mut rates)?;
+                Ok(rates)
+            }
+            Self::Observables => variant.observables(*time, state, inputs),
+            Self::Energy => Ok(vec![variant.energy(*time, state, inputs)?]),
+            Self::Power => Ok(vec![variant.power(*time, state, inputs)?]),
+            Self::Guards => variant.guards(*time, state, inputs),
+            Self::MassMatrix => {
+                let size = state.len() / 2;
+                let mut mass = vec![f64::NAN; size * size];
+                variant.mass_matrix(*time, state, inputs, &mut mass)?;
+                Ok(mass)
+            }
+        }
+    }
+}
+
+/// Compiles `emitted` and compares it with `variant` at random states. The value is the
+/// number of numbers whose bits differ.
+///
+/// # Errors
+/// [`OracleError`] as from [`Oracle::equations`].
+pub fn check(
+    oracle: &Oracle,
+    variant: &mut dyn Variant,
+    emitted: &Emitted,
+) -> Result<Check, OracleError> {
+    let mut sampler = Sampler::new(oracle, SEED)?;
+    let samples: Vec<Sample> = (0..STATES).map(|_| sampler.draw()).collect();
+    let folder = match tempfile::tempdir() {
+        Ok(folder) => folder,
+        Err(error) => {
+            let reason = format!("no temporary folder: {error}");
+            return Ok(Check::skipped(NAME, 0.0, reason));
+        }
+    };
+    let compiler = match Compiler::find(folder.path()) {
+        Ok(compiler) => compiler,
+        Err(reason) => return Ok(Check::skipped(NAME, 0.0, reason)),
+    };
+    let found = build_and_run(&compiler, folder.path(), emitted, &samples);
+    let worst = match found.and_then(|lines| compare(variant, emitted, &samples, &lines)) {
+        Ok(worst) => worst,
+        Err(message) => Worst::of(f64::INFINITY, message),
+    };
+    Ok(Check::made(NAME, worst, 0.0))
+}
+
+/// What the compiled source prints for `samples`.
+fn build_and_run(
+    compiler: &Compiler,
+    folder: &Path,
+    emitted: &Emitted,
+    samples: &[Sample],
+) -> Result<String, String> {
+    let (library, harness) = (folder.join("model.rs"), folder.join("harness.rs"));
+    compiler::write(&library, &emitted.source)?;
+    compiler::write(&harness, &harness_source(emitted))?;
+    let object = folder.join("libmodel.rlib");
+    let kind = ["--crate-type", "rlib", "--crate-name", "model"];
+    succeed(
+        "the emitted source",
+        compiler.compile(&library, &object, &kind)?,
+    )?;
+    let program = folder.join("harness");
+    let link = format!("model={}", object.display());
+    let linked = compiler.compile(&harness, &program, &["--extern", &link])?;
+    succeed("the harness", linked)?;
+    let output = compiler::execute(&program, &table(samples))?;
+    succeed("the compiled model", output)
+}
+
+fn succeed(what: &str, output: compiler::Output) -> Result<String, String> {
+    if output.success {
+        Ok(output.stdout)
+    } else {
+        Err(format!(
+            "{what} failed: {}",
+            compiler::first_line(&output.stderr)
+        ))
+    }
+}
+
+/// One line of bits for each state: time, state, inputs.
+fn table(samples: &[Sample]) -> String {
+    let mut table = String::new();
+    for sample in samples {
+        let numbers = [&[sample.time][..], &sample.state, &sample.inputs].concat();
+        table += &line(&numbers);
+        table.push('\n');
+    }
+    table
+}
+
+fn line(numbers: &[f64]) -> String {
+    let words: Vec<String> = numbers
+        .iter()
+        .map(|number| format!("{:016x}", number.to_bits()))
+        .collect();
+    words.join(" ")
+}
+
+/// A program that reads such lines and prints one line for each function and state.
+fn harness_source(emitted: &Emitted) -> String {
+    let mut inputs = String::new();
+    for field in &emitted.input_fields {
+        // Writing to a string cannot fail.
+        let _ = writeln!(inputs, "        inputs.{field} = numbers.next().unwrap();");
+    }
+    let mut calls = String::new();
+    for function in &emitted.functions {
+        let name = function.name();
+        let _ = writeln!(
+            calls,
+            "        model::{name}(t, &state, &inputs, &coefficients).print();"
+        );
+    }
+    HARNESS
+        .replace("        // inputs\n", &inputs)
+        .replace("        // calls\n", &calls)
+}
+
+const HARNESS: &str = r#"#![allow(unused_mut, unused_variables)]
+trait Print {
+    fn print(&self);
+}
+
+impl Print for f64 {
+    fn print(&self) {
+        println!("{:016x}", self.to_bits());
+    }
+}
+
+impl<const N: usize> Print for [f64; N] {
+    fn print(&self) {
+        let words: Vec<String> = self.iter().map(|x| format!("{:016x}", x.to_bits())).collect();
+        println!("{}", words.join(" "));
+    }
+}
+
+impl<const N: usize, const M: usize> Print for [[f64; N]; M] {
+    fn print(&self) {
+        let words = self.as_flattened().iter().map(|x| format!("{:016x}", x.to_bits()));
+        println!("{}", words.collect::<Vec<String>>().join(" "));
+    }
+}
+
+fn main() {
+    let coefficients = model::Coefficients::prepare(&model::Parameters::default());
+    for line in std::io::stdin().lines() {
+        let line = line.unwrap();
+        let mut numbers = line
+            .split(' ')
+            .map(|word| f64::from_bits(u64::from_str_radix(word, 16).unwrap()));
+        let t = numbers.next().unwrap();
+        let mut state = [0.0; model::STATES];
+        for entry in &mut state {
+            *entry = numbers.next().unwrap();
+        }
+        let mut inputs = model::Inputs::default();
+        // inputs
+        // calls
+    }
+}
+"#;
+
+/// Counts the numbers of `lines` whose bits are not the variant's.
+fn compare(
+    variant: &mut dyn Variant,
+    emitted: &Emitted,
+    samples: &[Sample],
+    lines: &str,
+) -> Result<Worst, String> {
+    let mut lines = lines.lines();
+    let mut compared = 0;
+    let mut differing = Vec::new();
+    for (count, sample) in samples.iter().enumerate() {
+        for function in &emitted.functions {
+            let numbers = function.expected(variant, sample)?;
+            let expected = line(&numbers);
+            let found = lines.next().ok_or("the compiled model stopped early")?;
+            compared += numbers.len();
+            let wrong = differences(found, &expected);
+            differing.extend(std::iter::repeat_n((function.name(), count), wrong));
+        }
+    }
+    let detail = match differing.first() {
+        None => format!("{compared} numbers at {} states", samples.len()),
+        Some((name, count)) => format!("first in {name} at state {}", count + 1),
+    };
+    Ok(Worst::of(differing.len() as f64, detail))
+}
+
+/// How many words of two lines differ; a missing word differs.
+fn differences(found: &str, expected: &str) -> usize {
+    let (found, expected): (Vec<_>, Vec<_>) =
+        (found.split(' ').collect(), expected.split(' ').collect());
+    let same = found
+        .iter()
+        .zip(&expected)
+        .filter(|(left, right)| left == right)
+        .count();
+    found.len().max(expected.len()) - same
+}

@@ -1,0 +1,72 @@
+//! The checks of a certificate, one file each: [`states`] at random states in every
+//! regime, [`balance`] along a trajectory, [`nesting`] between orders, [`emitted`] for
+//! source text. `certify` runs them all.
+//!
+//! Tolerances: 1e-12 of the largest term summed in a row is what the project promises;
+//! the oracle itself is good to 1e-14 there (S = 128), so the margin is the subject's.
+
+pub mod balance;
+pub mod emitted;
+pub mod nesting;
+pub mod states;
+
+use super::variant::Variant;
+use nalgebra::DMatrix;
+
+/// Deviation from the oracle that passes, relative to the largest term summed in a row.
+pub const ROW_TOLERANCE: f64 = 1e-12;
+/// Deviation of entries of the mass matrix that passes, relative to the geometric mean
+/// of the two diagonal entries: a thousand roundings.
+pub const MASS_TOLERANCE: f64 = 2e-13;
+/// Asymmetry of the mass matrix that passes, relative as above: an entry is a product of
+/// a few factors, which may be formed in another order on the other side.
+pub const SYMMETRY_TOLERANCE: f64 = 1e-15;
+
+/// The accelerations a variant gives, the second half of its rates; the first half must
+/// be the rates of the state, bit for bit.
+fn accelerations(
+    variant: &mut dyn Variant,
+    time: f64,
+    state: &[f64],
+    inputs: &[f64],
+) -> Result<Vec<f64>, String> {
+    let mut rates = vec![f64::NAN; state.len()];
+    variant.rates(time, state, inputs, &mut rates)?;
+    let size = state.len() / 2;
+    if rates.get(..size) != state.get(size..) {
+        return Err("the rates of the coordinates are not those of the state".to_owned());
+    }
+    Ok(rates.split_off(size))
+}
+
+/// The mass matrix a variant gives.
+fn mass_matrix(
+    variant: &mut dyn Variant,
+    time: f64,
+    state: &[f64],
+    inputs: &[f64],
+) -> Result<DMatrix<f64>, String> {
+    let size = state.len() / 2;
+    let mut mass = vec![f64::NAN; size * size];
+    variant.mass_matrix(time, state, inputs, &mut mass)?;
+    Ok(DMatrix::from_row_slice(size, size, &mass))
+}
+
+/// The largest |first - second| relative to the geometric mean of the diagonal entries
+/// of `scale`.
+fn matrix_distance(first: &DMatrix<f64>, second: &DMatrix<f64>, scale: &DMatrix<f64>) -> f64 {
+    let mut worst: f64 = 0.0;
+    for row in 0..first.nrows() {
+        for column in 0..first.ncols() {
+            let mean = (scale[(row, row)] * scale[(column, column)]).sqrt();
+            let difference = (first[(row, column)] - second[(row, column)]).abs();
+            if difference.is_nan() {
+                return f64::INFINITY;
+            }
+            if difference > 0.0 {
+                worst = worst.max(difference / mean);
+            }
+        }
+    }
+    worst
+}

@@ -1,0 +1,139 @@
+//! Nesting: what a variant says with its last modes held at zero is what the variant
+//! without these modes says. Held means zero amplitude and rate; the forces that would
+//! be needed are in the rows left out. With all modes held it is the rigid limit.
+
+use super::super::certificate::{Check, Worst};
+use super::super::oracle::{Oracle, OracleError, Residual};
+use super::super::sampler::{Sample, Sampler};
+use super::super::variant::Variant;
+use super::{MASS_TOLERANCE, ROW_TOLERANCE, accelerations, mass_matrix, matrix_distance};
+use nalgebra::DMatrix;
+
+/// States compared.
+const STATES: usize = 50;
+/// The seed of the states.
+const SEED: u64 = 0x0e57_ed00;
+
+/// Compares mass matrices, velocity terms and forces of two orders of one model.
+/// `oracle` belongs to the smaller order and gives the scale of each row. The checks are
+/// called `name` with `_mass`, `_bias` and `_forces`.
+///
+/// # Errors
+/// [`OracleError`] as from [`Oracle::equations`].
+pub fn check(
+    name: &str,
+    oracle: &Oracle,
+    small: &mut dyn Variant,
+    large: &mut dyn Variant,
+) -> Result<[Check; 3], OracleError> {
+    let mut worst: [Worst; 3] = Default::default();
+    let mut sampler = Sampler::new(oracle, SEED)?;
+    let kept = kept_rows(oracle.names(), &large.coordinate_names());
+    for count in 1..=STATES {
+        let sample = sampler.draw();
+        let place = format!("state {count} of {STATES}");
+        let deviations = compare(oracle, small, large, &kept, &sample)?;
+        for (index, worst) in worst.iter_mut().enumerate() {
+            worst.include(match &deviations {
+                Ok(deviations) => Worst::of(deviations[index], place.clone()),
+                Err(message) => Worst::of(f64::INFINITY, message.clone()),
+            });
+        }
+    }
+    let [mass, bias, forces] = worst;
+    Ok([
+        Check::made(format!("{name}_mass"), mass, MASS_TOLERANCE),
+        Check::made(format!("{name}_bias"), bias, ROW_TOLERANCE),
+        Check::made(format!("{name}_forces"), forces, ROW_TOLERANCE),
+    ])
+}
+
+/// Where each coordinate of the smaller variant stands in the larger one.
+fn kept_rows(small: &[String], large: &[String]) -> Vec<Option<usize>> {
+    let place = |name| large.iter().position(|other| other == name);
+    small.iter().map(place).collect()
+}
+
+/// How far mass matrices, velocity terms and forces are apart at one state.
+fn compare(
+    oracle: &Oracle,
+    small: &mut dyn Variant,
+    large: &mut dyn Variant,
+    kept: &[Option<usize>],
+    sample: &Sample,
+) -> Result<Result<[f64; 3], String>, OracleError> {
+    let equations = oracle.equations(sample.time, &sample.state, &sample.inputs)?;
+    Ok((|| {
+        let kept: Option<Vec<usize>> = kept.iter().copied().collect();
+        let kept = kept.ok_or("a coordinate of the smaller order is missing")?;
+        let embedded = Sample {
+            state: embed(&sample.state, &kept, large.coordinate_names().len()),
+            ..sample.clone()
+        };
+        let own = sides(small, sample)?;
+        let other = sides(large, &embedded)?.restricted(&kept);
+        let found = accelerations(small, sample.time, &sample.state, &sample.inputs)?;
+        let scales = equations.residuals(&found);
+        let rows = |own: &[f64], other: &[f64]| {
+            let pairs = own.iter().zip(other).zip(&scales);
+            let deviations = pairs.map(|((own, other), residual)| {
+                let value = own - other;
+                Residual { value, ..*residual }.relative()
+            });
+            deviations.fold(0.0, f64::max)
+        };
+        Ok([
+            matrix_distance(&own.mass, &other.mass, &equations.mass),
+            rows(&own.bias, &other.bias),
+            rows(&own.forces, &other.forces),
+        ])
+    })())
+}
+
+/// The state of the larger variant with the added modes at zero.
+fn embed(state: &[f64], kept: &[usize], size: usize) -> Vec<f64> {
+    let mut embedded = vec![0.0; 2 * size];
+    let (positions, rates) = state.split_at(state.len() / 2);
+    for ((row, position), rate) in kept.iter().zip(positions).zip(rates) {
+        embedded[*row] = *position;
+        embedded[size + row] = *rate;
+    }
+    embedded
+}
+
+/// M, c and f of M q'' + c = f.
+struct Sides {
+    mass: DMatrix<f64>,
+    bias: Vec<f64>,
+    forces: Vec<f64>,
+}
+
+impl Sides {
+    /// The rows, and columns, at `kept`.
+    fn restricted(&self, kept: &[usize]) -> Self {
+        let rows = |all: &[f64]| kept.iter().map(|row| all[*row]).collect();
+        Self {
+            mass: DMatrix::from_fn(kept.len(), kept.len(), |row, column| {
+                self.mass[(kept[row], kept[column])]
+            }),
+            bias: rows(&self.bias),
+            forces: rows(&self.forces),
+        }
+    }
+}
+
+fn sides(variant: &mut dyn Variant, sample: &Sample) -> Result<Sides, String> {
+    let Sample {
+        time,
+        state,
+        inputs,
+    } = sample;
+    let mut bias = vec![f64::NAN; state.len() / 2];
+    let mut forces = bias.clone();
+    variant.bias_and_forces(*time, state, inputs, &mut bias, &mut forces)?;
+    Ok(Sides {
+        mass: mass_matrix(variant, *time, state, inputs)?,
+        bias,
+        forces,
+    })
+}

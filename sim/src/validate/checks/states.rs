@@ -1,0 +1,256 @@
+//! Checks at random states in every regime: accelerations, mass matrix, energy, power
+//! and switching functions against the oracle, accelerations against references.
+
+use super::super::certificate::{Check, Worst};
+use super::super::oracle::{Equations, Oracle, OracleError, Total};
+use super::super::sampler::{Regime, Sample, Sampler};
+use super::super::variant::Variant;
+use super::{
+    MASS_TOLERANCE, ROW_TOLERANCE, SYMMETRY_TOLERANCE, accelerations, mass_matrix, matrix_distance,
+};
+use nalgebra::{Cholesky, DMatrix};
+use std::collections::HashMap;
+
+/// States drawn in every regime.
+const STATES_PER_REGIME: usize = 200;
+/// The seed of the states.
+const SEED: u64 = 0x0dd5_eed5;
+
+/// Equations written by hand, to compare accelerations with.
+pub struct Reference {
+    /// What it is, as it stands in the certificate.
+    pub name: String,
+    /// The deviation of accelerations from the reference at (time, state, inputs),
+    /// relative to the largest term summed in each row of the reference.
+    #[expect(clippy::type_complexity, reason = "a plain function of four arguments")]
+    pub deviation: Box<dyn Fn(f64, &[f64], &[f64], &[f64]) -> f64>,
+}
+
+/// What the states have shown.
+struct Findings<'f> {
+    oracle: &'f Oracle,
+    references: &'f [Reference],
+    checks: Vec<Check>,
+    dense: Worst,
+    mass: Worst,
+    symmetry: Worst,
+    definite: Worst,
+    energy: Worst,
+    power: Worst,
+    by_reference: Vec<Worst>,
+    guards: Guards,
+}
+
+/// All checks at random states.
+///
+/// # Errors
+/// [`OracleError`] as from [`Oracle::equations`].
+pub fn check(
+    oracle: &Oracle,
+    variant: &mut dyn Variant,
+    references: &[Reference],
+) -> Result<Vec<Check>, OracleError> {
+    let mut findings = Findings {
+        oracle,
+        references,
+        checks: vec![names(oracle, variant)],
+        dense: Worst::default(),
+        mass: Worst::default(),
+        symmetry: Worst::default(),
+        definite: Worst::default(),
+        energy: Worst::default(),
+        power: Worst::default(),
+        by_reference: vec![Worst::default(); references.len()],
+        guards: Guards::default(),
+    };
+    let mut sampler = Sampler::new(oracle, SEED)?;
+    for regime in sampler.regimes() {
+        findings.visit(&mut sampler, &regime, variant)?;
+    }
+    Ok(findings.into_checks())
+}
+
+/// Whether the state means the same to both.
+fn names(oracle: &Oracle, variant: &dyn Variant) -> Check {
+    let found = variant.coordinate_names();
+    let same = found == oracle.names();
+    let detail = if same {
+        format!("{} coordinates", found.len())
+    } else {
+        format!("{found:?} instead of {:?}", oracle.names())
+    };
+    let worst = Worst::of(if same { 0.0 } else { 1.0 }, detail);
+    Check::made("coordinate_names", worst, 0.0)
+}
+
+impl Findings<'_> {
+    /// All states of one regime.
+    fn visit(
+        &mut self,
+        sampler: &mut Sampler<'_>,
+        regime: &Regime,
+        variant: &mut dyn Variant,
+    ) -> Result<(), OracleError> {
+        let label = regime.label(self.oracle);
+        let name = if label.is_empty() {
+            "accelerations".to_owned()
+        } else {
+            format!("accelerations {label}")
+        };
+        let mut worst = Worst::default();
+        let mut examined = 0;
+        for count in 1..=STATES_PER_REGIME {
+            let Some(sample) = sampler.draw_in(regime)? else {
+                if count == 1 {
+                    let reason = "no state of this regime was found";
+                    self.checks
+                        .push(Check::skipped(name, ROW_TOLERANCE, reason));
+                    return Ok(());
+                }
+                continue;
+            };
+            let place = format!("state {count} of {label}");
+            let place = place.trim_end_matches(" of ");
+            examined += 1;
+            self.guards.record(variant, &sample, &label);
+            match self.compare(variant, &sample, place)? {
+                Ok(deviation) => worst.include(Worst::of(deviation, place)),
+                Err(message) => worst.include(Worst::of(f64::INFINITY, message)),
+            }
+        }
+        let worst = worst.among(examined, "states");
+        self.checks.push(Check::made(name, worst, ROW_TOLERANCE));
+        Ok(())
+    }
+
+    /// One state; the relative residual of the subject's accelerations.
+    fn compare(
+        &mut self,
+        variant: &mut dyn Variant,
+        sample: &Sample,
+        place: &str,
+    ) -> Result<Result<f64, String>, OracleError> {
+        let Sample {
+            time,
+            state,
+            inputs,
+        } = sample;
+        let equations = self.oracle.equations(*time, state, inputs)?;
+        let energy = self.oracle.energy(*time, state, inputs)?;
+        let power = self.oracle.power(*time, state, inputs)?;
+        Ok((|| {
+            let mass = mass_matrix(variant, *time, state, inputs)?;
+            self.compare_mass(&mass, &equations, place);
+            let found = variant.energy(*time, state, inputs)?;
+            self.energy
+                .include(Worst::of(relative(found, energy), place));
+            let found = variant.power(*time, state, inputs)?;
+            self.power.include(Worst::of(relative(found, power), place));
+            let found = accelerations(variant, *time, state, inputs)?;
+            self.compare_accelerations(&found, &equations, sample, place);
+            Ok(equations.worst_residual(&found))
+        })())
+    }
+
+    fn compare_mass(&mut self, mass: &DMatrix<f64>, equations: &Equations, place: &str) {
+        let distance = |other| matrix_distance(mass, other, &equations.mass);
+        self.mass
+            .include(Worst::of(distance(&equations.mass), place));
+        self.symmetry
+            .include(Worst::of(distance(&mass.transpose()), place));
+        let definite = Cholesky::new(scaled(mass)).is_some();
+        self.definite
+            .include(Worst::of(if definite { 0.0 } else { 1.0 }, place));
+    }
+
+    fn compare_accelerations(
+        &mut self,
+        found: &[f64],
+        equations: &Equations,
+        sample: &Sample,
+        place: &str,
+    ) {
+        let distance = equations.accelerations().map_or(f64::INFINITY, |dense| {
+            equations.distance(dense.as_slice(), found)
+        });
+        self.dense.include(Worst::of(distance, place));
+        for (reference, worst) in self.references.iter().zip(&mut self.by_reference) {
+            let deviation =
+                (reference.deviation)(sample.time, &sample.state, &sample.inputs, found);
+            worst.include(Worst::of(deviation, place));
+        }
+    }
+
+    fn into_checks(self) -> Vec<Check> {
+        let mut checks = self.checks;
+        checks.extend([
+            Check::made("dense_solve", self.dense, ROW_TOLERANCE),
+            Check::made("mass_matrix", self.mass, MASS_TOLERANCE),
+            Check::made("mass_matrix_symmetric", self.symmetry, SYMMETRY_TOLERANCE),
+            Check::made("mass_matrix_positive_definite", self.definite, 0.0),
+            Check::made("energy", self.energy, ROW_TOLERANCE),
+            Check::made("power", self.power, ROW_TOLERANCE),
+            self.guards.into_check(self.oracle),
+        ]);
+        for (reference, worst) in self.references.iter().zip(self.by_reference) {
+            let name = format!("reference {}", reference.name);
+            checks.push(Check::made(name, worst, ROW_TOLERANCE));
+        }
+        checks
+    }
+}
+
+/// Rows and columns scaled to a unit diagonal, so that units do not decide.
+fn scaled(mass: &DMatrix<f64>) -> DMatrix<f64> {
+    let scale = mass.diagonal().map(|entry| entry.sqrt().recip());
+    DMatrix::from_fn(mass.nrows(), mass.ncols(), |row, column| {
+        scale[row] * mass[(row, column)] * scale[column]
+    })
+}
+
+/// The deviation of a sum relative to its largest addend.
+fn relative(found: f64, expected: Total) -> f64 {
+    let difference = (found - expected.value).abs();
+    if difference == 0.0 {
+        0.0
+    } else {
+        difference / expected.scale
+    }
+}
+
+/// Whether the signs of the subject's switching functions tell the regime: no pattern of
+/// signs may occur in two regimes.
+#[derive(Default)]
+struct Guards {
+    regimes: HashMap<Vec<bool>, String>,
+    worst: Worst,
+}
+
+impl Guards {
+    fn record(&mut self, variant: &mut dyn Variant, sample: &Sample, label: &str) {
+        let values = match variant.guards(sample.time, &sample.state, &sample.inputs) {
+            Ok(values) => values,
+            Err(message) => {
+                self.worst.include(Worst::of(f64::INFINITY, message));
+                return;
+            }
+        };
+        let signs = values.iter().map(|value| *value > 0.0).collect();
+        let known = self
+            .regimes
+            .entry(signs)
+            .or_insert_with(|| label.to_owned());
+        self.worst.include(if known == label {
+            Worst::of(0.0, "every pattern of signs belongs to one regime")
+        } else {
+            Worst::of(1.0, format!("the same signs in {known} and {label}"))
+        });
+    }
+
+    fn into_check(self, oracle: &Oracle) -> Check {
+        if oracle.switches().is_empty() {
+            return Check::skipped("guards", 0.0, "the model has no piecewise function");
+        }
+        Check::made("guards", self.worst, 0.0)
+    }
+}

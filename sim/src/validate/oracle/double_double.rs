@@ -1,0 +1,108 @@
+//! Numbers of about 32 digits as the unevaluated sum of two `f64`: just the operations
+//! that the Gauss-Legendre rule and the phase of a mode shape need, no general type.
+
+use std::ops::{Add, Mul, Sub};
+
+/// `high + low` with `|low|` at most half a unit in the last place of `high`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct DoubleDouble {
+    /// The number rounded to `f64`.
+    pub high: f64,
+    /// What the rounding left.
+    pub low: f64,
+}
+
+impl DoubleDouble {
+    /// An `f64`, exactly.
+    pub fn new(value: f64) -> Self {
+        Self {
+            high: value,
+            low: 0.0,
+        }
+    }
+
+    /// The exact product of two `f64`.
+    pub fn product(left: f64, right: f64) -> Self {
+        let high = left * right;
+        Self {
+            high,
+            low: left.mul_add(right, -high),
+        }
+    }
+
+    /// The exact sum of two `f64` with `|large| >= |small|` (Dekker).
+    fn ordered_sum(large: f64, small: f64) -> Self {
+        let high = large + small;
+        Self {
+            high,
+            low: small - (high - large),
+        }
+    }
+
+    /// The exact sum of two `f64` (Knuth).
+    fn sum(left: f64, right: f64) -> Self {
+        let high = left + right;
+        let shadow = high - left;
+        Self {
+            high,
+            low: (left - (high - shadow)) + (right - shadow),
+        }
+    }
+
+    /// The quotient to double-double accuracy: one correction of the `f64` quotient.
+    pub fn quotient(self, divisor: Self) -> Self {
+        let first = self.high / divisor.high;
+        let rest = self - divisor * Self::new(first);
+        Self::ordered_sum(first, (rest.high + rest.low) / divisor.high)
+    }
+}
+
+impl Add for DoubleDouble {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let sum = Self::sum(self.high, other.high);
+        Self::ordered_sum(sum.high, sum.low + (self.low + other.low))
+    }
+}
+
+impl Sub for DoubleDouble {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + Self {
+            high: -other.high,
+            low: -other.low,
+        }
+    }
+}
+
+impl Mul for DoubleDouble {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let product = Self::product(self.high, other.high);
+        let cross = self.high * other.low + self.low * other.high;
+        Self::ordered_sum(product.high, product.low + cross)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_third_times_three_is_one_to_thirty_digits() {
+        let third = DoubleDouble::new(1.0).quotient(DoubleDouble::new(3.0));
+        let rest = third * DoubleDouble::new(3.0) - DoubleDouble::new(1.0);
+        assert!(third.low != 0.0);
+        assert!((rest.high + rest.low).abs() < 1e-31, "{rest:?}");
+    }
+
+    #[test]
+    fn a_sum_keeps_what_an_f64_would_lose() {
+        let sum = DoubleDouble::new(1.0) + DoubleDouble::new(1e-25);
+        let rest = sum - DoubleDouble::new(1.0);
+        assert_eq!(rest.high, 1e-25);
+    }
+}

@@ -1,0 +1,200 @@
+//! The equations of motion at one state, term by term: what the oracle answers.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// The equations of motion at one state: for every row j
+///
+/// ```text
+/// sum over k of mass[j, k] q_k'' + sum over terms of term[j] = 0
+/// ```
+///
+/// in the unit of the force on coordinate j.
+#[derive(Clone, Debug)]
+pub struct Equations {
+    /// The mass matrix, n by n.
+    pub mass: DMatrix<f64>,
+    /// All that does not hold an acceleration, sums within a term addend by addend.
+    pub terms: Vec<RowTerm>,
+}
+
+/// What one addend of a term of the specification adds to every row.
+#[derive(Clone, Debug)]
+pub struct RowTerm {
+    /// The term's name in the specification; addends of one term share it.
+    pub name: String,
+    /// How it enters.
+    pub kind: RowTermKind,
+    /// Its value in every row, on the side of the accelerations.
+    pub rows: DVector<f64>,
+}
+
+/// How a term of the specification enters the equations of motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowTermKind {
+    /// d/dt dT/dq_j' without the accelerations.
+    Momentum,
+    /// -dT/dq_j.
+    KineticGradient,
+    /// dV/dq_j.
+    PotentialGradient,
+    /// dR/dq_j'.
+    Dissipation,
+    /// -Q_j of one force.
+    Force,
+}
+
+/// What is left of one row, and the size of the largest term summed in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Residual {
+    /// The sum of the row.
+    pub value: f64,
+    /// The largest magnitude among `mass[j, k] q_k''` for every k and every term.
+    pub scale: f64,
+}
+
+impl Residual {
+    /// |value|/scale; 0 for an empty row, infinite for what is not a number.
+    pub fn relative(&self) -> f64 {
+        let relative = self.value.abs() / self.scale;
+        if self.value == 0.0 {
+            0.0
+        } else if relative.is_nan() {
+            f64::INFINITY
+        } else {
+            relative
+        }
+    }
+}
+
+impl Equations {
+    /// Number of rows.
+    pub fn size(&self) -> usize {
+        self.mass.nrows()
+    }
+
+    /// Forces minus velocity terms: what `mass` times the accelerations must equal.
+    pub fn right_side(&self) -> DVector<f64> {
+        let mut sum = DVector::zeros(self.size());
+        for term in &self.terms {
+            sum -= &term.rows;
+        }
+        sum
+    }
+
+    /// The accelerations by a dense Cholesky factorisation with rows and columns scaled
+    /// to a unit diagonal; none if the mass matrix is not positive definite.
+    pub fn accelerations(&self) -> Option<DVector<f64>> {
+        let scale = self.mass.diagonal().map(|entry| entry.sqrt().recip());
+        let scaled = DMatrix::from_fn(self.size(), self.size(), |row, column| {
+            scale[row] * self.mass[(row, column)] * scale[column]
+        });
+        let right = self.right_side().component_mul(&scale);
+        Some(Cholesky::new(scaled)?.solve(&right).component_mul(&scale))
+    }
+
+    /// Every row's sum for given accelerations, with the row's scale.
+    pub fn residuals(&self, accelerations: &[f64]) -> Vec<Residual> {
+        (0..self.size())
+            .map(|row| {
+                let masses = self.mass.row(row);
+                let inertia = masses.iter().zip(accelerations);
+                let inertia = inertia.map(|(mass, acceleration)| mass * acceleration);
+                residual(inertia.chain(self.terms.iter().map(|term| term.rows[row])))
+            })
+            .collect()
+    }
+
+    /// The largest relative residual; infinite if the number of accelerations is wrong
+    /// or one is not a number.
+    pub fn worst_residual(&self, accelerations: &[f64]) -> f64 {
+        if accelerations.len() != self.size() {
+            return f64::INFINITY;
+        }
+        self.residuals(accelerations)
+            .iter()
+            .map(Residual::relative)
+            .fold(0.0, f64::max)
+    }
+
+    /// How far two sets of accelerations are apart: the largest over the rows of
+    /// |mass (first - second)| relative to the row's scale at `first`.
+    pub fn distance(&self, first: &[f64], second: &[f64]) -> f64 {
+        if first.len() != self.size() || second.len() != self.size() {
+            return f64::INFINITY;
+        }
+        let difference = DVector::from_iterator(
+            self.size(),
+            first.iter().zip(second).map(|(left, right)| left - right),
+        );
+        let rows = &self.mass * difference;
+        self.residuals(first)
+            .iter()
+            .zip(rows.iter())
+            .map(|(residual, value)| {
+                Residual {
+                    value: *value,
+                    scale: residual.scale,
+                }
+                .relative()
+            })
+            .fold(0.0, f64::max)
+    }
+}
+
+/// The sum of a row and its largest addend. The sum is compensated (Neumaier), so what
+/// is left is not the rounding of this summation.
+fn residual(addends: impl Iterator<Item = f64>) -> Residual {
+    let (mut sum, mut rest, mut scale) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for addend in addends {
+        let next = sum + addend;
+        rest += if sum.abs() >= addend.abs() {
+            (sum - next) + addend
+        } else {
+            (addend - next) + sum
+        };
+        sum = next;
+        scale = if addend.is_nan() {
+            f64::NAN
+        } else {
+            scale.max(addend.abs())
+        };
+    }
+    Residual {
+        value: sum + rest,
+        scale,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn equations() -> Equations {
+        Equations {
+            mass: DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 4.0]),
+            terms: vec![RowTerm {
+                name: "load".into(),
+                kind: RowTermKind::Force,
+                rows: DVector::from_vec(vec![-3.0, 1.0]),
+            }],
+        }
+    }
+
+    #[test]
+    fn the_dense_solution_leaves_no_residual() {
+        let equations = equations();
+        let solution = equations.accelerations().map(|a| a.as_slice().to_vec());
+        let solution = solution.unwrap_or_default();
+        assert_eq!(solution.len(), 2);
+        assert!(equations.worst_residual(&solution) < 1e-15);
+        assert!(equations.distance(&solution, &[13.0 / 7.0, -5.0 / 7.0]) < 1e-15);
+    }
+
+    #[test]
+    fn wrong_accelerations_and_no_numbers_are_seen() {
+        let equations = equations();
+        assert!(equations.worst_residual(&[1.0, 1.0]) > 0.1);
+        assert_eq!(equations.worst_residual(&[f64::NAN, 1.0]), f64::INFINITY);
+        assert_eq!(equations.worst_residual(&[1.0]), f64::INFINITY);
+    }
+}

@@ -1,0 +1,269 @@
+//! Evaluates a tree at a scene with derivatives in two directions. A time derivative
+//! inside an expression is one more dual part along the motion; accelerations never
+//! appear, so one such part is enough and a second one is refused by `lower`.
+
+use super::functions;
+use super::scene::{Direction, Motion, Scene};
+use super::tree::Tree;
+use model_spec::ast::BinaryOperator;
+use num_dual::{Dual, DualNum, HyperDual64};
+use std::cell::Cell;
+
+/// The two number types of an evaluation: a value with its derivatives in two
+/// directions, and the same with the time derivative beside it.
+pub(super) trait Level: DualNum<Primitive = f64> + Copy {
+    /// What this level keeps of a moving quantity.
+    fn of(motion: Motion) -> Self;
+    /// The time derivative of `tree`.
+    fn dot(pass: &Pass<'_>, tree: &Tree, frame: &Frame<'_>) -> Self;
+    /// Where values of definitions are kept.
+    fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>>;
+    /// The derivatives of integral `index`, where they are kept for all rows.
+    fn integral(pass: &Pass<'_>, index: usize) -> Option<Self>;
+}
+
+impl Level for HyperDual64 {
+    fn of(motion: Motion) -> Self {
+        motion.value
+    }
+
+    fn dot(pass: &Pass<'_>, tree: &Tree, frame: &Frame<'_>) -> Self {
+        pass.evaluate::<Dual<HyperDual64>>(tree, frame).eps
+    }
+
+    fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>> {
+        Some(&pass.definitions.get(definition)?.0)
+    }
+
+    fn integral(pass: &Pass<'_>, index: usize) -> Option<Self> {
+        pass.scene.integral(index, pass.directions)
+    }
+}
+
+impl Level for Dual<HyperDual64> {
+    fn of(motion: Motion) -> Self {
+        Dual::new(motion.value, motion.rate)
+    }
+
+    fn dot(_: &Pass<'_>, _: &Tree, _: &Frame<'_>) -> Self {
+        Self::from(f64::NAN)
+    }
+
+    fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>> {
+        Some(&pass.definitions.get(definition)?.1)
+    }
+
+    fn integral(_: &Pass<'_>, _: usize) -> Option<Self> {
+        None
+    }
+}
+
+/// What a place or an index stands for while a body is evaluated.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Frame<'f> {
+    /// Outside every sum.
+    Outside,
+    /// At a position of the place set around the body.
+    At {
+        /// The position's number.
+        node: usize,
+        /// What surrounds it.
+        outer: &'f Frame<'f>,
+    },
+    /// At a mode of a field's sum.
+    Mode {
+        /// The field.
+        field: usize,
+        /// The mode, from 0.
+        mode: usize,
+        /// What surrounds it.
+        outer: &'f Frame<'f>,
+    },
+}
+
+impl Frame<'_> {
+    fn node(&self) -> usize {
+        match self {
+            Self::Outside => usize::MAX,
+            Self::At { node, .. } => *node,
+            Self::Mode { outer, .. } => outer.node(),
+        }
+    }
+
+    fn mode(&self, wanted: usize) -> usize {
+        match self {
+            Self::Outside => usize::MAX,
+            Self::At { outer, .. } => outer.mode(wanted),
+            Self::Mode { field, mode, .. } if *field == wanted => *mode,
+            Self::Mode { outer, .. } => outer.mode(wanted),
+        }
+    }
+}
+
+/// A definition's value, alone and with its rate, once formed.
+type KeptDefinition = (Cell<Option<HyperDual64>>, Cell<Option<Dual<HyperDual64>>>);
+
+/// One evaluation: a scene and two directions.
+#[derive(Debug)]
+pub(super) struct Pass<'s> {
+    scene: &'s Scene<'s>,
+    directions: [Direction; 2],
+    definitions: Vec<KeptDefinition>,
+}
+
+impl<'s> Pass<'s> {
+    /// An evaluation with derivatives in two directions.
+    pub fn new(scene: &'s Scene<'s>, first: Direction, second: Direction) -> Self {
+        Self {
+            scene,
+            directions: [first, second],
+            definitions: vec![KeptDefinition::default(); scene.system.definitions.len()],
+        }
+    }
+
+    /// The value of `tree` outside every sum.
+    pub fn value(&self, tree: &Tree) -> HyperDual64 {
+        self.evaluate(tree, &Frame::Outside)
+    }
+
+    /// The real value of `tree` at one mode of a field's sum.
+    pub fn value_at_mode(&self, tree: &Tree, field: usize, mode: usize) -> f64 {
+        let frame = Frame::Mode {
+            field,
+            mode,
+            outer: &Frame::Outside,
+        };
+        self.evaluate::<HyperDual64>(tree, &frame).re
+    }
+
+    /// The value of `tree` where `frame` says.
+    pub fn evaluate<N: Level>(&self, tree: &Tree, frame: &Frame<'_>) -> N {
+        match tree {
+            Tree::Constant(value) => N::from(*value),
+            Tree::PerMode { field, values } => {
+                N::from(values.get(frame.mode(*field)).copied().unwrap_or(f64::NAN))
+            }
+            Tree::Time => N::of(self.time()),
+            Tree::Input(index) => {
+                N::from(self.scene.inputs.get(*index).copied().unwrap_or(f64::NAN))
+            }
+            Tree::Position { set } => N::from(self.position(*set, frame)),
+            Tree::Coordinate(index) => N::of(self.scene.coordinate(*index, self.directions)),
+            Tree::Definition(index) => self.definition(*index),
+            Tree::Field { leaf, set } => {
+                N::of(self.scene.field(*leaf, *set, frame.node(), self.directions))
+            }
+            Tree::Mode { field } => N::of(self.mode(*field, frame)),
+            Tree::Shape { leaf, set } => {
+                N::from(
+                    self.scene
+                        .shape(*leaf, *set, frame.node(), frame.mode(leaf.field)),
+                )
+            }
+            Tree::Dot(operand) => N::dot(self, operand, frame),
+            Tree::Places {
+                set,
+                body,
+                integral,
+            } => integral
+                .and_then(|index| N::integral(self, index))
+                .unwrap_or_else(|| self.over_places(*set, body, frame)),
+            Tree::Sum { field, body } => self.over_modes(*field, body, frame),
+            Tree::Negate(operand) => -self.evaluate::<N>(operand, frame),
+            Tree::Binary(operator, left, right) => combine(
+                *operator,
+                self.evaluate::<N>(left, frame),
+                self.evaluate::<N>(right, frame),
+            ),
+            Tree::Power(base, exponent) => {
+                functions::constant_power(self.evaluate::<N>(base, frame), *exponent)
+            }
+            Tree::Call(function, arguments) => self.call(*function, arguments, frame),
+        }
+    }
+
+    fn time(&self) -> Motion {
+        let [first, second] = self.directions.map(Scene::time_seed);
+        Motion {
+            value: HyperDual64::new(self.scene.time, first, second, 0.0),
+            rate: HyperDual64::from_re(1.0),
+        }
+    }
+
+    fn position(&self, set: usize, frame: &Frame<'_>) -> f64 {
+        let places = self.scene.system.places.get(set);
+        places
+            .and_then(|places| places.positions.get(frame.node()))
+            .copied()
+            .unwrap_or(f64::NAN)
+    }
+
+    fn mode(&self, field: usize, frame: &Frame<'_>) -> Motion {
+        let index = self.scene.system.modes(field).start + frame.mode(field);
+        self.scene.coordinate(index, self.directions)
+    }
+
+    /// A definition holds no free place or index, so its value serves the whole pass.
+    fn definition<N: Level>(&self, index: usize) -> N {
+        let kept = N::kept(self, index);
+        if let Some(value) = kept.and_then(Cell::get) {
+            return value;
+        }
+        let Some(tree) = self.scene.system.definitions.get(index) else {
+            return N::from(f64::NAN);
+        };
+        let value = self.evaluate(tree, &Frame::Outside);
+        if let Some(kept) = kept {
+            kept.set(Some(value));
+        }
+        value
+    }
+
+    fn over_places<N: Level>(&self, set: usize, body: &Tree, outer: &Frame<'_>) -> N {
+        let Some(places) = self.scene.system.places.get(set) else {
+            return N::from(f64::NAN);
+        };
+        let mut sum = N::from(0.0);
+        for (node, weight) in places.weights.iter().enumerate() {
+            sum += self.evaluate::<N>(body, &Frame::At { node, outer }) * *weight;
+        }
+        sum
+    }
+
+    fn over_modes<N: Level>(&self, field: usize, body: &Tree, outer: &Frame<'_>) -> N {
+        let mut sum = N::from(0.0);
+        for mode in 0..self.scene.system.modes(field).len() {
+            sum += self.evaluate::<N>(body, &Frame::Mode { field, mode, outer });
+        }
+        sum
+    }
+
+    fn call<N: Level>(
+        &self,
+        function: model_spec::model::Function,
+        arguments: &[Tree],
+        frame: &Frame<'_>,
+    ) -> N {
+        match arguments {
+            [only] => functions::apply(function, &[self.evaluate::<N>(only, frame)]),
+            [first, second] => functions::apply(
+                function,
+                &[
+                    self.evaluate::<N>(first, frame),
+                    self.evaluate::<N>(second, frame),
+                ],
+            ),
+            _ => N::from(f64::NAN),
+        }
+    }
+}
+
+fn combine<N: Level>(operator: BinaryOperator, left: N, right: N) -> N {
+    match operator {
+        BinaryOperator::Add => left + right,
+        BinaryOperator::Subtract => left - right,
+        BinaryOperator::Multiply => left * right,
+        BinaryOperator::Divide => left / right,
+        BinaryOperator::Power => left.powd(right),
+    }
+}

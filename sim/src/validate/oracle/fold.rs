@@ -1,0 +1,48 @@
+//! Operations on numbers alone become numbers, with the rules of `evaluate`.
+
+use super::functions;
+use super::tree::Tree;
+use model_spec::ast::BinaryOperator;
+
+/// `left operator right`, a power with a constant exponent in its own form.
+pub(super) fn binary(operator: BinaryOperator, left: Tree, right: Tree) -> Tree {
+    match (operator, &right) {
+        (BinaryOperator::Power, Tree::Constant(exponent)) => Tree::Power(left.into(), *exponent),
+        _ => Tree::Binary(operator, left.into(), right.into()),
+    }
+}
+
+/// A number in place of an operation on numbers.
+pub(super) fn folded(tree: Tree) -> Tree {
+    let numbers: Option<Vec<f64>> = tree
+        .children()
+        .into_iter()
+        .map(|child| match child {
+            Tree::Constant(value) => Some(*value),
+            _ => None,
+        })
+        .collect();
+    match (&tree, numbers.as_deref()) {
+        (Tree::Negate(_), Some([value])) => Tree::Constant(-value),
+        (Tree::Power(_, exponent), Some([base])) => {
+            Tree::Constant(functions::constant_power(*base, *exponent))
+        }
+        (Tree::Binary(operator, ..), Some([left, right])) => {
+            Tree::Constant(arithmetic(*operator, *left, *right))
+        }
+        (Tree::Call(function, _), Some(values)) => {
+            Tree::Constant(functions::apply(*function, values))
+        }
+        _ => tree,
+    }
+}
+
+fn arithmetic(operator: BinaryOperator, left: f64, right: f64) -> f64 {
+    match operator {
+        BinaryOperator::Add => left + right,
+        BinaryOperator::Subtract => left - right,
+        BinaryOperator::Multiply => left * right,
+        BinaryOperator::Divide => left / right,
+        BinaryOperator::Power => left.powf(right),
+    }
+}

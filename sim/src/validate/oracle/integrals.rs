@@ -1,0 +1,268 @@
+//! Derivatives of integrals, formed once per state for all rows. An integrand knows the
+//! modes only through field values at its own place, so its derivative by mode j is the
+//! derivative by each field value times phi_j there: a handful of evaluations per node
+//! and one product with the table of shapes, instead of one evaluation per node and row.
+
+use super::evaluate::{Frame, Pass};
+use super::scene::{Direction, Scene};
+use super::system::Integral;
+use super::tree::Leaf;
+use nalgebra::{DMatrix, DVector};
+use num_dual::HyperDual64;
+use std::cell::OnceCell;
+
+/// What is kept of one integral at one state.
+#[derive(Debug, Default)]
+pub(super) struct IntegralTable {
+    value: OnceCell<f64>,
+    by_position: OnceCell<Rows>,
+    by_rate: OnceCell<Rows>,
+    by_two_rates: OnceCell<DMatrix<f64>>,
+}
+
+/// First derivatives by every generalised coordinate or rate, and their change along
+/// the motion.
+#[derive(Debug)]
+struct Rows {
+    along_motion: f64,
+    by_row: DVector<f64>,
+    along_motion_by_row: DVector<f64>,
+}
+
+/// What an integrand can change with.
+#[derive(Clone, Copy, Debug)]
+enum Channel {
+    Coordinate(usize),
+    Leaf(Leaf),
+}
+
+impl Channel {
+    fn position(self) -> Direction {
+        match self {
+            Self::Coordinate(row) => Direction::Position(row),
+            Self::Leaf(leaf) => Direction::LeafPosition(leaf),
+        }
+    }
+
+    fn rate(self) -> Direction {
+        match self {
+            Self::Coordinate(row) => Direction::Rate(row),
+            Self::Leaf(leaf) => Direction::LeafRate(leaf),
+        }
+    }
+}
+
+impl Scene<'_> {
+    /// Integral `index` with its derivatives in two directions, or none if these are not
+    /// among those kept (two positions, a value of another field).
+    pub fn integral(&self, index: usize, directions: [Direction; 2]) -> Option<HyperDual64> {
+        let integral = self.system.integrals.get(index)?;
+        let table = self.integrals.get(index)?;
+        let [first, second] = directions;
+        let (lesser, greater) = if rank(first) <= rank(second) {
+            (first, second)
+        } else {
+            (second, first)
+        };
+        let mixed = match (lesser, greater) {
+            (Direction::Still, _) => 0.0,
+            (Direction::Time, Direction::Position(row)) => *self
+                .by_position(table, integral)
+                .along_motion_by_row
+                .get(row)?,
+            (Direction::Time, Direction::Rate(row)) => {
+                *self.by_rate(table, integral).along_motion_by_row.get(row)?
+            }
+            (Direction::Rate(row), Direction::Rate(column)) => {
+                *self.by_two_rates(table, integral).get((row, column))?
+            }
+            _ => return None,
+        };
+        Some(HyperDual64::new(
+            *table.value.get_or_init(|| self.plain(integral)),
+            self.first(table, integral, first)?,
+            self.first(table, integral, second)?,
+            mixed,
+        ))
+    }
+
+    fn first(
+        &self,
+        table: &IntegralTable,
+        integral: &Integral,
+        direction: Direction,
+    ) -> Option<f64> {
+        match direction {
+            Direction::Still => Some(0.0),
+            Direction::Time => Some(self.by_rate(table, integral).along_motion),
+            Direction::Position(row) => self.by_position(table, integral).by_row.get(row).copied(),
+            Direction::Rate(row) => self.by_rate(table, integral).by_row.get(row).copied(),
+            Direction::LeafPosition(_) | Direction::LeafRate(_) => None,
+        }
+    }
+
+    fn by_position<'t>(&self, table: &'t IntegralTable, integral: &Integral) -> &'t Rows {
+        table
+            .by_position
+            .get_or_init(|| self.rows(integral, Channel::position))
+    }
+
+    fn by_rate<'t>(&self, table: &'t IntegralTable, integral: &Integral) -> &'t Rows {
+        table
+            .by_rate
+            .get_or_init(|| self.rows(integral, Channel::rate))
+    }
+
+    fn by_two_rates<'t>(&self, table: &'t IntegralTable, integral: &Integral) -> &'t DMatrix<f64> {
+        table.by_two_rates.get_or_init(|| self.hessian(integral))
+    }
+
+    fn plain(&self, integral: &Integral) -> f64 {
+        let pass = Pass::new(self, Direction::Still, Direction::Still);
+        let addends = self.addends(integral, &pass);
+        addends.iter().map(|addend| addend.re).sum()
+    }
+
+    /// Weight times integrand at each place.
+    fn addends(&self, integral: &Integral, pass: &Pass<'_>) -> Vec<HyperDual64> {
+        let weights = self
+            .system
+            .places
+            .get(integral.set)
+            .map_or(&[][..], |places| &places.weights);
+        let outer = &Frame::Outside;
+        weights
+            .iter()
+            .enumerate()
+            .map(|(node, weight)| {
+                let frame = Frame::At { node, outer };
+                pass.evaluate::<HyperDual64>(&integral.body, &frame) * *weight
+            })
+            .collect()
+    }
+
+    fn rows(&self, integral: &Integral, direction: fn(Channel) -> Direction) -> Rows {
+        let still = Pass::new(self, Direction::Time, Direction::Still);
+        let addends = self.addends(integral, &still);
+        let mut rows = Rows {
+            along_motion: addends.iter().map(|addend| addend.eps1).sum(),
+            by_row: DVector::zeros(self.system.size),
+            along_motion_by_row: DVector::zeros(self.system.size),
+        };
+        for channel in integral.channels() {
+            let pass = Pass::new(self, Direction::Time, direction(channel));
+            let addends = self.addends(integral, &pass);
+            let first = part(&addends, |addend| addend.eps2);
+            let mixed = part(&addends, |addend| addend.eps1eps2);
+            self.spread(integral, channel, &first, &mut rows.by_row);
+            self.spread(integral, channel, &mixed, &mut rows.along_motion_by_row);
+        }
+        rows
+    }
+
+    /// Adds what a change of `channel` by place means for each row.
+    fn spread(
+        &self,
+        integral: &Integral,
+        channel: Channel,
+        by_place: &DVector<f64>,
+        rows: &mut DVector<f64>,
+    ) {
+        match channel {
+            Channel::Coordinate(row) => {
+                if let Some(entry) = rows.get_mut(row) {
+                    *entry += by_place.sum();
+                }
+            }
+            Channel::Leaf(leaf) => {
+                if let Some(shapes) = self.shapes(integral, leaf) {
+                    let start = self.system.modes(leaf.field).start;
+                    let mut part = rows.rows_mut(start, shapes.nrows());
+                    part.gemv(1.0, shapes, by_place, 1.0);
+                }
+            }
+        }
+    }
+
+    fn shapes(&self, integral: &Integral, leaf: Leaf) -> Option<&DMatrix<f64>> {
+        self.system
+            .places
+            .get(integral.set)?
+            .shapes(leaf.derivative)
+    }
+
+    fn hessian(&self, integral: &Integral) -> DMatrix<f64> {
+        let size = self.system.size;
+        let mut hessian = DMatrix::zeros(size, size);
+        let channels: Vec<Channel> = integral.channels().collect();
+        for (index, row) in channels.iter().enumerate() {
+            for (number, column) in channels.iter().enumerate().skip(index) {
+                let pass = Pass::new(self, row.rate(), column.rate());
+                let by_place = part(&self.addends(integral, &pass), |addend| addend.eps1eps2);
+                let block = self.block(integral, [*row, *column], &by_place);
+                if number > index {
+                    hessian += block.transpose();
+                }
+                hessian += block;
+            }
+        }
+        hessian
+    }
+
+    /// What the second derivative by two channels means for pairs of rows.
+    fn block(
+        &self,
+        integral: &Integral,
+        [row, column]: [Channel; 2],
+        by_place: &DVector<f64>,
+    ) -> DMatrix<f64> {
+        let size = self.system.size;
+        let mut block = DMatrix::zeros(size, size);
+        match (row, column) {
+            (Channel::Leaf(left), Channel::Leaf(right)) => {
+                let tables = self
+                    .shapes(integral, left)
+                    .zip(self.shapes(integral, right));
+                if let Some((left_shapes, right_shapes)) = tables {
+                    let mut weighted = right_shapes.transpose();
+                    for (mut place, weight) in weighted.row_iter_mut().zip(by_place) {
+                        place *= *weight;
+                    }
+                    let start = self.system.modes(left.field).start;
+                    block
+                        .view_mut((start, start), (left_shapes.nrows(), right_shapes.nrows()))
+                        .gemm(1.0, left_shapes, &weighted, 0.0);
+                }
+            }
+            (Channel::Coordinate(index), other) | (other, Channel::Coordinate(index)) => {
+                let mut rows = DVector::zeros(size);
+                self.spread(integral, other, by_place, &mut rows);
+                if index < size {
+                    block.set_column(index, &rows);
+                }
+            }
+        }
+        block
+    }
+}
+
+impl Integral {
+    fn channels(&self) -> impl Iterator<Item = Channel> {
+        let coordinates = self.coordinates.iter().copied().map(Channel::Coordinate);
+        coordinates.chain(self.leaves.iter().copied().map(Channel::Leaf))
+    }
+}
+
+/// One derivative part of every addend.
+fn part(addends: &[HyperDual64], part: impl Fn(&HyperDual64) -> f64) -> DVector<f64> {
+    DVector::from_iterator(addends.len(), addends.iter().map(part))
+}
+
+fn rank(direction: Direction) -> u8 {
+    match direction {
+        Direction::Still => 0,
+        Direction::Time => 1,
+        Direction::Position(_) | Direction::LeafPosition(_) => 2,
+        Direction::Rate(_) | Direction::LeafRate(_) => 3,
+    }
+}

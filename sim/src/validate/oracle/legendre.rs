@@ -1,0 +1,105 @@
+//! The Gauss-Legendre rule on the unit interval. Newton's method in double-double
+//! arithmetic: a node wrong by half a unit in the last place of an `f64` is a phase
+//! error of 200 times that at the 64th mode, which the first moment of that mode
+//! (5e-5 of its amplitude) would show at 1e-11.
+
+use super::double_double::DoubleDouble;
+
+/// A node and its weight on [0, 1].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Node {
+    /// The node s, 0 < s < 1.
+    pub position: DoubleDouble,
+    /// Its weight.
+    pub weight: f64,
+}
+
+/// The rule with `count` nodes, exact for polynomials of degree `2 count - 1`;
+/// nodes in increasing order.
+pub(super) fn unit_rule(count: usize) -> Vec<Node> {
+    (0..count).map(|index| unit_node(count, index)).collect()
+}
+
+/// Node `index` of `count`. The start value is Tricomi's; the `f64` Newton iteration
+/// brings it to rounding, two double-double steps square the error.
+fn unit_node(count: usize, index: usize) -> Node {
+    let n = count as f64;
+    let angle = std::f64::consts::PI * (index as f64 + 0.75) / (n + 0.5);
+    let mut x = -(1.0 - (n - 1.0) / (8.0 * n.powi(3))) * angle.cos();
+    for _ in 0..8 {
+        let (value, previous) = legendre(count, x);
+        x -= value * (x * x - 1.0) / (n * (x * value - previous));
+    }
+    let mut node = DoubleDouble::new(x);
+    for _ in 0..2 {
+        let (value, slope) = precise_legendre(count, node);
+        node = node - value.quotient(slope);
+    }
+    let (_, slope) = precise_legendre(count, node);
+    let one = DoubleDouble::new(1.0);
+    let weight = one.quotient((one - node * node) * slope * slope);
+    Node {
+        position: (one + node) * DoubleDouble::new(0.5),
+        weight: weight.high,
+    }
+}
+
+/// P_n and P_(n-1) at x by the three-term recurrence.
+fn legendre(count: usize, x: f64) -> (f64, f64) {
+    let (mut previous, mut value) = (1.0, x);
+    for k in 2..=count {
+        let k = k as f64;
+        let next = ((2.0 * k - 1.0) * x * value - (k - 1.0) * previous) / k;
+        (previous, value) = (value, next);
+    }
+    (value, previous)
+}
+
+/// P_n and its derivative at x, in double-double arithmetic.
+fn precise_legendre(count: usize, x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
+    let one = DoubleDouble::new(1.0);
+    let (mut previous, mut value) = (one, x);
+    for k in 2..=count {
+        let k = k as f64;
+        let next = (DoubleDouble::new(2.0 * k - 1.0) * x * value
+            - DoubleDouble::new(k - 1.0) * previous)
+            .quotient(DoubleDouble::new(k));
+        (previous, value) = (value, next);
+    }
+    let slope = (DoubleDouble::new(count as f64) * (x * value - previous)).quotient(x * x - one);
+    (value, slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_are_integrated_exactly_up_to_the_degree() {
+        for count in [2, 7, 40, 296] {
+            let rule = unit_rule(count);
+            for degree in [0, 1, 2, count, 2 * count - 1] {
+                let sum: f64 = rule
+                    .iter()
+                    .map(|node| node.weight * node.position.high.powi(degree as i32))
+                    .sum();
+                let exact = 1.0 / (degree as f64 + 1.0);
+                // powi loses up to `degree` roundings of 1e-16.
+                let tolerance = 2e-16 * (degree as f64 + 4.0);
+                assert!(
+                    (sum / exact - 1.0).abs() < tolerance,
+                    "{count} nodes, degree {degree}: {sum} instead of {exact}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn one_degree_more_is_not_exact() {
+        let sum: f64 = unit_rule(2)
+            .iter()
+            .map(|node| node.weight * node.position.high.powi(4))
+            .sum();
+        assert!((sum - 0.2).abs() > 1e-3);
+    }
+}

@@ -1,0 +1,353 @@
+//! From the checked model's expressions to [`Tree`]: parameters become numbers, domains
+//! become places, constants are folded. All that `evaluate` cannot do is refused here,
+//! so that an evaluation needs no error path.
+
+use super::OracleError;
+use super::evaluate::Pass;
+use super::fold::{binary, folded};
+use super::places::{Domain, PlaceSet};
+use super::scene::{Direction, Scene};
+use super::system::{Integral, System};
+use super::tree::{Leaf, Tree};
+use model_spec::model::{Expr, ExprKind, Field, Model, ParameterValue};
+
+/// The values of all parameters as the specification states them, in SI, in the order
+/// of the model.
+///
+/// # Errors
+/// [`OracleError::NotFinite`] if one has no finite value.
+pub fn parameter_values(model: &Model) -> Result<Vec<f64>, OracleError> {
+    let mut values = vec![f64::NAN; model.parameters.len()];
+    for &index in &model.parameter_order {
+        let Some(parameter) = model.parameters.get(index) else {
+            continue;
+        };
+        let value = match &parameter.value {
+            ParameterValue::Number(number) => *number,
+            ParameterValue::Expression(expression) => {
+                Lowering::new(model, &values, &parameter.name).constant(expression)?
+            }
+        };
+        if let Some(entry) = values.get_mut(index) {
+            *entry = value;
+        }
+    }
+    match model
+        .parameters
+        .iter()
+        .zip(&values)
+        .find(|(_, value)| !value.is_finite())
+    {
+        Some((parameter, _)) => Err(OracleError::NotFinite(parameter.name.clone())),
+        None => Ok(values),
+    }
+}
+
+/// Turns expressions of one variant into trees.
+pub(super) struct Lowering<'m> {
+    /// What has been built so far.
+    pub system: System,
+    parameters: &'m [f64],
+    /// The quadrature places of each field.
+    quadratures: Vec<usize>,
+    /// Name of what is being lowered, for errors.
+    subject: String,
+}
+
+impl<'m> Lowering<'m> {
+    fn new(model: &Model, parameters: &'m [f64], subject: &str) -> Self {
+        Self {
+            system: System {
+                size: model.coordinates.len(),
+                ..System::default()
+            },
+            parameters,
+            quadratures: Vec::new(),
+            subject: subject.to_owned(),
+        }
+    }
+
+    /// The fields' domains and the definitions of `model` at `order`.
+    pub fn of_model(
+        model: &Model,
+        order: usize,
+        parameters: &'m [f64],
+    ) -> Result<Self, OracleError> {
+        let mut lowering = Self::new(model, parameters, "");
+        for field in &model.fields {
+            lowering.add_field(field, order)?;
+        }
+        let count = model.definitions.len();
+        lowering.system.definitions = vec![Tree::Constant(f64::NAN); count];
+        lowering
+            .system
+            .dependences
+            .resize_with(count, Default::default);
+        for &index in &model.definition_order {
+            let Some(definition) = model.definitions.get(index) else {
+                continue;
+            };
+            let tree = lowering.term(&definition.name, &definition.value)?;
+            let dependence = lowering.system.dependence(&tree);
+            if let Some(entry) = lowering.system.definitions.get_mut(index) {
+                *entry = tree;
+            }
+            if let Some(entry) = lowering.system.dependences.get_mut(index) {
+                *entry = dependence;
+            }
+        }
+        Ok(lowering)
+    }
+
+    /// An expression outside every sum; `name` stands in errors.
+    pub fn term(&mut self, name: &str, expression: &Expr) -> Result<Tree, OracleError> {
+        name.clone_into(&mut self.subject);
+        let tree = self.lower(expression, None)?;
+        let dependence = self.system.dependence(&tree);
+        if dependence.position || !dependence.leaves.is_empty() || !dependence.indices.is_empty() {
+            return Err(self.misplaced());
+        }
+        Ok(tree)
+    }
+
+    fn add_field(&mut self, field: &Field, order: usize) -> Result<(), OracleError> {
+        field.name.clone_into(&mut self.subject);
+        let (from, to) = (self.constant(&field.from)?, self.constant(&field.to)?);
+        if !(to - from).is_finite() || to == from {
+            return Err(OracleError::NotFinite(format!(
+                "the length of {}",
+                field.name
+            )));
+        }
+        let domain = Domain::new(from, to, field.basis, self.system.size, order);
+        let number = self.system.domains.len();
+        self.quadratures.push(self.system.places.len());
+        self.system
+            .places
+            .push(PlaceSet::quadrature(number, &domain));
+        self.system.size += order;
+        self.system.domains.push(domain);
+        Ok(())
+    }
+
+    /// The value of an expression of parameters.
+    fn constant(&mut self, expression: &Expr) -> Result<f64, OracleError> {
+        match self.lower(expression, None)? {
+            Tree::Constant(value) if value.is_finite() => Ok(value),
+            _ => Err(OracleError::NotFinite(self.subject.clone())),
+        }
+    }
+
+    fn misplaced(&self) -> OracleError {
+        OracleError::Misplaced(self.subject.clone())
+    }
+
+    /// `set`: the place set around the expression.
+    fn lower(&mut self, expression: &Expr, set: Option<usize>) -> Result<Tree, OracleError> {
+        Ok(match &expression.kind {
+            ExprKind::Number(number) => Tree::Constant(*number),
+            ExprKind::Pi => Tree::Constant(std::f64::consts::PI),
+            ExprKind::Time => Tree::Time,
+            ExprKind::Position(field) => Tree::Position {
+                set: self.set_of(*field, set)?,
+            },
+            ExprKind::Parameter(index) => {
+                Tree::Constant(self.parameters.get(*index).copied().unwrap_or(f64::NAN))
+            }
+            ExprKind::Coordinate(index) => Tree::Coordinate(*index),
+            ExprKind::Input(index) => Tree::Input(*index),
+            ExprKind::Definition(index) => match self.system.definitions.get(*index) {
+                Some(Tree::Constant(value)) => Tree::Constant(*value),
+                _ => Tree::Definition(*index),
+            },
+            ExprKind::Coefficient(_) => return Err(self.misplaced()),
+            ExprKind::Field(field) => self.leaf(*field, 0, set)?,
+            ExprKind::ModeCoordinate(field) => Tree::Mode { field: *field },
+            ExprKind::ModeShape(field) => self.shape(*field, 0, set)?,
+            ExprKind::Dot(operand) => self.dot(operand, set)?,
+            ExprKind::Diff(operand, times) => self.diff(operand, *times, set)?,
+            ExprKind::At {
+                field,
+                value,
+                position,
+            } => self.at(*field, value, position)?,
+            ExprKind::Integral { field, integrand } => self.integral(*field, integrand)?,
+            ExprKind::Sum { field, summand } => self.sum(*field, summand, set)?,
+            ExprKind::Negate(operand) => folded(Tree::Negate(self.lower(operand, set)?.into())),
+            ExprKind::Binary(operator, left, right) => {
+                let (left, right) = (self.lower(left, set)?, self.lower(right, set)?);
+                folded(binary(*operator, left, right))
+            }
+            ExprKind::Call(function, arguments) => {
+                let arguments: Result<_, _> = arguments
+                    .iter()
+                    .map(|argument| self.lower(argument, set))
+                    .collect();
+                folded(Tree::Call(*function, arguments?))
+            }
+        })
+    }
+
+    /// The place set around an expression, if it is one of `field`.
+    fn set_of(&self, field: usize, set: Option<usize>) -> Result<usize, OracleError> {
+        set.filter(|set| {
+            self.system
+                .places
+                .get(*set)
+                .is_some_and(|places| places.field == field)
+        })
+        .ok_or_else(|| self.misplaced())
+    }
+
+    fn require(&mut self, leaf: Leaf, set: Option<usize>) -> Result<usize, OracleError> {
+        let set = self.set_of(leaf.field, set)?;
+        let places = self.system.places.get_mut(set);
+        if let Some((places, domain)) = places.zip(self.system.domains.get(leaf.field)) {
+            places.require(leaf.derivative, domain);
+        }
+        Ok(set)
+    }
+
+    fn leaf(
+        &mut self,
+        field: usize,
+        derivative: u8,
+        set: Option<usize>,
+    ) -> Result<Tree, OracleError> {
+        let leaf = Leaf { field, derivative };
+        let set = self.require(leaf, set)?;
+        Ok(Tree::Field { leaf, set })
+    }
+
+    fn shape(
+        &mut self,
+        field: usize,
+        derivative: u8,
+        set: Option<usize>,
+    ) -> Result<Tree, OracleError> {
+        let leaf = Leaf { field, derivative };
+        let set = self.require(leaf, set)?;
+        Ok(Tree::Shape { leaf, set })
+    }
+
+    fn dot(&mut self, operand: &Expr, set: Option<usize>) -> Result<Tree, OracleError> {
+        let operand = self.lower(operand, set)?;
+        let dependence = self.system.dependence(&operand);
+        if dependence.dot {
+            return Err(OracleError::Acceleration(self.subject.clone()));
+        }
+        if dependence.input {
+            return Err(OracleError::InputRate(self.subject.clone()));
+        }
+        Ok(match operand {
+            Tree::Constant(_) | Tree::PerMode { .. } | Tree::Shape { .. } => Tree::Constant(0.0),
+            operand => Tree::Dot(operand.into()),
+        })
+    }
+
+    /// Derivatives by the position of a field, its rate, a shape, or such a derivative.
+    fn diff(&mut self, operand: &Expr, times: u8, set: Option<usize>) -> Result<Tree, OracleError> {
+        match &operand.kind {
+            ExprKind::Field(field) => self.leaf(*field, times, set),
+            ExprKind::ModeShape(field) => self.shape(*field, times, set),
+            ExprKind::Dot(inner) => Ok(Tree::Dot(self.diff(inner, times, set)?.into())),
+            ExprKind::Diff(inner, more) => self.diff(inner, times.saturating_add(*more), set),
+            _ => Err(self.misplaced()),
+        }
+    }
+
+    fn at(&mut self, field: usize, value: &Expr, position: &Expr) -> Result<Tree, OracleError> {
+        let position = self.constant(position)?;
+        let domain = self
+            .system
+            .domains
+            .get(field)
+            .ok_or_else(|| self.misplaced())?;
+        let set = self.system.places.len();
+        let places = PlaceSet::single(field, domain, position);
+        self.system.places.push(places);
+        let body = self.lower(value, Some(set))?;
+        Ok(self.placed(set, body, false))
+    }
+
+    fn integral(&mut self, field: usize, integrand: &Expr) -> Result<Tree, OracleError> {
+        let set = *self
+            .quadratures
+            .get(field)
+            .ok_or_else(|| self.misplaced())?;
+        let body = self.lower(integrand, Some(set))?;
+        Ok(self.placed(set, body, true))
+    }
+
+    /// A sum over places, as a number (or one per mode) if nothing in it moves.
+    fn placed(&mut self, set: usize, body: Tree, keep: bool) -> Tree {
+        let dependence = self.system.dependence(&body);
+        let mut tree = Tree::Places {
+            set,
+            body: body.clone().into(),
+            integral: None,
+        };
+        let indices: Vec<usize> = dependence.indices.iter().copied().collect();
+        if dependence.is_constant() {
+            match indices.as_slice() {
+                [] => tree = Tree::Constant(self.evaluate(&tree)),
+                [field] => tree = self.per_mode(*field, tree),
+                _ => {}
+            }
+        } else if keep && indices.is_empty() && !dependence.nested {
+            tree = Tree::Places {
+                set,
+                body: body.clone().into(),
+                integral: Some(self.system.integrals.len()),
+            };
+            self.system.integrals.push(Integral {
+                set,
+                body,
+                coordinates: dependence.coordinates.into_iter().collect(),
+                leaves: dependence.leaves.into_iter().collect(),
+            });
+        }
+        tree
+    }
+
+    fn sum(
+        &mut self,
+        field: usize,
+        summand: &Expr,
+        set: Option<usize>,
+    ) -> Result<Tree, OracleError> {
+        let body = self.lower(summand, set)?;
+        let dependence = self.system.dependence(&body);
+        let closed = dependence.indices.iter().all(|index| *index == field);
+        let tree = Tree::Sum {
+            field,
+            body: body.into(),
+        };
+        if dependence.is_constant() && closed && !dependence.position {
+            return Ok(Tree::Constant(self.evaluate(&tree)));
+        }
+        Ok(tree)
+    }
+
+    /// The values a constant takes as the index runs.
+    fn per_mode(&self, field: usize, tree: Tree) -> Tree {
+        let modes = self.system.modes(field).len();
+        let values = (0..modes).map(|mode| self.evaluate_at_mode(&tree, field, mode));
+        Tree::PerMode {
+            field,
+            values: values.collect(),
+        }
+    }
+
+    fn evaluate(&self, tree: &Tree) -> f64 {
+        let scene = Scene::new(&self.system, 0.0, &[], None, &[]);
+        Pass::new(&scene, Direction::Still, Direction::Still)
+            .value(tree)
+            .re
+    }
+
+    fn evaluate_at_mode(&self, tree: &Tree, field: usize, mode: usize) -> f64 {
+        let scene = Scene::new(&self.system, 0.0, &[], None, &[]);
+        Pass::new(&scene, Direction::Still, Direction::Still).value_at_mode(tree, field, mode)
+    }
+}

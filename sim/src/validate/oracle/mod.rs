@@ -1,0 +1,247 @@
+//! The independent oracle: Euler-Lagrange equations by automatic differentiation
+//! (num-dual) of the checked model's expressions, with fields integrated by Gauss
+//! quadrature of their mode shapes. It shares with the derivation only the checked
+//! model; what it answers is [`Equations`].
+//!
+//! The pipeline, one file each: `lower` (expressions to `tree`, with `places` for fields
+//! on `legendre` nodes with `shapes`), `scene` (a state and directions in it),
+//! `evaluate` (any number type, with `functions`), `integrals` (what all rows share),
+//! `terms` (rows of one named term), [`Oracle`] (all rows), `energy` (energies and powers),
+//! `switches` (where piecewise functions change side).
+//!
+//! The rows: with L = T - V, for every generalised coordinate j
+//!
+//! ```text
+//! d/dt dT/dq_j' - dT/dq_j + dV/dq_j + dR/dq_j' - sum of value * d(on)/dq_j = 0
+//! ```
+//!
+//! where d/dt dT/dq_j' = sum over k of M_jk q_k'' + (the derivative of dT/dq_j' along
+//! the motion with the rates held).
+
+mod double_double;
+mod energy;
+mod equations;
+mod error;
+mod evaluate;
+mod fold;
+mod functions;
+mod integrals;
+mod legendre;
+mod lower;
+mod places;
+mod scene;
+mod shapes;
+mod switches;
+mod system;
+mod terms;
+mod tree;
+
+#[cfg(test)]
+mod tests;
+
+pub use energy::Total;
+pub use equations::{Equations, Residual, RowTerm, RowTermKind};
+pub use error::OracleError;
+pub use lower::parameter_values;
+pub use switches::{Side, Switch, SwitchValue};
+
+use evaluate::Pass;
+use lower::Lowering;
+use model_spec::model::Model;
+use nalgebra::DMatrix;
+use scene::{Direction, Scene};
+use system::System;
+use terms::{Lowered, LoweredForce, lower_force, lower_terms};
+
+/// Evaluates the equations of motion of one variant at any state.
+#[derive(Debug)]
+pub struct Oracle {
+    system: System,
+    names: Vec<String>,
+    inputs: usize,
+    kinetic: Vec<Lowered>,
+    potential: Vec<Lowered>,
+    dissipation: Vec<Lowered>,
+    forces: Vec<LoweredForce>,
+    switches: Vec<Switch>,
+}
+
+impl Oracle {
+    /// The oracle of `model` at `order` with parameters in SI, in the order of the
+    /// model (see [`parameter_values`]).
+    ///
+    /// # Errors
+    /// [`OracleError`] if the model holds something the oracle would have to guess.
+    pub fn new(model: &Model, order: usize, parameters: &[f64]) -> Result<Self, OracleError> {
+        expect_length("parameters", model.parameters.len(), parameters.len())?;
+        let mut lowering = Lowering::of_model(model, order, parameters)?;
+        let kinetic = lower_terms(&mut lowering, &model.kinetic)?;
+        let potential = lower_terms(&mut lowering, &model.potential)?;
+        let dissipation = lower_terms(&mut lowering, &model.dissipation)?;
+        let mut forces = Vec::new();
+        for force in &model.forces {
+            forces.extend(lower_force(&mut lowering, force)?);
+        }
+        if let Some(term) = kinetic.iter().find(|term| term.dependence.input) {
+            return Err(OracleError::InputRate(term.name.clone()));
+        }
+        let mut oracle = Self {
+            system: lowering.system,
+            names: coordinate_names(model, order),
+            inputs: model.inputs.len(),
+            kinetic,
+            potential,
+            dissipation,
+            forces,
+            switches: Vec::new(),
+        };
+        oracle.switches = switches::find(&oracle, model);
+        Ok(oracle)
+    }
+
+    /// Number of generalised coordinates, modes included.
+    pub fn size(&self) -> usize {
+        self.system.size
+    }
+
+    /// Names of the generalised coordinates in the order of the state.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Number of inputs.
+    pub fn input_count(&self) -> usize {
+        self.inputs
+    }
+
+    /// The switching functions of all piecewise functions that act on the motion.
+    pub fn switches(&self) -> &[Switch] {
+        &self.switches
+    }
+
+    /// Ranges of the generalised coordinates that hold a field's modes.
+    pub fn modes(&self) -> impl Iterator<Item = std::ops::Range<usize>> {
+        (0..self.system.domains.len()).map(|field| self.system.modes(field))
+    }
+
+    /// Lengths of the fields' domains, as [`Oracle::modes`].
+    pub fn lengths(&self) -> impl Iterator<Item = f64> {
+        self.system.domains.iter().map(|domain| domain.length)
+    }
+
+    /// The equations of motion at a state: coordinates, then rates, in SI.
+    ///
+    /// # Errors
+    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    pub fn equations(
+        &self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Equations, OracleError> {
+        let scene = self.scene(time, state, None, inputs)?;
+        let mut terms = Vec::new();
+        for term in &self.kinetic {
+            terms.push(term.rows(&scene, RowTermKind::Momentum));
+            terms.push(term.rows(&scene, RowTermKind::KineticGradient));
+        }
+        for term in &self.potential {
+            terms.push(term.rows(&scene, RowTermKind::PotentialGradient));
+        }
+        for term in &self.dissipation {
+            terms.push(term.rows(&scene, RowTermKind::Dissipation));
+        }
+        for force in &self.forces {
+            terms.push(force.rows(&scene));
+        }
+        Ok(Equations {
+            mass: self.mass(&scene),
+            terms,
+        })
+    }
+
+    /// Second derivatives of the potential energy by each generalised coordinate alone.
+    ///
+    /// # Errors
+    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    pub fn stiffness_diagonal(
+        &self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Vec<f64>, OracleError> {
+        let scene = self.scene(time, state, None, inputs)?;
+        let entry = |row| {
+            let pass = Pass::new(&scene, Direction::Position(row), Direction::Position(row));
+            let terms = self.potential.iter();
+            terms
+                .filter(|term| self.system.concerns(&term.dependence, row))
+                .map(|term| pass.value(&term.tree).eps1eps2)
+                .sum()
+        };
+        Ok((0..self.size()).map(entry).collect())
+    }
+
+    fn scene<'s>(
+        &'s self,
+        time: f64,
+        state: &'s [f64],
+        accelerations: Option<&'s [f64]>,
+        inputs: &'s [f64],
+    ) -> Result<Scene<'s>, OracleError> {
+        expect_length("state entries", 2 * self.size(), state.len())?;
+        expect_length("inputs", self.inputs, inputs.len())?;
+        Ok(Scene::new(&self.system, time, state, accelerations, inputs))
+    }
+
+    /// M_jk = d^2 T/dq_j' dq_k', the upper half computed and mirrored.
+    fn mass(&self, scene: &Scene<'_>) -> DMatrix<f64> {
+        let size = self.size();
+        let mut mass = DMatrix::zeros(size, size);
+        for row in 0..size {
+            for column in row..size {
+                let mut terms = self
+                    .kinetic
+                    .iter()
+                    .filter(|term| {
+                        self.system.concerns(&term.dependence, row)
+                            && self.system.concerns(&term.dependence, column)
+                    })
+                    .peekable();
+                if terms.peek().is_none() {
+                    continue;
+                }
+                let pass = Pass::new(scene, Direction::Rate(row), Direction::Rate(column));
+                let entry = terms.map(|term| pass.value(&term.tree).eps1eps2).sum();
+                mass[(row, column)] = entry;
+                mass[(column, row)] = entry;
+            }
+        }
+        mass
+    }
+}
+
+/// Coordinates in the order of the model, then each field's modes `q_1 ..`.
+fn coordinate_names(model: &Model, order: usize) -> Vec<String> {
+    let mut names: Vec<String> = model
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.name.clone())
+        .collect();
+    for field in &model.fields {
+        names.extend((1..=order).map(|mode| format!("{}_{mode}", field.coordinates)));
+    }
+    names
+}
+
+fn expect_length(what: &'static str, expected: usize, found: usize) -> Result<(), OracleError> {
+    if expected == found {
+        Ok(())
+    } else {
+        Err(OracleError::Length {
+            what,
+            expected,
+            found,
+        })
+    }
+}

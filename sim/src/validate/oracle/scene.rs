@@ -1,0 +1,199 @@
+//! One state at which expressions are evaluated, and the directions in which they are
+//! differentiated there. Field values at all places are formed once per state: w is
+//! linear in the modes, so neither w nor its rate depends on the row under test.
+
+use super::integrals::IntegralTable;
+use super::system::System;
+use super::tree::Leaf;
+use nalgebra::{DVector, DVectorView};
+use num_dual::HyperDual64;
+
+/// A direction of differentiation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Direction {
+    /// None: the derivative part stays 0.
+    Still,
+    /// Along the motion: coordinates move with the rates, rates with the accelerations.
+    Time,
+    /// A generalised coordinate, its rate held.
+    Position(usize),
+    /// The rate of a generalised coordinate.
+    Rate(usize),
+    /// A field value at the current place, its rate held.
+    LeafPosition(Leaf),
+    /// The rate of a field value at the current place.
+    LeafRate(Leaf),
+}
+
+/// A quantity that moves: its value and its time derivative, each with derivative parts
+/// in two directions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    /// The value.
+    pub value: HyperDual64,
+    /// The time derivative.
+    pub rate: HyperDual64,
+}
+
+/// Field values of one order of derivative at all positions of a place set.
+#[derive(Clone, Debug)]
+struct Values {
+    derivative: u8,
+    value: DVector<f64>,
+    rate: DVector<f64>,
+    second: DVector<f64>,
+}
+
+/// A state with what can be formed once for all rows.
+#[derive(Debug)]
+pub(super) struct Scene<'s> {
+    /// The variant.
+    pub system: &'s System,
+    /// The time, in s.
+    pub time: f64,
+    /// Inputs in the order of the model.
+    pub inputs: &'s [f64],
+    /// Derivatives of integrals, formed when first asked for.
+    pub integrals: Vec<IntegralTable>,
+    position: &'s [f64],
+    rate: &'s [f64],
+    acceleration: Option<&'s [f64]>,
+    values: Vec<Vec<Values>>,
+}
+
+impl<'s> Scene<'s> {
+    /// A state (coordinates, then rates); without accelerations rates are constant.
+    pub fn new(
+        system: &'s System,
+        time: f64,
+        state: &'s [f64],
+        acceleration: Option<&'s [f64]>,
+        inputs: &'s [f64],
+    ) -> Self {
+        let (position, rate) = state.split_at(system.size.min(state.len()));
+        let mut scene = Self {
+            system,
+            time,
+            inputs,
+            integrals: Vec::new(),
+            position,
+            rate,
+            acceleration,
+            values: Vec::new(),
+        };
+        scene.values = (0..system.places.len())
+            .map(|set| scene.sample(set))
+            .collect();
+        scene
+            .integrals
+            .resize_with(system.integrals.len(), IntegralTable::default);
+        scene
+    }
+
+    /// The field's values at one place set.
+    fn sample(&self, set: usize) -> Vec<Values> {
+        let Some(places) = self.system.places.get(set) else {
+            return Vec::new();
+        };
+        let modes = self.system.modes(places.field);
+        let project = |derivative, amplitudes: Option<&[f64]>| {
+            let amplitudes = amplitudes.and_then(|all| all.get(modes.clone()));
+            match (places.shapes(derivative), amplitudes) {
+                (Some(shapes), Some(amplitudes)) => {
+                    shapes.tr_mul(&DVectorView::from_slice(amplitudes, amplitudes.len()))
+                }
+                _ => DVector::zeros(places.positions.len()),
+            }
+        };
+        places
+            .derivatives()
+            .map(|derivative| Values {
+                derivative,
+                value: project(derivative, Some(self.position)),
+                rate: project(derivative, Some(self.rate)),
+                second: project(derivative, self.acceleration),
+            })
+            .collect()
+    }
+
+    /// A generalised coordinate in two directions.
+    pub fn coordinate(&self, index: usize, directions: [Direction; 2]) -> Motion {
+        let [first, second] = directions.map(|direction| self.seed(index, direction));
+        let at = |values: &[f64]| values.get(index).copied().unwrap_or(f64::NAN);
+        Motion {
+            value: HyperDual64::new(at(self.position), first.0, second.0, 0.0),
+            rate: HyperDual64::new(at(self.rate), first.1, second.1, 0.0),
+        }
+    }
+
+    /// How fast a coordinate and its rate change in a direction.
+    fn seed(&self, index: usize, direction: Direction) -> (f64, f64) {
+        let at = |values: &[f64]| values.get(index).copied().unwrap_or(f64::NAN);
+        match direction {
+            Direction::Time => (at(self.rate), self.acceleration.map_or(0.0, at)),
+            Direction::Position(row) if row == index => (1.0, 0.0),
+            Direction::Rate(row) if row == index => (0.0, 1.0),
+            _ => (0.0, 0.0),
+        }
+    }
+
+    /// A field value at place `node` of `set` in two directions.
+    pub fn field(&self, leaf: Leaf, set: usize, node: usize, directions: [Direction; 2]) -> Motion {
+        let values = self.values.get(set).and_then(|all| {
+            all.iter()
+                .find(|values| values.derivative == leaf.derivative)
+        });
+        let at = |values: Option<&DVector<f64>>| {
+            values
+                .and_then(|values| values.get(node))
+                .copied()
+                .unwrap_or(f64::NAN)
+        };
+        let [first, second] = directions.map(|direction| match direction {
+            Direction::Time => (
+                at(values.map(|values| &values.rate)),
+                at(values.map(|values| &values.second)),
+            ),
+            Direction::Position(row) => (self.shape_of_row(leaf, set, node, row), 0.0),
+            Direction::Rate(row) => (0.0, self.shape_of_row(leaf, set, node, row)),
+            Direction::LeafPosition(other) if other == leaf => (1.0, 0.0),
+            Direction::LeafRate(other) if other == leaf => (0.0, 1.0),
+            _ => (0.0, 0.0),
+        });
+        Motion {
+            value: HyperDual64::new(at(values.map(|v| &v.value)), first.0, second.0, 0.0),
+            rate: HyperDual64::new(at(values.map(|v| &v.rate)), first.1, second.1, 0.0),
+        }
+    }
+
+    /// The shape that multiplies generalised coordinate `row` in a field value: 0 unless
+    /// it is one of the field's modes.
+    fn shape_of_row(&self, leaf: Leaf, set: usize, node: usize, row: usize) -> f64 {
+        let modes = self.system.modes(leaf.field);
+        if modes.contains(&row) {
+            self.shape(leaf, set, node, row - modes.start)
+        } else {
+            0.0
+        }
+    }
+
+    /// The shape of `mode` at place `node` of `set`.
+    pub fn shape(&self, leaf: Leaf, set: usize, node: usize, mode: usize) -> f64 {
+        self.system
+            .places
+            .get(set)
+            .and_then(|places| places.shapes(leaf.derivative))
+            .and_then(|shapes| shapes.get((mode, node)))
+            .copied()
+            .unwrap_or(f64::NAN)
+    }
+
+    /// How fast the time changes in a direction.
+    pub fn time_seed(direction: Direction) -> f64 {
+        if direction == Direction::Time {
+            1.0
+        } else {
+            0.0
+        }
+    }
+}

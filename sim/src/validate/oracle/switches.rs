@@ -1,0 +1,220 @@
+//! The switching functions of the model: the arguments at which its piecewise functions
+//! change side. Only those outside sums over places and modes: inside, every place has a
+//! side of its own and the state as a whole has none.
+
+use super::evaluate::Pass;
+use super::scene::Direction;
+use super::tree::Tree;
+use super::{Oracle, OracleError};
+use model_spec::model::{Function, Model};
+
+/// A quantity at whose zero, or at plus and minus a half-width, something switches.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Switch {
+    /// The quantity as the specification names it, or `switch_1 ..`.
+    pub name: String,
+    quantity: Tree,
+    half_width: Option<Tree>,
+}
+
+/// A side of a switch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Side {
+    /// Below minus the half-width.
+    Minus,
+    /// Within the half-width; only where there is one.
+    Free,
+    /// Above the half-width.
+    Plus,
+}
+
+/// A switch at one state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SwitchValue {
+    /// The quantity.
+    pub quantity: f64,
+    /// The half-width, 0 for a switch at 0.
+    pub half_width: f64,
+}
+
+impl SwitchValue {
+    /// The side the state is on.
+    pub fn side(&self) -> Side {
+        if self.quantity > self.half_width {
+            Side::Plus
+        } else if self.quantity < -self.half_width {
+            Side::Minus
+        } else {
+            Side::Free
+        }
+    }
+}
+
+impl Switch {
+    /// The sides this switch has.
+    pub fn sides(&self) -> &'static [Side] {
+        if self.half_width.is_some() {
+            &[Side::Minus, Side::Free, Side::Plus]
+        } else {
+            &[Side::Minus, Side::Plus]
+        }
+    }
+}
+
+impl Oracle {
+    /// All switches at a state.
+    ///
+    /// # Errors
+    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    pub fn switch_values(
+        &self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Vec<SwitchValue>, OracleError> {
+        let scene = self.scene(time, state, None, inputs)?;
+        let pass = Pass::new(&scene, Direction::Still, Direction::Still);
+        let value = |switch: &Switch| SwitchValue {
+            quantity: pass.value(&switch.quantity).re,
+            half_width: switch
+                .half_width
+                .as_ref()
+                .map_or(0.0, |width| pass.value(width).re),
+        };
+        Ok(self.switches.iter().map(value).collect())
+    }
+
+    /// How the quantity of switch `index` changes with every entry of the state.
+    ///
+    /// # Errors
+    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    pub fn switch_slopes(
+        &self,
+        index: usize,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Vec<f64>, OracleError> {
+        let scene = self.scene(time, state, None, inputs)?;
+        let Some(switch) = self.switches.get(index) else {
+            return Ok(vec![0.0; state.len()]);
+        };
+        let rows = 0..self.size();
+        let directions = rows
+            .clone()
+            .map(Direction::Position)
+            .chain(rows.map(Direction::Rate));
+        Ok(directions
+            .map(|direction| {
+                let pass = Pass::new(&scene, Direction::Still, direction);
+                pass.value(&switch.quantity).eps2
+            })
+            .collect())
+    }
+}
+
+/// The switches in all terms of the motion, each once.
+pub(super) fn find(oracle: &Oracle, model: &Model) -> Vec<Switch> {
+    let mut search = Search {
+        oracle,
+        model,
+        visited: vec![false; oracle.system.definitions.len()],
+        found: Vec::new(),
+    };
+    let energies = oracle.kinetic.iter().chain(&oracle.potential);
+    for term in energies.chain(&oracle.dissipation) {
+        search.walk(&term.tree);
+    }
+    for force in &oracle.forces {
+        search.walk(&force.on);
+        search.walk(&force.value);
+    }
+    search.found
+}
+
+struct Search<'s> {
+    oracle: &'s Oracle,
+    model: &'s Model,
+    visited: Vec<bool>,
+    found: Vec<Switch>,
+}
+
+impl Search<'_> {
+    fn walk(&mut self, tree: &Tree) {
+        if let Tree::Call(function, arguments) = tree {
+            self.add(*function, arguments);
+        }
+        if let Tree::Definition(index) = tree {
+            let oracle = self.oracle;
+            if let Some(visited) = self.visited.get_mut(*index)
+                && !std::mem::replace(visited, true)
+                && let Some(definition) = oracle.system.definitions.get(*index)
+            {
+                self.walk(definition);
+            }
+        }
+        for child in tree.children() {
+            self.walk(child);
+        }
+    }
+
+    fn add(&mut self, function: Function, arguments: &[Tree]) {
+        let (quantity, half_width) = match (function, arguments) {
+            (Function::Abs | Function::Sign, [argument]) => (argument.clone(), None),
+            (Function::Deadzone | Function::Contact, [p, b]) => (p.clone(), Some(b.clone())),
+            (Function::Min | Function::Max, [left, right]) => (difference(left, right), None),
+            _ => return,
+        };
+        let dependence = self.oracle.system.dependence(&quantity);
+        let inside =
+            dependence.position || !dependence.leaves.is_empty() || !dependence.indices.is_empty();
+        let known = self
+            .found
+            .iter()
+            .any(|switch| switch.quantity == quantity && switch.half_width == half_width);
+        if !inside && !known {
+            let name = self
+                .name(&quantity)
+                .unwrap_or_else(|| format!("switch_{}", self.found.len() + 1));
+            self.found.push(Switch {
+                name,
+                quantity,
+                half_width,
+            });
+        }
+    }
+
+    fn name(&self, tree: &Tree) -> Option<String> {
+        match tree {
+            Tree::Coordinate(index) => self.oracle.names.get(*index).cloned(),
+            Tree::Definition(index) => Some(self.model.definitions.get(*index)?.name.clone()),
+            Tree::Dot(operand) => Some(format!("{}_dot", self.name(operand)?)),
+            _ => None,
+        }
+    }
+}
+
+fn difference(left: &Tree, right: &Tree) -> Tree {
+    let operator = model_spec::ast::BinaryOperator::Subtract;
+    Tree::Binary(operator, left.clone().into(), right.clone().into())
+}
+
+impl Side {
+    /// `-`, `0` or `+`.
+    pub fn symbol(self) -> char {
+        match self {
+            Self::Minus => '-',
+            Self::Free => '0',
+            Self::Plus => '+',
+        }
+    }
+
+    /// -1, 0 or 1.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Minus => -1.0,
+            Self::Free => 0.0,
+            Self::Plus => 1.0,
+        }
+    }
+}

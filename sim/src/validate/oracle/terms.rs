@@ -1,0 +1,125 @@
+//! One term of the specification as it enters every row of the equations.
+
+use super::OracleError;
+use super::equations::{RowTerm, RowTermKind};
+use super::evaluate::Pass;
+use super::lower::Lowering;
+use super::scene::{Direction, Scene};
+use super::tree::{Dependence, Tree};
+use model_spec::model::{Force, Term};
+use nalgebra::DVector;
+use num_dual::HyperDual64;
+
+/// An addend of a named term.
+#[derive(Debug)]
+pub(super) struct Lowered {
+    pub name: String,
+    pub tree: Tree,
+    pub dependence: Dependence,
+}
+
+/// An addend of a named force.
+#[derive(Debug)]
+pub(super) struct LoweredForce {
+    pub name: String,
+    pub on: Tree,
+    pub dependence: Dependence,
+    pub value: Tree,
+}
+
+impl Lowered {
+    pub fn rows(&self, scene: &Scene<'_>, kind: RowTermKind) -> RowTerm {
+        let entry = |row: usize| match kind {
+            RowTermKind::Momentum => {
+                self.part(scene, row, Direction::Time, Direction::Rate(row), |value| {
+                    value.eps1eps2
+                })
+            }
+            RowTermKind::KineticGradient => -self.derivative(scene, row, Direction::Position(row)),
+            RowTermKind::PotentialGradient | RowTermKind::Force => {
+                self.derivative(scene, row, Direction::Position(row))
+            }
+            RowTermKind::Dissipation => self.derivative(scene, row, Direction::Rate(row)),
+        };
+        RowTerm {
+            name: self.name.clone(),
+            kind,
+            rows: DVector::from_fn(scene.system.size, |row, _| entry(row)),
+        }
+    }
+
+    pub fn derivative(&self, scene: &Scene<'_>, row: usize, direction: Direction) -> f64 {
+        self.part(scene, row, Direction::Still, direction, |value| value.eps2)
+    }
+
+    fn part(
+        &self,
+        scene: &Scene<'_>,
+        row: usize,
+        first: Direction,
+        second: Direction,
+        part: impl Fn(HyperDual64) -> f64,
+    ) -> f64 {
+        if scene.system.concerns(&self.dependence, row) {
+            part(Pass::new(scene, first, second).value(&self.tree))
+        } else {
+            0.0
+        }
+    }
+}
+
+impl LoweredForce {
+    /// -value * d(on)/dq_j.
+    pub fn rows(&self, scene: &Scene<'_>) -> RowTerm {
+        let value = Pass::new(scene, Direction::Still, Direction::Still)
+            .value(&self.value)
+            .re;
+        RowTerm {
+            name: self.name.clone(),
+            kind: RowTermKind::Force,
+            rows: DVector::from_fn(scene.system.size, |row, _| {
+                if scene.system.concerns(&self.dependence, row) {
+                    let pass = Pass::new(scene, Direction::Still, Direction::Position(row));
+                    -value * pass.value(&self.on).eps2
+                } else {
+                    0.0
+                }
+            }),
+        }
+    }
+}
+
+/// Terms, every addend of a sum by itself: a row's scale is its largest addend, and a
+/// term like `a - b` may be small because two large addends cancel.
+pub(super) fn lower_terms(
+    lowering: &mut Lowering<'_>,
+    terms: &[Term],
+) -> Result<Vec<Lowered>, OracleError> {
+    let mut lowered = Vec::new();
+    for term in terms {
+        let tree = lowering.term(&term.name, &term.value)?;
+        lowered.extend(tree.addends().into_iter().map(|tree| Lowered {
+            name: term.name.clone(),
+            dependence: lowering.system.dependence(&tree),
+            tree,
+        }));
+    }
+    Ok(lowered)
+}
+
+/// A force, every addend of its value by itself.
+pub(super) fn lower_force(
+    lowering: &mut Lowering<'_>,
+    force: &Force,
+) -> Result<Vec<LoweredForce>, OracleError> {
+    let on = lowering.term(&force.name, &force.on)?;
+    let dependence = lowering.system.dependence(&on);
+    let values = lowering.term(&force.name, &force.value)?.addends();
+    let addend = |value| LoweredForce {
+        name: force.name.clone(),
+        on: on.clone(),
+        dependence: dependence.clone(),
+        value,
+    };
+    Ok(values.into_iter().map(addend).collect())
+}

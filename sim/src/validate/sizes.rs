@@ -1,0 +1,83 @@
+//! How large the entries of a random state are, taken from the model: a coordinate in a
+//! dead zone twice the dead zone, other coordinates 1 in SI, the first mode of a field a
+//! twentieth of its length, rates by the stiffness and the inertia of each coordinate.
+//!
+//! Amplitudes of modes fall like 1/beta^3, between equal elastic energies (1/beta^2) and
+//! equal elastic forces (1/beta^4). Steeper, and the first mode's share of the 64th row's
+//! elastic force, zero but for 1e-17 in the quadrature, is 1e-12 of that row; flatter,
+//! and the same is true of the 64th mode's share of the first row's inertia.
+
+use super::oracle::{Oracle, OracleError};
+
+/// The size of every entry of the state.
+pub(super) fn of_state(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
+    let size = oracle.size();
+    let inputs = vec![0.0; oracle.input_count()];
+    let mut sizes = of_coordinates(oracle, &inputs)?;
+    let mut state = sizes.clone();
+    state.resize(2 * size, 0.0);
+    let stiffness = oracle.stiffness_diagonal(0.0, &state, &inputs)?;
+    let mass = oracle.equations(0.0, &state, &inputs)?.mass;
+    for (modes, length) in oracle.modes().zip(oracle.lengths()) {
+        let shares = shares(stiffness.get(modes.clone()).unwrap_or_default());
+        for (entry, share) in sizes.iter_mut().skip(modes.start).zip(shares) {
+            *entry = 0.05 * length.abs() * share;
+        }
+    }
+    let rates: Vec<f64> = sizes
+        .iter()
+        .zip(stiffness.iter().zip(mass.diagonal().iter()))
+        .map(|(size, (stiffness, mass))| size * frequency(stiffness / mass))
+        .collect();
+    sizes.extend(rates);
+    Ok(sizes)
+}
+
+/// The sizes of the coordinates, 0 for modes. A coordinate is in a dead zone if it alone
+/// is what the dead zone is about.
+fn of_coordinates(oracle: &Oracle, inputs: &[f64]) -> Result<Vec<f64>, OracleError> {
+    let mut sizes = vec![1.0; oracle.size()];
+    for row in oracle.modes().flatten() {
+        if let Some(entry) = sizes.get_mut(row) {
+            *entry = 0.0;
+        }
+    }
+    let still = vec![0.0; 2 * oracle.size()];
+    let values = oracle.switch_values(0.0, &still, inputs)?;
+    for (index, value) in values.iter().enumerate() {
+        let slopes = oracle.switch_slopes(index, 0.0, &still, inputs)?;
+        let mut moving = slopes
+            .iter()
+            .enumerate()
+            .filter(|(_, slope)| **slope != 0.0);
+        if let (Some((row, 1.0)), None, true) =
+            (moving.next(), moving.next(), value.half_width > 0.0)
+            && let Some(entry) = sizes.get_mut(row)
+        {
+            *entry = 2.0 * value.half_width;
+        }
+    }
+    Ok(sizes)
+}
+
+/// Amplitudes of modes relative to the first one: stiffness goes like beta^4.
+fn shares(stiffness: &[f64]) -> impl Iterator<Item = f64> {
+    let first = stiffness.first().copied().unwrap_or(0.0);
+    stiffness.iter().map(move |stiffness| {
+        let ratio = first / stiffness;
+        if ratio > 0.0 && ratio.is_finite() {
+            ratio.powf(0.75)
+        } else {
+            1.0
+        }
+    })
+}
+
+/// The frequency of a coordinate by itself, at least 1 rad/s.
+fn frequency(square: f64) -> f64 {
+    if square.is_finite() {
+        square.abs().sqrt().max(1.0)
+    } else {
+        1.0
+    }
+}

@@ -1,0 +1,206 @@
+//! A certificate must pass what is right and fail what is wrong: textbook equations as
+//! subjects, each of their possible faults as a mutation, and the check that sees it.
+
+use super::certificate::{Certificate, Check};
+use super::certify::{Emitted, EmittedFunction, Reference, Subject, certify};
+use super::compiler::Compiler;
+use super::oracle::{Oracle, parameter_values};
+use super::test_models::{BEAM, DOUBLE_PENDULUM, SPRING, model};
+use super::test_variants::{Beam, DoublePendulum, EMITTED, Fault, Spring};
+use super::variant::Variant;
+
+/// The certificate of what `variants` makes of the model in `text`.
+fn certificate(
+    text: &str,
+    order: usize,
+    variants: &dyn Fn(usize) -> Result<Box<dyn Variant>, String>,
+    references: &[Reference],
+    emitted: Result<Emitted, String>,
+) -> Certificate {
+    let model = model(text);
+    let parameters = parameter_values(&model).unwrap();
+    certify(&Subject {
+        model: &model,
+        order,
+        parameters: &parameters,
+        variants,
+        references,
+        emitted,
+    })
+}
+
+fn pendulum(fault: Fault) -> Certificate {
+    let variants = move |_| Ok(Box::new(DoublePendulum(fault)) as Box<dyn Variant>);
+    certificate(
+        DOUBLE_PENDULUM,
+        0,
+        &variants,
+        &[],
+        Err("not emitted".into()),
+    )
+}
+
+fn spring(fault: Fault, emitted: Result<Emitted, String>) -> Certificate {
+    let variants = move |_| Ok(Box::new(Spring(fault)) as Box<dyn Variant>);
+    certificate(SPRING, 0, &variants, &[], emitted)
+}
+
+fn beam(order: usize, coupled: bool) -> Certificate {
+    let model = model(BEAM);
+    let parameters = parameter_values(&model).unwrap();
+    let variants = |order| {
+        let oracle = Oracle::new(&model, order, &parameters).map_err(|error| error.to_string())?;
+        Ok(Box::new(Beam { oracle, coupled }) as Box<dyn Variant>)
+    };
+    certificate(BEAM, order, &variants, &[], Err("not emitted".into()))
+}
+
+fn failures(certificate: &Certificate) -> Vec<&str> {
+    certificate
+        .failures()
+        .map(|check| check.name.as_str())
+        .collect()
+}
+
+fn find<'c>(certificate: &'c Certificate, name: &str) -> &'c Check {
+    certificate
+        .checks
+        .iter()
+        .find(|check| check.name == name)
+        .unwrap()
+}
+
+#[test]
+fn right_equations_pass() {
+    let pendulum = pendulum(Fault::None);
+    assert!(pendulum.passed, "{:?}", failures(&pendulum));
+    assert!(find(&pendulum, "guards").skipped);
+    assert!(find(&pendulum, "nesting_mass").skipped);
+    assert!(find(&pendulum, "power_balance").passed);
+    let spring = spring(Fault::None, Err("not emitted".into()));
+    assert!(spring.passed, "{:?}", failures(&spring));
+    for name in [
+        "accelerations y-",
+        "accelerations y0",
+        "accelerations y+",
+        "guards",
+    ] {
+        assert!(find(&spring, name).passed);
+    }
+    assert_eq!(find(&spring, "emitted_rust").detail, "not emitted");
+}
+
+#[test]
+fn every_fault_fails_the_check_that_is_there_for_it() {
+    for (fault, check) in [
+        (Fault::VelocitySign, "accelerations"),
+        (Fault::Coupling, "accelerations"),
+        (Fault::Coupling, "dense_solve"),
+        (Fault::Coupling, "power_balance"),
+        (Fault::Asymmetry, "mass_matrix_symmetric"),
+        (Fault::Energy, "energy"),
+        (Fault::Power, "power"),
+        (Fault::Power, "power_balance"),
+        (Fault::NotANumber, "accelerations"),
+        (Fault::Shifted, "accelerations"),
+        (Fault::Refusal, "accelerations"),
+    ] {
+        let certificate = pendulum(fault);
+        assert!(!certificate.passed);
+        assert!(failures(&certificate).contains(&check), "{fault:?} {check}");
+    }
+    assert_eq!(
+        failures(&pendulum(Fault::Asymmetry)),
+        ["mass_matrix_symmetric"]
+    );
+    let spring = spring(Fault::Guard, Err("not emitted".into()));
+    assert_eq!(failures(&spring), ["guards"]);
+}
+
+#[test]
+fn a_reference_is_compared_at_every_state() {
+    let reference = |factor: f64| Reference {
+        name: "textbook".into(),
+        deviation: Box::new(move |_, state: &[f64], _: &[f64], found: &[f64]| {
+            let mut rates = [0.0; 4];
+            let done = DoublePendulum(Fault::None).rates(0.0, state, &[], &mut rates);
+            assert_eq!(done, Ok(()));
+            (found[1] - factor * rates[3]).abs() / rates[3].abs()
+        }),
+    };
+    let variants = |_| Ok(Box::new(DoublePendulum(Fault::None)) as Box<dyn Variant>);
+    for (factor, passes) in [(1.0, true), (1.0 + 1e-9, false)] {
+        let references = [reference(factor)];
+        let skipped = Err("not emitted".into());
+        let certificate = certificate(DOUBLE_PENDULUM, 0, &variants, &references, skipped);
+        assert_eq!(find(&certificate, "reference textbook").passed, passes);
+    }
+}
+
+#[test]
+fn orders_must_nest() {
+    let good = beam(3, true);
+    assert!(good.passed, "{:?}", failures(&good));
+    for name in [
+        "nesting_mass",
+        "nesting_bias",
+        "nesting_forces",
+        "rigid_limit_mass",
+    ] {
+        assert!(find(&good, name).passed);
+    }
+    let bad = beam(3, false);
+    assert!(failures(&bad).contains(&"nesting_mass"));
+    assert!(!failures(&bad).contains(&"rigid_limit_mass"));
+}
+
+#[test]
+fn a_variant_that_cannot_be_made_is_a_failure_that_says_why() {
+    let variants = |_| Err("no such order".to_owned());
+    let certificate = certificate(SPRING, 0, &variants, &[], Err("not emitted".into()));
+    assert!(!certificate.passed);
+    assert_eq!(certificate.checks[0].detail, "no such order");
+}
+
+fn emitted(source: &str) -> Emitted {
+    Emitted {
+        source: source.to_owned(),
+        input_fields: vec!["u".into()],
+        functions: vec![EmittedFunction::Rates, EmittedFunction::Energy],
+    }
+}
+
+#[test]
+fn emitted_source_is_compared_bit_for_bit() {
+    let check = |source: &str| {
+        let certificate = spring(Fault::None, Ok(emitted(source)));
+        find(&certificate, "emitted_rust").clone()
+    };
+    let good = check(EMITTED);
+    if good.skipped {
+        eprintln!("SKIPPED: {}", good.detail);
+        return;
+    }
+    assert!(good.passed, "{good:?}");
+    assert_eq!(good.detail, "300 numbers at 100 states");
+    let rounded =
+        check(&EMITTED.replace("150.0 * stretch * stretch", "150.0 * (stretch * stretch)"));
+    assert!(
+        !rounded.passed && rounded.detail.starts_with("first in energy"),
+        "{rounded:?}"
+    );
+    let broken = check(&EMITTED.replace("Self { m: 2.0 }", "Self { m: two }"));
+    assert!(
+        !broken.passed && broken.detail.contains("emitted source failed"),
+        "{broken:?}"
+    );
+    let panicking = check(&EMITTED.replace("[state[1], (", "[state[2 * STATES], ("));
+    assert!(!panicking.passed, "{panicking:?}");
+}
+
+#[test]
+fn a_missing_compiler_is_a_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = Compiler::named("no-such-rustc".into(), folder.path());
+    assert!(found.unwrap_err().contains("no-such-rustc"));
+}
