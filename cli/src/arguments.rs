@@ -40,6 +40,10 @@ pub enum Command {
         after_help = "Example:\n  eomgen simulate model-spec/models/planetary_arm.toml --order 4 --until 2 --sample 0.001 --set b_sp=50e-6 --out arm.csv"
     )]
     Simulate(Simulate),
+    /// The newcomer's walk: check, derive, generate, validate and simulate the paper's arm,
+    /// and leave one HTML page.
+    #[command(after_help = "Example:\n  eomgen tour --out tour")]
+    Tour(Tour),
 }
 
 /// Options of `check`.
@@ -176,4 +180,12 @@ pub struct Simulate {
     /// Print one JSON document on the work done.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Options of `tour`.
+#[derive(Args)]
+pub struct Tour {
+    /// The folder to write to.
+    #[arg(long)]
+    pub out: PathBuf,
 }

@@ -8,6 +8,7 @@
 mod arguments;
 mod commands;
 mod output;
+mod page;
 mod problem;
 mod progress;
 mod table;
@@ -28,6 +29,7 @@ fn main() -> ExitCode {
         Command::Generate(options) => commands::generate::run(&options),
         Command::Validate(options) => commands::validate::run(&options),
         Command::Simulate(options) => commands::simulate::run(&options),
+        Command::Tour(options) => commands::tour::run(&options),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -57,10 +57,14 @@ impl Problem {
             }
             Self::Failed => return ExitCode::from(1),
         };
-        // Nothing is left to do if stderr is closed.
-        let _ = writeln!(std::io::stderr(), "{text}");
+        warn(&text);
         ExitCode::from(2)
     }
+}
+
+/// Says something on stderr; a program goes on when nobody can hear it.
+pub fn warn(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 /// Writes to stdout; a closed pipe ends the program quietly.

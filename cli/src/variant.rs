@@ -1,5 +1,6 @@
 //! From the path of a specification to a derived variant, with messages for people.
 
+use std::io::IsTerminal;
 use std::path::Path;
 
 use codegen::equations::{Equations, derive};
@@ -9,7 +10,7 @@ use codegen::program::Program;
 use model_spec::Checked;
 use model_spec::model::Model;
 
-use crate::problem::{Outcome, Problem};
+use crate::problem::{Outcome, Problem, warn};
 
 /// A model derived at one order.
 pub struct Variant {
@@ -25,7 +26,7 @@ pub struct Variant {
 pub fn load(path: &Path) -> Outcome<Checked> {
     let checked = model_spec::load(path).map_err(Problem::Specification)?;
     if !checked.warnings.is_empty() {
-        eprintln!("{}", checked.warnings.render(std::io::IsTerminal::is_terminal(&std::io::stderr())));
+        warn(&checked.warnings.render(std::io::stderr().is_terminal()));
     }
     Ok(checked)
 }

@@ -6,8 +6,9 @@ use model_spec::model::{Function, Model, ParameterValue, Term};
 
 use crate::differentiate::{Direction, ModalDerivative, by_scalar};
 use crate::graph::{Graph, Id, Operation, Shape, Space};
+use crate::expand::{MOST_EXPANSIONS, expand_once};
 use crate::matrix::StructuredMatrix;
-use crate::solve::{Accelerations, solve};
+use crate::solve::{Accelerations, count_operations, solve};
 use crate::translate::{DeriveError, Derived, Translator, along_motion};
 
 /// The equations of motion of one model at one order.
@@ -308,6 +309,24 @@ fn surfaces(graph: &mut Graph, function: Function, arguments: &[Id]) -> Vec<Id> 
     }
 }
 
+/// A node multiplied out where that is cheaper. Of a velocity term the rate of a momentum
+/// and the slope of the kinetic energy share terms that cancel, but often only inside
+/// products: d/dt(dv/dq') = dv/dq for the rate v of anything that depends on coordinates.
+fn cheaper_expansion(graph: &mut Graph, term: Id) -> Id {
+    let mut best = term;
+    let mut operations = count_operations(graph, &[term]);
+    let mut expanded = term;
+    for _ in 0..MOST_EXPANSIONS {
+        let Some(next) = expand_once(graph, expanded) else { break };
+        expanded = next;
+        let count = count_operations(graph, &[expanded]);
+        if count < operations {
+            (best, operations) = (expanded, count);
+        }
+    }
+    best
+}
+
 impl MassMatrix {
     fn assembled_blocks(&self, graph: &mut Graph) -> Vec<(usize, Id, usize)> {
         let mut blocks = Vec::new();
@@ -387,7 +406,8 @@ impl Layout {
                 (0..self.coordinates)
                     .map(|column| {
                         let (low, high) = (row.min(column), row.max(column));
-                        by_scalar(graph, momenta.scalars[low], rates[high])
+                        let entry = by_scalar(graph, momenta.scalars[low], rates[high]);
+                        cheaper_expansion(graph, entry)
                     })
                     .collect()
             })
@@ -420,7 +440,8 @@ impl Layout {
         let gradient = self.gradient(graph, kinetic, Kind::Coordinates);
         let mut row = |momentum: Id, slope: Id| {
             let rate = along_motion(graph, momentum);
-            graph.combine_flat(&[(1.0, rate), (-1.0, slope)])
+            let difference = graph.combine_flat(&[(1.0, rate), (-1.0, slope)]);
+            cheaper_expansion(graph, difference)
         };
         let scalars = momenta
             .scalars

@@ -16,6 +16,7 @@ pub mod describe;
 pub mod differentiate;
 pub mod equations;
 pub mod evaluator;
+mod expand;
 mod field_function;
 pub mod graph;
 pub mod lower;

@@ -237,7 +237,8 @@ impl Printer<'_> {
             } else if self.graph.as_constant(*id).is_some() {
                 text.push_str(&number(magnitude));
             } else {
-                text.push_str(&format!("{}{}{inner}", number(magnitude), self.times()));
+                let number = factor_number(magnitude, self.notation.latex);
+                text.push_str(&format!("{number}{}{inner}", self.times()));
             }
         }
         text
@@ -323,6 +324,23 @@ fn parenthesised(text: String, needed: bool, latex: bool) -> String {
         (true, false) => format!("({text})"),
         (true, true) => format!("\\left({text}\\right)"),
     }
+}
+
+/// A magnitude in front of a product: a small fraction where it is one exactly.
+fn factor_number(value: f64, latex: bool) -> String {
+    for denominator in 2..=12_u32 {
+        let numerator = value * f64::from(denominator);
+        let exact = numerator.round() / f64::from(denominator) == value;
+        if exact && value.fract() != 0.0 && (1.0..=1000.0).contains(&numerator.round()) {
+            let numerator = numerator.round();
+            return if latex {
+                format!("\\tfrac{{{numerator}}}{{{denominator}}}")
+            } else {
+                format!("{numerator}/{denominator}")
+            };
+        }
+    }
+    number(value)
 }
 
 fn number(value: f64) -> String {

@@ -12,8 +12,18 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
     }
     let rates = model.coordinates.iter().map(|c| format!("{}_dot", c.name));
     let mut channels: Vec<String> = vec!["energy".to_owned(), "power".to_owned()];
-    channels.extend(model.observables.iter().map(|observable| observable.name.clone()));
-    channels.extend(model.coordinates.iter().map(|coordinate| coordinate.name.clone()));
+    channels.extend(
+        model
+            .observables
+            .iter()
+            .map(|observable| observable.name.clone()),
+    );
+    channels.extend(
+        model
+            .coordinates
+            .iter()
+            .map(|coordinate| coordinate.name.clone()),
+    );
     channels.extend(rates);
     for sensor in &model.sensors {
         if !channels.contains(&sensor.channel) {
@@ -88,20 +98,34 @@ fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
         }
     }
     for coordinate in &model.coordinates {
-        coordinate.initial.iter().chain(&coordinate.initial_rate).for_each(&mut *see);
+        coordinate
+            .initial
+            .iter()
+            .chain(&coordinate.initial_rate)
+            .for_each(&mut *see);
     }
     for field in &model.fields {
         see(&field.from);
         see(&field.to);
     }
-    model.definitions.iter().for_each(|definition| see(&definition.value));
-    let terms = model.kinetic.iter().chain(&model.potential).chain(&model.dissipation);
+    model
+        .definitions
+        .iter()
+        .for_each(|definition| see(&definition.value));
+    let terms = model
+        .kinetic
+        .iter()
+        .chain(&model.potential)
+        .chain(&model.dissipation);
     terms.for_each(|term| see(&term.value));
     for force in &model.forces {
         see(&force.on);
         see(&force.value);
     }
-    model.observables.iter().for_each(|observable| see(&observable.value));
+    model
+        .observables
+        .iter()
+        .for_each(|observable| see(&observable.value));
     for coefficient in &model.coefficients {
         match &coefficient.kind {
             CoefficientKind::Value(value) => see(value),

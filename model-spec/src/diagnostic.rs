@@ -151,6 +151,15 @@ impl Diagnostics {
         }
     }
 
+    /// Adds a finding that is costly to make; beyond [`MAX_LISTED`] it is not made.
+    pub fn push_with(&mut self, make: impl FnOnce() -> Diagnostic) {
+        if self.is_full() {
+            self.omitted += 1;
+        } else {
+            self.list.push(make());
+        }
+    }
+
     /// Adds the error, if it is one, and passes on what is not.
     pub fn keep<T>(&mut self, result: Result<T, Diagnostic>) -> Option<T> {
         result.map_err(|diagnostic| self.push(diagnostic)).ok()
@@ -179,7 +188,11 @@ impl Diagnostics {
     /// All findings for people: file, line and column, the text underlined, what is wrong
     /// and what would be right. With `colour`, with terminal escapes.
     pub fn render(&self, colour: bool) -> String {
-        let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
+        let renderer = if colour {
+            Renderer::styled()
+        } else {
+            Renderer::plain()
+        };
         let mut parts: Vec<String> = self
             .list
             .iter()
@@ -233,8 +246,10 @@ impl Diagnostics {
         primary: &'a Label,
         secondary: &'a [Label],
     ) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
+        let (excerpt, line) = self.excerpt(primary, secondary);
         let annotation = |kind: AnnotationKind, label: &'a Label| {
-            let annotation = kind.span(self.inside(label.span));
+            let inside = self.inside(label.span);
+            let annotation = kind.span(inside.start - excerpt.start..inside.end - excerpt.start);
             if label.text.is_empty() {
                 annotation
             } else {
@@ -244,10 +259,26 @@ impl Diagnostics {
         let others = secondary
             .iter()
             .map(|label| annotation(AnnotationKind::Context, label));
-        Snippet::source(&*self.source.text)
+        Snippet::source(&self.source.text[excerpt.clone()])
+            .line_start(line)
             .path(self.source.path.as_str())
             .annotation(annotation(AnnotationKind::Primary, primary))
             .annotations(others)
+    }
+
+    /// The lines that hold all labels, and the number of the first: rendering takes time
+    /// for every line it is given.
+    fn excerpt(&self, primary: &Label, others: &[Label]) -> (std::ops::Range<usize>, usize) {
+        let span = |whole: Span, label: &Label| whole.join(label.span);
+        let whole = self.inside(others.iter().fold(primary.span, span));
+        let text = &self.source.text;
+        let start = text[..whole.start]
+            .rfind('\n')
+            .map_or(0, |newline| newline + 1);
+        let end = text[whole.end..]
+            .find('\n')
+            .map_or(text.len(), |newline| whole.end + newline);
+        (start..end, self.source.place(start).line)
     }
 
     /// The span as byte offsets of whole characters within the text.
@@ -289,7 +320,12 @@ mod tests {
             .at(Span::new(9, 12), "not declared")
             .help("did you mean `k_sp`?");
         let shown = Diagnostics::one(source.clone(), diagnostic.clone()).render(false);
-        for part in ["error: unknown name `k_s`", "arm.toml:2:6", "^^^ not declared", "k_sp"] {
+        for part in [
+            "error: unknown name `k_s`",
+            "arm.toml:2:6",
+            "^^^ not declared",
+            "k_sp",
+        ] {
             assert!(shown.contains(part), "{part} is missing in\n{shown}");
         }
         let coloured = Diagnostics::one(source, diagnostic).render(true);

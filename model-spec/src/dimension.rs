@@ -131,7 +131,11 @@ impl Dimension {
             .into_iter()
             .map(|(unit, exponent)| factor((unit, -exponent)))
             .collect();
-        let above = if above.is_empty() { "1".to_owned() } else { above.join(" ") };
+        let above = if above.is_empty() {
+            "1".to_owned()
+        } else {
+            above.join(" ")
+        };
         match below.as_slice() {
             [] => above,
             [only] => format!("{above}/{only}"),
@@ -180,7 +184,9 @@ mod tests {
 
     #[test]
     fn exponents_out_of_range_are_refused() {
-        let huge = Dimension::LENGTH.power(Ratio::from_integer(i32::MAX)).unwrap();
+        let huge = Dimension::LENGTH
+            .power(Ratio::from_integer(i32::MAX))
+            .unwrap();
         assert_eq!(huge.times(Dimension::LENGTH), None);
         assert_eq!(huge.power(Ratio::from_integer(2)), None);
     }

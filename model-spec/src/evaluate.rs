@@ -84,7 +84,13 @@ mod tests {
     fn called(function: Function, x: f64, second: f64) -> f64 {
         let arguments = vec![number(x), number(second)];
         let kind = ExprKind::Call(function, arguments);
-        evaluate(&Expr { kind, span: Span::default() }, &[])
+        evaluate(
+            &Expr {
+                kind,
+                span: Span::default(),
+            },
+            &[],
+        )
     }
 
     #[test]
@@ -96,7 +102,10 @@ mod tests {
         assert_eq!(called(Function::Contact, 1.0, 1.0), 0.0);
         assert_eq!(called(Function::Sign, -0.5, 0.0), -1.0);
         assert_eq!(called(Function::Sign, 0.0, 0.0), 0.0);
-        assert_eq!(called(Function::Atan2, 1.0, 0.0), std::f64::consts::FRAC_PI_2);
+        assert_eq!(
+            called(Function::Atan2, 1.0, 0.0),
+            std::f64::consts::FRAC_PI_2
+        );
     }
 
     #[test]

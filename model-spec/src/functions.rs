@@ -34,14 +34,14 @@ const CONSTANTS: [&str; 4] = ["t", "pi", "energy", "power"];
 
 /// Keywords of Rust and C99: names end up as identifiers of emitted code.
 const KEYWORDS: [&str; 73] = [
-    "abstract", "as", "async", "auto", "await", "become", "box", "break", "case", "char",
-    "const", "continue", "crate", "default", "do", "double", "dyn", "else", "enum", "extern",
-    "false", "final", "float", "fn", "for", "gen", "goto", "if", "impl", "in", "inline", "int",
-    "let", "long", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub",
-    "ref", "register", "restrict", "return", "self", "Self", "short", "signed", "sizeof",
-    "static", "struct", "super", "switch", "trait", "true", "try", "type", "typedef", "typeof",
-    "union", "unsafe", "unsigned", "unsized", "use", "virtual", "void", "volatile", "where",
-    "while", "yield",
+    "abstract", "as", "async", "auto", "await", "become", "box", "break", "case", "char", "const",
+    "continue", "crate", "default", "do", "double", "dyn", "else", "enum", "extern", "false",
+    "final", "float", "fn", "for", "gen", "goto", "if", "impl", "in", "inline", "int", "let",
+    "long", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub", "ref",
+    "register", "restrict", "return", "self", "Self", "short", "signed", "sizeof", "static",
+    "struct", "super", "switch", "trait", "true", "try", "type", "typedef", "typeof", "union",
+    "unsafe", "unsigned", "unsized", "use", "virtual", "void", "volatile", "where", "while",
+    "yield",
 ];
 
 impl Function {

@@ -165,13 +165,17 @@ fn number(text: &str, span: Span) -> Result<f64, Diagnostic> {
             .help("numbers are written 1, 0.5, .5 or 1e-3")
     })?;
     if value.is_infinite() {
-        return Err(Diagnostic::error(format!("the number {} is too large", quoted(text)))
-            .at(span, "beyond 1.8e308"));
+        return Err(
+            Diagnostic::error(format!("the number {} is too large", quoted(text)))
+                .at(span, "beyond 1.8e308"),
+        );
     }
     let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
     if value == 0.0 && mantissa.bytes().any(|byte| matches!(byte, b'1'..=b'9')) {
-        return Err(Diagnostic::error(format!("the number {} is too small", quoted(text)))
-            .at(span, "below 4.9e-324, it would be read as 0"));
+        return Err(
+            Diagnostic::error(format!("the number {} is too small", quoted(text)))
+                .at(span, "below 4.9e-324, it would be read as 0"),
+        );
     }
     Ok(value)
 }
@@ -187,8 +191,13 @@ mod tests {
 
     #[test]
     fn numbers_are_read_in_every_form() {
-        for (text, value) in [("1", 1.0), (".5", 0.5), ("2.", 2.0), ("1e-3", 1e-3), ("3.5E+2", 350.0)]
-        {
+        for (text, value) in [
+            ("1", 1.0),
+            (".5", 0.5),
+            ("2.", 2.0),
+            ("1e-3", 1e-3),
+            ("3.5E+2", 350.0),
+        ] {
             assert_eq!(kinds(text), [TokenKind::Number(value)]);
         }
         let name = TokenKind::Name("e".to_owned());
@@ -215,7 +224,12 @@ mod tests {
 
     #[test]
     fn foreign_characters_are_refused_with_advice() {
-        for (text, help) in [("x'", "dot(x)"), ("x**2", "x^2"), ("θ", "a-z"), ("a·b", "`*`")] {
+        for (text, help) in [
+            ("x'", "dot(x)"),
+            ("x**2", "x^2"),
+            ("θ", "a-z"),
+            ("a·b", "`*`"),
+        ] {
             let diagnostic = tokens(text, Span::new).expect_err(text);
             let given = diagnostic.help.unwrap_or_default();
             assert!(given.contains(help), "{text}: {given}");

@@ -1,17 +1,21 @@
 //! Reads and checks a declarative specification of a mechanical system.
 //!
 //! The pipeline, one file each: `source` (text and places), [`lexer`], [`parser`] (tokens
-//! to [`ast`]), `document` (TOML tables to raw entries), `names` and `resolve` (names),
+//! to [`ast`]), `document` (TOML tables to raw entries), `names`, `expression` and `resolve` (names),
 //! `motion` (what may stand where), `units_check` (units of every expression), `checks`,
 //! [`model`] (the result). [`load()`] and [`check`] go all the way. What is wrong is said by
-//! [`diagnostic`]; [`variant`] sets numbers. Nothing here knows how equations are derived.
+//! [`diagnostic`]; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers.
+//! Nothing here knows how equations are derived.
 
 pub mod ast;
 mod checks;
 pub mod diagnostic;
 pub mod dimension;
 mod document;
+pub mod edit;
+mod entries;
 pub mod evaluate;
+mod expression;
 mod functions;
 pub mod lexer;
 mod load;
@@ -20,8 +24,8 @@ mod motion;
 mod names;
 mod order;
 pub mod parser;
+mod raw;
 mod resolve;
-mod resolve_expression;
 mod scale;
 pub mod source;
 pub mod span;

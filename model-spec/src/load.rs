@@ -33,9 +33,9 @@ pub struct Checked {
 /// [`check`] finds.
 pub fn load(path: &Path) -> Result<Checked, Diagnostics> {
     let shown = path.display().to_string();
-    let text = read(path).map_err(|(text, diagnostic)| {
-        Diagnostics::one(Source::new(shown.clone(), text), diagnostic)
-    })?;
+    let bytes = read(path)
+        .map_err(|diagnostic| Diagnostics::one(Source::new(shown.clone(), ""), diagnostic))?;
+    let text = String::from_utf8(bytes).map_err(|error| not_utf8(shown.clone(), &error))?;
     check(Source::new(shown, text))
 }
 
@@ -67,41 +67,37 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     Ok(Checked { model, warnings })
 }
 
-/// What could be read as text, and why it is not a specification.
-type Unreadable = (String, Diagnostic);
-
-fn read(path: &Path) -> Result<String, Unreadable> {
-    let unreadable = |message: String, help: &str| {
-        (String::new(), Diagnostic::error(message).help(help))
+fn read(path: &Path) -> Result<Vec<u8>, Diagnostic> {
+    let unreadable = |error: std::io::Error| {
+        Diagnostic::error(format!("the specification cannot be read: {error}"))
+            .help("give the path of a TOML file")
     };
-    let metadata = std::fs::metadata(path).map_err(|error| {
-        let message = format!("the specification cannot be read: {error}");
-        unreadable(message, "give the path of a TOML file")
-    })?;
+    let metadata = std::fs::metadata(path).map_err(unreadable)?;
     if !metadata.is_file() {
-        let message = "the specification is not a file".to_owned();
-        return Err(unreadable(message, "give the path of a TOML file"));
+        return Err(Diagnostic::error("the specification is not a file")
+            .help("give the path of a TOML file"));
     }
     if metadata.len() > MAX_SIZE {
-        return Err((String::new(), too_large(metadata.len())));
+        return Err(too_large(metadata.len()));
     }
     let mut bytes = Vec::new();
-    // The file may have grown since; reading never goes far beyond the limit.
-    let opened = std::fs::File::open(path);
-    opened
-        .and_then(|file| file.take(MAX_SIZE + 1).read_to_end(&mut bytes))
-        .map_err(|error| {
-            let message = format!("the specification cannot be read: {error}");
-            unreadable(message, "check that it may be read")
-        })?;
-    String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
-        let diagnostic = Diagnostic::error("the specification is not UTF-8 text")
-            .at(Span::new(valid, valid + 1), "this byte is not part of a character")
-            .help("save the file as UTF-8");
-        (text, diagnostic)
-    })
+    // The file may have grown since; reading never goes beyond what `check` refuses.
+    let file = std::fs::File::open(path).map_err(unreadable)?;
+    let read = file.take(MAX_SIZE + 1).read_to_end(&mut bytes);
+    read.map_err(unreadable)?;
+    Ok(bytes)
+}
+
+fn not_utf8(shown: String, error: &std::string::FromUtf8Error) -> Diagnostics {
+    let valid = error.utf8_error().valid_up_to();
+    let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
+    let diagnostic = Diagnostic::error("the specification is not UTF-8 text")
+        .at(
+            Span::new(valid, valid + 1),
+            "this byte is not part of a character",
+        )
+        .help("save the file as UTF-8");
+    Diagnostics::one(Source::new(shown, text), diagnostic)
 }
 
 fn too_large(size: u64) -> Diagnostic {

@@ -125,19 +125,18 @@ impl Checker<'_, '_> {
             self.motion(&force.value);
             let on = self.motion(&force.on);
             let problem = if let Some(place) = on.rate {
-                Some((place, "a rate"))
+                Some((place, "this is a rate"))
             } else if let Some(place) = on.input {
-                Some((place, "an input"))
+                Some((place, "this is an input"))
             } else if on.values.is_empty() {
-                Some((force.on.span, "nothing that moves"))
+                Some((force.on.span, "this does not move"))
             } else {
                 None
             };
-            if let Some((place, what)) = problem {
-                let message = format!("the force `{}` cannot work on {what}", force.name);
+            if let Some((place, why)) = problem {
                 self.found.push(
-                    Diagnostic::error(message)
-                        .at(place, format!("this is {what}"))
+                    Diagnostic::error(format!("the force `{}` can do no work here", force.name))
+                        .at(place, why)
                         .help("`on` is a coordinate, or an expression of coordinates"),
                 );
             }

@@ -1,11 +1,11 @@
 //! Which names a specification declares, that they are fit to be identifiers, and that no
 //! two things, written or generated (`q_1`, `theta_dot`), share one.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
-use crate::document::Document;
 use crate::functions::reserved;
+use crate::raw::Document;
 use crate::span::Span;
 use crate::table::Name;
 
@@ -52,6 +52,7 @@ impl Symbol {
 /// The names an expression may use.
 pub struct Names {
     symbols: HashMap<String, (Symbol, Span)>,
+    observables: HashSet<String>,
     /// Name, position and mode coordinates of each field.
     pub fields: Vec<FieldNames>,
 }
@@ -72,6 +73,7 @@ impl Names {
         found.keep(identifier(&document.name));
         let mut names = Self {
             symbols: HashMap::new(),
+            observables: HashSet::new(),
             fields: Vec::new(),
         };
         names.declare_quantities(document, found);
@@ -93,6 +95,11 @@ impl Names {
         self.symbols.get(name).map(|(symbol, _)| *symbol)
     }
 
+    /// Whether this is the name of an observable.
+    pub fn is_observable(&self, name: &str) -> bool {
+        self.observables.contains(name)
+    }
+
     /// All names.
     pub fn known(&self) -> impl Iterator<Item = &str> {
         self.symbols.keys().map(String::as_str)
@@ -105,8 +112,8 @@ impl Names {
         for (index, coordinate) in document.coordinates.iter().enumerate() {
             self.add(&coordinate.name, Symbol::Coordinate(index), found);
         }
-        for (index, (name, ..)) in document.inputs.iter().enumerate() {
-            self.add(name, Symbol::Input(index), found);
+        for (index, input) in document.inputs.iter().enumerate() {
+            self.add(&input.name, Symbol::Input(index), found);
         }
     }
 
@@ -136,9 +143,8 @@ impl Names {
     }
 
     fn add(&mut self, name: &Name, symbol: Symbol, found: &mut Diagnostics) {
-        if found.keep(identifier(name)).is_none() {
-            return;
-        }
+        // A name that is unfit is known nevertheless: one mistake, one finding.
+        found.keep(identifier(name));
         if let Some((other, place)) = self.symbols.get(&name.text) {
             found.push(taken(name, &format!("{} has it", other.kind())).also(*place, "here"));
             return;
@@ -149,19 +155,20 @@ impl Names {
     /// Terms and forces have names of their own that no expression uses.
     fn check_terms(&self, document: &Document, found: &mut Diagnostics) {
         let terms = document.kinetic.iter();
-        let terms = terms.chain(&document.potential).chain(&document.dissipation);
+        let terms = terms
+            .chain(&document.potential)
+            .chain(&document.dissipation);
         for term in terms.chain(document.forces.iter().map(|(term, _)| term)) {
             found.keep(identifier(&term.name));
         }
     }
 
     /// An observable may report the definition of the same name; it shares no other name.
-    fn check_observables(&self, document: &Document, found: &mut Diagnostics) {
+    fn check_observables(&mut self, document: &Document, found: &mut Diagnostics) {
         for (observable, _) in &document.observables {
             let name = &observable.name;
-            if found.keep(identifier(name)).is_none() {
-                continue;
-            }
+            found.keep(identifier(name));
+            self.observables.insert(name.text.clone());
             match self.symbols.get(&name.text) {
                 None | Some((Symbol::Definition(_) | Symbol::Coefficient(_), _)) => {}
                 Some((other, place)) => {

@@ -53,8 +53,12 @@ fn visit(
                 path.push((target, 0));
             }
             State::Open => {
-                let from = path.iter().position(|(entry, _)| *entry == target).unwrap_or(0);
-                let place = |&(entry, next): &(usize, usize)| (entry, references[entry][next - 1].1);
+                let from = path
+                    .iter()
+                    .position(|(entry, _)| *entry == target)
+                    .unwrap_or(0);
+                let place =
+                    |&(entry, next): &(usize, usize)| (entry, references[entry][next - 1].1);
                 return Err(path[from..].iter().map(place).collect());
             }
         }
@@ -67,7 +71,10 @@ mod tests {
     use super::*;
 
     fn to(targets: &[usize]) -> Vec<Reference> {
-        targets.iter().map(|&target| (target, Span::new(target, target))).collect()
+        targets
+            .iter()
+            .map(|&target| (target, Span::new(target, target)))
+            .collect()
     }
 
     #[test]

@@ -85,7 +85,11 @@ impl<'t> Parser<'t> {
 
     fn operand(&mut self) -> Parsed {
         let Some(token) = self.take() else {
-            let what = if self.tokens.is_empty() { "is empty" } else { "is not finished" };
+            let what = if self.tokens.is_empty() {
+                "is empty"
+            } else {
+                "is not finished"
+            };
             return Err(Diagnostic::error(format!("the expression {what}"))
                 .at(self.end, "expected a number, a name or `(`"));
         };
@@ -97,7 +101,10 @@ impl<'t> Parser<'t> {
                 let inner = self.expression(ADDITIVE)?;
                 let close = self.closing(&TokenKind::Close, token.span)?;
                 let span = token.span.join(close);
-                let syntax = Syntax { span, ..inner.syntax };
+                let syntax = Syntax {
+                    span,
+                    ..inner.syntax
+                };
                 Ok(Tree { syntax, ..inner })
             }
             other => Err(Diagnostic::error(format!("unexpected {}", other.shown()))
@@ -125,7 +132,10 @@ impl<'t> Parser<'t> {
         let open = self.take().map_or(self.end, |token| token.span);
         let mut arguments = Vec::new();
         let mut depth = 0;
-        if self.peek().is_none_or(|token| token.kind != TokenKind::Close) {
+        if self
+            .peek()
+            .is_none_or(|token| token.kind != TokenKind::Close)
+        {
             loop {
                 let argument = self.expression(ADDITIVE)?;
                 depth = depth.max(argument.depth);
@@ -179,9 +189,11 @@ impl<'t> Parser<'t> {
                 let diagnostic = diagnostic.also(open, "to close this bracket");
                 Err(diagnostic.help_if(missing_operator(&token.kind)))
             }
-            None => Err(Diagnostic::error(format!("a {} is missing", expected.shown()))
-                .at(self.end, "the expression ends here")
-                .also(open, "this bracket is not closed")),
+            None => Err(
+                Diagnostic::error(format!("a {} is missing", expected.shown()))
+                    .at(self.end, "the expression ends here")
+                    .also(open, "this bracket is not closed"),
+            ),
         }
     }
 }
@@ -236,9 +248,12 @@ fn left_over(token: &Token, before: Span) -> Diagnostic {
         TokenKind::Comma => Diagnostic::error("a comma outside a function's brackets")
             .at(token.span, "unexpected here")
             .help("decimal fractions are written with a point"),
-        _ => Diagnostic::error(format!("an operator is missing before {}", token.kind.shown()))
-            .at(token.span, "expected + - * / or ^")
-            .also(before, "the expression so far"),
+        _ => Diagnostic::error(format!(
+            "an operator is missing before {}",
+            token.kind.shown()
+        ))
+        .at(token.span, "expected + - * / or ^")
+        .also(before, "the expression so far"),
     };
     diagnostic.help_if(missing_operator(&token.kind))
 }
@@ -330,8 +345,15 @@ mod tests {
             ("+a", "unexpected `+`", 0),
         ] {
             let diagnostic = parsed(text).expect_err(text);
-            assert!(diagnostic.message.contains(message), "{text}: {diagnostic:?}");
-            assert_eq!(diagnostic.primary.map(|label| label.span.start), Some(place), "{text}");
+            assert!(
+                diagnostic.message.contains(message),
+                "{text}: {diagnostic:?}"
+            );
+            assert_eq!(
+                diagnostic.primary.map(|label| label.span.start),
+                Some(place),
+                "{text}"
+            );
         }
     }
 

@@ -4,18 +4,18 @@
 
 use crate::ast::SyntaxKind;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::document::{
-    Document, RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawParameter,
-    RawSensor, RawTerm,
-};
 use crate::dimension::Dimension;
+use crate::expression::{Resolver, Scope};
 use crate::model::{
     Coefficient, CoefficientKind, Coordinate, Definition, Expr, ExprKind, Field, Force, Input,
     MAX_ORDER, Model, Observable, Parameter, ParameterValue, Sensor, Term,
 };
 use crate::names::{Names, Symbol};
 use crate::order::{Reference, order};
-use crate::resolve_expression::{Resolver, Scope};
+use crate::raw::{
+    Document, RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawInput, RawParameter,
+    RawSensor, RawTerm,
+};
 use crate::source::Source;
 use crate::span::Span;
 use crate::table::{Number, Quantity, Written};
@@ -39,7 +39,11 @@ pub fn resolve(document: Document, source: &Source) -> Result<Resolved, Diagnost
     let names = Names::declare(&document, &mut found);
     let mut builder = Builder { names, found };
     let resolved = builder.model(document, source);
-    if builder.found.is_empty() { Ok(resolved) } else { Err(builder.found) }
+    if builder.found.is_empty() {
+        Ok(resolved)
+    } else {
+        Err(builder.found)
+    }
 }
 
 struct Builder {
@@ -58,14 +62,7 @@ impl Builder {
             title: document.title,
             source: source.clone(),
             coordinates: self.all(document.coordinates, Self::coordinate),
-            inputs: self.all(document.inputs, |own, (name, unit, doc)| {
-                Some(Input {
-                    unit: own.coherent_unit(unit)?,
-                    name: name.text,
-                    doc,
-                    span: name.span,
-                })
-            }),
+            inputs: self.all(document.inputs, Self::input),
             fields: self.all(document.fields, Self::field),
             kinetic: self.all(document.kinetic, Self::term),
             potential: self.all(document.potential, Self::term),
@@ -106,7 +103,11 @@ impl Builder {
             Ok(sorted) => model.parameter_order = sorted,
             Err(circle) => self.found.push(circular("parameter", &circle, named)),
         }
-        let references: Vec<_> = model.definitions.iter().map(definition_references).collect();
+        let references: Vec<_> = model
+            .definitions
+            .iter()
+            .map(definition_references)
+            .collect();
         let named = |index: usize| model.definitions[index].name.as_str();
         match order(&references) {
             Ok(sorted) => model.definition_order = sorted,
@@ -128,7 +129,9 @@ impl Builder {
 
     /// A unit in which a number is the number in SI.
     fn coherent_unit(&mut self, written: Option<Written>) -> Option<Unit> {
-        let span = written.as_ref().map_or_else(Span::default, |written| written.span);
+        let span = written
+            .as_ref()
+            .map_or_else(Span::default, |written| written.span);
         let unit = self.unit(written)?;
         if unit.is_coherent() {
             return Some(unit);
@@ -138,9 +141,11 @@ impl Builder {
             _ => unit.dimension.to_string(),
         };
         self.found.push(
-            Diagnostic::error(format!("the unit `{unit}` is not an SI unit without a factor"))
-                .at(span, "only parameters may be in such a unit")
-                .help(format!("use unit = \"{right}\"")),
+            Diagnostic::error(format!(
+                "the unit `{unit}` is not an SI unit without a factor"
+            ))
+            .at(span, "only parameters may be in such a unit")
+            .help(format!("use unit = \"{right}\"")),
         );
         None
     }
@@ -192,7 +197,8 @@ impl Builder {
             return Some(value);
         }
         let message = format!("{} {unit} is too large in SI units", number.value);
-        self.found.push(Diagnostic::error(message).at(number.span, "here"));
+        self.found
+            .push(Diagnostic::error(message).at(number.span, "here"));
         None
     }
 
@@ -209,6 +215,15 @@ impl Builder {
             doc: raw.doc,
             initial: value?,
             initial_rate: rate?,
+            span: raw.name.span,
+        })
+    }
+
+    fn input(&mut self, raw: RawInput) -> Option<Input> {
+        Some(Input {
+            unit: self.coherent_unit(raw.unit)?,
+            name: raw.name.text,
+            doc: raw.doc,
             span: raw.name.span,
         })
     }
@@ -285,36 +300,50 @@ impl Builder {
 
     fn coefficients(&mut self, raw: Vec<RawCoefficient>) -> Vec<Coefficient> {
         let mut built = Vec::with_capacity(raw.len());
-        for (index, entry) in raw.into_iter().enumerate() {
-            built.extend(self.coefficient(index, entry));
+        let mut per_mode = Vec::with_capacity(raw.len());
+        for entry in raw {
+            let coefficient = self.coefficient(entry, &per_mode);
+            per_mode.push(coefficient.as_ref().map_or_else(Vec::new, modes_of));
+            built.extend(coefficient);
         }
         built
     }
 
-    fn coefficient(&mut self, index: usize, raw: RawCoefficient) -> Option<Coefficient> {
+    /// One coefficient, given for the modes of which fields those before it are.
+    fn coefficient(&mut self, raw: RawCoefficient, before: &[Vec<usize>]) -> Option<Coefficient> {
         let each = match &raw.each {
             Some(written) => Some(self.each(written)?),
             None => None,
         };
-        let resolved = |quantity: &Quantity, scope: Scope| {
-            let mut resolver = Resolver::new(&self.names, scope).for_each(each.clone());
-            quantity.syntax().and_then(|syntax| resolver.resolve(&syntax))
+        let field = each.as_ref().map(|(_, field)| *field);
+        let resolved = |quantity: &Quantity, scope: Scope, each: Option<(String, usize)>| {
+            let resolver = Resolver::new(&self.names, scope).for_each(each);
+            quantity
+                .syntax()
+                .and_then(|syntax| resolver.knowing(before).resolve(&syntax))
         };
-        let known = Scope::Coefficient(index);
+        let known = Scope::Coefficient(before.len());
         let kind = match &raw.kind {
-            RawCoefficientKind::Value(value) => resolved(value, known).map(CoefficientKind::Value),
+            RawCoefficientKind::Value(value) => {
+                resolved(value, known, each).map(CoefficientKind::Value)
+            }
             RawCoefficientKind::Factor(of, by, times) => {
-                let times = times.as_ref().map(|times| resolved(times, known)).transpose();
-                resolved(of, Scope::Factor).and_then(|of| {
-                    let (of, by) = (moving_quantity(of)?, resolved(by, Scope::Factor)?);
-                    times.map(|times| CoefficientKind::Factor { of, by, times })
+                let of = resolved(of, Scope::Factor, each.clone()).and_then(moving_quantity);
+                of.and_then(|of| {
+                    let by = resolved(by, Scope::Factor, each.clone())?;
+                    // The rows of modes may be scaled each by its own factor.
+                    let rows = rows_of(&of).map(|field| (String::new(), field));
+                    let each = each.or(rows);
+                    let times = times.as_ref().map(|times| resolved(times, known, each));
+                    let times = times.transpose()?;
+                    Ok(CoefficientKind::Factor { of, by, times })
                 })
             }
         };
         Some(Coefficient {
             kind: self.found.keep(kind)?,
             name: raw.name.text,
-            each: each.map(|(_, field)| field),
+            each: field,
             doc: raw.doc,
             span: raw.name.span,
         })
@@ -358,18 +387,41 @@ impl Builder {
 fn moving_quantity(of: Expr) -> Result<Expr, Diagnostic> {
     match of.kind {
         ExprKind::Coordinate(_) | ExprKind::ModeCoordinate(_) => Ok(of),
-        _ => Err(Diagnostic::error("`of` names a coordinate or a field's mode coordinates")
-            .at(of.span, "not one of them")
-            .help("the acceleration of what? for example of = \"theta\" or of = \"q\"")),
+        _ => Err(
+            Diagnostic::error("`of` names a coordinate or a field's mode coordinates")
+                .at(of.span, "not one of them")
+                .help("the acceleration of what? for example of = \"theta\" or of = \"q\""),
+        ),
     }
+}
+
+/// The field whose modes an expression names.
+fn rows_of(expr: &Expr) -> Option<usize> {
+    match &expr.kind {
+        ExprKind::ModeCoordinate(field) => Some(*field),
+        ExprKind::Dot(inner) => rows_of(inner),
+        _ => None,
+    }
+}
+
+/// The fields for each of whose modes a coefficient is given.
+fn modes_of(coefficient: &Coefficient) -> Vec<usize> {
+    let mut fields: Vec<usize> = coefficient.each.into_iter().collect();
+    if let CoefficientKind::Factor { of, by, .. } = &coefficient.kind {
+        fields.extend(rows_of(of));
+        fields.extend(rows_of(by));
+    }
+    fields
 }
 
 fn field_order((order, span): (i64, Span)) -> Result<usize, Diagnostic> {
     match usize::try_from(order) {
         Ok(order) if order <= MAX_ORDER => Ok(order),
-        Ok(_) => Err(Diagnostic::error(format!("the order {order} is above the limit"))
-            .at(span, "too high")
-            .help(format!("the highest order is {MAX_ORDER}"))),
+        Ok(_) => Err(
+            Diagnostic::error(format!("the order {order} is above the limit"))
+                .at(span, "too high")
+                .help(format!("the highest order is {MAX_ORDER}")),
+        ),
         Err(_) => Err(Diagnostic::error(format!("the order {order} is negative"))
             .at(span, "negative")
             .help("an order is 0 (rigid) or the number of modes")),
@@ -398,11 +450,7 @@ fn definition_references(definition: &Definition) -> Vec<Reference> {
     list
 }
 
-fn circular<'n>(
-    kind: &str,
-    circle: &[Reference],
-    named: impl Fn(usize) -> &'n str,
-) -> Diagnostic {
+fn circular<'n>(kind: &str, circle: &[Reference], named: impl Fn(usize) -> &'n str) -> Diagnostic {
     let Some((&(first, place), rest)) = circle.split_first() else {
         return Diagnostic::error(format!("a {kind} refers to itself"));
     };
@@ -414,7 +462,8 @@ fn circular<'n>(
         chain.push("...");
     }
     let message = format!("the {kind} `{}` refers to itself", named(first));
-    let mut diagnostic = Diagnostic::error(message).at(place, format!("here: {}", chain.join(" -> ")));
+    let mut diagnostic =
+        Diagnostic::error(message).at(place, format!("here: {}", chain.join(" -> ")));
     for &(index, place) in rest.iter().take(4) {
         diagnostic = diagnostic.also(place, format!("in `{}`", named(index)));
     }

@@ -64,7 +64,11 @@ impl Scale {
         for _ in 0..exponent.unsigned_abs() {
             result = result.times(self)?;
         }
-        if exponent < 0 { result.inverse() } else { Some(result) }
+        if exponent < 0 {
+            result.inverse()
+        } else {
+            Some(result)
+        }
     }
 
     fn inverse(self) -> Option<Self> {
@@ -95,7 +99,8 @@ impl Scale {
 
     /// `value` divided by this factor, rounded as [`Scale::apply`].
     pub fn remove(self, value: f64) -> f64 {
-        self.inverse().map_or(f64::NAN, |inverse| inverse.apply(value))
+        self.inverse()
+            .map_or(f64::NAN, |inverse| inverse.apply(value))
     }
 }
 
@@ -133,7 +138,11 @@ impl Doubled {
 
     /// The nearest number; where the rest overflowed the leading part still stands.
     fn value(self) -> f64 {
-        if self.low.is_finite() { self.high + self.low } else { self.high }
+        if self.low.is_finite() {
+            self.high + self.low
+        } else {
+            self.high
+        }
     }
 }
 

@@ -15,13 +15,21 @@ pub fn nearest<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Opt
             (distance, name)
         })
         .filter(|(distance, name)| *distance <= allowed(wrong.len().max(name.len())))
-        .min_by_key(|(distance, _)| *distance)
+        .min_by_key(|(distance, name)| (*distance, std::cmp::Reverse(common(&lowered, name))))
         .map(|(_, name)| name)
 }
 
 /// "did you mean ...?", if a known name is near enough.
 pub fn did_you_mean<'k>(wrong: &str, known: impl IntoIterator<Item = &'k str>) -> Option<String> {
     nearest(wrong, known).map(|name| format!("did you mean `{name}`?"))
+}
+
+/// How many letters two names have in common from their beginning.
+fn common(one: &str, other: &str) -> usize {
+    one.chars()
+        .zip(other.chars())
+        .take_while(|(a, b)| a == b)
+        .count()
 }
 
 /// How many letters may differ in a name of this length.
@@ -44,6 +52,7 @@ mod tests {
         assert_eq!(nearest("K_sp", known), Some("k_sp"));
         assert_eq!(nearest("cordinates", known), Some("coordinates"));
         assert_eq!(nearest("velocity", known), None);
+        assert_eq!(nearest("cosine", ["sin", "cos"]), Some("cos"));
         assert_eq!(nearest(&"x".repeat(10_000), known), None);
     }
 }

@@ -140,13 +140,18 @@ impl<'d> Entry<'d> {
     }
 
     /// The table that is this entry's value, reporting keys that are not `known`.
-    pub fn record(&self, known: &[&str], example: &str, found: &mut Diagnostics) -> Option<Record<'d>> {
+    pub fn record(
+        &self,
+        known: &[&str],
+        example: &str,
+        found: &mut Diagnostics,
+    ) -> Option<Record<'d>> {
         let entries = found.keep(self.table(example))?;
         let (entries, others): (Vec<_>, Vec<_>) = entries
             .into_iter()
             .partition(|entry| known.contains(&entry.name.text.as_str()));
         for other in others {
-            found.push(unknown_key(&other.name, known));
+            found.push_with(|| unknown_key(&other.name, known));
         }
         Some(Record {
             owner: self.name.clone(),
@@ -224,10 +229,13 @@ impl<'d> Entry<'d> {
     fn mismatch(&self, expected: &str, example: &str) -> Diagnostic {
         let kind = match self.item.type_name() {
             "inline table" => "table",
+            "integer" | "float" => "number",
+            "boolean" => "truth value",
             other => other,
         };
+        let article = if kind == "array" { "an" } else { "a" };
         Diagnostic::error(format!("{} is not {expected}", quoted(&self.name.text)))
-            .at(self.span(), format!("this is of the kind {kind}"))
+            .at(self.span(), format!("this is {article} {kind}"))
             .help(format!("write {} = {example}", self.name.text))
     }
 }
@@ -259,7 +267,8 @@ impl<'d> Record<'d> {
 
     /// The string of this key; "" where it is absent.
     pub fn text(&self, key: &str, found: &mut Diagnostics) -> String {
-        self.written(key, found).map_or_else(String::new, |w| w.text)
+        self.written(key, found)
+            .map_or_else(String::new, |w| w.text)
     }
 
     /// The string of this key, if it is there.

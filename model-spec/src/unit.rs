@@ -117,7 +117,11 @@ impl Unit {
 
 impl std::fmt::Display for Unit {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(if self.text.is_empty() { "1" } else { &self.text })
+        f.write_str(if self.text.is_empty() {
+            "1"
+        } else {
+            &self.text
+        })
     }
 }
 
@@ -154,6 +158,9 @@ fn parse_quotient(text: &str) -> Result<Parsed, UnitError> {
         let help = "a reciprocal is written 1/s".to_owned();
         return Err(UnitError::new("`/` stands between two units", Some(help)));
     }
+    if written == "()" {
+        return Err(UnitError::new("`()` holds no unit", None));
+    }
     let below = match written.strip_prefix('(').and_then(|w| w.strip_suffix(')')) {
         Some(inner) => parse_product(inner.trim())?,
         None => {
@@ -163,7 +170,9 @@ fn parse_quotient(text: &str) -> Result<Parsed, UnitError> {
     };
     let dimension = above.0.over(below.0);
     let scale = below.1.power(-1).and_then(|inverse| above.1.times(inverse));
-    dimension.zip(scale).ok_or_else(|| UnitError::too_large(text))
+    dimension
+        .zip(scale)
+        .ok_or_else(|| UnitError::too_large(text))
 }
 
 /// The first `/` that is not part of an exponent such as `^(1/2)`.
@@ -192,7 +201,10 @@ fn refuse_ambiguous(above: &str, below: &str) -> Result<(), UnitError> {
     let rest = below[first.len()..].trim_start_matches(['*', ' ']);
     let first = first.trim();
     let help = format!("write {above}/({below}) or {above} {rest}/{first}");
-    Err(UnitError::new("what `/` divides by is ambiguous", Some(help)))
+    Err(UnitError::new(
+        "what `/` divides by is ambiguous",
+        Some(help),
+    ))
 }
 
 /// The factors of a product, parted by spaces or `*`.
@@ -236,7 +248,10 @@ fn parse_exponent(text: &str) -> Result<Exponent, UnitError> {
         .and_then(|t| t.strip_suffix(')'))
         .unwrap_or(text);
     let (numerator, denominator) = bare.split_once('/').unwrap_or((bare, "1"));
-    let parsed = numerator.parse::<i32>().ok().zip(denominator.parse::<i32>().ok());
+    let parsed = numerator
+        .parse::<i32>()
+        .ok()
+        .zip(denominator.parse::<i32>().ok());
     match parsed {
         Some((n, d)) if n.abs() <= MAX_EXPONENT && (1..=MAX_EXPONENT).contains(&d) => {
             Ok(Ratio::new(n, d))
@@ -356,10 +371,13 @@ mod tests {
         ] {
             let error = Unit::parse(text).expect_err(text);
             assert!(error.message.contains(message), "{text}: {error:?}");
-            assert!(error.help.as_deref().unwrap_or("").contains(help), "{text}: {error:?}");
+            assert!(
+                error.help.as_deref().unwrap_or("").contains(help),
+                "{text}: {error:?}"
+            );
         }
         assert!(Unit::parse("((((").is_err());
-        assert!(Unit::parse("N/()").is_ok_and(|unit| unit.dimension.to_string() == "N"));
+        assert!(Unit::parse("N/()").is_err());
     }
 
     #[test]

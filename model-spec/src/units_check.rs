@@ -7,9 +7,7 @@ use num_rational::Ratio;
 use crate::ast::BinaryOperator;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::{Dimension, Exponent};
-use crate::model::{
-    CoefficientKind, Expr, ExprKind, Function, Model, ParameterValue, Term,
-};
+use crate::model::{CoefficientKind, Expr, ExprKind, Function, Model, ParameterValue, Term};
 use crate::resolve::Resolved;
 use crate::span::Span;
 use crate::unit::Unit;
@@ -100,7 +98,12 @@ impl Units<'_, '_> {
     fn energies(&mut self) {
         let model = self.model;
         self.terms(&model.kinetic, "the kinetic energy", Dimension::ENERGY, "J");
-        self.terms(&model.potential, "the potential energy", Dimension::ENERGY, "J");
+        self.terms(
+            &model.potential,
+            "the potential energy",
+            Dimension::ENERGY,
+            "J",
+        );
         self.terms(&model.dissipation, "the dissipation", Dimension::POWER, "W");
     }
 
@@ -122,7 +125,11 @@ impl Units<'_, '_> {
                 continue;
             };
             let subject = format!("the force `{}`", force.name);
-            let because = format!("expected {expected}, since it works on a quantity in {on}");
+            let works = match force.on.kind {
+                ExprKind::Coordinate(index) => self.model.coordinates[index].unit.to_string(),
+                _ => on.to_string(),
+            };
+            let because = format!("expected {expected}: times what it works on ({works}) it is J");
             self.expect(&force.value, expected, &subject, &because);
         }
     }
@@ -152,9 +159,7 @@ impl Units<'_, '_> {
         for coefficient in &self.model.coefficients {
             let inferred = match &coefficient.kind {
                 CoefficientKind::Value(value) => self.infer(value),
-                CoefficientKind::Factor { of, by, times } => {
-                    self.factor(of, by, times.as_ref())
-                }
+                CoefficientKind::Factor { of, by, times } => self.factor(of, by, times.as_ref()),
             };
             let dimension = self.found.keep(inferred).flatten();
             self.coefficients.push(dimension.unwrap_or(Dimension::NONE));
@@ -162,16 +167,13 @@ impl Units<'_, '_> {
     }
 
     /// Of a factor of the acceleration of `of`.
-    fn factor(
-        &self,
-        of: &Expr,
-        by: &Expr,
-        times: Option<&Expr>,
-    ) -> Result<Inferred, Diagnostic> {
+    fn factor(&self, of: &Expr, by: &Expr, times: Option<&Expr>) -> Result<Inferred, Diagnostic> {
         let known = |expr: &Expr| Ok(self.infer(expr)?.unwrap_or(Dimension::NONE));
         let (of_unit, by_unit) = (known(of)?, known(by)?);
         let times_unit = times.map_or(Ok(Dimension::NONE), known)?;
-        let acceleration = of_unit.over(Dimension::TIME).and_then(|r| r.over(Dimension::TIME));
+        let acceleration = of_unit
+            .over(Dimension::TIME)
+            .and_then(|r| r.over(Dimension::TIME));
         let factor = acceleration.and_then(|a| a.over(by_unit)?.times(times_unit));
         factor.map(Some).ok_or_else(|| out_of_range(by.span))
     }
@@ -179,7 +181,12 @@ impl Units<'_, '_> {
     /// A quantity for which a bare number is in SI.
     fn expect_quantity(&mut self, expr: &Expr, expected: Dimension, subject: &str) {
         if !matches!(expr.kind, ExprKind::Number(_)) {
-            self.expect(expr, expected, subject, &format!("expected {expected}"));
+            self.expect(
+                expr,
+                expected,
+                subject,
+                &format!("expected {}", Words(expected)),
+            );
         }
     }
 
@@ -189,8 +196,8 @@ impl Units<'_, '_> {
             && inferred != expected
         {
             self.found.push(
-                Diagnostic::error(format!("{subject} is in {inferred}, {because}"))
-                    .at(expr.span, format!("in {inferred}"))
+                Diagnostic::error(format!("{subject} is {}, {because}", Words(inferred)))
+                    .at(expr.span, Words(inferred).to_string())
                     .help_if(difference(inferred, expected)),
             );
         }
@@ -241,8 +248,9 @@ impl Units<'_, '_> {
         let place = self.infer(position)?;
         match place {
             Some(place) if place != Dimension::LENGTH => {
-                Err(Diagnostic::error(format!("the place along a field is in {place}, expected m"))
-                    .at(position.span, format!("in {place}"))
+                let message = format!("the place along a field is {}, expected m", Words(place));
+                Err(Diagnostic::error(message)
+                    .at(position.span, Words(place).to_string())
                     .help("a length other than 0 is a parameter with a unit"))
             }
             _ => self.infer(value),
@@ -278,9 +286,10 @@ impl Units<'_, '_> {
     ) -> Result<Inferred, Diagnostic> {
         match (first, self.infer(right)?) {
             (Some(one), Some(other)) if one != other => {
-                Err(Diagnostic::error(format!("{other} is {verb} {one}"))
-                    .at(right.span, format!("in {other}"))
-                    .also(left.span, format!("in {one}"))
+                let message = format!("{} is {verb} {}", quantity(other), quantity(one));
+                Err(Diagnostic::error(message)
+                    .at(right.span, Words(other).to_string())
+                    .also(left.span, Words(one).to_string())
                     .help_if(difference(other, one)))
             }
             (one, other) => Ok(one.or(other)),
@@ -306,11 +315,11 @@ impl Units<'_, '_> {
 
     fn pure(&self, expr: &Expr, what: &str) -> Result<(), Diagnostic> {
         match self.infer(expr)? {
-            Some(dimension) if !dimension.is_none() => {
-                Err(Diagnostic::error(format!("{what} is in {dimension}, expected a pure number"))
-                    .at(expr.span, format!("in {dimension}"))
-                    .help("divide it by a quantity of the same unit"))
-            }
+            Some(dimension) if !dimension.is_none() => Err(Diagnostic::error(format!(
+                "{what} is in {dimension}, expected a pure number"
+            ))
+            .at(expr.span, format!("in {dimension}"))
+            .help("divide it by a quantity of the same unit")),
             _ => Ok(()),
         }
     }
@@ -332,11 +341,19 @@ impl Units<'_, '_> {
                     .ok_or_else(|| out_of_range(whole.span)),
                 None => Ok(None),
             },
-            (Function::Min | Function::Max | Function::Deadzone, [first, second]) => {
-                self.same(self.infer(first)?, first, second, "compared in one call with")
-            }
+            (Function::Min | Function::Max | Function::Deadzone, [first, second]) => self.same(
+                self.infer(first)?,
+                first,
+                second,
+                "compared in one call with",
+            ),
             (Function::Atan2 | Function::Contact, [first, second]) => {
-                self.same(self.infer(first)?, first, second, "compared in one call with")?;
+                self.same(
+                    self.infer(first)?,
+                    first,
+                    second,
+                    "compared in one call with",
+                )?;
                 Ok(Some(Dimension::NONE))
             }
             _ => {
@@ -346,6 +363,28 @@ impl Units<'_, '_> {
                 Ok(Some(Dimension::NONE))
             }
         }
+    }
+}
+
+/// A unit in a sentence: "in N m", "a pure number".
+struct Words(Dimension);
+
+impl std::fmt::Display for Words {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.0.is_none() {
+            f.write_str("a pure number")
+        } else {
+            write!(f, "in {}", self.0)
+        }
+    }
+}
+
+/// A quantity of this unit in a sentence.
+fn quantity(dimension: Dimension) -> String {
+    if dimension.is_none() {
+        "a pure number".to_owned()
+    } else {
+        format!("a quantity in {dimension}")
     }
 }
 

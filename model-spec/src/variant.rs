@@ -112,7 +112,10 @@ impl Model {
     /// another value that then is not finite.
     pub fn with_parameter(&self, name: &str, value: f64) -> Result<Self, ModelError> {
         let Some(index) = self.parameters.iter().position(|known| known.name == name) else {
-            let known = self.parameters.iter().map(|parameter| parameter.name.as_str());
+            let known = self
+                .parameters
+                .iter()
+                .map(|parameter| parameter.name.as_str());
             let error = ModelError::new(format!("the model has no parameter `{name}`"));
             return Err(match did_you_mean(name, known) {
                 Some(help) => error.help(help),
@@ -141,7 +144,10 @@ impl Model {
                 Err(ModelError::new(message).help(format!("the highest order is {MAX_ORDER}")))
             }
             Some(order) if self.fields.is_empty() && order > 0 => {
-                let message = format!("the model `{}` has no field, so no order {order}", self.name);
+                let message = format!(
+                    "the model `{}` has no field, so no order {order}",
+                    self.name
+                );
                 Err(ModelError::new(message).help("leave the order out, or give 0"))
             }
             _ => {

@@ -13,7 +13,10 @@ fn shipped(name: &str) -> Model {
 }
 
 fn value(model: &Model, name: &str) -> f64 {
-    let index = model.parameters.iter().position(|parameter| parameter.name == name);
+    let index = model
+        .parameters
+        .iter()
+        .position(|parameter| parameter.name == name);
     let values = model.parameter_values().expect("checked");
     values[index.unwrap_or_else(|| panic!("{name}"))]
 }
@@ -23,7 +26,11 @@ fn every_shipped_specification_loads_without_a_warning() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
     let mut names = Vec::new();
     for entry in std::fs::read_dir(folder).expect("the models are there") {
-        let name = entry.expect("readable").file_name().into_string().expect("ASCII");
+        let name = entry
+            .expect("readable")
+            .file_name()
+            .into_string()
+            .expect("ASCII");
         let model = shipped(&name);
         assert_eq!(format!("{}.toml", model.name), name);
         names.push(name);
@@ -45,9 +52,23 @@ fn the_arm_has_the_names_and_values_of_the_paper() {
     assert_eq!(value(&model, "omega"), 10.0 * std::f64::consts::PI);
     assert_eq!(value(&model, "I"), 8.333e-10);
     for observable in [
-        "theta_s", "theta_p", "theta_c", "tip", "dtheta", "f_la", "f_la_signed", "F_sp", "F_pr",
+        "theta_s",
+        "theta_p",
+        "theta_c",
+        "tip",
+        "dtheta",
+        "f_la",
+        "f_la_signed",
+        "F_sp",
+        "F_pr",
     ] {
-        assert!(model.observables.iter().any(|known| known.name == observable), "{observable}");
+        assert!(
+            model
+                .observables
+                .iter()
+                .any(|known| known.name == observable),
+            "{observable}"
+        );
     }
 }
 
@@ -68,7 +89,11 @@ fn the_arms_geometry_closes() {
 #[test]
 fn units_of_observables_are_those_declared_or_inferred() {
     let model = shipped("hub_beam_tip_mass.toml");
-    let units: Vec<_> = model.observables.iter().map(|o| o.unit.to_string()).collect();
+    let units: Vec<_> = model
+        .observables
+        .iter()
+        .map(|o| o.unit.to_string())
+        .collect();
     assert_eq!(units, ["m", "rad"]);
     assert_eq!(value(&model, "E"), 70e9);
     assert_eq!(value(&model, "I"), 67.5e-12);

@@ -1,6 +1,6 @@
 //! Simulation, hand-written references and validation of derived models.
 //!
-//! [`reference`] holds equations written by hand, [`by_hand`] says which belong to which
+//! [`mod@reference`] holds equations written by hand, [`by_hand`] says which belong to which
 //! model; [`validate`] checks a derived model against them and against an oracle of its
 //! own, [`certificates`] runs it on a model. [`derived`] lets the solver in [`solve`] and
 //! the checks see a derived model, [`record`] reads the inputs of a measured record, and
@@ -9,6 +9,7 @@
 pub mod by_hand;
 pub mod certificates;
 pub mod derived;
+pub mod plot;
 pub mod record;
 pub mod reference;
 pub mod solve;

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use crate::arguments::{Generate, Target};
 use crate::output::write_file;
-use crate::problem::{Outcome, Problem, say};
+use crate::problem::{Outcome, Problem, say, warn};
 use crate::variant::{Variant, derive_variant, load};
 
 /// The specification whose variants are checked in.
@@ -73,10 +73,10 @@ fn all(check: bool, json: bool) -> Outcome {
         say(&format!("{} files, {} {verb}\n", files.len(), different.len()))?;
     }
     if check && !different.is_empty() {
-        eprintln!(
+        warn(&format!(
             "error: not what the generator emits: {}; run `eomgen generate --all`",
             different.join(", ")
-        );
+        ));
         return Err(Problem::Failed);
     }
     Ok(())
@@ -94,7 +94,7 @@ fn checked_in_files(root: &Path) -> Outcome<Vec<(String, String)>> {
         };
         let variant = derive_variant(model.clone(), &vec![order; model.fields.len()])?;
         files.push((format!("{name}.rs"), source(&variant.program, Packaging::Module)?));
-        modules.push_str(&format!("pub mod {name};\n"));
+        modules.push_str(&format!("#[rustfmt::skip]\npub mod {name};\n"));
     }
     let header = "//! Equations of motion of the planetary arm, rigid and with one to eight modes, as\n\
                   //! emitted by `eomgen generate --all`. Do not edit: regenerate.\n\n\

@@ -4,4 +4,5 @@ pub mod check;
 pub mod derive;
 pub mod generate;
 pub mod simulate;
+pub mod tour;
 pub mod validate;

@@ -47,26 +47,36 @@ impl Scale {
 impl Range {
     /// The span of what is finite in `places`; none if nothing is.
     pub fn of(places: impl Iterator<Item = f64>) -> Option<Self> {
-        places.filter(|place| place.is_finite()).fold(None, |range: Option<Self>, place| {
-            let Self { low, high } = range.unwrap_or(Self {
-                low: place,
-                high: place,
-            });
-            Some(Self {
-                low: low.min(place),
-                high: high.max(place),
+        places
+            .filter(|place| place.is_finite())
+            .fold(None, |range: Option<Self>, place| {
+                let Self { low, high } = range.unwrap_or(Self {
+                    low: place,
+                    high: place,
+                });
+                Some(Self {
+                    low: low.min(place),
+                    high: high.max(place),
+                })
             })
-        })
     }
 
     /// Widened so that it is no point: rounding noise around a constant is not magnified.
     pub fn opened(self) -> Self {
         let magnitude = self.low.abs().max(self.high.abs());
-        let least = if magnitude < 1e-100 { 1.0 } else { 1e-6 * magnitude };
+        let least = if magnitude < 1e-100 {
+            1.0
+        } else {
+            1e-6 * magnitude
+        };
         if self.high - self.low >= least {
             return self;
         }
-        let half = if magnitude < 1e-100 { 1.0 } else { 0.1 * magnitude };
+        let half = if magnitude < 1e-100 {
+            1.0
+        } else {
+            0.1 * magnitude
+        };
         let middle = self.low + (self.high - self.low) / 2.0;
         Self {
             low: middle - half,
@@ -188,24 +198,58 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_include_the_ends() {
-        assert_eq!(labels(Scale::Linear, 0.0, 2.0), ["0.0", "0.5", "1.0", "1.5", "2.0"]);
-        assert_eq!(labels(Scale::Linear, -53.0, 53.0), ["−40", "−20", "0", "20", "40"]);
-        assert_eq!(labels(Scale::Linear, 0.0, 0.3), ["0.00", "0.05", "0.10", "0.15", "0.20", "0.25", "0.30"]);
+        assert_eq!(
+            labels(Scale::Linear, 0.0, 2.0),
+            ["0.0", "0.5", "1.0", "1.5", "2.0"]
+        );
+        assert_eq!(
+            labels(Scale::Linear, -53.0, 53.0),
+            ["−40", "−20", "0", "20", "40"]
+        );
+        assert_eq!(
+            labels(Scale::Linear, 0.0, 0.3),
+            ["0.00", "0.05", "0.10", "0.15", "0.20", "0.25", "0.30"]
+        );
     }
 
     #[test]
     fn logarithmic_ticks_are_powers_of_ten() {
-        assert_eq!(labels(Scale::Logarithmic, -12.0, -9.5), ["10⁻¹²", "10⁻¹¹", "10⁻¹⁰"]);
+        assert_eq!(
+            labels(Scale::Logarithmic, -12.0, -9.5),
+            ["10⁻¹²", "10⁻¹¹", "10⁻¹⁰"]
+        );
         assert_eq!(labels(Scale::Logarithmic, 0.5, 1.5), ["5", "10", "20"]);
         assert_eq!(labels(Scale::Logarithmic, -30.0, 0.0).len(), 6);
     }
 
     #[test]
     fn a_constant_gets_a_range_of_its_own() {
-        let point = |value| Range { low: value, high: value }.opened();
-        assert_eq!(point(0.0), Range { low: -1.0, high: 1.0 });
-        assert_eq!(point(5.0), Range { low: 4.5, high: 5.5 });
-        let noisy = Range { low: 1.0, high: 1.0 + 1e-12 }.opened();
+        let point = |value| {
+            Range {
+                low: value,
+                high: value,
+            }
+            .opened()
+        };
+        assert_eq!(
+            point(0.0),
+            Range {
+                low: -1.0,
+                high: 1.0
+            }
+        );
+        assert_eq!(
+            point(5.0),
+            Range {
+                low: 4.5,
+                high: 5.5
+            }
+        );
+        let noisy = Range {
+            low: 1.0,
+            high: 1.0 + 1e-12,
+        }
+        .opened();
         assert!(noisy.high - noisy.low > 0.19);
     }
 

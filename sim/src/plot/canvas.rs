@@ -92,7 +92,11 @@ impl Canvas {
             Anchor::Middle => "middle",
             Anchor::End => "end",
         };
-        let weight = if text.bold { " font-weight=\"600\"" } else { "" };
+        let weight = if text.bold {
+            " font-weight=\"600\""
+        } else {
+            ""
+        };
         let turn = match angle {
             0.0 => String::new(),
             _ => format!(" transform=\"rotate({angle} {x:.2} {y:.2})\""),

@@ -88,14 +88,27 @@ mod tests {
     #[test]
     fn a_column_keeps_its_extremes_in_order() {
         let heights = [0.0, 5.0, 1.0, -7.0, 2.0, 3.0];
-        let samples = heights.iter().enumerate().map(|(i, y)| (0.1 * i as f64, *y));
-        let kept: Vec<f64> = polylines(samples, 1.0).concat().iter().map(|p| p.1).collect();
+        let samples = heights
+            .iter()
+            .enumerate()
+            .map(|(i, y)| (0.1 * i as f64, *y));
+        let kept: Vec<f64> = polylines(samples, 1.0)
+            .concat()
+            .iter()
+            .map(|p| p.1)
+            .collect();
         assert_eq!(kept, [0.0, 5.0, -7.0, 3.0]);
     }
 
     #[test]
     fn a_gap_splits_the_line() {
-        let samples = [(0.0, 1.0), (1.0, f64::NAN), (2.0, f64::INFINITY), (3.0, 1.0), (4.0, 2.0)];
+        let samples = [
+            (0.0, 1.0),
+            (1.0, f64::NAN),
+            (2.0, f64::INFINITY),
+            (3.0, 1.0),
+            (4.0, 2.0),
+        ];
         let lines = polylines(samples.into_iter(), 1.0);
         assert_eq!(lines, [vec![(0.0, 1.0)], vec![(3.0, 1.0), (4.0, 2.0)]]);
     }
@@ -103,7 +116,11 @@ mod tests {
     #[test]
     fn the_points_are_bounded_even_if_every_other_sample_is_missing() {
         let samples = (0..100_000).map(|i| {
-            let y = if i % 2 == 0 { f64::from(i * 7919 % 1000) } else { f64::NAN };
+            let y = if i % 2 == 0 {
+                f64::from(i * 7919 % 1000)
+            } else {
+                f64::NAN
+            };
             (f64::from(i) * 1e-3, y)
         });
         assert!(polylines(samples, 1.0).concat().len() <= 4 * 100);

@@ -59,6 +59,7 @@ pub(super) struct Place {
 }
 
 /// A panel's vertical axis before its place is known.
+#[derive(Debug)]
 struct Ordinate {
     range: Range,
     quantity: Quantity,
@@ -68,10 +69,11 @@ struct Ordinate {
 impl Layout {
     /// Places checked panels.
     pub fn new(panels: &[Panel<'_>], abscissa: &Abscissa, scale: Scale) -> Result<Self, PlotError> {
+        let (frame, marks) = frame(panels.len());
         let ordinates = panels
             .iter()
             .enumerate()
-            .map(|(index, panel)| Ordinate::new(index, panel, abscissa.scale, scale))
+            .map(|(index, panel)| Ordinate::new(index, panel, (abscissa.scale, scale), marks))
             .collect::<Result<Vec<_>, _>>()?;
         let (range, quantity) = shared_range(panels, abscissa);
         let edges = (left_edge(&ordinates), right_edge(panels));
@@ -80,7 +82,6 @@ impl Layout {
             range,
             pixels: edges,
         };
-        let frame = frame_height(panels.len());
         let mut top = 6.0;
         let mut places = Vec::with_capacity(panels.len());
         for (panel, ordinate) in panels.iter().zip(ordinates) {
@@ -102,7 +103,13 @@ impl Layout {
 }
 
 impl Ordinate {
-    fn new(index: usize, panel: &Panel<'_>, along: Scale, scale: Scale) -> Result<Self, PlotError> {
+    /// The vertical axis of a panel, given both scales and how many ticks there may be.
+    fn new(
+        index: usize,
+        panel: &Panel<'_>,
+        (along, scale): (Scale, Scale),
+        marks: usize,
+    ) -> Result<Self, PlotError> {
         for series in &panel.series {
             if drawable_values(series, along, scale).next().is_none() {
                 return Err(PlotError::Empty {
@@ -113,7 +120,10 @@ impl Ordinate {
         }
         let references = panel.references.iter().map(|reference| reference.value);
         let values = || {
-            let curves = panel.series.iter().flat_map(|s| drawable_values(s, along, scale));
+            let curves = panel
+                .series
+                .iter()
+                .flat_map(|s| drawable_values(s, along, scale));
             curves.chain(references.clone().filter(|value| is_drawable(*value)))
         };
         let quantity = match scale {
@@ -124,12 +134,16 @@ impl Ordinate {
             Scale::Logarithmic => Quantity::plain(&panel.quantity, &panel.unit),
         };
         let places = values().map(|value| scale.place(value / quantity.scale));
-        let range = Range::of(places).map_or(Range { low: 0.0, high: 1.0 }, |range| {
-            range.opened().padded(0.05)
-        });
+        let range = Range::of(places).map_or(
+            Range {
+                low: 0.0,
+                high: 1.0,
+            },
+            |range| range.opened().padded(0.05),
+        );
         Ok(Self {
             range,
-            ticks: ticks(scale, range, 5),
+            ticks: ticks(scale, range, marks),
             quantity,
         })
     }
@@ -144,9 +158,15 @@ impl Place {
         (top, frame): (f64, f64),
         edges: (f64, f64),
     ) -> Self {
-        let title_row = if panel.title.is_empty() { 6.0 } else { TITLE_ROW };
+        let title_row = if panel.title.is_empty() {
+            6.0
+        } else {
+            TITLE_ROW
+        };
         let legend = legend(panel, top + title_row, edges);
-        let legend_rows = legend.last().map_or(0.0, |((_, y), _)| y + 6.0 - (top + title_row));
+        let legend_rows = legend
+            .last()
+            .map_or(0.0, |((_, y), _)| y + 8.0 - (top + title_row));
         let frame_top = top + title_row + legend_rows;
         Self {
             ordinate: Axis {
@@ -169,7 +189,9 @@ fn drawable_values(series: &Series<'_>, along: Scale, scale: Scale) -> impl Iter
         .iter()
         .zip(series.values)
         .filter(move |(at, value)| {
-            along.place(**at).is_finite() && is_drawable(**value) && scale.place(**value).is_finite()
+            along.place(**at).is_finite()
+                && is_drawable(**value)
+                && scale.place(**value).is_finite()
         })
         .map(|(_, value)| *value)
 }
@@ -187,13 +209,18 @@ fn shared_range(panels: &[Panel<'_>], abscissa: &Abscissa) -> (Range, Quantity) 
         Scale::Logarithmic => Quantity::plain(abscissa.symbol, abscissa.unit),
     };
     let places = all().map(|value| abscissa.scale.place(value / quantity.scale));
-    let range = Range::of(places).unwrap_or(Range { low: 0.0, high: 1.0 });
+    let range = Range::of(places).unwrap_or(Range {
+        low: 0.0,
+        high: 1.0,
+    });
     (range.opened(), quantity)
 }
 
 fn left_edge(ordinates: &[Ordinate]) -> f64 {
     let labels = ordinates.iter().flat_map(|ordinate| &ordinate.ticks);
-    let widest = labels.map(|tick| width(&tick.label, TICK_SIZE)).fold(0.0, f64::max);
+    let widest = labels
+        .map(|tick| width(&tick.label, TICK_SIZE))
+        .fold(0.0, f64::max);
     LEFT_OF_TICKS + widest
 }
 
@@ -210,11 +237,12 @@ pub(super) fn reference_label(label: &str) -> String {
     fitted(label, TICK_SIZE, LARGEST_REFERENCE_LABEL)
 }
 
-fn frame_height(panels: usize) -> f64 {
+/// The height of a frame, and about how many ticks it has room for.
+fn frame(panels: usize) -> (f64, usize) {
     match panels {
-        1 => 300.0,
-        2 => 200.0,
-        _ => 150.0,
+        1 => (300.0, 7),
+        2 => (200.0, 6),
+        _ => (150.0, 5),
     }
 }
 

@@ -6,7 +6,7 @@ use super::symbol::Symbol;
 /// The width of a character in units of the font size: that of a digit in a wide sans serif.
 const CHARACTER: f64 = 0.62;
 /// The share of the font size at which subscripts are set.
-const SUBSCRIPT: f64 = 0.85;
+const SUBSCRIPT: f64 = 0.8;
 
 /// The width of a text, in pixels.
 pub(super) fn width(text: &str, size: f64) -> f64 {
@@ -113,7 +113,7 @@ mod tests {
     fn subscripts_become_spans_and_the_line_comes_back() {
         assert_eq!(
             spans("x_sp [µm]", 10.0),
-            "x<tspan dy=\"2.2\" font-size=\"8.5\">sp</tspan>\
+            "x<tspan dy=\"2.2\" font-size=\"8.0\">sp</tspan>\
              <tspan dy=\"-2.2\" font-size=\"10.0\"> [</tspan>µm]"
         );
         assert_eq!(spans("a < b & c", 10.0), "a &lt; b &amp; c");

@@ -49,7 +49,9 @@ pub(super) fn draw(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
 
 /// Draws the labels of the axis that all panels share, below the last of them.
 pub(super) fn draw_abscissa(canvas: &mut Canvas, layout: &Layout) {
-    let Some(last) = layout.places.last() else { return };
+    let Some(last) = layout.places.last() else {
+        return;
+    };
     let (bottom, _) = last.ordinate.pixels;
     for tick in &layout.abscissa_ticks {
         canvas.text(Text {
@@ -82,10 +84,18 @@ fn curve(index: usize) -> Stroke {
 fn samples(series: &Series<'_>, place: &Place, layout: &Layout) -> impl Iterator<Item = Point> {
     let (x, y) = (layout.abscissa, place.ordinate);
     let (along, up) = (layout.abscissa_quantity.scale, place.quantity.scale);
-    series.abscissa.iter().zip(series.values).map(move |(at, value)| {
-        let height = if is_drawable(*value) { pixel(&y, value / up) } else { f64::NAN };
-        (pixel(&x, at / along), height)
-    })
+    series
+        .abscissa
+        .iter()
+        .zip(series.values)
+        .map(move |(at, value)| {
+            let height = if is_drawable(*value) {
+                pixel(&y, value / up)
+            } else {
+                f64::NAN
+            };
+            (pixel(&x, at / along), height)
+        })
 }
 
 fn pixel(axis: &Axis, value: f64) -> f64 {
@@ -104,7 +114,9 @@ fn draw_grid(canvas: &mut Canvas, place: &Place, layout: &Layout) {
         ((x, bottom), (x, top))
     };
     let lines = place.ticks.iter().map(level);
-    let lines: Vec<_> = lines.chain(layout.abscissa_ticks.iter().map(upright)).collect();
+    let lines: Vec<_> = lines
+        .chain(layout.abscissa_ticks.iter().map(upright))
+        .collect();
     canvas.segments(&lines, GRID);
 }
 
@@ -114,7 +126,12 @@ fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
         .references
         .iter()
         .filter(|reference| is_drawable(reference.value))
-        .map(|reference| (pixel(&place.ordinate, reference.value / place.quantity.scale), &*reference.label))
+        .map(|reference| {
+            (
+                pixel(&place.ordinate, reference.value / place.quantity.scale),
+                &*reference.label,
+            )
+        })
         .filter(|(y, _)| y.is_finite())
         .collect();
     lines.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -138,7 +155,13 @@ fn draw_references(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
 fn draw_frame(canvas: &mut Canvas, place: &Place, layout: &Layout) {
     let (left, right) = layout.abscissa.pixels;
     let (bottom, top) = place.ordinate.pixels;
-    let corners = vec![(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+    let corners = vec![
+        (left, top),
+        (right, top),
+        (right, bottom),
+        (left, bottom),
+        (left, top),
+    ];
     canvas.lines(&[corners], FRAME);
     let length = 5.0;
     let across = place.ticks.iter().map(|tick| {
@@ -177,7 +200,10 @@ fn draw_text(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Lay
     for tick in &place.ticks {
         canvas.text(Text {
             text: &tick.label,
-            at: (left - 7.0, place.ordinate.pixel(tick.place) + 0.35 * TICK_SIZE),
+            at: (
+                left - 7.0,
+                place.ordinate.pixel(tick.place) + 0.35 * TICK_SIZE,
+            ),
             size: TICK_SIZE,
             anchor: Anchor::End,
             bold: false,

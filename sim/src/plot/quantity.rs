@@ -87,7 +87,9 @@ fn prefix(unit: &str, exponent: i32) -> Option<&'static str> {
     if exponent == 0 {
         return Some("");
     }
-    let end = unit.find(|c: char| !c.is_alphabetic()).unwrap_or(unit.len());
+    let end = unit
+        .find(|c: char| !c.is_alphabetic())
+        .unwrap_or(unit.len());
     let (symbol, rest) = unit.split_at(end);
     let (_, above_one) = PREFIXED.iter().find(|(name, _)| *name == symbol)?;
     if rest.starts_with('^') || (exponent > 0 && !above_one) {
@@ -162,7 +164,10 @@ mod tests {
             let quantity = Quantity::scaled("x_sp", unit, largest);
             assert_eq!(quantity.label, label, "{largest} {unit}");
             // One rounding in 10^n and one in the literal.
-            assert!((quantity.scale / scale - 1.0).abs() < 1e-14, "{largest} {unit}");
+            assert!(
+                (quantity.scale / scale - 1.0).abs() < 1e-14,
+                "{largest} {unit}"
+            );
         }
     }
 

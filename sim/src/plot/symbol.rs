@@ -106,7 +106,11 @@ mod tests {
             ("_dot", "_dot", ""),
             ("", "", ""),
         ] {
-            assert_eq!(parts(name), (head.to_owned(), subscript.to_owned()), "{name}");
+            assert_eq!(
+                parts(name),
+                (head.to_owned(), subscript.to_owned()),
+                "{name}"
+            );
         }
     }
 }

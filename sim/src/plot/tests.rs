@@ -7,11 +7,16 @@ use super::*;
 const SAMPLES: usize = 100_000;
 
 fn times() -> Vec<f64> {
-    (0..SAMPLES).map(|i| 2.0 * i as f64 / (SAMPLES - 1) as f64).collect()
+    (0..SAMPLES)
+        .map(|i| 2.0 * i as f64 / (SAMPLES - 1) as f64)
+        .collect()
 }
 
 fn noisy(times: &[f64], amplitude: f64) -> Vec<f64> {
-    times.iter().map(|t| amplitude * ((31.4 * t).sin() + (9e4 * t).sin())).collect()
+    times
+        .iter()
+        .map(|t| amplitude * ((31.4 * t).sin() + (9e4 * t).sin()))
+        .collect()
 }
 
 fn series<'a>(label: &str, abscissa: &'a [f64], values: &'a [f64]) -> Series<'a> {
@@ -40,7 +45,10 @@ fn history(panels: Vec<Panel<'_>>) -> Result<String, PlotError> {
 }
 
 fn text_of(node: Node<'_, '_>) -> String {
-    node.descendants().filter(Node::is_text).filter_map(|n| n.text()).collect()
+    node.descendants()
+        .filter(Node::is_text)
+        .filter_map(|n| n.text())
+        .collect()
 }
 
 fn texts(document: &Document<'_>) -> Vec<String> {
@@ -63,10 +71,16 @@ fn many_samples_give_a_small_well_formed_figure() -> Result<(), Box<dyn std::err
     let values = noisy(&t, 2e-5);
     for curves_per_panel in [1, 9] {
         let all = vec![series("run", &t, &values); curves_per_panel];
-        let svg = history(vec![panel("x_sp", "m", all.clone()), panel("x_pr", "m", all)])?;
+        let svg = history(vec![
+            panel("x_sp", "m", all.clone()),
+            panel("x_pr", "m", all),
+        ])?;
         assert!(svg.len() < 200_000, "{} bytes", svg.len());
         let document = Document::parse(&svg)?;
-        let points: usize = curves(&document, "#0072b2").iter().map(|d| d.matches(',').count()).sum();
+        let points: usize = curves(&document, "#0072b2")
+            .iter()
+            .map(|d| d.matches(',').count())
+            .sum();
         assert!(points > 500 && points < 2 * 2 * 4 * 900, "{points} points");
     }
     Ok(())
@@ -82,7 +96,10 @@ fn labels_have_prefixes_and_subscripts() -> Result<(), Box<dyn std::error::Error
     let svg = history(panels)?;
     let texts = texts(&Document::parse(&svg)?);
     for label in ["xsp [µm]", "θc [mrad]", "t [s]", "−10", "30"] {
-        assert!(texts.iter().any(|text| text == label), "{label} is not in {texts:?}");
+        assert!(
+            texts.iter().any(|text| text == label),
+            "{label} is not in {texts:?}"
+        );
     }
     Ok(())
 }
@@ -118,7 +135,8 @@ fn a_legend_is_drawn_only_if_there_is_a_choice() -> Result<(), Box<dyn std::erro
 }
 
 #[test]
-fn reference_lines_are_dashed_labelled_and_in_the_frame() -> Result<(), Box<dyn std::error::Error>> {
+fn reference_lines_are_dashed_labelled_and_in_the_frame() -> Result<(), Box<dyn std::error::Error>>
+{
     let t = [0.0, 1.0];
     let mut limits = panel("x", "m", vec![series("", &t, &[0.0, 1e-6])]);
     for (label, value) in [("+b_sp", 25e-6), ("−b_sp", -25e-6), ("nowhere", f64::NAN)] {
@@ -133,7 +151,9 @@ fn reference_lines_are_dashed_labelled_and_in_the_frame() -> Result<(), Box<dyn 
     let is_written = |text: &str| texts.iter().any(|t| t == text);
     assert!(is_written("+bsp") && is_written("−bsp") && !is_written("nowhere"));
     assert!(is_written("20") && is_written("−20"), "{texts:?}");
-    let dashed = document.descendants().filter(|n| n.attribute("stroke-dasharray").is_some());
+    let dashed = document
+        .descendants()
+        .filter(|n| n.attribute("stroke-dasharray").is_some());
     assert_eq!(dashed.count(), 2);
     Ok(())
 }
@@ -142,7 +162,11 @@ fn reference_lines_are_dashed_labelled_and_in_the_frame() -> Result<(), Box<dyn 
 fn hostile_text_stays_text() -> Result<(), Box<dyn std::error::Error>> {
     let t = [0.0, 1.0];
     let hostile = "</text><script>alert(1)</script> & \" ' \0 \u{1b}";
-    let mut panel = panel(hostile, hostile, vec![series(hostile, &t, &t), series("", &t, &t)]);
+    let mut panel = panel(
+        hostile,
+        hostile,
+        vec![series(hostile, &t, &t), series("", &t, &t)],
+    );
     panel.title = hostile.to_owned();
     panel.references = vec![Reference {
         label: hostile.to_owned(),
@@ -173,7 +197,10 @@ fn a_spectrum_leaves_out_what_has_no_logarithm() -> Result<(), Box<dyn std::erro
     let document = Document::parse(&svg)?;
     let texts = texts(&document);
     for label in ["Sx [m²/Hz]", "f [Hz]", "10⁻¹⁰", "10²"] {
-        assert!(texts.iter().any(|text| text == label), "{label} is not in {texts:?}");
+        assert!(
+            texts.iter().any(|text| text == label),
+            "{label} is not in {texts:?}"
+        );
     }
     assert!(!svg.contains("NaN"));
     let curves = curves(&document, "#0072b2");
@@ -210,16 +237,28 @@ fn what_cannot_be_drawn_is_an_error() {
         history(vec![panel("x", "m", vec![series("a", abscissa, values)])])
     };
     assert_eq!(history(Vec::new()), Err(PlotError::NoPanels));
-    assert_eq!(history(vec![panel("x", "m", Vec::new())]), Err(PlotError::NoSeries { panel: 0 }));
+    assert_eq!(
+        history(vec![panel("x", "m", Vec::new())]),
+        Err(PlotError::NoSeries { panel: 0 })
+    );
     let empty = Err(PlotError::Empty {
         panel: 0,
         series: "a".to_owned(),
     });
     assert_eq!(series_of(&[], &[]), empty);
-    assert_eq!(history(vec![panel("x", "m", vec![series("a", &t, &nothing)])]), empty);
-    assert!(matches!(series_of(&[0.0], &[0.0, 1.0]), Err(PlotError::Lengths { .. })));
+    assert_eq!(
+        history(vec![panel("x", "m", vec![series("a", &t, &nothing)])]),
+        empty
+    );
+    assert!(matches!(
+        series_of(&[0.0], &[0.0, 1.0]),
+        Err(PlotError::Lengths { .. })
+    ));
     for abscissa in [&[0.0, f64::NAN], &[1.0, 0.0]] {
         let wrong = series_of(abscissa, &[0.0, 1.0]);
-        assert!(matches!(wrong, Err(PlotError::Abscissa { sample: 1, .. })), "{wrong:?}");
+        assert!(
+            matches!(wrong, Err(PlotError::Abscissa { sample: 1, .. })),
+            "{wrong:?}"
+        );
     }
 }

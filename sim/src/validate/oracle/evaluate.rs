@@ -139,27 +139,7 @@ impl<'s> Pass<'s> {
     /// The value of `tree` where `frame` says.
     pub fn evaluate<N: Level>(&self, tree: &Tree, frame: &Frame<'_>) -> N {
         match tree {
-            Tree::Constant(value) => N::from(*value),
-            Tree::PerMode { field, values } => {
-                N::from(values.get(frame.mode(*field)).copied().unwrap_or(f64::NAN))
-            }
-            Tree::Time => N::of(self.time()),
-            Tree::Input(index) => {
-                N::from(self.scene.inputs.get(*index).copied().unwrap_or(f64::NAN))
-            }
-            Tree::Position { set } => N::from(self.position(*set, frame)),
-            Tree::Coordinate(index) => N::of(self.scene.coordinate(*index, self.directions)),
             Tree::Definition(index) => self.definition(*index),
-            Tree::Field { leaf, set } => {
-                N::of(self.scene.field(*leaf, *set, frame.node(), self.directions))
-            }
-            Tree::Mode { field } => N::of(self.mode(*field, frame)),
-            Tree::Shape { leaf, set } => {
-                N::from(
-                    self.scene
-                        .shape(*leaf, *set, frame.node(), frame.mode(leaf.field)),
-                )
-            }
             Tree::Dot(operand) => N::dot(self, operand, frame),
             Tree::Places {
                 set,
@@ -179,7 +159,33 @@ impl<'s> Pass<'s> {
                 functions::constant_power(self.evaluate::<N>(base, frame), *exponent)
             }
             Tree::Call(function, arguments) => self.call(*function, arguments, frame),
+            Tree::Time => N::of(self.time()),
+            Tree::Coordinate(index) => N::of(self.scene.coordinate(*index, self.directions)),
+            Tree::Field { leaf, set } => {
+                N::of(self.scene.field(*leaf, *set, frame.node(), self.directions))
+            }
+            Tree::Mode { field } => N::of(self.mode(*field, frame)),
+            still => N::from(self.still(still, frame)),
         }
+    }
+
+    /// What does not change with the state or the time.
+    fn still(&self, tree: &Tree, frame: &Frame<'_>) -> f64 {
+        let number = match tree {
+            Tree::Constant(value) => Some(*value),
+            Tree::PerMode { field, values } => values.get(frame.mode(*field)).copied(),
+            Tree::Input(index) => self.scene.inputs.get(*index).copied(),
+            Tree::Position { set } => {
+                let places = self.scene.system.places.get(*set);
+                places.and_then(|places| places.positions.get(frame.node()).copied())
+            }
+            Tree::Shape { leaf, set } => {
+                let mode = frame.mode(leaf.field);
+                Some(self.scene.shape(*leaf, *set, frame.node(), mode))
+            }
+            _ => None,
+        };
+        number.unwrap_or(f64::NAN)
     }
 
     fn time(&self) -> Motion {
@@ -188,14 +194,6 @@ impl<'s> Pass<'s> {
             value: HyperDual64::new(self.scene.time, first, second, 0.0),
             rate: HyperDual64::from_re(1.0),
         }
-    }
-
-    fn position(&self, set: usize, frame: &Frame<'_>) -> f64 {
-        let places = self.scene.system.places.get(set);
-        places
-            .and_then(|places| places.positions.get(frame.node()))
-            .copied()
-            .unwrap_or(f64::NAN)
     }
 
     fn mode(&self, field: usize, frame: &Frame<'_>) -> Motion {

@@ -145,25 +145,6 @@ impl<'m> Lowering<'m> {
     /// `set`: the place set around the expression.
     fn lower(&mut self, expression: &Expr, set: Option<usize>) -> Result<Tree, OracleError> {
         Ok(match &expression.kind {
-            ExprKind::Number(number) => Tree::Constant(*number),
-            ExprKind::Pi => Tree::Constant(std::f64::consts::PI),
-            ExprKind::Time => Tree::Time,
-            ExprKind::Position(field) => Tree::Position {
-                set: self.set_of(*field, set)?,
-            },
-            ExprKind::Parameter(index) => {
-                Tree::Constant(self.parameters.get(*index).copied().unwrap_or(f64::NAN))
-            }
-            ExprKind::Coordinate(index) => Tree::Coordinate(*index),
-            ExprKind::Input(index) => Tree::Input(*index),
-            ExprKind::Definition(index) => match self.system.definitions.get(*index) {
-                Some(Tree::Constant(value)) => Tree::Constant(*value),
-                _ => Tree::Definition(*index),
-            },
-            ExprKind::Coefficient(_) => return Err(self.misplaced()),
-            ExprKind::Field(field) => self.leaf(*field, 0, set)?,
-            ExprKind::ModeCoordinate(field) => Tree::Mode { field: *field },
-            ExprKind::ModeShape(field) => self.shape(*field, 0, set)?,
             ExprKind::Dot(operand) => self.dot(operand, set)?,
             ExprKind::Diff(operand, times) => self.diff(operand, *times, set)?,
             ExprKind::At {
@@ -185,6 +166,32 @@ impl<'m> Lowering<'m> {
                     .collect();
                 folded(Tree::Call(*function, arguments?))
             }
+            name => self.name(name, set)?,
+        })
+    }
+
+    /// What has no parts.
+    fn name(&mut self, kind: &ExprKind, set: Option<usize>) -> Result<Tree, OracleError> {
+        Ok(match kind {
+            ExprKind::Number(number) => Tree::Constant(*number),
+            ExprKind::Pi => Tree::Constant(std::f64::consts::PI),
+            ExprKind::Time => Tree::Time,
+            ExprKind::Position(field) => Tree::Position {
+                set: self.set_of(*field, set)?,
+            },
+            ExprKind::Parameter(index) => {
+                Tree::Constant(self.parameters.get(*index).copied().unwrap_or(f64::NAN))
+            }
+            ExprKind::Coordinate(index) => Tree::Coordinate(*index),
+            ExprKind::Input(index) => Tree::Input(*index),
+            ExprKind::Definition(index) => match self.system.definitions.get(*index) {
+                Some(Tree::Constant(value)) => Tree::Constant(*value),
+                _ => Tree::Definition(*index),
+            },
+            ExprKind::Field(field) => self.leaf(*field, 0, set)?,
+            ExprKind::ModeCoordinate(field) => Tree::Mode { field: *field },
+            ExprKind::ModeShape(field) => self.shape(*field, 0, set)?,
+            _ => return Err(self.misplaced()),
         })
     }
 

@@ -136,6 +136,12 @@ impl Tree {
         for child in self.children() {
             found.absorb(&child.dependence(definitions));
         }
+        self.amend(&mut found, definitions);
+        found
+    }
+
+    /// From what the parts depend on to what the whole depends on.
+    fn amend(&self, found: &mut Dependence, definitions: &[Dependence]) {
         match self {
             Self::PerMode { field, .. } => drop(found.indices.insert(*field)),
             Self::Time => found.time = true,
@@ -171,7 +177,6 @@ impl Tree {
             }
             _ => {}
         }
-        found
     }
 
     /// The addends of a sum; anything else is its own only addend.

@@ -1,0 +1,248 @@
+//! `eomgen tour`: the whole way once, on the paper's arm, for somebody who sees the
+//! program for the first time. Leaves one HTML page and the files it shows.
+
+use std::path::Path;
+use std::time::Instant;
+
+use codegen::print::Notation;
+use codegen::report::Report;
+use codegen::rust::Packaging;
+use model_spec::source::Source;
+use sim::plot::{Panel, Reference, Series, TimeHistory, time_history};
+use sim::record::HeldInputs;
+use sim::solve::Trajectory;
+use sim::validate::certificate::Certificate;
+
+use super::generate::source;
+use super::simulate::Run;
+use super::validate;
+use crate::arguments::Tour;
+use crate::output::write_file;
+use crate::page;
+use crate::problem::{Outcome, Problem, say};
+use crate::progress::Note;
+use crate::table::Table;
+use crate::variant::{Variant, derive_variant};
+
+/// The paper's arm.
+const SPECIFICATION: &str = include_str!("../../../model-spec/models/planetary_arm.toml");
+
+/// Where it stands in the project.
+const SPECIFICATION_PATH: &str = "model-spec/models/planetary_arm.toml";
+
+/// The paper's truncation order.
+const ORDER: usize = 4;
+
+/// Simulated time in s, and the time between samples.
+const UNTIL: f64 = 2.0;
+const SAMPLE: f64 = 0.0005;
+
+/// Relative tolerance of the simulation.
+const TOLERANCE: f64 = 1e-10;
+
+/// Says how long each step took.
+struct Stopwatch {
+    started: Instant,
+    steps: Vec<(&'static str, f64)>,
+}
+
+impl Stopwatch {
+    fn lap(&mut self, step: &'static str) {
+        self.steps.push((step, self.started.elapsed().as_secs_f64()));
+        self.started = Instant::now();
+    }
+}
+
+/// Runs the command.
+pub fn run(options: &Tour) -> Outcome {
+    let mut watch = Stopwatch {
+        started: Instant::now(),
+        steps: Vec::new(),
+    };
+    let note = Note::new("reading, deriving and emitting the paper's arm");
+    let checked = model_spec::check(Source::new(SPECIFICATION_PATH, SPECIFICATION))
+        .map_err(Problem::Specification)?;
+    watch.lap("read and check the specification");
+    let variant = derive_variant(checked.model, &[ORDER])?;
+    watch.lap("derive the equations and lower them to a program");
+    let rust = source(&variant.program, Packaging::Crate)?;
+    watch.lap("emit Rust");
+    drop(note);
+    let note = Note::new("validating against independent equations");
+    let certificate = validate::of(&variant.model, &[ORDER])?;
+    watch.lap("validate, including a compilation of the emitted Rust");
+    drop(note);
+    let run = Run::new(&variant.model, variant.evaluator(), HeldInputs::zero(0))?;
+    let times: Vec<f64> = (0..=(UNTIL / SAMPLE) as usize).map(|i| i as f64 * SAMPLE).collect();
+    let trajectory = run.trajectory(&times, TOLERANCE)?;
+    let table = run.table(&trajectory);
+    watch.lap("simulate two seconds");
+    let figure = figure(&variant, &table)?;
+    leave(options, &variant, &rust, &certificate, &table, &figure)?;
+    let page = page_text(&variant, &rust, &certificate, &trajectory, &figure, &watch)?;
+    let path = options.out.join("index.html");
+    write_file(&path, page.as_bytes())?;
+    let verdict = if certificate.passed { "passed" } else { "FAILED" };
+    say(&format!(
+        "{} checks {verdict}, {} switches simulated\nopen {}\n",
+        certificate.checks.len(),
+        trajectory.switches.len(),
+        path.display()
+    ))?;
+    if certificate.passed { Ok(()) } else { Err(Problem::Failed) }
+}
+
+/// The files that the page shows.
+fn leave(
+    options: &Tour,
+    variant: &Variant,
+    rust: &str,
+    certificate: &Certificate,
+    table: &Table,
+    figure: &str,
+) -> Outcome {
+    let out = &options.out;
+    let json = serde_json::to_string_pretty(certificate)
+        .map_err(|error| Problem::input(error.to_string()))?;
+    write_file(&out.join("planetary_arm.toml"), variant.model.source.text.as_bytes())?;
+    write_file(&out.join("lib.rs"), rust.as_bytes())?;
+    write_file(&out.join("certificate.json"), format!("{json}\n").as_bytes())?;
+    let trajectory = out.join("trajectory.csv");
+    write_file(&trajectory, &table.encode(Path::new("trajectory.csv"))?)?;
+    write_file(&out.join("trajectory.svg"), figure.as_bytes())
+}
+
+/// The mesh deflection and the positioning error over time.
+fn figure(variant: &Variant, table: &Table) -> Outcome<String> {
+    let column = |name: &str| {
+        table
+            .column(name)
+            .ok_or_else(|| Problem::input(format!("the trajectory has no column {name}")))
+    };
+    let t = column("t")?;
+    let backlash = variant
+        .program
+        .parameters
+        .iter()
+        .find(|parameter| parameter.quantity.name == "b_sp")
+        .map_or(f64::NAN, |parameter| parameter.value);
+    let panel = |title: &str, name: &str, references: Vec<Reference>| {
+        Ok(Panel {
+            title: title.to_owned(),
+            quantity: name.to_owned(),
+            unit: "m".to_owned(),
+            series: vec![Series {
+                label: name.to_owned(),
+                abscissa: t,
+                values: column(name)?,
+            }],
+            references,
+        })
+    };
+    let limits = [("+b_sp", backlash), ("-b_sp", -backlash)];
+    let references = limits
+        .iter()
+        .map(|(label, value)| Reference {
+            label: (*label).to_owned(),
+            value: *value,
+        })
+        .collect();
+    let history = TimeHistory {
+        title: "Motion of the arm over two seconds from rest".to_owned(),
+        panels: vec![
+            panel("Relative displacement of sun and planet along the line of action", "x_sp", references)?,
+            panel("Positioning error of the arm's end, Eq. (24)", "f_la", Vec::new())?,
+        ],
+    };
+    time_history(&history).map_err(|error| Problem::input(error.to_string()))
+}
+
+fn page_text(
+    variant: &Variant,
+    rust: &str,
+    certificate: &Certificate,
+    trajectory: &Trajectory,
+    figure: &str,
+    watch: &Stopwatch,
+) -> Outcome<String> {
+    let evaluator = variant.evaluator();
+    let notation = Notation::text(&variant.model);
+    let report = Report::new(&variant.model, &variant.equations, &evaluator, &notation);
+    let summary = format!(
+        "From rest over {UNTIL} s at order {ORDER} with the paper's values, relative tolerance {TOLERANCE:e}: \
+         the meshes made or lost contact {} times, {} evaluations of the right-hand side.",
+        trajectory.switches.len(),
+        trajectory.work.evaluations
+    );
+    let checks = certificate
+        .checks
+        .iter()
+        .map(|check| page::CheckRow {
+            name: &check.name,
+            value: check.value,
+            tolerance: check.tolerance,
+            passed: check.passed,
+            skipped: check.skipped,
+            detail: &check.detail,
+        })
+        .collect();
+    let tour = page::Tour {
+        title: &variant.model.title,
+        generated_by: concat!("eomgen ", env!("CARGO_PKG_VERSION")),
+        specification: page::Specification {
+            path: SPECIFICATION_PATH,
+            text: SPECIFICATION,
+            warnings: Vec::new(),
+        },
+        equations: &report,
+        source: page::Source {
+            path: "lib.rs",
+            text: rust,
+        },
+        checks,
+        simulation: page::Simulation {
+            summary: &summary,
+            path: "trajectory.csv",
+            figures: vec![page::Figure {
+                svg: figure,
+                caption: "Above: the tooth flanks touch outside the dashed lines and are free \
+                          between them; each touch rings at the mesh's own frequency. Below: \
+                          what the arm's end is off its place, backlash and bending together.",
+            }],
+        },
+        durations: watch
+            .steps
+            .iter()
+            .map(|(step, seconds)| page::StepDuration {
+                step,
+                seconds: *seconds,
+            })
+            .collect(),
+        next: next_commands(),
+    };
+    Ok(tour.render())
+}
+
+fn next_commands() -> Vec<page::NextCommand<'static>> {
+    [
+        (
+            "cargo run --release -- derive model-spec/models/double_pendulum.toml",
+            "prints the equations of another machine",
+        ),
+        (
+            "cargo run --release -- generate model-spec/models/planetary_arm.toml --order 16 --out arm16",
+            "emits the arm with sixteen modes",
+        ),
+        (
+            "cargo run --release -- simulate model-spec/models/planetary_arm.toml --until 2 --set b_sp=100e-6 --set b_pr=100e-6 --out wide.csv",
+            "simulates with four times the backlash",
+        ),
+        (
+            "cargo run --release -- validate model-spec/models/hub_beam_tip_mass.toml --order 8",
+            "validates a beam with a tip mass",
+        ),
+    ]
+    .into_iter()
+    .map(|(command, does)| page::NextCommand { command, does })
+    .collect()
+}

@@ -1,0 +1,190 @@
+//! The newcomer's page: one HTML document that walks from a specification to its equations,
+//! the emitted source, the certificate and a simulation. Only how these are shown; what they
+//! say is handed in.
+//!
+//! The page has no script and refers to nothing outside itself. Every text is escaped, so
+//! that nothing in a specification becomes markup.
+
+mod equations;
+mod formula;
+mod markup;
+mod steps;
+
+#[cfg(test)]
+mod tests;
+
+use codegen::report::Report;
+
+use markup::escaped;
+
+/// Everything on the page.
+#[derive(Clone, Debug)]
+pub struct Tour<'a> {
+    /// The model's title.
+    pub title: &'a str,
+    /// Name and version of the program.
+    pub generated_by: &'a str,
+    /// What was checked.
+    pub specification: Specification<'a>,
+    /// What was derived from it, in the plain notation.
+    pub equations: &'a Report,
+    /// What was emitted.
+    pub source: Source<'a>,
+    /// How it was validated.
+    pub checks: Vec<CheckRow<'a>>,
+    /// What was simulated.
+    pub simulation: Simulation<'a>,
+    /// What took how long, in order.
+    pub durations: Vec<StepDuration<'a>>,
+    /// What to try next.
+    pub next: Vec<NextCommand<'a>>,
+}
+
+/// A checked specification.
+#[derive(Clone, Debug)]
+pub struct Specification<'a> {
+    /// Where it is, as the user would write it.
+    pub path: &'a str,
+    /// The whole file.
+    pub text: &'a str,
+    /// The diagnostics as the terminal shows them, without colours; empty if there are none.
+    pub warnings: Vec<&'a str>,
+}
+
+/// An emitted model.
+#[derive(Clone, Debug)]
+pub struct Source<'a> {
+    /// Where it was written.
+    pub path: &'a str,
+    /// The whole file, as formatted by the emitter.
+    pub text: &'a str,
+}
+
+/// One line of the certificate.
+#[derive(Clone, Debug)]
+pub struct CheckRow<'a> {
+    /// What was checked.
+    pub name: &'a str,
+    /// The worst deviation, if there is one.
+    pub value: Option<f64>,
+    /// The largest deviation that passes.
+    pub tolerance: f64,
+    /// Whether the check was made and passed.
+    pub passed: bool,
+    /// Whether it could not be made.
+    pub skipped: bool,
+    /// Where the worst was found, or why it was skipped.
+    pub detail: &'a str,
+}
+
+/// What was simulated and how it looks.
+#[derive(Clone, Debug)]
+pub struct Simulation<'a> {
+    /// A sentence on what was simulated: span, solver, samples, switches.
+    pub summary: &'a str,
+    /// Where the samples are.
+    pub path: &'a str,
+    /// The figures in order.
+    pub figures: Vec<Figure<'a>>,
+}
+
+/// A figure with its caption.
+#[derive(Clone, Debug)]
+pub struct Figure<'a> {
+    /// An SVG element as `sim::plot` draws it. The one text that is not escaped.
+    pub svg: &'a str,
+    /// What to look for.
+    pub caption: &'a str,
+}
+
+/// How long a step took.
+#[derive(Clone, Debug)]
+pub struct StepDuration<'a> {
+    /// What was done.
+    pub step: &'a str,
+    /// Wall-clock time, s.
+    pub seconds: f64,
+}
+
+/// A command with what it does.
+#[derive(Clone, Debug)]
+pub struct NextCommand<'a> {
+    /// The command line.
+    pub command: &'a str,
+    /// What it does.
+    pub does: &'a str,
+}
+
+/// A step of the walk: where it can be linked to, its heading, its content.
+struct Step {
+    anchor: &'static str,
+    heading: &'static str,
+    content: String,
+}
+
+impl Tour<'_> {
+    /// The page, a complete HTML document.
+    pub fn render(&self) -> String {
+        let steps = self.steps();
+        let links: String = steps.iter().map(link).collect();
+        let sections: String = steps.iter().map(section).collect();
+        let (title, generated_by) = (escaped(self.title), escaped(self.generated_by));
+        format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <title>{title}</title>\n<style>\n{}</style>\n</head>\n<body>\n<header>\n\
+             <h1>{title}</h1>\n<p class=\"lead\">From a Lagrangian written down once to equations \
+             of motion that run: this page shows what happened on the way, step by step.</p>\n<nav><ol>{links}</ol></nav>\n</header>\n<main>\n{sections}</main>\n\
+             <footer><p>Written by {generated_by}.</p></footer>\n</body>\n</html>\n",
+            include_str!("style.css")
+        )
+    }
+
+    fn steps(&self) -> [Step; 7] {
+        let step = |anchor, heading, content| Step {
+            anchor,
+            heading,
+            content,
+        };
+        [
+            step(
+                "specification",
+                "The specification is checked",
+                steps::specification(&self.specification),
+            ),
+            step(
+                "equations",
+                "The equations are derived",
+                equations::content(self.equations),
+            ),
+            step("source", "Rust is emitted", steps::source(&self.source)),
+            step(
+                "certificate",
+                "The model is validated",
+                steps::certificate(&self.checks),
+            ),
+            step(
+                "simulation",
+                "The motion is simulated",
+                steps::simulation(&self.simulation),
+            ),
+            step(
+                "durations",
+                "What took how long",
+                steps::durations(&self.durations),
+            ),
+            step("next", "What next", steps::next(&self.next)),
+        ]
+    }
+}
+
+fn link(step: &Step) -> String {
+    format!("<li><a href=\"#{}\">{}</a></li>", step.anchor, step.heading)
+}
+
+fn section(step: &Step) -> String {
+    format!(
+        "<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n",
+        step.anchor, step.heading, step.content
+    )
+}

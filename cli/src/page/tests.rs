@@ -1,0 +1,221 @@
+//! The whole page: every step is there, nothing refers to the outside, and text from a
+//! specification stays text.
+
+use codegen::report::{CoefficientLine, Entry, Line, Report, Solution};
+
+use super::*;
+
+fn line(name: &str, formula: &str) -> Line {
+    Line {
+        name: name.to_owned(),
+        formula: formula.to_owned(),
+    }
+}
+
+/// A report with `text` wherever a specification could put it.
+fn report(text: &str) -> Report {
+    Report {
+        schema: 1,
+        model: text.to_owned(),
+        title: text.to_owned(),
+        orders: vec![4],
+        state: vec![text.to_owned()],
+        definitions: vec![line(text, text)],
+        terms: vec![line(text, text)],
+        kinetic: text.to_owned(),
+        potential: text.to_owned(),
+        mass_matrix: vec![Entry {
+            row: text.to_owned(),
+            column: text.to_owned(),
+            formula: text.to_owned(),
+        }],
+        pivots: vec![line(text, text)],
+        velocity_terms: vec![line(text, text)],
+        forces: vec![line(text, text)],
+        coefficients: vec![CoefficientLine {
+            name: text.to_owned(),
+            formula: text.to_owned(),
+            values: vec![0.25; 10],
+        }],
+        accelerations: vec![line(text, text)],
+        guards: vec![text.to_owned()],
+        solution: Solution {
+            dense_modes: false,
+            order: vec![text.to_owned()],
+            interfaces: 1,
+            operations: 101,
+            dearest: 202,
+        },
+    }
+}
+
+fn check<'a>(name: &'a str, passed: bool, skipped: bool) -> CheckRow<'a> {
+    CheckRow {
+        name,
+        value: passed.then_some(3e-15),
+        tolerance: 1e-12,
+        passed,
+        skipped,
+        detail: name,
+    }
+}
+
+fn tour<'a>(text: &'a str, equations: &'a Report) -> Tour<'a> {
+    Tour {
+        title: text,
+        generated_by: text,
+        specification: Specification {
+            path: text,
+            text,
+            warnings: vec![text],
+        },
+        equations,
+        source: Source { path: text, text },
+        checks: vec![check(text, true, false), check(text, false, true)],
+        simulation: Simulation {
+            summary: text,
+            path: text,
+            figures: vec![Figure {
+                svg: "<svg><path d=\"M0,0\"/></svg>",
+                caption: text,
+            }],
+        },
+        durations: vec![StepDuration {
+            step: text,
+            seconds: 0.5,
+        }],
+        next: vec![NextCommand {
+            command: text,
+            does: text,
+        }],
+    }
+}
+
+/// The names of the elements that are opened, in order.
+fn elements(page: &str) -> Vec<&str> {
+    page.split('<')
+        .skip(1)
+        .map(|piece| {
+            piece
+                .split(|c: char| !c.is_ascii_alphanumeric())
+                .next()
+                .unwrap_or_default()
+        })
+        .filter(|name| !name.is_empty())
+        .collect()
+}
+
+#[test]
+fn text_from_outside_stays_text() {
+    let hostile = "</pre></code></title><script>alert(\"1\")</script><img src=x onerror='a'>";
+    let (harmless, injected) = (report("plain"), report(hostile));
+    let page = tour(hostile, &injected).render();
+    for forbidden in ["<script", "<img", "alert(\"", "onerror='"] {
+        assert!(!page.contains(forbidden), "{forbidden}");
+    }
+    let outside_formulas = |page: &str| -> Vec<String> {
+        let elements = elements(page)
+            .into_iter()
+            .filter(|name| !["i", "sub", "sup"].contains(name));
+        elements.map(str::to_owned).collect()
+    };
+    assert_eq!(
+        outside_formulas(&page),
+        outside_formulas(&tour("plain", &harmless).render())
+    );
+}
+
+#[test]
+fn nothing_refers_to_the_outside() {
+    let report = report("x_sp");
+    let page = tour("x_sp", &report).render();
+    for forbidden in [
+        "http",
+        "//",
+        "<script",
+        "<link",
+        "src=",
+        "url(",
+        "@import",
+        "javascript",
+    ] {
+        assert!(!page.contains(forbidden), "{forbidden}");
+    }
+    let links = page.split("href=\"").skip(1);
+    assert!(links.clone().count() == 7 && links.clone().all(|link| link.starts_with('#')));
+}
+
+#[test]
+fn every_step_is_there() {
+    let report = report("x_sp");
+    let page = tour("the text", &report).render();
+    for anchor in [
+        "specification",
+        "equations",
+        "source",
+        "certificate",
+        "simulation",
+        "durations",
+        "next",
+    ] {
+        assert!(
+            page.contains(&format!("<section id=\"{anchor}\">")),
+            "{anchor}"
+        );
+        assert!(page.contains(&format!("href=\"#{anchor}\"")), "{anchor}");
+    }
+    let parts = [
+        "Definitions",
+        "Terms of",
+        "Kinetic and potential",
+        "Mass matrix",
+        "Pivots",
+        "Velocity terms",
+        "Generalised forces",
+        "Coefficients",
+        "Accelerations",
+        "Switching surfaces",
+        "101 operations",
+        "against 202",
+        "one warning",
+        "Checks passed: 1; failed: 0; not made: 1",
+        "10<sup>−12</sup>",
+        "3·10<sup>−15</sup>",
+        "<svg>",
+        "500.0 ms",
+        "(10 values)",
+        "<i>x</i><sub>sp</sub>",
+    ];
+    for part in parts {
+        assert!(page.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn a_failed_check_is_the_verdict() {
+    let report = report("x");
+    let mut tour = tour("x", &report);
+    assert!(tour.render().contains("The model passes."));
+    tour.checks.push(check("bad", false, false));
+    assert!(tour.render().contains("The model fails 1 of its checks."));
+    tour.checks = vec![check("none", false, true)];
+    assert!(tour.render().contains("Nothing was checked."));
+}
+
+#[test]
+fn elements_are_closed_in_order() {
+    let report = report("dot(x_sp)^2*sum_i(q_i^(2)");
+    let page = tour("a < b", &report).render();
+    let mut open: Vec<&str> = Vec::new();
+    for piece in page.split('<').skip(1) {
+        let tag = piece.split('>').next().unwrap_or_default();
+        let is_void =
+            tag.ends_with('/') || tag == "br" || tag.starts_with('!') || tag.starts_with("meta ");
+        match tag.strip_prefix('/') {
+            Some(closed) => assert_eq!(open.pop(), Some(closed), "near {piece}"),
+            None if is_void => {}
+            None => open.extend(tag.split(' ').next()),
+        }
+    }
+    assert!(open.is_empty(), "{open:?}");
+}

@@ -1,0 +1,245 @@
+//! Changes of a specification made by program: terms, parameters and coordinates added,
+//! expressions replaced inside terms. Comments, order and layout of everything else stay as
+//! they are. What to change is decided elsewhere; the result is checked here.
+
+mod insert;
+mod substitute;
+
+use toml_edit::DocumentMut;
+
+use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
+use crate::load::check;
+use crate::source::Source;
+
+/// A section of named expressions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Section {
+    /// `[definitions]`
+    Definitions,
+    /// `[kinetic]`
+    Kinetic,
+    /// `[potential]`
+    Potential,
+    /// `[dissipation]`
+    Dissipation,
+    /// `[forces]`
+    Forces,
+    /// `[observables]`
+    Observables,
+}
+
+impl Section {
+    /// Its key in the file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Definitions => "definitions",
+            Self::Kinetic => "kinetic",
+            Self::Potential => "potential",
+            Self::Dissipation => "dissipation",
+            Self::Forces => "forces",
+            Self::Observables => "observables",
+        }
+    }
+}
+
+/// A number or an expression.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NewValue {
+    /// A finite number in the declared unit.
+    Number(f64),
+    /// An expression in SI.
+    Expression(String),
+}
+
+/// One change. Empty texts (`doc`, `source`) are left out.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edit {
+    /// Adds a term to an energy, the dissipation, the definitions or the observables.
+    AddTerm {
+        /// Where.
+        section: Section,
+        /// The term's name, not yet used in the section.
+        name: String,
+        /// Its expression.
+        value: String,
+        /// What it is.
+        doc: String,
+        /// Where it comes from.
+        source: String,
+    },
+    /// Adds a parameter.
+    AddParameter {
+        /// Its name.
+        name: String,
+        /// Its value.
+        value: NewValue,
+        /// Its unit.
+        unit: String,
+        /// What it is.
+        doc: String,
+        /// Where its value comes from.
+        source: String,
+    },
+    /// Adds a coordinate.
+    AddCoordinate {
+        /// Its name.
+        name: String,
+        /// Its unit, coherent SI.
+        unit: String,
+        /// What it is.
+        doc: String,
+        /// Its initial value, 0 if absent.
+        initial: Option<NewValue>,
+    },
+    /// Adds a force.
+    AddForce {
+        /// Its name.
+        name: String,
+        /// What it works on.
+        on: String,
+        /// Its value.
+        value: String,
+        /// What it is.
+        doc: String,
+        /// Where it comes from.
+        source: String,
+    },
+    /// Replaces every occurrence of an expression inside the values of named terms; each of
+    /// the terms must hold one. Expressions are compared as syntax trees: spaces and
+    /// superfluous brackets do not matter, the order of operands does.
+    Substitute {
+        /// Where the terms are.
+        section: Section,
+        /// Their names.
+        terms: Vec<String>,
+        /// What is to be replaced.
+        find: String,
+        /// What takes its place.
+        replace: String,
+    },
+}
+
+/// Why an edit could not be made.
+#[derive(Clone, Debug)]
+pub enum EditError {
+    /// The text is not TOML, or the edited text is not a valid specification.
+    Invalid(Diagnostics),
+    /// The section has an entry of this name already.
+    Taken {
+        /// The section.
+        section: String,
+        /// The name.
+        name: String,
+    },
+    /// The section has no entry of this name.
+    MissingTerm {
+        /// The section.
+        section: String,
+        /// The name.
+        name: String,
+    },
+    /// The term does not hold the expression to be replaced.
+    MissingExpression {
+        /// The term's section.
+        section: String,
+        /// The term.
+        name: String,
+        /// What was looked for.
+        find: String,
+    },
+    /// An expression of the edit or of the term cannot be read.
+    Expression {
+        /// The expression.
+        text: String,
+        /// What is wrong with it, its places being bytes of the expression.
+        diagnostic: Box<Diagnostic>,
+    },
+    /// A value of the edit is not a finite number.
+    NotFinite {
+        /// The name it was for.
+        name: String,
+    },
+}
+
+impl std::fmt::Display for EditError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Invalid(diagnostics) => write!(f, "{diagnostics}"),
+            Self::Taken { section, name } => write!(f, "[{section}] has {} already", quoted(name)),
+            Self::MissingTerm { section, name } => write!(f, "[{section}] has no {}", quoted(name)),
+            Self::MissingExpression {
+                section,
+                name,
+                find,
+            } => write!(
+                f,
+                "{} of [{section}] does not hold {}",
+                quoted(name),
+                quoted(find)
+            ),
+            Self::Expression { text, diagnostic } => {
+                write!(f, "{}: {}", quoted(text), diagnostic.message)
+            }
+            Self::NotFinite { name } => write!(f, "the value of {} is not finite", quoted(name)),
+        }
+    }
+}
+
+impl std::error::Error for EditError {}
+
+/// The text of a specification after all edits, in order. The result passes
+/// [`crate::check`].
+///
+/// # Errors
+/// The first edit whose place is missing or taken; or all that is wrong with the result.
+pub fn apply(source: &Source, edits: &[Edit]) -> Result<String, EditError> {
+    let parsed: Result<DocumentMut, _> = source.text.parse();
+    let Ok(mut document) = parsed else {
+        return match check(source.clone()) {
+            Err(diagnostics) => Err(EditError::Invalid(diagnostics)),
+            Ok(_) => Ok(source.text.to_string()),
+        };
+    };
+    for edit in edits {
+        make(&mut document, edit)?;
+    }
+    let text = restored(&source.text, document.to_string());
+    let edited = Source::new(source.path.clone(), text.as_str());
+    check(edited).map_err(EditError::Invalid)?;
+    Ok(text)
+}
+
+/// The edited text with the line ends and the byte order mark of the original, which
+/// TOML's writer drops. A file of mixed line ends gets plain ones.
+fn restored(original: &str, edited: String) -> String {
+    let lines = original.matches('\n').count();
+    let text = if lines > 0 && original.matches("\r\n").count() == lines {
+        edited.replace('\n', "\r\n")
+    } else {
+        edited
+    };
+    let mark = '\u{feff}';
+    if original.starts_with(mark) && !text.starts_with(mark) {
+        format!("{mark}{text}")
+    } else {
+        text
+    }
+}
+
+fn make(document: &mut DocumentMut, edit: &Edit) -> Result<(), EditError> {
+    match edit {
+        Edit::Substitute {
+            section,
+            terms,
+            find,
+            replace,
+        } => {
+            let substitution = substitute::Substitution::new(find, replace)?;
+            for term in terms {
+                substitution.make(document, section.name(), term)?;
+            }
+            Ok(())
+        }
+        addition => insert::insert(document, addition),
+    }
+}

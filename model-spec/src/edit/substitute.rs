@@ -1,0 +1,170 @@
+//! Replacing an expression inside a term: found by comparing syntax trees, replaced in the
+//! text, so that the rest of the term keeps its spelling.
+
+use toml_edit::{DocumentMut, Item, Value};
+
+use super::EditError;
+use crate::ast::{Syntax, SyntaxKind};
+use crate::lexer::tokens;
+use crate::parser::parse;
+use crate::span::Span;
+
+/// One expression to be replaced by another.
+pub struct Substitution<'e> {
+    find: &'e str,
+    pattern: Syntax,
+    replace: &'e str,
+    /// Whether the replacement needs brackets next to an operator.
+    compound: bool,
+}
+
+impl<'e> Substitution<'e> {
+    /// Reads both expressions.
+    pub fn new(find: &'e str, replace: &'e str) -> Result<Self, EditError> {
+        let replacement = syntax(replace)?;
+        Ok(Self {
+            pattern: syntax(find)?,
+            compound: matches!(
+                replacement.kind,
+                SyntaxKind::Binary(..) | SyntaxKind::Negate(_)
+            ),
+            find,
+            replace: replace.trim(),
+        })
+    }
+
+    /// Replaces every occurrence in the value of one term.
+    pub fn make(
+        &self,
+        document: &mut DocumentMut,
+        section: &str,
+        term: &str,
+    ) -> Result<(), EditError> {
+        let entry = document
+            .get_mut(section)
+            .and_then(|item| item.get_mut(term));
+        let place = entry.and_then(expression_of);
+        let Some((value, text)) = place else {
+            return Err(EditError::MissingTerm {
+                section: section.to_owned(),
+                name: term.to_owned(),
+            });
+        };
+        let Some(replaced) = self.replaced(&text)? else {
+            return Err(EditError::MissingExpression {
+                section: section.to_owned(),
+                name: term.to_owned(),
+                find: self.find.to_owned(),
+            });
+        };
+        let mut new_value = Value::from(replaced);
+        *new_value.decor_mut() = value.decor().clone();
+        *value = new_value;
+        Ok(())
+    }
+
+    /// The text with every occurrence replaced; None where there is none.
+    fn replaced(&self, text: &str) -> Result<Option<String>, EditError> {
+        let tree = syntax(text)?;
+        let mut places = Vec::new();
+        self.places(&tree, false, &mut places);
+        if places.is_empty() {
+            return Ok(None);
+        }
+        places.sort_by_key(|(span, _)| span.start);
+        let mut replaced = String::with_capacity(text.len());
+        let mut done = 0;
+        for (span, beside_operator) in places {
+            replaced.push_str(&text[done..span.start]);
+            if beside_operator && self.compound {
+                replaced.push_str(&format!("({})", self.replace));
+            } else {
+                replaced.push_str(self.replace);
+            }
+            done = span.end;
+        }
+        replaced.push_str(&text[done..]);
+        Ok(Some(replaced))
+    }
+
+    /// The places of the occurrences, each with whether it stands beside an operator.
+    fn places(&self, tree: &Syntax, beside_operator: bool, found: &mut Vec<(Span, bool)>) {
+        if same(tree, &self.pattern) {
+            found.push((tree.span, beside_operator));
+            return;
+        }
+        match &tree.kind {
+            SyntaxKind::Number(_) | SyntaxKind::Name(_) | SyntaxKind::Element { .. } => {}
+            SyntaxKind::Call { arguments, .. } => {
+                for argument in arguments {
+                    self.places(argument, false, found);
+                }
+            }
+            SyntaxKind::Negate(operand) => self.places(operand, true, found),
+            SyntaxKind::Binary(_, left, right) => {
+                self.places(left, true, found);
+                self.places(right, true, found);
+            }
+        }
+    }
+}
+
+/// The expression of a term, and the value that holds it.
+fn expression_of(item: &mut Item) -> Option<(&mut Value, String)> {
+    let value = if item.is_table_like() {
+        item.get_mut("value")?.as_value_mut()?
+    } else {
+        item.as_value_mut()?
+    };
+    let text = value.as_str()?.to_owned();
+    Some((value, text))
+}
+
+fn syntax(text: &str) -> Result<Syntax, EditError> {
+    let end = Span::new(text.len(), text.len());
+    let parsed = tokens(text, Span::new).and_then(|tokens| parse(&tokens, end));
+    parsed.map_err(|diagnostic| EditError::Expression {
+        text: text.to_owned(),
+        diagnostic: Box::new(diagnostic),
+    })
+}
+
+/// Whether two trees are the same but for their places.
+fn same(one: &Syntax, other: &Syntax) -> bool {
+    match (&one.kind, &other.kind) {
+        (SyntaxKind::Number(one), SyntaxKind::Number(other)) => one == other,
+        (SyntaxKind::Name(one), SyntaxKind::Name(other)) => one == other,
+        (
+            SyntaxKind::Element { name, index, .. },
+            SyntaxKind::Element {
+                name: other_name,
+                index: other_index,
+                ..
+            },
+        ) => name == other_name && index == other_index,
+        (
+            SyntaxKind::Call {
+                function,
+                arguments,
+                ..
+            },
+            SyntaxKind::Call {
+                function: other_function,
+                arguments: other_arguments,
+                ..
+            },
+        ) => {
+            function == other_function
+                && arguments.len() == other_arguments.len()
+                && arguments
+                    .iter()
+                    .zip(other_arguments)
+                    .all(|(a, b)| same(a, b))
+        }
+        (SyntaxKind::Negate(one), SyntaxKind::Negate(other)) => same(one, other),
+        (SyntaxKind::Binary(one, a, b), SyntaxKind::Binary(other, c, d)) => {
+            one == other && same(a, c) && same(b, d)
+        }
+        _ => false,
+    }
+}

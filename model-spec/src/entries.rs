@@ -1,0 +1,229 @@
+//! Reading one entry of each section: which keys it has, which of them it needs, and of
+//! which kind their values are.
+
+use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
+use crate::model::Basis;
+use crate::raw::{
+    RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawInput, RawParameter, RawSensor,
+    RawTerm,
+};
+use crate::table::{Entry, Name, Quantity, Record, Written, unknown_key};
+
+const PARAMETER_EXAMPLE: &str = "{ value = 0.5, unit = \"m\" }";
+const COORDINATE_EXAMPLE: &str = "{ unit = \"rad\", initial = 0 }";
+const FORCE_EXAMPLE: &str = "{ on = \"theta\", value = \"-c*dot(theta)\" }";
+const FIELD_EXAMPLE: &str = "{ along = \"x\", from = 0, to = \"l\", basis = \"clamped_free\", \
+                             coordinates = \"q\", order = 4, unit = \"m\" }";
+
+/// A string that is used as a name.
+pub fn name_of(written: Written) -> Name {
+    Name {
+        text: written.text,
+        span: written.span,
+    }
+}
+
+/// An entry of `[parameters]`.
+pub fn parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParameter> {
+    let known = ["value", "unit", "doc", "source", "min", "max"];
+    let record = entry.record(&known, PARAMETER_EXAMPLE, found)?;
+    let help = "give a number in the declared unit, or an expression of other parameters";
+    let value = record.require("value", help, found)?.quantity();
+    Some(RawParameter {
+        name: entry.name.clone(),
+        unit: record.written("unit", found),
+        doc: record.text("doc", found),
+        origin: record.text("source", found),
+        min: record.number("min", found),
+        max: record.number("max", found),
+        value: found.keep(value)?,
+    })
+}
+
+/// An entry of `[coordinates]`.
+pub fn coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoordinate> {
+    let known = ["unit", "doc", "initial", "initial_rate"];
+    let record = entry.record(&known, COORDINATE_EXAMPLE, found)?;
+    Some(RawCoordinate {
+        name: entry.name.clone(),
+        unit: required_unit(&record, found),
+        doc: record.text("doc", found),
+        initial: record.quantity("initial", found),
+        initial_rate: record.quantity("initial_rate", found),
+    })
+}
+
+fn required_unit(record: &Record<'_>, found: &mut Diagnostics) -> Option<Written> {
+    let help = "give the SI unit, such as unit = \"m\" or unit = \"rad\"";
+    let unit = record.require("unit", help, found)?.written();
+    found.keep(unit)
+}
+
+/// An entry of `[inputs]`.
+pub fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
+    let record = entry.record(&["unit", "doc"], "{ unit = \"N m\" }", found)?;
+    Some(RawInput {
+        name: entry.name.clone(),
+        unit: required_unit(&record, found),
+        doc: record.text("doc", found),
+    })
+}
+
+/// A `[fields.NAME]`.
+pub fn field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
+    let known = [
+        "along",
+        "from",
+        "to",
+        "basis",
+        "coordinates",
+        "order",
+        "unit",
+        "doc",
+    ];
+    let record = entry.record(&known, FIELD_EXAMPLE, found)?;
+    let along = record
+        .require("along", "name the position: along = \"x\"", found)
+        .cloned();
+    let from = record
+        .require("from", "give the start of the domain: from = 0", found)
+        .cloned();
+    let to = record
+        .require("to", "give the end of the domain: to = \"l\"", found)
+        .cloned();
+    let help = "the mode shapes: basis = \"clamped_free\"";
+    let basis = record.require("basis", help, found).cloned();
+    let help = "name the mode coordinates: coordinates = \"q\"";
+    let coordinates = record.require("coordinates", help, found).cloned();
+    let order = record
+        .require("order", "how many modes: order = 4", found)
+        .cloned();
+    Some(RawField {
+        name: entry.name.clone(),
+        unit: required_unit(&record, found),
+        doc: record.text("doc", found),
+        along: name_of(found.keep(along?.written())?),
+        from: found.keep(from?.quantity())?,
+        to: found.keep(to?.quantity())?,
+        basis: found.keep(basis?.written().and_then(|written| basis_named(&written)))?,
+        coordinates: name_of(found.keep(coordinates?.written())?),
+        order: found.keep(order?.whole())?,
+    })
+}
+
+fn basis_named(written: &Written) -> Result<Basis, Diagnostic> {
+    match written.text.as_str() {
+        "clamped_free" => Ok(Basis::ClampedFree),
+        "clamped_free_printed" => Ok(Basis::ClampedFreePrinted),
+        other => Err(
+            Diagnostic::error(format!("unknown basis {}", quoted(other)))
+                .at(written.span, "not known")
+                .help("known are clamped_free and clamped_free_printed"),
+        ),
+    }
+}
+
+/// An entry of `[definitions]`, of an energy or of the dissipation.
+pub fn term(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
+    if !entry.is_table() {
+        return Some(RawTerm {
+            name: entry.name.clone(),
+            value: found.keep(entry.quantity())?,
+            doc: String::new(),
+            origin: String::new(),
+        });
+    }
+    let record = entry.record(&["value", "doc", "source"], "\"1/2*m*dot(x)^2\"", found)?;
+    term_of(&record, found)
+}
+
+/// The named expression of a table with at least `value`.
+fn term_of(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
+    let help = "give an expression: value = \"...\"";
+    let value = record.require("value", help, found)?.quantity();
+    Some(RawTerm {
+        name: record.owner().clone(),
+        value: found.keep(value)?,
+        doc: record.text("doc", found),
+        origin: record.text("source", found),
+    })
+}
+
+/// An entry of `[forces]` and what it works on.
+pub fn force(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
+    let record = entry.record(&["on", "value", "doc", "source"], FORCE_EXAMPLE, found)?;
+    let help = "say what the force does work on: on = \"theta\"";
+    let on = record.require("on", help, found).map(Entry::quantity);
+    let term = term_of(&record, found);
+    Some((term?, found.keep(on?)?))
+}
+
+/// An entry of `[observables]` and its declared unit.
+pub fn observable(
+    entry: &Entry<'_>,
+    found: &mut Diagnostics,
+) -> Option<(RawTerm, Option<Written>)> {
+    if !entry.is_table() {
+        return Some((term(entry, found)?, None));
+    }
+    let known = ["value", "unit", "doc", "source"];
+    let record = entry.record(&known, "\"at(w, l)\"", found)?;
+    let unit = record.written("unit", found);
+    Some((term_of(&record, found)?, unit))
+}
+
+/// An entry of `[coefficients]`.
+pub fn coefficient(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoefficient> {
+    let name = entry.name.clone();
+    if !entry.is_table() {
+        let value = found.keep(entry.quantity())?;
+        return Some(RawCoefficient {
+            name,
+            kind: RawCoefficientKind::Value(value),
+            each: None,
+            doc: String::new(),
+        });
+    }
+    let known = ["value", "of", "by", "times", "each", "doc"];
+    let example = "{ of = \"x_c\", by = \"dot(x_c)\" }";
+    let record = entry.record(&known, example, found)?;
+    Some(RawCoefficient {
+        name,
+        kind: coefficient_kind(&record, found)?,
+        each: record.written("each", found),
+        doc: record.text("doc", found),
+    })
+}
+
+fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawCoefficientKind> {
+    if let Some(value) = record.get("value") {
+        let others = ["of", "by", "times"];
+        if let Some(other) = others.iter().find_map(|key| record.get(key)) {
+            let known = ["value", "each", "doc"];
+            found.push(unknown_key(&other.name, &known).help("give either value, or of and by"));
+            return None;
+        }
+        return found.keep(value.quantity()).map(RawCoefficientKind::Value);
+    }
+    let help = "give `of` (whose acceleration) and `by` (the quantity multiplied), or `value`";
+    let of = record.require("of", help, found)?.quantity();
+    let by = record.require("by", help, found)?.quantity();
+    let times = record.quantity("times", found);
+    Some(RawCoefficientKind::Factor(
+        found.keep(of)?,
+        found.keep(by)?,
+        times,
+    ))
+}
+
+/// A `[sensors.CHANNEL]`.
+pub fn sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
+    let record = entry.record(&["gain", "bias", "delay"], "{ gain = 1, bias = 0 }", found)?;
+    let mut number = |key, absent| record.number(key, found).map_or(absent, |n| n.value);
+    Some(RawSensor {
+        channel: entry.name.clone(),
+        gain: number("gain", 1.0),
+        bias: number("bias", 0.0),
+        delay: number("delay", 0.0),
+    })
+}

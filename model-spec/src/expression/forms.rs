@@ -1,0 +1,264 @@
+//! The forms that are no functions of scalars: rates, derivatives and integrals along a
+//! field, sums over its modes.
+
+use super::{ResolvedKind, Resolver, Scope, wrong_count};
+use crate::ast::{Syntax, SyntaxKind};
+use crate::diagnostic::{Diagnostic, quoted};
+use crate::model::{Expr, ExprKind};
+use crate::names::Symbol;
+use crate::span::Span;
+
+/// The highest derivative by the position.
+const MAX_DERIVATIVE: f64 = 4.0;
+
+impl Resolver<'_> {
+    /// A call of one of the forms.
+    pub(super) fn form(
+        &mut self,
+        name: &str,
+        name_span: Span,
+        span: Span,
+        arguments: &[Syntax],
+    ) -> ResolvedKind {
+        let motion = matches!(self.scope, Scope::Motion | Scope::Factor);
+        if self.scope == Scope::Parameters || (name == "dot" && !motion) {
+            let what = format!("{name}(...)");
+            return Err(self.out_of_scope(&quoted(&what), "no number known beforehand", name_span));
+        }
+        match (name, arguments) {
+            ("dot", [operand]) => self.dot(operand),
+            ("dot", _) => Err(wrong_count(name, span, arguments.len(), "dot(x)")),
+            ("diff", [value, along]) => self.diff(value, along, 1),
+            ("diff", [value, along, times]) => self.diff(value, along, derivative_order(times)?),
+            ("diff", _) => Err(wrong_count(name, span, arguments.len(), "diff(w, x, 2)")),
+            ("at", [value, place]) => self.at(value, place),
+            ("at", _) => Err(wrong_count(name, span, arguments.len(), "at(w, l)")),
+            ("integral", [integrand, field]) => self.integral(integrand, field),
+            ("integral", _) => Err(wrong_count(name, span, arguments.len(), "integral(w^2, w)")),
+            ("sum", [index, field, summand]) => self.sum(index, field, summand),
+            _ => Err(wrong_count(
+                name,
+                span,
+                arguments.len(),
+                "sum(i, w, q[i]^2)",
+            )),
+        }
+    }
+
+    fn dot(&mut self, operand: &Syntax) -> ResolvedKind {
+        let resolved = self.resolve(operand)?;
+        let span = operand.span;
+        match resolved.kind {
+            ExprKind::Coordinate(_)
+            | ExprKind::Definition(_)
+            | ExprKind::Field(_)
+            | ExprKind::ModeCoordinate(_) => Ok(ExprKind::Dot(Box::new(resolved))),
+            ExprKind::Diff(inner, times) if matches!(inner.kind, ExprKind::Field(_)) => {
+                let kind = ExprKind::Dot(inner);
+                Ok(ExprKind::Diff(Box::new(Expr { kind, span }), times))
+            }
+            ExprKind::Dot(_) => Err(Diagnostic::error("dot(dot(...)) is an acceleration")
+                .at(span, "already a rate")
+                .help("accelerations follow from the energies and appear nowhere in them")),
+            ExprKind::Input(_) => {
+                Err(Diagnostic::error("the rate of an input is not known")
+                    .at(span, "this is an input"))
+            }
+            ExprKind::At { .. } => {
+                Err(not_moving(span, "an expression").help("write the rate inside: at(dot(w), l)"))
+            }
+            ExprKind::Parameter(_)
+            | ExprKind::Number(_)
+            | ExprKind::Pi
+            | ExprKind::ModeShape(_) => Err(not_moving(span, "a constant")),
+            ExprKind::Time | ExprKind::Position(_) => Err(not_moving(span, "no coordinate")),
+            _ => Err(not_moving(span, "an expression")
+                .help("name the expression in [definitions] and write dot(NAME)")),
+        }
+    }
+
+    fn diff(&mut self, value: &Syntax, along: &Syntax, times: u8) -> ResolvedKind {
+        let resolved = self.resolve(value)?;
+        let Some(field) = field_of(&resolved) else {
+            return Err(
+                Diagnostic::error("diff() takes a field, its rate or a mode shape")
+                    .at(value.span, "not one of them")
+                    .help("write diff(w, x, 2), diff(dot(w), x, 1) or diff(phi[i], x, 2)"),
+            );
+        };
+        let names = &self.names.fields[field];
+        if !matches!(&along.kind, SyntaxKind::Name(name) if *name == names.along) {
+            let (field, along_name) = (&names.field, &names.along);
+            return Err(
+                Diagnostic::error("diff() is by the position along the field")
+                    .at(along.span, "not the position")
+                    .help(format!("the position along `{field}` is `{along_name}`")),
+            );
+        }
+        let (inner, before) = match resolved.kind {
+            ExprKind::Diff(inner, before) => (inner, before),
+            _ => (Box::new(resolved), 0),
+        };
+        let total = before.saturating_add(times);
+        if f64::from(total) > MAX_DERIVATIVE {
+            return Err(derivative_range(value.span));
+        }
+        Ok(ExprKind::Diff(inner, total))
+    }
+
+    fn at(&mut self, value: &Syntax, place: &Syntax) -> ResolvedKind {
+        let field = self.field_in(value)?;
+        let value = self.within(field, value)?;
+        let mut outside = Resolver::new(self.names, Scope::Parameters);
+        let position = Box::new(outside.resolve(place)?);
+        Ok(ExprKind::At {
+            field,
+            value,
+            position,
+        })
+    }
+
+    fn integral(&mut self, integrand: &Syntax, field: &Syntax) -> ResolvedKind {
+        let field = self.field_named(field)?;
+        let integrand = self.within(field, integrand)?;
+        Ok(ExprKind::Integral { field, integrand })
+    }
+
+    /// An expression in which the position along `field` has a meaning.
+    fn within(&mut self, field: usize, syntax: &Syntax) -> Result<Box<Expr>, Diagnostic> {
+        self.domains.push(field);
+        let resolved = self.resolve(syntax);
+        self.domains.pop();
+        resolved.map(Box::new)
+    }
+
+    fn sum(&mut self, index: &Syntax, field: &Syntax, summand: &Syntax) -> ResolvedKind {
+        let SyntaxKind::Name(name) = &index.kind else {
+            return Err(Diagnostic::error("a sum begins with the name of its index")
+                .at(index.span, "not a name")
+                .help("write sum(i, w, q[i]^2)"));
+        };
+        if let Some(symbol) = self.names.get(name) {
+            return Err(
+                Diagnostic::error(format!("the index `{name}` is {} too", symbol.kind()))
+                    .at(index.span, "choose another name"),
+            );
+        }
+        let field_index = self.field_named(field)?;
+        if self.sums.iter().any(|(_, known)| *known == field_index) {
+            return Err(Diagnostic::error("a sum inside a sum over the same field")
+                .at(field.span, "this field's modes are summed over already"));
+        }
+        self.sums.push((name.clone(), field_index));
+        let summand = self.resolve(summand);
+        self.sums.pop();
+        Ok(ExprKind::Sum {
+            field: field_index,
+            summand: Box::new(summand?),
+        })
+    }
+
+    fn field_named(&self, syntax: &Syntax) -> Result<usize, Diagnostic> {
+        if let SyntaxKind::Name(name) = &syntax.kind
+            && let Some(Symbol::Field(field)) = self.names.get(name)
+        {
+            return Ok(field);
+        }
+        let known = self.names.fields.iter().map(|names| names.field.as_str());
+        let known: Vec<&str> = known.collect();
+        let help = match known.as_slice() {
+            [] => "this model has no field".to_owned(),
+            fields => format!("the fields are: {}", fields.join(", ")),
+        };
+        Err(Diagnostic::error("the name of a field is expected")
+            .at(syntax.span, "not a field")
+            .help(help))
+    }
+
+    /// The one field an expression of the position belongs to.
+    fn field_in(&self, syntax: &Syntax) -> Result<usize, Diagnostic> {
+        let mut named = Vec::new();
+        let mut positions = Vec::new();
+        self.fields_of(syntax, &mut named, &mut positions);
+        let mut candidates = if named.is_empty() { positions } else { named };
+        candidates.sort_unstable();
+        candidates.dedup();
+        match candidates.as_slice() {
+            [only] => Ok(*only),
+            [] => Err(Diagnostic::error("at() takes an expression in a field")
+                .at(syntax.span, "no field in it")
+                .help("write at(w, l) or at(diff(w, x, 1), l)")),
+            _ => Err(Diagnostic::error("at() of more than one field")
+                .at(syntax.span, "which field's position?")
+                .help("write one at(...) for each field")),
+        }
+    }
+
+    /// Fields named in an expression, and fields along whose position it uses.
+    fn fields_of(&self, syntax: &Syntax, named: &mut Vec<usize>, positions: &mut Vec<usize>) {
+        match &syntax.kind {
+            SyntaxKind::Number(_) => {}
+            SyntaxKind::Name(name) => match self.names.get(name) {
+                Some(Symbol::Field(field)) => named.push(field),
+                Some(Symbol::Position) => {
+                    let fields = self.names.fields.iter().enumerate();
+                    let along = fields.filter(|(_, names)| names.along == *name);
+                    positions.extend(along.map(|(field, _)| field));
+                }
+                _ => {}
+            },
+            SyntaxKind::Element { name, index, .. } if name == "phi" => {
+                let sums = self.sums.iter().filter(|(known, _)| known == index);
+                named.extend(sums.map(|(_, field)| *field));
+            }
+            SyntaxKind::Element { .. } => {}
+            SyntaxKind::Call {
+                function,
+                arguments,
+                ..
+            } => {
+                // What stands inside these has a position of its own.
+                if function != "integral" && function != "at" {
+                    for argument in arguments {
+                        self.fields_of(argument, named, positions);
+                    }
+                }
+            }
+            SyntaxKind::Negate(operand) => self.fields_of(operand, named, positions),
+            SyntaxKind::Binary(_, left, right) => {
+                self.fields_of(left, named, positions);
+                self.fields_of(right, named, positions);
+            }
+        }
+    }
+}
+
+/// The field of `w`, `dot(w)`, `phi[i]` and their derivatives.
+fn field_of(expr: &Expr) -> Option<usize> {
+    match &expr.kind {
+        ExprKind::Field(field) | ExprKind::ModeShape(field) => Some(*field),
+        ExprKind::Dot(inner) | ExprKind::Diff(inner, _) => field_of(inner),
+        _ => None,
+    }
+}
+
+fn derivative_order(syntax: &Syntax) -> Result<u8, Diagnostic> {
+    match syntax.kind {
+        SyntaxKind::Number(value)
+            if value.fract() == 0.0 && (1.0..=MAX_DERIVATIVE).contains(&value) =>
+        {
+            Ok(value as u8)
+        }
+        _ => Err(derivative_range(syntax.span)),
+    }
+}
+
+fn derivative_range(span: Span) -> Diagnostic {
+    Diagnostic::error("a derivative by the position is of order 1, 2, 3 or 4")
+        .at(span, "not one of them")
+}
+
+fn not_moving(span: Span, what: &str) -> Diagnostic {
+    Diagnostic::error("dot() takes a coordinate, a definition or a field")
+        .at(span, format!("this is {what}, it has no rate of its own"))
+}

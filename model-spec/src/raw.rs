@@ -1,0 +1,156 @@
+//! A specification as its file says it: names, numbers and expressions with their places,
+//! nothing looked up and nothing parsed. Made by `document` and `entries`, read by
+//! `resolve`.
+
+use crate::model::Basis;
+use crate::span::Span;
+use crate::table::{Name, Number, Quantity, Written};
+
+/// A specification as written.
+#[derive(Debug)]
+pub struct Document {
+    /// `name` of `[model]`, with its quotes' place.
+    pub name: Name,
+    /// `title` of `[model]`.
+    pub title: String,
+    /// `[parameters]`
+    pub parameters: Vec<RawParameter>,
+    /// `[coordinates]`
+    pub coordinates: Vec<RawCoordinate>,
+    /// `[inputs]`
+    pub inputs: Vec<RawInput>,
+    /// `[fields.NAME]`
+    pub fields: Vec<RawField>,
+    /// `[definitions]`
+    pub definitions: Vec<RawTerm>,
+    /// `[kinetic]`
+    pub kinetic: Vec<RawTerm>,
+    /// `[potential]`
+    pub potential: Vec<RawTerm>,
+    /// `[dissipation]`
+    pub dissipation: Vec<RawTerm>,
+    /// `[forces]`: each with what it works on.
+    pub forces: Vec<(RawTerm, Quantity)>,
+    /// `[observables]`: each with its declared unit.
+    pub observables: Vec<(RawTerm, Option<Written>)>,
+    /// `[coefficients]`
+    pub coefficients: Vec<RawCoefficient>,
+    /// `[sensors.CHANNEL]`
+    pub sensors: Vec<RawSensor>,
+}
+
+/// An entry of `[parameters]`.
+#[derive(Debug)]
+pub struct RawParameter {
+    /// Its key.
+    pub name: Name,
+    /// `value`
+    pub value: Quantity,
+    /// `unit`
+    pub unit: Option<Written>,
+    /// `doc`
+    pub doc: String,
+    /// `source`
+    pub origin: String,
+    /// `min`
+    pub min: Option<Number>,
+    /// `max`
+    pub max: Option<Number>,
+}
+
+/// An entry of `[coordinates]`.
+#[derive(Debug)]
+pub struct RawCoordinate {
+    /// Its key.
+    pub name: Name,
+    /// `unit`
+    pub unit: Option<Written>,
+    /// `doc`
+    pub doc: String,
+    /// `initial`
+    pub initial: Option<Quantity>,
+    /// `initial_rate`
+    pub initial_rate: Option<Quantity>,
+}
+
+/// An entry of `[inputs]`.
+#[derive(Debug)]
+pub struct RawInput {
+    /// Its key.
+    pub name: Name,
+    /// `unit`
+    pub unit: Option<Written>,
+    /// `doc`
+    pub doc: String,
+}
+
+/// A `[fields.NAME]`.
+#[derive(Debug)]
+pub struct RawField {
+    /// Its key.
+    pub name: Name,
+    /// `along`
+    pub along: Name,
+    /// `from`
+    pub from: Quantity,
+    /// `to`
+    pub to: Quantity,
+    /// `basis`
+    pub basis: Basis,
+    /// `coordinates`
+    pub coordinates: Name,
+    /// `order` and its place.
+    pub order: (i64, Span),
+    /// `unit`
+    pub unit: Option<Written>,
+    /// `doc`
+    pub doc: String,
+}
+
+/// A named expression.
+#[derive(Debug)]
+pub struct RawTerm {
+    /// Its key.
+    pub name: Name,
+    /// The expression.
+    pub value: Quantity,
+    /// `doc`
+    pub doc: String,
+    /// `source`
+    pub origin: String,
+}
+
+/// An entry of `[coefficients]`.
+#[derive(Debug)]
+pub struct RawCoefficient {
+    /// Its key.
+    pub name: Name,
+    /// What it names.
+    pub kind: RawCoefficientKind,
+    /// `each`: the field and index it is given for, as `w[i]`.
+    pub each: Option<Written>,
+    /// `doc`
+    pub doc: String,
+}
+
+/// What an entry of `[coefficients]` names.
+#[derive(Debug)]
+pub enum RawCoefficientKind {
+    /// `value`
+    Value(Quantity),
+    /// `of`, `by` and `times`
+    Factor(Quantity, Quantity, Option<Quantity>),
+}
+
+/// A `[sensors.CHANNEL]`.
+#[derive(Debug)]
+pub struct RawSensor {
+    /// The channel.
+    pub channel: Name,
+    /// `gain`, 1 if absent.
+    pub gain: f64,
+    /// `bias` in the channel's unit, 0 if absent.
+    pub bias: f64,
+    /// `delay` in s, 0 if absent.
+    pub delay: f64,
+}

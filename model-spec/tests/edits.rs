@@ -1,0 +1,205 @@
+//! Edits made by program: what is asked for changes, everything else stays byte for byte.
+
+use model_spec::edit::{Edit, EditError, NewValue, Section, apply};
+use model_spec::source::Source;
+
+const SPRING: &str = r#"# A mass on a spring with play.
+
+[model]
+name = "spring"        # and no title
+
+[parameters]
+# the usual ones
+m = { value = 2.0, unit = "kg" }   # moved
+k = { value = 300, unit = 'N/m', doc = "stiffness" }
+b = { value = 10,  unit = "mm" }
+
+[coordinates]
+y = { unit = "m" }
+
+[kinetic]
+mass = "1/2*m*dot(y)^2"
+[potential]
+spring = "1/2*k*deadzone( y , b )^2"   # Eq. (7)
+
+# end of file
+"#;
+
+fn source() -> Source {
+    Source::new("spring.toml", SPRING)
+}
+
+fn text(text: &str) -> String {
+    text.to_owned()
+}
+
+fn force() -> Edit {
+    Edit::AddForce {
+        name: text("friction"),
+        on: text("y"),
+        value: text("-T_c*sign(dot(y))"),
+        doc: text("dry friction"),
+        source: text("fitted"),
+    }
+}
+
+fn parameter() -> Edit {
+    Edit::AddParameter {
+        name: text("T_c"),
+        value: NewValue::Number(0.8e-6),
+        unit: text("N"),
+        doc: text("dry \"friction\""),
+        source: String::new(),
+    }
+}
+
+/// The lines of `edited` that `SPRING` does not have, all others being there in order.
+fn added_lines(edited: &str) -> Vec<String> {
+    let mut original = SPRING.lines().peekable();
+    let mut added = Vec::new();
+    for line in edited.lines() {
+        if original.peek() == Some(&line) {
+            original.next();
+        } else {
+            added.push(line.to_owned());
+        }
+    }
+    assert_eq!(original.next(), None, "a line is missing in\n{edited}");
+    added
+}
+
+#[test]
+fn additions_leave_every_line_as_it_is() {
+    let edited = apply(&source(), &[parameter(), force()]).expect("valid");
+    let expected = [
+        "T_c = { value = 8e-7, unit = \"N\", doc = 'dry \"friction\"' }",
+        "",
+        "[forces]",
+        "friction = { on = \"y\", value = \"-T_c*sign(dot(y))\", doc = \"dry friction\", \
+         source = \"fitted\" }",
+    ];
+    assert_eq!(added_lines(&edited), expected);
+    assert!(edited.find("T_c =") < edited.find("[coordinates]"));
+}
+
+#[test]
+fn terms_and_coordinates_are_added_to_their_sections() {
+    let coordinate = Edit::AddCoordinate {
+        name: text("z"),
+        unit: text("m"),
+        doc: String::new(),
+        initial: Some(NewValue::Expression(text("2*b"))),
+    };
+    let term = |section, name, value| Edit::AddTerm {
+        section,
+        name: text(name),
+        value: text(value),
+        doc: String::new(),
+        source: String::new(),
+    };
+    let definition = term(Section::Definitions, "gap", "z - y");
+    let kinetic = term(Section::Kinetic, "second", "1/2*m*dot(z)^2");
+    let potential = term(Section::Potential, "between", "1/2*k*gap^2");
+    let edits = [coordinate, definition, kinetic, potential];
+    let edited = apply(&source(), &edits).expect("valid");
+    let expected = [
+        "z = { unit = \"m\", initial = \"2*b\" }",
+        "second = \"1/2*m*dot(z)^2\"",
+        "between = \"1/2*k*gap^2\"",
+        "",
+        "[definitions]",
+        "gap = \"z - y\"",
+    ];
+    assert_eq!(added_lines(&edited), expected);
+}
+
+#[test]
+fn substitutions_change_the_matching_text_only() {
+    let substitute = |find, replace| Edit::Substitute {
+        section: Section::Potential,
+        terms: vec![text("spring")],
+        find: text(find),
+        replace: text(replace),
+    };
+    let edited = |find, replace| apply(&source(), &[substitute(find, replace)]);
+    let shifted = edited("deadzone(y, b)", "deadzone(y - b/2, b)").expect("valid");
+    let expected = SPRING.replace("deadzone( y , b )", "deadzone(y - b/2, b)");
+    assert_eq!(shifted, expected);
+    let argument = edited("y", "y - b/2").expect("valid");
+    assert_eq!(
+        argument,
+        SPRING.replace("deadzone( y , b )", "deadzone( y - b/2 , b )")
+    );
+    let factor = edited("k", "k + 2*k").expect("valid");
+    assert_eq!(factor, SPRING.replace("1/2*k*", "1/2*(k + 2*k)*"));
+}
+
+#[test]
+fn missing_anchors_are_errors_of_their_own() {
+    let substitute = |section, term, find| Edit::Substitute {
+        section,
+        terms: vec![text(term)],
+        find: text(find),
+        replace: text("y"),
+    };
+    let failed = |edit| apply(&source(), &[edit]).expect_err("no such place");
+    let missing = failed(substitute(Section::Potential, "mesh_sp", "y"));
+    assert!(
+        matches!(missing, EditError::MissingTerm { .. }),
+        "{missing}"
+    );
+    let missing = failed(substitute(Section::Forces, "spring", "y"));
+    assert!(
+        matches!(missing, EditError::MissingTerm { .. }),
+        "{missing}"
+    );
+    let missing = failed(substitute(Section::Potential, "spring", "deadzone(z, b)"));
+    assert!(
+        matches!(missing, EditError::MissingExpression { .. }),
+        "{missing}"
+    );
+    let unreadable = failed(substitute(Section::Potential, "spring", "deadzone(y"));
+    assert!(
+        matches!(unreadable, EditError::Expression { .. }),
+        "{unreadable}"
+    );
+}
+
+#[test]
+fn edits_that_make_no_model_are_refused() {
+    let failed = |edits: &[Edit]| apply(&source(), edits).expect_err("no model");
+    let taken = failed(&[parameter(), parameter()]);
+    assert!(matches!(taken, EditError::Taken { .. }), "{taken}");
+    let unknown = failed(&[force()]);
+    assert!(
+        unknown.to_string().contains("unknown name `T_c`"),
+        "{unknown}"
+    );
+    let nan = Edit::AddParameter {
+        name: text("T_c"),
+        value: NewValue::Number(f64::NAN),
+        unit: text("N"),
+        doc: String::new(),
+        source: String::new(),
+    };
+    let refused = failed(&[nan]);
+    assert!(matches!(refused, EditError::NotFinite { .. }), "{refused}");
+    let broken = apply(&Source::new("a.toml", "[model"), &[]).expect_err("no TOML");
+    assert!(matches!(broken, EditError::Invalid(_)), "{broken}");
+}
+
+#[test]
+fn no_edits_give_the_same_bytes() {
+    assert_eq!(apply(&source(), &[]).expect("valid"), SPRING);
+}
+
+#[test]
+fn carriage_returns_and_byte_order_marks_survive() {
+    let windows = format!("\u{feff}{}", SPRING.replace('\n', "\r\n"));
+    let source = Source::new("spring.toml", windows.as_str());
+    assert_eq!(apply(&source, &[]).expect("valid"), windows);
+    let edited = apply(&source, &[parameter(), force()]).expect("valid");
+    assert_eq!(edited.matches('\n').count(), edited.matches("\r\n").count());
+    let plain = edited.replace('\r', "");
+    assert_eq!(added_lines(plain.trim_start_matches('\u{feff}')).len(), 4);
+}

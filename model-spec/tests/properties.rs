@@ -1,0 +1,186 @@
+//! Properties of the language on arbitrary input: nothing panics, precedence survives
+//! being written out and read back, units follow the laws of multiplication.
+
+use model_spec::ast::{BinaryOperator, Syntax, SyntaxKind};
+use model_spec::check;
+use model_spec::dimension::Dimension;
+use model_spec::lexer::tokens;
+use model_spec::parser::parse;
+use model_spec::source::Source;
+use model_spec::span::Span;
+use model_spec::unit::Unit;
+use proptest::prelude::*;
+
+fn parsed(text: &str) -> Option<Syntax> {
+    let end = Span::new(text.len(), text.len());
+    parse(&tokens(text, Span::new).ok()?, end).ok()
+}
+
+/// An expression with the brackets that precedence demands and no others.
+fn written(syntax: &Syntax) -> (String, u8) {
+    let bracketed = |part: &Syntax, least: u8| {
+        let (text, binding) = written(part);
+        if binding < least {
+            format!("({text})")
+        } else {
+            text
+        }
+    };
+    match &syntax.kind {
+        SyntaxKind::Number(value) => (format!("{value}"), 5),
+        SyntaxKind::Name(name) => (name.clone(), 5),
+        SyntaxKind::Element { name, index, .. } => (format!("{name}[{index}]"), 5),
+        SyntaxKind::Call {
+            function,
+            arguments,
+            ..
+        } => {
+            let arguments: Vec<_> = arguments.iter().map(|a| written(a).0).collect();
+            (format!("{function}({})", arguments.join(", ")), 5)
+        }
+        SyntaxKind::Negate(operand) => (format!("-{}", bracketed(operand, 3)), 3),
+        SyntaxKind::Binary(operator, left, right) => {
+            let (sign, own) = match operator {
+                BinaryOperator::Add => (" + ", 1),
+                BinaryOperator::Subtract => (" - ", 1),
+                BinaryOperator::Multiply => ("*", 2),
+                BinaryOperator::Divide => ("/", 2),
+                BinaryOperator::Power => ("^", 4),
+            };
+            // Powers group to the right and take a sign there, all others to the left.
+            let (least_left, least_right) = if own == 4 { (5, 3) } else { (own, own + 1) };
+            let (left, right) = (bracketed(left, least_left), bracketed(right, least_right));
+            (format!("{left}{sign}{right}"), own)
+        }
+    }
+}
+
+/// The tree without places.
+fn shape(syntax: &Syntax) -> Syntax {
+    let span = Span::default();
+    let kind = match &syntax.kind {
+        SyntaxKind::Call {
+            function,
+            arguments,
+            ..
+        } => SyntaxKind::Call {
+            function: function.clone(),
+            function_span: span,
+            arguments: arguments.iter().map(shape).collect(),
+        },
+        SyntaxKind::Element { name, index, .. } => SyntaxKind::Element {
+            name: name.clone(),
+            index: index.clone(),
+            index_span: span,
+        },
+        SyntaxKind::Negate(operand) => SyntaxKind::Negate(Box::new(shape(operand))),
+        SyntaxKind::Binary(operator, left, right) => {
+            SyntaxKind::Binary(*operator, Box::new(shape(left)), Box::new(shape(right)))
+        }
+        other => other.clone(),
+    };
+    Syntax { kind, span }
+}
+
+fn node(kind: SyntaxKind) -> Syntax {
+    Syntax {
+        kind,
+        span: Span::default(),
+    }
+}
+
+fn syntax() -> impl Strategy<Value = Syntax> {
+    let leaf = prop_oneof![
+        (0u32..1000).prop_map(|n| node(SyntaxKind::Number(f64::from(n) / 8.0))),
+        "[a-z][a-z0-9_]{0,5}".prop_map(|name| node(SyntaxKind::Name(name))),
+    ];
+    leaf.prop_recursive(6, 64, 3, |inner| {
+        let operator = prop_oneof![
+            Just(BinaryOperator::Add),
+            Just(BinaryOperator::Subtract),
+            Just(BinaryOperator::Multiply),
+            Just(BinaryOperator::Divide),
+            Just(BinaryOperator::Power),
+        ];
+        let call = ("[a-z]{1,4}", prop::collection::vec(inner.clone(), 0..3));
+        prop_oneof![
+            (operator, inner.clone(), inner.clone())
+                .prop_map(|(o, l, r)| node(SyntaxKind::Binary(o, Box::new(l), Box::new(r)))),
+            inner.prop_map(|operand| node(SyntaxKind::Negate(Box::new(operand)))),
+            call.prop_map(|(function, arguments)| node(SyntaxKind::Call {
+                function,
+                function_span: Span::default(),
+                arguments,
+            })),
+        ]
+    })
+}
+
+fn dimension() -> impl Strategy<Value = Dimension> {
+    [-4i32..5, -4i32..5, -4i32..5, -4i32..5].prop_map(Dimension::of)
+}
+
+proptest! {
+    #[test]
+    fn what_is_written_out_reads_back_as_it_was(tree in syntax()) {
+        let (text, _) = written(&tree);
+        let read = parsed(&text);
+        prop_assert_eq!(read.as_ref().map(shape), Some(tree), "{}", text);
+    }
+
+    #[test]
+    fn arbitrary_text_is_no_reason_to_panic(text in ".{0,200}") {
+        let _ = parsed(&text);
+        let _ = Unit::parse(&text);
+        let _ = check(Source::new("any.toml", text)).map_err(|found| found.render(false));
+    }
+
+    #[test]
+    fn arbitrary_expressions_are_no_reason_to_panic(text in "[-+*/^()\\[\\],. a-c0-9e]{0,60}") {
+        let _ = parsed(&text);
+        let specification = format!(
+            "[model]\nname = \"any\"\n[coordinates]\na = {{ unit = \"m\" }}\n\
+             [kinetic]\nk = '{text}'\n"
+        );
+        let found = check(Source::new("any.toml", specification));
+        let _ = found.map_err(|found| (found.render(true), found.records()));
+    }
+
+    #[test]
+    fn pieces_of_a_specification_are_no_reason_to_panic(start in 0usize..9000, length in 0usize..9000) {
+        let whole = include_str!("../models/planetary_arm.toml");
+        let start = whole.floor_char_boundary(start);
+        let end = whole.floor_char_boundary(start + length);
+        let without = format!("{}{}", &whole[..start], &whole[end..]);
+        for text in [&whole[start..end], &without] {
+            let _ = check(Source::new("any.toml", text)).map_err(|found| found.render(false));
+        }
+    }
+
+    #[test]
+    fn dimensions_multiply_like_numbers(a in dimension(), b in dimension(), c in dimension()) {
+        prop_assert_eq!(a.times(b), b.times(a));
+        let left = a.times(b).and_then(|ab| ab.times(c));
+        prop_assert_eq!(left, b.times(c).and_then(|bc| a.times(bc)));
+        prop_assert_eq!(a.times(b).and_then(|ab| ab.over(b)), Some(a));
+        prop_assert_eq!(a.over(a), Some(Dimension::NONE));
+        prop_assert_eq!(a.power(2.into()), a.times(a));
+    }
+
+    #[test]
+    fn every_dimension_reads_back_as_it_is_shown(a in dimension()) {
+        let read = Unit::parse(&a.to_string());
+        prop_assert_eq!(read.map(|unit| (unit.dimension, unit.is_coherent())), Ok((a, true)));
+    }
+
+    #[test]
+    fn conversion_to_si_and_back_is_within_a_rounding(
+        value in -1e6f64..1e6,
+        unit in prop::sample::select(vec!["mm", "um", "deg", "GPa", "g/cm^3", "km/h", "N m/deg"]),
+    ) {
+        let unit = Unit::parse(unit).expect("a unit");
+        let back = unit.from_si(unit.to_si(value));
+        // Two roundings: at most two units in the last place.
+        prop_assert!((back - value).abs() <= 2.0 * f64::EPSILON * value.abs());
+    }
+}

@@ -1,0 +1,260 @@
+//! What a specification means once it is accepted: values, units, orders, names, warnings.
+
+use model_spec::Checked;
+use model_spec::diagnostic::Severity;
+use model_spec::model::{CoefficientKind, ExprKind, MAX_ORDER, Model};
+use model_spec::source::Source;
+
+const BEAM: &str = r#"[model]
+name = "beam"
+
+[parameters]
+EI = { value = "E*I", unit = "N m^2" }
+E = { value = 200, unit = "GPa", min = 1, max = 300 }
+I = { value = 1000, unit = "mm^4" }
+mu = { value = 0.8, unit = "kg/m" }
+l = { value = 500, unit = "mm" }
+
+[coordinates]
+theta = { unit = "rad", initial = 0.25, initial_rate = "sqrt(EI/(mu*l^4))" }
+
+[inputs]
+u = { unit = "N m" }
+
+[fields.w]
+along = "x"
+from = 0
+to = "l"
+basis = "clamped_free"
+coordinates = "q"
+order = 2
+unit = "m"
+
+[definitions]
+torque = "u - 0"
+
+[kinetic]
+beam = "1/2*integral(mu*(x*dot(theta) + dot(w))^2, w)"
+
+[potential]
+bending = { value = "1/2*integral(EI*diff(diff(w, x), x)^2, w)", doc = "bending", source = "Eq. (21)" }
+
+[forces]
+motor = { on = "theta", value = "torque" }
+
+[observables]
+torque = "torque"
+slope_rate = "at(dot(diff(w, x)), l)"
+modal = "sum(i, w, dot(q[i])*at(phi[i], l))"
+
+[coefficients]
+h = { each = "w[i]", value = "integral(mu*x*phi[i], w)" }
+total = "sum(i, w, h^2)"
+stiffness = { of = "q", by = "q", times = "h" }
+
+[sensors.theta_dot]
+gain = 1.01
+delay = 0.001
+"#;
+
+fn checked(text: &str) -> Checked {
+    model_spec::check(Source::new("test.toml", text)).unwrap_or_else(|found| panic!("{found}"))
+}
+
+fn refused(text: &str) -> String {
+    let found = model_spec::check(Source::new("test.toml", text)).expect_err("not a model");
+    found.render(false)
+}
+
+fn value(model: &Model, name: &str) -> f64 {
+    let index = model
+        .parameters
+        .iter()
+        .position(|parameter| parameter.name == name);
+    model.parameter_values().expect("finite")[index.expect(name)]
+}
+
+#[test]
+fn values_are_in_si_and_follow_what_they_refer_to() {
+    let model = checked(BEAM).model;
+    assert_eq!(value(&model, "E"), 2e11);
+    assert_eq!(value(&model, "I"), 1e-9);
+    assert_eq!(value(&model, "EI"), 2e11 * 1e-9);
+    let softer = model.with_parameter("E", 100.0).expect("within its bounds");
+    assert_eq!(value(&softer, "EI"), 1e11 * 1e-9);
+    let fixed = model
+        .with_parameter("EI", 50.0)
+        .expect("replaces the expression");
+    assert_eq!(value(&fixed, "EI"), 50.0);
+    let state = fixed.initial_state(&[1]).expect("finite");
+    // sqrt(EI/(mu l^4)) = sqrt(50/(0.8/16)), one rounding for each operation.
+    let rate = (50.0_f64 / (0.8 / 16.0)).sqrt();
+    assert_eq!((state.len(), state[0], state[1]), (4, 0.25, 0.0));
+    assert!((state[2] - rate).abs() <= 8.0 * f64::EPSILON * rate);
+}
+
+#[test]
+fn unfit_settings_are_refused_with_advice() {
+    let model = checked(BEAM).model;
+    let refused = |name: &str, value: f64| {
+        let error = model.with_parameter(name, value).expect_err(name);
+        error.to_string()
+    };
+    assert!(refused("EJ", 1.0).contains("did you mean `EI`?"));
+    assert!(refused("E", f64::NAN).contains("cannot be NaN"));
+    assert!(refused("E", f64::INFINITY).contains("cannot be inf"));
+    assert!(refused("E", 0.5).contains("at least 1 GPa"));
+    assert!(refused("E", 301.0).contains("at most 300 GPa"));
+    assert!(
+        refused("l", 0.0).contains("initial value"),
+        "{}",
+        refused("l", 0.0)
+    );
+    assert!(
+        refused("l", -1.0).contains("length"),
+        "{}",
+        refused("l", -1.0)
+    );
+}
+
+#[test]
+fn orders_are_the_fields_own_or_given() {
+    let model = checked(BEAM).model;
+    assert_eq!(model.orders(None), Ok(vec![2]));
+    assert_eq!(model.orders(Some(0)), Ok(vec![0]));
+    assert_eq!(model.orders(Some(MAX_ORDER)), Ok(vec![MAX_ORDER]));
+    assert!(model.orders(Some(MAX_ORDER + 1)).is_err());
+    let rigid = include_str!("../models/pendulum.toml");
+    let rigid = checked(rigid).model;
+    assert_eq!(
+        (rigid.orders(None), rigid.orders(Some(0))),
+        (Ok(vec![]), Ok(vec![]))
+    );
+    assert!(rigid.orders(Some(1)).is_err());
+    let names = ["theta", "q_1", "q_2", "theta_dot", "q_1_dot", "q_2_dot"];
+    assert_eq!(model.state_names(&[2]), names);
+}
+
+#[test]
+fn units_are_inferred_through_fields_and_sums() {
+    let model = checked(BEAM).model;
+    let units: Vec<_> = model
+        .observables
+        .iter()
+        .map(|o| o.unit.to_string())
+        .collect();
+    assert_eq!(units, ["N m", "1/s", "m/s"]);
+    assert_eq!(model.definitions[0].unit.to_string(), "N m");
+}
+
+#[test]
+fn rates_and_derivatives_of_fields_have_one_form() {
+    let model = checked(BEAM).model;
+    let ExprKind::At { value, .. } = &model.observables[1].value.kind else {
+        panic!("a value at a place");
+    };
+    let ExprKind::Diff(inner, 1) = &value.kind else {
+        panic!("a derivative of a rate: {value:?}");
+    };
+    assert!(matches!(inner.kind, ExprKind::Dot(_)));
+    let mut second = 0;
+    model.potential[0].value.visit(&mut |part| {
+        second += usize::from(matches!(part.kind, ExprKind::Diff(_, 2)));
+    });
+    assert_eq!(second, 1, "a derivative of a derivative is one of order 2");
+}
+
+#[test]
+fn coefficients_know_the_modes_they_are_given_for() {
+    let model = checked(BEAM).model;
+    assert_eq!(model.coefficients[0].each, Some(0));
+    assert!(matches!(
+        &model.coefficients[2].kind,
+        CoefficientKind::Factor { of, times: Some(_), .. } if of.kind == ExprKind::ModeCoordinate(0)
+    ));
+    let outside = refused(&BEAM.replace("\"sum(i, w, h^2)\"", "\"h^2\""));
+    assert!(outside.contains("one for each mode of `w`"), "{outside}");
+}
+
+#[test]
+fn provenance_and_sensors_are_kept() {
+    let model = checked(BEAM).model;
+    assert_eq!(
+        (
+            model.potential[0].doc.as_str(),
+            model.potential[0].origin.as_str()
+        ),
+        ("bending", "Eq. (21)")
+    );
+    let sensor = &model.sensors[0];
+    assert_eq!(
+        (
+            sensor.channel.as_str(),
+            sensor.gain,
+            sensor.bias,
+            sensor.delay
+        ),
+        ("theta_dot", 1.01, 0.0, 0.001)
+    );
+}
+
+#[test]
+fn what_nothing_refers_to_is_warned_of() {
+    assert!(checked(BEAM).warnings.is_empty());
+    let text = BEAM
+        .replace("[inputs]\n", "[inputs]\nv = { unit = \"N\" }\n")
+        .replace(
+            "[definitions]\n",
+            "[definitions]\nsum_of_angles = \"2*theta\"\n",
+        )
+        .replace(
+            "[parameters]\n",
+            "[parameters]\ng = { value = 9.81, unit = \"m/s^2\" }\n",
+        );
+    let warnings = checked(&text).warnings;
+    let records = warnings.records();
+    let messages: Vec<_> = records
+        .iter()
+        .map(|record| record.message.as_str())
+        .collect();
+    let expected = [
+        "the parameter `g` is not used",
+        "the input `v` is not used",
+        "the definition `sum_of_angles` is not used",
+    ];
+    assert_eq!(messages, expected);
+    assert!(
+        records
+            .iter()
+            .all(|record| record.severity == Severity::Warning)
+    );
+    assert_eq!((records[0].line, records[0].column), (Some(5), Some(1)));
+}
+
+#[test]
+fn observables_are_no_names_in_expressions() {
+    let text = BEAM.replace("modal = ", "twice = \"2*slope_rate\"\nmodal = ");
+    assert!(refused(&text).contains("give the expression a name in [definitions]"));
+}
+
+#[test]
+fn places_hold_in_files_with_carriage_returns_and_byte_order_marks() {
+    let broken = BEAM.replace("x*dot(theta)", "x*dot(thetta)");
+    let line = BEAM
+        .lines()
+        .position(|line| line.starts_with("beam ="))
+        .expect("there")
+        + 1;
+    let place = format!("test.toml:{line}:36");
+    for text in [
+        broken.clone(),
+        broken.replace('\n', "\r\n"),
+        format!("\u{feff}{broken}"),
+    ] {
+        let shown = refused(&text);
+        assert!(
+            shown.contains(&place) && shown.contains("^^^^^^ not declared"),
+            "{shown}"
+        );
+    }
+}
