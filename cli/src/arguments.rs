@@ -52,7 +52,7 @@ pub struct Check {
     /// The specification.
     pub spec: PathBuf,
     /// Modal truncation order of every field, instead of the specification's.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
     /// Print one JSON document.
     #[arg(long)]
@@ -76,7 +76,7 @@ pub struct Derive {
     /// The specification.
     pub spec: PathBuf,
     /// Modal truncation order of every field, instead of the specification's.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
     /// How to print.
     #[arg(long, value_enum, default_value = "text")]
@@ -100,7 +100,7 @@ pub struct Generate {
     #[arg(required_unless_present = "all")]
     pub spec: Option<PathBuf>,
     /// Modal truncation order of every field, instead of the specification's.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
     /// The language.
     #[arg(long, value_enum, default_value = "rust")]
@@ -125,7 +125,7 @@ pub struct Validate {
     /// The specification.
     pub spec: PathBuf,
     /// Modal truncation order of every field, instead of the specification's.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
     /// The file to write the certificate to; without it only the summary is printed.
     #[arg(long)]
@@ -150,10 +150,10 @@ pub struct Simulate {
     /// The specification.
     pub spec: PathBuf,
     /// Modal truncation order of every field, instead of the specification's.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
     /// Simulated time, in s. With --record the record's by default.
-    #[arg(long, required_unless_present = "record")]
+    #[arg(long, allow_negative_numbers = true, required_unless_present = "record")]
     pub until: Option<f64>,
     /// The file to write: CSV, or Parquet if its name ends in `.parquet`.
     #[arg(long)]
@@ -169,13 +169,13 @@ pub struct Simulate {
     pub record_name: String,
     /// Time from one row to the next, in s: a thousandth of the whole by default, with
     /// --record the record's times.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub sample: Option<f64>,
     /// How to integrate.
     #[arg(long, value_enum, default_value = "auto")]
     pub solver: Solver,
     /// Relative tolerance of every state variable.
-    #[arg(long, default_value_t = 1e-9)]
+    #[arg(long, allow_negative_numbers = true, default_value_t = 1e-9)]
     pub tolerance: f64,
     /// Print one JSON document on the work done.
     #[arg(long)]

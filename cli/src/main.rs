@@ -9,6 +9,7 @@ mod arguments;
 mod commands;
 mod output;
 mod page;
+mod parquet_file;
 mod problem;
 mod progress;
 mod table;

@@ -2,8 +2,13 @@
 
 use std::path::Path;
 
-use crate::commands::simulate::is_parquet;
+use crate::parquet_file;
 use crate::problem::{Outcome, Problem};
+
+/// Whether a path asks for Parquet.
+fn is_parquet(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"))
+}
 
 /// Named columns of numbers.
 pub struct Table {
@@ -36,10 +41,11 @@ impl Table {
         Some(&self.columns[place])
     }
 
-    /// The bytes of the file: Parquet or CSV, by the path's ending.
+    /// The bytes of the file: Parquet if its name ends so, else CSV.
     pub fn encode(&self, path: &Path) -> Outcome<Vec<u8>> {
         if is_parquet(path) {
-            return Err(Problem::input("Parquet is not written yet: give a name that ends in .csv"));
+            return parquet_file::encode(&self.names, &self.columns)
+                .map_err(|error| Problem::input(format!("cannot write Parquet: {error}")));
         }
         self.csv()
     }

@@ -98,42 +98,39 @@ fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
         }
     }
     for coordinate in &model.coordinates {
-        coordinate
-            .initial
-            .iter()
-            .chain(&coordinate.initial_rate)
-            .for_each(&mut *see);
+        let initial = coordinate.initial.iter();
+        initial.chain(&coordinate.initial_rate).for_each(&mut *see);
     }
     for field in &model.fields {
         see(&field.from);
         see(&field.to);
     }
-    model
-        .definitions
-        .iter()
-        .for_each(|definition| see(&definition.value));
-    let terms = model
-        .kinetic
-        .iter()
-        .chain(&model.potential)
-        .chain(&model.dissipation);
-    terms.for_each(|term| see(&term.value));
+    for definition in &model.definitions {
+        see(&definition.value);
+    }
+    let terms = model.kinetic.iter().chain(&model.potential);
+    for term in terms.chain(&model.dissipation) {
+        see(&term.value);
+    }
     for force in &model.forces {
         see(&force.on);
         see(&force.value);
     }
-    model
-        .observables
-        .iter()
-        .for_each(|observable| see(&observable.value));
+    for observable in &model.observables {
+        see(&observable.value);
+    }
     for coefficient in &model.coefficients {
-        match &coefficient.kind {
-            CoefficientKind::Value(value) => see(value),
-            CoefficientKind::Factor { of, by, times } => {
-                see(of);
-                see(by);
-                times.iter().for_each(&mut *see);
-            }
+        for_each_of_coefficient(&coefficient.kind, see);
+    }
+}
+
+fn for_each_of_coefficient(kind: &CoefficientKind, see: &mut impl FnMut(&Expr)) {
+    match kind {
+        CoefficientKind::Value(value) => see(value),
+        CoefficientKind::Factor { of, by, times } => {
+            see(of);
+            see(by);
+            times.iter().for_each(see);
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! The pipeline, one file each: `source` (text and places), [`lexer`], [`parser`] (tokens
 //! to [`ast`]), `document` (TOML tables to raw entries), `names`, `expression` and `resolve` (names),
-//! `motion` (what may stand where), `units_check` (units of every expression), `checks`,
+//! `motion` (what may stand where), `units_check` and `infer` (units of every expression), `checks`,
 //! [`model`] (the result). [`load()`] and [`check`] go all the way. What is wrong is said by
 //! [`diagnostic`]; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers.
 //! Nothing here knows how equations are derived.
@@ -17,6 +17,7 @@ mod entries;
 pub mod evaluate;
 mod expression;
 mod functions;
+mod infer;
 pub mod lexer;
 mod load;
 pub mod model;

@@ -1,6 +1,9 @@
 //! Edits made by program: what is asked for changes, everything else stays byte for byte.
 
-use model_spec::edit::{Edit, EditError, NewValue, Section, apply};
+use model_spec::edit::{
+    Edit, EditError, NewCoordinate, NewForce, NewParameter, NewTerm, NewValue, Section,
+    Substitution, apply,
+};
 use model_spec::source::Source;
 
 const SPRING: &str = r#"# A mass on a spring with play.
@@ -34,23 +37,23 @@ fn text(text: &str) -> String {
 }
 
 fn force() -> Edit {
-    Edit::AddForce {
+    Edit::AddForce(NewForce {
         name: text("friction"),
         on: text("y"),
         value: text("-T_c*sign(dot(y))"),
         doc: text("dry friction"),
         source: text("fitted"),
-    }
+    })
 }
 
 fn parameter() -> Edit {
-    Edit::AddParameter {
+    Edit::AddParameter(NewParameter {
         name: text("T_c"),
         value: NewValue::Number(0.8e-6),
         unit: text("N"),
         doc: text("dry \"friction\""),
         source: String::new(),
-    }
+    })
 }
 
 /// The lines of `edited` that `SPRING` does not have, all others being there in order.
@@ -84,18 +87,20 @@ fn additions_leave_every_line_as_it_is() {
 
 #[test]
 fn terms_and_coordinates_are_added_to_their_sections() {
-    let coordinate = Edit::AddCoordinate {
+    let coordinate = Edit::AddCoordinate(NewCoordinate {
         name: text("z"),
         unit: text("m"),
         doc: String::new(),
         initial: Some(NewValue::Expression(text("2*b"))),
-    };
-    let term = |section, name, value| Edit::AddTerm {
-        section,
-        name: text(name),
-        value: text(value),
-        doc: String::new(),
-        source: String::new(),
+    });
+    let term = |section, name, value| {
+        Edit::AddTerm(NewTerm {
+            section,
+            name: text(name),
+            value: text(value),
+            doc: String::new(),
+            source: String::new(),
+        })
     };
     let definition = term(Section::Definitions, "gap", "z - y");
     let kinetic = term(Section::Kinetic, "second", "1/2*m*dot(z)^2");
@@ -115,11 +120,13 @@ fn terms_and_coordinates_are_added_to_their_sections() {
 
 #[test]
 fn substitutions_change_the_matching_text_only() {
-    let substitute = |find, replace| Edit::Substitute {
-        section: Section::Potential,
-        terms: vec![text("spring")],
-        find: text(find),
-        replace: text(replace),
+    let substitute = |find, replace| {
+        Edit::Substitute(Substitution {
+            section: Section::Potential,
+            terms: vec![text("spring")],
+            find: text(find),
+            replace: text(replace),
+        })
     };
     let edited = |find, replace| apply(&source(), &[substitute(find, replace)]);
     let shifted = edited("deadzone(y, b)", "deadzone(y - b/2, b)").expect("valid");
@@ -136,11 +143,13 @@ fn substitutions_change_the_matching_text_only() {
 
 #[test]
 fn missing_anchors_are_errors_of_their_own() {
-    let substitute = |section, term, find| Edit::Substitute {
-        section,
-        terms: vec![text(term)],
-        find: text(find),
-        replace: text("y"),
+    let substitute = |section, term, find| {
+        Edit::Substitute(Substitution {
+            section,
+            terms: vec![text(term)],
+            find: text(find),
+            replace: text("y"),
+        })
     };
     let failed = |edit| apply(&source(), &[edit]).expect_err("no such place");
     let missing = failed(substitute(Section::Potential, "mesh_sp", "y"));
@@ -175,13 +184,13 @@ fn edits_that_make_no_model_are_refused() {
         unknown.to_string().contains("unknown name `T_c`"),
         "{unknown}"
     );
-    let nan = Edit::AddParameter {
+    let nan = Edit::AddParameter(NewParameter {
         name: text("T_c"),
         value: NewValue::Number(f64::NAN),
         unit: text("N"),
         doc: String::new(),
         source: String::new(),
-    };
+    });
     let refused = failed(&[nan]);
     assert!(matches!(refused, EditError::NotFinite { .. }), "{refused}");
     let broken = apply(&Source::new("a.toml", "[model"), &[]).expect_err("no TOML");

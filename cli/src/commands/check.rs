@@ -1,48 +1,62 @@
 //! `eomgen check`: reads a specification, checks it, and says what it holds.
 
-use serde_json::json;
+use std::io::IsTerminal;
+
+use model_spec::diagnostic::Diagnostics;
+use serde_json::{Value, json};
 
 use crate::arguments::Check;
-use crate::problem::{Outcome, Problem, say};
-use crate::variant::{derive_variant, orders};
+use crate::problem::{Outcome, Problem, say, warn};
+use crate::variant::{Variant, derive_variant, orders};
 
 /// Runs the command. A derivation is part of the check: what cannot be derived is an
 /// error of the specification too.
 pub fn run(options: &Check) -> Outcome {
-    let checked = match model_spec::load(&options.spec) {
-        Ok(checked) => checked,
-        Err(diagnostics) => {
-            if options.json {
-                say(&format!("{:#}\n", json!({"passed": false, "diagnostics": diagnostics.records()})))?;
+    let (variant, warnings) = match examine(options) {
+        Ok(found) => found,
+        Err(problem) => {
+            if let (true, Problem::Specification(found)) = (options.json, &problem) {
+                let document = json!({"passed": false, "diagnostics": found.records()});
+                say(&format!("{document:#}\n"))?;
             }
-            return Err(Problem::Specification(diagnostics));
+            return Err(problem);
         }
     };
-    let warnings = checked.warnings;
-    let orders = orders(&checked.model, options.order.as_deref())?;
-    let variant = derive_variant(checked.model, &orders)?;
-    let model = &variant.model;
     if options.json {
-        let document = json!({
-            "passed": true,
-            "model": model.name,
-            "orders": orders,
-            "state": variant.program.state_names(),
-            "diagnostics": warnings.records(),
-        });
-        return say(&format!("{document:#}\n"));
+        return say(&format!("{:#}\n", record(&variant, &warnings)));
     }
     if !warnings.is_empty() {
-        eprintln!("{}", warnings.render(std::io::IsTerminal::is_terminal(&std::io::stderr())));
+        warn(&warnings.render(std::io::stderr().is_terminal()));
     }
-    let fields = match orders.as_slice() {
+    say(&summary(&variant))
+}
+
+fn examine(options: &Check) -> Outcome<(Variant, Diagnostics)> {
+    let checked = model_spec::load(&options.spec).map_err(Problem::Specification)?;
+    let orders = orders(&checked.model, options.order.as_deref())?;
+    Ok((derive_variant(checked.model, &orders)?, checked.warnings))
+}
+
+fn record(variant: &Variant, warnings: &Diagnostics) -> Value {
+    json!({
+        "passed": true,
+        "model": variant.model.name,
+        "orders": variant.equations.graph.orders(),
+        "state": variant.program.state_names(),
+        "diagnostics": warnings.records(),
+    })
+}
+
+fn summary(variant: &Variant) -> String {
+    let model = &variant.model;
+    let fields = match variant.equations.graph.orders() {
         [] => "no field".to_owned(),
         orders => {
             let list: Vec<String> = orders.iter().map(usize::to_string).collect();
             format!("order {}", list.join(", "))
         }
     };
-    say(&format!(
+    format!(
         "{}: {} parameters, {} coordinates, {fields}, {} energy terms, {} forces, {} observables; names and units agree\n",
         model.name,
         model.parameters.len(),
@@ -50,5 +64,5 @@ pub fn run(options: &Check) -> Outcome {
         model.kinetic.len() + model.potential.len(),
         model.forces.len() + model.dissipation.len(),
         model.observables.len() + 2,
-    ))
+    )
 }

@@ -1,23 +1,21 @@
 //! `eomgen simulate`: a trajectory as a table, CSV or Parquet.
 
-use std::path::Path;
-
 use codegen::evaluator::Evaluator;
 use model_spec::model::Model;
 use serde_json::json;
 use sim::derived::Driven;
 use sim::record::{HeldInputs, read_inputs};
-use sim::solve::{Settings, Trajectory, simulate};
+use sim::solve::{Settings, SolveError, Trajectory, simulate};
 
 use crate::arguments::{Simulate, Solver};
-use crate::output::write_file;
-use crate::problem::{Outcome, Problem, say};
+use crate::output::{file_place, write_file};
+use crate::problem::{Outcome, Problem, say, warn};
 use crate::progress::Bar;
 use crate::table::Table;
 use crate::variant::{derive_variant, load, orders};
 
-/// The most rows written.
-const MOST_ROWS: f64 = 2e7;
+/// The most numbers written, rows times columns: a few GB of memory.
+const MOST_NUMBERS: f64 = 1e8;
 
 /// Rows where nothing is said about them.
 const DEFAULT_ROWS: f64 = 1000.0;
@@ -25,6 +23,7 @@ const DEFAULT_ROWS: f64 = 1000.0;
 /// Runs the command.
 pub fn run(options: &Simulate) -> Outcome {
     let (Solver::Auto | Solver::Rk) = options.solver;
+    file_place(&options.out)?;
     let mut model = load(&options.spec)?.model;
     for assignment in &options.set {
         model = set_parameter(&model, assignment)?;
@@ -32,8 +31,13 @@ pub fn run(options: &Simulate) -> Outcome {
     let orders = orders(&model, options.order.as_deref())?;
     let variant = derive_variant(model, &orders)?;
     let inputs = inputs(options, &variant.model)?;
-    let times = sample_times(options, &inputs)?;
+    let span = span(options, &inputs)?;
+    let times = match options.sample {
+        None if options.record.is_some() => record_times(&inputs, span)?,
+        step => even_times(span, step)?,
+    };
     let run = Run::new(&variant.model, variant.evaluator(), inputs)?;
+    check_size(times.len(), run.columns.len())?;
     let trajectory = run.trajectory(&times, options.tolerance)?;
     let table = run.table(&trajectory);
     write_file(&options.out, &table.encode(&options.out)?)?;
@@ -77,46 +81,73 @@ fn inputs(options: &Simulate, model: &Model) -> Outcome<HeldInputs> {
             let (inputs, warnings) =
                 read_inputs(dataset, &options.record_name, model).map_err(Problem::input)?;
             for warning in warnings {
-                eprintln!("warning: {warning}");
+                warn(&format!("warning: {warning}"));
             }
             Ok(inputs)
         }
         None => {
             for input in &model.inputs {
-                eprintln!("warning: no record gives the input `{}`: it is 0", input.name);
+                warn(&format!("warning: no record gives the input `{}`: it is 0", input.name));
             }
             Ok(HeldInputs::zero(model.inputs.len()))
         }
     }
 }
 
-/// The times of the rows, in s.
-fn sample_times(options: &Simulate, inputs: &HeldInputs) -> Outcome<Vec<f64>> {
-    let start = if options.record.is_some() { inputs.times()[0] } else { 0.0 };
-    let end = match (options.until, options.record.is_some()) {
-        (Some(until), _) => until,
-        (None, true) => inputs.times()[inputs.times().len() - 1],
-        (None, false) => return Err(Problem::input("--until is missing: the simulated time in s")),
-    };
-    if !(end.is_finite() && end > start) {
-        return Err(Problem::input(format!("--until {end}: expected a time in s after {start}")));
+/// Begin and end of the simulation, in s.
+fn span(options: &Simulate, inputs: &HeldInputs) -> Outcome<(f64, f64)> {
+    let recorded = options.record.as_ref().map(|_| inputs.times());
+    let start = recorded.and_then(|times| times.first()).copied().unwrap_or(0.0);
+    let end = options.until.or_else(|| recorded.and_then(|times| times.last()).copied());
+    let end = end.ok_or_else(|| Problem::input("--until is missing: the simulated time in s"))?;
+    if end.is_finite() && end > start {
+        return Ok((start, end));
     }
-    if options.record.is_some() && options.sample.is_none() {
-        return Ok(inputs.times().iter().copied().filter(|t| *t <= end).collect());
-    }
-    let step = options.sample.unwrap_or((end - start) / DEFAULT_ROWS);
-    if !(step.is_finite() && step > 0.0) {
-        return Err(Problem::input(format!("--sample {step}: expected a positive time in s")));
-    }
-    let rows = ((end - start) / step * (1.0 + 1e-12)).floor();
-    if rows > MOST_ROWS {
+    Err(Problem::input(format!("--until {end:?}: expected a time in s after {start:?}")))
+}
+
+/// The record's times up to the end.
+fn record_times(inputs: &HeldInputs, (_, end): (f64, f64)) -> Outcome<Vec<f64>> {
+    let times: Vec<f64> = inputs.times().iter().copied().take_while(|t| *t <= end).collect();
+    let last = inputs.times().last().copied().unwrap_or(end);
+    if end > last {
         return Err(Problem::input(format!(
-            "--sample {step} makes {rows:e} rows; the limit is {MOST_ROWS:e}"
+            "--until {end:?}: the record ends at {last:?} s; with --sample its last inputs hold on"
         )));
     }
-    Ok((0..=rows as usize)
+    match times.len() {
+        0 | 1 => Err(Problem::input(format!(
+            "--until {end:?}: no second sample of the record by then; give a later time, or --sample"
+        ))),
+        _ => Ok(times),
+    }
+}
+
+/// Times a step apart, in s; a thousandth of the whole where no step is given.
+fn even_times((start, end): (f64, f64), step: Option<f64>) -> Outcome<Vec<f64>> {
+    let whole = end - start;
+    let step = step.unwrap_or(whole / DEFAULT_ROWS);
+    if !(step > 0.0 && step <= whole) {
+        return Err(Problem::input(format!(
+            "--sample {step:?}: expected a time in s above 0 and at most {whole:?}"
+        )));
+    }
+    let steps = (whole / step * (1.0 + 1e-12)).floor();
+    check_size(steps.min(MOST_NUMBERS * 2.0) as usize, 1)?;
+    Ok((0..=steps as usize)
         .map(|row| (start + row as f64 * step).min(end))
         .collect())
+}
+
+/// Refuses what would not fit into memory.
+fn check_size(rows: usize, columns: usize) -> Outcome {
+    let numbers = rows as f64 * columns as f64;
+    if numbers <= MOST_NUMBERS {
+        return Ok(());
+    }
+    Err(Problem::input(format!(
+        "too many rows: the limit is {MOST_NUMBERS:e} numbers; give --sample a longer time"
+    )))
 }
 
 /// A model with its inputs, ready to be simulated.
@@ -125,6 +156,8 @@ pub struct Run {
     initial: Vec<f64>,
     columns: Vec<String>,
     observables: usize,
+    /// What each switching function is.
+    guards: Vec<String>,
 }
 
 impl Run {
@@ -139,12 +172,18 @@ impl Run {
         columns.extend(program.state_names());
         columns.extend(program.observables.iter().map(|o| o.name.clone()));
         let observables = program.observables.len();
+        let guards = program.guards.iter().flat_map(|guard| {
+            let count = program.value(guard.value).extent.length();
+            std::iter::repeat_n(guard.formula.clone(), count)
+        });
+        let guards = guards.collect();
         let system = Driven::new(evaluator, inputs).map_err(Problem::input)?;
         Ok(Self {
             system,
             initial,
             columns,
             observables,
+            guards,
         })
     }
 
@@ -155,7 +194,22 @@ impl Run {
         let bar = Bar::new("simulating", end - start, "s");
         let mut progress = |t: f64| bar.set(t - start);
         simulate(&self.system, &self.initial, (start, end), times, &settings, &mut progress)
-            .map_err(|error| Problem::input(error.to_string()))
+            .map_err(|error| Problem::input(format!("{error}{}", self.culprit(&error))))
+    }
+
+    /// The name of what an error gives by number.
+    fn culprit(&self, error: &SolveError) -> String {
+        match *error {
+            SolveError::NotFinite { state, .. } => {
+                let name = self.columns.get(1 + state).map_or("", String::as_str);
+                format!("; that is {name}")
+            }
+            SolveError::Caught { guard, .. } | SolveError::TooManySwitches { guard, .. } => {
+                let formula = self.guards.get(guard).map_or("", String::as_str);
+                format!("; that is {formula}")
+            }
+            _ => String::new(),
+        }
     }
 
     /// Time, state and observables of every sample.
@@ -173,9 +227,4 @@ impl Run {
         }
         table
     }
-}
-
-/// Whether a path asks for Parquet.
-pub fn is_parquet(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("parquet"))
 }

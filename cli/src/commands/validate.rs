@@ -7,13 +7,16 @@ use sim::validate::certificate::{Certificate, Check};
 
 use super::generate::source;
 use crate::arguments::Validate;
-use crate::output::write_file;
+use crate::output::{file_place, write_file};
 use crate::problem::{Outcome, Problem, say};
 use crate::progress::Note;
 use crate::variant::{derive_variant, load, orders};
 
 /// Runs the command.
 pub fn run(options: &Validate) -> Outcome {
+    if let Some(path) = &options.out {
+        file_place(path)?;
+    }
     let model = load(&options.spec)?.model;
     let orders = orders(&model, options.order.as_deref())?;
     let certificate = {

@@ -3,11 +3,57 @@
 
 use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
 
-use super::{Edit, EditError, NewValue};
+use super::{EditError, NewCoordinate, NewForce, NewParameter, NewTerm, NewValue};
 
-/// Adds the entry of an edit.
-pub fn insert(document: &mut DocumentMut, edit: &Edit) -> Result<(), EditError> {
-    let (section, name, value) = entry(edit)?;
+/// Adds a term: an expression alone where there is nothing more to say.
+pub fn term(document: &mut DocumentMut, new: &NewTerm) -> Result<(), EditError> {
+    let value = if new.doc.is_empty() && new.source.is_empty() {
+        Value::from(new.value.as_str())
+    } else {
+        let texts = [
+            ("value", &new.value),
+            ("doc", &new.doc),
+            ("source", &new.source),
+        ];
+        with_texts(InlineTable::new(), &texts)
+    };
+    insert(document, new.section.name(), &new.name, value)
+}
+
+/// Adds a parameter.
+pub fn parameter(document: &mut DocumentMut, new: &NewParameter) -> Result<(), EditError> {
+    let mut table = InlineTable::new();
+    table.insert("value", new_value(&new.name, &new.value)?);
+    table.insert("unit", Value::from(new.unit.as_str()));
+    let value = with_texts(table, &[("doc", &new.doc), ("source", &new.source)]);
+    insert(document, "parameters", &new.name, value)
+}
+
+/// Adds a coordinate.
+pub fn coordinate(document: &mut DocumentMut, new: &NewCoordinate) -> Result<(), EditError> {
+    let mut table = InlineTable::new();
+    table.insert("unit", Value::from(new.unit.as_str()));
+    if let Some(initial) = &new.initial {
+        table.insert("initial", new_value(&new.name, initial)?);
+    }
+    let value = with_texts(table, &[("doc", &new.doc)]);
+    insert(document, "coordinates", &new.name, value)
+}
+
+/// Adds a force.
+pub fn force(document: &mut DocumentMut, new: &NewForce) -> Result<(), EditError> {
+    let head = [("on", &new.on), ("value", &new.value)];
+    let tail = [("doc", &new.doc), ("source", &new.source)];
+    let value = with_texts(InlineTable::new(), &[head, tail].concat());
+    insert(document, "forces", &new.name, value)
+}
+
+fn insert(
+    document: &mut DocumentMut,
+    section: &str,
+    name: &str,
+    value: Value,
+) -> Result<(), EditError> {
     let taken = || EditError::Taken {
         section: section.to_owned(),
         name: name.to_owned(),
@@ -43,79 +89,14 @@ fn add_section(document: &mut DocumentMut, section: &str) {
     document.insert(section, Item::Table(table));
 }
 
-type Entry<'e> = (&'static str, &'e str, Value);
-
-fn entry(edit: &Edit) -> Result<Entry<'_>, EditError> {
-    let mut table = InlineTable::new();
-    Ok(match edit {
-        Edit::AddTerm {
-            section,
-            name,
-            value,
-            doc,
-            source,
-        } => {
-            if doc.is_empty() && source.is_empty() {
-                return Ok((section.name(), name, Value::from(value.as_str())));
-            }
-            add_texts(
-                &mut table,
-                &[("value", value), ("doc", doc), ("source", source)],
-            );
-            (section.name(), name, table.into())
-        }
-        Edit::AddParameter {
-            name,
-            value,
-            unit,
-            doc,
-            source,
-        } => {
-            table.insert("value", new_value(name, value)?);
-            table.insert("unit", Value::from(unit.as_str()));
-            add_texts(&mut table, &[("doc", doc), ("source", source)]);
-            ("parameters", name, table.into())
-        }
-        Edit::AddCoordinate {
-            name,
-            unit,
-            doc,
-            initial,
-        } => {
-            table.insert("unit", Value::from(unit.as_str()));
-            add_texts(&mut table, &[("doc", doc)]);
-            if let Some(initial) = initial {
-                table.insert("initial", new_value(name, initial)?);
-            }
-            ("coordinates", name, table.into())
-        }
-        Edit::AddForce {
-            name,
-            on,
-            value,
-            doc,
-            source,
-        } => {
-            let texts = [
-                ("on", on),
-                ("value", value),
-                ("doc", doc),
-                ("source", source),
-            ];
-            add_texts(&mut table, &texts);
-            ("forces", name, table.into())
-        }
-        // Substitutions add nothing; they name no section of their own here.
-        Edit::Substitute { section, find, .. } => (section.name(), find, table.into()),
-    })
-}
-
-fn add_texts(table: &mut InlineTable, texts: &[(&str, &String)]) {
+/// The table with those of the texts that are not empty.
+fn with_texts(mut table: InlineTable, texts: &[(&str, &String)]) -> Value {
     for (key, text) in texts {
         if !text.is_empty() {
             table.insert(*key, Value::from(text.as_str()));
         }
     }
+    table.into()
 }
 
 /// A number in the shortest form that reads back as itself.

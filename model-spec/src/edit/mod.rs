@@ -55,68 +55,88 @@ pub enum NewValue {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
     /// Adds a term to an energy, the dissipation, the definitions or the observables.
-    AddTerm {
-        /// Where.
-        section: Section,
-        /// The term's name, not yet used in the section.
-        name: String,
-        /// Its expression.
-        value: String,
-        /// What it is.
-        doc: String,
-        /// Where it comes from.
-        source: String,
-    },
+    AddTerm(NewTerm),
     /// Adds a parameter.
-    AddParameter {
-        /// Its name.
-        name: String,
-        /// Its value.
-        value: NewValue,
-        /// Its unit.
-        unit: String,
-        /// What it is.
-        doc: String,
-        /// Where its value comes from.
-        source: String,
-    },
+    AddParameter(NewParameter),
     /// Adds a coordinate.
-    AddCoordinate {
-        /// Its name.
-        name: String,
-        /// Its unit, coherent SI.
-        unit: String,
-        /// What it is.
-        doc: String,
-        /// Its initial value, 0 if absent.
-        initial: Option<NewValue>,
-    },
+    AddCoordinate(NewCoordinate),
     /// Adds a force.
-    AddForce {
-        /// Its name.
-        name: String,
-        /// What it works on.
-        on: String,
-        /// Its value.
-        value: String,
-        /// What it is.
-        doc: String,
-        /// Where it comes from.
-        source: String,
-    },
-    /// Replaces every occurrence of an expression inside the values of named terms; each of
-    /// the terms must hold one. Expressions are compared as syntax trees: spaces and
-    /// superfluous brackets do not matter, the order of operands does.
-    Substitute {
-        /// Where the terms are.
-        section: Section,
-        /// Their names.
-        terms: Vec<String>,
-        /// What is to be replaced.
-        find: String,
-        /// What takes its place.
-        replace: String,
-    },
+    AddForce(NewForce),
+    /// Replaces an expression inside terms.
+    Substitute(Substitution),
+}
+
+/// A term to be added.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewTerm {
+    /// Where; not `Forces`, which hold more than a value.
+    pub section: Section,
+    /// The term's name, not yet used in the section.
+    pub name: String,
+    /// Its expression.
+    pub value: String,
+    /// What it is.
+    pub doc: String,
+    /// Where it comes from.
+    pub source: String,
+}
+
+/// A parameter to be added.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewParameter {
+    /// Its name.
+    pub name: String,
+    /// Its value.
+    pub value: NewValue,
+    /// Its unit.
+    pub unit: String,
+    /// What it is.
+    pub doc: String,
+    /// Where its value comes from.
+    pub source: String,
+}
+
+/// A coordinate to be added.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewCoordinate {
+    /// Its name.
+    pub name: String,
+    /// Its unit, coherent SI.
+    pub unit: String,
+    /// What it is.
+    pub doc: String,
+    /// Its initial value, 0 if absent.
+    pub initial: Option<NewValue>,
+}
+
+/// A force to be added.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewForce {
+    /// Its name.
+    pub name: String,
+    /// What it works on.
+    pub on: String,
+    /// Its value.
+    pub value: String,
+    /// What it is.
+    pub doc: String,
+    /// Where it comes from.
+    pub source: String,
+}
+
+/// An expression to be replaced by another wherever it occurs inside the values of named
+/// terms; each of the terms must hold it. Expressions are compared as syntax trees: spaces
+/// and superfluous brackets do not matter, the order of operands does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Substitution {
+    /// Where the terms are.
+    pub section: Section,
+    /// Their names.
+    pub terms: Vec<String>,
+    /// What is to be replaced.
+    pub find: String,
+    /// What takes its place.
+    pub replace: String,
 }
 
 /// Why an edit could not be made.
@@ -228,18 +248,10 @@ fn restored(original: &str, edited: String) -> String {
 
 fn make(document: &mut DocumentMut, edit: &Edit) -> Result<(), EditError> {
     match edit {
-        Edit::Substitute {
-            section,
-            terms,
-            find,
-            replace,
-        } => {
-            let substitution = substitute::Substitution::new(find, replace)?;
-            for term in terms {
-                substitution.make(document, section.name(), term)?;
-            }
-            Ok(())
-        }
-        addition => insert::insert(document, addition),
+        Edit::AddTerm(term) => insert::term(document, term),
+        Edit::AddParameter(parameter) => insert::parameter(document, parameter),
+        Edit::AddCoordinate(coordinate) => insert::coordinate(document, coordinate),
+        Edit::AddForce(force) => insert::force(document, force),
+        Edit::Substitute(substitution) => substitute::substitute(document, substitution),
     }
 }

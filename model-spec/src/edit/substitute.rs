@@ -3,14 +3,23 @@
 
 use toml_edit::{DocumentMut, Item, Value};
 
-use super::EditError;
+use super::{EditError, Substitution};
 use crate::ast::{Syntax, SyntaxKind};
 use crate::lexer::tokens;
 use crate::parser::parse;
 use crate::span::Span;
 
+/// Replaces an expression in every term that is named.
+pub fn substitute(document: &mut DocumentMut, edit: &Substitution) -> Result<(), EditError> {
+    let replacement = Replacement::new(&edit.find, &edit.replace)?;
+    for term in &edit.terms {
+        replacement.make(document, edit.section.name(), term)?;
+    }
+    Ok(())
+}
+
 /// One expression to be replaced by another.
-pub struct Substitution<'e> {
+struct Replacement<'e> {
     find: &'e str,
     pattern: Syntax,
     replace: &'e str,
@@ -18,9 +27,9 @@ pub struct Substitution<'e> {
     compound: bool,
 }
 
-impl<'e> Substitution<'e> {
+impl<'e> Replacement<'e> {
     /// Reads both expressions.
-    pub fn new(find: &'e str, replace: &'e str) -> Result<Self, EditError> {
+    fn new(find: &'e str, replace: &'e str) -> Result<Self, EditError> {
         let replacement = syntax(replace)?;
         Ok(Self {
             pattern: syntax(find)?,
@@ -34,12 +43,7 @@ impl<'e> Substitution<'e> {
     }
 
     /// Replaces every occurrence in the value of one term.
-    pub fn make(
-        &self,
-        document: &mut DocumentMut,
-        section: &str,
-        term: &str,
-    ) -> Result<(), EditError> {
+    fn make(&self, document: &mut DocumentMut, section: &str, term: &str) -> Result<(), EditError> {
         let entry = document
             .get_mut(section)
             .and_then(|item| item.get_mut(term));

@@ -127,7 +127,7 @@ fn linear_ticks(range: Range, count: usize) -> Vec<Tick> {
 fn multiples(range: Range, step: f64) -> impl Iterator<Item = f64> {
     let first = (range.low / step - 1e-6).ceil();
     let last = (range.high / step + 1e-6).floor();
-    // A range is at least 1e-6 of its magnitude and a step a fair share of it.
+    // A range is at least 1e-9 of its magnitude and a step a fair share of it.
     (first as i64..=last as i64).map(move |multiple| multiple as f64 * step)
 }
 

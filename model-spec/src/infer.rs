@@ -1,0 +1,271 @@
+//! The unit of an expression. Literals carry none, and 0 fits any unit; what is added or
+//! compared has one unit, functions such as sin take pure numbers. This catches what
+//! reading over misses.
+
+use num_rational::Ratio;
+
+use crate::ast::BinaryOperator;
+use crate::diagnostic::Diagnostic;
+use crate::dimension::{Dimension, Exponent};
+use crate::model::{Expr, ExprKind, Function, Model};
+use crate::span::Span;
+
+/// The unit of an expression; None for 0, which fits any.
+pub type Inferred = Option<Dimension>;
+
+/// What is known of units so far.
+pub struct Inference<'m> {
+    /// Declares the units of parameters, coordinates, inputs and fields.
+    pub model: &'m Model,
+    /// The units of definitions; those that are referred to are filled in first.
+    pub definitions: Vec<Dimension>,
+    /// The units of the coefficients so far.
+    pub coefficients: Vec<Dimension>,
+}
+
+impl Inference<'_> {
+    /// The unit of a factor of the acceleration of `of`.
+    pub fn factor(
+        &self,
+        of: &Expr,
+        by: &Expr,
+        times: Option<&Expr>,
+    ) -> Result<Inferred, Diagnostic> {
+        let known = |expr: &Expr| Ok(self.infer(expr)?.unwrap_or(Dimension::NONE));
+        let (of_unit, by_unit) = (known(of)?, known(by)?);
+        let times_unit = times.map_or(Ok(Dimension::NONE), known)?;
+        let acceleration = of_unit
+            .over(Dimension::TIME)
+            .and_then(|r| r.over(Dimension::TIME));
+        let factor = acceleration.and_then(|a| a.over(by_unit)?.times(times_unit));
+        factor.map(Some).ok_or_else(|| out_of_range(by.span))
+    }
+
+    /// The unit of an expression.
+    ///
+    /// # Errors
+    /// Where units within it do not fit together.
+    pub fn infer(&self, expr: &Expr) -> Result<Inferred, Diagnostic> {
+        let model = self.model;
+        let out_of_range = || out_of_range(expr.span);
+        let rate = |inferred: Inferred| match inferred {
+            Some(dimension) => dimension.over(Dimension::TIME).map(Some),
+            None => Some(None),
+        };
+        match &expr.kind {
+            ExprKind::Number(0.0) => Ok(None),
+            ExprKind::Number(_) | ExprKind::Pi | ExprKind::ModeShape(_) => {
+                Ok(Some(Dimension::NONE))
+            }
+            ExprKind::Time => Ok(Some(Dimension::TIME)),
+            ExprKind::Position(_) => Ok(Some(Dimension::LENGTH)),
+            ExprKind::Parameter(index) => Ok(Some(model.parameters[*index].unit.dimension)),
+            ExprKind::Coordinate(index) => Ok(Some(model.coordinates[*index].unit.dimension)),
+            ExprKind::Input(index) => Ok(Some(model.inputs[*index].unit.dimension)),
+            ExprKind::Definition(index) => Ok(Some(self.definitions[*index])),
+            ExprKind::Coefficient(index) => Ok(self.coefficients.get(*index).copied()),
+            ExprKind::Field(field) | ExprKind::ModeCoordinate(field) => {
+                Ok(Some(model.fields[*field].unit.dimension))
+            }
+            ExprKind::Dot(operand) => rate(self.infer(operand)?).ok_or_else(out_of_range),
+            ExprKind::Diff(operand, times) => {
+                let per = Dimension::LENGTH.power(Ratio::from_integer(i32::from(*times)));
+                combined(self.infer(operand)?, per, Dimension::over).ok_or_else(out_of_range)
+            }
+            ExprKind::At {
+                value, position, ..
+            } => self.at(value, position),
+            ExprKind::Integral { integrand, .. } => {
+                let along = Some(Dimension::LENGTH);
+                combined(self.infer(integrand)?, along, Dimension::times).ok_or_else(out_of_range)
+            }
+            ExprKind::Sum { summand, .. } => self.infer(summand),
+            ExprKind::Negate(operand) => self.infer(operand),
+            ExprKind::Binary(operator, left, right) => self.binary(expr, *operator, left, right),
+            ExprKind::Call(function, arguments) => self.call(expr, *function, arguments),
+        }
+    }
+
+    fn at(&self, value: &Expr, position: &Expr) -> Result<Inferred, Diagnostic> {
+        let place = self.infer(position)?;
+        match place {
+            Some(place) if place != Dimension::LENGTH => {
+                let message = format!("the place along a field is {}, expected m", Words(place));
+                Err(Diagnostic::error(message)
+                    .at(position.span, Words(place).to_string())
+                    .help("a length other than 0 is a parameter with a unit"))
+            }
+            _ => self.infer(value),
+        }
+    }
+
+    fn binary(
+        &self,
+        whole: &Expr,
+        operator: BinaryOperator,
+        left: &Expr,
+        right: &Expr,
+    ) -> Result<Inferred, Diagnostic> {
+        let inferred = self.infer(left)?;
+        match operator {
+            BinaryOperator::Add => self.same(inferred, left, right, "added to"),
+            BinaryOperator::Subtract => self.same(inferred, left, right, "subtracted from"),
+            BinaryOperator::Multiply => combined(inferred, self.infer(right)?, Dimension::times)
+                .ok_or_else(|| out_of_range(whole.span)),
+            BinaryOperator::Divide => combined(inferred, self.infer(right)?, Dimension::over)
+                .ok_or_else(|| out_of_range(whole.span)),
+            BinaryOperator::Power => self.power(inferred, left, right),
+        }
+    }
+
+    /// Two expressions of one unit, which is given back.
+    fn same(
+        &self,
+        first: Inferred,
+        left: &Expr,
+        right: &Expr,
+        verb: &str,
+    ) -> Result<Inferred, Diagnostic> {
+        match (first, self.infer(right)?) {
+            (Some(one), Some(other)) if one != other => {
+                let message = format!("{} is {verb} {}", quantity(other), quantity(one));
+                Err(Diagnostic::error(message)
+                    .at(right.span, Words(other).to_string())
+                    .also(left.span, Words(one).to_string())
+                    .help_if(difference(other, one)))
+            }
+            (one, other) => Ok(one.or(other)),
+        }
+    }
+
+    fn power(&self, base: Inferred, left: &Expr, right: &Expr) -> Result<Inferred, Diagnostic> {
+        self.pure(right, "an exponent")?;
+        let Some(dimension) = base.filter(|dimension| !dimension.is_none()) else {
+            return Ok(base.and(Some(Dimension::NONE)));
+        };
+        let Some(exponent) = rational(right) else {
+            return Err(Diagnostic::error(format!(
+                "the exponent of a quantity in {dimension} must be written as a number"
+            ))
+            .at(right.span, "its unit would depend on this value")
+            .also(left.span, format!("in {dimension}"))
+            .help("write a number or a fraction such as ^2 or ^(1/2)"));
+        };
+        let raised = dimension.power(exponent);
+        raised.map(Some).ok_or_else(|| out_of_range(left.span))
+    }
+
+    fn pure(&self, expr: &Expr, what: &str) -> Result<(), Diagnostic> {
+        match self.infer(expr)? {
+            Some(dimension) if !dimension.is_none() => Err(Diagnostic::error(format!(
+                "{what} is in {dimension}, expected a pure number"
+            ))
+            .at(expr.span, format!("in {dimension}"))
+            .help("divide it by a quantity of the same unit")),
+            _ => Ok(()),
+        }
+    }
+
+    fn call(
+        &self,
+        whole: &Expr,
+        function: Function,
+        arguments: &[Expr],
+    ) -> Result<Inferred, Diagnostic> {
+        let name = function.name();
+        match (function, arguments) {
+            (Function::Abs, [argument]) => self.infer(argument),
+            (Function::Sign, [argument]) => self.infer(argument).map(|_| Some(Dimension::NONE)),
+            (Function::Sqrt, [argument]) => match self.infer(argument)? {
+                Some(dimension) => dimension
+                    .power(Ratio::new(1, 2))
+                    .map(Some)
+                    .ok_or_else(|| out_of_range(whole.span)),
+                None => Ok(None),
+            },
+            (Function::Min | Function::Max | Function::Deadzone, [first, second]) => self.same(
+                self.infer(first)?,
+                first,
+                second,
+                "compared in one call with",
+            ),
+            (Function::Atan2 | Function::Contact, [first, second]) => {
+                self.same(
+                    self.infer(first)?,
+                    first,
+                    second,
+                    "compared in one call with",
+                )?;
+                Ok(Some(Dimension::NONE))
+            }
+            _ => {
+                for argument in arguments {
+                    self.pure(argument, &format!("the argument of `{name}`"))?;
+                }
+                Ok(Some(Dimension::NONE))
+            }
+        }
+    }
+}
+
+/// A unit in a sentence: "in N m", "a pure number".
+pub struct Words(pub Dimension);
+
+impl std::fmt::Display for Words {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.0.is_none() {
+            f.write_str("a pure number")
+        } else {
+            write!(f, "in {}", self.0)
+        }
+    }
+}
+
+/// A quantity of this unit in a sentence.
+fn quantity(dimension: Dimension) -> String {
+    if dimension.is_none() {
+        "a pure number".to_owned()
+    } else {
+        format!("a quantity in {dimension}")
+    }
+}
+
+/// The unit of a product or quotient; None where an exponent is out of range.
+fn combined(
+    left: Inferred,
+    right: Inferred,
+    combine: impl Fn(Dimension, Dimension) -> Option<Dimension>,
+) -> Option<Inferred> {
+    match (left, right) {
+        (Some(left), Some(right)) => combine(left, right).map(Some),
+        _ => Some(None),
+    }
+}
+
+/// An exponent written as a number or a fraction of whole numbers.
+fn rational(expr: &Expr) -> Option<Exponent> {
+    match &expr.kind {
+        ExprKind::Number(value) => (1..=12).find_map(|denominator| {
+            let numerator = value * f64::from(denominator);
+            let whole = numerator.fract() == 0.0 && numerator.abs() <= 1000.0;
+            whole.then(|| Ratio::new(numerator as i32, denominator))
+        }),
+        ExprKind::Negate(operand) => rational(operand).map(|exponent| -exponent),
+        ExprKind::Binary(BinaryOperator::Divide, left, right) => {
+            let (above, below) = (rational(left)?, rational(right)?);
+            (below != Ratio::from_integer(0)).then(|| above / below)
+        }
+        _ => None,
+    }
+}
+
+/// By what a wrong unit differs from the right one.
+pub fn difference(inferred: Dimension, expected: Dimension) -> Option<String> {
+    let missing = expected.over(inferred)?;
+    Some(format!("a factor in {missing} would make it right"))
+}
+
+fn out_of_range(span: Span) -> Diagnostic {
+    Diagnostic::error("the unit of this expression is out of range")
+        .at(span, "an exponent of its unit is too large")
+}

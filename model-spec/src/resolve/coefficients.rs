@@ -1,0 +1,112 @@
+//! Names for coefficients of the derived equations: what they name, and for the modes of
+//! which fields they are given.
+
+use super::Builder;
+use crate::ast::SyntaxKind;
+use crate::diagnostic::Diagnostic;
+use crate::expression::{Resolver, Scope};
+use crate::model::{Coefficient, CoefficientKind, Expr, ExprKind};
+use crate::names::Symbol;
+use crate::raw::{RawCoefficient, RawCoefficientKind};
+use crate::table::{Quantity, Written};
+
+impl Builder {
+    /// All coefficients, each knowing those before it.
+    pub(super) fn coefficients(&mut self, raw: Vec<RawCoefficient>) -> Vec<Coefficient> {
+        let mut built = Vec::with_capacity(raw.len());
+        let mut per_mode = Vec::with_capacity(raw.len());
+        for entry in raw {
+            let coefficient = self.coefficient(entry, &per_mode);
+            per_mode.push(coefficient.as_ref().map_or_else(Vec::new, modes_of));
+            built.extend(coefficient);
+        }
+        built
+    }
+
+    /// One coefficient, given for the modes of which fields those before it are.
+    fn coefficient(&mut self, raw: RawCoefficient, before: &[Vec<usize>]) -> Option<Coefficient> {
+        let each = match &raw.each {
+            Some(written) => Some(self.each(written)?),
+            None => None,
+        };
+        let field = each.as_ref().map(|(_, field)| *field);
+        let resolved = |quantity: &Quantity, scope: Scope, each: Option<(String, usize)>| {
+            let resolver = Resolver::new(&self.names, scope).for_each(each);
+            quantity
+                .syntax()
+                .and_then(|syntax| resolver.knowing(before).resolve(&syntax))
+        };
+        let known = Scope::Coefficient(before.len());
+        let kind = match &raw.kind {
+            RawCoefficientKind::Value(value) => {
+                resolved(value, known, each).map(CoefficientKind::Value)
+            }
+            RawCoefficientKind::Factor(of, by, times) => {
+                let of = resolved(of, Scope::Factor, each.clone()).and_then(moving_quantity);
+                of.and_then(|of| {
+                    let by = resolved(by, Scope::Factor, each.clone())?;
+                    // The rows of modes may be scaled each by its own factor.
+                    let rows = rows_of(&of).map(|field| (String::new(), field));
+                    let each = each.or(rows);
+                    let times = times.as_ref().map(|times| resolved(times, known, each));
+                    let times = times.transpose()?;
+                    Ok(CoefficientKind::Factor { of, by, times })
+                })
+            }
+        };
+        Some(Coefficient {
+            kind: self.found.keep(kind)?,
+            name: raw.name.text,
+            each: field,
+            doc: raw.doc,
+            span: raw.name.span,
+        })
+    }
+
+    /// The index and field of `each = "w[i]"`.
+    fn each(&mut self, written: &Written) -> Option<(String, usize)> {
+        let syntax = self.found.keep(written.syntax())?;
+        if let SyntaxKind::Element { name, index, .. } = syntax.kind
+            && let Some(Symbol::Field(field)) = self.names.get(&name)
+        {
+            return Some((index, field));
+        }
+        self.found.push(
+            Diagnostic::error("`each` names a field and an index")
+                .at(syntax.span, "not a field with an index")
+                .help("write each = \"w[i]\" to give a coefficient for each mode of w"),
+        );
+        None
+    }
+}
+
+/// `of` names a coordinate or a field's mode coordinates.
+fn moving_quantity(of: Expr) -> Result<Expr, Diagnostic> {
+    match of.kind {
+        ExprKind::Coordinate(_) | ExprKind::ModeCoordinate(_) => Ok(of),
+        _ => Err(
+            Diagnostic::error("`of` names a coordinate or a field's mode coordinates")
+                .at(of.span, "not one of them")
+                .help("the acceleration of what? for example of = \"theta\" or of = \"q\""),
+        ),
+    }
+}
+
+/// The field whose modes an expression names.
+fn rows_of(expr: &Expr) -> Option<usize> {
+    match &expr.kind {
+        ExprKind::ModeCoordinate(field) => Some(*field),
+        ExprKind::Dot(inner) => rows_of(inner),
+        _ => None,
+    }
+}
+
+/// The fields for each of whose modes a coefficient is given.
+fn modes_of(coefficient: &Coefficient) -> Vec<usize> {
+    let mut fields: Vec<usize> = coefficient.each.into_iter().collect();
+    if let CoefficientKind::Factor { of, by, .. } = &coefficient.kind {
+        fields.extend(rows_of(of));
+        fields.extend(rows_of(by));
+    }
+    fields
+}

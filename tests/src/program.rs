@@ -1,0 +1,72 @@
+//! The `eomgen` program, built as the tests are, run with a time limit.
+
+use std::path::{Path, PathBuf};
+use std::process::Output;
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use crate::models::project;
+
+/// The longest a run may take unless a test says otherwise.
+const LIMIT: Duration = Duration::from_secs(60);
+
+/// The program's path. It is built first, so that no test judges an older one.
+pub fn path() -> &'static Path {
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    BUILT.get_or_init(build)
+}
+
+/// Builds into the folder that the running test was built into.
+fn build() -> PathBuf {
+    let test = std::env::current_exe().expect("the running test has a path");
+    let profile = test.ancestors().nth(2).expect("target/PROFILE/deps/TEST");
+    let target = profile.parent().expect("target/PROFILE");
+    let name = profile.file_name().expect("a profile").to_string_lossy();
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = std::process::Command::new(cargo)
+        .args(["build", "--quiet", "--package", "eomgen-cli", "--profile"])
+        .arg(if name == "debug" { "dev" } else { &*name })
+        .arg("--target-dir")
+        .arg(target)
+        .current_dir(project())
+        .status()
+        .expect("cargo can be run");
+    assert!(status.success(), "the program does not build");
+    profile.join(format!("eomgen{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// The program, to be given arguments.
+pub fn eomgen() -> assert_cmd::Command {
+    let mut command = assert_cmd::Command::new(path());
+    command.timeout(LIMIT);
+    command
+}
+
+/// Runs the program.
+pub fn run(arguments: &[&str]) -> Output {
+    eomgen().args(arguments).output().expect("the program can be run")
+}
+
+/// Runs the program, which must refuse with exit status 2; its message.
+pub fn refused(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    let message = text(&output.stderr);
+    let shown = arguments.join(" ");
+    assert_eq!(output.status.code(), Some(2), "{shown}: {message}");
+    assert!(message.contains("error"), "{shown}: {message}");
+    assert!(!message.contains("panicked"), "{shown}: {message}");
+    message
+}
+
+/// Runs the program, which must succeed; its standard output.
+pub fn accepted(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    let shown = arguments.join(" ");
+    assert_eq!(output.status.code(), Some(0), "{shown}: {}", text(&output.stderr));
+    text(&output.stdout)
+}
+
+/// Bytes as text.
+pub fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}

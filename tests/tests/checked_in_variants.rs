@@ -1,0 +1,134 @@
+//! The checked-in variants are what the generator emits, and compute bit for bit what the
+//! evaluator computes.
+
+use codegen::evaluator::{Evaluator, Point};
+use codegen::lower::lower;
+use codegen::rust::{Packaging, emit};
+use eomgen_tests::models::{load, project, samples, variant};
+use eomgen_tests::program::eomgen;
+
+/// States compared in each of the nine mesh regimes.
+const STATES_PER_REGIME: usize = 25;
+
+/// The seed of the states.
+const SEED: u64 = 0x5eed_0001;
+
+/// What a variant and the evaluator give at one state, one after the other: rates,
+/// observables, energy, power, guards, mass matrix.
+type Numbers = Vec<f64>;
+
+fn evaluated(evaluator: &mut Evaluator, point: Point<'_>) -> Numbers {
+    let program = evaluator.program();
+    let (states, degrees) = (program.states(), program.degrees_of_freedom());
+    let scalars = program.observables.len();
+    let guard_count = evaluator.guard_count();
+    let mut rates = vec![f64::NAN; states];
+    let mut observables = vec![f64::NAN; scalars];
+    let mut guards = vec![f64::NAN; guard_count];
+    let mut mass = vec![f64::NAN; degrees * degrees];
+    evaluator.rates(point, &mut rates);
+    evaluator.observables(point, &mut observables);
+    evaluator.guards(point, &mut guards);
+    evaluator.mass_matrix(point, &mut mass);
+    let energy_and_power = observables[scalars - 2..].to_vec();
+    [rates, observables, energy_and_power, guards, mass].concat()
+}
+
+/// A test that compares a module with the evaluator of its order.
+macro_rules! variants {
+    ($($module:ident: $order:literal;)*) => {
+        $(
+            #[test]
+            fn $module() {
+                use generated::$module as module;
+                assert_eq!(module::ORDERS, [$order]);
+                let coefficients = module::Coefficients::prepare(&module::Parameters::default());
+                let inputs = module::Inputs::default();
+                same_bits($order, &module::STATE_NAMES, &module::OBSERVABLE_NAMES, |t, state| {
+                    let state = state.try_into().expect("a state of this variant");
+                    [
+                        module::rates(t, state, &inputs, &coefficients).to_vec(),
+                        module::observables(t, state, &inputs, &coefficients).to_vec(),
+                        vec![
+                            module::energy(t, state, &inputs, &coefficients),
+                            module::power(t, state, &inputs, &coefficients),
+                        ],
+                        module::guards(t, state, &inputs, &coefficients).to_vec(),
+                        module::mass_matrix(t, state, &inputs, &coefficients).concat(),
+                    ]
+                    .concat()
+                });
+            }
+        )*
+
+        /// The modules and their orders.
+        const VARIANTS: &[(&str, usize)] = &[$((stringify!($module), $order)),*];
+    };
+}
+
+variants! {
+    planetary_arm_rigid: 0;
+    planetary_arm_order_1: 1;
+    planetary_arm_order_2: 2;
+    planetary_arm_order_3: 3;
+    planetary_arm_order_4: 4;
+    planetary_arm_order_5: 5;
+    planetary_arm_order_6: 6;
+    planetary_arm_order_7: 7;
+    planetary_arm_order_8: 8;
+}
+
+fn same_bits(
+    order: usize,
+    state_names: &[&str],
+    observable_names: &[&str],
+    emitted: impl Fn(f64, &[f64]) -> Numbers,
+) {
+    let model = load("planetary_arm");
+    let mut evaluator = variant(&model, order).evaluator;
+    assert_eq!(state_names, evaluator.program().state_names());
+    let named = evaluator.program().observables.iter().map(|observable| observable.name.as_str());
+    assert!(named.eq(observable_names.iter().copied()));
+    for sample in samples(&model, order, SEED + order as u64, STATES_PER_REGIME) {
+        let point = Point {
+            t: sample.time,
+            state: &sample.state,
+            inputs: &sample.inputs,
+        };
+        let expected = evaluated(&mut evaluator, point);
+        let found = emitted(sample.time, &sample.state);
+        assert!(expected.iter().all(|number| number.is_finite()), "{sample:?}: {expected:?}");
+        let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&expected), bits(&found), "{sample:?}: {expected:?} and {found:?}");
+    }
+}
+
+#[test]
+fn the_files_are_what_the_generator_emits() {
+    let model = load("planetary_arm");
+    let values = model.parameter_values().expect("the parameters have values");
+    for (module, order) in VARIANTS {
+        let program = lower(&model, &variant(&model, *order).equations, &values);
+        let emitted = emit(&program, Packaging::Module).expect("the program can be emitted");
+        let path = project().join(format!("generated/src/{module}.rs"));
+        let checked_in = std::fs::read_to_string(&path).expect("the variant is checked in");
+        let same = emitted == checked_in;
+        assert!(same, "{} differs: run `eomgen generate --all`", path.display());
+    }
+}
+
+#[test]
+fn the_program_finds_no_difference() {
+    let mut command = eomgen();
+    let output = command
+        .current_dir(project())
+        .args(["generate", "--all", "--check", "--json"])
+        .output()
+        .expect("the program can be run");
+    let document: serde_json::Value =
+        serde_json::from_slice(&output.stdout).expect("one JSON document");
+    assert_eq!(document["different"], serde_json::json!([]), "{document}");
+    // The nine variants and the list of modules.
+    assert_eq!(document["files"], VARIANTS.len() + 1);
+    assert_eq!(output.status.code(), Some(0));
+}
