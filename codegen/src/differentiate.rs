@@ -122,6 +122,10 @@ fn partial_derivatives(graph: &mut Graph, id: Id) -> Vec<(Id, Id)> {
             let skipped = graph.select(a, b, zero, one);
             vec![(then, taken), (otherwise, skipped)]
         }
+        Operation::PivotReciprocal(pivot) => {
+            let square = graph.integer_power(id, 2);
+            vec![(pivot, graph.negate(square))]
+        }
         _ => Vec::new(),
     }
 }

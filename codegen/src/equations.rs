@@ -139,7 +139,11 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         translator.graph.set_name(*node, &observable.name);
     }
     let coefficients = crate::coefficients::named(&mut translator, &accelerations)?;
-    let guards = guards(&mut translator.graph, &forces, &mass, &velocity_terms);
+    let mut moving = forces.nodes();
+    moving.extend(velocity_terms.nodes());
+    moving.extend(mass.scalars.iter().flatten());
+    moving.extend(accelerations.rows.nodes());
+    let guards = guards(&mut translator.graph, &moving);
     let modal_blocks = mass.assembled_blocks(&mut translator.graph);
     let definitions = translator.definition_nodes();
     Ok(Equations {
@@ -278,16 +282,24 @@ fn power(
 
 /// The distinct switching surfaces of everything the motion depends on, in the order in
 /// which the graph met them.
-fn guards(graph: &mut Graph, forces: &Rows, mass: &MassMatrix, velocity: &Rows) -> Vec<Guard> {
-    let mut roots = forces.nodes();
-    roots.extend(velocity.nodes());
-    roots.extend(mass.scalars.iter().flatten());
+fn guards(graph: &mut Graph, roots: &[Id]) -> Vec<Guard> {
     let mut found: Vec<Guard> = Vec::new();
-    for id in graph.reachable(&roots) {
+    for id in graph.reachable(roots) {
         if graph.dependence(id).is_prepared() {
             continue;
         }
-        let Operation::Call(function, arguments) = graph.operation(id).clone() else { continue };
+        let (function, arguments) = match graph.operation(id).clone() {
+            Operation::Call(function, arguments) => (function, arguments.to_vec()),
+            // The slope of the smaller or larger of two; that of the smaller is turned round.
+            Operation::Select { a, b, .. } => {
+                let turned = graph.subtract(b, a);
+                if found.iter().any(|guard| guard.value == turned) {
+                    continue;
+                }
+                (Function::Max, vec![a, b])
+            }
+            _ => continue,
+        };
         for value in surfaces(graph, function, &arguments) {
             if found.iter().all(|guard| guard.value != value) {
                 found.push(Guard { value, function });
@@ -307,6 +319,20 @@ fn surfaces(graph: &mut Graph, function: Function, arguments: &[Id]) -> Vec<Id> 
         (Function::Abs | Function::Sign, &[a]) => vec![a],
         _ => Vec::new(),
     }
+}
+
+/// The Jacobian of a vector whose elements are all the same scalar.
+fn equal_rows(
+    graph: &mut Graph,
+    derivative: &mut ModalDerivative,
+    scalar: Id,
+    rows: Space,
+    columns: Space,
+) -> StructuredMatrix {
+    let mut matrix = StructuredMatrix::zero(rows, columns);
+    let (one, gradient) = (graph.one(), derivative.gradient(graph, scalar));
+    matrix.add_outer(graph, one, gradient);
+    matrix
 }
 
 /// A node multiplied out where that is cheaper. Of a velocity term the rate of a momentum
@@ -424,7 +450,7 @@ impl Layout {
                 let momentum = momenta.modal[row];
                 blocks.push(match graph.shape(momentum) {
                     Shape::Vector(_) => derivative.jacobian(graph, momentum),
-                    _ => StructuredMatrix::zero(rows, Space::Modes(field)),
+                    _ => equal_rows(graph, &mut derivative, momentum, rows, Space::Modes(field)),
                 });
             }
         }

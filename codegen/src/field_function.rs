@@ -71,6 +71,9 @@ pub struct FieldFunction {
 /// The most terms an integrand may have when products of its sums are formed.
 const MAX_TERMS: usize = 4096;
 
+/// The highest power of s that is integrated by a table of its own.
+const MAX_MOMENT: u32 = 32;
+
 type Outcome<T> = Result<T, String>;
 
 impl FieldFunction {
@@ -121,8 +124,11 @@ impl FieldFunction {
         other: &Self,
     ) -> Outcome<Self> {
         match operator {
-            BinaryOperator::Add => self.plus(other.clone()),
-            BinaryOperator::Subtract => self.plus(other.clone().scaled(graph, -1.0)),
+            BinaryOperator::Add => self.plus(graph, other.clone()),
+            BinaryOperator::Subtract => {
+                let negated = other.clone().scaled(graph, -1.0);
+                self.plus(graph, negated)
+            }
             BinaryOperator::Multiply => self.times(graph, domain, other),
             BinaryOperator::Divide => match other.as_scalar() {
                 Some(scalar) => {
@@ -212,10 +218,10 @@ impl FieldFunction {
         }
     }
 
-    fn plus(&self, other: Self) -> Outcome<Self> {
+    fn plus(&self, graph: &mut Graph, other: Self) -> Outcome<Self> {
         let mut terms = self.terms.clone();
         terms.extend(other.terms);
-        bounded(terms)
+        bounded(collect_like_terms(graph, terms))
     }
 
     fn times(&self, graph: &mut Graph, domain: &Domain, other: &Self) -> Outcome<Self> {
@@ -237,9 +243,10 @@ impl FieldFunction {
                 };
                 let mut atoms = [a.atoms.clone(), b.atoms.clone()].concat();
                 atoms.sort();
+                let (power, weight) = within_moments(graph, domain, a.power + b.power, weight);
                 terms.push(Term {
                     scalar: graph.multiply(a.scalar, b.scalar),
-                    power: a.power + b.power,
+                    power,
                     weight,
                     atoms,
                 });
@@ -288,6 +295,22 @@ impl FieldFunction {
         }
         Ok(graph.combine(&terms))
     }
+}
+
+/// A power too high for a moment of its own becomes part of the weight.
+fn within_moments(
+    graph: &mut Graph,
+    domain: &Domain,
+    power: u32,
+    weight: Option<Id>,
+) -> (u32, Option<Id>) {
+    if power <= MAX_MOMENT {
+        return (power, weight);
+    }
+    let s = domain.table(graph, TableKind::NodePosition);
+    let mut factors = vec![(s, power as i32)];
+    factors.extend(weight.map(|weight| (weight, 1)));
+    (0, Some(graph.product(&factors)))
 }
 
 fn collect_like_terms(graph: &mut Graph, terms: Vec<Term>) -> Vec<Term> {

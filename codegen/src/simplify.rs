@@ -156,12 +156,12 @@ impl Graph {
 
     /// A product of integer powers. Laws: numeric factors move in front of the product,
     /// products inside are opened, (a^m)^n = a^(m n), equal factors are collected, a^0 = 1.
+    /// Where that would make an exponent too large products inside stay closed.
     pub fn product(&mut self, factors: &[(Id, i32)]) -> Id {
-        let mut number = 1.0;
-        let mut collected = BTreeMap::new();
-        for &(id, exponent) in factors {
-            self.collect_factor(&mut number, &mut collected, id, exponent);
-        }
+        let (number, mut collected) = match self.opened_factors(factors) {
+            Some(opened) => opened,
+            None => (1.0, closed_factors(factors)),
+        };
         collected.retain(|_, exponent| *exponent != 0);
         self.apply_piecewise_laws(&mut collected);
         if number == 0.0 {
@@ -176,27 +176,47 @@ impl Graph {
         self.scale(number, product)
     }
 
+    /// The number and the powers of a product; `None` if an exponent is too large.
+    fn opened_factors(&self, factors: &[(Id, i32)]) -> Option<(f64, BTreeMap<Id, i32>)> {
+        let mut number = 1.0;
+        let mut collected = BTreeMap::new();
+        for &(id, exponent) in factors {
+            self.collect_factor(&mut number, &mut collected, id, exponent)?;
+        }
+        Some((number, collected))
+    }
+
     fn collect_factor(
-        &mut self,
+        &self,
         number: &mut f64,
         into: &mut BTreeMap<Id, i32>,
         id: Id,
         exponent: i32,
-    ) {
-        match self.operation(id).clone() {
+    ) -> Option<()> {
+        if exponent.abs() > MAX_EXPONENT {
+            return None;
+        }
+        match self.operation(id) {
             Operation::Constant(bits) => *number *= power_of_number(bits.value(), exponent),
             Operation::Sum(terms) if terms.len() == 1 => {
                 let (factor, inner) = terms[0];
                 *number *= power_of_number(factor.value(), exponent);
-                self.collect_factor(number, into, inner, exponent);
+                self.collect_factor(number, into, inner, exponent)?;
             }
             Operation::Product(factors) => {
-                for &(inner, power) in &factors {
-                    self.collect_factor(number, into, inner, power * exponent);
+                for &(inner, power) in factors {
+                    self.collect_factor(number, into, inner, power.checked_mul(exponent)?)?;
                 }
             }
-            _ => *into.entry(id).or_insert(0) += exponent,
+            _ => {
+                let total = into.entry(id).or_insert(0);
+                *total += exponent;
+                if total.abs() > MAX_EXPONENT {
+                    return None;
+                }
+            }
         }
+        Some(())
     }
 
     /// Laws: contact^n = contact for n > 0, and deadzone(p, b)^n contact(p, b) =
@@ -381,6 +401,18 @@ impl Graph {
             vector,
         })
     }
+}
+
+/// The largest exponent that equal factors are collected to.
+const MAX_EXPONENT: i32 = 4096;
+
+/// The factors as they are, equal ones collected.
+fn closed_factors(factors: &[(Id, i32)]) -> BTreeMap<Id, i32> {
+    let mut collected = BTreeMap::new();
+    for &(id, exponent) in factors {
+        *collected.entry(id).or_insert(0) += exponent;
+    }
+    collected
 }
 
 /// value^exponent by repeated multiplication: `powi` may round differently elsewhere.

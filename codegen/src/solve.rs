@@ -4,7 +4,9 @@
 //! interface scalars (the deflection at a tip mass, say), so that with
 //! D a_q + Phi G (Phi^T a_q) + H^T a = f_q the modes cost O(S). The interface scalars
 //! y = Phi^T a_q stand as extra unknowns beside the coordinates in a small system, solved
-//! by elimination without pivoting in the order that counts fewest operations. Where the
+//! by elimination without pivoting in the order that counts fewest operations. Where G is
+//! not diagonal the interfaces are made orthogonal first, or a pivot could be negative
+//! although M is positive definite (see [`ModalBlock::orthogonalise`]). Where the
 //! basis is not orthogonal the modal block is dense and its Cholesky factor takes the
 //! place of D. Pivots must be positive: a reciprocal of one that is not is NaN.
 
@@ -125,8 +127,7 @@ enum ModalInverse {
 impl ModalInverse {
     fn new(graph: &mut Graph, mass: &MassMatrix, field: usize) -> Self {
         let block = &mass.modal[field][field];
-        if block.matrices.is_empty() {
-            let diagonal = block.diagonal.unwrap_or_else(|| graph.zero());
+        if let (Some(diagonal), true) = (block.diagonal, block.matrices.is_empty()) {
             let reciprocal = pivot_reciprocal(graph, diagonal);
             return Self::Diagonal {
                 diagonal,
@@ -174,7 +175,12 @@ struct Interface {
     shape: Id,
     /// D^-1 shape
     solved: Id,
+    /// shape^T D^-1 shape, before the interfaces are made orthogonal
+    square: Id,
 }
+
+/// Of a combination of other interfaces rounding leaves about 1e-32 of the square.
+const LEAST_SHARE: f64 = 1e-20;
 
 /// The modal block: an inverse per field, and interfaces with their weights G.
 struct ModalBlock {
@@ -208,7 +214,70 @@ impl ModalBlock {
                 }
             }
         }
+        if !block.weights_are_diagonal(graph) {
+            for field in 0..fields {
+                block.orthogonalise(graph, field);
+            }
+        }
         block
+    }
+
+    fn weights_are_diagonal(&self, graph: &Graph) -> bool {
+        self.weights.iter().enumerate().all(|(row, weights)| {
+            let beside = |(column, weight): (usize, &Id)| row == column || graph.is_zero(*weight);
+            weights.iter().enumerate().all(beside)
+        })
+    }
+
+    /// Makes the interfaces of a field orthogonal by D^-1 (Gram-Schmidt), each keeping its
+    /// own direction: phi_k = psi_k + sum over j < k of mu_kj psi_j, G' = U G U^T with
+    /// U_jk = mu_kj.
+    ///
+    /// The pivots of I + C G, C = Phi^T D^-1 Phi, are ratios of its leading minors. With C
+    /// diagonal these are the minors of the symmetric I + C^1/2 G C^1/2, all positive if
+    /// the modal block is positive definite. With any other C they need not be: for a mass
+    /// on a lever between two points of a beam the first can be negative.
+    fn orthogonalise(&mut self, graph: &mut Graph, field: usize) {
+        let places: Vec<usize> =
+            (0..self.interfaces.len()).filter(|place| self.interfaces[*place].field == field).collect();
+        for (count, &place) in places.iter().enumerate() {
+            let shares: Vec<(usize, Id)> = places[..count]
+                .iter()
+                .map(|&earlier| (earlier, self.share(graph, place, earlier)))
+                .collect();
+            let mut terms = vec![(1.0, self.interfaces[place].shape)];
+            for &(earlier, share) in &shares {
+                terms.push((-1.0, graph.multiply(share, self.interfaces[earlier].shape)));
+                self.move_weight(graph, place, earlier, share);
+            }
+            let shape = graph.combine(&terms);
+            self.interfaces[place].shape = shape;
+            self.interfaces[place].solved = self.solve_field(graph, field, shape);
+        }
+    }
+
+    /// mu: how much of the orthogonal interface `earlier` is in the interface `place`; 0 if
+    /// `earlier` was a combination of others, which leaves nothing but rounding of it.
+    fn share(&self, graph: &mut Graph, place: usize, earlier: usize) -> Id {
+        let (own, other) = (&self.interfaces[place], &self.interfaces[earlier]);
+        let product = inner_product(graph, own.field, own.shape, other.solved);
+        let square = inner_product(graph, own.field, other.shape, other.solved);
+        let share = graph.divide(product, square);
+        let least = graph.scale(LEAST_SHARE, other.square);
+        let zero = graph.zero();
+        graph.select(square, least, share, zero)
+    }
+
+    /// The weights after phi_place = psi + share psi_earlier.
+    fn move_weight(&mut self, graph: &mut Graph, place: usize, earlier: usize, share: Id) {
+        for column in 0..self.interfaces.len() {
+            let moved = graph.multiply(share, self.weights[place][column]);
+            self.weights[earlier][column] = graph.add(self.weights[earlier][column], moved);
+        }
+        for row in 0..self.interfaces.len() {
+            let moved = graph.multiply(share, self.weights[row][place]);
+            self.weights[row][earlier] = graph.add(self.weights[row][earlier], moved);
+        }
     }
 
     /// Spreads u v^T over interfaces: scalar factors go into the weights.
@@ -233,10 +302,12 @@ impl ModalBlock {
             return known;
         }
         let solved = self.inverses[field].as_ref()?.apply(graph, shape);
+        let square = inner_product(graph, field, shape, solved);
         self.interfaces.push(Interface {
             field,
             shape,
             solved,
+            square,
         });
         let zero = graph.zero();
         for row in &mut self.weights {

@@ -34,7 +34,7 @@ impl Named {
     }
 
     /// All coefficients at a time, by name: one number, one per mode, or modes by modes.
-    fn at(&mut self, sample: &Sample) -> impl Fn(&str) -> Vec<f64> {
+    fn at(&mut self, sample: &Sample) -> impl Fn(&str) -> Vec<f64> + use<> {
         let point = Point {
             t: sample.time,
             state: &sample.state,
@@ -104,7 +104,7 @@ fn the_named_coefficients_are_those_of_equation_22() {
                 assert!(deviation <= TOLERANCE, "{name}: {found:e} for {expected:e}");
             }
         }
-        assert_eq!(named.names.len(), 27, "{:?}", named.names);
+        assert_eq!(named.names.len(), 28, "{:?}", named.names);
     }
 }
 

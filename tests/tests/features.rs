@@ -50,6 +50,8 @@ features! {
     mass_by_sum: [1, 4];
     sum_with_coordinate: [1, 4];
     massless_beam: [1];
+    massless_beam_by_sum: [1];
+    folding_arm: [0, 1, 2, 4];
     functions: [0];
     shorter_functions: [0];
     nonquadratic_kinetic: [0];

@@ -67,7 +67,7 @@ impl Range {
         let least = if magnitude < 1e-100 {
             1.0
         } else {
-            1e-6 * magnitude
+            1e-9 * magnitude
         };
         if self.high - self.low >= least {
             return self;
