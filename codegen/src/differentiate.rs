@@ -276,6 +276,17 @@ impl ModalDerivative {
         result
     }
 
+    /// The Jacobian of a vector, or of the scalar that stands for each of its elements.
+    pub fn of_elements(&mut self, graph: &mut Graph, id: Id, rows: Space) -> StructuredMatrix {
+        if graph.shape(id) != Shape::Scalar {
+            return self.jacobian(graph, id);
+        }
+        let mut matrix = StructuredMatrix::zero(rows, self.space);
+        let (one, gradient) = (graph.one(), self.gradient(graph, id));
+        matrix.add_outer(graph, one, gradient);
+        matrix
+    }
+
     fn compute_jacobian(&mut self, graph: &mut Graph, id: Id) -> StructuredMatrix {
         let rows = match graph.shape(id) {
             Shape::Vector(space) => space,
@@ -293,6 +304,9 @@ impl ModalDerivative {
         } = *graph.operation(id)
         {
             return self.jacobian(graph, vector).applied(graph, matrix, transposed);
+        }
+        if let Operation::CholeskySolve(factor, right) = *graph.operation(id) {
+            return self.of_elements(graph, right, rows).solved(graph, factor);
         }
         for (operand, partial) in partial_derivatives(graph, id) {
             match graph.shape(operand) {

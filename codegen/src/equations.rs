@@ -321,20 +321,6 @@ fn surfaces(graph: &mut Graph, function: Function, arguments: &[Id]) -> Vec<Id> 
     }
 }
 
-/// The Jacobian of a vector whose elements are all the same scalar.
-fn equal_rows(
-    graph: &mut Graph,
-    derivative: &mut ModalDerivative,
-    scalar: Id,
-    rows: Space,
-    columns: Space,
-) -> StructuredMatrix {
-    let mut matrix = StructuredMatrix::zero(rows, columns);
-    let (one, gradient) = (graph.one(), derivative.gradient(graph, scalar));
-    matrix.add_outer(graph, one, gradient);
-    matrix
-}
-
 /// A node multiplied out where that is cheaper. Of a velocity term the rate of a momentum
 /// and the slope of the kinetic energy share terms that cancel, but often only inside
 /// products: d/dt(dv/dq') = dv/dq for the rate v of anything that depends on coordinates.
@@ -448,10 +434,7 @@ impl Layout {
             for (row, blocks) in modal.iter_mut().enumerate() {
                 let rows = Space::Modes(row);
                 let momentum = momenta.modal[row];
-                blocks.push(match graph.shape(momentum) {
-                    Shape::Vector(_) => derivative.jacobian(graph, momentum),
-                    _ => equal_rows(graph, &mut derivative, momentum, rows, Space::Modes(field)),
-                });
+                blocks.push(derivative.of_elements(graph, momentum, rows));
             }
         }
         MassMatrix {

@@ -345,7 +345,11 @@ fn matrix_step(out: &mut [f64], extent: Extent, operands: &Operands<'_>, op: &Op
         }
         Op::CholeskySolve(factor, vector) => {
             let (factor, size, _) = operands.matrix(*factor);
-            cholesky_solve(out, factor, size, operands.strided(*vector));
+            let (right, stride) = operands.strided(*vector);
+            let columns = if let Extent::Matrix(_, columns) = extent { columns } else { 1 };
+            for column in 0..columns {
+                cholesky_solve(out, (column, columns), factor, size, (right, stride * columns));
+            }
         }
         _ => out.fill(f64::NAN),
     }
@@ -492,13 +496,24 @@ fn cholesky(out: &mut [f64], matrix: &[f64], size: usize) {
     }
 }
 
-fn cholesky_solve(out: &mut [f64], factor: &[f64], size: usize, (vector, stride): (&[f64], usize)) {
+/// Column `column` of the right side, solved into the same column of `out`; both hold
+/// `columns` numbers in a row, the right side possibly one number for all rows.
+fn cholesky_solve(
+    out: &mut [f64],
+    (column, columns): (usize, usize),
+    factor: &[f64],
+    size: usize,
+    (right, stride): (&[f64], usize),
+) {
+    let at = |r: usize| r * columns + column;
     for r in 0..size {
-        let rest = (0..r).fold(vector[r * stride], |rest, k| rest - factor[r * size + k] * out[k]);
-        out[r] = rest / factor[r * size + r];
+        let rest = (0..r).fold(right[r * stride + column], |rest, k| {
+            rest - factor[r * size + k] * out[at(k)]
+        });
+        out[at(r)] = rest / factor[r * size + r];
     }
     for r in (0..size).rev() {
-        let rest = (r + 1..size).fold(out[r], |rest, k| rest - factor[k * size + r] * out[k]);
-        out[r] = rest / factor[r * size + r];
+        let rest = (r + 1..size).fold(out[at(r)], |rest, k| rest - factor[k * size + r] * out[at(k)]);
+        out[at(r)] = rest / factor[r * size + r];
     }
 }

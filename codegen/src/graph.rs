@@ -129,7 +129,8 @@ pub enum Operation {
     /// The lower Cholesky factor of a symmetric positive definite matrix. A pivot that
     /// is not positive makes the factor NaN.
     Cholesky(Id),
-    /// The solution of a system by its Cholesky factor.
+    /// The solution of a system by its Cholesky factor; the right side is a vector, a scalar
+    /// that stands for one, or a matrix.
     CholeskySolve(Id, Id),
     /// The reciprocal of a pivot, NaN where it is not positive.
     PivotReciprocal(Id),
@@ -361,7 +362,15 @@ impl Graph {
             },
             Operation::Assemble(assembly) => Shape::Matrix(assembly.rows, assembly.columns),
             Operation::Cholesky(matrix) => self.shape(*matrix),
-            Operation::CholeskySolve(_, vector) => self.shape(*vector),
+            Operation::CholeskySolve(factor, right) => {
+                match (self.shape(*factor), self.shape(*right)) {
+                    (Shape::Matrix(rows, _), Shape::Matrix(_, columns)) => {
+                        Shape::Matrix(rows, columns)
+                    }
+                    (Shape::Matrix(rows, _), _) => Shape::Vector(rows),
+                    (other, _) => other,
+                }
+            }
             Operation::Sum(_)
             | Operation::Product(_)
             | Operation::Call(..)

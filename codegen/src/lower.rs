@@ -7,6 +7,7 @@
 use std::collections::HashMap;
 
 use model_spec::model::{Model, ParameterValue};
+use model_spec::unit::Unit;
 
 use crate::equations::{Equations, Rows};
 use crate::graph::{Assembly, Graph, Id, Operation, Shape};
@@ -101,6 +102,11 @@ fn quantity(name: &str, unit: &str, doc: &str) -> Quantity {
     }
 }
 
+/// A unit as it is written in the specification, or its SI equivalent.
+fn si_unit(unit: &Unit) -> String {
+    if unit.is_coherent() { unit.text.clone() } else { unit.dimension.to_string() }
+}
+
 fn program_parameters(model: &Model, values: &[f64]) -> Vec<ProgramParameter> {
     model
         .parameters
@@ -108,11 +114,7 @@ fn program_parameters(model: &Model, values: &[f64]) -> Vec<ProgramParameter> {
         .zip(values)
         .filter(|(parameter, _)| matches!(parameter.value, ParameterValue::Number(_)))
         .map(|(parameter, value)| ProgramParameter {
-            quantity: quantity(
-                &parameter.name,
-                &parameter.unit.dimension.to_string(),
-                &parameter.doc,
-            ),
+            quantity: quantity(&parameter.name, &si_unit(&parameter.unit), &parameter.doc),
             origin: parameter.origin.clone(),
             value: *value,
         })
@@ -123,7 +125,7 @@ fn program_observables(model: &Model) -> Vec<Quantity> {
     let mut all: Vec<Quantity> = model
         .observables
         .iter()
-        .map(|o| quantity(&o.name, &o.unit.dimension.to_string(), &o.doc))
+        .map(|o| quantity(&o.name, &si_unit(&o.unit), &o.doc))
         .collect();
     all.push(quantity("energy", "J", "kinetic plus potential energy"));
     all.push(quantity(

@@ -124,6 +124,30 @@ impl StructuredMatrix {
         result
     }
 
+    /// The solution of a system by its Cholesky factor with this as the right side.
+    pub fn solved(&self, graph: &mut Graph, factor: Id) -> Self {
+        let mut result = Self::zero(self.rows, self.columns);
+        for &(u, v) in &self.outer {
+            let solved = graph.cholesky_solve(factor, u);
+            result.add_outer(graph, solved, v);
+        }
+        let rest = Self {
+            outer: Vec::new(),
+            ..self.clone()
+        };
+        if !rest.is_zero() {
+            let right = rest.assemble(graph);
+            let (one, matrix) = (graph.one(), graph.cholesky_solve(factor, right));
+            result.matrices.push(ScaledMatrix {
+                row: one,
+                matrix,
+                transposed: false,
+                column: one,
+            });
+        }
+        result
+    }
+
     /// The row vector of column sums: the gradient of the total of a vector whose
     /// Jacobian this is.
     pub fn column_totals(&self, graph: &mut Graph) -> Id {

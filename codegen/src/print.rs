@@ -84,7 +84,9 @@ fn latex_name(name: &str) -> String {
         _ if head.len() > 1 => format!("\\mathrm{{{head}}}"),
         _ => head.to_owned(),
     };
-    let rest: Vec<&str> = parts.collect();
+    let rest: Vec<String> = parts
+        .map(|part| if GREEK.contains(&part) { format!("\\{part}") } else { part.to_owned() })
+        .collect();
     if rest.is_empty() { head } else { format!("{head}_{{{}}}", rest.join(",")) }
 }
 

@@ -133,7 +133,7 @@ pub enum Op {
     /// Lower Cholesky factor, row by row; the upper part is 0. A pivot that is not
     /// positive gives NaN.
     Cholesky(ValueId),
-    /// Forward, then backward substitution with a Cholesky factor.
+    /// Forward, then backward substitution with a Cholesky factor, column by column.
     CholeskySolve(ValueId, ValueId),
 }
 

@@ -116,7 +116,7 @@ pub struct Parameters {
     pub b_m: f64,
     /// amplitude of the torque ripple \[N m] (assumed)
     pub F_w: f64,
-    /// frequency of the torque ripple, 10 pi \[1/s] (one of the paper's: 5 pi, 10 pi)
+    /// frequency of the torque ripple, 10 pi \[rad/s] (one of the paper's: 5 pi, 10 pi)
     pub omega: f64,
 }
 impl Default for Parameters {
@@ -452,11 +452,11 @@ pub fn rates(
 
 /// The observables, in the order of [`OBSERVABLE_NAMES`]:
 ///
-/// - `theta_s`: angle of the sun \[1]
-/// - `theta_p`: angle of the planets \[1]
-/// - `theta_c`: angle of the carrier \[1]
+/// - `theta_s`: angle of the sun \[rad]
+/// - `theta_p`: angle of the planets \[rad]
+/// - `theta_c`: angle of the carrier \[rad]
 /// - `tip`: deflection of the arm's end, w(l, t) \[m]
-/// - `dtheta`: error of the angle by backlash, Eq. (23) \[1]
+/// - `dtheta`: error of the angle by backlash, Eq. (23) \[rad]
 /// - `f_la`: positioning error as Eq. (24) prints it \[m]
 /// - `f_la_signed`: positioning error: dtheta is a lag, w a lead \[m]
 /// - `F_sp`: force of one sun-planet mesh \[N]

@@ -139,7 +139,7 @@ fn figure(variant: &Variant, table: &Table) -> Outcome<String> {
             references,
         })
     };
-    let limits = [("+b_sp", backlash), ("-b_sp", -backlash)];
+    let limits = [("+b_sp", backlash), ("−b_sp", -backlash)];
     let references = limits
         .iter()
         .map(|(label, value)| Reference {

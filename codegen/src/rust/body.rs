@@ -307,6 +307,9 @@ impl<'a> Body<'a> {
                     }
                 });
             }
+            Op::CholeskySolve(..) => {
+                return Err(EmitError::Syntax("a solved matrix stands in no emitted stage".to_owned()));
+            }
             block => self.assemble(&name, (&rows, &columns), &block)?,
         }
         self.bound.insert(id, name);
@@ -538,8 +541,12 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// A vector as a whole array, copied where it is none.
+    /// A vector as a whole array, copied where it is none; a scalar stands for every element.
     fn vector_array(&mut self, id: ValueId, length: &Literal) -> Emitted<TokenStream> {
+        if self.program.value(id).extent == Extent::Scalar {
+            let value = self.scalar(id)?;
+            return Ok(quote!([#value; #length]));
+        }
         if let Ok(array) = self.array(id) {
             return Ok(array);
         }

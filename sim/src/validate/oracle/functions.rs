@@ -31,7 +31,7 @@ where
         Function::Atan => x.atan(),
         Function::Sinh => x.sinh(),
         Function::Cosh => x.cosh(),
-        Function::Tanh => x.tanh(),
+        Function::Tanh => tanh(x),
         Function::Exp => x.exp(),
         Function::Ln => x.ln(),
         Function::Sqrt => x.sqrt(),
@@ -105,6 +105,23 @@ where
         base.powi(exponent as i32)
     } else {
         base.powf(exponent)
+    }
+}
+
+/// The hyperbolic tangent. The quotient of sinh and cosh overflows for large arguments,
+/// where the function is 1 with derivatives below the smallest rounding of anything else.
+fn tanh<N>(x: N) -> N
+where
+    N: DualNum<Primitive = f64> + Copy,
+{
+    let side = sign(x.re());
+    match x.re().abs() {
+        magnitude if magnitude < 1.0 => x.tanh(),
+        magnitude if magnitude < 40.0 => {
+            let growing = (x * (2.0 * side)).exp();
+            (N::one() - (growing + 1.0).recip() * 2.0) * side
+        }
+        _ => N::from(side),
     }
 }
 
