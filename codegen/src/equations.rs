@@ -5,7 +5,7 @@
 use model_spec::model::{Function, Model, ParameterValue, Term};
 
 use crate::differentiate::{Direction, ModalDerivative, by_scalar};
-use crate::graph::{Graph, Id, Operation, Shape, Space};
+use crate::graph::{Graph, Id, Operation, Space};
 use crate::expand::{MOST_EXPANSIONS, expand_once};
 use crate::matrix::StructuredMatrix;
 use crate::solve::{Accelerations, count_operations, solve};

@@ -5,6 +5,7 @@ use model_spec::model::Model;
 
 use crate::reference::closed_forms::{self, Situation};
 use crate::reference::equation_22::{Coefficients, Equation22};
+use crate::reference::equation_10::{self, ShaftMotion};
 use crate::reference::{Evaluation, PlanetaryArmParameters, equation_12};
 use crate::validate::certify::Reference;
 
@@ -35,15 +36,22 @@ pub fn references(model: &Model, order: usize, values: &[f64]) -> Vec<Reference>
     closed_form(model, order, values).into_iter().collect()
 }
 
-/// Eq. (12) for the rigid arm; Eq. (22) in SI and in the paper's scales for the flexible one.
+/// Eq. (12) and Eq. (10) for the rigid arm; Eq. (22) in SI and in the paper's scales for the flexible one.
 fn arm(parameters: PlanetaryArmParameters, order: usize) -> Vec<Reference> {
     if order == 0 {
-        return vec![reference("equation_12", move |t, state, _, accelerations| {
-            match <&[f64; 6]>::try_from(state) {
-                Ok(state) => equation_12::corrected(&parameters, t, state).deviation(accelerations),
-                Err(_) => f64::INFINITY,
-            }
-        })];
+        return vec![
+            reference("equation_12", move |t, state, _, accelerations| {
+                match <&[f64; 6]>::try_from(state) {
+                    Ok(state) => equation_12::corrected(&parameters, t, state).deviation(accelerations),
+                    Err(_) => f64::INFINITY,
+                }
+            }),
+            reference("equation_10", move |t, state, _, accelerations| {
+                shaft_motion(&parameters, state, accelerations).map_or(f64::INFINITY, |motion| {
+                    equation_10::corrected(&parameters, t, &motion).worst()
+                })
+            }),
+        ];
     }
     let coefficients = Coefficients::new(&parameters, order);
     let mut found = vec![reference("equation_22", move |t, state, _, accelerations| {
@@ -53,6 +61,30 @@ fn arm(parameters: PlanetaryArmParameters, order: usize) -> Vec<Reference> {
     })];
     found.extend(scaled(&parameters, order));
     found
+}
+
+/// The shafts' angles, rates and accelerations, Eq. (1) to (5).
+fn shaft_motion(
+    parameters: &PlanetaryArmParameters,
+    state: &[f64],
+    accelerations: &[f64],
+) -> Option<ShaftMotion> {
+    let state = <&[f64; 6]>::try_from(state).ok()?;
+    let [a, b, c] = *<&[f64; 3]>::try_from(accelerations).ok()?;
+    let shafts = |x_sp: f64, x_pr: f64, x_c: f64| {
+        [
+            (x_sp + x_pr + 2.0 * x_c) / parameters.r_s(),
+            (x_pr + x_c) / parameters.r_p(),
+            x_c / parameters.r_c_cos_alpha(),
+        ]
+    };
+    Some(ShaftMotion {
+        // Nothing depends on where the arm points. Angles of a turned arm would cost the mesh
+        // deflections, differences of a micrometre, six digits.
+        angle: shafts(state[0], state[1], 0.0),
+        rate: shafts(state[3], state[4], state[5]),
+        acceleration: shafts(a, b, c),
+    })
 }
 
 /// Eq. (22) in dimensionless form; its order is fixed when it is compiled.

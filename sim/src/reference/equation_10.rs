@@ -5,7 +5,7 @@
 //! word beside the corrected one. The angles lose digits where the meshes are nearly
 //! closed; for simulation use [`super::equation_12`].
 
-use super::evaluation::Row;
+use super::evaluation::{Row, relative};
 use super::mesh::{f_c, f_k};
 use super::parameters::PlanetaryArmParameters;
 
@@ -27,6 +27,14 @@ pub struct Residuals {
     pub residual: [f64; 3],
     /// The largest term summed in each row, the scale of its rounding.
     pub scale: [f64; 3],
+}
+
+impl Residuals {
+    /// The largest residual relative to its row's scale; infinite if one is not a number.
+    pub fn worst(&self) -> f64 {
+        let rows = self.residual.iter().zip(&self.scale);
+        rows.map(|(residual, scale)| relative(*residual, *scale)).fold(0.0, f64::max)
+    }
 }
 
 /// Eq. (10), corrected: the sun is loaded by its own mesh only, the carrier by the sum
