@@ -153,7 +153,11 @@ pub struct Simulate {
     #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
     /// Simulated time, in s. With --record the record's by default.
-    #[arg(long, allow_negative_numbers = true, required_unless_present = "record")]
+    #[arg(
+        long,
+        allow_negative_numbers = true,
+        required_unless_present = "record"
+    )]
     pub until: Option<f64>,
     /// The file to write: CSV, or Parquet if its name ends in `.parquet`.
     #[arg(long)]

@@ -24,14 +24,18 @@ pub fn encode(names: &[String], columns: &[Vec<f64>]) -> Result<Vec<u8>, Parquet
                 .map(Arc::new)
         })
         .collect::<Result<Vec<_>, _>>()?;
-    let schema = Type::group_type_builder("trajectory").with_fields(fields).build()?;
+    let schema = Type::group_type_builder("trajectory")
+        .with_fields(fields)
+        .build()?;
     let mut bytes = Vec::new();
     let properties = Arc::new(WriterProperties::builder().build());
     let mut file = SerializedFileWriter::new(&mut bytes, Arc::new(schema), properties)?;
     let mut group = file.next_row_group()?;
     for column in columns {
         if let Some(mut writer) = group.next_column()? {
-            writer.typed::<DoubleType>().write_batch(column, None, None)?;
+            writer
+                .typed::<DoubleType>()
+                .write_batch(column, None, None)?;
             writer.close()?;
         }
     }

@@ -52,9 +52,7 @@ impl Problem {
     pub fn report(&self) -> ExitCode {
         let text = match self {
             Self::Input(message) => format!("error: {message}"),
-            Self::Specification(diagnostics) => {
-                diagnostics.render(std::io::stderr().is_terminal())
-            }
+            Self::Specification(diagnostics) => diagnostics.render(std::io::stderr().is_terminal()),
             Self::Failed => return ExitCode::from(1),
         };
         warn(&text);

@@ -23,7 +23,8 @@ impl Bar {
     /// A bar for `whole` units of work.
     pub fn new(what: &'static str, whole: f64, unit: &str) -> Self {
         let bar = ProgressBar::with_draw_target(Some(PARTS as u64), ProgressDrawTarget::hidden());
-        let template = format!("{{msg}} [{{bar:40}}] {{percent}} % of {whole} {unit}, {{eta}} left");
+        let template =
+            format!("{{msg}} [{{bar:40}}] {{percent}} % of {whole} {unit}, {{eta}} left");
         if let Ok(style) = ProgressStyle::with_template(&template) {
             bar.set_style(style);
         }

@@ -7,7 +7,8 @@ use crate::problem::{Outcome, Problem};
 
 /// Whether a path asks for Parquet.
 fn is_parquet(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"))
+    path.extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("parquet"))
 }
 
 /// Named columns of numbers.
@@ -52,12 +53,20 @@ impl Table {
 
     /// Numbers with the fewest digits that give them back exactly.
     fn csv(&self) -> Outcome<Vec<u8>> {
-        let failed = |error: &dyn std::fmt::Display| Problem::input(format!("cannot write CSV: {error}"));
+        let failed =
+            |error: &dyn std::fmt::Display| Problem::input(format!("cannot write CSV: {error}"));
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(&self.names).map_err(|error| failed(&error))?;
+        writer
+            .write_record(&self.names)
+            .map_err(|error| failed(&error))?;
         for row in 0..self.rows() {
-            let fields = self.columns.iter().map(|column| format!("{:?}", column[row]));
-            writer.write_record(fields).map_err(|error| failed(&error))?;
+            let fields = self
+                .columns
+                .iter()
+                .map(|column| format!("{:?}", column[row]));
+            writer
+                .write_record(fields)
+                .map_err(|error| failed(&error))?;
         }
         writer.into_inner().map_err(|error| failed(&error))
     }

@@ -52,7 +52,10 @@ fn one(
     };
     let multiplied = translator.node(by)?;
     let factor = factor_of(&mut translator.graph, acceleration, multiplied);
-    let times = times.as_ref().map(|expr| translator.node(expr)).transpose()?;
+    let times = times
+        .as_ref()
+        .map(|expr| translator.node(expr))
+        .transpose()?;
     let value = match times {
         Some(times) => scale_factor(&mut translator.graph, times, factor),
         None => factor,
@@ -122,7 +125,11 @@ fn factor_of(graph: &mut Graph, row: Id, by: Id) -> Id {
 /// The derivative by a node taken as a variable of its own.
 fn by_node(graph: &mut Graph, id: Id, variable: Id) -> Id {
     let zero = |graph: &mut Graph, leaf: Id| {
-        if leaf == variable { graph.one() } else { graph.zero() }
+        if leaf == variable {
+            graph.one()
+        } else {
+            graph.zero()
+        }
     };
     let mut direction = Direction::new(&zero);
     let one = graph.one();

@@ -24,7 +24,11 @@ fn degree(graph: &Graph, id: Id, known: &mut HashMap<Id, Option<i32>>) -> Option
         Operation::Sum(terms) => {
             let mut degrees = terms.iter().map(|(_, term)| degree(graph, *term, known));
             let first = degrees.next().flatten();
-            if degrees.all(|other| other == first) { first } else { None }
+            if degrees.all(|other| other == first) {
+                first
+            } else {
+                None
+            }
         }
         Operation::Product(factors) => factors
             .iter()

@@ -32,7 +32,9 @@ fn formula(program: &Program, id: ValueId, root: bool, depth: usize) -> String {
     let part = |id: ValueId| formula(program, id, false, depth + 1);
     let atom = |id: ValueId| {
         let text = part(id);
-        let simple = text.chars().all(|c| c.is_ascii_alphanumeric() || "_.'".contains(c));
+        let simple = text
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || "_.'".contains(c));
         if simple { text } else { format!("({text})") }
     };
     match &value.op {
@@ -42,7 +44,11 @@ fn formula(program: &Program, id: ValueId, root: bool, depth: usize) -> String {
         Op::Negate(a) => format!("-{}", atom(*a)),
         Op::Add(a, b) => format!("{} + {}", part(*a), part(*b)),
         Op::Subtract(a, b) => format!("{} - {}", part(*a), atom(*b)),
-        Op::Multiply(a, b) => format!("{}*{}", factor(program, *a, depth), factor(program, *b, depth)),
+        Op::Multiply(a, b) => format!(
+            "{}*{}",
+            factor(program, *a, depth),
+            factor(program, *b, depth)
+        ),
         Op::Divide(a, b) => format!("{}/{}", factor(program, *a, depth), atom(*b)),
         Op::Power(a, b) => format!("{}^{}", atom(*a), atom(*b)),
         Op::Call(function, arguments) => {
@@ -64,6 +70,9 @@ fn formula(program: &Program, id: ValueId, root: bool, depth: usize) -> String {
 fn factor(program: &Program, id: ValueId, depth: usize) -> String {
     let text = formula(program, id, false, depth + 1);
     let compound = program.value(id).name.is_none()
-        && matches!(program.value(id).op, Op::Add(..) | Op::Subtract(..) | Op::Negate(_));
+        && matches!(
+            program.value(id).op,
+            Op::Add(..) | Op::Subtract(..) | Op::Negate(_)
+        );
     if compound { format!("({text})") } else { text }
 }

@@ -83,7 +83,11 @@ impl<'a> Direction<'a> {
 /// The derivative of a node by a scalar leaf.
 pub fn by_scalar(graph: &mut Graph, id: Id, variable: Id) -> Id {
     let tangent = |graph: &mut Graph, leaf: Id| {
-        if leaf == variable { graph.one() } else { graph.zero() }
+        if leaf == variable {
+            graph.one()
+        } else {
+            graph.zero()
+        }
     };
     Direction::new(&tangent).derivative(graph, id)
 }
@@ -156,7 +160,11 @@ fn function_derivatives(
         }
         (Function::Min | Function::Max, &[a, b]) => {
             let (zero, one) = (graph.zero(), graph.one());
-            let (high, low) = if function == Function::Max { (a, b) } else { (b, a) };
+            let (high, low) = if function == Function::Max {
+                (a, b)
+            } else {
+                (b, a)
+            };
             let first = graph.select(high, low, one, zero);
             let second = graph.select(high, low, zero, one);
             vec![(a, first), (b, second)]
@@ -194,7 +202,11 @@ fn derivative_of_function(graph: &mut Graph, id: Id, function: Function, a: Id) 
             let rest = graph.subtract(one, argument);
             let root = graph.call(Function::Sqrt, &[rest]);
             let slope = graph.integer_power(root, -1);
-            if function == Function::Acos { graph.negate(slope) } else { slope }
+            if function == Function::Acos {
+                graph.negate(slope)
+            } else {
+                slope
+            }
         }
         Function::Atan => {
             let argument = square(graph, a);
@@ -303,7 +315,9 @@ impl ModalDerivative {
             vector,
         } = *graph.operation(id)
         {
-            return self.jacobian(graph, vector).applied(graph, matrix, transposed);
+            return self
+                .jacobian(graph, vector)
+                .applied(graph, matrix, transposed);
         }
         if let Operation::CholeskySolve(factor, right) = *graph.operation(id) {
             return self.of_elements(graph, right, rows).solved(graph, factor);

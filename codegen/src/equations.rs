@@ -5,8 +5,8 @@
 use model_spec::model::{Function, Model, ParameterValue, Term};
 
 use crate::differentiate::{Direction, ModalDerivative, by_scalar};
-use crate::graph::{Graph, Id, Operation, Space};
 use crate::expand::{MOST_EXPANSIONS, expand_once};
+use crate::graph::{Graph, Id, Operation, Space};
 use crate::matrix::StructuredMatrix;
 use crate::solve::{Accelerations, count_operations, solve};
 use crate::translate::{DeriveError, Derived, Translator, along_motion};
@@ -129,7 +129,15 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     let right_side = layout.difference(&mut translator.graph, &forces, &velocity_terms);
     let accelerations = solve(&mut translator.graph, &mass, &right_side);
     name_accelerations(&mut translator.graph, model, &accelerations);
-    let power = power(&mut translator.graph, &layout, kinetic, potential, &applied, &momenta, &accelerations);
+    let power = power(
+        &mut translator.graph,
+        &layout,
+        kinetic,
+        potential,
+        &applied,
+        &momenta,
+        &accelerations,
+    );
     let observables = model
         .observables
         .iter()
@@ -171,10 +179,16 @@ fn name_mass_matrix(graph: &mut Graph, model: &Model, mass: &MassMatrix) {
     for (row, entries) in mass.scalars.iter().enumerate() {
         let name = &model.coordinates[row].name;
         for (column, entry) in entries.iter().enumerate().skip(row) {
-            graph.suggest_name(*entry, &format!("M_{name}_{}", model.coordinates[column].name));
+            graph.suggest_name(
+                *entry,
+                &format!("M_{name}_{}", model.coordinates[column].name),
+            );
         }
         for (field, entry) in mass.coupling[row].iter().enumerate() {
-            graph.suggest_name(*entry, &format!("M_{name}_{}", model.fields[field].coordinates));
+            graph.suggest_name(
+                *entry,
+                &format!("M_{name}_{}", model.fields[field].coordinates),
+            );
         }
     }
 }
@@ -213,7 +227,9 @@ fn total_of(
     let mut nodes = Vec::with_capacity(terms.len());
     for term in terms {
         let node = translator.node(&term.value)?;
-        translator.graph.suggest_name(node, &format!("{symbol}_{}", term.name));
+        translator
+            .graph
+            .suggest_name(node, &format!("{symbol}_{}", term.name));
         named.push(node);
         nodes.push((1.0, node));
     }
@@ -234,11 +250,17 @@ fn applied_forces(
         translator.graph.suggest_name(value, &force.name);
         named.push(value);
         let on = translator.node(&force.on)?;
-        if translator.graph.dependence(on).has(crate::graph::Dependence::RATE) {
+        if translator
+            .graph
+            .dependence(on)
+            .has(crate::graph::Dependence::RATE)
+        {
             return Err(DeriveError {
                 span: force.on.span,
                 message: "a force acts on something that holds a rate".into(),
-                help: Some("virtual work needs a coordinate or an expression of coordinates".into()),
+                help: Some(
+                    "virtual work needs a coordinate or an expression of coordinates".into(),
+                ),
             });
         }
         let mut gradient = layout.gradient(&mut translator.graph, on, Kind::Coordinates);
@@ -329,7 +351,9 @@ fn cheaper_expansion(graph: &mut Graph, term: Id) -> Id {
     let mut operations = count_operations(graph, &[term]);
     let mut expanded = term;
     for _ in 0..MOST_EXPANSIONS {
-        let Some(next) = expand_once(graph, expanded) else { break };
+        let Some(next) = expand_once(graph, expanded) else {
+            break;
+        };
         expanded = next;
         let count = count_operations(graph, &[expanded]);
         if count < operations {
@@ -427,7 +451,9 @@ impl Layout {
         let mut coupling = vec![Vec::new(); self.coordinates];
         let mut modal = vec![Vec::new(); self.fields];
         for field in 0..self.fields {
-            let Some(mut derivative) = self.modal(graph, field, &Kind::Rates) else { continue };
+            let Some(mut derivative) = self.modal(graph, field, &Kind::Rates) else {
+                continue;
+            };
             for (row, entries) in coupling.iter_mut().enumerate() {
                 entries.push(derivative.gradient(graph, momenta.scalars[row]));
             }

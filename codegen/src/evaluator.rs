@@ -41,7 +41,8 @@ impl Evaluator {
         }
         let observables = program.per_call(&program.observable_values);
         let guard_values: Vec<ValueId> = program.guards.iter().map(|g| g.value).collect();
-        let mut mass_values: Vec<ValueId> = program.mass.scalars.iter().flatten().copied().collect();
+        let mut mass_values: Vec<ValueId> =
+            program.mass.scalars.iter().flatten().copied().collect();
         mass_values.extend(program.mass.coupling.iter().flatten());
         mass_values.extend(program.mass.modal.iter().flatten().flatten());
         let mut force_values = program.velocity_terms.all();
@@ -78,7 +79,8 @@ impl Evaluator {
         for index in 0..self.prepare.len() {
             let id = self.prepare[index];
             if let Op::Parameter(place) = self.program.values[id.0].op {
-                self.memory[self.offsets[id.0]] = parameters.get(place).copied().unwrap_or(f64::NAN);
+                self.memory[self.offsets[id.0]] =
+                    parameters.get(place).copied().unwrap_or(f64::NAN);
             } else {
                 self.step(id, &NOWHERE);
             }
@@ -90,22 +92,40 @@ impl Evaluator {
     pub fn pivots_are_positive(&self) -> bool {
         self.program.pivots.iter().all(|id| {
             let matrix = matches!(self.program.value(*id).extent, Extent::Matrix(..));
-            self.slice(*id).iter().all(|p| *p > 0.0 || (matrix && *p <= 0.0))
+            self.slice(*id)
+                .iter()
+                .all(|p| *p > 0.0 || (matrix && *p <= 0.0))
         })
     }
 
     /// The rates of the state; `out` has as many numbers as the state.
     pub fn rates(&mut self, point: Point<'_>, out: &mut [f64]) {
-        run(&mut self.memory, &self.offsets, &self.program, &self.rates, &point);
+        run(
+            &mut self.memory,
+            &self.offsets,
+            &self.program,
+            &self.rates,
+            &point,
+        );
         let degrees = self.program.degrees_of_freedom();
         let (velocities, accelerations) = out.split_at_mut(degrees);
         velocities.copy_from_slice(&point.state[degrees..2 * degrees]);
-        self.copy_rows(&self.program.accelerations.scalars, &self.program.accelerations.modal, accelerations);
+        self.copy_rows(
+            &self.program.accelerations.scalars,
+            &self.program.accelerations.modal,
+            accelerations,
+        );
     }
 
     /// The observables, `energy` and `power` last.
     pub fn observables(&mut self, point: Point<'_>, out: &mut [f64]) {
-        run(&mut self.memory, &self.offsets, &self.program, &self.observables, &point);
+        run(
+            &mut self.memory,
+            &self.offsets,
+            &self.program,
+            &self.observables,
+            &point,
+        );
         for (value, id) in out.iter_mut().zip(&self.program.observable_values) {
             *value = self.memory[self.offsets[id.0]];
         }
@@ -113,13 +133,23 @@ impl Evaluator {
 
     /// How many switching surfaces there are, those over modes one by one.
     pub fn guard_count(&self) -> usize {
-        let extents = self.program.guards.iter().map(|g| self.program.value(g.value).extent);
+        let extents = self
+            .program
+            .guards
+            .iter()
+            .map(|g| self.program.value(g.value).extent);
         extents.map(Extent::length).sum()
     }
 
     /// The values of the switching surfaces; `out` has [`Evaluator::guard_count`] numbers.
     pub fn guards(&mut self, point: Point<'_>, out: &mut [f64]) {
-        run(&mut self.memory, &self.offsets, &self.program, &self.guards, &point);
+        run(
+            &mut self.memory,
+            &self.offsets,
+            &self.program,
+            &self.guards,
+            &point,
+        );
         let mut place = 0;
         for guard in &self.program.guards {
             let values = self.slice(guard.value);
@@ -130,7 +160,13 @@ impl Evaluator {
 
     /// The mass matrix, row by row.
     pub fn mass_matrix(&mut self, point: Point<'_>, out: &mut [f64]) {
-        run(&mut self.memory, &self.offsets, &self.program, &self.mass, &point);
+        run(
+            &mut self.memory,
+            &self.offsets,
+            &self.program,
+            &self.mass,
+            &point,
+        );
         let size = self.program.degrees_of_freedom();
         let scalars = self.program.coordinates.len();
         out.fill(0.0);
@@ -150,8 +186,10 @@ impl Evaluator {
         for (row, blocks) in self.program.mass.modal.iter().enumerate() {
             for (column, block) in blocks.iter().enumerate() {
                 let Some(block) = block else { continue };
-                let (first_row, first_column) =
-                    (self.program.mode_offset(row), self.program.mode_offset(column));
+                let (first_row, first_column) = (
+                    self.program.mode_offset(row),
+                    self.program.mode_offset(column),
+                );
                 let columns = self.program.fields[column].order;
                 for (place, value) in self.slice(*block).iter().enumerate() {
                     let (r, c) = (place / columns, place % columns);
@@ -163,9 +201,23 @@ impl Evaluator {
 
     /// Velocity terms c and generalised forces f of M q'' + c = f.
     pub fn bias_and_forces(&mut self, point: Point<'_>, bias: &mut [f64], forces: &mut [f64]) {
-        run(&mut self.memory, &self.offsets, &self.program, &self.forces, &point);
-        self.copy_rows(&self.program.velocity_terms.scalars, &self.program.velocity_terms.modal, bias);
-        self.copy_rows(&self.program.forces.scalars, &self.program.forces.modal, forces);
+        run(
+            &mut self.memory,
+            &self.offsets,
+            &self.program,
+            &self.forces,
+            &point,
+        );
+        self.copy_rows(
+            &self.program.velocity_terms.scalars,
+            &self.program.velocity_terms.modal,
+            bias,
+        );
+        self.copy_rows(
+            &self.program.forces.scalars,
+            &self.program.forces.modal,
+            forces,
+        );
     }
 
     /// The numbers of a value as last computed.
@@ -204,7 +256,13 @@ const NOWHERE: Point<'static> = Point {
     inputs: &[],
 };
 
-fn run(memory: &mut [f64], offsets: &[usize], program: &Program, steps: &[ValueId], point: &Point<'_>) {
+fn run(
+    memory: &mut [f64],
+    offsets: &[usize],
+    program: &Program,
+    steps: &[ValueId],
+    point: &Point<'_>,
+) {
     for id in steps {
         step(memory, offsets, program, *id, point);
     }
@@ -270,7 +328,9 @@ fn step(memory: &mut [f64], offsets: &[usize], program: &Program, id: ValueId, p
         Op::Subtract(a, b) => binary(out, &operands, *a, *b, |a, b| a - b),
         Op::Multiply(a, b) => binary(out, &operands, *a, *b, |a, b| a * b),
         Op::Divide(a, b) => binary(out, &operands, *a, *b, |a, b| a / b),
-        Op::Power(a, b) => binary(out, &operands, *a, *b, |a, b| Elementary::Pow.apply(&[a, b])),
+        Op::Power(a, b) => binary(out, &operands, *a, *b, |a, b| {
+            Elementary::Pow.apply(&[a, b])
+        }),
         Op::Call(function, arguments) => match *arguments.as_slice() {
             [a] => unary(out, &operands, a, |a| call(*function, a, f64::NAN)),
             [a, b] => binary(out, &operands, a, b, |a, b| call(*function, a, b)),
@@ -286,7 +346,11 @@ fn step(memory: &mut [f64], offsets: &[usize], program: &Program, id: ValueId, p
             let (then, otherwise) = (operands.strided(*then), operands.strided(*otherwise));
             for (i, slot) in out.iter_mut().enumerate() {
                 let taken = a.0[i * a.1] > b.0[i * b.1];
-                *slot = if taken { then.0[i * then.1] } else { otherwise.0[i * otherwise.1] };
+                *slot = if taken {
+                    then.0[i * then.1]
+                } else {
+                    otherwise.0[i * otherwise.1]
+                };
             }
         }
         Op::Total(a) => out[0] = operands.slice(*a).iter().fold(0.0, |total, x| total + x),
@@ -300,7 +364,12 @@ fn matrix_step(out: &mut [f64], extent: Extent, operands: &Operands<'_>, op: &Op
             matrix,
             transposed,
             vector,
-        } => apply(out, operands.matrix(*matrix), *transposed, operands.strided(*vector)),
+        } => apply(
+            out,
+            operands.matrix(*matrix),
+            *transposed,
+            operands.strided(*vector),
+        ),
         Op::Gram {
             left,
             weight,
@@ -336,7 +405,9 @@ fn matrix_step(out: &mut [f64], extent: Extent, operands: &Operands<'_>, op: &Op
             outer,
             matrices,
         } => {
-            let Extent::Matrix(_, columns) = extent else { return };
+            let Extent::Matrix(_, columns) = extent else {
+                return;
+            };
             assemble(out, columns, operands, *diagonal, outer, matrices);
         }
         Op::Cholesky(matrix) => {
@@ -346,9 +417,19 @@ fn matrix_step(out: &mut [f64], extent: Extent, operands: &Operands<'_>, op: &Op
         Op::CholeskySolve(factor, vector) => {
             let (factor, size, _) = operands.matrix(*factor);
             let (right, stride) = operands.strided(*vector);
-            let columns = if let Extent::Matrix(_, columns) = extent { columns } else { 1 };
+            let columns = if let Extent::Matrix(_, columns) = extent {
+                columns
+            } else {
+                1
+            };
             for column in 0..columns {
-                cholesky_solve(out, (column, columns), factor, size, (right, stride * columns));
+                cholesky_solve(
+                    out,
+                    (column, columns),
+                    factor,
+                    size,
+                    (right, stride * columns),
+                );
             }
         }
         _ => out.fill(f64::NAN),
@@ -440,9 +521,13 @@ fn apply(
 ) {
     for (i, slot) in out.iter_mut().enumerate() {
         *slot = if transposed {
-            (0..rows).fold(0.0, |total, g| total + matrix[g * columns + i] * vector[g * stride])
+            (0..rows).fold(0.0, |total, g| {
+                total + matrix[g * columns + i] * vector[g * stride]
+            })
         } else {
-            (0..columns).fold(0.0, |total, c| total + matrix[i * columns + c] * vector[c * stride])
+            (0..columns).fold(0.0, |total, c| {
+                total + matrix[i * columns + c] * vector[c * stride]
+            })
         };
     }
 }
@@ -470,10 +555,17 @@ fn assemble(
     }
     for scaled in matrices {
         let (matrix, _, width) = operands.matrix(scaled.matrix);
-        let (row, column) = (operands.strided(scaled.row), operands.strided(scaled.column));
+        let (row, column) = (
+            operands.strided(scaled.row),
+            operands.strided(scaled.column),
+        );
         for (place, slot) in out.iter_mut().enumerate() {
             let (r, c) = (place / columns, place % columns);
-            let entry = if scaled.transposed { matrix[c * width + r] } else { matrix[r * width + c] };
+            let entry = if scaled.transposed {
+                matrix[c * width + r]
+            } else {
+                matrix[r * width + c]
+            };
             *slot += row.0[r * row.1] * entry * column.0[c * column.1];
         }
     }
@@ -488,7 +580,11 @@ fn cholesky(out: &mut [f64], matrix: &[f64], size: usize) {
                 rest - out[r * size + k] * out[c * size + k]
             });
             out[r * size + c] = if r == c {
-                if rest > 0.0 { Elementary::Sqrt.apply(&[rest]) } else { f64::NAN }
+                if rest > 0.0 {
+                    Elementary::Sqrt.apply(&[rest])
+                } else {
+                    f64::NAN
+                }
             } else {
                 rest / out[c * size + c]
             };
@@ -513,7 +609,9 @@ fn cholesky_solve(
         out[at(r)] = rest / factor[r * size + r];
     }
     for r in (0..size).rev() {
-        let rest = (r + 1..size).fold(out[at(r)], |rest, k| rest - factor[k * size + r] * out[at(k)]);
+        let rest = (r + 1..size).fold(out[at(r)], |rest, k| {
+            rest - factor[k * size + r] * out[at(k)]
+        });
         out[at(r)] = rest / factor[r * size + r];
     }
 }

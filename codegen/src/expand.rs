@@ -36,7 +36,9 @@ pub fn expand_once(graph: &mut Graph, id: Id) -> Option<Id> {
 
 /// The terms of a product that has a sum as a factor, to the first power or squared.
 fn expanded_product(graph: &mut Graph, id: Id) -> Option<Vec<(f64, Id)>> {
-    let Operation::Product(factors) = graph.operation(id).clone() else { return None };
+    let Operation::Product(factors) = graph.operation(id).clone() else {
+        return None;
+    };
     let place = factors.iter().position(|(factor, exponent)| {
         matches!(exponent, 1 | 2) && matches!(graph.operation(*factor), Operation::Sum(_))
     })?;
@@ -45,7 +47,9 @@ fn expanded_product(graph: &mut Graph, id: Id) -> Option<Vec<(f64, Id)>> {
     if exponent == 2 {
         rest.push((sum, 1));
     }
-    let Operation::Sum(terms) = graph.operation(sum).clone() else { return None };
+    let Operation::Sum(terms) = graph.operation(sum).clone() else {
+        return None;
+    };
     let rest = graph.product(&rest);
     Some(
         terms

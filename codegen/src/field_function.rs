@@ -172,7 +172,10 @@ impl FieldFunction {
         let mut terms = Vec::new();
         for term in &self.terms {
             if term.weight.is_some() {
-                return Err("at(...) takes the field, its derivatives and polynomials of the position".into());
+                return Err(
+                    "at(...) takes the field, its derivatives and polynomials of the position"
+                        .into(),
+                );
             }
             let mut factors = vec![(term.scalar, 1), (s, term.power as i32)];
             for atom in &term.atoms {
@@ -225,7 +228,14 @@ impl FieldFunction {
     }
 
     fn times(&self, graph: &mut Graph, domain: &Domain, other: &Self) -> Outcome<Self> {
-        let atoms = |function: &Self| function.terms.iter().map(|t| t.atoms.len()).max().unwrap_or(0);
+        let atoms = |function: &Self| {
+            function
+                .terms
+                .iter()
+                .map(|t| t.atoms.len())
+                .max()
+                .unwrap_or(0)
+        };
         if atoms(self) + atoms(other) > 2 {
             let values = [self.values(graph, domain)?, other.values(graph, domain)?];
             let product = graph.multiply(values[0], values[1]);
@@ -368,7 +378,11 @@ fn shapes_at(graph: &mut Graph, domain: &Domain, s: Id, derivative: u8) -> Id {
     let rising = graph.multiply(growing, rising);
     let mixed = graph.subtract(one, xi);
     let falling = graph.multiply(mixed, falling);
-    let falling_sign = if derivative.is_multiple_of(2) { 0.5 } else { -0.5 };
+    let falling_sign = if derivative.is_multiple_of(2) {
+        0.5
+    } else {
+        -0.5
+    };
     let shape = graph.combine(&[
         (sign[0], first),
         (sign[1], second),
@@ -389,7 +403,10 @@ fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &Term) -> Id {
         [a, b] => {
             let (left, right) = (a.derivative(), b.derivative());
             let orthogonal = is_orthogonal(domain.basis, term.power, left, right);
-            let amplitudes = [a.amplitudes(graph, domain.field), b.amplitudes(graph, domain.field)];
+            let amplitudes = [
+                a.amplitudes(graph, domain.field),
+                b.amplitudes(graph, domain.field),
+            ];
             let own = TableKind::OwnMoment {
                 power: term.power,
                 left,

@@ -317,8 +317,17 @@ impl Graph {
     }
 
     /// The node of a table of constants.
-    pub fn constants(&mut self, field: usize, kind: TableKind, values: impl FnOnce() -> Vec<f64>) -> Id {
-        let index = match self.tables.iter().position(|t| t.field == field && t.kind == kind) {
+    pub fn constants(
+        &mut self,
+        field: usize,
+        kind: TableKind,
+        values: impl FnOnce() -> Vec<f64>,
+    ) -> Id {
+        let index = match self
+            .tables
+            .iter()
+            .position(|t| t.field == field && t.kind == kind)
+        {
             Some(index) => index,
             None => {
                 self.tables.push(Table {
@@ -421,7 +430,9 @@ impl Graph {
                 then,
                 otherwise,
             } => vec![*a, *b, *then, *otherwise],
-            Operation::Total(a) | Operation::Cholesky(a) | Operation::PivotReciprocal(a) => vec![*a],
+            Operation::Total(a) | Operation::Cholesky(a) | Operation::PivotReciprocal(a) => {
+                vec![*a]
+            }
             Operation::Power(a, b) | Operation::CholeskySolve(a, b) => vec![*a, *b],
             Operation::Apply { matrix, vector, .. } => vec![*matrix, *vector],
             Operation::Gram {
@@ -462,7 +473,11 @@ impl Assembly {
     fn operands(&self) -> Vec<Id> {
         let mut all: Vec<Id> = self.diagonal.into_iter().collect();
         all.extend(self.outer.iter().flat_map(|(u, v)| [*u, *v]));
-        all.extend(self.matrices.iter().flat_map(|m| [m.row, m.matrix, m.column]));
+        all.extend(
+            self.matrices
+                .iter()
+                .flat_map(|m| [m.row, m.matrix, m.column]),
+        );
         all
     }
 }

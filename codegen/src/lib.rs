@@ -30,5 +30,6 @@ pub mod rust;
 mod simplify;
 pub mod solve;
 mod substitute;
+mod table_text;
 pub mod tables;
 pub mod translate;

@@ -104,7 +104,11 @@ fn quantity(name: &str, unit: &str, doc: &str) -> Quantity {
 
 /// A unit as it is written in the specification, or its SI equivalent.
 fn si_unit(unit: &Unit) -> String {
-    if unit.is_coherent() { unit.text.clone() } else { unit.dimension.to_string() }
+    if unit.is_coherent() {
+        unit.text.clone()
+    } else {
+        unit.dimension.to_string()
+    }
 }
 
 fn program_parameters(model: &Model, values: &[f64]) -> Vec<ProgramParameter> {
@@ -184,7 +188,9 @@ impl<'g> Lowering<'g> {
     fn mass(&mut self, equations: &Equations) -> MassBlocks {
         let mass = &equations.mass;
         let block = |rows: &Vec<Id>, lowering: &mut Self| {
-            rows.iter().map(|id| lowering.value(*id)).collect::<Vec<_>>()
+            rows.iter()
+                .map(|id| lowering.value(*id))
+                .collect::<Vec<_>>()
         };
         MassBlocks {
             scalars: mass.scalars.iter().map(|row| block(row, self)).collect(),
@@ -399,8 +405,8 @@ impl<'g> Lowering<'g> {
             Some(&place) => place,
             None => {
                 self.tables.push(ProgramTable {
-                    doc: crate::print::table_doc(table),
-                    name: crate::print::table_name(table),
+                    doc: crate::table_text::doc(table),
+                    name: crate::table_text::constant_name(table),
                     extent,
                     values: table.values.clone(),
                 });
@@ -467,7 +473,9 @@ impl<'g> Lowering<'g> {
             .into_iter()
             .partition(|(id, _)| graph.dependence(*id).is_prepared());
         let coefficient = self.powers(magnitude, &prepared);
-        let moving = (!live.is_empty()).then(|| self.powers(1.0, &live)).flatten();
+        let moving = (!live.is_empty())
+            .then(|| self.powers(1.0, &live))
+            .flatten();
         let value = match (coefficient, moving) {
             (Some(coefficient), Some(moving)) => self.binary(Op::Multiply, coefficient, moving),
             (Some(only), None) | (None, Some(only)) => only,

@@ -92,7 +92,11 @@ impl Mode {
         };
         let growing = self.growing * exponential(-self.wavenumber * (1.0 - s));
         let falling = (1.0 - self.mixing) * exponential(-z);
-        let falling = if derivative.is_multiple_of(2) { -falling } else { falling };
+        let falling = if derivative.is_multiple_of(2) {
+            -falling
+        } else {
+            falling
+        };
         power(self.wavenumber, derivative) * (wave - 0.5 * (growing + falling))
     }
 
@@ -143,7 +147,9 @@ pub fn table(basis: Basis, order: usize, kind: TableKind) -> Vec<f64> {
         TableKind::ShapeAtStart(derivative) => each(&|mode| mode.at_start(derivative)),
         TableKind::ShapeAtEnd(derivative) => each(&|mode| mode.at_end(basis, derivative)),
         TableKind::Moment { power, derivative } => moments(basis, &modes, power, derivative),
-        TableKind::OwnMoment { power, left, right } => own_moments(basis, &modes, power, left, right),
+        TableKind::OwnMoment { power, left, right } => {
+            own_moments(basis, &modes, power, left, right)
+        }
         TableKind::PairMoment { power, left, right } => pair_moments(&modes, power, left, right),
         TableKind::NodePosition => gauss_legendre(quadrature_size(order)).0,
         TableKind::NodeWeight => gauss_legendre(quadrature_size(order)).1,
@@ -194,13 +200,19 @@ fn own_moments(basis: Basis, modes: &[Mode], moment: u32, left: u8, right: u8) -
             .collect();
     }
     let pairs = pair_moments(modes, moment, left, right);
-    (0..modes.len()).map(|r| pairs[r * modes.len() + r]).collect()
+    (0..modes.len())
+        .map(|r| pairs[r * modes.len() + r])
+        .collect()
 }
 
 fn pair_moments(modes: &[Mode], moment: u32, left: u8, right: u8) -> Vec<f64> {
     let (nodes, weights) = rule(modes.len(), moment);
     let a = shapes_at(modes, left, &nodes);
-    let b = if left == right { a.clone() } else { shapes_at(modes, right, &nodes) };
+    let b = if left == right {
+        a.clone()
+    } else {
+        shapes_at(modes, right, &nodes)
+    };
     let order = modes.len();
     (0..order * order)
         .map(|place| sum_over(&weights, |g| a[g][place / order] * b[g][place % order]))

@@ -6,7 +6,8 @@
 use model_spec::model::{Function, Model};
 
 use crate::graph::{Graph, Id, Operation, Shape};
-use crate::tables::{Table, TableKind};
+use crate::table_text;
+use crate::tables::Table;
 
 /// How names and operators are written.
 pub struct Notation {
@@ -29,7 +30,13 @@ impl Notation {
     }
 
     fn new(model: &Model, latex: bool) -> Self {
-        let write = |name: &String| if latex { latex_name(name) } else { name.clone() };
+        let write = |name: &String| {
+            if latex {
+                latex_name(name)
+            } else {
+                name.clone()
+            }
+        };
         Self {
             latex,
             parameters: model.parameters.iter().map(|p| write(&p.name)).collect(),
@@ -47,16 +54,28 @@ impl Notation {
         if let Some(stem) = name.strip_suffix("_ddot") {
             return self.acceleration(&self.name(stem));
         }
-        if self.latex { latex_name(name) } else { name.to_owned() }
+        if self.latex {
+            latex_name(name)
+        } else {
+            name.to_owned()
+        }
     }
 
     fn rate(&self, name: &str) -> String {
-        if self.latex { format!("\\dot{{{name}}}") } else { format!("dot({name})") }
+        if self.latex {
+            format!("\\dot{{{name}}}")
+        } else {
+            format!("dot({name})")
+        }
     }
 
     /// The second derivative by time of a coordinate, or of a field's mode coordinates.
     pub fn acceleration(&self, name: &str) -> String {
-        if self.latex { format!("\\ddot{{{name}}}") } else { format!("ddot({name})") }
+        if self.latex {
+            format!("\\ddot{{{name}}}")
+        } else {
+            format!("ddot({name})")
+        }
     }
 
     /// A coordinate.
@@ -71,7 +90,8 @@ impl Notation {
 }
 
 const GREEK: [&str; 12] = [
-    "alpha", "beta", "gamma", "delta", "epsilon", "eta", "theta", "kappa", "mu", "rho", "phi", "omega",
+    "alpha", "beta", "gamma", "delta", "epsilon", "eta", "theta", "kappa", "mu", "rho", "phi",
+    "omega",
 ];
 
 /// `theta_s` as `\theta_{s}`; further underscores become commas.
@@ -85,9 +105,19 @@ fn latex_name(name: &str) -> String {
         _ => head.to_owned(),
     };
     let rest: Vec<String> = parts
-        .map(|part| if GREEK.contains(&part) { format!("\\{part}") } else { part.to_owned() })
+        .map(|part| {
+            if GREEK.contains(&part) {
+                format!("\\{part}")
+            } else {
+                part.to_owned()
+            }
+        })
         .collect();
-    if rest.is_empty() { head } else { format!("{head}_{{{}}}", rest.join(",")) }
+    if rest.is_empty() {
+        head
+    } else {
+        format!("{head}_{{{}}}", rest.join(","))
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -141,7 +171,9 @@ impl Printer<'_> {
             Operation::ModeCoordinates(field) => notation.mode(*field),
             Operation::ModeRates(field) => notation.rate(&notation.mode(*field)),
             Operation::Table(index) => self.table(self.graph.table(*index)),
-            Operation::Sum(terms) => parenthesised(self.sum(terms), level > Level::Sum, notation.latex),
+            Operation::Sum(terms) => {
+                parenthesised(self.sum(terms), level > Level::Sum, notation.latex)
+            }
             Operation::Product(factors) => self.product(factors, level),
             Operation::Call(function, arguments) => self.call(*function, arguments),
             Operation::Power(base, exponent) => {
@@ -162,7 +194,9 @@ impl Printer<'_> {
                 let [a, b, then, otherwise] =
                     [a, b, then, otherwise].map(|id| self.node(*id, Level::Sum));
                 if notation.latex {
-                    format!("\\begin{{cases}}{then} & {a} > {b}\\\\ {otherwise} & \\text{{else}}\\end{{cases}}")
+                    format!(
+                        "\\begin{{cases}}{then} & {a} > {b}\\\\ {otherwise} & \\text{{else}}\\end{{cases}}"
+                    )
                 } else {
                     format!("if({a} > {b}, {then}, {otherwise})")
                 }
@@ -204,7 +238,12 @@ impl Printer<'_> {
                     parts.push(format!("[{}]_i [{}]_j", node(u), node(v)));
                 }
                 for m in &assembly.matrices {
-                    parts.push(format!("[{}]_i {} [{}]_j", node(&m.row), node(&m.matrix), node(&m.column)));
+                    parts.push(format!(
+                        "[{}]_i {} [{}]_j",
+                        node(&m.row),
+                        node(&m.matrix),
+                        node(&m.column)
+                    ));
                 }
                 parts.join(" + ")
             }
@@ -232,7 +271,11 @@ impl Printer<'_> {
             };
             text.push_str(sign);
             let magnitude = factor.abs();
-            let level = if magnitude == 1.0 && factor > 0.0 { Level::Sum } else { Level::Product };
+            let level = if magnitude == 1.0 && factor > 0.0 {
+                Level::Sum
+            } else {
+                Level::Product
+            };
             let inner = self.node(*id, level);
             if magnitude == 1.0 {
                 text.push_str(&inner);
@@ -266,7 +309,11 @@ impl Printer<'_> {
                 .collect::<Vec<_>>()
         };
         let (above, below) = (side(true), side(false));
-        let numerator = if above.is_empty() { "1".to_owned() } else { above.join(self.times()) };
+        let numerator = if above.is_empty() {
+            "1".to_owned()
+        } else {
+            above.join(self.times())
+        };
         if below.is_empty() {
             return parenthesised(numerator, level > Level::Product, self.notation.latex);
         }
@@ -295,7 +342,10 @@ impl Printer<'_> {
     }
 
     fn call(&self, function: Function, arguments: &[Id]) -> String {
-        let arguments: Vec<String> = arguments.iter().map(|a| self.node(*a, Level::Sum)).collect();
+        let arguments: Vec<String> = arguments
+            .iter()
+            .map(|a| self.node(*a, Level::Sum))
+            .collect();
         let list = arguments.join(", ");
         if !self.notation.latex {
             return format!("{}({list})", function_name(function));
@@ -307,16 +357,30 @@ impl Printer<'_> {
             (Function::Abs, [a]) => format!("\\left|{a}\\right|"),
             (Function::Exp, [a]) => format!("e^{{{a}}}"),
             (
-                Function::Sin | Function::Cos | Function::Tan | Function::Sinh | Function::Cosh
-                | Function::Tanh | Function::Ln | Function::Min | Function::Max,
+                Function::Sin
+                | Function::Cos
+                | Function::Tan
+                | Function::Sinh
+                | Function::Cosh
+                | Function::Tanh
+                | Function::Ln
+                | Function::Min
+                | Function::Max,
                 _,
             ) => format!("\\{}\\left({list}\\right)", function_name(function)),
-            _ => format!("\\operatorname{{{}}}\\left({list}\\right)", function_name(function)),
+            _ => format!(
+                "\\operatorname{{{}}}\\left({list}\\right)",
+                function_name(function)
+            ),
         }
     }
 
     fn table(&self, table: &Table) -> String {
-        if self.notation.latex { table_latex(table.kind) } else { table_text(table.kind) }
+        if self.notation.latex {
+            table_text::latex(table.kind)
+        } else {
+            table_text::plain(table.kind)
+        }
     }
 }
 
@@ -377,114 +441,4 @@ pub fn function_name(function: Function) -> &'static str {
         Function::Deadzone => "deadzone",
         Function::Contact => "contact",
     }
-}
-
-fn primes(derivative: u8) -> String {
-    "'".repeat(usize::from(derivative))
-}
-
-fn power_of_s(power: u32) -> String {
-    match power {
-        0 => String::new(),
-        1 => "s ".to_owned(),
-        n => format!("s^{n} "),
-    }
-}
-
-/// What a table holds, in plain text: integrals run over s from 0 to 1, primes are
-/// derivatives by s.
-fn table_text(kind: TableKind) -> String {
-    match kind {
-        TableKind::Wavenumber => "betal_i".to_owned(),
-        TableKind::Mixing => "xi_i".to_owned(),
-        TableKind::GrowingAmplitude => "((1 + xi_i)*exp(betal_i))".to_owned(),
-        TableKind::ShapeAtStart(d) => format!("phi_i{}(0)", primes(d)),
-        TableKind::ShapeAtEnd(d) => format!("phi_i{}(1)", primes(d)),
-        TableKind::Moment { power, derivative } => {
-            format!("int[{}phi_i{}]", power_of_s(power), primes(derivative))
-        }
-        TableKind::OwnMoment { power, left, right } if left == right => {
-            format!("int[{}phi_i{}^2]", power_of_s(power), primes(left))
-        }
-        TableKind::OwnMoment { power, left, right } => {
-            format!("int[{}phi_i{} phi_i{}]", power_of_s(power), primes(left), primes(right))
-        }
-        TableKind::PairMoment { power, left, right } => {
-            format!("int[{}phi_i{} phi_j{}]", power_of_s(power), primes(left), primes(right))
-        }
-        TableKind::NodePosition => "s_g".to_owned(),
-        TableKind::NodeWeight => "weight_g".to_owned(),
-        TableKind::ShapeAtNodes(d) => format!("phi_i{}(s_g)", primes(d)),
-    }
-}
-
-fn table_latex(kind: TableKind) -> String {
-    let integral = |inner: String| format!("\\int_0^1 {inner}\\,ds");
-    let s = |power: u32| match power {
-        0 => String::new(),
-        1 => "s\\,".to_owned(),
-        n => format!("s^{{{n}}}\\,"),
-    };
-    let phi = |index: &str, d: u8| format!("\\varphi_{index}{}", primes(d));
-    match kind {
-        TableKind::Wavenumber => "(\\beta l)_i".to_owned(),
-        TableKind::Mixing => "\\xi_i".to_owned(),
-        TableKind::GrowingAmplitude => "(1 + \\xi_i)e^{(\\beta l)_i}".to_owned(),
-        TableKind::ShapeAtStart(d) => format!("{}(0)", phi("i", d)),
-        TableKind::ShapeAtEnd(d) => format!("{}(1)", phi("i", d)),
-        TableKind::Moment { power, derivative } => integral(format!("{}{}", s(power), phi("i", derivative))),
-        TableKind::OwnMoment { power, left, right } => {
-            integral(format!("{}{}{}", s(power), phi("i", left), phi("i", right)))
-        }
-        TableKind::PairMoment { power, left, right } => {
-            integral(format!("{}{}{}", s(power), phi("i", left), phi("j", right)))
-        }
-        TableKind::NodePosition => "s_g".to_owned(),
-        TableKind::NodeWeight => "w_g".to_owned(),
-        TableKind::ShapeAtNodes(d) => format!("{}(s_g)", phi("i", d)),
-    }
-}
-
-/// One line on what a table holds.
-pub fn table_doc(table: &Table) -> String {
-    match table.kind {
-        TableKind::Wavenumber => "beta_r l of the modes".to_owned(),
-        TableKind::Mixing => "xi_r of the modes, Eq. (17)".to_owned(),
-        TableKind::GrowingAmplitude => "(1 + xi_r) exp(beta_r l) of the modes".to_owned(),
-        TableKind::NodePosition => "Gauss-Legendre nodes on [0, 1]".to_owned(),
-        TableKind::NodeWeight => "Gauss-Legendre weights on [0, 1]".to_owned(),
-        kind => format!(
-            "{}, with s = x/l from 0 to 1 and primes for derivatives by s",
-            table_text(kind)
-        ),
-    }
-}
-
-/// A table's name as a constant.
-pub fn table_name(table: &Table) -> String {
-    let derivative = |d: u8| if d == 0 { String::new() } else { format!("_D{d}") };
-    let power = |k: u32| if k == 0 { String::new() } else { format!("S{k}_") };
-    let name = match table.kind {
-        TableKind::Wavenumber => "BETA_L".to_owned(),
-        TableKind::Mixing => "XI".to_owned(),
-        TableKind::GrowingAmplitude => "GROWING_AMPLITUDE".to_owned(),
-        TableKind::ShapeAtStart(d) => format!("PHI{}_AT_START", derivative(d)),
-        TableKind::ShapeAtEnd(d) => format!("PHI{}_AT_END", derivative(d)),
-        TableKind::Moment { power: k, derivative: d } => {
-            format!("INTEGRAL_{}PHI{}", power(k), derivative(d))
-        }
-        TableKind::OwnMoment { power: k, left, right } if left == right => {
-            format!("INTEGRAL_{}PHI{}_SQUARED", power(k), derivative(left))
-        }
-        TableKind::OwnMoment { power: k, left, right } => {
-            format!("INTEGRAL_{}PHI{}_PHI{}", power(k), derivative(left), derivative(right))
-        }
-        TableKind::PairMoment { power: k, left, right } => {
-            format!("INTEGRAL_{}PHI{}_BY_PHI{}", power(k), derivative(left), derivative(right))
-        }
-        TableKind::NodePosition => "NODES".to_owned(),
-        TableKind::NodeWeight => "WEIGHTS".to_owned(),
-        TableKind::ShapeAtNodes(d) => format!("PHI{}_AT_NODES", derivative(d)),
-    };
-    if table.field == 0 { name } else { format!("{name}_{}", table.field + 1) }
 }

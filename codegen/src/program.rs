@@ -391,7 +391,10 @@ impl Program {
                 }
             }
         }
-        (0..self.values.len()).filter(|i| needed[*i]).map(ValueId).collect()
+        (0..self.values.len())
+            .filter(|i| needed[*i])
+            .map(ValueId)
+            .collect()
     }
 
     /// The values a stage computes per call: what `roots` need and is not prepared.

@@ -111,8 +111,12 @@ impl Graph {
     fn merge_squared_sine_and_cosine(&mut self, terms: &mut BTreeMap<Id, f64>) {
         let ids: Vec<Id> = terms.keys().copied().collect();
         for id in ids {
-            let Some(&factor) = terms.get(&id) else { continue };
-            let Some((rest, partner)) = self.squared_sine_partner(id) else { continue };
+            let Some(&factor) = terms.get(&id) else {
+                continue;
+            };
+            let Some((rest, partner)) = self.squared_sine_partner(id) else {
+                continue;
+            };
             if terms.get(&partner) == Some(&factor) {
                 terms.remove(&id);
                 terms.remove(&partner);
@@ -124,7 +128,9 @@ impl Graph {
 
     /// For X sin(a)^2: X and X cos(a)^2.
     fn squared_sine_partner(&mut self, id: Id) -> Option<(Id, Id)> {
-        let Operation::Product(factors) = self.operation(id).clone() else { return None };
+        let Operation::Product(factors) = self.operation(id).clone() else {
+            return None;
+        };
         let position = factors.iter().position(|(factor, exponent)| {
             *exponent == 2 && matches!(self.operation(*factor), Operation::Call(Function::Sin, _))
         })?;
@@ -418,7 +424,11 @@ fn closed_factors(factors: &[(Id, i32)]) -> BTreeMap<Id, i32> {
 /// value^exponent by repeated multiplication: `powi` may round differently elsewhere.
 fn power_of_number(value: f64, exponent: i32) -> f64 {
     let magnitude = (0..exponent.unsigned_abs()).fold(1.0, |product, _| product * value);
-    if exponent < 0 { 1.0 / magnitude } else { magnitude }
+    if exponent < 0 {
+        1.0 / magnitude
+    } else {
+        magnitude
+    }
 }
 
 fn exact_value(function: Function, x: f64) -> Option<f64> {

@@ -205,7 +205,9 @@ impl ModalBlock {
         };
         for row in 0..fields {
             for column in 0..fields {
-                let dense = block.inverses[row].as_ref().is_some_and(ModalInverse::is_dense);
+                let dense = block.inverses[row]
+                    .as_ref()
+                    .is_some_and(ModalInverse::is_dense);
                 if row == column && dense {
                     continue;
                 }
@@ -238,8 +240,9 @@ impl ModalBlock {
     /// the modal block is positive definite. With any other C they need not be: for a mass
     /// on a lever between two points of a beam the first can be negative.
     fn orthogonalise(&mut self, graph: &mut Graph, field: usize) {
-        let places: Vec<usize> =
-            (0..self.interfaces.len()).filter(|place| self.interfaces[*place].field == field).collect();
+        let places: Vec<usize> = (0..self.interfaces.len())
+            .filter(|place| self.interfaces[*place].field == field)
+            .collect();
         for (count, &place) in places.iter().enumerate() {
             let shares: Vec<(usize, Id)> = places[..count]
                 .iter()
@@ -286,7 +289,9 @@ impl ModalBlock {
             for (v_scalar, v_shape) in scaled_shapes(graph, v.1) {
                 let row = self.interface(graph, u.0, u_shape);
                 let column = self.interface(graph, v.0, v_shape);
-                let (Some(row), Some(column)) = (row, column) else { continue };
+                let (Some(row), Some(column)) = (row, column) else {
+                    continue;
+                };
                 let weight = graph.multiply(u_scalar, v_scalar);
                 self.weights[row][column] = graph.add(self.weights[row][column], weight);
             }
@@ -326,7 +331,8 @@ impl ModalBlock {
 
     /// The accelerations of the modes once interfaces and coordinates are known.
     fn back_substitute(&self, graph: &mut Graph, system: &SmallSystem, unknowns: &[Id]) -> Rows {
-        let (interface_values, coordinates) = unknowns.split_at(self.interfaces.len().min(unknowns.len()));
+        let (interface_values, coordinates) =
+            unknowns.split_at(self.interfaces.len().min(unknowns.len()));
         let weighted = self.weighted(graph, interface_values);
         let modal = (0..self.inverses.len())
             .map(|field| {
@@ -337,7 +343,10 @@ impl ModalBlock {
                     }
                 }
                 for (row, &value) in coordinates.iter().enumerate() {
-                    terms.push((-1.0, graph.multiply(system.solved_coupling[row][field], value)));
+                    terms.push((
+                        -1.0,
+                        graph.multiply(system.solved_coupling[row][field], value),
+                    ));
                 }
                 graph.combine_flat(&terms)
             })
@@ -459,7 +468,12 @@ impl SmallSystem {
             })
             .collect();
         for solved in &self.solved_coupling {
-            row.push(inner_product(graph, interface.field, interface.shape, solved[interface.field]));
+            row.push(inner_product(
+                graph,
+                interface.field,
+                interface.shape,
+                solved[interface.field],
+            ));
         }
         self.right.push(inner_product(
             graph,
@@ -504,7 +518,10 @@ impl SmallSystem {
         }
         let mut terms = vec![(1.0, force)];
         for (field, h) in coupling.iter().enumerate() {
-            terms.push((-1.0, inner_product(graph, field, *h, self.free_modes[field])));
+            terms.push((
+                -1.0,
+                inner_product(graph, field, *h, self.free_modes[field]),
+            ));
         }
         self.right.push(graph.combine_flat(&terms));
         self.matrix.push(entries);

@@ -157,14 +157,22 @@ impl<'m> Translator<'m> {
             ExprKind::ModeCoordinate(field) => Ok(self.graph.intern(Operation::ModeRates(field))),
             _ => {
                 let node = self.node(operand)?;
-                if self.graph.dependence(node).has(crate::graph::Dependence::RATE) {
+                if self
+                    .graph
+                    .dependence(node)
+                    .has(crate::graph::Dependence::RATE)
+                {
                     return Err(DeriveError {
                         span: operand.span,
                         message: "dot() of something that holds a rate is an acceleration".into(),
                         help: Some("an energy, force or observable may hold rates, no more".into()),
                     });
                 }
-                if self.graph.dependence(node).has(crate::graph::Dependence::INPUT) {
+                if self
+                    .graph
+                    .dependence(node)
+                    .has(crate::graph::Dependence::INPUT)
+                {
                     return Err(error(operand, "the rate of an input is not known"));
                 }
                 let rate = along_motion(&mut self.graph, node);
@@ -181,7 +189,9 @@ impl<'m> Translator<'m> {
         let function = self.field_function(field, value)?;
         let position = self.node(position)?;
         let domain = self.domain(field)?;
-        function.at(&mut self.graph, &domain, position).map_err(|m| error(value, m))
+        function
+            .at(&mut self.graph, &domain, position)
+            .map_err(|m| error(value, m))
     }
 
     fn integral(&mut self, field: usize, integrand: &Expr) -> Derived<Id> {

@@ -4,8 +4,8 @@
 use model_spec::model::Model;
 
 use crate::reference::closed_forms::{self, Situation};
-use crate::reference::equation_22::{Coefficients, Equation22};
 use crate::reference::equation_10::{self, ShaftMotion};
+use crate::reference::equation_22::{Coefficients, Equation22};
 use crate::reference::{Evaluation, PlanetaryArmParameters, equation_12};
 use crate::validate::certify::Reference;
 
@@ -40,12 +40,15 @@ pub fn references(model: &Model, order: usize, values: &[f64]) -> Vec<Reference>
 fn arm(parameters: PlanetaryArmParameters, order: usize) -> Vec<Reference> {
     if order == 0 {
         return vec![
-            reference("equation_12", move |t, state, _, accelerations| {
-                match <&[f64; 6]>::try_from(state) {
-                    Ok(state) => equation_12::corrected(&parameters, t, state).deviation(accelerations),
+            reference(
+                "equation_12",
+                move |t, state, _, accelerations| match <&[f64; 6]>::try_from(state) {
+                    Ok(state) => {
+                        equation_12::corrected(&parameters, t, state).deviation(accelerations)
+                    }
                     Err(_) => f64::INFINITY,
-                }
-            }),
+                },
+            ),
             reference("equation_10", move |t, state, _, accelerations| {
                 shaft_motion(&parameters, state, accelerations).map_or(f64::INFINITY, |motion| {
                     equation_10::corrected(&parameters, t, &motion).worst()
@@ -54,11 +57,14 @@ fn arm(parameters: PlanetaryArmParameters, order: usize) -> Vec<Reference> {
         ];
     }
     let coefficients = Coefficients::new(&parameters, order);
-    let mut found = vec![reference("equation_22", move |t, state, _, accelerations| {
-        coefficients
-            .evaluate(t, state)
-            .map_or(f64::INFINITY, |expected| expected.deviation(accelerations))
-    })];
+    let mut found = vec![reference(
+        "equation_22",
+        move |t, state, _, accelerations| {
+            coefficients
+                .evaluate(t, state)
+                .map_or(f64::INFINITY, |expected| expected.deviation(accelerations))
+        },
+    )];
     found.extend(scaled(&parameters, order));
     found
 }
@@ -104,25 +110,30 @@ fn scaled_reference<const S: usize>(parameters: &PlanetaryArmParameters) -> Refe
     let (omega_n, b_c) = PAPER_SCALES;
     let equation = Equation22::<S>::new(parameters, omega_n, b_c);
     let scales = Coefficients::new(parameters, S);
-    reference("equation_22_dimensionless", move |t, state, _, accelerations| {
-        let (positions, rates) = state.split_at(state.len() / 2);
-        let scaled: Vec<f64> = positions
-            .iter()
-            .map(|x| x / b_c)
-            .chain(rates.iter().map(|v| v / (b_c * omega_n)))
-            .collect();
-        let mut out = vec![0.0; scaled.len()];
-        equation.rates(omega_n * t, &scaled, &mut out);
-        let Some(dimensional) = scales.evaluate(t, state) else { return f64::INFINITY };
-        let expected = Evaluation {
-            accelerations: out[positions.len()..]
+    reference(
+        "equation_22_dimensionless",
+        move |t, state, _, accelerations| {
+            let (positions, rates) = state.split_at(state.len() / 2);
+            let scaled: Vec<f64> = positions
                 .iter()
-                .map(|a| a * b_c * omega_n * omega_n)
-                .collect(),
-            scales: dimensional.scales,
-        };
-        expected.deviation(accelerations)
-    })
+                .map(|x| x / b_c)
+                .chain(rates.iter().map(|v| v / (b_c * omega_n)))
+                .collect();
+            let mut out = vec![0.0; scaled.len()];
+            equation.rates(omega_n * t, &scaled, &mut out);
+            let Some(dimensional) = scales.evaluate(t, state) else {
+                return f64::INFINITY;
+            };
+            let expected = Evaluation {
+                accelerations: out[positions.len()..]
+                    .iter()
+                    .map(|a| a * b_c * omega_n * omega_n)
+                    .collect(),
+                scales: dimensional.scales,
+            };
+            expected.deviation(accelerations)
+        },
+    )
 }
 
 fn reference(
@@ -144,11 +155,24 @@ fn closed_form(model: &Model, order: usize, values: &[f64]) -> Option<Reference>
         .map(|parameter| parameter.name.clone())
         .zip(values.iter().copied())
         .collect();
-    let names: Vec<String> = model.inputs.iter().map(|input| input.name.clone()).collect();
+    let names: Vec<String> = model
+        .inputs
+        .iter()
+        .map(|input| input.name.clone())
+        .collect();
     let evaluate = move |state: &[f64], inputs: &[f64]| {
         form(&Situation {
-            parameter: &|name| parameters.iter().find(|(own, _)| own == name).map(|(_, value)| *value),
-            input: &|name| inputs.get(names.iter().position(|own| own == name)?).copied(),
+            parameter: &|name| {
+                parameters
+                    .iter()
+                    .find(|(own, _)| own == name)
+                    .map(|(_, value)| *value)
+            },
+            input: &|name| {
+                inputs
+                    .get(names.iter().position(|own| own == name)?)
+                    .copied()
+            },
             order,
             state,
         })
@@ -157,15 +181,22 @@ fn closed_form(model: &Model, order: usize, values: &[f64]) -> Option<Reference>
     let rest = vec![0.0; 2 * (model.coordinates.len() + modes)];
     let still = vec![0.0; model.inputs.len()];
     evaluate(&rest, &still).ok()?;
-    Some(reference("closed_form", move |_, state, inputs, accelerations| {
-        evaluate(state, inputs).map_or(f64::INFINITY, |expected| expected.deviation(accelerations))
-    }))
+    Some(reference(
+        "closed_form",
+        move |_, state, inputs, accelerations| {
+            evaluate(state, inputs)
+                .map_or(f64::INFINITY, |expected| expected.deviation(accelerations))
+        },
+    ))
 }
 
 /// The arm's parameters by their names; `None` if one is missing.
 pub fn arm_parameters(model: &Model, values: &[f64]) -> Option<PlanetaryArmParameters> {
     let value = |name: &str| {
-        let place = model.parameters.iter().position(|parameter| parameter.name == name)?;
+        let place = model
+            .parameters
+            .iter()
+            .position(|parameter| parameter.name == name)?;
         values.get(place).copied()
     };
     Some(PlanetaryArmParameters {

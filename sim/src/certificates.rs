@@ -18,12 +18,20 @@ use crate::validate::variant::Variant;
 ///
 /// # Errors
 /// If the parameters have no finite values.
-pub fn certificate(model: &Model, order: usize, emitted: String) -> Result<Certificate, ModelError> {
+pub fn certificate(
+    model: &Model,
+    order: usize,
+    emitted: String,
+) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
     let variants = |order: usize| variant(model, order, &parameters);
     let emitted = Emitted {
         source: emitted,
-        input_fields: model.inputs.iter().map(|input| input.name.clone()).collect(),
+        input_fields: model
+            .inputs
+            .iter()
+            .map(|input| input.name.clone())
+            .collect(),
         functions: vec![
             EmittedFunction::Rates,
             EmittedFunction::Observables,

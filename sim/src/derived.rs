@@ -76,7 +76,8 @@ impl Variant for Derived {
         bias: &mut [f64],
         forces: &mut [f64],
     ) -> Result<(), String> {
-        self.evaluator.bias_and_forces(point(time, state, inputs), bias, forces);
+        self.evaluator
+            .bias_and_forces(point(time, state, inputs), bias, forces);
         Ok(())
     }
 
@@ -90,7 +91,8 @@ impl Variant for Derived {
 
     fn guards(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<Vec<f64>, String> {
         let mut values = vec![0.0; self.evaluator.guard_count()];
-        self.evaluator.guards(point(time, state, inputs), &mut values);
+        self.evaluator
+            .guards(point(time, state, inputs), &mut values);
         Ok(values)
     }
 
@@ -102,7 +104,8 @@ impl Variant for Derived {
         inputs: &[f64],
     ) -> Result<Vec<f64>, String> {
         let mut values = vec![0.0; self.scalars()];
-        self.evaluator.observables(point(time, state, inputs), &mut values);
+        self.evaluator
+            .observables(point(time, state, inputs), &mut values);
         Ok(values)
     }
 }
@@ -135,7 +138,9 @@ impl Driven {
     /// The observables at a state, `energy` and `power` last.
     pub fn observables(&self, t: f64, state: &[f64], out: &mut [f64]) {
         let inputs = self.inputs.at(t);
-        self.evaluator.borrow_mut().observables(point(t, state, inputs), out);
+        self.evaluator
+            .borrow_mut()
+            .observables(point(t, state, inputs), out);
     }
 }
 

@@ -104,19 +104,36 @@ pub fn read_inputs(
     let mut columns = Vec::new();
     for input in &model.inputs {
         match description.inputs.get(&input.name) {
-            Some(column) => columns.push(Some(input_column(dataset, &input.name, column, &input.unit)?)),
+            Some(column) => columns.push(Some(input_column(
+                dataset,
+                &input.name,
+                column,
+                &input.unit,
+            )?)),
             None => {
-                warnings.push(format!("{} has no input `{}`: it is 0", dataset.display(), input.name));
+                warnings.push(format!(
+                    "{} has no input `{}`: it is 0",
+                    dataset.display(),
+                    input.name
+                ));
                 columns.push(None);
             }
         }
     }
     for name in description.inputs.keys() {
         if model.inputs.iter().all(|input| input.name != *name) {
-            warnings.push(format!("the model has no input `{name}`: that column is not used"));
+            warnings.push(format!(
+                "the model has no input `{name}`: that column is not used"
+            ));
         }
     }
-    let time = scaled_column(dataset, "time", &description.time.column, &description.time.unit, "s")?;
+    let time = scaled_column(
+        dataset,
+        "time",
+        &description.time.column,
+        &description.time.unit,
+        "s",
+    )?;
     Ok((read_record(&path, &time, &columns)?, warnings))
 }
 
@@ -141,7 +158,13 @@ fn input_column(
             ));
         }
     }
-    scaled_column(dataset, &format!("inputs.{name}"), &column.column, &column.unit, &unit.text)
+    scaled_column(
+        dataset,
+        &format!("inputs.{name}"),
+        &column.column,
+        &column.unit,
+        &unit.text,
+    )
 }
 
 fn scaled_column(
@@ -181,10 +204,16 @@ fn record_path(dataset: &Path, records: &Records, record: &str) -> Result<PathBu
         (_, Some(rest)) => (&records.test, rest),
         _ => return Err(described()),
     };
-    let index: usize = rest.strip_suffix(']').and_then(|i| i.parse().ok()).ok_or_else(described)?;
+    let index: usize = rest
+        .strip_suffix(']')
+        .and_then(|i| i.parse().ok())
+        .ok_or_else(described)?;
     let name = list.get(index).ok_or_else(described)?;
     let relative = Path::new(name);
-    if !relative.components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir)) {
+    if !relative
+        .components()
+        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
+    {
         return Err(format!(
             "{}: the record \"{name}\" lies outside the dataset's folder",
             dataset.display()
@@ -198,12 +227,20 @@ fn read_limited(path: &Path, limit: u64) -> Result<String, String> {
         .map_err(|error| format!("cannot read {}: {error}", path.display()))?
         .len();
     if size > limit {
-        return Err(format!("{} has {size} bytes; the limit is {limit}", path.display()));
+        return Err(format!(
+            "{} has {size} bytes; the limit is {limit}",
+            path.display()
+        ));
     }
-    std::fs::read_to_string(path).map_err(|error| format!("cannot read {}: {error}", path.display()))
+    std::fs::read_to_string(path)
+        .map_err(|error| format!("cannot read {}: {error}", path.display()))
 }
 
-fn read_record(path: &Path, time: &Scaled, columns: &[Option<Scaled>]) -> Result<HeldInputs, String> {
+fn read_record(
+    path: &Path,
+    time: &Scaled,
+    columns: &[Option<Scaled>],
+) -> Result<HeldInputs, String> {
     let text = read_limited(path, LARGEST_RECORD)?;
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let headers = reader
@@ -211,10 +248,17 @@ fn read_record(path: &Path, time: &Scaled, columns: &[Option<Scaled>]) -> Result
         .map_err(|error| format!("{}: {error}", path.display()))?
         .clone();
     let find = |name: &str| {
-        headers.iter().position(|header| header.trim() == name).ok_or_else(|| {
-            let list: Vec<&str> = headers.iter().collect();
-            format!("{}: no column `{name}`; there are {}", path.display(), list.join(", "))
-        })
+        headers
+            .iter()
+            .position(|header| header.trim() == name)
+            .ok_or_else(|| {
+                let list: Vec<&str> = headers.iter().collect();
+                format!(
+                    "{}: no column `{name}`; there are {}",
+                    path.display(),
+                    list.join(", ")
+                )
+            })
     };
     let time_place = find(&time.name)?;
     let mut places = Vec::with_capacity(columns.len());
@@ -245,7 +289,11 @@ fn read_record(path: &Path, time: &Scaled, columns: &[Option<Scaled>]) -> Result
         };
         let t = number(time_place, &time.unit)?;
         if held.times.last().is_some_and(|last| *last >= t) {
-            return Err(format!("{}, line {}: the time does not increase", path.display(), row + 2));
+            return Err(format!(
+                "{}, line {}: the time does not increase",
+                path.display(),
+                row + 2
+            ));
         }
         held.times.push(t);
         for place in &places {

@@ -10,7 +10,11 @@ use crate::variant::Variant;
 /// Runs the command.
 pub fn run(options: &Derive) -> Outcome {
     let variant = Variant::load(&options.spec, options.order.as_deref())?;
-    let format = if options.json { Format::Json } else { options.format };
+    let format = if options.json {
+        Format::Json
+    } else {
+        options.format
+    };
     let notation = match format {
         Format::Latex => Notation::latex(&variant.model),
         _ => Notation::text(&variant.model),

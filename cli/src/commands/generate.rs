@@ -43,7 +43,11 @@ fn one(options: &Generate, spec: &Path, out: &Path) -> Outcome {
         });
         return say(&format!("{document:#}\n"));
     }
-    say(&format!("{}: {} lines\n", path.display(), text.lines().count()))
+    say(&format!(
+        "{}: {} lines\n",
+        path.display(),
+        text.lines().count()
+    ))
 }
 
 /// The emitted source of a program.
@@ -70,7 +74,11 @@ fn all(check: bool, json: bool) -> Outcome {
         say(&format!("{document:#}\n"))?;
     } else {
         let verb = if check { "differ" } else { "written" };
-        say(&format!("{} files, {} {verb}\n", files.len(), different.len()))?;
+        say(&format!(
+            "{} files, {} {verb}\n",
+            files.len(),
+            different.len()
+        ))?;
     }
     if check && !different.is_empty() {
         warn(&format!(
@@ -93,7 +101,10 @@ fn checked_in_files(root: &Path) -> Outcome<Vec<(String, String)>> {
             order => format!("{}_order_{order}", model.name),
         };
         let variant = derive_variant(model.clone(), &vec![order; model.fields.len()])?;
-        files.push((format!("{name}.rs"), source(&variant.program, Packaging::Module)?));
+        files.push((
+            format!("{name}.rs"),
+            source(&variant.program, Packaging::Module)?,
+        ));
         modules.push_str(&format!("#[rustfmt::skip]\npub mod {name};\n"));
     }
     let header = "//! Equations of motion of the planetary arm, rigid and with one to eight modes, as\n\

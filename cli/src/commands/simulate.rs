@@ -65,11 +65,14 @@ pub fn run(options: &Simulate) -> Outcome {
 /// `NAME=VALUE`, the value in the unit the specification declares.
 fn set_parameter(model: &Model, assignment: &str) -> Outcome<Model> {
     let (name, value) = assignment.split_once('=').ok_or_else(|| {
-        Problem::input(format!("--set {assignment}: expected NAME=VALUE, such as b_sp=25e-6"))
+        Problem::input(format!(
+            "--set {assignment}: expected NAME=VALUE, such as b_sp=25e-6"
+        ))
     })?;
-    let number: f64 = value.trim().parse().map_err(|_| {
-        Problem::input(format!("--set {assignment}: \"{value}\" is no number"))
-    })?;
+    let number: f64 = value
+        .trim()
+        .parse()
+        .map_err(|_| Problem::input(format!("--set {assignment}: \"{value}\" is no number")))?;
     model
         .with_parameter(name.trim(), number)
         .map_err(|error| Problem::model(&model.source, error))
@@ -87,7 +90,10 @@ fn inputs(options: &Simulate, model: &Model) -> Outcome<HeldInputs> {
         }
         None => {
             for input in &model.inputs {
-                warn(&format!("warning: no record gives the input `{}`: it is 0", input.name));
+                warn(&format!(
+                    "warning: no record gives the input `{}`: it is 0",
+                    input.name
+                ));
             }
             Ok(HeldInputs::zero(model.inputs.len()))
         }
@@ -97,18 +103,30 @@ fn inputs(options: &Simulate, model: &Model) -> Outcome<HeldInputs> {
 /// Begin and end of the simulation, in s.
 fn span(options: &Simulate, inputs: &HeldInputs) -> Outcome<(f64, f64)> {
     let recorded = options.record.as_ref().map(|_| inputs.times());
-    let start = recorded.and_then(|times| times.first()).copied().unwrap_or(0.0);
-    let end = options.until.or_else(|| recorded.and_then(|times| times.last()).copied());
+    let start = recorded
+        .and_then(|times| times.first())
+        .copied()
+        .unwrap_or(0.0);
+    let end = options
+        .until
+        .or_else(|| recorded.and_then(|times| times.last()).copied());
     let end = end.ok_or_else(|| Problem::input("--until is missing: the simulated time in s"))?;
     if end.is_finite() && end > start {
         return Ok((start, end));
     }
-    Err(Problem::input(format!("--until {end:?}: expected a time in s after {start:?}")))
+    Err(Problem::input(format!(
+        "--until {end:?}: expected a time in s after {start:?}"
+    )))
 }
 
 /// The record's times up to the end.
 fn record_times(inputs: &HeldInputs, (_, end): (f64, f64)) -> Outcome<Vec<f64>> {
-    let times: Vec<f64> = inputs.times().iter().copied().take_while(|t| *t <= end).collect();
+    let times: Vec<f64> = inputs
+        .times()
+        .iter()
+        .copied()
+        .take_while(|t| *t <= end)
+        .collect();
     let last = inputs.times().last().copied().unwrap_or(end);
     if end > last {
         return Err(Problem::input(format!(
@@ -193,8 +211,15 @@ impl Run {
         let settings = Settings::with_tolerance(tolerance);
         let bar = Bar::new("simulating", end - start, "s");
         let mut progress = |t: f64| bar.set(t - start);
-        simulate(&self.system, &self.initial, (start, end), times, &settings, &mut progress)
-            .map_err(|error| Problem::input(format!("{error}{}", self.culprit(&error))))
+        simulate(
+            &self.system,
+            &self.initial,
+            (start, end),
+            times,
+            &settings,
+            &mut progress,
+        )
+        .map_err(|error| Problem::input(format!("{error}{}", self.culprit(&error))))
     }
 
     /// The name of what an error gives by number.

@@ -48,7 +48,8 @@ struct Stopwatch {
 
 impl Stopwatch {
     fn lap(&mut self, step: &'static str) {
-        self.steps.push((step, self.started.elapsed().as_secs_f64()));
+        self.steps
+            .push((step, self.started.elapsed().as_secs_f64()));
         self.started = Instant::now();
     }
 }
@@ -73,7 +74,9 @@ pub fn run(options: &Tour) -> Outcome {
     watch.lap("validate, including a compilation of the emitted Rust");
     drop(note);
     let run = Run::new(&variant.model, variant.evaluator(), HeldInputs::zero(0))?;
-    let times: Vec<f64> = (0..=(UNTIL / SAMPLE) as usize).map(|i| i as f64 * SAMPLE).collect();
+    let times: Vec<f64> = (0..=(UNTIL / SAMPLE) as usize)
+        .map(|i| i as f64 * SAMPLE)
+        .collect();
     let trajectory = run.trajectory(&times, TOLERANCE)?;
     let table = run.table(&trajectory);
     watch.lap("simulate two seconds");
@@ -82,14 +85,22 @@ pub fn run(options: &Tour) -> Outcome {
     let page = page_text(&variant, &rust, &certificate, &trajectory, &figure, &watch)?;
     let path = options.out.join("index.html");
     write_file(&path, page.as_bytes())?;
-    let verdict = if certificate.passed { "passed" } else { "FAILED" };
+    let verdict = if certificate.passed {
+        "passed"
+    } else {
+        "FAILED"
+    };
     say(&format!(
         "{} checks {verdict}, {} switches simulated\nopen {}\n",
         certificate.checks.len(),
         trajectory.switches.len(),
         path.display()
     ))?;
-    if certificate.passed { Ok(()) } else { Err(Problem::Failed) }
+    if certificate.passed {
+        Ok(())
+    } else {
+        Err(Problem::Failed)
+    }
 }
 
 /// The files that the page shows.
@@ -104,9 +115,15 @@ fn leave(
     let out = &options.out;
     let json = serde_json::to_string_pretty(certificate)
         .map_err(|error| Problem::input(error.to_string()))?;
-    write_file(&out.join("planetary_arm.toml"), variant.model.source.text.as_bytes())?;
+    write_file(
+        &out.join("planetary_arm.toml"),
+        variant.model.source.text.as_bytes(),
+    )?;
     write_file(&out.join("lib.rs"), rust.as_bytes())?;
-    write_file(&out.join("certificate.json"), format!("{json}\n").as_bytes())?;
+    write_file(
+        &out.join("certificate.json"),
+        format!("{json}\n").as_bytes(),
+    )?;
     let trajectory = out.join("trajectory.csv");
     write_file(&trajectory, &table.encode(Path::new("trajectory.csv"))?)?;
     write_file(&out.join("trajectory.svg"), figure.as_bytes())
@@ -150,8 +167,16 @@ fn figure(variant: &Variant, table: &Table) -> Outcome<String> {
     let history = TimeHistory {
         title: "Motion of the arm over two seconds from rest".to_owned(),
         panels: vec![
-            panel("Relative displacement of sun and planet along the line of action", "x_sp", references)?,
-            panel("Positioning error of the arm's end, Eq. (24)", "f_la", Vec::new())?,
+            panel(
+                "Relative displacement of sun and planet along the line of action",
+                "x_sp",
+                references,
+            )?,
+            panel(
+                "Positioning error of the arm's end, Eq. (24)",
+                "f_la",
+                Vec::new(),
+            )?,
         ],
     };
     time_history(&history).map_err(|error| Problem::input(error.to_string()))

@@ -33,12 +33,23 @@ pub fn run(options: &Validate) -> Outcome {
     } else {
         say(&summary(&certificate))?;
     }
-    if certificate.passed { Ok(()) } else { Err(Problem::Failed) }
+    if certificate.passed {
+        Ok(())
+    } else {
+        Err(Problem::Failed)
+    }
 }
 
-/// The certificate of a model at the given orders (all fields share one).
+/// The certificate of a model at the given orders, which are one for all fields.
 pub fn of(model: &Model, orders: &[usize]) -> Outcome<Certificate> {
     let order = orders.first().copied().unwrap_or(0);
+    if orders.iter().any(|other| *other != order) {
+        return Err(Problem::input(format!(
+            "the fields of {} have the orders {orders:?}; a certificate is for one order: \
+             give --order",
+            model.name
+        )));
+    }
     let variant = derive_variant(model.clone(), orders)?;
     let emitted = source(&variant.program, Packaging::Crate)?;
     certificate(model, order, emitted).map_err(|error| Problem::model(&model.source, error))
@@ -47,20 +58,35 @@ pub fn of(model: &Model, orders: &[usize]) -> Outcome<Certificate> {
 /// One line per check.
 pub fn summary(certificate: &Certificate) -> String {
     let mut text = format!("{}, order {}\n", certificate.model, certificate.order);
-    let width = certificate.checks.iter().map(|check| check.name.len()).max().unwrap_or(0);
+    let width = certificate
+        .checks
+        .iter()
+        .map(|check| check.name.len())
+        .max()
+        .unwrap_or(0);
     for check in &certificate.checks {
         text.push_str(&format!("  {:width$}  {}\n", check.name, verdict(check)));
     }
-    text.push_str(if certificate.passed { "passed\n" } else { "FAILED\n" });
+    text.push_str(if certificate.passed {
+        "passed\n"
+    } else {
+        "FAILED\n"
+    });
     text
 }
 
 fn verdict(check: &Check) -> String {
-    let detail = if check.detail.is_empty() { String::new() } else { format!("  ({})", check.detail) };
+    let detail = if check.detail.is_empty() {
+        String::new()
+    } else {
+        format!("  ({})", check.detail)
+    };
     if check.skipped {
         return format!("skipped{detail}");
     }
-    let value = check.value.map_or("not finite".to_owned(), |value| format!("{value:.1e}"));
+    let value = check
+        .value
+        .map_or("not finite".to_owned(), |value| format!("{value:.1e}"));
     let word = if check.passed { "passed" } else { "FAILED" };
     format!("{word}   {value} of {:.0e}{detail}", check.tolerance)
 }

@@ -35,7 +35,11 @@ impl Expression {
 
     /// A number.
     pub fn number(value: f64) -> Self {
-        let level = if value.is_sign_negative() { Level::Negation } else { Level::Atom };
+        let level = if value.is_sign_negative() {
+            Level::Negation
+        } else {
+            Level::Atom
+        };
         Self {
             tokens: super::literals::number(value),
             level,
@@ -50,7 +54,11 @@ impl Expression {
 
     fn at_least(&self, level: Level) -> TokenStream {
         let tokens = &self.tokens;
-        if self.level < level { quote!((#tokens)) } else { quote!(#tokens) }
+        if self.level < level {
+            quote!((#tokens))
+        } else {
+            quote!(#tokens)
+        }
     }
 
     fn new(tokens: TokenStream, level: Level, parts: &[&Self]) -> Self {

@@ -4,15 +4,14 @@
 use std::collections::{BTreeSet, HashMap};
 
 use proc_macro2::{Ident, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 
 use super::EmitError;
-use super::body::{Access, Body};
+
 use super::functions::{Needed, items};
 use super::literals::{count, doc, file_doc, identifier, number};
 use super::names::Names;
-use crate::describe::describe_value;
-use crate::program::{Extent, Op, Program, RowValues, ValueId};
+use crate::program::{Extent, Op, Program, ValueId};
 
 /// What the emitted file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +22,7 @@ pub enum Packaging {
     Module,
 }
 
-type Emitted<T> = Result<T, EmitError>;
+pub(super) type Emitted<T> = Result<T, EmitError>;
 
 /// The source of a program as Rust.
 ///
@@ -54,11 +53,12 @@ fn spaced(source: &str) -> String {
     text
 }
 
-struct File<'p> {
-    program: &'p Program,
+/// What a file is written from.
+pub(super) struct File<'p> {
+    pub(super) program: &'p Program,
     /// Prepared values that the stages read, in the order of the program, by name.
-    fields: Vec<ValueId>,
-    field_names: HashMap<ValueId, Ident>,
+    pub(super) fields: Vec<ValueId>,
+    pub(super) field_names: HashMap<ValueId, Ident>,
 }
 
 impl<'p> File<'p> {
@@ -174,7 +174,7 @@ impl<'p> File<'p> {
         }
     }
 
-    fn guard_count(&self) -> usize {
+    pub(super) fn guard_count(&self) -> usize {
         self.program
             .guards
             .iter()
@@ -216,363 +216,15 @@ impl<'p> File<'p> {
         }
         Ok(quote!(#(#items)*))
     }
-
-    fn parameters(&self) -> Emitted<TokenStream> {
-        let mut fields = Vec::new();
-        let mut defaults = Vec::new();
-        for parameter in &self.program.parameters {
-            let quantity = &parameter.quantity;
-            let name = identifier(&quantity.name)?;
-            let docs = doc(&[quantity_line(&quantity.doc, &quantity.unit, &parameter.origin)]);
-            let value = number(parameter.value);
-            fields.push(quote!(#docs pub #name: f64));
-            defaults.push(quote!(#name: #value));
-        }
-        Ok(quote! {
-            #[doc = " Parameters of the model. `Default` gives the specification's values."]
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            pub struct Parameters { #(#fields),* }
-
-            impl Default for Parameters {
-                fn default() -> Self {
-                    Self { #(#defaults),* }
-                }
-            }
-        })
-    }
-
-    fn inputs(&self) -> Emitted<TokenStream> {
-        let mut fields = Vec::new();
-        for input in &self.program.inputs {
-            let name = identifier(&input.name)?;
-            let docs = doc(&[quantity_line(&input.doc, &input.unit, "")]);
-            fields.push(quote!(#docs pub #name: f64));
-        }
-        Ok(quote! {
-            #[doc = " Signals supplied at run time. `Default` gives zeros."]
-            #[derive(Clone, Copy, Debug, Default, PartialEq)]
-            pub struct Inputs { #(#fields),* }
-        })
-    }
-
-    fn coefficients(&self, needed: &mut Needed) -> Emitted<TokenStream> {
-        let mut body = Body::new(self.program, Access::Prepare, &self.prepared_roots(), needed)?;
-        let mut fields = Vec::new();
-        let mut values = Vec::new();
-        for id in &self.fields {
-            let name = &self.field_names[id];
-            let docs = doc(&[describe_value(self.program, *id)]);
-            let extent = self.program.value(*id).extent;
-            let field_type = match extent {
-                Extent::Scalar => quote!(f64),
-                Extent::Vector(n) => {
-                    let n = count(n);
-                    quote!([f64; #n])
-                }
-                Extent::Matrix(rows, columns) => {
-                    let (rows, columns) = (count(rows), count(columns));
-                    quote!([[f64; #columns]; #rows])
-                }
-            };
-            fields.push(quote!(#docs pub #name: #field_type));
-            let value = match extent {
-                Extent::Scalar => body.scalar(*id)?,
-                _ => body.array(*id)?,
-            };
-            values.push(quote!(#name: #value));
-        }
-        let check = self.pivot_check(&mut body)?;
-        let statements = body.statements();
-        let unused = self.program.parameters.is_empty().then(|| quote!(#[allow(unused_variables)]));
-        Ok(quote! {
-            #[doc = " What depends on the parameters alone: prepare once, use in every call."]
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            pub struct Coefficients {
-                #(#fields,)*
-                #[doc = " Whether all prepared pivots of the mass matrix are positive. If not, the mass matrix is not positive definite and the rates are not to be used."]
-                pub positive_definite: bool,
-            }
-
-            impl Coefficients {
-                #[doc = " The coefficients of these parameters."]
-                #unused
-                pub fn prepare(parameters: &Parameters) -> Self {
-                    #(#statements)*
-                    Self {
-                        #(#values,)*
-                        positive_definite: #check,
-                    }
-                }
-            }
-        })
-    }
-
-    fn prepared_roots(&self) -> Vec<ValueId> {
-        self.fields.iter().chain(&self.program.pivots).copied().collect()
-    }
-
-    fn pivot_check(&self, body: &mut Body<'_>) -> Emitted<TokenStream> {
-        let mut conditions = Vec::new();
-        for (place, id) in self.program.pivots.iter().enumerate() {
-            match self.program.value(*id).extent {
-                Extent::Scalar => {
-                    let pivot = body.scalar(*id)?;
-                    conditions.push(quote!(#pivot > 0.0));
-                }
-                extent => {
-                    let name = format_ident!("positive_{}", place + 1);
-                    let length = count(extent.length());
-                    let test = match extent {
-                        Extent::Vector(_) => {
-                            let element = body.element(*id)?;
-                            quote!(#element > 0.0)
-                        }
-                        _ => {
-                            let array = body.array(*id)?;
-                            quote!(#array[i][i] > 0.0)
-                        }
-                    };
-                    let length = match extent {
-                        Extent::Matrix(rows, _) => count(rows),
-                        _ => length,
-                    };
-                    body.push(quote! {
-                        let mut #name = true;
-                        for i in 0..#length {
-                            #name = #name && #test;
-                        }
-                    });
-                    conditions.push(quote!(#name));
-                }
-            }
-        }
-        if conditions.is_empty() {
-            return Ok(quote!(true));
-        }
-        Ok(quote!(#(#conditions)&&*))
-    }
-
-    fn rates(&self, needed: &mut Needed) -> Emitted<TokenStream> {
-        let program = self.program;
-        let rows = &program.accelerations;
-        let mut body = Body::new(program, Access::Coefficients(&self.field_names), &rows.all(), needed)?;
-        let degrees = count(program.degrees_of_freedom());
-        body.push(quote! {
-            let mut rates = [0.0; STATES];
-            for i in 0..#degrees {
-                rates[i] = state[#degrees + i];
-            }
-        });
-        self.write_rows(&mut body, rows, &format_ident!("rates"), program.degrees_of_freedom())?;
-        let statements = body.statements();
-        Ok(quote! {
-            #[doc = " Rates of the state."]
-            #[doc = ""]
-            #[doc = " `t` in s; `state` and the result in the order of [`STATE_NAMES`]."]
-            #[allow(unused_variables)]
-            pub fn rates(t: f64, state: &[f64; STATES], inputs: &Inputs, coefficients: &Coefficients) -> [f64; STATES] {
-                #(#statements)*
-                rates
-            }
-        })
-    }
-
-    fn write_rows(&self, body: &mut Body<'_>, rows: &RowValues, target: &Ident, offset: usize) -> Emitted<()> {
-        for (place, id) in rows.scalars.iter().enumerate() {
-            let place = count(offset + place);
-            let value = body.scalar(*id)?;
-            body.push(quote!(#target[#place] = #value;));
-        }
-        for (field, id) in rows.modal.iter().enumerate() {
-            let order = self.program.fields[field].order;
-            if order == 0 {
-                continue;
-            }
-            let first = count(offset + self.program.mode_offset(field));
-            let order = count(order);
-            let value = body.element(*id)?;
-            body.push(quote! {
-                for i in 0..#order {
-                    #target[#first + i] = #value;
-                }
-            });
-        }
-        Ok(())
-    }
-
-    fn observables(&self, needed: &mut Needed) -> Emitted<TokenStream> {
-        let program = self.program;
-        let ids = &program.observable_values;
-        let mut body = Body::new(program, Access::Coefficients(&self.field_names), ids, needed)?;
-        let values = ids.iter().map(|id| body.scalar(*id)).collect::<Emitted<Vec<_>>>()?;
-        let statements = body.statements();
-        let (mut functions, mut lines) = (Vec::new(), Vec::new());
-        for observable in &program.observables {
-            lines.push(format!(
-                "- `{}`: {}",
-                observable.name,
-                quantity_line(&observable.doc, &observable.unit, "")
-            ));
-        }
-        let docs = doc(&lines);
-        for (name, id, line) in [
-            ("energy", ids.len() - 2, " Kinetic plus potential energy, in J."),
-            ("power", ids.len() - 1, " Power of all non-conservative forces, in W: the rate of the energy."),
-        ] {
-            functions.push(self.scalar_function(name, line, ids[id], needed)?);
-        }
-        Ok(quote! {
-            #[doc = " The observables, in the order of [`OBSERVABLE_NAMES`]:"]
-            #[doc = ""]
-            #docs
-            #[allow(unused_variables)]
-            pub fn observables(t: f64, state: &[f64; STATES], inputs: &Inputs, coefficients: &Coefficients) -> [f64; OBSERVABLES] {
-                #(#statements)*
-                [#(#values),*]
-            }
-            #(#functions)*
-        })
-    }
-
-    fn scalar_function(
-        &self,
-        name: &str,
-        line: &str,
-        id: ValueId,
-        needed: &mut Needed,
-    ) -> Emitted<TokenStream> {
-        let access = Access::Coefficients(&self.field_names);
-        let mut body = Body::new(self.program, access, &[id], needed)?;
-        let value = body.scalar(id)?;
-        let statements = body.statements();
-        let name = identifier(name)?;
-        Ok(quote! {
-            #[doc = #line]
-            #[allow(unused_variables)]
-            pub fn #name(t: f64, state: &[f64; STATES], inputs: &Inputs, coefficients: &Coefficients) -> f64 {
-                #(#statements)*
-                #value
-            }
-        })
-    }
-
-    fn guards(&self, needed: &mut Needed) -> Emitted<TokenStream> {
-        let program = self.program;
-        let ids: Vec<ValueId> = program.guards.iter().map(|g| g.value).collect();
-        let mut body = Body::new(program, Access::Coefficients(&self.field_names), &ids, needed)?;
-        body.push(quote!(let mut values = [0.0; GUARDS];));
-        let mut place = 0;
-        let mut lines = Vec::new();
-        for guard in &program.guards {
-            let at = count(place);
-            match program.value(guard.value).extent {
-                Extent::Vector(length) => {
-                    let value = body.element(guard.value)?;
-                    let n = count(length);
-                    body.push(quote! {
-                        for i in 0..#n {
-                            values[#at + i] = #value;
-                        }
-                    });
-                    place += length;
-                }
-                _ => {
-                    let value = body.scalar(guard.value)?;
-                    body.push(quote!(values[#at] = #value;));
-                    place += 1;
-                }
-            }
-            lines.push(format!("- `{}`", guard.formula));
-        }
-        let statements = body.statements();
-        let docs = doc(&lines);
-        Ok(quote! {
-            #[doc = " Switching surfaces: the equations change where one of these changes sign."]
-            #[doc = ""]
-            #docs
-            #[allow(unused_variables, unused_mut)]
-            pub fn guards(t: f64, state: &[f64; STATES], inputs: &Inputs, coefficients: &Coefficients) -> [f64; GUARDS] {
-                #(#statements)*
-                values
-            }
-        })
-    }
-
-    fn mass_matrix(&self, needed: &mut Needed) -> Emitted<TokenStream> {
-        let program = self.program;
-        let roots = mass_roots(program);
-        let mut body = Body::new(program, Access::Coefficients(&self.field_names), &roots, needed)?;
-        body.push(quote!(let mut values = [[0.0; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];));
-        for (row, entries) in program.mass.scalars.iter().enumerate() {
-            for (column, id) in entries.iter().enumerate() {
-                if matches!(program.value(*id).op, Op::Constant(0.0)) {
-                    continue;
-                }
-                let value = body.scalar(*id)?;
-                let (row, column) = (count(row), count(column));
-                body.push(quote!(values[#row][#column] = #value;));
-            }
-        }
-        self.write_coupling(&mut body)?;
-        self.write_modal_blocks(&mut body)?;
-        let statements = body.statements();
-        Ok(quote! {
-            #[doc = " The mass matrix, in the order of the first half of [`STATE_NAMES`]."]
-            #[allow(unused_variables, unused_mut)]
-            pub fn mass_matrix(t: f64, state: &[f64; STATES], inputs: &Inputs, coefficients: &Coefficients) -> [[f64; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
-                #(#statements)*
-                values
-            }
-        })
-    }
-
-    fn write_coupling(&self, body: &mut Body<'_>) -> Emitted<()> {
-        let program = self.program;
-        for (row, entries) in program.mass.coupling.iter().enumerate() {
-            for (field, id) in entries.iter().enumerate() {
-                let order = program.fields[field].order;
-                if order == 0 || matches!(program.value(*id).op, Op::Constant(0.0)) {
-                    continue;
-                }
-                let value = body.element(*id)?;
-                let (row, order) = (count(row), count(order));
-                let first = count(program.mode_offset(field));
-                body.push(quote! {
-                    for i in 0..#order {
-                        values[#row][#first + i] = #value;
-                        values[#first + i][#row] = values[#row][#first + i];
-                    }
-                });
-            }
-        }
-        Ok(())
-    }
-
-    fn write_modal_blocks(&self, body: &mut Body<'_>) -> Emitted<()> {
-        let program = self.program;
-        for (row, blocks) in program.mass.modal.iter().enumerate() {
-            for (column, block) in blocks.iter().enumerate() {
-                let Some(id) = block else { continue };
-                let (rows, columns) = (program.fields[row].order, program.fields[column].order);
-                if rows == 0 || columns == 0 {
-                    continue;
-                }
-                let first_row = count(program.mode_offset(row));
-                let first_column = count(program.mode_offset(column));
-                let loops = body.block_loops(
-                    &program.value(*id).op,
-                    (&count(rows), &count(columns)),
-                    &|i, j| quote!(values[#first_row + #i][#first_column + #j]),
-                )?;
-                body.push(loops);
-            }
-        }
-        Ok(())
-    }
 }
 
-fn quantity_line(text: &str, unit: &str, origin: &str) -> String {
-    let mut line = if text.is_empty() { String::new() } else { format!("{text} ") };
+/// Meaning, unit and origin of a quantity.
+pub(super) fn quantity_line(text: &str, unit: &str, origin: &str) -> String {
+    let mut line = if text.is_empty() {
+        String::new()
+    } else {
+        format!("{text} ")
+    };
     line.push_str(&format!("[{unit}]"));
     if !origin.is_empty() {
         line.push_str(&format!(" ({origin})"));
@@ -580,7 +232,8 @@ fn quantity_line(text: &str, unit: &str, origin: &str) -> String {
     line
 }
 
-fn mass_roots(program: &Program) -> Vec<ValueId> {
+/// The values that the mass matrix is written from.
+pub(super) fn mass_roots(program: &Program) -> Vec<ValueId> {
     let mass = &program.mass;
     let mut roots: Vec<ValueId> = mass.scalars.iter().flatten().copied().collect();
     roots.extend(mass.coupling.iter().flatten());
@@ -614,5 +267,7 @@ fn coefficient_values(program: &Program) -> Vec<ValueId> {
         let value = program.value(*id);
         value.prepared && !matches!(value.op, Op::Constant(_) | Op::Table(_))
     });
-    read.into_iter().filter(|id| program.value(*id).extent.length() > 0).collect()
+    read.into_iter()
+        .filter(|id| program.value(*id).extent.length() > 0)
+        .collect()
 }

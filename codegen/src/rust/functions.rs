@@ -31,7 +31,9 @@ pub fn items(needed: &Needed) -> TokenStream {
         elementary.insert(Elementary::Sqrt);
     }
     let kernels: Vec<(Elementary, Kernel)> = elementary.iter().map(|f| (*f, f.kernel())).collect();
-    let functions = kernels.iter().map(|(function, kernel)| elementary_function(*function, kernel));
+    let functions = kernels
+        .iter()
+        .map(|(function, kernel)| elementary_function(*function, kernel));
     let primitives = primitives(&kernels);
     let deadzone = needed.deadzone.then(deadzone);
     let contact = needed.contact.then(contact);
@@ -215,7 +217,11 @@ impl<'k> KernelBody<'k> {
             }
         }
         let statements = &self.statements;
-        let result = self.kernel.outputs.first().map(|output| self.expressions[*output].tokens());
+        let result = self
+            .kernel
+            .outputs
+            .first()
+            .map(|output| self.expressions[*output].tokens());
         quote!(#(#statements)* #result)
     }
 
@@ -260,7 +266,9 @@ impl<'k> KernelBody<'k> {
 /// The bit operations that the kernels need.
 fn primitives(kernels: &[(Elementary, Kernel)]) -> TokenStream {
     let uses = |wanted: fn(&Operation) -> bool| {
-        kernels.iter().any(|(_, kernel)| kernel.operations.iter().any(wanted))
+        kernels
+            .iter()
+            .any(|(_, kernel)| kernel.operations.iter().any(wanted))
     };
     let magnitude = uses(|o| matches!(o, Operation::Abs(_))).then(|| {
         quote! {

@@ -12,13 +12,27 @@ pub fn number(value: f64) -> TokenStream {
         return quote!(f64::NAN);
     }
     if value.is_infinite() {
-        return if value > 0.0 { quote!(f64::INFINITY) } else { quote!(f64::NEG_INFINITY) };
+        return if value > 0.0 {
+            quote!(f64::INFINITY)
+        } else {
+            quote!(f64::NEG_INFINITY)
+        };
     }
     let magnitude = value.abs();
     let plain = magnitude == 0.0 || (1e-4..1e7).contains(&magnitude);
-    let text = if plain { format!("{magnitude:?}") } else { format!("{magnitude:e}") };
-    let literal: Literal = text.parse().unwrap_or_else(|_| Literal::f64_unsuffixed(magnitude));
-    if value.is_sign_negative() { quote!(-#literal) } else { quote!(#literal) }
+    let text = if plain {
+        format!("{magnitude:?}")
+    } else {
+        format!("{magnitude:e}")
+    };
+    let literal: Literal = text
+        .parse()
+        .unwrap_or_else(|_| Literal::f64_unsuffixed(magnitude));
+    if value.is_sign_negative() {
+        quote!(-#literal)
+    } else {
+        quote!(#literal)
+    }
 }
 
 /// An identifier, if the name is one.
@@ -57,5 +71,9 @@ fn single_line(text: &str) -> String {
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect();
     let clean = clean.replace('[', "\\[").replace('<', "\\<");
-    if clean.is_empty() { clean } else { format!(" {clean}") }
+    if clean.is_empty() {
+        clean
+    } else {
+        format!(" {clean}")
+    }
 }

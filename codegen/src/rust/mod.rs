@@ -1,15 +1,19 @@
 //! The Rust backend: one source file per variant, `no_std`, without dependency,
 //! allocation or panic, that compiles on its own with any edition.
 //!
-//! `file` lays the items out, `body` writes the statements of a stage out of `expression`s,
+//! `file` lays the items out, `types` writes parameters and coefficients, `stages` the
+//! functions, `body` (with `blocks` for matrices) writes the statements of a stage out of `expression`s,
 //! `functions` the elementary functions, `literals` numbers and names. All of it reads the program alone.
 
+mod blocks;
 mod body;
 mod expression;
 mod file;
 mod functions;
 mod literals;
 mod names;
+mod stages;
+mod types;
 
 pub use file::{Packaging, emit};
 

@@ -72,7 +72,11 @@ impl Names {
         name: &str,
         stem: &'static str,
     ) -> Result<Ident, EmitError> {
-        let name = if self.used.contains(name) { self.numbered(stem) } else { name.to_owned() };
+        let name = if self.used.contains(name) {
+            self.numbered(stem)
+        } else {
+            name.to_owned()
+        };
         self.used.insert(name.clone());
         let name = identifier(&name)?;
         self.given.insert(id, name.clone());

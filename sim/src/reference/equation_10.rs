@@ -33,7 +33,8 @@ impl Residuals {
     /// The largest residual relative to its row's scale; infinite if one is not a number.
     pub fn worst(&self) -> f64 {
         let rows = self.residual.iter().zip(&self.scale);
-        rows.map(|(residual, scale)| relative(*residual, *scale)).fold(0.0, f64::max)
+        rows.map(|(residual, scale)| relative(*residual, *scale))
+            .fold(0.0, f64::max)
     }
 }
 
