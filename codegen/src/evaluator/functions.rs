@@ -1,0 +1,61 @@
+//! Functions of one or two numbers, as every backend defines them.
+
+use elementary::Function as Elementary;
+use model_spec::model::Function;
+
+/// 1/a for a positive pivot, NaN elsewhere.
+pub(super) fn pivot_reciprocal(a: f64) -> f64 {
+    if a > 0.0 { 1.0 / a } else { f64::NAN }
+}
+
+/// A function of the expression language; `b` is read by those of two arguments.
+pub fn call(function: Function, a: f64, b: f64) -> f64 {
+    match function {
+        Function::Deadzone => deadzone(a, b),
+        Function::Contact => contact(a, b),
+        other => match elementary_function(other) {
+            Some(elementary) => elementary.apply(&[a, b]),
+            None => f64::NAN,
+        },
+    }
+}
+
+/// f_k of Eq. (7).
+fn deadzone(p: f64, b: f64) -> f64 {
+    if p > b {
+        p - b
+    } else if p < -b {
+        p + b
+    } else {
+        0.0
+    }
+}
+
+/// 1 where |p| > b, 0 elsewhere, Eq. (8).
+fn contact(p: f64, b: f64) -> f64 {
+    if p > b || p < -b { 1.0 } else { 0.0 }
+}
+
+/// The elementary function of the same name; `None` for the mesh laws.
+pub fn elementary_function(function: Function) -> Option<Elementary> {
+    Some(match function {
+        Function::Sin => Elementary::Sin,
+        Function::Cos => Elementary::Cos,
+        Function::Tan => Elementary::Tan,
+        Function::Asin => Elementary::Asin,
+        Function::Acos => Elementary::Acos,
+        Function::Atan => Elementary::Atan,
+        Function::Atan2 => Elementary::Atan2,
+        Function::Sinh => Elementary::Sinh,
+        Function::Cosh => Elementary::Cosh,
+        Function::Tanh => Elementary::Tanh,
+        Function::Exp => Elementary::Exp,
+        Function::Ln => Elementary::Ln,
+        Function::Sqrt => Elementary::Sqrt,
+        Function::Abs => Elementary::Abs,
+        Function::Sign => Elementary::Sign,
+        Function::Min => Elementary::Min,
+        Function::Max => Elementary::Max,
+        Function::Deadzone | Function::Contact => return None,
+    })
+}

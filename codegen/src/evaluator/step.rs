@@ -1,0 +1,125 @@
+//! One value of a program, computed from those before it.
+
+use elementary::Function as Elementary;
+
+use super::Point;
+use super::functions::{call, pivot_reciprocal};
+use super::matrices::matrix_step;
+use crate::program::{Extent, Op, Program, ValueId};
+
+/// Read access to operands while a value is computed: operands stand before it.
+pub(super) struct Operands<'a> {
+    memory: &'a [f64],
+    offsets: &'a [usize],
+    program: &'a Program,
+}
+
+impl<'a> Operands<'a> {
+    pub(super) fn slice(&self, id: ValueId) -> &'a [f64] {
+        let start = self.offsets[id.0];
+        &self.memory[start..start + self.program.values[id.0].extent.length()]
+    }
+
+    /// The operand's numbers and the distance from one element to the next: 0 for a
+    /// scalar, which stands for every element.
+    pub(super) fn strided(&self, id: ValueId) -> (&'a [f64], usize) {
+        let scalar = self.program.values[id.0].extent == Extent::Scalar;
+        (self.slice(id), usize::from(!scalar))
+    }
+
+    pub(super) fn matrix(&self, id: ValueId) -> (&'a [f64], usize, usize) {
+        match self.program.values[id.0].extent {
+            Extent::Matrix(rows, columns) => (self.slice(id), rows, columns),
+            other => (self.slice(id), other.length(), 1),
+        }
+    }
+}
+
+/// Computes the value `id` into its place in `memory`.
+pub(super) fn step(
+    memory: &mut [f64],
+    offsets: &[usize],
+    program: &Program,
+    id: ValueId,
+    point: &Point<'_>,
+) {
+    let value = &program.values[id.0];
+    let (before, after) = memory.split_at_mut(offsets[id.0]);
+    let out = &mut after[..value.extent.length()];
+    let operands = Operands {
+        memory: before,
+        offsets,
+        program,
+    };
+    let degrees = program.degrees_of_freedom();
+    match &value.op {
+        Op::Constant(number) => out[0] = *number,
+        Op::Table(place) => out.copy_from_slice(&program.tables[*place].values),
+        Op::Parameter(_) => {}
+        Op::Coordinate(index) => out[0] = point.state[*index],
+        Op::Rate(index) => out[0] = point.state[degrees + index],
+        Op::ModeCoordinates(field) => {
+            let start = program.mode_offset(*field);
+            out.copy_from_slice(&point.state[start..start + out.len()]);
+        }
+        Op::ModeRates(field) => {
+            let start = degrees + program.mode_offset(*field);
+            out.copy_from_slice(&point.state[start..start + out.len()]);
+        }
+        Op::Input(index) => out[0] = point.inputs.get(*index).copied().unwrap_or(0.0),
+        Op::Time => out[0] = point.t,
+        Op::Negate(a) => unary(out, &operands, *a, |a| -a),
+        Op::PivotReciprocal(a) => unary(out, &operands, *a, pivot_reciprocal),
+        Op::Add(a, b) => binary(out, &operands, *a, *b, |a, b| a + b),
+        Op::Subtract(a, b) => binary(out, &operands, *a, *b, |a, b| a - b),
+        Op::Multiply(a, b) => binary(out, &operands, *a, *b, |a, b| a * b),
+        Op::Divide(a, b) => binary(out, &operands, *a, *b, |a, b| a / b),
+        Op::Power(a, b) => binary(out, &operands, *a, *b, |a, b| {
+            Elementary::Pow.apply(&[a, b])
+        }),
+        Op::Call(function, arguments) => match *arguments.as_slice() {
+            [a] => unary(out, &operands, a, |a| call(*function, a, f64::NAN)),
+            [a, b] => binary(out, &operands, a, b, |a, b| call(*function, a, b)),
+            _ => out.fill(f64::NAN),
+        },
+        Op::Select {
+            a,
+            b,
+            then,
+            otherwise,
+        } => {
+            let (a, b) = (operands.strided(*a), operands.strided(*b));
+            let (then, otherwise) = (operands.strided(*then), operands.strided(*otherwise));
+            for (i, slot) in out.iter_mut().enumerate() {
+                let taken = a.0[i * a.1] > b.0[i * b.1];
+                *slot = if taken {
+                    then.0[i * then.1]
+                } else {
+                    otherwise.0[i * otherwise.1]
+                };
+            }
+        }
+        Op::Total(a) => out[0] = operands.slice(*a).iter().fold(0.0, |total, x| total + x),
+        other => matrix_step(out, value.extent, &operands, other),
+    }
+}
+
+fn unary(out: &mut [f64], operands: &Operands<'_>, a: ValueId, function: impl Fn(f64) -> f64) {
+    let (a, stride) = operands.strided(a);
+    for (i, slot) in out.iter_mut().enumerate() {
+        *slot = function(a[i * stride]);
+    }
+}
+
+fn binary(
+    out: &mut [f64],
+    operands: &Operands<'_>,
+    a: ValueId,
+    b: ValueId,
+    function: impl Fn(f64, f64) -> f64,
+) {
+    let (a, b) = (operands.strided(a), operands.strided(b));
+    for (i, slot) in out.iter_mut().enumerate() {
+        *slot = function(a.0[i * a.1], b.0[i * b.1]);
+    }
+}

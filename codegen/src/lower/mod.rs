@@ -1,0 +1,141 @@
+//! From the equations' graph to a program: sums and products become binary operations in
+//! a fixed order, what depends on parameters alone is split off and prepared once.
+//!
+//! A term `c P X` of a sum, P of parameters and X of the state, becomes one prepared
+//! coefficient |c| P times X, added or subtracted by the sign of c.
+
+mod arithmetic;
+mod values;
+
+use model_spec::model::{Model, ParameterValue};
+use model_spec::unit::Unit;
+
+use crate::equations::Equations;
+use crate::print::{Notation, formula};
+use crate::program::{
+    Extent, Op, Program, ProgramField, ProgramGuard, ProgramParameter, Quantity, ValueId,
+};
+use values::Lowering;
+
+/// The program of one variant.
+pub fn lower(model: &Model, equations: &Equations, parameter_values: &[f64]) -> Program {
+    let mut lowering = Lowering::new(&equations.graph, equations);
+    let accelerations = lowering.rows(&equations.accelerations.rows);
+    let mass = lowering.mass(equations);
+    let velocity_terms = lowering.rows(&equations.velocity_terms);
+    let forces = lowering.rows(&equations.forces);
+    let mut observable_values: Vec<ValueId> = equations
+        .observables
+        .iter()
+        .map(|id| lowering.value(*id))
+        .collect();
+    let kinetic = lowering.value(equations.kinetic);
+    let potential = lowering.value(equations.potential);
+    let energy = lowering.emit(Op::Add(kinetic, potential), Extent::Scalar);
+    observable_values.push(energy);
+    observable_values.push(lowering.value(equations.power));
+    let notation = Notation::text(model);
+    let guards = equations
+        .guards
+        .iter()
+        .map(|guard| ProgramGuard {
+            formula: formula(&equations.graph, &notation, guard.value),
+            value: lowering.value(guard.value),
+        })
+        .collect();
+    let pivots = equations
+        .accelerations
+        .pivots
+        .iter()
+        .filter(|id| equations.graph.dependence(**id).is_prepared())
+        .map(|id| lowering.value(*id))
+        .collect();
+    let coefficient_values = equations
+        .coefficients
+        .iter()
+        .map(|coefficient| lowering.value(coefficient.value))
+        .collect();
+    Program {
+        name: model.name.clone(),
+        title: model.title.clone(),
+        spec_hash: model.source.hash(),
+        parameters: program_parameters(model, parameter_values),
+        coordinates: model
+            .coordinates
+            .iter()
+            .map(|c| quantity(&c.name, &c.unit.text, &c.doc))
+            .collect(),
+        fields: model
+            .fields
+            .iter()
+            .zip(equations.graph.orders())
+            .map(|(field, order)| ProgramField {
+                coordinates: field.coordinates.clone(),
+                unit: field.unit.text.clone(),
+                order: *order,
+            })
+            .collect(),
+        inputs: model
+            .inputs
+            .iter()
+            .map(|i| quantity(&i.name, &i.unit.text, &i.doc))
+            .collect(),
+        observables: program_observables(model),
+        tables: lowering.tables,
+        values: lowering.values,
+        accelerations,
+        mass,
+        velocity_terms,
+        forces,
+        observable_values,
+        guards,
+        pivots,
+        coefficient_values,
+    }
+}
+
+fn quantity(name: &str, unit: &str, doc: &str) -> Quantity {
+    Quantity {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        doc: doc.to_owned(),
+    }
+}
+
+/// A unit as it is written in the specification, or its SI equivalent.
+fn si_unit(unit: &Unit) -> String {
+    if unit.is_coherent() {
+        unit.text.clone()
+    } else {
+        unit.dimension.to_string()
+    }
+}
+
+fn program_parameters(model: &Model, values: &[f64]) -> Vec<ProgramParameter> {
+    model
+        .parameters
+        .iter()
+        .zip(values)
+        .filter(|(parameter, _)| matches!(parameter.value, ParameterValue::Number(_)))
+        .map(|(parameter, value)| ProgramParameter {
+            quantity: quantity(&parameter.name, &si_unit(&parameter.unit), &parameter.doc),
+            origin: parameter.origin.clone(),
+            value: *value,
+        })
+        .collect()
+}
+
+fn program_observables(model: &Model) -> Vec<Quantity> {
+    let mut all: Vec<Quantity> = model
+        .observables
+        .iter()
+        .map(|o| quantity(&o.name, &si_unit(&o.unit), &o.doc))
+        .collect();
+    all.push(quantity("energy", "J", "kinetic plus potential energy"));
+    all.push(quantity(
+        "power",
+        "W",
+        "power of all non-conservative forces: the rate of the energy",
+    ));
+    all
+}

@@ -1,0 +1,122 @@
+//! The accelerations from M a = f, following the structure of the mass matrix.
+//!
+//! Modes are eliminated first: their block is diagonal plus outer products through a few
+//! interface scalars (the deflection at a tip mass, say), so that with
+//! D a_q + Phi G (Phi^T a_q) + H^T a = f_q the modes cost O(S). The interface scalars
+//! y = Phi^T a_q stand as extra unknowns beside the coordinates in a small system, solved
+//! by elimination without pivoting in the order that counts fewest operations. Where G is
+//! not diagonal the interfaces are made orthogonal first, or a pivot could be negative
+//! although M is positive definite (see [`ModalBlock::orthogonalise`]). Where the
+//! basis is not orthogonal the modal block is dense and its Cholesky factor takes the
+//! place of D. Pivots must be positive: a reciprocal of one that is not is NaN.
+
+mod modal;
+mod small;
+
+use crate::equations::{MassMatrix, Rows};
+use crate::graph::{Graph, Id, Operation};
+use modal::{ModalBlock, ModalInverse};
+use small::SmallSystem;
+
+/// The accelerations, and how they were found.
+#[derive(Clone, Debug)]
+pub struct Accelerations {
+    /// The accelerations.
+    pub rows: Rows,
+    /// All pivots of the factorisation, which must be positive: those of the coordinates in
+    /// the order of their elimination, then those of the interfaces, vectors over the
+    /// modes, and Cholesky factors (positive if they hold no NaN).
+    pub pivots: Vec<Id>,
+    /// What was chosen.
+    pub report: SolveReport,
+}
+
+/// How the accelerations are solved for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SolveReport {
+    /// The unknowns in the order of their elimination after the modes: coordinates by
+    /// number.
+    pub order: Vec<usize>,
+    /// How many interface scalars stand beside the coordinates.
+    pub interfaces: usize,
+    /// Operations per call for the chosen order.
+    pub operations: usize,
+    /// Operations per call of the dearest order tried.
+    pub dearest: usize,
+    /// Whether a field's modal block is dense.
+    pub dense_modes: bool,
+}
+
+/// Solves M a = f.
+pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &Rows) -> Accelerations {
+    let modal = ModalBlock::new(graph, mass);
+    let system = SmallSystem::new(graph, mass, right, &modal);
+    let coordinates = right.scalars.len();
+    let mut best: Option<(usize, Vec<usize>, Rows, Vec<Id>)> = None;
+    let mut dearest = 0;
+    for order in elimination_orders(coordinates) {
+        let (unknowns, mut pivots) = system.eliminate(graph, &order);
+        pivots.rotate_left(system.interfaces);
+        let rows = modal.back_substitute(graph, &system, &unknowns);
+        let operations = count_operations(graph, &rows.nodes());
+        dearest = dearest.max(operations);
+        if best.as_ref().is_none_or(|(least, ..)| operations < *least) {
+            best = Some((operations, order, rows, pivots));
+        }
+    }
+    let Some((operations, order, rows, mut pivots)) = best else {
+        unreachable!("there is at least one order of any number of coordinates");
+    };
+    pivots.extend(modal.inverses.iter().flatten().map(ModalInverse::pivot));
+    Accelerations {
+        rows,
+        pivots,
+        report: SolveReport {
+            order,
+            interfaces: modal.interfaces.len(),
+            operations,
+            dearest,
+            dense_modes: modal.inverses.iter().flatten().any(ModalInverse::is_dense),
+        },
+    }
+}
+
+/// All orders for up to four coordinates, the natural one and its reverse beyond.
+fn elimination_orders(count: usize) -> Vec<Vec<usize>> {
+    let natural: Vec<usize> = (0..count).collect();
+    if count > 4 {
+        return vec![natural.iter().rev().copied().collect(), natural];
+    }
+    let mut orders = vec![Vec::new()];
+    for _ in 0..count {
+        orders = orders
+            .into_iter()
+            .flat_map(|order: Vec<usize>| {
+                (0..count)
+                    .filter(|index| !order.contains(index))
+                    .map(|index| [order.clone(), vec![index]].concat())
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+    }
+    orders
+}
+
+/// Additions, multiplications and calls that depend on the state, element by element.
+pub fn count_operations(graph: &Graph, roots: &[Id]) -> usize {
+    graph
+        .reachable(roots)
+        .into_iter()
+        .filter(|id| !graph.dependence(*id).is_prepared())
+        .map(|id| {
+            let operation = graph.operation(id);
+            let operands = graph.operands(operation);
+            match operation {
+                Operation::Total(a) => graph.length(graph.shape(*a)),
+                Operation::Apply { matrix, .. } => 2 * graph.length(graph.shape(*matrix)),
+                Operation::CholeskySolve(factor, _) => 2 * graph.length(graph.shape(*factor)),
+                _ => operands.len() * graph.length(graph.shape(id)),
+            }
+        })
+        .sum()
+}

@@ -1,0 +1,133 @@
+//! The emitted source: as kept in `golden/`, the same at every emission, compiled by plain
+//! `rustc`, without a panic left in the optimised code.
+
+use std::path::Path;
+
+use crate::support::{compile, emitted, models, shipped};
+
+/// Compares with a file in `golden/`; with EOMGEN_REFRESH set, writes it instead.
+fn compare(name: &str, source: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/codegen/golden")
+        .join(name);
+    if std::env::var_os("EOMGEN_REFRESH").is_some() {
+        std::fs::write(&path, source).unwrap();
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    let first = kept
+        .lines()
+        .zip(source.lines())
+        .position(|(kept, now)| kept != now);
+    assert!(
+        kept == source,
+        "{name} differs from line {}; if that is meant, EOMGEN_REFRESH=1 cargo test -p eomgen-codegen",
+        first.map_or(kept.lines().count().min(source.lines().count()), |line| {
+            line
+        }) + 1
+    );
+}
+
+#[test]
+fn the_pendulum_is_emitted_as_kept() {
+    compare("pendulum.rs", &emitted(&shipped("pendulum"), 0));
+}
+
+/// The beam with a tip mass has two interfaces, tables and an input.
+#[test]
+fn the_beam_with_a_tip_mass_is_emitted_as_kept() {
+    compare(
+        "hub_beam_tip_mass_order_2.rs",
+        &emitted(&shipped("hub_beam_tip_mass"), 2),
+    );
+}
+
+/// A basis that is not orthogonal needs the Cholesky factor.
+#[test]
+fn the_printed_basis_is_emitted_as_kept() {
+    let arm = shipped("planetary_arm")
+        .source
+        .text
+        .replace("\"clamped_free\"", "\"clamped_free_printed\"");
+    let model = crate::support::model(&arm);
+    let source = emitted(&model, 2);
+    compile(
+        "printed",
+        &source,
+        &["--edition", "2015", "--emit=metadata"],
+    );
+    compare("planetary_arm_printed_order_2.rs", &source);
+}
+
+fn names() -> Vec<String> {
+    let entries = std::fs::read_dir(models()).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|e| {
+            e.unwrap()
+                .path()
+                .file_stem()
+                .unwrap()
+                .to_string_lossy()
+                .into_owned()
+        })
+        .collect();
+    names.sort();
+    names
+}
+
+/// Two derivations from the text on: hash maps are seeded anew in each.
+#[test]
+fn the_same_bytes_every_time() {
+    for name in names() {
+        assert_eq!(
+            emitted(&shipped(&name), 3),
+            emitted(&shipped(&name), 3),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn every_shipped_model_compiles_without_a_warning() {
+    for name in names() {
+        let model = shipped(&name);
+        let orders: &[usize] = if model.fields.is_empty() {
+            &[0]
+        } else {
+            &[0, 1, 3]
+        };
+        for order in orders {
+            let source = emitted(&model, *order);
+            compile(
+                &format!("{name}_{order}"),
+                &source,
+                &["--edition", "2015", "--emit=metadata"],
+            );
+            for word in ["panic", "unwrap", "expect(", "unsafe {", "std::", "alloc::"] {
+                assert!(!source.contains(word), "{name}, order {order}: {word}");
+            }
+        }
+    }
+}
+
+/// Bounds are checked by the compiler, once and for all: no call into the panic machinery
+/// is left, whatever the order.
+#[test]
+fn optimised_code_cannot_panic() {
+    for (name, order) in [
+        ("planetary_arm", 4),
+        ("planetary_arm", 64),
+        ("hub_beam_tip_mass", 3),
+        ("hub_beam_tip_mass", 64),
+        ("double_pendulum", 0),
+    ] {
+        let folder = format!("assembly_{name}_{order}");
+        let options = ["-O", "--emit=asm", "-C", "symbol-mangling-version=v0"];
+        let written = compile(&folder, &emitted(&shipped(name), order), &options);
+        let assembly = std::fs::read_to_string(written.join("emitted.s")).unwrap();
+        assert!(
+            assembly.contains("5rates"),
+            "{folder}: `rates` was not compiled"
+        );
+        assert!(!assembly.contains("panic"), "{folder}: a panic is left");
+    }
+}

@@ -1,0 +1,392 @@
+//! Random expressions: their value, their slopes (as forces of a potential) and their rate
+//! along the motion, through the whole derivation, against dual numbers applied to the
+//! very tree that was written down.
+//!
+//! A law of the graph may regroup, so the results differ by rounding. How much is allowed
+//! is found by disturbing every intermediate result of the reference at random by 1e-10:
+//! rounding disturbs by 1e-16, so a thousandth of the spread has a margin of 1e3.
+
+use std::fmt::Write;
+
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+
+use crate::support::{accelerations, evaluator, model, observables};
+
+/// A tree as it is written.
+#[derive(Clone, Debug)]
+enum Tree {
+    /// x, y, z
+    Coordinate(usize),
+    /// a, b
+    Parameter(usize),
+    Number(f64),
+    Unary(&'static str, Box<Tree>),
+    Binary(&'static str, Box<Tree>, Box<Tree>),
+    Integer(Box<Tree>, i32),
+    /// (1 + base^2)^exponent
+    Power(Box<Tree>, Box<Tree>),
+}
+
+const COORDINATES: [&str; 3] = ["x", "y", "z"];
+const PARAMETERS: [(&str, f64); 2] = [("a", 1.7), ("b", -0.6)];
+
+fn trees() -> impl Strategy<Value = Tree> {
+    let leaf = prop_oneof![
+        4 => (0..3_usize).prop_map(Tree::Coordinate),
+        1 => (0..2_usize).prop_map(Tree::Parameter),
+        2 => prop::sample::select(vec![0.0, 1.0, 2.0, 0.5, 3.0, 0.1]).prop_map(Tree::Number),
+    ];
+    leaf.prop_recursive(6, 40, 2, |inner| {
+        let unary = prop::sample::select(vec![
+            "-", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "ln",
+            "sqrt", "abs", "sign",
+        ]);
+        let binary = prop::sample::select(vec![
+            "+", "+", "-", "-", "*", "*", "*", "/", "min", "max", "atan2", "deadzone", "contact",
+        ]);
+        let boxed = inner.clone().prop_map(Box::new);
+        prop_oneof![
+            2 => (unary, boxed.clone()).prop_map(|(f, a)| Tree::Unary(f, a)),
+            4 => (binary, boxed.clone(), boxed.clone()).prop_map(|(f, a, b)| Tree::Binary(f, a, b)),
+            1 => (boxed.clone(), -3..5_i32).prop_map(|(a, n)| Tree::Integer(a, n)),
+            1 => (boxed.clone(), prop::sample::select(vec![0.5, 1.5, -0.5, 2.25]))
+                .prop_map(|(a, e)| Tree::Power(a, Box::new(Tree::Number(e)))),
+            1 => (boxed.clone(), boxed).prop_map(|(a, b)| Tree::Power(a, b)),
+        ]
+    })
+}
+
+impl Tree {
+    /// Functions with a domain are applied to what lies in it: asin(u/(1 + abs(u))).
+    fn write(&self, out: &mut String) {
+        let written = |tree: &Self| {
+            let mut text = String::new();
+            tree.write(&mut text);
+            text
+        };
+        match self {
+            Self::Coordinate(index) => out.push_str(COORDINATES[*index]),
+            Self::Parameter(index) => out.push_str(PARAMETERS[*index].0),
+            Self::Number(value) => write!(out, "{value}").unwrap(),
+            Self::Unary(function, a) => {
+                let a = written(a);
+                match *function {
+                    "-" => write!(out, "(-{a})").unwrap(),
+                    "asin" | "acos" => write!(out, "{function}({a}/(2 + abs({a})))").unwrap(),
+                    "ln" | "sqrt" => write!(out, "{function}(1 + {a}^2)").unwrap(),
+                    _ => write!(out, "{function}({a})").unwrap(),
+                }
+            }
+            Self::Binary(function, a, b) => {
+                let (a, b) = (written(a), written(b));
+                match *function {
+                    "+" | "-" | "*" => write!(out, "({a} {function} {b})").unwrap(),
+                    "/" => write!(out, "({a}/(2 + sin({b})))").unwrap(),
+                    "deadzone" | "contact" => write!(out, "{function}({a}, abs({b}))").unwrap(),
+                    _ => write!(out, "{function}({a}, {b})").unwrap(),
+                }
+            }
+            Self::Integer(a, n) if *n < 0 => {
+                write!(out, "((2 + cos({}))^({n}))", written(a)).unwrap()
+            }
+            Self::Integer(a, n) => write!(out, "({}^{n})", written(a)).unwrap(),
+            Self::Power(a, e) => write!(out, "((1 + {}^2)^({}))", written(a), written(e)).unwrap(),
+        }
+    }
+}
+
+/// A value with its slopes by x, y, z.
+#[derive(Clone, Copy, Debug)]
+struct Dual {
+    value: f64,
+    slopes: [f64; 3],
+}
+
+impl Dual {
+    fn constant(value: f64) -> Self {
+        Self {
+            value,
+            slopes: [0.0; 3],
+        }
+    }
+
+    /// f(self) where f has this value and slope.
+    fn chain(self, value: f64, slope: f64) -> Self {
+        Self {
+            value,
+            slopes: self.slopes.map(|s| if s == 0.0 { 0.0 } else { slope * s }),
+        }
+    }
+
+    fn with(self, other: Self, value: f64, by: [f64; 2]) -> Self {
+        let (first, second) = (self.chain(0.0, by[0]), other.chain(0.0, by[1]));
+        let slopes = std::array::from_fn(|k| first.slopes[k] + second.slopes[k]);
+        Self { value, slopes }
+    }
+}
+
+/// Evaluates trees, disturbing every result by up to `size` of itself.
+struct Reference {
+    state: [f64; 3],
+    size: f64,
+    seed: u64,
+}
+
+impl Reference {
+    fn random(&mut self) -> f64 {
+        self.seed = self
+            .seed
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn disturbed(&mut self, dual: Dual) -> Dual {
+        let mut disturb = |value: f64| value * (1.0 + self.size * self.random());
+        Dual {
+            value: disturb(dual.value),
+            slopes: dual.slopes.map(&mut disturb),
+        }
+    }
+
+    fn of(&mut self, tree: &Tree) -> Dual {
+        let exact = match tree {
+            Tree::Coordinate(index) => {
+                let mut slopes = [0.0; 3];
+                slopes[*index] = 1.0;
+                return Dual {
+                    value: self.state[*index],
+                    slopes,
+                };
+            }
+            Tree::Parameter(index) => return Dual::constant(PARAMETERS[*index].1),
+            Tree::Number(value) => return Dual::constant(*value),
+            Tree::Unary(function, a) => {
+                let a = self.of(a);
+                self.unary(function, a)
+            }
+            Tree::Binary(function, a, b) => {
+                let (a, b) = (self.of(a), self.of(b));
+                self.binary(function, a, b)
+            }
+            Tree::Integer(a, n) => {
+                let mut a = self.of(a);
+                if *n < 0 {
+                    a = a.chain(2.0 + a.value.cos(), -a.value.sin());
+                    a = self.disturbed(a);
+                }
+                let slope = if *n == 0 {
+                    0.0
+                } else {
+                    f64::from(*n) * a.value.powi(n - 1)
+                };
+                a.chain(a.value.powi(*n), slope)
+            }
+            Tree::Power(a, e) => {
+                let (a, e) = (self.of(a), self.of(e));
+                let base = a.chain(1.0 + a.value * a.value, 2.0 * a.value);
+                let base = self.disturbed(base);
+                let value = base.value.powf(e.value);
+                let by_base = e.value * base.value.powf(e.value - 1.0);
+                base.with(e, value, [by_base, value * base.value.ln()])
+            }
+        };
+        self.disturbed(exact)
+    }
+
+    fn unary(&mut self, function: &str, a: Dual) -> Dual {
+        let u = a.value;
+        let sign = if u > 0.0 {
+            1.0
+        } else if u < 0.0 {
+            -1.0
+        } else {
+            0.0
+        };
+        match function {
+            "-" => a.chain(-u, -1.0),
+            "sin" => a.chain(u.sin(), u.cos()),
+            "cos" => a.chain(u.cos(), -u.sin()),
+            "tan" => a.chain(u.tan(), 1.0 + u.tan().powi(2)),
+            "asin" | "acos" => {
+                let inner = a.chain(u / (2.0 + u.abs()), 2.0 / (2.0 + u.abs()).powi(2));
+                let inner = self.disturbed(inner);
+                let (v, slope) = (inner.value, 1.0 / (1.0 - inner.value * inner.value).sqrt());
+                if function == "asin" {
+                    inner.chain(v.asin(), slope)
+                } else {
+                    inner.chain(v.acos(), -slope)
+                }
+            }
+            "atan" => a.chain(u.atan(), 1.0 / (1.0 + u * u)),
+            "sinh" => a.chain(u.sinh(), u.cosh()),
+            "cosh" => a.chain(u.cosh(), u.sinh()),
+            "tanh" => a.chain(u.tanh(), 1.0 - u.tanh().powi(2)),
+            "exp" => a.chain(u.exp(), u.exp()),
+            "ln" => a.chain((1.0 + u * u).ln(), 2.0 * u / (1.0 + u * u)),
+            "sqrt" => a.chain((1.0 + u * u).sqrt(), u / (1.0 + u * u).sqrt()),
+            "abs" => a.chain(u.abs(), sign),
+            _ => a.chain(sign, 0.0),
+        }
+    }
+
+    fn binary(&mut self, function: &str, a: Dual, b: Dual) -> Dual {
+        let (u, v) = (a.value, b.value);
+        match function {
+            "+" => a.with(b, u + v, [1.0, 1.0]),
+            "-" => a.with(b, u - v, [1.0, -1.0]),
+            "*" => a.with(b, u * v, [v, u]),
+            "/" => {
+                let divisor = b.chain(2.0 + v.sin(), v.cos());
+                let divisor = self.disturbed(divisor);
+                let d = divisor.value;
+                a.with(divisor, u / d, [1.0 / d, -u / (d * d)])
+            }
+            "min" => {
+                if u < v {
+                    a
+                } else {
+                    b
+                }
+            }
+            "max" => {
+                if u > v {
+                    a
+                } else {
+                    b
+                }
+            }
+            "atan2" => {
+                let radius = u * u + v * v;
+                a.with(b, u.atan2(v), [v / radius, -u / radius])
+            }
+            "deadzone" if u.abs() > v.abs() => {
+                let side = u.signum();
+                a.with(b, u - side * v.abs(), [1.0, -side * v.signum()])
+            }
+            "contact" if u.abs() > v.abs() => Dual::constant(1.0),
+            _ => Dual::constant(0.0),
+        }
+    }
+}
+
+fn spec(expression: &str) -> String {
+    format!(
+        r#"
+[model]
+name = "random"
+title = "A random potential"
+
+[parameters]
+m = {{ value = 1, unit = "kg m^2" }}
+V = {{ value = 1, unit = "J" }}
+a = {{ value = 1.7, unit = "1" }}
+b = {{ value = -0.6, unit = "1" }}
+
+[coordinates]
+x = {{ unit = "1" }}
+y = {{ unit = "1" }}
+z = {{ unit = "1" }}
+
+[definitions]
+random = "{expression}"
+
+[kinetic]
+all = "1/2*m*(dot(x)^2 + dot(y)^2 + dot(z)^2)"
+
+[potential]
+all = "V*random"
+
+[observables]
+value = {{ value = "random + 0*a*b", unit = "1" }}
+rate  = {{ value = "dot(random)", unit = "1/s" }}
+"#
+    )
+}
+
+/// The reference and how far it may be missed.
+fn expected(tree: &Tree, state: [f64; 3]) -> Option<(Dual, [f64; 4])> {
+    let at = |size: f64, seed: u64| Reference { state, size, seed }.of(tree);
+    let numbers = |dual: Dual| [dual.value, dual.slopes[0], dual.slopes[1], dual.slopes[2]];
+    let reference = at(0.0, 0);
+    let mut spread = [0.0_f64; 4];
+    for seed in 0..8_u64 {
+        let disturbed = numbers(at(1e-10, seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 77));
+        for (k, value) in numbers(reference).into_iter().enumerate() {
+            spread[k] = spread[k].max((disturbed[k] - value).abs());
+        }
+        if !numbers(reference)
+            .iter()
+            .chain(&disturbed)
+            .all(|value| value.abs() < 1e12)
+        {
+            return None;
+        }
+    }
+    Some((reference, spread.map(|spread| 1e-3 * spread + 1e-15)))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn values_slopes_and_rates_are_those_of_the_tree(
+        tree in trees(),
+        state in prop::array::uniform3(prop_oneof![8 => -2.0..2.0_f64, 1 => Just(0.0), 1 => Just(1.0)]),
+        rates in prop::array::uniform3(-1.0..1.0_f64),
+    ) {
+        let Some((reference, allowed)) = expected(&tree, state) else { return Ok(()) };
+        let mut text = String::new();
+        tree.write(&mut text);
+        let mut evaluator = match model_spec::check(model_spec::source::Source::new("r", spec(&text))) {
+            Ok(checked) => evaluator(&checked.model, 0),
+            // Refused where constants alone divide by zero or overflow.
+            Err(_) => return Ok(()),
+        };
+        let all: Vec<f64> = state.into_iter().chain(rates).collect();
+        let values = observables(&mut evaluator, 0.0, &all);
+        let forces = accelerations(&mut evaluator, &all);
+        prop_assert!((values[0] - reference.value).abs() <= allowed[0], "{} not {} of {text}", values[0], reference.value);
+        for k in 0..3 {
+            let slope = reference.slopes[k];
+            prop_assert!((forces[k] + slope).abs() <= allowed[1 + k], "-{} not {slope} by {} of {text}", forces[k], COORDINATES[k]);
+        }
+        let rate: f64 = (0..3).map(|k| reference.slopes[k] * rates[k]).sum();
+        let allowed: f64 = allowed[1..].iter().sum();
+        prop_assert!((values[1] - rate).abs() <= allowed, "{} not {rate} of {text}", values[1]);
+    }
+}
+
+/// How often the generator gives something to compare is part of what the test is worth.
+#[test]
+fn most_random_expressions_are_compared() {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let compared = (0..200)
+        .filter(|_| {
+            let tree = trees().new_tree(&mut runner).unwrap().current();
+            expected(&tree, [0.3, -0.8, 1.2])
+                .is_some_and(|(_, allowed)| allowed.iter().all(|a| *a < 1e-6))
+        })
+        .count();
+    assert!(compared > 150, "{compared} of 200");
+}
+
+/// Laws that regroup exponents leave huge ones closed: a wrapped exponent once made this 1.
+#[test]
+fn nested_powers_do_not_overflow() {
+    let nested = (0..7).fold("x".to_owned(), |inner, _| format!("({inner})^64"));
+    let mut evaluator = evaluator(&model(&spec(&nested)), 0);
+    for (x, power) in [(1.0, 1.0), (0.5, 0.0), (2.0, f64::INFINITY), (-1.0, 1.0)] {
+        assert_eq!(
+            observables(&mut evaluator, 0.0, &[x, 0.0, 0.0, 0.0, 0.0, 0.0])[0],
+            power
+        );
+    }
+    let near = observables(&mut evaluator, 0.0, &[1.0 + 1e-12, 0.0, 0.0, 0.0, 0.0, 0.0])[0];
+    // (1 + 1e-12)^(64^7) = exp(4.398), the base being rounded to 1e-4 of its distance from 1.
+    assert!(
+        (near.ln() - 64_f64.powi(7) * (1.0 + 1e-12_f64).ln()).abs() < 1e-3,
+        "{near}"
+    );
+}

@@ -1,0 +1,114 @@
+//! Switching surfaces: every place where the motion changes its law has one.
+
+use codegen::evaluator::Point;
+
+use crate::support::{evaluator, model, shipped};
+
+fn particle(potential: &str, forces: &str) -> String {
+    format!(
+        r#"
+[model]
+name = "particle"
+title = "A particle in a plane"
+
+[parameters]
+m = {{ value = 0.7, unit = "kg" }}
+F = {{ value = 3.0, unit = "N" }}
+b = {{ value = 0.5, unit = "m" }}
+
+[coordinates]
+x = {{ unit = "m" }}
+y = {{ unit = "m" }}
+
+[kinetic]
+all = "1/2*m*(dot(x)^2 + dot(y)^2)"
+
+[potential]
+one = "{potential}"
+
+[forces]
+two = {{ on = "y", value = "{forces}" }}
+"#
+    )
+}
+
+/// The guards' values at a place.
+fn guards(text: &str, x: f64, y: f64) -> Vec<f64> {
+    let mut evaluator = evaluator(&model(text), 0);
+    let mut values = vec![f64::NAN; evaluator.guard_count()];
+    let state = [x, y, 0.25, -0.75];
+    evaluator.guards(
+        Point {
+            t: 0.0,
+            state: &state,
+            inputs: &[],
+        },
+        &mut values,
+    );
+    values
+}
+
+#[test]
+fn each_function_has_its_surfaces() {
+    let none = "0*F";
+    assert_eq!(guards(&particle("F*b*(x/b)^2", none), 1.0, 2.0), [0.0; 0]);
+    assert_eq!(
+        guards(&particle("F/b*deadzone(x, b)^2", none), 1.0, 2.0),
+        [0.5, 1.5]
+    );
+    assert_eq!(
+        guards(&particle("F*b", "F*contact(y, b)"), 1.0, 2.0),
+        [1.5, 2.5]
+    );
+    assert_eq!(guards(&particle("F*b", "F*sign(dot(x))"), 1.0, 2.0), [0.25]);
+    assert_eq!(guards(&particle("F*b", "F*abs(x)/b"), 1.0, 2.0), [1.0]);
+    assert_eq!(guards(&particle("F*b", "F/b*min(x, y)"), 1.0, 2.0), [-1.0]);
+}
+
+/// The slope of max(x, y) is 1 or 0: the function itself is gone from the force.
+#[test]
+fn a_slope_that_jumps_has_a_surface() {
+    assert_eq!(guards(&particle("F*max(x, y)", "0*F"), 1.0, 2.0), [-1.0]);
+    assert_eq!(guards(&particle("F*min(x, 0)", "0*F"), 1.0, 2.0).len(), 1);
+    assert_eq!(guards(&particle("F*abs(x)", "0*F"), 1.0, 2.0), [1.0]);
+    assert_eq!(
+        guards(&particle("F*deadzone(x, b)", "0*F"), 1.0, 2.0),
+        [0.5, 1.5]
+    );
+}
+
+/// A surface that several functions share stands once.
+#[test]
+fn no_surface_stands_twice() {
+    assert_eq!(
+        guards(
+            &particle("F*max(x, y) - F*min(x, y)", "F*max(x, y)/b"),
+            1.0,
+            2.0
+        )
+        .len(),
+        1
+    );
+    assert_eq!(
+        guards(
+            &particle("F/b*deadzone(x, b)^2", "F*contact(x, b)"),
+            1.0,
+            2.0
+        )
+        .len(),
+        2
+    );
+}
+
+#[test]
+fn what_parameters_alone_decide_has_none() {
+    assert_eq!(
+        guards(&particle("F*max(b, 2*b)*x/b", "F*sign(b)"), 1.0, 2.0),
+        [0.0; 0]
+    );
+}
+
+#[test]
+fn the_arm_has_four() {
+    assert_eq!(evaluator(&shipped("planetary_arm"), 2).guard_count(), 4);
+}

@@ -1,0 +1,13 @@
+//! The derivation against independent computations: mode tables, random expressions and
+//! their derivatives, guards and solved systems, and the emitted source. Specifications
+//! that exercise whole features are certified in the workspace's own tests.
+
+mod emission;
+mod expressions;
+mod guards;
+mod modes;
+mod names;
+mod size;
+mod solved;
+mod support;
+mod weights;

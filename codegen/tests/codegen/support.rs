@@ -1,0 +1,118 @@
+//! Specifications as text, derived variants, and `rustc`. Nothing is checked here.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use codegen::equations::{Equations, derive};
+use codegen::evaluator::{Evaluator, Point};
+use codegen::lower::lower;
+use codegen::program::Program;
+use codegen::rust::{Packaging, emit};
+use model_spec::model::Model;
+use model_spec::source::Source;
+
+/// A specification given as text, checked.
+pub fn model(text: &str) -> Model {
+    match model_spec::check(Source::new("test.toml", text)) {
+        Ok(checked) => checked.model,
+        Err(found) => panic!("{}", found.render(false)),
+    }
+}
+
+/// A shipped specification, checked.
+pub fn shipped(name: &str) -> Model {
+    let text = std::fs::read_to_string(models().join(format!("{name}.toml"))).unwrap();
+    model(&text)
+}
+
+/// The folder of the shipped specifications.
+pub fn models() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models")
+}
+
+/// The equations of a model with every field at one order.
+pub fn equations(model: &Model, order: usize) -> Equations {
+    derive(model, &vec![order; model.fields.len()]).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The program of a model with every field at one order.
+pub fn program(model: &Model, order: usize) -> Program {
+    lower(
+        model,
+        &equations(model, order),
+        &model.parameter_values().unwrap(),
+    )
+}
+
+/// The evaluator of a model with every field at one order.
+pub fn evaluator(model: &Model, order: usize) -> Evaluator {
+    Evaluator::new(program(model, order))
+}
+
+/// The emitted crate of a model with every field at one order.
+pub fn emitted(model: &Model, order: usize) -> String {
+    emit(&program(model, order), Packaging::Crate).unwrap()
+}
+
+/// All observables at a state, `energy` and `power` last.
+pub fn observables(evaluator: &mut Evaluator, t: f64, state: &[f64]) -> Vec<f64> {
+    let mut values = vec![f64::NAN; evaluator.program().observables.len()];
+    evaluator.observables(
+        Point {
+            t,
+            state,
+            inputs: &[],
+        },
+        &mut values,
+    );
+    values
+}
+
+/// The accelerations at a state.
+pub fn accelerations(evaluator: &mut Evaluator, state: &[f64]) -> Vec<f64> {
+    let mut rates = vec![f64::NAN; state.len()];
+    evaluator.rates(
+        Point {
+            t: 0.0,
+            state,
+            inputs: &[],
+        },
+        &mut rates,
+    );
+    rates.split_off(state.len() / 2)
+}
+
+/// A folder of its own below the tests' temporary folder.
+pub fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Compiles a source as a library by plain `rustc`, warnings denied.
+pub fn compile(name: &str, source: &str, options: &[&str]) -> PathBuf {
+    let folder = folder(name);
+    let path = folder.join("lib.rs");
+    std::fs::write(&path, source).unwrap();
+    let output = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()))
+        .args([
+            "--crate-type",
+            "lib",
+            "--crate-name",
+            "emitted",
+            "-D",
+            "warnings",
+        ])
+        .args(options)
+        .arg("--out-dir")
+        .arg(&folder)
+        .arg(&path)
+        .output()
+        .unwrap();
+    assert!(
+        output.status.success(),
+        "{name}: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    folder
+}
