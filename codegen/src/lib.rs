@@ -1,11 +1,12 @@
 //! From a checked model to equations of motion, and from these to programs and source.
 //!
-//! The pipeline, one file each: `translate` and `field_function` (expressions to the
-//! hash-consed `graph`, whose constructors in `simplify` apply the algebraic laws), `modes`,
-//! `tables` and `quadrature` (constants of a basis), `differentiate` and `matrix`
-//! (derivatives that keep their structure), `equations` (Lagrange's equations), `solve` (the
-//! accelerations), `coefficients` (names as in Eq. (22)), `lower` (to the `program`),
-//! `evaluator` and `rust` (backends), `print` and `report` (for people).
+//! The pipeline, one file each: `translate`, `field_function` and `moments` (expressions to
+//! the hash-consed `graph` of `operation`s, whose constructors in `simplify` apply the
+//! algebraic laws), `modes`, `tables` and `quadrature` (constants of a basis),
+//! `differentiate` and `matrix` (derivatives that keep their structure), `lagrange`,
+//! `forces` and `equations` (the equations of motion), `solve` (the accelerations),
+//! `coefficients` (names as in Eq. (22)), `lower` (to the `program`), `evaluator` and
+//! `rust` (backends), `print` and `report` (for people).
 //!
 //! The arrows are two functions: [`equations::derive`] from a model to equations and
 //! [`lower::lower`] from equations to a program.
@@ -18,10 +19,14 @@ pub mod equations;
 pub mod evaluator;
 mod expand;
 mod field_function;
+mod forces;
 pub mod graph;
+mod lagrange;
 pub mod lower;
 pub mod matrix;
 pub mod modes;
+mod moments;
+mod operation;
 pub mod print;
 pub mod program;
 pub mod quadrature;

@@ -57,7 +57,7 @@ impl<'a> Body<'a> {
         let mut body = Self {
             program,
             access,
-            names: Names::new(),
+            names: Names::new(program),
             uses: HashMap::new(),
             in_loops: HashMap::new(),
             bound: HashMap::new(),

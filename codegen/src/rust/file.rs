@@ -63,7 +63,7 @@ pub(super) struct File<'p> {
 
 impl<'p> File<'p> {
     fn new(program: &'p Program) -> Emitted<Self> {
-        let mut names = Names::new();
+        let mut names = Names::new(program);
         let fields = coefficient_values(program);
         let mut field_names = HashMap::new();
         for id in &fields {

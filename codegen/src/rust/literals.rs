@@ -63,12 +63,17 @@ pub fn file_doc(lines: &[String]) -> TokenStream {
     quote!(#(#attributes)*)
 }
 
-/// Without control characters, with a space in front as in a written comment, and with
+/// Without control characters and without those that turn the direction of the text, which
+/// rustc refuses, with a space in front as in a written comment, and with
 /// brackets that rustdoc would take for links or tags defused.
 fn single_line(text: &str) -> String {
     let clean: String = text
         .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
+        .map(|c| match c {
+            '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => ' ',
+            c if c.is_control() => ' ',
+            c => c,
+        })
         .collect();
     let clean = clean.replace('[', "\\[").replace('<', "\\<");
     if clean.is_empty() {

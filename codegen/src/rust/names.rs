@@ -9,8 +9,9 @@ use super::EmitError;
 use super::literals::identifier;
 use crate::program::{Program, ValueId};
 
-/// Names that emitted functions use for themselves.
-const TAKEN: [&str; 14] = [
+/// Names that emitted functions use for themselves: variables, helpers, constants, fields,
+/// and what Rust's prelude gives a value of.
+const TAKEN: [&str; 33] = [
     "t",
     "state",
     "inputs",
@@ -25,6 +26,25 @@ const TAKEN: [&str; 14] = [
     "row",
     "column",
     "rest",
+    "pow",
+    "exp_minus_one",
+    "cholesky",
+    "cholesky_solve",
+    "pivot_reciprocal",
+    "positive_definite",
+    "ORDERS",
+    "DEGREES_OF_FREEDOM",
+    "STATES",
+    "STATE_NAMES",
+    "OBSERVABLES",
+    "OBSERVABLE_NAMES",
+    "GUARDS",
+    "SPECIFICATION_SHA256",
+    "GENERATOR_VERSION",
+    "Some",
+    "None",
+    "Ok",
+    "Err",
 ];
 
 /// A supply of names, each handed out once.
@@ -35,10 +55,14 @@ pub struct Names {
 }
 
 impl Names {
-    /// A supply that avoids the names emitted functions use for themselves.
-    pub fn new() -> Self {
+    /// A supply that avoids the names emitted functions use for themselves, those of the
+    /// tables and of the flags `positive_1` and so on, one per pivot.
+    pub fn new(program: &Program) -> Self {
+        let tables = program.tables.iter().map(|table| table.name.clone());
+        let flags = (1..=program.pivots.len()).map(|number| format!("positive_{number}"));
+        let taken = TAKEN.iter().map(|name| (*name).to_owned());
         Self {
-            used: TAKEN.iter().map(|name| (*name).to_owned()).collect(),
+            used: taken.chain(tables).chain(flags).collect(),
             given: HashMap::new(),
             next: HashMap::new(),
         }

@@ -16,7 +16,10 @@ pub(super) enum ModalInverse {
 impl ModalInverse {
     pub(super) fn new(graph: &mut Graph, mass: &MassMatrix, field: usize) -> Self {
         let block = &mass.modal[field][field];
-        if let (Some(diagonal), true) = (block.diagonal, block.matrices.is_empty()) {
+        // Without a diagonal, fewer outer products than modes make a singular block.
+        let full_rank = block.outer.len() >= graph.size(Space::Modes(field));
+        if block.matrices.is_empty() && (block.diagonal.is_some() || !full_rank) {
+            let diagonal = block.diagonal.unwrap_or_else(|| graph.zero());
             let reciprocal = pivot_reciprocal(graph, diagonal);
             return Self::Diagonal {
                 diagonal,

@@ -197,13 +197,7 @@ impl Reference {
 
     fn unary(&mut self, function: &str, a: Dual) -> Dual {
         let u = a.value;
-        let sign = if u > 0.0 {
-            1.0
-        } else if u < 0.0 {
-            -1.0
-        } else {
-            0.0
-        };
+        let side = sign(u);
         match function {
             "-" => a.chain(-u, -1.0),
             "sin" => a.chain(u.sin(), u.cos()),
@@ -226,8 +220,8 @@ impl Reference {
             "exp" => a.chain(u.exp(), u.exp()),
             "ln" => a.chain((1.0 + u * u).ln(), 2.0 * u / (1.0 + u * u)),
             "sqrt" => a.chain((1.0 + u * u).sqrt(), u / (1.0 + u * u).sqrt()),
-            "abs" => a.chain(u.abs(), sign),
-            _ => a.chain(sign, 0.0),
+            "abs" => a.chain(u.abs(), side),
+            _ => a.chain(side, 0.0),
         }
     }
 
@@ -263,12 +257,17 @@ impl Reference {
             }
             "deadzone" if u.abs() > v.abs() => {
                 let side = u.signum();
-                a.with(b, u - side * v.abs(), [1.0, -side * v.signum()])
+                a.with(b, u - side * v.abs(), [1.0, -side * sign(v)])
             }
             "contact" if u.abs() > v.abs() => Dual::constant(1.0),
             _ => Dual::constant(0.0),
         }
     }
+}
+
+/// With sign(0) = 0.
+fn sign(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { x.signum() }
 }
 
 fn spec(expression: &str) -> String {

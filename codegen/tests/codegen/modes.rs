@@ -191,50 +191,61 @@ fn integral(function: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// Every kind of moment, in both bases: closed forms, and those only quadrature knows.
+/// Simpson's error is (beta h)^4/180 of the integrand, 1e-12; the hyperbolic functions
+/// lose cosh(11) = 3e4 units in the last place.
 #[test]
 fn moments_agree_with_a_composite_rule() {
-    let order = 4;
     for basis in [EXACT, PRINTED] {
-        let beta = table(basis, order, TableKind::Wavenumber);
-        let xi = table(basis, order, TableKind::Mixing);
-        let phi = |r: usize, a: u8, s: f64| shape(beta[r], xi[r], a, s);
-        // Simpson's error is (beta h)^4/180 of the integrand, 1e-12; the hyperbolic
-        // functions lose cosh(11) = 3e4 units in the last place.
-        let close = |found: f64, expected: f64, scale: f64, what: &str| {
-            assert!(
-                (found - expected).abs() < 1e-10 * scale,
-                "{basis:?} {what}: {found} {expected}"
-            );
-        };
         for power in 0..4 {
-            let weight = |s: f64| s.powi(power as i32);
             for a in 0..3 {
-                let moments = table(basis, order, moment(power, a));
-                for r in 0..order {
-                    let expected = integral(|s| weight(s) * phi(r, a, s));
-                    close(
-                        moments[r],
-                        expected,
-                        beta[r].powi(a.into()),
-                        &format!("{power} {a} {r}"),
-                    );
-                }
-                for b in 0..3 {
-                    let pairs = table(basis, order, pair(power, a, b));
-                    let owns = table(basis, order, own(power, a, b));
-                    for r in 0..order {
-                        for p in 0..order {
-                            let expected = integral(|s| weight(s) * phi(r, a, s) * phi(p, b, s));
-                            let scale = beta[r].powi(a.into()) * beta[p].powi(b.into());
-                            let what = format!("{power} {a} {b} {r} {p}");
-                            close(pairs[r * order + p], expected, scale, &what);
-                            if r == p {
-                                close(owns[r], expected, scale, &what);
-                            }
-                        }
-                    }
-                }
+                moments_of(basis, power, a);
+                (0..3).for_each(|b| moments_of_pairs(basis, power, a, b));
             }
+        }
+    }
+}
+
+const ORDER: usize = 4;
+
+/// Compares a number with the integral of s^power times `function`.
+fn compare(found: f64, power: u32, function: impl Fn(f64) -> f64, what: &str) {
+    let weighted = |s: f64| s.powi(power as i32) * function(s);
+    let (expected, scale) = (integral(weighted), integral(|s| weighted(s).abs()));
+    assert!(
+        (found - expected).abs() < 1e-10 * scale,
+        "{what}: {found} {expected}"
+    );
+}
+
+fn shapes(basis: Basis) -> impl Fn(usize, u8, f64) -> f64 {
+    let beta = table(basis, ORDER, TableKind::Wavenumber);
+    let xi = table(basis, ORDER, TableKind::Mixing);
+    move |r, derivative, s| shape(beta[r], xi[r], derivative, s)
+}
+
+fn moments_of(basis: Basis, power: u32, a: u8) {
+    let phi = shapes(basis);
+    for (r, found) in table(basis, ORDER, moment(power, a))
+        .into_iter()
+        .enumerate()
+    {
+        let what = format!("{basis:?}, s^{power} phi_{r}^({a})");
+        compare(found, power, |s| phi(r, a, s), &what);
+    }
+}
+
+fn moments_of_pairs(basis: Basis, power: u32, a: u8, b: u8) {
+    let phi = shapes(basis);
+    let owns = table(basis, ORDER, own(power, a, b));
+    for (place, found) in table(basis, ORDER, pair(power, a, b))
+        .into_iter()
+        .enumerate()
+    {
+        let (r, p) = (place / ORDER, place % ORDER);
+        let what = format!("{basis:?}, s^{power} phi_{r}^({a}) phi_{p}^({b})");
+        compare(found, power, |s| phi(r, a, s) * phi(p, b, s), &what);
+        if r == p {
+            compare(owns[r], power, |s| phi(r, a, s) * phi(r, b, s), &what);
         }
     }
 }

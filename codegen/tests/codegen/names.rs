@@ -190,6 +190,24 @@ fn names_of_tables() {
     }
 }
 
+/// Tables are named after fields in capitals; two fields may differ in those alone.
+#[test]
+fn names_of_fields_that_differ_in_capitals() {
+    let text = spec("kappa", "chi", "zeta", "eta", "xi");
+    let (start, end) = (
+        text.find("[fields.w]").unwrap(),
+        text.find("[definitions]").unwrap(),
+    );
+    let field = &text[start..end];
+    let second = field
+        .replace("fields.w", "fields.W")
+        .replace("\"y\"", "\"Y\"")
+        .replace("\"q\"", "\"Q\"");
+    let inertia = "beam_2 = \"1/2*integral(mu*exp(-Y/l)*dot(W)^2, W)\"\n\n[potential]";
+    let both = text.replace(field, &format!("{field}{second}"));
+    compiles("fields", &both.replace("[potential]", inertia));
+}
+
 /// Prose may hold anything a comment, a string or a page gives a meaning to.
 #[test]
 fn prose_with_a_meaning_elsewhere() {
