@@ -44,7 +44,10 @@ pub fn eomgen() -> assert_cmd::Command {
 
 /// Runs the program.
 pub fn run(arguments: &[&str]) -> Output {
-    eomgen().args(arguments).output().expect("the program can be run")
+    eomgen()
+        .args(arguments)
+        .output()
+        .expect("the program can be run")
 }
 
 /// Runs the program, which must refuse with exit status 2; its message.
@@ -62,7 +65,12 @@ pub fn refused(arguments: &[&str]) -> String {
 pub fn accepted(arguments: &[&str]) -> String {
     let output = run(arguments);
     let shown = arguments.join(" ");
-    assert_eq!(output.status.code(), Some(0), "{shown}: {}", text(&output.stderr));
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{shown}: {}",
+        text(&output.stderr)
+    );
     text(&output.stdout)
 }
 

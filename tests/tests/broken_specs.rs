@@ -15,15 +15,26 @@ const PATIENCE: Duration = Duration::from_secs(1);
 fn refused(command: &[&str], spec: &Path) -> String {
     program::path();
     let begun = Instant::now();
-    let output = eomgen().args(command).arg(spec).output().expect("the program can be run");
+    let output = eomgen()
+        .args(command)
+        .arg(spec)
+        .output()
+        .expect("the program can be run");
     let taken = begun.elapsed();
     let message = text(&output.stderr);
     let shown = format!("{} {}", command.join(" "), spec.display());
     assert_eq!(output.status.code(), Some(2), "{shown}: {message}");
     assert!(taken < PATIENCE, "{shown}: took {taken:?}");
-    assert!(output.stdout.is_empty(), "{shown}: {}", text(&output.stdout));
+    assert!(
+        output.stdout.is_empty(),
+        "{shown}: {}",
+        text(&output.stdout)
+    );
     assert!(message.starts_with("error: "), "{shown}: {message}");
-    assert!(message.contains(&spec.display().to_string()), "{shown}: {message}");
+    assert!(
+        message.contains(&spec.display().to_string()),
+        "{shown}: {message}"
+    );
     message
 }
 
@@ -31,8 +42,19 @@ fn refused(command: &[&str], spec: &Path) -> String {
 fn leaves_nothing(spec: &Path) -> String {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("out");
-    refused(&["generate", "--order", "1", "--out", &out.display().to_string()], spec);
-    let left: Vec<_> = std::fs::read_dir(folder.path()).expect("the folder").collect();
+    refused(
+        &[
+            "generate",
+            "--order",
+            "1",
+            "--out",
+            &out.display().to_string(),
+        ],
+        spec,
+    );
+    let left: Vec<_> = std::fs::read_dir(folder.path())
+        .expect("the folder")
+        .collect();
     assert!(left.is_empty(), "{}: left {left:?}", spec.display());
     refused(&["check"], spec)
 }
@@ -49,14 +71,19 @@ fn place(message: &str) -> Option<&str> {
 fn every_file_of_the_corpus_is_refused_at_its_place() {
     let folder = project().join("model-spec/tests/corpus/broken");
     let entries = std::fs::read_dir(folder).expect("the corpus");
-    let mut specs: Vec<PathBuf> = entries.map(|entry| entry.expect("an entry").path()).collect();
+    let mut specs: Vec<PathBuf> = entries
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
     specs.retain(|spec| spec.extension().is_some_and(|ending| ending == "toml"));
     assert!(specs.len() >= 20, "only {} files", specs.len());
     for spec in specs {
         let message = leaves_nothing(&spec);
         let golden = std::fs::read_to_string(spec.with_extension("txt")).expect("its message");
         assert_eq!(place(&message), place(&golden), "{message}");
-        assert!(place(&golden).is_some_and(|place| !place.is_empty()), "no place: {golden}");
+        assert!(
+            place(&golden).is_some_and(|place| !place.is_empty()),
+            "no place: {golden}"
+        );
     }
 }
 
@@ -72,7 +99,10 @@ fn written(name: &str, contents: &[u8]) -> String {
 fn pendulum(from: &str, to: &str) -> String {
     let whole = std::fs::read_to_string(path("pendulum")).expect("the pendulum");
     let changed = whole.replacen(from, to, 1);
-    assert_ne!(whole, changed, "{from} is not in the pendulum's specification");
+    assert_ne!(
+        whole, changed,
+        "{from} is not in the pendulum's specification"
+    );
     changed
 }
 
@@ -85,9 +115,7 @@ fn files_that_are_too_large_are_not_read() {
 
 #[test]
 fn deep_nesting_is_refused() {
-    let term = |expression: &str| {
-        pendulum("1/2*(m*a^2 + I)*dot(theta)^2", expression).into_bytes()
-    };
+    let term = |expression: &str| pendulum("1/2*(m*a^2 + I)*dot(theta)^2", expression).into_bytes();
     let (open, close) = ("(".repeat(10_000), ")".repeat(10_000));
     for expression in [
         format!("{open}m{close}"),
@@ -100,7 +128,10 @@ fn deep_nesting_is_refused() {
         let message = written("nested", &term(&expression));
         assert!(place(&message).is_some(), "{message}");
     }
-    written("arrays", format!("model = {}{}", "[".repeat(10_000), "]".repeat(10_000)).as_bytes());
+    written(
+        "arrays",
+        format!("model = {}{}", "[".repeat(10_000), "]".repeat(10_000)).as_bytes(),
+    );
     written("tables", format!("[{}a]", "a.".repeat(10_000)).as_bytes());
 }
 
@@ -127,7 +158,16 @@ fn a_pipe_is_refused_and_not_waited_for() {
 
 #[test]
 fn numbers_that_are_none_are_refused_at_their_place() {
-    for value in ["nan", "inf", "-inf", "1e400", "-1", "\"1/0\"", "\"sqrt(-1)\"", "\"exp(1e9)\""] {
+    for value in [
+        "nan",
+        "inf",
+        "-inf",
+        "1e400",
+        "-1",
+        "\"1/0\"",
+        "\"sqrt(-1)\"",
+        "\"exp(1e9)\"",
+    ] {
         let message = written("number", pendulum("0.14758", value).as_bytes());
         assert!(message.contains(":16:"), "{value}: {message}");
     }
@@ -135,8 +175,18 @@ fn numbers_that_are_none_are_refused_at_their_place() {
 
 #[test]
 fn a_name_that_would_be_code_is_refused() {
-    for name in ["\"; std::process::exit(1) //\"", "fn", "\"m\\n\"", "'é'", "\"\"", "self"] {
-        let text = pendulum("a = { value = 0.14775", &format!("{name} = {{ value = 0.14775"));
+    for name in [
+        "\"; std::process::exit(1) //\"",
+        "fn",
+        "\"m\\n\"",
+        "'é'",
+        "\"\"",
+        "self",
+    ] {
+        let text = pendulum(
+            "a = { value = 0.14775",
+            &format!("{name} = {{ value = 0.14775"),
+        );
         let message = written("name", text.as_bytes());
         assert!(message.contains(":17:"), "{name}: {message}");
     }

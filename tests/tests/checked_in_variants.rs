@@ -87,7 +87,11 @@ fn same_bits(
     let model = load("planetary_arm");
     let mut evaluator = variant(&model, order).evaluator;
     assert_eq!(state_names, evaluator.program().state_names());
-    let named = evaluator.program().observables.iter().map(|observable| observable.name.as_str());
+    let named = evaluator
+        .program()
+        .observables
+        .iter()
+        .map(|observable| observable.name.as_str());
     assert!(named.eq(observable_names.iter().copied()));
     for sample in samples(&model, order, SEED + order as u64, STATES_PER_REGIME) {
         let point = Point {
@@ -97,23 +101,36 @@ fn same_bits(
         };
         let expected = evaluated(&mut evaluator, point);
         let found = emitted(sample.time, &sample.state);
-        assert!(expected.iter().all(|number| number.is_finite()), "{sample:?}: {expected:?}");
+        assert!(
+            expected.iter().all(|number| number.is_finite()),
+            "{sample:?}: {expected:?}"
+        );
         let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-        assert_eq!(bits(&expected), bits(&found), "{sample:?}: {expected:?} and {found:?}");
+        assert_eq!(
+            bits(&expected),
+            bits(&found),
+            "{sample:?}: {expected:?} and {found:?}"
+        );
     }
 }
 
 #[test]
 fn the_files_are_what_the_generator_emits() {
     let model = load("planetary_arm");
-    let values = model.parameter_values().expect("the parameters have values");
+    let values = model
+        .parameter_values()
+        .expect("the parameters have values");
     for (module, order) in VARIANTS {
         let program = lower(&model, &variant(&model, *order).equations, &values);
         let emitted = emit(&program, Packaging::Module).expect("the program can be emitted");
         let path = project().join(format!("generated/src/{module}.rs"));
         let checked_in = std::fs::read_to_string(&path).expect("the variant is checked in");
         let same = emitted == checked_in;
-        assert!(same, "{} differs: run `eomgen generate --all`", path.display());
+        assert!(
+            same,
+            "{} differs: run `eomgen generate --all`",
+            path.display()
+        );
     }
 }
 

@@ -28,7 +28,12 @@ impl Named {
         let mut program = derived.evaluator.program().clone();
         program.observable_values = program.coefficient_values.clone();
         Self {
-            names: derived.equations.coefficients.iter().map(|c| c.name.clone()).collect(),
+            names: derived
+                .equations
+                .coefficients
+                .iter()
+                .map(|c| c.name.clone())
+                .collect(),
             evaluator: Evaluator::new(program),
         }
     }
@@ -40,13 +45,19 @@ impl Named {
             state: &sample.state,
             inputs: &sample.inputs,
         };
-        self.evaluator.observables(point, &mut vec![f64::NAN; self.names.len()]);
+        self.evaluator
+            .observables(point, &mut vec![f64::NAN; self.names.len()]);
         let values = &self.evaluator.program().coefficient_values;
-        let numbers = values.iter().map(|value| self.evaluator.slice(*value).to_vec());
+        let numbers = values
+            .iter()
+            .map(|value| self.evaluator.slice(*value).to_vec());
         let named: Vec<(String, Vec<f64>)> = self.names.iter().cloned().zip(numbers).collect();
         move |name| {
             let found = named.iter().find(|(known, _)| known == name);
-            found.unwrap_or_else(|| panic!("no coefficient {name}")).1.clone()
+            found
+                .unwrap_or_else(|| panic!("no coefficient {name}"))
+                .1
+                .clone()
         }
     }
 }
@@ -135,12 +146,25 @@ impl Quantities {
 
     /// The four mesh terms of a row, their coefficients numbered on from `first`.
     fn mesh(&self, a: &impl Fn(&str) -> Vec<f64>, names: [&str; 4], mode: usize) -> Vec<f64> {
-        let quantities = [self.springs[0], self.dampers[0], self.springs[1], self.dampers[1]];
-        names.iter().zip(quantities).map(|(name, by)| a(name)[mode] * by).collect()
+        let quantities = [
+            self.springs[0],
+            self.dampers[0],
+            self.springs[1],
+            self.dampers[1],
+        ];
+        names
+            .iter()
+            .zip(quantities)
+            .map(|(name, by)| a(name)[mode] * by)
+            .collect()
     }
 
     fn on_modes(&self, factors: &[f64]) -> Vec<f64> {
-        factors.iter().zip(&self.modes).map(|(factor, q)| factor * q).collect()
+        factors
+            .iter()
+            .zip(&self.modes)
+            .map(|(factor, q)| factor * q)
+            .collect()
     }
 }
 
@@ -148,7 +172,12 @@ impl Quantities {
 fn rows(a: &impl Fn(&str) -> Vec<f64>, by: &Quantities) -> Vec<Vec<f64>> {
     let one = |name: &str| a(name)[0];
     let [x_sp, x_pr, x_c] = by.rates;
-    let motor = vec![one("a_11"), one("a_12") * x_sp, one("a_12_pr") * x_pr, one("a_13") * x_c];
+    let motor = vec![
+        one("a_11"),
+        one("a_12") * x_sp,
+        one("a_12_pr") * x_pr,
+        one("a_13") * x_c,
+    ];
     let mut rows = vec![
         [
             motor,
@@ -156,15 +185,26 @@ fn rows(a: &impl Fn(&str) -> Vec<f64>, by: &Quantities) -> Vec<Vec<f64>> {
             by.on_modes(&a("a_1q")),
         ]
         .concat(),
-        [by.mesh(a, ["a_21", "a_22", "a_23", "a_24"], 0), by.on_modes(&a("a_2q"))].concat(),
+        [
+            by.mesh(a, ["a_21", "a_22", "a_23", "a_24"], 0),
+            by.on_modes(&a("a_2q")),
+        ]
+        .concat(),
     ];
-    let carrier =
-        [by.mesh(a, ["a_35", "a_36", "a_37", "a_38"], 0), by.on_modes(&a("a_3q"))].concat();
+    let carrier = [
+        by.mesh(a, ["a_35", "a_36", "a_37", "a_38"], 0),
+        by.on_modes(&a("a_3q")),
+    ]
+    .concat();
     rows.push(carrier.iter().map(|term| term / one("a_30")).collect());
     let (inertias, matrix) = (a("a_q0"), a("a_qq"));
     for (mode, inertia) in inertias.iter().enumerate() {
         let own = &matrix[mode * inertias.len()..(mode + 1) * inertias.len()];
-        let row = [by.mesh(a, ["a_q5", "a_q6", "a_q7", "a_q8"], mode), by.on_modes(own)].concat();
+        let row = [
+            by.mesh(a, ["a_q5", "a_q6", "a_q7", "a_q8"], mode),
+            by.on_modes(own),
+        ]
+        .concat();
         rows.push(row.iter().map(|term| term / inertia).collect());
     }
     rows
@@ -188,9 +228,14 @@ fn the_named_coefficients_are_all_there_is_in_the_equations() {
             assert_eq!(rows.len(), 3 + order);
             for (row, acceleration) in rows.iter().zip(&rates[3 + order..]) {
                 let sum: f64 = row.iter().sum();
-                let largest = row.iter().fold(0.0_f64, |scale, term| scale.max(term.abs()));
+                let largest = row
+                    .iter()
+                    .fold(0.0_f64, |scale, term| scale.max(term.abs()));
                 let deviation = (sum - acceleration).abs() / largest;
-                assert!(deviation <= TOLERANCE, "order {order}: {sum} for {acceleration}");
+                assert!(
+                    deviation <= TOLERANCE,
+                    "order {order}: {sum} for {acceleration}"
+                );
             }
         }
     }

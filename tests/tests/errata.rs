@@ -12,7 +12,10 @@ use sim::reference::errata::errata_table;
 fn with_parameters(model: &Model, parameters: &PlanetaryArmParameters) -> Model {
     let mut changed = model.clone();
     for (name, value) in by_name(parameters) {
-        let known = model.parameters.iter().find(|parameter| parameter.name == name);
+        let known = model
+            .parameters
+            .iter()
+            .find(|parameter| parameter.name == name);
         let unit = &known.expect("a parameter of the specification").unit;
         changed = changed
             .with_parameter(name, unit.from_si(value))
@@ -54,6 +57,10 @@ fn every_row_of_the_errata_agrees_with_the_correction_and_differs_from_the_mispr
         assert!(row.agrees_with_corrected(), "not as corrected: {row:?}");
         assert!(row.differs_from_printed(), "as misprinted: {row:?}");
     }
-    let misprints = table.rows.iter().filter(|row| row.printed.is_some()).count();
+    let misprints = table
+        .rows
+        .iter()
+        .filter(|row| row.printed.is_some())
+        .count();
     assert!(misprints >= 35, "only {misprints} misprints were compared");
 }

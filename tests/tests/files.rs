@@ -1,0 +1,204 @@
+//! What the program leaves on the disk: whole files or none, the same bytes for the same
+//! input, nothing in the place of what is no file.
+
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use eomgen_tests::models::path;
+use eomgen_tests::program::{self, accepted, refused, text};
+
+/// A shipped specification's path as an argument.
+fn spec(name: &str) -> String {
+    path(name).display().to_string()
+}
+
+/// A path as an argument.
+fn shown(path: &Path) -> String {
+    path.display().to_string()
+}
+
+#[test]
+fn the_same_input_gives_the_same_bytes() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let made = |run: &str| {
+        let out = folder.path().join(run);
+        let arm = spec("planetary_arm");
+        let table = shown(&out.join("a.csv"));
+        accepted(&["simulate", &arm, "--until", "0.02", "--out", &table]);
+        accepted(&["generate", &arm, "--order", "3", "--out", &shown(&out)]);
+        let certificate = shown(&out.join("certificate.json"));
+        accepted(&["validate", &spec("emps"), "--out", &certificate]);
+        let mut contents: Vec<Vec<u8>> = ["a.csv", "lib.rs", "certificate.json"]
+            .iter()
+            .map(|name| std::fs::read(out.join(name)).expect("a file"))
+            .collect();
+        for format in ["text", "latex", "json"] {
+            contents.push(accepted(&["derive", &arm, "--format", format]).into_bytes());
+        }
+        contents
+    };
+    let (first, second) = (made("first"), made("second"));
+    assert!(first.iter().all(|contents| contents.len() > 100));
+    assert!(first == second, "two runs differ");
+}
+
+#[test]
+fn an_output_in_the_place_of_no_file_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("file");
+    std::fs::write(&file, "kept").expect("a file");
+    let pendulum = spec("pendulum");
+    for out in [
+        shown(folder.path()),
+        shown(&file.join("a.csv")),
+        "/".to_owned(),
+    ] {
+        let message = refused(&["simulate", &pendulum, "--until", "1", "--out", &out]);
+        assert!(message.contains("cannot write"), "{message}");
+        let message = refused(&["validate", &pendulum, "--out", &out]);
+        assert!(message.contains("cannot write"), "{message}");
+    }
+    let message = refused(&["generate", &pendulum, "--out", &shown(&file)]);
+    assert!(message.contains("is not a folder"), "{message}");
+    assert_eq!(std::fs::read(&file).expect("the file"), b"kept");
+}
+
+#[cfg(unix)]
+#[test]
+fn devices_pipes_and_links_stay_what_they_are() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (pipe, link, target) = (
+        folder.path().join("pipe"),
+        folder.path().join("link"),
+        folder.path().join("target"),
+    );
+    let made = Command::new("mkfifo")
+        .arg(&pipe)
+        .status()
+        .expect("mkfifo can be run");
+    assert!(made.success());
+    std::fs::write(&target, "old").expect("a file");
+    std::os::unix::fs::symlink("target", &link).expect("a link");
+    let simulate = |out: &Path| {
+        let out = shown(out);
+        program::run(&["simulate", &spec("pendulum"), "--until", "1", "--out", &out])
+    };
+    let refused = simulate(&pipe);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(text(&refused.stderr).contains("not a file"));
+    assert!(
+        !std::fs::symlink_metadata(&pipe)
+            .expect("the pipe")
+            .is_file()
+    );
+    assert_eq!(simulate(&link).status.code(), Some(0));
+    assert!(
+        std::fs::symlink_metadata(&link)
+            .expect("the link")
+            .is_symlink()
+    );
+    assert!(
+        std::fs::read_to_string(&target)
+            .expect("the table")
+            .starts_with("t,theta")
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_that_cannot_be_written_is_refused() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().expect("a folder");
+    let closed = folder.path().join("closed");
+    std::fs::create_dir(&closed).expect("a folder");
+    std::fs::set_permissions(&closed, PermissionsExt::from_mode(0o555)).expect("a closed folder");
+    if std::fs::write(closed.join("probe"), "").is_ok() {
+        eprintln!("SKIPPED: this user may write into a folder closed to writing");
+        return;
+    }
+    let out = shown(&closed.join("a.csv"));
+    let message = refused(&["simulate", &spec("pendulum"), "--until", "1", "--out", &out]);
+    assert!(message.contains("cannot write"), "{message}");
+}
+
+/// Starts a simulation of the pendulum whose table has `rows` rows and a header.
+fn start(out: &Path, rows: usize, parameter: &str) -> Child {
+    let until = (rows - 1) as f64 * 1e-3;
+    Command::new(program::path())
+        .args([
+            "simulate",
+            &spec("pendulum"),
+            "--sample",
+            "1e-3",
+            "--set",
+            parameter,
+        ])
+        .arg(format!("--until={until:?}"))
+        .arg("--out")
+        .arg(out)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program can be run")
+}
+
+#[test]
+fn a_killed_run_leaves_the_file_whole_or_not_at_all() {
+    const ROWS: usize = 100_001;
+    let folder = tempfile::tempdir().expect("a folder");
+    let whole = folder.path().join("whole.csv");
+    let begun = std::time::Instant::now();
+    assert!(
+        start(&whole, ROWS, "g=9.81")
+            .wait()
+            .expect("an end")
+            .success()
+    );
+    let taken = begun.elapsed();
+    let expected = std::fs::read(&whole).expect("the table");
+    assert_eq!(text(&expected).lines().count(), ROWS + 1);
+    let out = folder.path().join("killed.csv");
+    let mut absent = 0;
+    for part in [0.1, 0.5, 0.8, 0.9, 0.95, 1.0] {
+        let mut child = start(&out, ROWS, "g=9.81");
+        std::thread::sleep(taken.mul_f64(part).max(Duration::from_millis(5)));
+        child.kill().expect("the program can be killed");
+        child.wait().expect("an end");
+        match std::fs::read(&out) {
+            Ok(found) => assert!(found == expected, "a table of {} bytes", found.len()),
+            Err(_) => absent += 1,
+        }
+    }
+    assert!(absent > 0, "no run was killed before its end");
+}
+
+#[test]
+fn two_runs_that_write_one_file_leave_one_of_both() {
+    const ROWS: usize = 2001;
+    let folder = tempfile::tempdir().expect("a folder");
+    let alone = |parameter: &str| {
+        let out = folder.path().join("alone.csv");
+        assert!(
+            start(&out, ROWS, parameter)
+                .wait()
+                .expect("an end")
+                .success()
+        );
+        std::fs::read(&out).expect("the table")
+    };
+    let possible = ["g=9.81", "g=1.62"].map(alone);
+    assert!(possible[0] != possible[1]);
+    for _ in 0..5 {
+        let out = folder.path().join("shared.csv");
+        let runs = ["g=9.81", "g=1.62"].map(|parameter| start(&out, ROWS, parameter));
+        for mut run in runs {
+            assert!(run.wait().expect("an end").success());
+        }
+        assert!(possible.contains(&std::fs::read(&out).expect("the table")));
+    }
+    let names: Vec<_> = std::fs::read_dir(folder.path())
+        .expect("the folder")
+        .collect();
+    assert_eq!(names.len(), 2, "temporary files are left: {names:?}");
+}

@@ -1,0 +1,280 @@
+//! Simulations driven by a record: what a motor's force does to a ballscrew axis is known in
+//! closed form, and records that are none are refused with their place.
+
+use std::path::{Path, PathBuf};
+
+use eomgen_tests::models::path;
+use eomgen_tests::program::{accepted, refused};
+
+/// A dataset in a folder of its own.
+struct Dataset {
+    folder: tempfile::TempDir,
+}
+
+/// The description of a dataset with one record, in ms and kN.
+const DESCRIPTION: &str = r#"
+[records]
+train = ["train.csv"]
+
+[time]
+column = "time"
+unit = "ms"
+
+[inputs.force]
+column = "f"
+unit = "kN"
+hold = "zero-order"
+"#;
+
+impl Dataset {
+    fn new(description: &str, record: &str) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join("dataset.toml"), description).expect("a file");
+        std::fs::write(folder.path().join("train.csv"), record).expect("a file");
+        Self { folder }
+    }
+
+    /// Arguments that simulate the axis with this dataset.
+    fn arguments(&self, more: &[&str]) -> Vec<String> {
+        let mut arguments = vec!["simulate".to_owned(), path("emps").display().to_string()];
+        arguments.extend([
+            "--record".to_owned(),
+            self.file("dataset.toml").display().to_string(),
+        ]);
+        arguments.extend(["--out".to_owned(), self.file("a.csv").display().to_string()]);
+        arguments.extend(more.iter().map(|argument| (*argument).to_owned()));
+        arguments
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// The message with which the record is refused; nothing is written.
+    fn refused(&self, more: &[&str]) -> String {
+        std::fs::remove_file(self.file("a.csv")).ok();
+        let arguments = self.arguments(more);
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let message = refused(&arguments);
+        assert!(!self.file("a.csv").exists(), "{message}");
+        message
+    }
+
+    /// Rows of t, q and q' of the simulation.
+    fn simulated(&self, more: &[&str]) -> Vec<[f64; 3]> {
+        let arguments = self.arguments(more);
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        accepted(&arguments);
+        rows(&self.file("a.csv"))
+    }
+}
+
+fn rows(path: &Path) -> Vec<[f64; 3]> {
+    let text = std::fs::read_to_string(path).expect("a table");
+    assert!(text.starts_with("t,q,q_dot,"), "{text}");
+    let number = |field: Option<&str>| field.and_then(|f| f.parse().ok()).expect("a number");
+    let row = |line: &str| {
+        let mut fields = line.split(',');
+        [(); 3].map(|()| number(fields.next()))
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+/// M q'' = F - F_v q' over a time with constant F: the speed decays to F/F_v.
+fn coast([q, v]: [f64; 2], force: f64, time: f64) -> [f64; 2] {
+    let (mass, friction) = (95.0, 210.0);
+    let (lasting, rate) = (force / friction, friction / mass);
+    let decayed = (v - lasting) * (-rate * time).exp();
+    [
+        q + lasting * time + (v - lasting - decayed) / rate,
+        lasting + decayed,
+    ]
+}
+
+/// Times in s and forces in N that hold from there on.
+const STEPS: [(f64, f64); 5] = [
+    (0.0, 100.0),
+    (0.3, -250.0),
+    (0.35, 400.0),
+    (0.9, 0.0),
+    (1.5, 7.0),
+];
+
+/// The same as a record in ms and kN.
+fn record() -> String {
+    let lines = STEPS.map(|(t, force)| format!("{:?},x,{:?}\n", t * 1e3, force / 1e3));
+    format!("time,comment,f\n{}", lines.concat())
+}
+
+/// Position and speed at a time, from rest at 0.
+fn closed_form(t: f64) -> [f64; 2] {
+    let mut state = [0.0, 0.0];
+    for (index, (begin, force)) in STEPS.iter().enumerate() {
+        let end = STEPS
+            .get(index + 1)
+            .map_or(f64::INFINITY, |next| next.0)
+            .min(t);
+        if end > *begin {
+            state = coast(state, *force, end - begin);
+        }
+    }
+    state
+}
+
+/// Deviations allowed with a relative tolerance of 1e-12 per step; q reaches 0.6 m.
+const TOLERANCE: f64 = 1e-11;
+
+#[test]
+fn a_held_force_moves_the_axis_as_the_closed_form_says() {
+    let dataset = Dataset::new(DESCRIPTION, &record());
+    let options = ["--tolerance", "1e-12"];
+    let at_the_record = dataset.simulated(&options);
+    assert_eq!(
+        at_the_record.iter().map(|row| row[0]).collect::<Vec<_>>(),
+        STEPS.map(|s| s.0)
+    );
+    let sampled =
+        dataset.simulated(&[&options[..], &["--sample", "0.01", "--until", "2"]].concat());
+    assert_eq!(sampled.len(), 201);
+    for [t, q, v] in at_the_record.iter().chain(&sampled) {
+        let expected = closed_form(*t);
+        assert!(
+            (q - expected[0]).abs() <= TOLERANCE,
+            "q = {q} at {t} s for {expected:?}"
+        );
+        assert!(
+            (v - expected[1]).abs() <= TOLERANCE,
+            "q' = {v} at {t} s for {expected:?}"
+        );
+    }
+    let fastest = sampled.iter().map(|row| row[2]).fold(0.0, f64::max);
+    assert!(fastest > 0.5, "the axis hardly moves: {fastest} m/s");
+}
+
+#[test]
+fn a_record_can_be_cut_short_and_begin_late() {
+    let late = "time,f\n2000,0.1\n2500,0.2\n3000,0\n";
+    let dataset = Dataset::new(DESCRIPTION, late);
+    let rows = dataset.simulated(&["--until", "2.75"]);
+    assert_eq!(
+        rows.iter().map(|row| row[0]).collect::<Vec<_>>(),
+        [2.0, 2.5]
+    );
+    assert!((rows[1][2] - coast([0.0; 2], 100.0, 0.5)[1]).abs() < 1e-9);
+    assert!(
+        dataset
+            .refused(&["--until", "2.25"])
+            .contains("second sample")
+    );
+    assert!(dataset.refused(&["--until", "4"]).contains("ends at 3.0 s"));
+    assert!(dataset.refused(&["--until", "1"]).contains("after 2.0"));
+}
+
+#[test]
+fn records_that_are_none_are_refused() {
+    for (record, part) in [
+        ("", "no column `time`"),
+        ("time,f\n", "fewer than two samples"),
+        ("time,f\n0,1\n", "fewer than two samples"),
+        ("time,g\n0,1\n1,2\n", "no column `f`; there are time, g"),
+        ("t,f\n0,1\n1,2\n", "no column `time`"),
+        ("time,f\n0,1\n1,nan\n", "line 3, column 2: \"nan\""),
+        ("time,f\n0,inf\n1,2\n", "line 2, column 2: \"inf\""),
+        ("time,f\n0,1\n1,\n", "line 3, column 2: \"\""),
+        ("time,f\n0,1\none,2\n", "line 3, column 1: \"one\""),
+        ("time,f\n0,1\n1,2,3\n", "line: 3"),
+        (
+            "time,f\n0,1\n2,2\n1,3\n",
+            "line 4: the time does not increase",
+        ),
+        ("time,f\n0,1\n0,2\n", "line 3: the time does not increase"),
+    ] {
+        let message = Dataset::new(DESCRIPTION, record).refused(&[]);
+        assert!(
+            message.contains("train.csv") && message.contains(part),
+            "{record:?}: {message}"
+        );
+    }
+}
+
+#[test]
+fn datasets_that_are_none_are_refused() {
+    for (from, to, part) in [
+        ("unit = \"kN\"", "unit = \"m\"", "expected N"),
+        ("unit = \"kN\"", "unit = \"kQ\"", "kQ"),
+        ("unit = \"ms\"", "unit = \"mm\"", "expected s"),
+        ("\"zero-order\"", "\"cubic\"", "expected \"zero-order\""),
+        ("[time]", "[tyme]", "time"),
+        ("[records]", "[records", "line 2"),
+        ("\"train.csv\"", "\"missing.csv\"", "missing.csv"),
+        (
+            "\"train.csv\"",
+            "\"../train.csv\"",
+            "outside the dataset's folder",
+        ),
+        (
+            "\"train.csv\"",
+            "\"a/../../train.csv\"",
+            "outside the dataset's folder",
+        ),
+        (
+            "\"train.csv\"",
+            "\"/etc/hostname\"",
+            "outside the dataset's folder",
+        ),
+        ("\"train.csv\"", "\".\"", "cannot read"),
+        ("\"train.csv\"", "7", "line 3"),
+    ] {
+        let description = DESCRIPTION.replacen(from, to, 1);
+        assert_ne!(description, DESCRIPTION);
+        let message = Dataset::new(&description, &record()).refused(&[]);
+        assert!(message.contains(part), "{to}: {message}");
+    }
+    for dataset in ["/nowhere/dataset.toml", "/"] {
+        let emps = path("emps").display().to_string();
+        let message = refused(&[
+            "simulate",
+            &emps,
+            "--record",
+            dataset,
+            "--out",
+            "never-made.csv",
+        ]);
+        assert!(message.contains("cannot read"), "{message}");
+    }
+}
+
+#[test]
+fn record_names_that_are_none_are_refused() {
+    let dataset = Dataset::new(DESCRIPTION, &record());
+    for name in [
+        "train[1]",
+        "test[0]",
+        "train",
+        "train[-1]",
+        "train[0",
+        "other[0]",
+        "",
+        "train[99999999999999999999]",
+    ] {
+        let message = dataset.refused(&[&format!("--record-name={name}")]);
+        assert!(
+            message.contains("1 as train[..] and 0 as test[..]"),
+            "{name}: {message}"
+        );
+    }
+}
+
+#[test]
+fn an_input_without_a_record_is_zero_with_a_warning() {
+    let description = DESCRIPTION.replace("[inputs.force]", "[inputs.torque]");
+    let dataset = Dataset::new(&description, &record());
+    let arguments = dataset.arguments(&[]);
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let output = eomgen_tests::program::run(&arguments);
+    let message = eomgen_tests::program::text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    assert!(message.contains("no input `force`: it is 0"), "{message}");
+    assert!(message.contains("no input `torque`"), "{message}");
+    assert!(rows(&dataset.file("a.csv")).iter().all(|row| row[1] == 0.0));
+}

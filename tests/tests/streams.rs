@@ -1,0 +1,135 @@
+//! What the program says, and to whom: one JSON document on standard output where asked,
+//! messages on standard error, and no fuss when nobody listens.
+
+use std::fs::File;
+use std::process::{Command, Stdio};
+
+use eomgen_tests::models::{path, project};
+use eomgen_tests::program::{self, eomgen, run, text};
+use serde_json::Value;
+
+/// A shipped specification's path as an argument.
+fn spec(name: &str) -> String {
+    path(name).display().to_string()
+}
+
+/// Runs a command with `--json` in the project's folder; the document it prints.
+fn document(arguments: &[&str], status: i32) -> Value {
+    let mut command = eomgen();
+    let output = command
+        .args(arguments)
+        .arg("--json")
+        .current_dir(project())
+        .output();
+    let output = output.expect("the program can be run");
+    let shown = arguments.join(" ");
+    assert_eq!(
+        output.status.code(),
+        Some(status),
+        "{shown}: {}",
+        text(&output.stderr)
+    );
+    serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{shown}: {error}"))
+}
+
+#[test]
+fn with_json_every_command_prints_one_document() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out").display().to_string();
+    let table = folder.path().join("a.csv").display().to_string();
+    let (arm, emps) = (spec("planetary_arm"), spec("emps"));
+    let checked = document(&["check", &arm, "--order", "2"], 0);
+    assert_eq!(checked["state"].as_array().map(Vec::len), Some(10));
+    assert_eq!(document(&["derive", &arm], 0)["schema"], 1);
+    assert_eq!(
+        document(&["generate", &arm, "--out", &out], 0)["orders"],
+        serde_json::json!([4])
+    );
+    assert!(document(&["generate", "--all", "--check"], 0)["files"].is_u64());
+    let certificate = document(&["validate", &emps], 0);
+    assert_eq!(certificate["schema"], 1);
+    assert_eq!(certificate["passed"], true);
+    for key in ["name", "value", "tolerance", "passed", "skipped"] {
+        assert!(
+            certificate["checks"][0].get(key).is_some(),
+            "{key}: {certificate}"
+        );
+    }
+    // The warning that nothing gives the force goes to standard error.
+    let simulated = document(&["simulate", &emps, "--until", "1", "--out", &table], 0);
+    assert_eq!(simulated["rows"], 1001);
+}
+
+#[test]
+fn a_specification_with_errors_is_described_in_json() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let broken = folder.path().join("broken.toml");
+    let text = std::fs::read_to_string(path("pendulum")).expect("the pendulum");
+    std::fs::write(&broken, text.replace("m*g*height", "m*g*hight")).expect("a file");
+    let found = document(&["check", &broken.display().to_string()], 2);
+    assert_eq!(found["passed"], false);
+    let message = found["diagnostics"][0].to_string();
+    assert!(message.contains("hight"), "{found}");
+    let found = document(&["check", &spec("pendulum"), "--order", "3"], 2);
+    assert_eq!(found["passed"], false);
+    assert!(
+        found["diagnostics"][0].to_string().contains("no field"),
+        "{found}"
+    );
+}
+
+#[test]
+fn nothing_is_said_on_standard_error_when_all_is_well() {
+    for arguments in [["check", "pendulum"], ["derive", "furuta_pendulum"]] {
+        let output = run(&[arguments[0], &spec(arguments[1])]);
+        assert_eq!(output.status.code(), Some(0));
+        assert_eq!(text(&output.stderr), "");
+    }
+}
+
+#[test]
+fn a_reader_that_leaves_early_is_no_error() {
+    let mut child = Command::new(program::path())
+        .args(["derive", &spec("planetary_arm"), "--order", "128", "--json"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program can be run");
+    drop(child.stdout.take());
+    let output = child.wait_with_output().expect("an end");
+    assert_eq!(text(&output.stderr), "");
+    assert_eq!(output.status.code(), Some(0));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_device_is_an_error_of_standard_output_alone() {
+    let full = || {
+        File::options()
+            .write(true)
+            .open("/dev/full")
+            .expect("the full device")
+    };
+    let mut command = Command::new(program::path());
+    let output = command
+        .args(["derive", &spec("pendulum")])
+        .stdout(full())
+        .output();
+    let output = output.expect("the program can be run");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(text(&output.stderr).contains("cannot write to stdout"));
+
+    // A warning nobody can read, and an error nobody can read.
+    let folder = tempfile::tempdir().expect("a folder");
+    let simulate = |until: &str| {
+        let mut command = Command::new(program::path());
+        command.args(["simulate", &spec("emps"), "--until", until, "--out"]);
+        command
+            .arg(folder.path().join("a.csv"))
+            .stdout(Stdio::null())
+            .stderr(full());
+        command.status().expect("the program can be run").code()
+    };
+    assert_eq!(simulate("1"), Some(0));
+    assert_eq!(simulate("0"), Some(2));
+}

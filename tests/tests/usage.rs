@@ -1,0 +1,189 @@
+//! Wrong use of the program: exit status 2 and a message that says what would be right.
+
+use eomgen_tests::models::path;
+use eomgen_tests::program::{accepted, eomgen, refused};
+
+/// Every command with the specification it is given.
+const COMMANDS: [&str; 5] = ["check", "derive", "generate", "validate", "simulate"];
+
+/// A shipped specification's path as an argument.
+fn spec(name: &str) -> String {
+    path(name).display().to_string()
+}
+
+/// A command on a specification, with what else it needs; nothing is written.
+fn arguments(command: &'static str, name: &str, more: &[&str]) -> Vec<String> {
+    let needed: &[&str] = match command {
+        "generate" => &["--out", "never-made"],
+        "simulate" => &["--out", "never-made/a.csv", "--until", "0.01"],
+        _ => &[],
+    };
+    let given = needed
+        .iter()
+        .chain(more)
+        .map(|argument| (*argument).to_owned());
+    [command.to_owned(), spec(name)]
+        .into_iter()
+        .chain(given)
+        .collect()
+}
+
+/// The message of a refusal that leaves nothing in its folder.
+fn message(arguments: &[String]) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = eomgen();
+    let output = command.args(arguments).current_dir(folder.path()).output();
+    let output = output.expect("the program can be run");
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    let shown = arguments.join(" ");
+    assert_eq!(output.status.code(), Some(2), "{shown}: {message}");
+    assert!(message.starts_with("error: "), "{shown}: {message}");
+    assert!(output.stdout.is_empty(), "{shown}");
+    let left = std::fs::read_dir(folder.path())
+        .expect("the folder")
+        .count();
+    assert_eq!(left, 0, "{shown} left something");
+    message
+}
+
+/// Asserts that `simulate` with these options is refused with a message that holds `part`.
+fn simulate_refuses(name: &str, options: &[&str], part: &str) {
+    let found = message(&arguments("simulate", name, options));
+    assert!(found.contains(part), "{options:?}: {found}");
+}
+
+#[test]
+fn commands_and_options_that_do_not_exist_are_refused() {
+    assert!(refused(&["fly"]).contains("fly"));
+    assert!(refused(&["check", &spec("pendulum"), "--fly"]).contains("--fly"));
+    assert!(refused(&["derive", &spec("pendulum"), "--format", "word"]).contains("latex"));
+    assert!(refused(&["generate", &spec("pendulum"), "--target", "ada"]).contains("rust"));
+    assert!(refused(&["check"]).contains("<SPEC>"));
+    assert!(refused(&["generate", &spec("pendulum")]).contains("--out"));
+    assert!(refused(&["generate", "--all", &spec("pendulum")]).contains("--all"));
+    assert!(refused(&["simulate", &spec("pendulum"), "--out", "a.csv"]).contains("--until"));
+}
+
+#[test]
+fn help_has_an_example_and_succeeds() {
+    assert!(accepted(&["--help"]).contains("simulate"));
+    assert!(accepted(&["--version"]).starts_with("eomgen "));
+    for command in COMMANDS {
+        let help = accepted(&[command, "--help"]);
+        assert!(
+            help.contains(&format!("eomgen {command} ")),
+            "{command}: {help}"
+        );
+    }
+}
+
+#[test]
+fn orders_that_are_none_are_refused_by_every_command() {
+    for command in COMMANDS {
+        for order in [
+            "-1",
+            "abc",
+            "1e9",
+            "4.0",
+            "1 000",
+            "99999999999999999999",
+            "٣",
+        ] {
+            let found = message(&arguments(command, "planetary_arm", &["--order", order]));
+            assert!(
+                found.contains("whole number from 0 to 128"),
+                "{command} {order}: {found}"
+            );
+        }
+        let found = message(&arguments(command, "planetary_arm", &["--order", "129"]));
+        assert!(
+            found.contains("the highest order is 128"),
+            "{command}: {found}"
+        );
+        let found = message(&arguments(command, "pendulum", &["--order", "4"]));
+        assert!(found.contains("no field"), "{command}: {found}");
+    }
+}
+
+#[test]
+fn a_certificate_for_different_orders_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = folder.path().join("two_fields.toml");
+    let two = include_str!("features/two_fields.toml").replacen("order = 3", "order = 1", 1);
+    std::fs::write(&spec, two).expect("a file");
+    let spec = spec.display().to_string();
+    assert!(accepted(&["check", &spec]).contains("order 1, 3"));
+    assert!(refused(&["validate", &spec]).contains("give --order"));
+    assert!(accepted(&["validate", &spec, "--order", "1"]).contains("passed"));
+}
+
+#[test]
+fn parameters_that_cannot_be_set_are_refused() {
+    for (assignment, part) in [
+        ("b_spp=1", "did you mean `b_sp`"),
+        ("=1", "no parameter"),
+        ("b_sp", "NAME=VALUE"),
+        ("b_sp=", "no number"),
+        ("b_sp=1=2", "no number"),
+        ("b_sp=25 um", "no number"),
+        ("b_sp=nan", "finite"),
+        ("b_sp=inf", "finite"),
+        ("k_sp=1e400", "finite"),
+        ("b_sp=-1e-6", "at least 0 m"),
+        ("l=0", "greater than"),
+        ("z_s=0", "division by 0"),
+    ] {
+        simulate_refuses("planetary_arm", &["--set", assignment], part);
+    }
+}
+
+#[test]
+fn parameters_without_a_motion_are_refused() {
+    for assignment in ["rho=-7900", "rho=0", "r_s=0", "m=0", "I_p=-1", "l=1e300"] {
+        simulate_refuses("planetary_arm", &["--set", assignment], "positive definite");
+    }
+    // Values so large or small that a rate overflows, or so stiff that no step is short
+    // enough.
+    for assignment in ["l=1e-300", "omega=1e300", "k_sp=1e300", "alpha=90"] {
+        simulate_refuses("planetary_arm", &["--set", assignment], "at t = 0");
+    }
+    simulate_refuses("planetary_arm", &["--set", "omega=1e300"], "that is x_sp");
+}
+
+#[test]
+fn times_that_are_none_are_refused() {
+    for (option, value, part) in [
+        ("--until", "0", "after 0"),
+        ("--until", "-1", "after 0"),
+        ("--until", "nan", "after 0"),
+        ("--until", "inf", "after 0"),
+        ("--until", "soon", "invalid"),
+        ("--sample", "0", "above 0"),
+        ("--sample", "-1", "above 0"),
+        ("--sample", "nan", "above 0"),
+        ("--sample", "inf", "at most 0.01"),
+        ("--sample", "0.02", "at most 0.01"),
+        ("--sample", "1e-300", "too many rows"),
+        ("--sample", "1e-10", "too many rows"),
+        ("--tolerance", "0", "1e-14"),
+        ("--tolerance", "-1", "1e-14"),
+        ("--tolerance", "nan", "1e-14"),
+        ("--tolerance", "1", "0.1"),
+    ] {
+        let mut given = arguments("simulate", "pendulum", &[]);
+        given.retain(|argument| option != "--until" || !["--until", "0.01"].contains(&&**argument));
+        given.extend([option.to_owned(), value.to_owned()]);
+        let found = message(&given);
+        assert!(found.contains(part), "{option} {value}: {found}");
+    }
+    // Farther than the sine of the motor's ripple is known.
+    let far = [
+        "simulate",
+        &spec("planetary_arm"),
+        "--out",
+        "never-made/a.csv",
+        "--until",
+        "1e300",
+    ];
+    assert!(refused(&far).contains("not a number"));
+}
