@@ -192,4 +192,7 @@ pub struct Tour {
     /// The folder to write to.
     #[arg(long)]
     pub out: PathBuf,
+    /// Print one JSON document on what was left.
+    #[arg(long)]
+    pub json: bool,
 }

@@ -65,6 +65,9 @@ impl<'a> Direction<'a> {
                 let inner = self.derivative(graph, vector);
                 graph.cholesky_solve(factor, inner)
             }
+            _ if choice(graph, id).is_some() => {
+                choose(graph, id, |graph, branch| self.derivative(graph, branch))
+            }
             _ => {
                 let partials = partial_derivatives(graph, id);
                 let mut terms = Vec::with_capacity(partials.len());
@@ -92,9 +95,44 @@ pub fn by_scalar(graph: &mut Graph, id: Id, variable: Id) -> Id {
     Direction::new(&tangent).derivative(graph, id)
 }
 
+/// For a node that is one of two others: a and b of the condition a > b, the node where it
+/// holds, the node elsewhere.
+fn choice(graph: &Graph, id: Id) -> Option<[Id; 4]> {
+    match graph.operation(id) {
+        &Operation::Select {
+            a,
+            b,
+            then,
+            otherwise,
+        } => Some([a, b, then, otherwise]),
+        Operation::Call(function, arguments) => match (function, &**arguments) {
+            (Function::Max, &[a, b]) => Some([a, b, a, b]),
+            (Function::Min, &[a, b]) => Some([b, a, a, b]),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The derivative of such a node. The derivatives are chosen between, not multiplied by 1
+/// and 0: that of the branch not taken may be infinite or no number.
+fn choose(graph: &mut Graph, id: Id, mut derivative: impl FnMut(&mut Graph, Id) -> Id) -> Id {
+    let Some([a, b, then, otherwise]) = choice(graph, id) else {
+        return graph.zero();
+    };
+    let (taken, skipped) = (derivative(graph, then), derivative(graph, otherwise));
+    graph.select(a, b, taken, skipped)
+}
+
 /// For an element-wise operation: each operand with the partial derivative by it.
 /// Matrix operations, which depend on parameters alone, have none.
 fn partial_derivatives(graph: &mut Graph, id: Id) -> Vec<(Id, Id)> {
+    if let Some([a, b, then, otherwise]) = choice(graph, id) {
+        let (zero, one) = (graph.zero(), graph.one());
+        let taken = graph.select(a, b, one, zero);
+        let skipped = graph.select(a, b, zero, one);
+        return vec![(then, taken), (otherwise, skipped)];
+    }
     match graph.operation(id).clone() {
         Operation::Sum(terms) => terms
             .iter()
@@ -114,17 +152,6 @@ fn partial_derivatives(graph: &mut Graph, id: Id) -> Vec<(Id, Id)> {
         Operation::Power(base, exponent) => power_derivatives(graph, id, base, exponent),
         Operation::Call(function, arguments) => {
             function_derivatives(graph, id, function, &arguments)
-        }
-        Operation::Select {
-            a,
-            b,
-            then,
-            otherwise,
-        } => {
-            let (zero, one) = (graph.zero(), graph.one());
-            let taken = graph.select(a, b, one, zero);
-            let skipped = graph.select(a, b, zero, one);
-            vec![(then, taken), (otherwise, skipped)]
         }
         Operation::PivotReciprocal(pivot) => {
             let square = graph.integer_power(id, 2);
@@ -157,17 +184,6 @@ fn function_derivatives(
             let by_y = graph.divide(x, radius);
             let by_x = graph.divide(y, radius);
             vec![(y, by_y), (x, graph.negate(by_x))]
-        }
-        (Function::Min | Function::Max, &[a, b]) => {
-            let (zero, one) = (graph.zero(), graph.one());
-            let (high, low) = if function == Function::Max {
-                (a, b)
-            } else {
-                (b, a)
-            };
-            let first = graph.select(high, low, one, zero);
-            let second = graph.select(high, low, zero, one);
-            vec![(a, first), (b, second)]
         }
         (Function::Deadzone, &[p, b]) => {
             let contact = graph.call(Function::Contact, arguments);
@@ -261,6 +277,9 @@ impl ModalDerivative {
             Operation::Total(a) => {
                 let jacobian = self.jacobian(graph, a);
                 jacobian.column_totals(graph)
+            }
+            _ if choice(graph, id).is_some() => {
+                choose(graph, id, |graph, branch| self.gradient(graph, branch))
             }
             _ => {
                 let partials = partial_derivatives(graph, id);

@@ -241,7 +241,7 @@ pub struct Coefficients {
     pub c_31: f64,
     /// `0.5*E*I/(l*l*l)`
     pub c_32: f64,
-    /// Whether all prepared pivots of the mass matrix are positive. If not, the mass matrix is not positive definite and the rates are not to be used.
+    /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
     pub positive_definite: bool,
 }
 impl Coefficients {
@@ -337,7 +337,7 @@ impl Coefficients {
         let s_29 = r_s * i_sH;
         let mut positive_4 = true;
         for i in 0..1 {
-            positive_4 = positive_4 && s_28[i] > 0.0;
+            positive_4 = positive_4 && s_28[i] > 0.0 && s_28[i] < f64::INFINITY;
         }
         Self {
             c_1: s_3 / I_s,
@@ -387,8 +387,9 @@ impl Coefficients {
             c_30: 1.5 * k_sp,
             c_31: 1.5 * k_pr,
             c_32: 0.5 * E * I / s_13,
-            positive_definite: M_x_sp_x_sp > 0.0 && pivot_x_pr > 0.0 && pivot_x_c > 0.0
-                && positive_4,
+            positive_definite: M_x_sp_x_sp > 0.0 && M_x_sp_x_sp < f64::INFINITY
+                && pivot_x_pr > 0.0 && pivot_x_pr < f64::INFINITY && pivot_x_c > 0.0
+                && pivot_x_c < f64::INFINITY && positive_4,
         }
     }
 }

@@ -221,7 +221,7 @@ pub struct Coefficients {
     pub c_23: f64,
     /// `1.5*k_pr`
     pub c_24: f64,
-    /// Whether all prepared pivots of the mass matrix are positive. If not, the mass matrix is not positive definite and the rates are not to be used.
+    /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
     pub positive_definite: bool,
 }
 impl Coefficients {
@@ -318,7 +318,9 @@ impl Coefficients {
             c_22: 0.16666666666666666 * rho * A * s_11 / s_9,
             c_23: 1.5 * k_sp,
             c_24: 1.5 * k_pr,
-            positive_definite: M_x_sp_x_sp > 0.0 && pivot_x_pr > 0.0 && pivot_x_c > 0.0,
+            positive_definite: M_x_sp_x_sp > 0.0 && M_x_sp_x_sp < f64::INFINITY
+                && pivot_x_pr > 0.0 && pivot_x_pr < f64::INFINITY && pivot_x_c > 0.0
+                && pivot_x_c < f64::INFINITY,
         }
     }
 }

@@ -223,9 +223,12 @@ fn record_path(dataset: &Path, records: &Records, record: &str) -> Result<PathBu
 }
 
 fn read_limited(path: &Path, limit: u64) -> Result<String, String> {
-    let size = std::fs::metadata(path)
-        .map_err(|error| format!("cannot read {}: {error}", path.display()))?
-        .len();
+    let metadata = std::fs::metadata(path)
+        .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+    if !metadata.is_file() {
+        return Err(format!("cannot read {}: it is not a file", path.display()));
+    }
+    let size = metadata.len();
     if size > limit {
         return Err(format!(
             "{} has {size} bytes; the limit is {limit}",

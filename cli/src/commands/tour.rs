@@ -8,6 +8,7 @@ use codegen::print::Notation;
 use codegen::report::Report;
 use codegen::rust::Packaging;
 use model_spec::source::Source;
+use serde_json::json;
 use sim::plot::{Panel, Reference, Series, TimeHistory, time_history};
 use sim::record::HeldInputs;
 use sim::solve::Trajectory;
@@ -17,7 +18,7 @@ use super::generate::source;
 use super::simulate::Run;
 use super::validate;
 use crate::arguments::Tour;
-use crate::output::write_file;
+use crate::output::{file_place, write_file};
 use crate::page;
 use crate::problem::{Outcome, Problem, say};
 use crate::progress::Note;
@@ -56,6 +57,8 @@ impl Stopwatch {
 
 /// Runs the command.
 pub fn run(options: &Tour) -> Outcome {
+    let path = options.out.join("index.html");
+    file_place(&path)?;
     let mut watch = Stopwatch {
         started: Instant::now(),
         steps: Vec::new(),
@@ -83,24 +86,36 @@ pub fn run(options: &Tour) -> Outcome {
     let figure = figure(&variant, &table)?;
     leave(options, &variant, &rust, &certificate, &table, &figure)?;
     let page = page_text(&variant, &rust, &certificate, &trajectory, &figure, &watch)?;
-    let path = options.out.join("index.html");
     write_file(&path, page.as_bytes())?;
-    let verdict = if certificate.passed {
-        "passed"
-    } else {
-        "FAILED"
-    };
-    say(&format!(
-        "{} checks {verdict}, {} switches simulated\nopen {}\n",
-        certificate.checks.len(),
-        trajectory.switches.len(),
-        path.display()
-    ))?;
+    say(&summary(options.json, &certificate, &trajectory, &path))?;
     if certificate.passed {
         Ok(())
     } else {
         Err(Problem::Failed)
     }
+}
+
+/// What is said at the end.
+fn summary(json: bool, certificate: &Certificate, trajectory: &Trajectory, page: &Path) -> String {
+    let (checks, switches) = (certificate.checks.len(), trajectory.switches.len());
+    if json {
+        let document = json!({
+            "page": page.display().to_string(),
+            "passed": certificate.passed,
+            "checks": checks,
+            "switches": switches,
+        });
+        return format!("{document:#}\n");
+    }
+    let verdict = if certificate.passed {
+        "passed"
+    } else {
+        "FAILED"
+    };
+    format!(
+        "{checks} checks {verdict}, {switches} switches simulated\nopen {}\n",
+        page.display()
+    )
 }
 
 /// The files that the page shows.

@@ -97,7 +97,7 @@ impl Evaluator {
             let matrix = matches!(self.program.value(*id).extent, Extent::Matrix(..));
             self.slice(*id)
                 .iter()
-                .all(|p| *p > 0.0 || (matrix && *p <= 0.0))
+                .all(|p| p.is_finite() && (matrix || *p > 0.0))
         })
     }
 

@@ -96,7 +96,7 @@ impl File<'_> {
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct Coefficients {
                 #(#fields,)*
-                #[doc = " Whether all prepared pivots of the mass matrix are positive. If not, the mass matrix is not positive definite and the rates are not to be used."]
+                #[doc = " Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used."]
                 pub positive_definite: bool,
             }
 
@@ -128,7 +128,7 @@ impl File<'_> {
             match self.program.value(*id).extent {
                 Extent::Scalar => {
                     let pivot = body.scalar(*id)?;
-                    conditions.push(quote!(#pivot > 0.0));
+                    conditions.push(quote!(#pivot > 0.0 && #pivot < f64::INFINITY));
                 }
                 extent => {
                     let name = format_ident!("positive_{}", place + 1);
@@ -136,11 +136,11 @@ impl File<'_> {
                     let test = match extent {
                         Extent::Vector(_) => {
                             let element = body.element(*id)?;
-                            quote!(#element > 0.0)
+                            quote!(#element > 0.0 && #element < f64::INFINITY)
                         }
                         _ => {
                             let array = body.array(*id)?;
-                            quote!(#array[i][i] > 0.0)
+                            quote!(#array[i][i] > 0.0 && #array[i][i] < f64::INFINITY)
                         }
                     };
                     let length = match extent {

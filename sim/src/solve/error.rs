@@ -55,28 +55,28 @@ impl fmt::Display for SolveError {
             Self::Request { problem } => write!(f, "{problem}"),
             Self::NotFinite { t, state } => write!(
                 f,
-                "at t = {t} s the rate of state variable {state} is infinite or not a number"
+                "at t = {t:?} s the rate of state variable {state} is infinite or not a number"
             ),
             Self::StepTooSmall { t, step } => write!(
                 f,
-                "at t = {t} s even a step of {step:e} s misses the tolerance; \
+                "at t = {t:?} s even a step of {step:e} s misses the tolerance; \
                  loosen it, or look for a singularity there"
             ),
             Self::TooManySteps { t, steps } => write!(
                 f,
-                "stopped at t = {t} s after {steps} steps; loosen the tolerance, \
-                 shorten the time, or allow more steps"
+                "stopped at t = {t:?} s after {steps} steps: the model is stiff or moves fast there; \
+                 loosen the tolerance or shorten the time"
             ),
             Self::Caught { t, guard } => write!(
                 f,
-                "at t = {t} s the motion is held where switching function {guard} is zero, as \
+                "at t = {t:?} s the motion is held where switching function {guard} is zero, as \
                  dry friction holds a body at rest; replace the jump there by a steep smooth \
                  function, sign(v) by tanh(v/v_0) say"
             ),
             Self::TooManySwitches { t, guard, rate } => write!(
                 f,
-                "at t = {t} s switching function {guard} changes its sign more than {rate:e} \
-                 times a second; allow more, or replace the kink there by a smooth function"
+                "at t = {t:?} s switching function {guard} changes its sign more than {rate:e} \
+                 times a second; replace the kink there by a smooth function"
             ),
         }
     }

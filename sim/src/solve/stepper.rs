@@ -106,7 +106,7 @@ impl Stepper {
                     length,
                 });
             }
-            Err(_) => return Err(self.too_small(length)),
+            Err(_) => return Err(refusal(watched, self.here.t, length)),
         }
         if matches!(self.method.status(), Status::RejectedStep) {
             self.step = self.method.h().min(0.9 * length);
@@ -154,16 +154,17 @@ impl Stepper {
                 horizon(&self.here, length),
                 &self.here.y,
             )
-            .map_err(|_| self.too_small(length))?;
+            .map_err(|_| refusal(watched, self.here.t, length))?;
         self.ready = true;
         Ok(())
     }
+}
 
-    fn too_small(&self, step: f64) -> SolveError {
-        SolveError::StepTooSmall {
-            t: self.here.t,
-            step,
-        }
+/// Why the method refused to go on from time `t` (s) with this step (s).
+fn refusal<S: System + ?Sized>(watched: &Watched<'_, S>, t: f64, step: f64) -> SolveError {
+    match watched.not_finite() {
+        Some(state) => SolveError::NotFinite { t, state },
+        None => SolveError::StepTooSmall { t, step },
     }
 }
 
@@ -175,13 +176,7 @@ pub fn single_step<S: System + ?Sized>(
 ) -> Result<Point, SolveError> {
     /// A tolerance that refuses nothing finite.
     const ANY: f64 = 1e200;
-    let refused = || match watched.not_finite() {
-        Some(state) => SolveError::NotFinite { t: start.t, state },
-        None => SolveError::StepTooSmall {
-            t: start.t,
-            step: length,
-        },
-    };
+    let refused = || refusal(watched, start.t, length);
     let mut method = Method::dop853().rtol(0.0).atol(ANY).h0(length);
     let end = horizon(start, length);
     method
