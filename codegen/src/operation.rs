@@ -2,7 +2,7 @@
 
 use model_spec::model::Function;
 
-/// A node of a [`Graph`].
+/// A node of a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Id(pub(crate) u32);
 

@@ -6,7 +6,7 @@
 //! y = Phi^T a_q stand as extra unknowns beside the coordinates in a small system, solved
 //! by elimination without pivoting in the order that counts fewest operations. Where G is
 //! not diagonal the interfaces are made orthogonal first, or a pivot could be negative
-//! although M is positive definite (see [`ModalBlock::orthogonalise`]). Where the
+//! although M is positive definite (see `ModalBlock::orthogonalise`). Where the
 //! basis is not orthogonal the modal block is dense and its Cholesky factor takes the
 //! place of D. Pivots must be positive: a reciprocal of one that is not is NaN.
 
