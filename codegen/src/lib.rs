@@ -5,7 +5,7 @@
 //! algebraic laws), `modes`, `tables` and `quadrature` (constants of a basis),
 //! `differentiate` and `matrix` (derivatives that keep their structure), `lagrange`,
 //! `forces` and `equations` (the equations of motion), `solve` (the accelerations),
-//! `coefficients` (names as in Eq. (22)), `lower` (to the `program`), `evaluator` and
+//! `coefficients` (names as in Eq. (22)), `linearity` (whether switches aside it is linear), `lower` (to the `program`), `evaluator` and
 //! `rust` (backends), `print` and `report` (for people).
 //!
 //! The arrows are two functions: [`equations::derive`] from a model to equations and
@@ -22,6 +22,7 @@ mod field_function;
 mod forces;
 pub mod graph;
 mod lagrange;
+pub mod linearity;
 pub mod lower;
 pub mod matrix;
 pub mod modes;

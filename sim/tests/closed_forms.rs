@@ -188,11 +188,12 @@ proptest! {
 
 #[test]
 fn a_pendulum_swings_down_and_is_damped() {
-    let values: Values = &[("m", 2.0), ("l", 0.5), ("g", 9.81), ("c", 0.1)];
-    let found = evaluate("pendulum", values, 0, &[0.3, 2.0])
+    let values: Values = &[("m", 2.0), ("a", 0.5), ("I", 0.1), ("g", 9.81), ("k", 0.1)];
+    let found = evaluate("pendulum", values, 0, &[std::f64::consts::PI + 0.3, 2.0])
         .expect("a value")
         .accelerations;
-    let expected = -9.81 / 0.5 * 0.3_f64.sin() - 0.1 * 2.0 / (2.0 * 0.25);
+    let expected = (-2.0 * 9.81 * 0.5 * 0.3_f64.sin() - 0.1 * 2.0) / 0.6;
+    // The sine of pi + 0.3 rounds its argument: half a unit in the last place of 3.4.
     assert!((found[0] - expected).abs() < 1e-14 * expected.abs());
 }
 
@@ -213,7 +214,7 @@ fn the_axis_feels_friction_against_its_motion() {
 #[test]
 fn what_is_missing_is_named() {
     assert!(find("planetary_arm").is_none());
-    let error = evaluate("pendulum", &[("m", 1.0), ("l", 1.0)], 0, &[0.0, 0.0]);
+    let error = evaluate("pendulum", &[("m", 1.0), ("a", 1.0)], 0, &[0.0, 0.0]);
     assert_eq!(error, Err(Unfit::Parameter("g")));
     let error = evaluate("double_pendulum", DOUBLE, 0, &[0.0; 3]);
     assert_eq!(error, Err(Unfit::State(4)));

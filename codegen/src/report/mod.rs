@@ -49,6 +49,8 @@ pub struct Report {
     pub accelerations: Vec<Line>,
     /// Switching surfaces: formulas that change sign.
     pub guards: Vec<String>,
+    /// What kind of model it is between its switching surfaces.
+    pub linearity: String,
     /// How the accelerations are solved for.
     pub solution: Solution,
 }
@@ -136,6 +138,7 @@ impl Report {
                 .iter()
                 .map(|guard| formula(graph, notation, guard.value))
                 .collect(),
+            linearity: writer.linearity(),
             solution: Solution {
                 dense_modes: solution.dense_modes,
                 order: solution

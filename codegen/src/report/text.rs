@@ -61,7 +61,8 @@ impl Report {
                 writeln!(out, "  {guard}")?;
             }
         }
-        writeln!(out, "\n{}", self.solution_sentence())
+        writeln!(out, "\n{}", self.linearity)?;
+        writeln!(out, "{}", self.solution_sentence())
     }
 
     fn solution_sentence(&self) -> String {

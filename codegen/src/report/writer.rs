@@ -6,6 +6,7 @@ use super::{CoefficientLine, Entry, Line};
 use crate::equations::{Equations, Row, Rows};
 use crate::evaluator::Evaluator;
 use crate::graph::{Graph, Id, Shape, Space};
+use crate::linearity::{Linearity, linearity};
 use crate::print::{Notation, expression, formula};
 
 /// What the parts are written from.
@@ -40,6 +41,20 @@ impl Writer<'_> {
                 })
             })
             .collect()
+    }
+
+    /// A sentence on what kind of model it is between its switching surfaces.
+    pub fn linearity(&self) -> String {
+        match linearity(self.equations) {
+            Linearity::Linear => "The model is linear.".to_owned(),
+            Linearity::PiecewiseLinear => {
+                "Between its switching surfaces the model is linear.".to_owned()
+            }
+            Linearity::Nonlinear(node) => format!(
+                "The model is not linear: {}.",
+                formula(self.graph(), self.notation, node)
+            ),
+        }
     }
 
     /// An energy as the sum of its terms, by their names.

@@ -6,95 +6,12 @@
 //! is found by disturbing every intermediate result of the reference at random by 1e-10:
 //! rounding disturbs by 1e-16, so a thousandth of the spread has a margin of 1e3.
 
-use std::fmt::Write;
-
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
+use proptest::test_runner::RngSeed;
 
 use crate::support::{accelerations, evaluator, model, observables};
-
-/// A tree as it is written.
-#[derive(Clone, Debug)]
-enum Tree {
-    /// x, y, z
-    Coordinate(usize),
-    /// a, b
-    Parameter(usize),
-    Number(f64),
-    Unary(&'static str, Box<Tree>),
-    Binary(&'static str, Box<Tree>, Box<Tree>),
-    Integer(Box<Tree>, i32),
-    /// (1 + base^2)^exponent
-    Power(Box<Tree>, Box<Tree>),
-}
-
-const COORDINATES: [&str; 3] = ["x", "y", "z"];
-const PARAMETERS: [(&str, f64); 2] = [("a", 1.7), ("b", -0.6)];
-
-fn trees() -> impl Strategy<Value = Tree> {
-    let leaf = prop_oneof![
-        4 => (0..3_usize).prop_map(Tree::Coordinate),
-        1 => (0..2_usize).prop_map(Tree::Parameter),
-        2 => prop::sample::select(vec![0.0, 1.0, 2.0, 0.5, 3.0, 0.1]).prop_map(Tree::Number),
-    ];
-    leaf.prop_recursive(6, 40, 2, |inner| {
-        let unary = prop::sample::select(vec![
-            "-", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "ln",
-            "sqrt", "abs", "sign",
-        ]);
-        let binary = prop::sample::select(vec![
-            "+", "+", "-", "-", "*", "*", "*", "/", "min", "max", "atan2", "deadzone", "contact",
-        ]);
-        let boxed = inner.clone().prop_map(Box::new);
-        prop_oneof![
-            2 => (unary, boxed.clone()).prop_map(|(f, a)| Tree::Unary(f, a)),
-            4 => (binary, boxed.clone(), boxed.clone()).prop_map(|(f, a, b)| Tree::Binary(f, a, b)),
-            1 => (boxed.clone(), -3..5_i32).prop_map(|(a, n)| Tree::Integer(a, n)),
-            1 => (boxed.clone(), prop::sample::select(vec![0.5, 1.5, -0.5, 2.25]))
-                .prop_map(|(a, e)| Tree::Power(a, Box::new(Tree::Number(e)))),
-            1 => (boxed.clone(), boxed).prop_map(|(a, b)| Tree::Power(a, b)),
-        ]
-    })
-}
-
-impl Tree {
-    /// Functions with a domain are applied to what lies in it: asin(u/(1 + abs(u))).
-    fn write(&self, out: &mut String) {
-        let written = |tree: &Self| {
-            let mut text = String::new();
-            tree.write(&mut text);
-            text
-        };
-        match self {
-            Self::Coordinate(index) => out.push_str(COORDINATES[*index]),
-            Self::Parameter(index) => out.push_str(PARAMETERS[*index].0),
-            Self::Number(value) => write!(out, "{value}").unwrap(),
-            Self::Unary(function, a) => {
-                let a = written(a);
-                match *function {
-                    "-" => write!(out, "(-{a})").unwrap(),
-                    "asin" | "acos" => write!(out, "{function}({a}/(2 + abs({a})))").unwrap(),
-                    "ln" | "sqrt" => write!(out, "{function}(1 + {a}^2)").unwrap(),
-                    _ => write!(out, "{function}({a})").unwrap(),
-                }
-            }
-            Self::Binary(function, a, b) => {
-                let (a, b) = (written(a), written(b));
-                match *function {
-                    "+" | "-" | "*" => write!(out, "({a} {function} {b})").unwrap(),
-                    "/" => write!(out, "({a}/(2 + sin({b})))").unwrap(),
-                    "deadzone" | "contact" => write!(out, "{function}({a}, abs({b}))").unwrap(),
-                    _ => write!(out, "{function}({a}, {b})").unwrap(),
-                }
-            }
-            Self::Integer(a, n) if *n < 0 => {
-                write!(out, "((2 + cos({}))^({n}))", written(a)).unwrap()
-            }
-            Self::Integer(a, n) => write!(out, "({}^{n})", written(a)).unwrap(),
-            Self::Power(a, e) => write!(out, "((1 + {}^2)^({}))", written(a), written(e)).unwrap(),
-        }
-    }
-}
+use crate::trees::{COORDINATES, PARAMETERS, Tree, trees};
 
 /// A value with its slopes by x, y, z.
 #[derive(Clone, Copy, Debug)]
@@ -111,11 +28,18 @@ impl Dual {
         }
     }
 
-    /// f(self) where f has this value and slope.
+    /// f(self) where f has this value and slope; where f has no slope there is none.
     fn chain(self, value: f64, slope: f64) -> Self {
+        let times = |own: f64| {
+            if slope.is_finite() {
+                slope * own
+            } else {
+                f64::NAN
+            }
+        };
         Self {
             value,
-            slopes: self.slopes.map(|s| if s == 0.0 { 0.0 } else { slope * s }),
+            slopes: self.slopes.map(times),
         }
     }
 
@@ -142,10 +66,16 @@ impl Reference {
         (self.seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 
+    /// Results past 1e9, where sine and cosine are not defined, are not compared.
     fn disturbed(&mut self, dual: Dual) -> Dual {
         let mut disturb = |value: f64| value * (1.0 + self.size * self.random());
+        let value = if dual.value.abs() < 1e9 {
+            dual.value
+        } else {
+            f64::NAN
+        };
         Dual {
-            value: disturb(dual.value),
+            value: disturb(value),
             slopes: dual.slopes.map(&mut disturb),
         }
     }
@@ -227,6 +157,9 @@ impl Reference {
 
     fn binary(&mut self, function: &str, a: Dual, b: Dual) -> Dual {
         let (u, v) = (a.value, b.value);
+        if u.is_nan() || v.is_nan() {
+            return Dual::constant(f64::NAN);
+        }
         match function {
             "+" => a.with(b, u + v, [1.0, 1.0]),
             "-" => a.with(b, u - v, [1.0, -1.0]),
@@ -251,6 +184,8 @@ impl Reference {
                     b
                 }
             }
+            // On the cut the sign of a zero decides, and a law may change that.
+            "atan2" if u == 0.0 && v <= 0.0 => Dual::constant(f64::NAN),
             "atan2" => {
                 let radius = u * u + v * v;
                 a.with(b, u.atan2(v), [v / radius, -u / radius])
@@ -327,7 +262,12 @@ fn expected(tree: &Tree, state: [f64; 3]) -> Option<(Dual, [f64; 4])> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig {
+        cases: 2000,
+        rng_seed: RngSeed::Fixed(7),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn values_slopes_and_rates_are_those_of_the_tree(
@@ -369,6 +309,16 @@ fn most_random_expressions_are_compared() {
         })
         .count();
     assert!(compared > 150, "{compared} of 200");
+}
+
+/// Zero times the infinite slope of the branch not taken is no number.
+#[test]
+fn a_branch_not_taken_does_not_spoil_the_slope() {
+    for choice in ["min(x, exp(700 + 10*x^2))", "-max(-x, -exp(700 + 10*x^2))"] {
+        let mut evaluator = evaluator(&model(&spec(choice)), 0);
+        let force = accelerations(&mut evaluator, &[3.0, 0.0, 0.0, 0.0, 0.0, 0.0])[0];
+        assert_eq!(force, -1.0, "{choice}");
+    }
 }
 
 /// Laws that regroup exponents leave huge ones closed: a wrapped exponent once made this 1.

@@ -10,4 +10,5 @@ mod names;
 mod size;
 mod solved;
 mod support;
+mod trees;
 mod weights;

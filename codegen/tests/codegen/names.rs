@@ -87,7 +87,6 @@ fn names_that_emitted_code_uses_itself() {
         "rest",
         "row",
         "column",
-        "i",
         "j",
         "k",
         "r",
@@ -146,26 +145,17 @@ fn names_that_emitted_code_uses_itself() {
         "Copy",
         "Debug",
     ];
-    let (mut taken, mut source) = (0, String::new());
-    for (count, name) in names.iter().enumerate() {
-        let plain = ["kappa", "chi", "zeta", "eta", "xi"];
-        for role in 0..plain.len() {
-            let mut roles = plain;
-            roles[role] = name;
-            let [parameter, coordinate, input, definition, observable] = roles;
-            let text = spec(parameter, coordinate, input, definition, observable);
-            match model_spec::check(model_spec::source::Source::new("n", text)) {
-                Ok(checked) => {
-                    let emitted = emitted(&checked.model, 1)
-                        .replace("#![", "// #![")
-                        .replace("//!", "//");
-                    source.push_str(&format!("pub mod m_{count}_{role} {{\n{emitted}\n}}\n"));
-                }
-                Err(_) => taken += 1,
-            }
-        }
+    let mut source = String::new();
+    for count in 0..names.len() {
+        // Every name comes into every role once.
+        let [parameter, coordinate, input, definition, observable] =
+            std::array::from_fn(|role| names[(count + role) % names.len()]);
+        let model = model(&spec(parameter, coordinate, input, definition, observable));
+        let module = emitted(&model, 1)
+            .replace("#![", "// #![")
+            .replace("//!", "//");
+        source.push_str(&format!("pub mod m_{count} {{\n{module}\n}}\n"));
     }
-    assert!(taken < names.len(), "{taken} refused by the checker");
     let head = "#![no_std]\n#![allow(non_snake_case)]\n#![forbid(unsafe_code)]\n";
     compile(
         "names",

@@ -137,7 +137,7 @@ impl Findings<'_> {
         } = sample;
         let equations = self.oracle.equations(*time, state, inputs)?;
         let energy = self.oracle.energy(*time, state, inputs)?;
-        let power = self.oracle.power(*time, state, inputs)?;
+        let power = self.power(sample, &equations)?;
         Ok((|| {
             let mass = mass_matrix(variant, *time, state, inputs)?;
             self.compare_mass(&mass, &equations, place);
@@ -150,6 +150,24 @@ impl Findings<'_> {
             self.compare_accelerations(&found, &equations, sample, place);
             Ok(equations.worst_residual(&found))
         })())
+    }
+
+    /// What the power is to be: the rate of T + V. Where no energy depends on time this is
+    /// the power of the forces, elsewhere the rate is taken along the oracle's own motion.
+    fn power(&self, sample: &Sample, equations: &Equations) -> Result<Total, OracleError> {
+        let Sample {
+            time,
+            state,
+            inputs,
+        } = sample;
+        if self.oracle.is_scleronomic(*time, state, inputs)? {
+            return self.oracle.power(*time, state, inputs);
+        }
+        let size = self.oracle.size();
+        let dense = equations.accelerations();
+        let accelerations = dense.map_or_else(|| vec![f64::NAN; size], |a| a.as_slice().to_vec());
+        self.oracle
+            .energy_rate(*time, state, &accelerations, inputs)
     }
 
     fn compare_mass(&mut self, mass: &DMatrix<f64>, equations: &Equations, place: &str) {

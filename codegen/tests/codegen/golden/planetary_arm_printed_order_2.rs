@@ -1,0 +1,889 @@
+//! Flexible single-link arm on a 2K-H planetary reducer with backlash: equations of motion, modal truncation order 2.
+//!
+//! Emitted by eomgen 0.1.0 from the specification `planetary_arm` (SHA-256 ca1da03e38ab298dc8c26921ea1f282533a07e2e7fee89a580cd1e97b6afbdc3).
+//! Do not edit: change the specification and generate again.
+//!
+//! State: x_sp, x_pr, x_c, q_1, q_2, x_sp_dot, x_pr_dot, x_c_dot, q_1_dot, q_2_dot.
+//! All quantities are in SI units. Nothing here allocates, panics or needs the standard library.
+#![no_std]
+#![allow(non_snake_case)]
+#![allow(clippy::all)]
+#![forbid(unsafe_code)]
+
+/// Modal truncation order of each field.
+pub const ORDERS: [usize; 1] = [2];
+
+/// Degrees of freedom: coordinates and modes.
+pub const DEGREES_OF_FREEDOM: usize = 5;
+
+/// Numbers in the state: coordinates, modes, and the rates of both.
+pub const STATES: usize = 10;
+
+/// Names of the state, in its order.
+pub const STATE_NAMES: [&'static str; STATES] = [
+    "x_sp",
+    "x_pr",
+    "x_c",
+    "q_1",
+    "q_2",
+    "x_sp_dot",
+    "x_pr_dot",
+    "x_c_dot",
+    "q_1_dot",
+    "q_2_dot",
+];
+
+/// Numbers that [`observables`] returns.
+pub const OBSERVABLES: usize = 11;
+
+/// Names of the observables, in their order.
+pub const OBSERVABLE_NAMES: [&'static str; OBSERVABLES] = [
+    "theta_s",
+    "theta_p",
+    "theta_c",
+    "tip",
+    "dtheta",
+    "f_la",
+    "f_la_signed",
+    "F_sp",
+    "F_pr",
+    "energy",
+    "power",
+];
+
+/// Switching surfaces.
+pub const GUARDS: usize = 4;
+
+/// SHA-256 of the specification.
+pub const SPECIFICATION_SHA256: &'static str = "ca1da03e38ab298dc8c26921ea1f282533a07e2e7fee89a580cd1e97b6afbdc3";
+
+/// Version of the generator.
+pub const GENERATOR_VERSION: &'static str = "0.1.0";
+
+/// Parameters of the model. `Default` gives the specification's values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    /// teeth of the sun \[1] (Table I)
+    pub z_s: f64,
+    /// teeth of each planet \[1] (Table I)
+    pub z_p: f64,
+    /// teeth of the ring \[1] (Table I)
+    pub z_r: f64,
+    /// module \[m] (Table I)
+    pub m: f64,
+    /// pressure angle \[1] (Table I)
+    pub alpha: f64,
+    /// I_s/r_s^2 \[kg] (Table I)
+    pub M_s: f64,
+    /// I_p/r_p^2 \[kg] (Table I)
+    pub M_p: f64,
+    /// I_c/r_c^2 (not the M_c of Eq. (12)) \[kg] (Table I)
+    pub m_c: f64,
+    /// mass of one planet \[kg] (Table I)
+    pub m_p: f64,
+    /// mesh stiffness, sun-planet \[N/m] (Table I)
+    pub k_sp: f64,
+    /// mesh stiffness, planet-ring \[N/m] (Table I)
+    pub k_pr: f64,
+    /// mesh damping, sun-planet \[N s/m] (assumed: 10 % of critical for M_sp)
+    pub c_sp: f64,
+    /// mesh damping, planet-ring \[N s/m] (assumed: 4.4 % of critical for M_pr)
+    pub c_pr: f64,
+    /// half backlash, sun-planet \[m] (one of the paper's: 0, 10, 25, 50, 100 um)
+    pub b_sp: f64,
+    /// half backlash, planet-ring \[m] (one of the paper's: 0, 10, 25, 50, 100 um)
+    pub b_pr: f64,
+    /// density \[kg/m^3] (Table I)
+    pub rho: f64,
+    /// section area \[m^2] (Table I)
+    pub A: f64,
+    /// length \[m] (Table I)
+    pub l: f64,
+    /// Young's modulus \[Pa] (Table I)
+    pub E: f64,
+    /// second moment of area \[m^4] (assumed: 10 mm square section)
+    pub I: f64,
+    /// constant torque \[N m] (assumed)
+    pub a_m: f64,
+    /// fall of the torque with speed \[N m s] (assumed)
+    pub b_m: f64,
+    /// amplitude of the torque ripple \[N m] (assumed)
+    pub F_w: f64,
+    /// frequency of the torque ripple, 10 pi \[rad/s] (one of the paper's: 5 pi, 10 pi)
+    pub omega: f64,
+}
+impl Default for Parameters {
+    fn default() -> Self {
+        Self {
+            z_s: 27.0,
+            z_p: 36.0,
+            z_r: 99.0,
+            m: 0.003,
+            alpha: 0.4293509959906051,
+            M_s: 0.39,
+            M_p: 0.61,
+            m_c: 6.29,
+            m_p: 0.66,
+            k_sp: 1e8,
+            k_pr: 1e8,
+            c_sp: 650.0,
+            c_pr: 650.0,
+            b_sp: 2.5e-5,
+            b_pr: 2.5e-5,
+            rho: 7900.0,
+            A: 0.0001,
+            l: 0.5,
+            E: 2e11,
+            I: 8.333e-10,
+            a_m: 2.0,
+            b_m: 0.05,
+            F_w: 5.0,
+            omega: 31.41592653589793,
+        }
+    }
+}
+
+/// Signals supplied at run time. `Default` gives zeros.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Inputs {}
+
+/// What depends on the parameters alone: prepare once, use in every call.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficients {
+    /// `r_s*r_s/I_s`
+    pub c_1: f64,
+    /// `1.0/r_s`
+    pub c_2: f64,
+    /// `a_m`
+    pub a_m: f64,
+    /// `b_m/r_s`
+    pub c_3: f64,
+    /// `F_w`
+    pub F_w: f64,
+    /// `omega`
+    pub omega: f64,
+    /// `c_sp`
+    pub c_sp: f64,
+    /// `3.0*c_sp`
+    pub c_4: f64,
+    /// `b_sp`
+    pub b_sp: f64,
+    /// `k_sp`
+    pub k_sp: f64,
+    /// `3.0*k_sp`
+    pub c_5: f64,
+    /// `0.3333333333333333*r_p*r_p*I_s/(r_s*r_s*I_p)`
+    pub c_6: f64,
+    /// `c_pr`
+    pub c_pr: f64,
+    /// `3.0*c_pr`
+    pub c_7: f64,
+    /// `b_pr`
+    pub b_pr: f64,
+    /// `k_pr`
+    pub k_pr: f64,
+    /// `3.0*k_pr`
+    pub c_8: f64,
+    /// `0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)`
+    pub c_9: f64,
+    /// `0.5*rho*A*l`
+    pub c_10: f64,
+    /// `cholesky(block of the mass matrix)`
+    pub c_11: [[f64; 2]; 2],
+    /// `rho*A*l*l*INTEGRAL_S1_PHI/(cos(alpha)*r_c)`
+    pub M_x_c_q: [f64; 2],
+    /// `1/pivot_x_c`
+    pub c_12: f64,
+    /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)`
+    pub c_13: f64,
+    /// `rho*A*l*l/(cos(alpha)*r_c)`
+    pub c_14: f64,
+    /// `0.5*E*I/(l*l*l)`
+    pub c_15: f64,
+    /// `2.0*I_s*1/pivot_x_c/(r_s*r_s)`
+    pub c_16: f64,
+    /// `0.3333333333333333*r_p*r_p/I_p`
+    pub c_17: f64,
+    /// `1/pivot_x_c*solve(cholesky(block of the mass matrix), M_x_c_q)`
+    pub c_18: [f64; 2],
+    /// `I_s/(r_s*r_s)`
+    pub M_x_sp_x_sp: f64,
+    /// `2.0*I_s/(r_s*r_s)`
+    pub M_x_sp_x_c: f64,
+    /// `M_x_sp_x_sp + pivot_x_pr`
+    pub M_x_pr_x_pr: f64,
+    /// `M_x_sp_x_c + pivot_x_pr`
+    pub M_x_pr_x_c: f64,
+    /// `4.0*I_s/(r_s*r_s) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
+    pub M_x_c_x_c: f64,
+    /// `2.0/r_s`
+    pub c_19: f64,
+    /// `1.0/r_p`
+    pub c_20: f64,
+    /// `1.0/(cos(alpha)*r_c)`
+    pub c_21: f64,
+    /// `1.0/(r_s*i_sH)`
+    pub c_22: f64,
+    /// `l/(r_s*i_sH)`
+    pub c_23: f64,
+    /// `0.5*I_s/(r_s*r_s)`
+    pub c_24: f64,
+    /// `1.5*I_p/(r_p*r_p)`
+    pub c_25: f64,
+    /// `1.5*m_p/(cos(alpha)*cos(alpha))`
+    pub c_26: f64,
+    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
+    pub c_27: f64,
+    /// `2.0*rho*A*l*l/(cos(alpha)*r_c)`
+    pub c_28: f64,
+    /// `rho*A*l`
+    pub c_29: f64,
+    /// `1.5*k_sp`
+    pub c_30: f64,
+    /// `1.5*k_pr`
+    pub c_31: f64,
+    /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
+    pub positive_definite: bool,
+}
+impl Coefficients {
+    /// The coefficients of these parameters.
+    pub fn prepare(parameters: &Parameters) -> Self {
+        let m = parameters.m;
+        let s_1 = 0.5 * m;
+        let z_s = parameters.z_s;
+        let alpha = parameters.alpha;
+        let s_2 = cos(alpha);
+        let r_s = s_1 * z_s * s_2;
+        let s_3 = r_s * r_s;
+        let M_s = parameters.M_s;
+        let I_s = M_s * s_3;
+        let a_m = parameters.a_m;
+        let b_m = parameters.b_m;
+        let F_w = parameters.F_w;
+        let omega = parameters.omega;
+        let c_sp = parameters.c_sp;
+        let b_sp = parameters.b_sp;
+        let k_sp = parameters.k_sp;
+        let z_p = parameters.z_p;
+        let r_p = s_1 * s_2 * z_p;
+        let s_4 = r_p * r_p;
+        let s_5 = 0.3333333333333333 * s_4;
+        let M_p = parameters.M_p;
+        let I_p = M_p * s_4;
+        let c_pr = parameters.c_pr;
+        let b_pr = parameters.b_pr;
+        let k_pr = parameters.k_pr;
+        let s_6 = 3.0 * I_p;
+        let s_7 = s_2 * s_2;
+        let r_c = s_1 * (z_s + z_p);
+        let s_8 = r_c * r_c;
+        let s_9 = s_7 * s_8;
+        let m_c = parameters.m_c;
+        let I_c = m_c * s_8;
+        let s_10 = I_c / s_9;
+        let m_p = parameters.m_p;
+        let s_11 = 3.0 * m_p / s_7;
+        let rho = parameters.rho;
+        let A = parameters.A;
+        let l = parameters.l;
+        let s_12 = l * l;
+        let s_13 = l * s_12;
+        let s_14 = 0.3333333333333333 * rho * A * s_13 / s_9;
+        let s_15 = s_2 * r_c;
+        let s_16 = rho * A;
+        let s_17 = s_16 * s_12;
+        let s_18 = 0.5 * rho * A * l;
+        let mut s_19 = [[0.0; 2]; 2];
+        for i in 0..2 {
+            for j in 0..2 {
+                s_19[i][j] += s_18 * INTEGRAL_PHI_BY_PHI[i][j] * 1.0;
+                s_19[i][j] += s_18 * INTEGRAL_PHI_BY_PHI[j][i] * 1.0;
+            }
+        }
+        let s_20 = cholesky(&s_19);
+        let mut M_x_c_q = [0.0; 2];
+        for i in 0..2 {
+            M_x_c_q[i] = s_17 * INTEGRAL_S1_PHI[i] / s_15;
+        }
+        let s_21 = cholesky_solve(&s_20, &M_x_c_q);
+        let mut s_22 = 0.0;
+        for i in 0..2 {
+            s_22 += INTEGRAL_S1_PHI[i] * s_21[i];
+        }
+        let pivot_x_c = s_10 + s_11 + s_14 - s_17 * s_22 / s_15;
+        let s_23 = pivot_reciprocal(pivot_x_c);
+        let E = parameters.E;
+        let I = parameters.I;
+        let s_24 = 2.0 * I_s;
+        let mut s_25 = [0.0; 2];
+        for i in 0..2 {
+            s_25[i] = s_23 * s_21[i];
+        }
+        let M_x_sp_x_sp = I_s / s_3;
+        let M_x_sp_x_c = s_24 / s_3;
+        let pivot_x_pr = s_6 / s_4;
+        let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
+        let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
+        let M_x_c_x_c = 4.0 * I_s / s_3 + s_10 + (pivot_x_pr + s_11) + s_14;
+        let z_r = parameters.z_r;
+        let i_sH = 1.0 + z_r / z_s;
+        let s_26 = r_s * i_sH;
+        let mut positive_4 = true;
+        for i in 0..2 {
+            positive_4 = positive_4 && s_20[i][i] > 0.0 && s_20[i][i] < f64::INFINITY;
+        }
+        Self {
+            c_1: s_3 / I_s,
+            c_2: 1.0 / r_s,
+            a_m: a_m,
+            c_3: b_m / r_s,
+            F_w: F_w,
+            omega: omega,
+            c_sp: c_sp,
+            c_4: 3.0 * c_sp,
+            b_sp: b_sp,
+            k_sp: k_sp,
+            c_5: 3.0 * k_sp,
+            c_6: s_5 * I_s / (s_3 * I_p),
+            c_pr: c_pr,
+            c_7: 3.0 * c_pr,
+            b_pr: b_pr,
+            k_pr: k_pr,
+            c_8: 3.0 * k_pr,
+            c_9: s_14,
+            c_10: s_18,
+            c_11: s_20,
+            M_x_c_q: M_x_c_q,
+            c_12: s_23,
+            c_13: s_6 * s_23 / s_4,
+            c_14: s_17 / s_15,
+            c_15: 0.5 * E * I / s_13,
+            c_16: s_24 * s_23 / s_3,
+            c_17: s_5 / I_p,
+            c_18: s_25,
+            M_x_sp_x_sp: M_x_sp_x_sp,
+            M_x_sp_x_c: M_x_sp_x_c,
+            M_x_pr_x_pr: M_x_pr_x_pr,
+            M_x_pr_x_c: M_x_pr_x_c,
+            M_x_c_x_c: M_x_c_x_c,
+            c_19: 2.0 / r_s,
+            c_20: 1.0 / r_p,
+            c_21: 1.0 / s_15,
+            c_22: 1.0 / s_26,
+            c_23: l / s_26,
+            c_24: 0.5 * I_s / s_3,
+            c_25: 1.5 * I_p / s_4,
+            c_26: 1.5 * m_p / s_7,
+            c_27: 0.5 * I_c / s_9,
+            c_28: 2.0 * rho * A * s_12 / s_15,
+            c_29: s_16 * l,
+            c_30: 1.5 * k_sp,
+            c_31: 1.5 * k_pr,
+            positive_definite: M_x_sp_x_sp > 0.0 && M_x_sp_x_sp < f64::INFINITY
+                && pivot_x_pr > 0.0 && pivot_x_pr < f64::INFINITY && pivot_x_c > 0.0
+                && pivot_x_c < f64::INFINITY && positive_4,
+        }
+    }
+}
+
+/// Rates of the state.
+///
+/// `t` in s; `state` and the result in the order of [`STATE_NAMES`].
+#[allow(unused_variables)]
+pub fn rates(
+    t: f64,
+    state: &[f64; STATES],
+    inputs: &Inputs,
+    coefficients: &Coefficients,
+) -> [f64; STATES] {
+    let x_sp_dot = state[5];
+    let x_pr_dot = state[6];
+    let x_c_dot = state[7];
+    let motor = coefficients.a_m
+        - coefficients.c_3 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot)
+        + coefficients.F_w * sin(coefficients.omega * t);
+    let x_sp = state[0];
+    let s_1 = coefficients.c_4 * (x_sp_dot * contact(x_sp, coefficients.b_sp));
+    let s_2 = coefficients.c_5 * deadzone(x_sp, coefficients.b_sp);
+    let x_pr = state[1];
+    let s_3 = coefficients.c_7 * (x_pr_dot * contact(x_pr, coefficients.b_pr));
+    let s_4 = coefficients.c_8 * deadzone(x_pr, coefficients.b_pr);
+    let mut s_5 = [0.0; 2];
+    for i in 0..2 {
+        for k in 0..2 {
+            s_5[i] += INTEGRAL_PHI_D2_BY_PHI_D2[i][k] * state[3 + k];
+        }
+    }
+    let mut s_6 = [0.0; 2];
+    for i in 0..2 {
+        for k in 0..2 {
+            s_6[i] += INTEGRAL_PHI_D2_BY_PHI_D2[k][i] * state[3 + k];
+        }
+    }
+    let mut s_7 = [0.0; 2];
+    for i in 0..2 {
+        s_7[i] = -(coefficients.c_15 * (s_5[i] + s_6[i]));
+    }
+    let s_8 = cholesky_solve(&coefficients.c_11, &s_7);
+    let mut s_9 = 0.0;
+    for i in 0..2 {
+        s_9 += INTEGRAL_S1_PHI[i] * s_8[i];
+    }
+    let s_10 = s_1 + s_3 + s_2 + s_4 - coefficients.c_14 * s_9;
+    let s_11 = s_1 + s_2 - s_3 - s_4 - coefficients.c_13 * s_10;
+    let x_sp_ddot = coefficients.c_1
+        * (coefficients.c_2 * motor - s_1 - s_2 - coefficients.c_6 * s_11
+            - coefficients.c_16 * s_10);
+    let x_pr_ddot = coefficients.c_17 * s_11;
+    let x_c_ddot = coefficients.c_12 * s_10;
+    let mut rates = [0.0; STATES];
+    for i in 0..5 {
+        rates[i] = state[5 + i];
+    }
+    rates[5] = x_sp_ddot;
+    rates[6] = x_pr_ddot;
+    rates[7] = x_c_ddot;
+    for i in 0..2 {
+        rates[8 + i] = s_8[i] - coefficients.c_18[i] * s_10;
+    }
+    rates
+}
+
+/// The observables, in the order of [`OBSERVABLE_NAMES`]:
+///
+/// - `theta_s`: angle of the sun \[rad]
+/// - `theta_p`: angle of the planets \[rad]
+/// - `theta_c`: angle of the carrier \[rad]
+/// - `tip`: deflection of the arm's end, w(l, t) \[m]
+/// - `dtheta`: error of the angle by backlash, Eq. (23) \[rad]
+/// - `f_la`: positioning error as Eq. (24) prints it \[m]
+/// - `f_la_signed`: positioning error: dtheta is a lag, w a lead \[m]
+/// - `F_sp`: force of one sun-planet mesh \[N]
+/// - `F_pr`: force of one planet-ring mesh \[N]
+/// - `energy`: kinetic plus potential energy \[J]
+/// - `power`: power of all non-conservative forces: the rate of the energy \[W]
+#[allow(unused_variables)]
+pub fn observables(
+    t: f64,
+    state: &[f64; STATES],
+    inputs: &Inputs,
+    coefficients: &Coefficients,
+) -> [f64; OBSERVABLES] {
+    let x_sp_dot = state[5];
+    let x_pr_dot = state[6];
+    let x_c_dot = state[7];
+    let s_1 = x_sp_dot + x_pr_dot + 2.0 * x_c_dot;
+    let motor = coefficients.a_m - coefficients.c_3 * s_1
+        + coefficients.F_w * sin(coefficients.omega * t);
+    let s_2 = coefficients.c_2 * motor;
+    let x_sp = state[0];
+    let s_3 = x_sp_dot * contact(x_sp, coefficients.b_sp);
+    let s_4 = deadzone(x_sp, coefficients.b_sp);
+    let x_pr = state[1];
+    let s_5 = x_pr_dot * contact(x_pr, coefficients.b_pr);
+    let s_6 = deadzone(x_pr, coefficients.b_pr);
+    let mut s_7 = [0.0; 2];
+    for i in 0..2 {
+        for k in 0..2 {
+            s_7[i] += INTEGRAL_PHI_D2_BY_PHI_D2[i][k] * state[3 + k];
+        }
+    }
+    let s_8 = x_sp + x_pr;
+    let x_c = state[2];
+    let x_s = s_8 + 2.0 * x_c;
+    let theta_s = coefficients.c_2 * x_s;
+    let x_p = x_pr + x_c;
+    let theta_p = coefficients.c_20 * x_p;
+    let theta_c = coefficients.c_21 * x_c;
+    let mut tip = 0.0;
+    for i in 0..2 {
+        tip += PHI_AT_END[i] * state[3 + i];
+    }
+    let dtheta = coefficients.c_22 * s_8;
+    let s_9 = coefficients.c_23 * s_8;
+    let f_la = tip + s_9;
+    let f_la_signed = tip - s_9;
+    let F_sp = coefficients.c_sp * s_3 + coefficients.k_sp * s_4;
+    let F_pr = coefficients.c_pr * s_5 + coefficients.k_pr * s_6;
+    let s_10 = x_pr_dot + x_c_dot;
+    let s_11 = x_c_dot * x_c_dot;
+    let T_planets = coefficients.c_25 * (s_10 * s_10) + coefficients.c_26 * s_11;
+    let mut s_12 = 0.0;
+    for i in 0..2 {
+        s_12 += INTEGRAL_S1_PHI[i] * state[8 + i];
+    }
+    let mut s_13 = [0.0; 2];
+    for i in 0..2 {
+        for k in 0..2 {
+            s_13[i] += INTEGRAL_PHI_BY_PHI[i][k] * state[8 + k];
+        }
+    }
+    let mut s_14 = 0.0;
+    for i in 0..2 {
+        s_14 += state[8 + i] * s_13[i];
+    }
+    let s_15 = coefficients.c_24 * (s_1 * s_1) + T_planets + coefficients.c_27 * s_11
+        + 0.5
+            * (coefficients.c_9 * s_11 + coefficients.c_28 * (x_c_dot * s_12)
+                + coefficients.c_29 * s_14);
+    let mut s_16 = 0.0;
+    for i in 0..2 {
+        s_16 += state[3 + i] * s_7[i];
+    }
+    let s_17 = x_sp_dot * (s_2 - coefficients.c_4 * s_3)
+        + x_pr_dot * (s_2 - coefficients.c_7 * s_5)
+        + coefficients.c_19 * (x_c_dot * motor);
+    [
+        theta_s,
+        theta_p,
+        theta_c,
+        tip,
+        dtheta,
+        f_la,
+        f_la_signed,
+        F_sp,
+        F_pr,
+        s_15
+            + (coefficients.c_30 * (s_4 * s_4) + coefficients.c_31 * (s_6 * s_6)
+                + coefficients.c_15 * s_16),
+        s_17,
+    ]
+}
+
+/// Kinetic plus potential energy, in J.
+#[allow(unused_variables)]
+pub fn energy(
+    t: f64,
+    state: &[f64; STATES],
+    inputs: &Inputs,
+    coefficients: &Coefficients,
+) -> f64 {
+    let x_sp_dot = state[5];
+    let x_pr_dot = state[6];
+    let x_c_dot = state[7];
+    let s_1 = x_sp_dot + x_pr_dot + 2.0 * x_c_dot;
+    let x_sp = state[0];
+    let s_2 = deadzone(x_sp, coefficients.b_sp);
+    let x_pr = state[1];
+    let s_3 = deadzone(x_pr, coefficients.b_pr);
+    let mut s_4 = [0.0; 2];
+    for i in 0..2 {
+        for k in 0..2 {
+            s_4[i] += INTEGRAL_PHI_D2_BY_PHI_D2[i][k] * state[3 + k];
+        }
+    }
+    let s_5 = x_pr_dot + x_c_dot;
+    let s_6 = x_c_dot * x_c_dot;
+    let T_planets = coefficients.c_25 * (s_5 * s_5) + coefficients.c_26 * s_6;
+    let mut s_7 = 0.0;
+    for i in 0..2 {
+        s_7 += INTEGRAL_S1_PHI[i] * state[8 + i];
+    }
+    let mut s_8 = [0.0; 2];
+    for i in 0..2 {
+        for k in 0..2 {
+            s_8[i] += INTEGRAL_PHI_BY_PHI[i][k] * state[8 + k];
+        }
+    }
+    let mut s_9 = 0.0;
+    for i in 0..2 {
+        s_9 += state[8 + i] * s_8[i];
+    }
+    let s_10 = coefficients.c_24 * (s_1 * s_1) + T_planets + coefficients.c_27 * s_6
+        + 0.5
+            * (coefficients.c_9 * s_6 + coefficients.c_28 * (x_c_dot * s_7)
+                + coefficients.c_29 * s_9);
+    let mut s_11 = 0.0;
+    for i in 0..2 {
+        s_11 += state[3 + i] * s_4[i];
+    }
+    s_10
+        + (coefficients.c_30 * (s_2 * s_2) + coefficients.c_31 * (s_3 * s_3)
+            + coefficients.c_15 * s_11)
+}
+
+/// Power of all non-conservative forces, in W: the rate of the energy.
+#[allow(unused_variables)]
+pub fn power(
+    t: f64,
+    state: &[f64; STATES],
+    inputs: &Inputs,
+    coefficients: &Coefficients,
+) -> f64 {
+    let x_sp_dot = state[5];
+    let x_pr_dot = state[6];
+    let x_c_dot = state[7];
+    let motor = coefficients.a_m
+        - coefficients.c_3 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot)
+        + coefficients.F_w * sin(coefficients.omega * t);
+    let s_1 = coefficients.c_2 * motor;
+    let x_sp = state[0];
+    let x_pr = state[1];
+    let s_2 = x_sp_dot
+        * (s_1 - coefficients.c_4 * (x_sp_dot * contact(x_sp, coefficients.b_sp)))
+        + x_pr_dot
+            * (s_1 - coefficients.c_7 * (x_pr_dot * contact(x_pr, coefficients.b_pr)));
+    s_2 + coefficients.c_19 * (x_c_dot * motor)
+}
+
+/// Switching surfaces: the equations change where one of these changes sign.
+///
+/// - `x_sp - b_sp`
+/// - `x_sp + b_sp`
+/// - `x_pr - b_pr`
+/// - `x_pr + b_pr`
+#[allow(unused_variables, unused_mut)]
+pub fn guards(
+    t: f64,
+    state: &[f64; STATES],
+    inputs: &Inputs,
+    coefficients: &Coefficients,
+) -> [f64; GUARDS] {
+    let x_sp = state[0];
+    let x_pr = state[1];
+    let mut values = [0.0; GUARDS];
+    values[0] = x_sp - coefficients.b_sp;
+    values[1] = coefficients.b_sp + x_sp;
+    values[2] = x_pr - coefficients.b_pr;
+    values[3] = coefficients.b_pr + x_pr;
+    values
+}
+
+/// The mass matrix, in the order of the first half of [`STATE_NAMES`].
+#[allow(unused_variables, unused_mut)]
+pub fn mass_matrix(
+    t: f64,
+    state: &[f64; STATES],
+    inputs: &Inputs,
+    coefficients: &Coefficients,
+) -> [[f64; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
+    let mut values = [[0.0; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
+    values[0][0] = coefficients.M_x_sp_x_sp;
+    values[0][1] = coefficients.M_x_sp_x_sp;
+    values[0][2] = coefficients.M_x_sp_x_c;
+    values[1][0] = coefficients.M_x_sp_x_sp;
+    values[1][1] = coefficients.M_x_pr_x_pr;
+    values[1][2] = coefficients.M_x_pr_x_c;
+    values[2][0] = coefficients.M_x_sp_x_c;
+    values[2][1] = coefficients.M_x_pr_x_c;
+    values[2][2] = coefficients.M_x_c_x_c;
+    for i in 0..2 {
+        values[2][3 + i] = coefficients.M_x_c_q[i];
+        values[3 + i][2] = values[2][3 + i];
+    }
+    for i in 0..2 {
+        for j in 0..2 {
+            values[3 + i][3 + j] += coefficients.c_10 * INTEGRAL_PHI_BY_PHI[i][j] * 1.0;
+            values[3 + i][3 + j] += coefficients.c_10 * INTEGRAL_PHI_BY_PHI[j][i] * 1.0;
+        }
+    }
+    values
+}
+
+/// int\[s phi_i], with s = x/l from 0 to 1 and primes for derivatives by s
+static INTEGRAL_S1_PHI: [f64; 2] = [-0.732236095292212, -19.134181718038604];
+
+/// int\[phi_i phi_j], with s = x/l from 0 to 1 and primes for derivatives by s
+static INTEGRAL_PHI_BY_PHI: [[f64; 2]; 2] = [
+    [1.7767246194872084, 48.816451369527094],
+    [48.816451369527094, 1388.4455965849631],
+];
+
+/// int\[phi_i'' phi_j''], with s = x/l from 0 to 1 and primes for derivatives by s
+static INTEGRAL_PHI_D2_BY_PHI_D2: [[f64; 2]; 2] = [
+    [68.61982276332613, 5502.376932211102],
+    [5502.376932211102, 637228.9612064523],
+];
+
+/// phi_i(1), with s = x/l from 0 to 1 and primes for derivatives by s
+static PHI_AT_END: [f64; 2] = [-3.208419954981583, -113.34538877753772];
+
+/// Deflection beyond the backlash: f_k of Eq. (7).
+#[inline(always)]
+fn deadzone(p: f64, b: f64) -> f64 {
+    if p > b { p - b } else if p < -b { p + b } else { 0.0 }
+}
+
+/// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).
+#[inline(always)]
+fn contact(p: f64, b: f64) -> f64 {
+    if p > b || p < -b { 1.0 } else { 0.0 }
+}
+
+/// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
+#[inline(always)]
+fn pivot_reciprocal(pivot: f64) -> f64 {
+    if pivot > 0.0 { 1.0 / pivot } else { f64::NAN }
+}
+
+/// Lower factor L of a symmetric matrix L L^T; NaN where it is not positive definite.
+fn cholesky<const N: usize>(matrix: &[[f64; N]; N]) -> [[f64; N]; N] {
+    let mut factor = [[0.0; N]; N];
+    for i in 0..N {
+        for j in 0..i + 1 {
+            let mut rest = matrix[i][j];
+            for k in 0..j {
+                rest -= factor[i][k] * factor[j][k];
+            }
+            factor[i][j] = if i == j {
+                if rest > 0.0 { sqrt(rest) } else { f64::NAN }
+            } else {
+                rest / factor[j][j]
+            };
+        }
+    }
+    factor
+}
+
+/// Solution of L L^T x = right.
+fn cholesky_solve<const N: usize>(factor: &[[f64; N]; N], right: &[f64; N]) -> [f64; N] {
+    let mut x = [0.0; N];
+    for i in 0..N {
+        let mut rest = right[i];
+        for k in 0..i {
+            rest -= factor[i][k] * x[k];
+        }
+        x[i] = rest / factor[i][i];
+    }
+    for j in 0..N {
+        let i = N - 1 - j;
+        let mut rest = x[i];
+        for k in i + 1..N {
+            rest -= factor[k][i] * x[k];
+        }
+        x[i] = rest / factor[i][i];
+    }
+    x
+}
+
+/// Square root. Plain operations in a fixed order: the same bits on every machine.
+#[inline]
+fn sqrt(x: f64) -> f64 {
+    let v6 = if x < 2.2250738585072014e-308 { x * 1.8014398509481984e16 } else { x };
+    let v11 = exponent_of(v6) - (if x < 2.2250738585072014e-308 { 54.0 } else { 0.0 });
+    let v17 = v11 * 0.5 - 0.25 + 6.755399441055744e15 - 6.755399441055744e15;
+    let v22 = significand_of(v6) * (v11 - (v17 + v17) + 1.0);
+    let v36 = v22 * v22;
+    let v43 = 2.081649629276674 + v22 * -2.0324254315820416
+        + v36 * (1.4278602089127503 + v22 * -0.612114372530438)
+        + v36 * v36
+            * (0.1548452293073369 + v22 * -0.021231322940888833
+                + v36 * 0.001215380137694336);
+    let v49 = v43 + v43 * 0.5 * (1.0 - v22 * v43 * v43);
+    let v57 = (v49 + v49 * 0.5 * (1.0 - v22 * v49 * v49)) * 0.5;
+    let v59 = v22 * (v57 + v57);
+    let v61 = v59 * 1.34217729e8;
+    let v63 = v61 - (v61 - v59);
+    let v64 = v59 - v63;
+    let v65 = v59 * v59;
+    let v66 = v63 * v64;
+    let v74 = v22 - v65 - (v63 * v63 - v65 + (v66 + v66) + v64 * v64);
+    let v76 = v59 + v74 * v57;
+    let v78 = v76 * 2.220446049250313e-16;
+    let v79 = v76 * 1.34217729e8;
+    let v81 = v79 - (v79 - v76);
+    let v82 = v76 - v81;
+    let v83 = v76 * v76;
+    let v84 = v81 * v82;
+    let v92 = v22 - v83 - (v81 * v81 - v83 + (v84 + v84) + v82 * v82);
+    let v98 = (if v78 < v92 {
+        v76 + 2.220446049250313e-16
+    } else {
+        if -v78 < v92 { v76 } else { v76 - 2.220446049250313e-16 }
+    }) * power_of_two(v17);
+    if x == 0.0 {
+        x
+    } else {
+        if x < 0.0 { f64::NAN } else { if x < f64::INFINITY { v98 } else { x } }
+    }
+}
+
+/// Sine for |x| up to 1e9, NaN beyond. Plain operations in a fixed order: the same bits on every machine.
+#[inline]
+fn sin(x: f64) -> f64 {
+    let v6 = x * 0.6366197723675814 + 6.755399441055744e15 - 6.755399441055744e15;
+    let v15 = x - v6 * 1.570796251296997 - v6 * 7.549789415861596e-8;
+    let v16 = v6 * 5.390304224023659e-15;
+    let v17 = v6 * -1.3658654267100645e-21;
+    let v18 = v16 + v17;
+    let v23 = v15 - v18;
+    let v26 = v16 - v18 + v17 + v6 * -1.1351118607522202e-28 - (v15 - v23 - v18);
+    let v27 = v23 * v23;
+    let v29 = v27 * -0.5;
+    let v30 = 1.0 + v29;
+    let v46 = v27 * v27;
+    let v49 = v46 * v46;
+    let v51 = 0.1666666666666663 + v27 * -0.008333333333321917
+        + v46 * (0.00019841269829458453 + v27 * -2.755731358278338e-6)
+        + v49 * (2.5050742477852252e-8 + v27 * -1.5895956565664054e-10);
+    let v70 = 0.041666666666666595 + v27 * -0.0013888888888873342
+        + v46 * (2.4801587289001978e-5 + v27 * -2.755731421694031e-7)
+        + v49 * (2.0875705319424642e-9 + v27 * -1.1358738323480003e-11);
+    let v85 = if 1e9 < magnitude_of(x) {
+        f64::NAN
+    } else {
+        v6 - (v6 * 0.25 + 6.755399441055744e15 - 6.755399441055744e15) * 4.0
+    };
+    let v87 = v30 + (1.0 - v30 + v29 + (v46 * v70 + v23 * v26));
+    let v88 = magnitude_of(v85);
+    let v92 = (if v88 == 1.0 { v87 } else { v23 - (v23 * v27 * v51 + v26 * v30) })
+        * (if v88 == 1.0 { v85 } else { 1.0 - v88 });
+    v92
+}
+
+/// Cosine for |x| up to 1e9, NaN beyond. Plain operations in a fixed order: the same bits on every machine.
+#[inline]
+fn cos(x: f64) -> f64 {
+    let v6 = x * 0.6366197723675814 + 6.755399441055744e15 - 6.755399441055744e15;
+    let v15 = x - v6 * 1.570796251296997 - v6 * 7.549789415861596e-8;
+    let v16 = v6 * 5.390304224023659e-15;
+    let v17 = v6 * -1.3658654267100645e-21;
+    let v18 = v16 + v17;
+    let v23 = v15 - v18;
+    let v26 = v16 - v18 + v17 + v6 * -1.1351118607522202e-28 - (v15 - v23 - v18);
+    let v27 = v23 * v23;
+    let v29 = v27 * -0.5;
+    let v30 = 1.0 + v29;
+    let v46 = v27 * v27;
+    let v49 = v46 * v46;
+    let v51 = 0.1666666666666663 + v27 * -0.008333333333321917
+        + v46 * (0.00019841269829458453 + v27 * -2.755731358278338e-6)
+        + v49 * (2.5050742477852252e-8 + v27 * -1.5895956565664054e-10);
+    let v70 = 0.041666666666666595 + v27 * -0.0013888888888873342
+        + v46 * (2.4801587289001978e-5 + v27 * -2.755731421694031e-7)
+        + v49 * (2.0875705319424642e-9 + v27 * -1.1358738323480003e-11);
+    let v85 = if 1e9 < magnitude_of(x) {
+        f64::NAN
+    } else {
+        v6 - (v6 * 0.25 + 6.755399441055744e15 - 6.755399441055744e15) * 4.0
+    };
+    let v87 = v30 + (1.0 - v30 + v29 + (v46 * v70 + v23 * v26));
+    let v88 = magnitude_of(v85);
+    let v93 = (if v88 == 1.0 { v23 - (v23 * v27 * v51 + v26 * v30) } else { v87 })
+        * (if v88 == 1.0 { -v85 } else { 1.0 - v88 });
+    v93
+}
+
+/// The sign bit cleared.
+#[inline(always)]
+fn magnitude_of(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() & !(1 << 63))
+}
+
+/// 2^k for an integral k: 2^52 + 1023 brings it to the place of the exponent.
+#[inline(always)]
+fn power_of_two(k: f64) -> f64 {
+    f64::from_bits((k + 4503599627371519.0).to_bits() << 52)
+}
+
+/// The unbiased exponent field.
+#[inline(always)]
+fn exponent_of(x: f64) -> f64 {
+    ((x.to_bits() >> 52) & 0x7ff) as f64 - 1023.0
+}
+
+/// The mantissa under the exponent of 1.
+#[inline(always)]
+fn significand_of(x: f64) -> f64 {
+    f64::from_bits((x.to_bits() & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000)
+}

@@ -1,0 +1,84 @@
+//! Which models are seen to be linear between their switching surfaces.
+
+use codegen::equations::derive;
+use codegen::linearity::{Linearity, linearity};
+use codegen::print::{Notation, formula};
+use eomgen_tests::models::{load, shipped};
+use model_spec::check;
+use model_spec::model::Model;
+use model_spec::source::Source;
+
+fn kind_of(text: &str) -> String {
+    let source = Source::new("test.toml", text);
+    kind(&check(source).expect("the specification is right").model)
+}
+
+fn kind(model: &Model) -> String {
+    let orders = model.orders(None).expect("the orders are right");
+    let equations = derive(model, &orders).expect("the model can be derived");
+    match linearity(&equations) {
+        Linearity::Linear => "linear".to_owned(),
+        Linearity::PiecewiseLinear => "piecewise linear".to_owned(),
+        Linearity::Nonlinear(node) => formula(&equations.graph, &Notation::text(model), node),
+    }
+}
+
+/// A mass on a spring with one more force.
+fn with_force(force: &str) -> String {
+    format!(
+        "[model]\nname = \"mass\"\ntitle = \"A mass\"\n\
+         [parameters]\nm = {{ value = 2, unit = \"kg\" }}\nk = {{ value = 3, unit = \"N/m\" }}\n\
+         F = {{ value = 1, unit = \"N\" }}\nv = {{ value = 1, unit = \"m/s\" }}\n\
+         omega = {{ value = 5, unit = \"rad/s\" }}\n\
+         [coordinates]\nx = {{ unit = \"m\" }}\n[kinetic]\nmass = \"1/2*m*dot(x)^2\"\n\
+         [potential]\nspring = \"1/2*k*x^2\"\n\
+         [forces]\nextra = {{ on = \"x\", value = \"{force}\" }}\n"
+    )
+}
+
+#[test]
+fn shipped_models_are_what_their_physics_says() {
+    for path in shipped() {
+        let name = path
+            .file_stem()
+            .and_then(|name| name.to_str())
+            .expect("a name");
+        let expected = match name {
+            "planetary_arm" | "planetary_arm_rig" => Some("piecewise linear"),
+            "emps" | "hub_beam_tip_mass" => Some("linear"),
+            _ => None,
+        };
+        let kind = kind(&load(name));
+        match expected {
+            Some(expected) => assert_eq!(kind, expected, "{name}"),
+            None => assert!(
+                kind.contains("sin") || kind.contains("cos"),
+                "{name}: {kind}"
+            ),
+        }
+    }
+}
+
+#[test]
+fn dry_friction_and_a_sinusoidal_force_keep_a_model_piecewise_linear() {
+    assert_eq!(kind_of(&with_force("-F*sign(dot(x))")), "piecewise linear");
+    assert_eq!(kind_of(&with_force("F*sin(omega*t + 1)")), "linear");
+    assert_eq!(
+        kind_of(&with_force("F*max(x*omega/v, 1)")),
+        "piecewise linear"
+    );
+}
+
+#[test]
+fn what_is_in_the_way_is_named() {
+    for (force, culprit) in [
+        ("-F*dot(x)*abs(dot(x))/v^2", "abs(dot(x))"),
+        ("F*x*omega/v*sin(omega*t)", "sin(omega*t)"),
+        ("F*omega*t", "t"),
+        ("F*tanh(dot(x)/v)", "tanh"),
+        ("F*sin(omega*t^2*omega)", "sin("),
+    ] {
+        let kind = kind_of(&with_force(force));
+        assert!(kind.contains(culprit), "{force}: {kind}");
+    }
+}
