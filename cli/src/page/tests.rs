@@ -39,6 +39,7 @@ fn report(text: &str) -> Report {
         }],
         accelerations: vec![line(text, text)],
         guards: vec![text.to_owned()],
+        linearity: text.to_owned(),
         solution: Solution {
             dense_modes: false,
             order: vec![text.to_owned()],
