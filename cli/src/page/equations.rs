@@ -38,6 +38,7 @@ pub(super) fn content(report: &Report) -> String {
     html.push_str(&coefficients(&report.coefficients));
     html.push_str(&lines("Accelerations", &report.accelerations, plain_name));
     html.push_str(&guards(&report.guards));
+    html.push_str(&format!("<p>{}</p>\n", escaped(&report.linearity)));
     html.push_str(&solution(
         &report.solution,
         report.orders.iter().any(|order| *order > 0),
