@@ -145,7 +145,7 @@ fn parameters_without_a_motion_are_refused() {
     // Values so large or small that a rate overflows, or so stiff that no step is short
     // enough.
     for assignment in ["l=1e-300", "omega=1e300", "k_sp=1e300", "alpha=90"] {
-        simulate_refuses("planetary_arm", &["--set", assignment], "at t = 0");
+        simulate_refuses("planetary_arm", &["--set", assignment], "at t = ");
     }
     simulate_refuses("planetary_arm", &["--set", "omega=1e300"], "that is x_sp");
 }

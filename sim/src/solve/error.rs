@@ -59,8 +59,8 @@ impl fmt::Display for SolveError {
             ),
             Self::StepTooSmall { t, step } => write!(
                 f,
-                "at t = {t:?} s even a step of {step:e} s misses the tolerance; \
-                 loosen it, or look for a singularity there"
+                "at t = {t:?} s no step meets the tolerance (last tried: {step:e} s): the model is \
+                 singular or far too stiff there; check the parameters or loosen the tolerance"
             ),
             Self::TooManySteps { t, steps } => write!(
                 f,
