@@ -5,8 +5,9 @@
 //! algebraic laws), `modes`, `tables` and `quadrature` (constants of a basis),
 //! `differentiate` and `matrix` (derivatives that keep their structure), `lagrange`,
 //! `forces` and `equations` (the equations of motion), `solve` (the accelerations),
-//! `coefficients` (names as in Eq. (22)), `linearity` (whether switches aside it is linear), `lower` (to the `program`), `evaluator` and
-//! `rust` (backends), `print` and `report` (for people).
+//! `coefficients` (names as in Eq. (22)), `linearity` (whether a model is linear between its
+//! switches), `lower` (to the `program`), `evaluator` and `rust` (backends), `print` and
+//! `report` (for people).
 //!
 //! The arrows are two functions: [`equations::derive`] from a model to equations and
 //! [`lower::lower`] from equations to a program.

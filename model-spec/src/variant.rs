@@ -119,7 +119,7 @@ impl Model {
             let error = ModelError::new(format!("the model has no parameter `{name}`"));
             return Err(match did_you_mean(name, known) {
                 Some(help) => error.help(help),
-                None => error.help("`eomgen check` lists the parameters of a specification"),
+                None => error.help("the parameters are the entries of the section [parameters]"),
             });
         };
         if !value.is_finite() {

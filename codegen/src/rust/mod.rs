@@ -2,8 +2,9 @@
 //! allocation or panic, that compiles on its own with any edition.
 //!
 //! `file` lays the items out, `types` writes parameters and coefficients, `stages` the
-//! functions, `body` (with `blocks` for matrices) writes the statements of a stage out of `expression`s,
-//! `functions` the elementary functions, `literals` numbers and names. All of it reads the program alone.
+//! functions, `body` (with `blocks` for matrices) writes the statements of a stage out of
+//! `expression`s, `functions` the elementary functions, `literals` numbers and names. All
+//! of it reads the program alone.
 
 mod blocks;
 mod body;
