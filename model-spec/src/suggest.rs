@@ -35,7 +35,8 @@ fn common(one: &str, other: &str) -> usize {
 /// How many letters may differ in a name of this length.
 fn allowed(length: usize) -> usize {
     match length {
-        0..=2 => 1,
+        0 | 1 => 0,
+        2 => 1,
         3..=5 => 2,
         _ => 3,
     }

@@ -111,6 +111,23 @@ impl Model {
     /// An unknown name, a number that is not finite or outside the parameter's bounds, or
     /// another value that then is not finite.
     pub fn with_parameter(&self, name: &str, value: f64) -> Result<Self, ModelError> {
+        self.with_parameters(&[(name, value)])
+    }
+
+    /// The same model with several parameters set; only what they are together is checked.
+    ///
+    /// # Errors
+    /// As [`Model::with_parameter`].
+    pub fn with_parameters(&self, settings: &[(&str, f64)]) -> Result<Self, ModelError> {
+        let mut model = self.clone();
+        for (name, value) in settings {
+            model.set(name, *value)?;
+        }
+        model.check_numbers()?;
+        Ok(model)
+    }
+
+    fn set(&mut self, name: &str, value: f64) -> Result<(), ModelError> {
         let Some(index) = self.parameters.iter().position(|known| known.name == name) else {
             let known = self
                 .parameters
@@ -126,11 +143,9 @@ impl Model {
             let message = format!("`{name}` cannot be {value}");
             return Err(ModelError::new(message).help("give a finite number"));
         }
-        let mut model = self.clone();
-        let parameter = &mut model.parameters[index];
+        let parameter = &mut self.parameters[index];
         parameter.value = ParameterValue::Number(parameter.unit.to_si(value));
-        model.check_numbers()?;
-        Ok(model)
+        Ok(())
     }
 
     /// The order of each field: its own, or `order` for all of them.

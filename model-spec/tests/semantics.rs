@@ -94,6 +94,21 @@ fn values_are_in_si_and_follow_what_they_refer_to() {
 }
 
 #[test]
+fn settings_hold_together_whatever_their_order() {
+    // The domain from 0 to l would be empty while only one of the two is set.
+    let text = BEAM.replace("from = 0", "from = \"a\"").replace(
+        "[coordinates]",
+        "a = { value = 100, unit = \"mm\" }\n\n[coordinates]",
+    );
+    let model = checked(&text).model;
+    for settings in [[("a", 600.0), ("l", 900.0)], [("l", 900.0), ("a", 600.0)]] {
+        let moved = model.with_parameters(&settings);
+        assert!(moved.is_ok(), "{settings:?}: {:?}", moved.err());
+    }
+    assert!(model.with_parameters(&[("a", 600.0)]).is_err());
+}
+
+#[test]
 fn unfit_settings_are_refused_with_advice() {
     let model = checked(BEAM).model;
     let refused = |name: &str, value: f64| {

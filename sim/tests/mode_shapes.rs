@@ -18,7 +18,10 @@ fn number(mode: &Value, name: &str) -> f64 {
 #[test]
 fn modes_1_to_128_agree_with_high_precision() {
     let Ok(text) = std::fs::read_to_string(MODES) else {
-        eprintln!("SKIPPED: no high-precision table of mode shapes beside the repository");
+        let _ = std::io::Write::write_fmt(
+            &mut std::io::stderr(),
+            format_args!("SKIPPED: no high-precision table of mode shapes beside the repository\n"),
+        );
         return;
     };
     let modes: Vec<Value> = serde_json::from_str(&text).expect("a list of modes");

@@ -51,7 +51,10 @@ fn reference(until: f64) -> Option<Vec<[f64; 3]>> {
 #[test]
 fn the_arm_follows_the_reference_trajectory_for_a_second() {
     let Some(rows) = reference(1.0) else {
-        eprintln!("SKIPPED: no reference trajectory beside the repository");
+        let _ = std::io::Write::write_fmt(
+            &mut std::io::stderr(),
+            format_args!("SKIPPED: no reference trajectory beside the repository\n"),
+        );
         return;
     };
     let parameters = PlanetaryArmParameters::default();

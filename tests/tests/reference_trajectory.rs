@@ -116,7 +116,10 @@ fn deviation(found: &[f64], expected: &[f64]) -> f64 {
 fn the_arm_follows_the_trajectory_computed_in_quadruple_precision() {
     let reference = Path::new(REFERENCE);
     if !reference.is_file() {
-        eprintln!("SKIPPED: no reference trajectory at {REFERENCE}");
+        let _ = std::io::Write::write_fmt(
+            &mut std::io::stderr(),
+            format_args!("SKIPPED: no reference trajectory at {REFERENCE}\n"),
+        );
         return;
     }
     let mut expected = read(reference);

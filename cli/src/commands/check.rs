@@ -57,7 +57,7 @@ fn summary(variant: &Variant) -> String {
         }
     };
     format!(
-        "{}: {} parameters, {} coordinates, {fields}, {} energy terms, {} forces, {} observables; names and units agree\n",
+        "{}: parameters {}, coordinates {}, {fields}, energy terms {}, forces {}, observables {}; names and units agree\n",
         model.name,
         model.parameters.len(),
         model.coordinates.len(),

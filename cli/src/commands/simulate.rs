@@ -24,10 +24,7 @@ const DEFAULT_ROWS: f64 = 1000.0;
 pub fn run(options: &Simulate) -> Outcome {
     let (Solver::Auto | Solver::Rk) = options.solver;
     file_place(&options.out)?;
-    let mut model = load(&options.spec)?.model;
-    for assignment in &options.set {
-        model = set_parameter(&model, assignment)?;
-    }
+    let model = with_settings(load(&options.spec)?.model, &options.set)?;
     let orders = orders(&model, options.order.as_deref())?;
     let variant = derive_variant(model, &orders)?;
     let inputs = inputs(options, &variant.model)?;
@@ -62,8 +59,19 @@ pub fn run(options: &Simulate) -> Outcome {
     ))
 }
 
-/// `NAME=VALUE`, the value in the unit the specification declares.
-fn set_parameter(model: &Model, assignment: &str) -> Outcome<Model> {
+/// The model with every `NAME=VALUE`, values in the units that the specification declares.
+fn with_settings(model: Model, assignments: &[String]) -> Outcome<Model> {
+    let settings = assignments
+        .iter()
+        .map(|assignment| setting(assignment))
+        .collect::<Outcome<Vec<_>>>()?;
+    model
+        .with_parameters(&settings)
+        .map_err(|error| Problem::model(&model.source, error))
+}
+
+/// The parts of `NAME=VALUE`.
+fn setting(assignment: &str) -> Outcome<(&str, f64)> {
     let (name, value) = assignment.split_once('=').ok_or_else(|| {
         Problem::input(format!(
             "--set {assignment}: expected NAME=VALUE, such as b_sp=25e-6"
@@ -73,9 +81,7 @@ fn set_parameter(model: &Model, assignment: &str) -> Outcome<Model> {
         .trim()
         .parse()
         .map_err(|_| Problem::input(format!("--set {assignment}: \"{value}\" is no number")))?;
-    model
-        .with_parameter(name.trim(), number)
-        .map_err(|error| Problem::model(&model.source, error))
+    Ok((name.trim(), number))
 }
 
 fn inputs(options: &Simulate, model: &Model) -> Outcome<HeldInputs> {

@@ -209,7 +209,7 @@ fn page_text(
     let notation = Notation::text(&variant.model);
     let report = Report::new(&variant.model, &variant.equations, &evaluator, &notation);
     let summary = format!(
-        "From rest over {UNTIL} s at order {ORDER} with the paper's values, relative tolerance {TOLERANCE:e}: \
+        "From rest over {UNTIL} s at order {ORDER} with the paper's values and those assumed where it gives none, relative tolerance {TOLERANCE:e}: \
          the meshes made or lost contact {} times, {} evaluations of the right-hand side.",
         trajectory.switches.len(),
         trajectory.work.evaluations

@@ -52,21 +52,23 @@ pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &Rows) -> Acceleration
     let modal = ModalBlock::new(graph, mass);
     let system = SmallSystem::new(graph, mass, right, &modal);
     let coordinates = right.scalars.len();
-    let mut best: Option<(usize, Vec<usize>, Rows, Vec<Id>)> = None;
-    let mut dearest = 0;
-    for order in elimination_orders(coordinates) {
+    let mut solved_in = |order: Vec<usize>| {
         let (unknowns, mut pivots) = system.eliminate(graph, &order);
         pivots.rotate_left(system.interfaces);
         let rows = modal.back_substitute(graph, &system, &unknowns);
         let operations = count_operations(graph, &rows.nodes());
-        dearest = dearest.max(operations);
-        if best.as_ref().is_none_or(|(least, ..)| operations < *least) {
-            best = Some((operations, order, rows, pivots));
+        (operations, order, rows, pivots)
+    };
+    let mut best = solved_in((0..coordinates).collect());
+    let mut dearest = best.0;
+    for order in elimination_orders(coordinates) {
+        let other = solved_in(order);
+        dearest = dearest.max(other.0);
+        if other.0 < best.0 {
+            best = other;
         }
     }
-    let Some((operations, order, rows, mut pivots)) = best else {
-        unreachable!("there is at least one order of any number of coordinates");
-    };
+    let (operations, order, rows, mut pivots) = best;
     pivots.extend(modal.inverses.iter().flatten().map(ModalInverse::pivot));
     Accelerations {
         rows,

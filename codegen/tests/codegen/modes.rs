@@ -74,7 +74,8 @@ fn tables_agree_with_the_reference_of_25_digits() {
         "/../../shared/reference/clamped_free_modes.json"
     );
     let Ok(text) = std::fs::read_to_string(path) else {
-        eprintln!("SKIPPED: no {path}");
+        let _ =
+            std::io::Write::write_fmt(&mut std::io::stderr(), format_args!("SKIPPED: no {path}\n"));
         return;
     };
     let rows: Vec<serde_json::Value> = serde_json::from_str(&text).unwrap();

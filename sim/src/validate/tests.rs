@@ -178,7 +178,10 @@ fn emitted_source_is_compared_bit_for_bit() {
     };
     let good = check(EMITTED);
     if good.skipped {
-        eprintln!("SKIPPED: {}", good.detail);
+        let _ = std::io::Write::write_fmt(
+            &mut std::io::stderr(),
+            format_args!("SKIPPED: {}\n", good.detail),
+        );
         return;
     }
     assert!(good.passed, "{good:?}");

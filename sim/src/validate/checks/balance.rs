@@ -67,6 +67,10 @@ fn along(
             worst.include(Worst::of(f64::INFINITY, message));
             break;
         }
+        if sample.state.iter().any(|value| !value.is_finite()) {
+            // The motion left the domain of a function such as asin: the steps so far count.
+            break;
+        }
         let scale = energy(&sample)?.scale;
         if scale.is_nan() || scale > bound {
             return Ok(None);
