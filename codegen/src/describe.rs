@@ -1,7 +1,6 @@
 //! Values of a program as formulas for the documentation of emitted code, in terms of the
 //! names the specification gives.
 
-use crate::print::function_name;
 use crate::program::{Op, Program, ValueId};
 
 /// Formulas longer than this are cut.
@@ -53,7 +52,7 @@ fn formula(program: &Program, id: ValueId, root: bool, depth: usize) -> String {
         Op::Power(a, b) => format!("{}^{}", atom(*a), atom(*b)),
         Op::Call(function, arguments) => {
             let arguments: Vec<String> = arguments.iter().map(|a| part(*a)).collect();
-            format!("{}({})", function_name(*function), arguments.join(", "))
+            format!("{}({})", function.name(), arguments.join(", "))
         }
         Op::PivotReciprocal(a) => format!("1/{}", atom(*a)),
         Op::Total(a) => format!("sum_i({})", part(*a)),

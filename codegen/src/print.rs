@@ -348,7 +348,7 @@ impl Printer<'_> {
             .collect();
         let list = arguments.join(", ");
         if !self.notation.latex {
-            return format!("{}({list})", function_name(function));
+            return format!("{}({list})", function.name());
         }
         match (function, arguments.as_slice()) {
             (Function::Deadzone, _) => format!("f_k({list})"),
@@ -367,11 +367,8 @@ impl Printer<'_> {
                 | Function::Min
                 | Function::Max,
                 _,
-            ) => format!("\\{}\\left({list}\\right)", function_name(function)),
-            _ => format!(
-                "\\operatorname{{{}}}\\left({list}\\right)",
-                function_name(function)
-            ),
+            ) => format!("\\{}\\left({list}\\right)", function.name()),
+            _ => format!("\\operatorname{{{}}}\\left({list}\\right)", function.name()),
         }
     }
 
@@ -415,30 +412,5 @@ fn number(value: f64) -> String {
         format!("{value:e}")
     } else {
         format!("{value}")
-    }
-}
-
-/// A function's name in the expression language.
-pub fn function_name(function: Function) -> &'static str {
-    match function {
-        Function::Sin => "sin",
-        Function::Cos => "cos",
-        Function::Tan => "tan",
-        Function::Asin => "asin",
-        Function::Acos => "acos",
-        Function::Atan => "atan",
-        Function::Atan2 => "atan2",
-        Function::Sinh => "sinh",
-        Function::Cosh => "cosh",
-        Function::Tanh => "tanh",
-        Function::Exp => "exp",
-        Function::Ln => "ln",
-        Function::Sqrt => "sqrt",
-        Function::Abs => "abs",
-        Function::Sign => "sign",
-        Function::Min => "min",
-        Function::Max => "max",
-        Function::Deadzone => "deadzone",
-        Function::Contact => "contact",
     }
 }

@@ -8,6 +8,9 @@ use model_spec::model::Function;
 
 use crate::graph::{Bits, Graph, Id, Operation, Shape};
 
+/// Factors of a product with their exponents.
+type Factors = Vec<(Id, i32)>;
+
 impl Graph {
     /// A number.
     pub fn constant(&mut self, value: f64) -> Id {
@@ -320,6 +323,13 @@ impl Graph {
         })
     }
 
+    /// The factors of a product that are scalars, and the others.
+    pub(crate) fn scalar_factors(&self, factors: &[(Id, i32)]) -> (Factors, Factors) {
+        factors
+            .iter()
+            .partition(|(id, _)| self.shape(*id) == Shape::Scalar)
+    }
+
     /// The sum of a vector's elements. Laws: scalar factors move in front of the sum, a
     /// scalar is summed size times, an empty sum is 0.
     pub fn total(&mut self, vector: Id) -> Id {
@@ -335,9 +345,7 @@ impl Graph {
                 self.scale(terms[0].0.value(), inner)
             }
             Operation::Product(factors) => {
-                let (scalars, vectors): (Vec<_>, Vec<_>) = factors
-                    .iter()
-                    .partition(|(id, _)| self.shape(*id) == Shape::Scalar);
+                let (scalars, vectors) = self.scalar_factors(&factors);
                 if scalars.is_empty() {
                     return self.intern(Operation::Total(vector));
                 }
@@ -377,9 +385,7 @@ impl Graph {
                 self.scale(terms[0].0.value(), inner)
             }
             Operation::Product(factors) => {
-                let (scalars, vectors): (Vec<_>, Vec<_>) = factors
-                    .iter()
-                    .partition(|(id, _)| self.shape(*id) == Shape::Scalar);
+                let (scalars, vectors) = self.scalar_factors(&factors);
                 if scalars.is_empty() {
                     return self.intern_apply(matrix, transposed, vector);
                 }

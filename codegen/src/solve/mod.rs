@@ -61,7 +61,7 @@ pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &Rows) -> Acceleration
     };
     let mut best = solved_in((0..coordinates).collect());
     let mut dearest = best.0;
-    for order in elimination_orders(coordinates) {
+    for order in other_orders(coordinates) {
         let other = solved_in(order);
         dearest = dearest.max(other.0);
         if other.0 < best.0 {
@@ -83,11 +83,11 @@ pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &Rows) -> Acceleration
     }
 }
 
-/// All orders for up to four coordinates, the natural one and its reverse beyond.
-fn elimination_orders(count: usize) -> Vec<Vec<usize>> {
-    let natural: Vec<usize> = (0..count).collect();
+/// The orders to try beside the natural one: all others for up to four coordinates, its
+/// reverse beyond.
+fn other_orders(count: usize) -> Vec<Vec<usize>> {
     if count > 4 {
-        return vec![natural.iter().rev().copied().collect(), natural];
+        return vec![(0..count).rev().collect()];
     }
     let mut orders = vec![Vec::new()];
     for _ in 0..count {
@@ -101,7 +101,8 @@ fn elimination_orders(count: usize) -> Vec<Vec<usize>> {
             })
             .collect();
     }
-    orders
+    // The first is the natural one.
+    orders.split_off(1)
 }
 
 /// Additions, multiplications and calls that depend on the state, element by element.

@@ -3,7 +3,7 @@
 
 use super::small::{SmallSystem, inner_product, pivot_reciprocal};
 use crate::equations::{MassMatrix, Rows};
-use crate::graph::{Graph, Id, Operation, Shape, Space};
+use crate::graph::{Graph, Id, Operation, Space};
 
 /// How the modes of one field are solved for.
 pub(super) enum ModalInverse {
@@ -283,9 +283,7 @@ fn scaled_shapes(graph: &mut Graph, vector: Id) -> Vec<(Id, Id)> {
             })
             .collect(),
         Operation::Product(factors) => {
-            let (scalars, vectors): (Vec<_>, Vec<_>) = factors
-                .iter()
-                .partition(|(id, _)| graph.shape(*id) == Shape::Scalar);
+            let (scalars, vectors) = graph.scalar_factors(&factors);
             vec![(graph.product(&scalars), graph.product(&vectors))]
         }
         _ => vec![(graph.one(), vector)],

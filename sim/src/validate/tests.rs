@@ -4,7 +4,7 @@
 use super::certificate::{Certificate, Check};
 use super::certify::{Emitted, EmittedFunction, Reference, Subject, certify};
 use super::compiler::Compiler;
-use super::oracle::{Oracle, parameter_values};
+use super::oracle::Oracle;
 use super::test_models::{BEAM, DOUBLE_PENDULUM, SPRING, model};
 use super::test_variants::{Beam, DoublePendulum, EMITTED, Fault, Spring};
 use super::variant::Variant;
@@ -18,7 +18,7 @@ fn certificate(
     emitted: Result<Emitted, String>,
 ) -> Certificate {
     let model = model(text);
-    let parameters = parameter_values(&model).unwrap();
+    let parameters = model.parameter_values().unwrap();
     certify(&Subject {
         model: &model,
         order,
@@ -47,7 +47,7 @@ fn spring(fault: Fault, emitted: Result<Emitted, String>) -> Certificate {
 
 fn beam(order: usize, coupled: bool) -> Certificate {
     let model = model(BEAM);
-    let parameters = parameter_values(&model).unwrap();
+    let parameters = model.parameter_values().unwrap();
     let variants = |order| {
         let oracle = Oracle::new(&model, order, &parameters).map_err(|error| error.to_string())?;
         Ok(Box::new(Beam { oracle, coupled }) as Box<dyn Variant>)

@@ -9,39 +9,7 @@ use super::places::{Domain, PlaceSet};
 use super::scene::{Direction, Scene};
 use super::system::{Integral, System};
 use super::tree::{Leaf, Tree};
-use model_spec::model::{Expr, ExprKind, Field, Model, ParameterValue};
-
-/// The values of all parameters as the specification states them, in SI, in the order
-/// of the model.
-///
-/// # Errors
-/// [`OracleError::NotFinite`] if one has no finite value.
-pub fn parameter_values(model: &Model) -> Result<Vec<f64>, OracleError> {
-    let mut values = vec![f64::NAN; model.parameters.len()];
-    for &index in &model.parameter_order {
-        let Some(parameter) = model.parameters.get(index) else {
-            continue;
-        };
-        let value = match &parameter.value {
-            ParameterValue::Number(number) => *number,
-            ParameterValue::Expression(expression) => {
-                Lowering::new(model, &values, &parameter.name).constant(expression)?
-            }
-        };
-        if let Some(entry) = values.get_mut(index) {
-            *entry = value;
-        }
-    }
-    match model
-        .parameters
-        .iter()
-        .zip(&values)
-        .find(|(_, value)| !value.is_finite())
-    {
-        Some((parameter, _)) => Err(OracleError::NotFinite(parameter.name.clone())),
-        None => Ok(values),
-    }
-}
+use model_spec::model::{Expr, ExprKind, Field, Model};
 
 /// Turns expressions of one variant into trees.
 pub(super) struct Lowering<'m> {

@@ -42,7 +42,6 @@ mod tests;
 pub use energy::Total;
 pub use equations::{Equations, Residual, RowTerm, RowTermKind};
 pub use error::OracleError;
-pub use lower::parameter_values;
 pub use switches::{Side, Switch, SwitchValue};
 
 use evaluate::Pass;
@@ -68,7 +67,7 @@ pub struct Oracle {
 
 impl Oracle {
     /// The oracle of `model` at `order` with parameters in SI, in the order of the
-    /// model (see [`parameter_values`]).
+    /// model (see [`Model::parameter_values`]).
     ///
     /// # Errors
     /// [`OracleError`] if the model holds something the oracle would have to guess.

@@ -3,13 +3,13 @@
 
 use super::super::sampler::Sampler;
 use super::super::test_models::{BEAM, DOUBLE_PENDULUM, SPRING, model};
-use super::{Equations, Oracle, OracleError, Side, parameter_values};
+use super::{Equations, Oracle, OracleError, Side};
 use model_spec::model::{Expr, ExprKind};
 use model_spec::span::Span;
 
 fn oracle(text: &str, order: usize) -> Oracle {
     let model = model(text);
-    let parameters = parameter_values(&model).unwrap();
+    let parameters = model.parameter_values().unwrap();
     Oracle::new(&model, order, &parameters).unwrap()
 }
 
@@ -256,7 +256,7 @@ fn what_would_have_to_be_guessed_is_refused() {
     let refuse = |expression: &Expr| {
         let mut model = model(SPRING);
         model.kinetic[0].value = expression.clone();
-        let parameters = parameter_values(&model).unwrap();
+        let parameters = model.parameter_values().unwrap();
         Oracle::new(&model, 0, &parameters).map(drop).unwrap_err()
     };
     let of = |kind| Expr {
