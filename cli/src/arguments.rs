@@ -40,6 +40,21 @@ pub enum Command {
         after_help = "Example:\n  eomgen simulate model-spec/models/planetary_arm.toml --order 4 --until 2 --sample 0.001 --set b_sp=50e-6 --out arm.csv"
     )]
     Simulate(Simulate),
+    /// Measure the motion over a grid of parameters.
+    #[command(
+        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
+    )]
+    Sweep(Sweep),
+    /// Put the shards of a sweep together; refuses where some are missing.
+    #[command(after_help = "Example:\n  eomgen merge map")]
+    Merge(Merge),
+    /// Judge the paper's claims, at the assumed values and over plausible ranges.
+    #[command(after_help = "Example:\n  eomgen study-search --sets 5000 --out search")]
+    StudySearch(StudySearch),
+    /// One of the paper's numerical studies: data, figures as the paper has them, and
+    /// `study.json`.
+    #[command(after_help = "Example:\n  eomgen study backlash --out studies/backlash")]
+    Study(Study),
     /// The newcomer's walk: check, derive, generate, validate and simulate the paper's arm,
     /// and leave one HTML page.
     #[command(after_help = "Example:\n  eomgen tour --out tour")]
@@ -138,10 +153,27 @@ pub struct Validate {
 /// How to integrate.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Solver {
-    /// The best there is for the model.
+    /// `exact` where the model is linear between its switches, else `rk`.
     Auto,
+    /// From switch to switch without any error but rounding; for models that are linear
+    /// between their switches.
+    Exact,
     /// Runge-Kutta of order 8 with location of the switching surfaces.
     Rk,
+    /// Adams' multistep method of variable order, the paper's, with the same location.
+    Adams,
+}
+
+impl Solver {
+    /// As it is typed.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Exact => "exact",
+            Self::Rk => "rk",
+            Self::Adams => "adams",
+        }
+    }
 }
 
 /// Options of `simulate`.
@@ -178,10 +210,85 @@ pub struct Simulate {
     /// How to integrate.
     #[arg(long, value_enum, default_value = "auto")]
     pub solver: Solver,
-    /// Relative tolerance of every state variable.
-    #[arg(long, allow_negative_numbers = true, default_value_t = 1e-9)]
-    pub tolerance: f64,
+    /// Relative tolerance of every state variable, 1e-9 by default; no effect on the exact
+    /// solver.
+    #[arg(long, allow_negative_numbers = true)]
+    pub tolerance: Option<f64>,
     /// Print one JSON document on the work done.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `sweep`.
+#[derive(Args)]
+pub struct Sweep {
+    /// The specification.
+    pub spec: PathBuf,
+    /// Parameters that take the same evenly spaced values together, in the unit the
+    /// specification declares (repeatable; all combinations are measured).
+    #[arg(long, value_name = "NAME[,NAME...]=FROM:TO:COUNT", required = true)]
+    pub vary: Vec<String>,
+    /// What is measured: `lyapunov`, the largest Lyapunov exponent; `poincare`, the motion
+    /// once per forcing period.
+    #[arg(
+        long,
+        value_name = "NAME[,NAME...]",
+        required = true,
+        value_delimiter = ','
+    )]
+    pub measure: Vec<String>,
+    /// The folder to write to; a run begun there is continued.
+    #[arg(long)]
+    pub out: PathBuf,
+    /// Modal truncation order of every field, instead of the specification's.
+    #[arg(long, allow_negative_numbers = true)]
+    pub order: Option<String>,
+    /// Another value for a parameter, in the unit the specification declares (repeatable).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// The parameter that is the angular frequency of the forcing.
+    #[arg(long, value_name = "NAME", default_value = "omega")]
+    pub frequency: String,
+    /// Forcing periods that pass before anything is measured.
+    #[arg(long, value_name = "PERIODS", default_value_t = 60)]
+    pub transient: usize,
+    /// Forcing periods that are measured.
+    #[arg(long, value_name = "PERIODS", default_value_t = 60)]
+    pub periods: usize,
+    /// Compute part I of N only; `merge` puts the parts together.
+    #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
+    pub shard: Option<String>,
+    /// How many threads compute; the result does not depend on it. One per core by default.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Print one JSON document on what was done.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `merge`.
+#[derive(Args)]
+pub struct Merge {
+    /// The folder of the sweep.
+    pub dir: PathBuf,
+    /// Print one JSON document on what was written.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `study-search`.
+#[derive(Args)]
+pub struct StudySearch {
+    /// The folder to write to; a search begun there goes on.
+    #[arg(long)]
+    pub out: PathBuf,
+    /// How many parameter sets.
+    #[arg(long, default_value_t = 5000)]
+    pub sets: usize,
+    /// Which sequence of sets.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Print one JSON document on what was found.
     #[arg(long)]
     pub json: bool,
 }
@@ -193,6 +300,33 @@ pub struct Tour {
     #[arg(long)]
     pub out: PathBuf,
     /// Print one JSON document on what was left.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// The paper's studies.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum StudyName {
+    /// Fig. 4: modal truncation, S = 4 against S = 5, and convergence over S = 1 to 16.
+    Order,
+    /// Fig. 5-10: omega = 5 pi, b = 0, 10, 25, 50, 100 um.
+    Backlash,
+    /// Fig. 11-15: omega = 10 pi, the same b.
+    Frequency,
+    /// Fig. 16-19: the rigid arm against the flexible one.
+    Flexibility,
+}
+
+/// Options of `study`.
+#[derive(Args)]
+pub struct Study {
+    /// Which study.
+    #[arg(value_enum)]
+    pub name: StudyName,
+    /// The folder to write to.
+    #[arg(long)]
+    pub out: PathBuf,
+    /// Print `study.json` on stdout instead of the summary.
     #[arg(long)]
     pub json: bool,
 }

@@ -2,11 +2,13 @@
 //! libraries.
 //!
 //! `arguments` says what can be typed, `commands` has one file per command, `variant` loads
-//! a specification and derives it, `output` writes files whole or not at all, `problem`
+//! a specification and derives it, `motion` simulates it, `output` writes files whole or not at all, `problem`
 //! is what can go wrong and with which exit status.
 
 mod arguments;
 mod commands;
+mod figures;
+mod motion;
 mod output;
 mod page;
 mod parquet_file;
@@ -30,6 +32,12 @@ fn main() -> ExitCode {
         Command::Generate(options) => commands::generate::run(&options),
         Command::Validate(options) => commands::validate::run(&options),
         Command::Simulate(options) => commands::simulate::run(&options),
+        Command::Sweep(options) => commands::sweep::run(&options),
+        Command::Merge(options) => commands::merge::run(&options),
+        Command::StudySearch(options) => {
+            commands::study_search::run(&options.out, options.sets, options.seed, options.json)
+        }
+        Command::Study(options) => commands::study::run(&options),
         Command::Tour(options) => commands::tour::run(&options),
     };
     match outcome {

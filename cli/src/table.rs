@@ -24,6 +24,12 @@ impl Table {
         Self { names, columns }
     }
 
+    /// A table of columns of one length.
+    pub fn of(columns: &[(String, Vec<f64>)]) -> Self {
+        let (names, columns) = columns.iter().cloned().unzip();
+        Self { names, columns }
+    }
+
     /// Adds a row, one number per column.
     pub fn push(&mut self, row: &[f64]) {
         for (column, value) in self.columns.iter_mut().zip(row) {

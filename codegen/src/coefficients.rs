@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use model_spec::model::{Coefficient, CoefficientKind, Expr, ExprKind};
 
-use crate::differentiate::{Direction, ModalDerivative};
+use crate::differentiate::{ModalDerivative, by_scalar};
 use crate::equations::{Factor, NamedCoefficient, Row};
 use crate::graph::{Graph, Id, Operation};
 use crate::matrix::StructuredMatrix;
@@ -117,24 +117,9 @@ fn factor_of(graph: &mut Graph, row: Id, by: Id) -> Id {
     };
     let mut result = row;
     for &factor in &factors {
-        result = by_node(graph, result, factor);
+        result = by_scalar(graph, result, factor);
     }
     at_rest_except(graph, result, &[])
-}
-
-/// The derivative by a node taken as a variable of its own.
-fn by_node(graph: &mut Graph, id: Id, variable: Id) -> Id {
-    let zero = |graph: &mut Graph, leaf: Id| {
-        if leaf == variable {
-            graph.one()
-        } else {
-            graph.zero()
-        }
-    };
-    let mut direction = Direction::new(&zero);
-    let one = graph.one();
-    direction.seed(variable, one);
-    direction.derivative(graph, id)
 }
 
 /// A row's derivative by modes: a vector for a coordinate's row, a matrix for modes'.

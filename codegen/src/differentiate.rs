@@ -83,16 +83,14 @@ impl<'a> Direction<'a> {
     }
 }
 
-/// The derivative of a node by a scalar leaf.
+/// The derivative of a node by a scalar node taken as a variable of its own: a leaf, or an
+/// expression whose own operands then count as constant.
 pub fn by_scalar(graph: &mut Graph, id: Id, variable: Id) -> Id {
-    let tangent = |graph: &mut Graph, leaf: Id| {
-        if leaf == variable {
-            graph.one()
-        } else {
-            graph.zero()
-        }
-    };
-    Direction::new(&tangent).derivative(graph, id)
+    let constant = |graph: &mut Graph, _: Id| graph.zero();
+    let mut direction = Direction::new(&constant);
+    let one = graph.one();
+    direction.seed(variable, one);
+    direction.derivative(graph, id)
 }
 
 /// For a node that is one of two others: a and b of the condition a > b, the node where it

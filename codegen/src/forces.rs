@@ -106,7 +106,7 @@ pub(crate) fn guards(graph: &mut Graph, roots: &[Id]) -> Vec<Guard> {
 }
 
 /// Where a piecewise function switches, as nodes that change sign there.
-fn surfaces(graph: &mut Graph, function: Function, arguments: &[Id]) -> Vec<Id> {
+pub(crate) fn surfaces(graph: &mut Graph, function: Function, arguments: &[Id]) -> Vec<Id> {
     match (function, arguments) {
         (Function::Deadzone | Function::Contact, &[p, b]) => {
             vec![graph.subtract(p, b), graph.add(p, b)]

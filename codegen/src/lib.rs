@@ -6,12 +6,13 @@
 //! `differentiate` and `matrix` (derivatives that keep their structure), `lagrange`,
 //! `forces` and `equations` (the equations of motion), `solve` (the accelerations),
 //! `coefficients` (names as in Eq. (22)), `linearity` (whether a model is linear between its
-//! switches), `lower` (to the `program`), `evaluator` and `rust` (backends), `print` and
+//! switches), `affine` (its matrices then), `lower` (to the `program`), `evaluator` and `rust` (backends), `print` and
 //! `report` (for people).
 //!
 //! The arrows are two functions: [`equations::derive`] from a model to equations and
 //! [`lower::lower`] from equations to a program.
 
+pub mod affine;
 pub mod coefficients;
 mod degree;
 pub mod describe;

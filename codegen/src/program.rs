@@ -260,7 +260,7 @@ pub struct ProgramGuard {
 }
 
 /// The blocks of the mass matrix.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct MassBlocks {
     /// coordinates x coordinates
     pub scalars: Vec<Vec<ValueId>>,
@@ -272,7 +272,7 @@ pub struct MassBlocks {
 }
 
 /// Values by row: coordinates, then each field's modes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct RowValues {
     /// One per coordinate.
     pub scalars: Vec<ValueId>,

@@ -32,7 +32,7 @@ impl Derived {
 }
 
 /// What is said where the mass matrix is not positive definite.
-const NOT_POSITIVE: &str =
+pub(crate) const NOT_POSITIVE: &str =
     "the mass matrix is not positive definite: a mass, inertia or length is zero or negative";
 
 impl Variant for Derived {

@@ -1,56 +1,11 @@
 //! The general solver on problems with known solutions, and what it refuses.
 
+mod systems;
+
 use std::f64::consts::PI;
 
 use sim::solve::{Settings, SolveError, System, Trajectory, simulate};
-
-/// A system made of functions.
-struct Functions<R, G> {
-    states: usize,
-    rates: R,
-    guard_count: usize,
-    guards: G,
-    breakpoints: Vec<f64>,
-}
-
-impl<R, G> System for Functions<R, G>
-where
-    R: Fn(f64, &[f64], &mut [f64]),
-    G: Fn(&[f64], &mut [f64]),
-{
-    fn states(&self) -> usize {
-        self.states
-    }
-
-    fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        (self.rates)(t, y, out);
-    }
-
-    fn guard_count(&self) -> usize {
-        self.guard_count
-    }
-
-    fn guards(&self, _t: f64, y: &[f64], out: &mut [f64]) {
-        (self.guards)(y, out);
-    }
-
-    fn next_breakpoint(&self, t: f64) -> Option<f64> {
-        self.breakpoints.iter().copied().find(|next| *next > t)
-    }
-}
-
-fn smooth<R: Fn(f64, &[f64], &mut [f64])>(
-    states: usize,
-    rates: R,
-) -> Functions<R, impl Fn(&[f64], &mut [f64])> {
-    Functions {
-        states,
-        rates,
-        guard_count: 0,
-        guards: |_: &[f64], _: &mut [f64]| {},
-        breakpoints: Vec::new(),
-    }
-}
+use systems::{Functions, dead_zone, dry_friction, smooth};
 
 fn run(
     system: &dyn System,
@@ -126,26 +81,6 @@ fn small_and_large_components_get_the_same_digits() {
     assert!((relative[0] - relative[1]).abs() < 1e-14, "{relative:?}");
 }
 
-/// x'' = -k f_k(x, b): flights between two walls of springs.
-fn dead_zone(b: f64, frequency: f64) -> impl System {
-    Functions {
-        states: 2,
-        rates: move |_, y: &[f64], out: &mut [f64]| {
-            let beyond = if y[0] > b {
-                y[0] - b
-            } else if y[0] < -b {
-                y[0] + b
-            } else {
-                0.0
-            };
-            out.copy_from_slice(&[y[1], -frequency * frequency * beyond]);
-        },
-        guard_count: 2,
-        guards: move |y: &[f64], out: &mut [f64]| out.copy_from_slice(&[y[0] - b, y[0] + b]),
-        breakpoints: Vec::new(),
-    }
-}
-
 #[test]
 fn a_dead_zone_oscillator_keeps_its_period() {
     let (b, frequency, speed) = (25e-6, 3e4, 0.02);
@@ -175,26 +110,6 @@ fn a_dead_zone_oscillator_keeps_its_period() {
         "{:?}",
         trajectory.last
     );
-}
-
-/// x'' = -x - friction sign(x').
-fn dry_friction(friction: f64) -> impl System {
-    Functions {
-        states: 2,
-        rates: move |_, y: &[f64], out: &mut [f64]| {
-            let sign = if y[1] > 0.0 {
-                1.0
-            } else if y[1] < 0.0 {
-                -1.0
-            } else {
-                0.0
-            };
-            out.copy_from_slice(&[y[1], -y[0] - friction * sign]);
-        },
-        guard_count: 1,
-        guards: |y: &[f64], out: &mut [f64]| out[0] = y[1],
-        breakpoints: Vec::new(),
-    }
 }
 
 #[test]

@@ -1,39 +1,16 @@
 //! The solver on Eq. (22) against a trajectory computed with quadruple precision.
 
-use sim::reference::PlanetaryArmParameters;
-use sim::reference::equation_22::Equation22;
+#[path = "systems/arm.rs"]
+mod arm;
+
+use arm::Arm;
 use sim::reference::mode_shapes::ModeShape;
-use sim::solve::{Settings, System, simulate};
+use sim::solve::{Settings, simulate};
 
 const REFERENCE: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../../shared/reference/trajectory_order4.csv"
 );
-
-/// The arm at order 4 in physical units.
-struct Arm {
-    equation: Equation22<4>,
-    parameters: PlanetaryArmParameters,
-}
-
-impl System for Arm {
-    fn states(&self) -> usize {
-        Equation22::<4>::STATES
-    }
-
-    fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        self.equation.rates(t, y, out);
-    }
-
-    fn guard_count(&self) -> usize {
-        4
-    }
-
-    fn guards(&self, _t: f64, y: &[f64], out: &mut [f64]) {
-        let PlanetaryArmParameters { b_sp, b_pr, .. } = self.parameters;
-        out.copy_from_slice(&[y[0] - b_sp, y[0] + b_sp, y[1] - b_pr, y[1] + b_pr]);
-    }
-}
 
 /// Time, x_sp and tip of each row up to `until` seconds.
 fn reference(until: f64) -> Option<Vec<[f64; 3]>> {
@@ -57,11 +34,7 @@ fn the_arm_follows_the_reference_trajectory_for_a_second() {
         );
         return;
     };
-    let parameters = PlanetaryArmParameters::default();
-    let arm = Arm {
-        equation: Equation22::new(&parameters, 1.0, 1.0),
-        parameters,
-    };
+    let arm = Arm::<4>::default();
     let samples: Vec<f64> = rows.iter().map(|row| row[0]).collect();
     let begin = std::time::Instant::now();
     let trajectory = simulate(

@@ -68,7 +68,7 @@ fn commands_and_options_that_do_not_exist_are_refused() {
 fn help_has_an_example_and_succeeds() {
     assert!(accepted(&["--help"]).contains("simulate"));
     assert!(accepted(&["--version"]).starts_with("eomgen "));
-    for command in COMMANDS.into_iter().chain(["tour"]) {
+    for command in COMMANDS.into_iter().chain(["sweep", "merge", "tour"]) {
         let help = accepted(&[command, "--help"]);
         // The line of the usage names the command too.
         let example = help.split_once("Example").map(|(_, example)| example);
@@ -147,9 +147,25 @@ fn parameters_without_a_motion_are_refused() {
     // Values so large or small that a rate overflows, or so stiff that no step is short
     // enough.
     for assignment in ["l=1e-300", "omega=1e300", "k_sp=1e300", "alpha=90"] {
-        simulate_refuses("planetary_arm", &["--set", assignment], "at t = ");
+        let general = ["--solver", "rk", "--set", assignment];
+        simulate_refuses("planetary_arm", &general, "at t = ");
     }
-    simulate_refuses("planetary_arm", &["--set", "omega=1e300"], "that is x_sp");
+    let fast = ["--solver", "rk", "--set", "omega=1e300"];
+    simulate_refuses("planetary_arm", &fast, "that is x_sp");
+    for (assignment, part) in [
+        ("l=1e-300", "a coefficient"),
+        ("omega=1e300", "slower motion"),
+        ("k_sp=1e300", "eigenvalues"),
+        ("alpha=90", "slower motion"),
+    ] {
+        let exact = ["--solver", "exact", "--set", assignment];
+        simulate_refuses("planetary_arm", &exact, part);
+    }
+    // The general solver is tried after the exact one, and says why it stops.
+    let stiff = arguments("simulate", "planetary_arm", &["--set", "k_sp=1e300"]);
+    let found = refused(&stiff.iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(found.starts_with("warning: not solved exactly"), "{found}");
+    assert!(found.contains("error: at t = "), "{found}");
 }
 
 #[test]
@@ -179,13 +195,40 @@ fn times_that_are_none_are_refused() {
         assert!(found.contains(part), "{option} {value}: {found}");
     }
     // Farther than the sine of the motor's ripple is known.
-    let far = [
-        "simulate",
-        &spec("planetary_arm"),
-        "--out",
-        "never-made/a.csv",
-        "--until",
-        "1e300",
-    ];
-    assert!(refused(&far).contains("not a number"));
+    let arm = spec("planetary_arm");
+    for (solver, part) in [("exact", "expected a shorter time"), ("rk", "not a number")] {
+        let far = ["--out", "never-made/a.csv", "--until", "1e300"];
+        let found = refused(&[&["simulate", &arm, "--solver", solver], &far[..]].concat());
+        assert!(found.contains(part), "{solver}: {found}");
+    }
+}
+
+#[test]
+fn the_exact_solver_is_refused_what_is_not_linear_and_has_no_tolerance() {
+    let found = message(&arguments("simulate", "pendulum", &["--solver", "exact"]));
+    assert!(
+        found.contains("`") && found.contains("sin(theta)") && found.contains("--solver rk"),
+        "{found}"
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let said = |solver: &str, name: &str, more: &[&str]| {
+        let mut given = arguments("simulate", name, &["--json", "--solver", solver]);
+        given.extend(more.iter().map(|argument| (*argument).to_owned()));
+        let output = eomgen().args(&given).current_dir(folder.path()).output();
+        let output = output.expect("the program can be run");
+        let text = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{given:?}: {text}");
+        let work: serde_json::Value = serde_json::from_slice(&output.stdout).expect("a document");
+        (work["solver"].clone(), text)
+    };
+    let tolerance = ["--tolerance", "1e-6"];
+    let (solver, text) = said("exact", "planetary_arm", &tolerance);
+    assert_eq!(solver, "exact");
+    assert!(text.contains("--tolerance has no effect"), "{text}");
+    assert_eq!(said("auto", "planetary_arm", &[]).0, "exact");
+    assert_eq!(
+        said("auto", "pendulum", &tolerance),
+        ("rk".into(), String::new())
+    );
+    assert_eq!(said("adams", "planetary_arm", &[]).0, "adams");
 }

@@ -3,6 +3,10 @@
 pub mod check;
 pub mod derive;
 pub mod generate;
+pub mod merge;
 pub mod simulate;
+pub mod study;
+pub mod study_search;
+pub mod sweep;
 pub mod tour;
 pub mod validate;

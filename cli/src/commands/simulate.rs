@@ -1,16 +1,13 @@
 //! `eomgen simulate`: a trajectory as a table, CSV or Parquet.
 
-use codegen::evaluator::Evaluator;
 use model_spec::model::Model;
 use serde_json::json;
-use sim::derived::Driven;
 use sim::record::{HeldInputs, read_inputs};
-use sim::solve::{Settings, SolveError, Trajectory, simulate};
 
 use crate::arguments::{Simulate, Solver};
+use crate::motion::{Run, Simulated};
 use crate::output::{file_place, write_file};
 use crate::problem::{Outcome, Problem, say, warn};
-use crate::progress::Bar;
 use crate::table::Table;
 use crate::variant::{derive_variant, load, orders};
 
@@ -20,9 +17,11 @@ const MOST_NUMBERS: f64 = 1e8;
 /// Rows where nothing is said about them.
 const DEFAULT_ROWS: f64 = 1000.0;
 
+/// The relative tolerance where nothing is said about it.
+const DEFAULT_TOLERANCE: f64 = 1e-9;
+
 /// Runs the command.
 pub fn run(options: &Simulate) -> Outcome {
-    let (Solver::Auto | Solver::Rk) = options.solver;
     file_place(&options.out)?;
     let model = with_settings(load(&options.spec)?.model, &options.set)?;
     let orders = orders(&model, options.order.as_deref())?;
@@ -33,30 +32,37 @@ pub fn run(options: &Simulate) -> Outcome {
         None if options.record.is_some() => record_times(&inputs, span)?,
         step => even_times(span, step)?,
     };
-    let run = Run::new(&variant.model, variant.evaluator(), inputs)?;
-    check_size(times.len(), run.columns.len())?;
-    let trajectory = run.trajectory(&times, options.tolerance)?;
-    let table = run.table(&trajectory);
+    if options.solver == Solver::Exact && options.tolerance.is_some() {
+        warn("warning: --tolerance has no effect on the exact solver: only rounding limits it");
+    }
+    let tolerance = options.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+    let run = Run::new(&variant, inputs, options.solver, tolerance)?;
+    check_size(times.len(), run.columns().len())?;
+    let simulated = run.simulate(&times)?;
+    let table = run.table(&simulated.trajectory);
     write_file(&options.out, &table.encode(&options.out)?)?;
+    say(&summary(options, &table, &simulated))
+}
+
+/// What is said at the end.
+fn summary(options: &Simulate, table: &Table, simulated: &Simulated) -> String {
+    let file = options.out.display();
+    let (rows, switches) = (table.rows(), simulated.trajectory.switches.len());
+    let work = simulated.trajectory.work;
     if options.json {
-        let work = trajectory.work;
         let document = json!({
-            "file": options.out.display().to_string(),
-            "rows": table.rows(),
-            "switches": trajectory.switches.len(),
+            "file": file.to_string(),
+            "solver": simulated.solver.name(),
+            "rows": rows,
+            "switches": switches,
             "steps": work.steps,
             "rejected": work.rejected,
             "evaluations": work.evaluations,
         });
-        return say(&format!("{document:#}\n"));
+        return format!("{document:#}\n");
     }
-    say(&format!(
-        "{}: {} rows, {} switches, {} evaluations of the right-hand side\n",
-        options.out.display(),
-        table.rows(),
-        trajectory.switches.len(),
-        trajectory.work.evaluations
-    ))
+    let how = simulated.work();
+    format!("{file}: {rows} rows, {switches} switches, {how}\n")
 }
 
 /// The model with every `NAME=VALUE`, values in the units that the specification declares.
@@ -71,7 +77,7 @@ fn with_settings(model: Model, assignments: &[String]) -> Outcome<Model> {
 }
 
 /// The parts of `NAME=VALUE`.
-fn setting(assignment: &str) -> Outcome<(&str, f64)> {
+pub fn setting(assignment: &str) -> Outcome<(&str, f64)> {
     let (name, value) = assignment.split_once('=').ok_or_else(|| {
         Problem::input(format!(
             "--set {assignment}: expected NAME=VALUE, such as b_sp=25e-6"
@@ -95,14 +101,19 @@ fn inputs(options: &Simulate, model: &Model) -> Outcome<HeldInputs> {
             Ok(inputs)
         }
         None => {
-            for input in &model.inputs {
-                warn(&format!(
-                    "warning: no record gives the input `{}`: it is 0",
-                    input.name
-                ));
-            }
+            warn_of_inputs(model);
             Ok(HeldInputs::zero(model.inputs.len()))
         }
+    }
+}
+
+/// Says which inputs are 0 where there is no record.
+pub fn warn_of_inputs(model: &Model) {
+    for input in &model.inputs {
+        warn(&format!(
+            "warning: no record gives the input `{}`: it is 0",
+            input.name
+        ));
     }
 }
 
@@ -172,90 +183,4 @@ fn check_size(rows: usize, columns: usize) -> Outcome {
     Err(Problem::input(format!(
         "too many rows: the limit is {MOST_NUMBERS:e} numbers; give --sample a longer time"
     )))
-}
-
-/// A model with its inputs, ready to be simulated.
-pub struct Run {
-    system: Driven,
-    initial: Vec<f64>,
-    columns: Vec<String>,
-    observables: usize,
-    /// What each switching function is.
-    guards: Vec<String>,
-}
-
-impl Run {
-    /// Takes an evaluator of the model's program.
-    pub fn new(model: &Model, evaluator: Evaluator, inputs: HeldInputs) -> Outcome<Self> {
-        let program = evaluator.program();
-        let orders: Vec<usize> = program.fields.iter().map(|field| field.order).collect();
-        let initial = model
-            .initial_state(&orders)
-            .map_err(|error| Problem::model(&model.source, error))?;
-        let mut columns = vec!["t".to_owned()];
-        columns.extend(program.state_names());
-        columns.extend(program.observables.iter().map(|o| o.name.clone()));
-        let observables = program.observables.len();
-        let guards = program.guards.iter().flat_map(|guard| {
-            let count = program.value(guard.value).extent.length();
-            std::iter::repeat_n(guard.formula.clone(), count)
-        });
-        let guards = guards.collect();
-        let system = Driven::new(evaluator, inputs).map_err(Problem::input)?;
-        Ok(Self {
-            system,
-            initial,
-            columns,
-            observables,
-            guards,
-        })
-    }
-
-    /// The states at the given times, with a progress bar for a run that takes long.
-    pub fn trajectory(&self, times: &[f64], tolerance: f64) -> Outcome<Trajectory> {
-        let (start, end) = (times[0], times[times.len() - 1]);
-        let settings = Settings::with_tolerance(tolerance);
-        let bar = Bar::new("simulating", end - start, "s");
-        let mut progress = |t: f64| bar.set(t - start);
-        simulate(
-            &self.system,
-            &self.initial,
-            (start, end),
-            times,
-            &settings,
-            &mut progress,
-        )
-        .map_err(|error| Problem::input(format!("{error}{}", self.culprit(&error))))
-    }
-
-    /// The name of what an error gives by number.
-    fn culprit(&self, error: &SolveError) -> String {
-        match *error {
-            SolveError::NotFinite { state, .. } => {
-                let name = self.columns.get(1 + state).map_or("", String::as_str);
-                format!("; that is {name}")
-            }
-            SolveError::Caught { guard, .. } | SolveError::TooManySwitches { guard, .. } => {
-                let formula = self.guards.get(guard).map_or("", String::as_str);
-                format!("; that is {formula}")
-            }
-            _ => String::new(),
-        }
-    }
-
-    /// Time, state and observables of every sample.
-    pub fn table(&self, trajectory: &Trajectory) -> Table {
-        let mut table = Table::new(self.columns.clone());
-        let mut observables = vec![0.0; self.observables];
-        let mut row = Vec::with_capacity(self.columns.len());
-        for (t, state) in trajectory.times.iter().zip(&trajectory.states) {
-            self.system.observables(*t, state, &mut observables);
-            row.clear();
-            row.push(*t);
-            row.extend_from_slice(state);
-            row.extend_from_slice(&observables);
-            table.push(&row);
-        }
-        table
-    }
 }

@@ -11,13 +11,12 @@ use model_spec::source::Source;
 use serde_json::json;
 use sim::plot::{Panel, Reference, Series, TimeHistory, time_history};
 use sim::record::HeldInputs;
-use sim::solve::Trajectory;
 use sim::validate::certificate::Certificate;
 
 use super::generate::source;
-use super::simulate::Run;
 use super::validate;
-use crate::arguments::Tour;
+use crate::arguments::{Solver, Tour};
+use crate::motion::{Run, Simulated};
 use crate::output::{file_place, write_file};
 use crate::page;
 use crate::problem::{Outcome, Problem, say};
@@ -38,7 +37,7 @@ const ORDER: usize = 4;
 const UNTIL: f64 = 2.0;
 const SAMPLE: f64 = 0.0005;
 
-/// Relative tolerance of the simulation.
+/// Relative tolerance, should the arm ever be no longer linear between its switches.
 const TOLERANCE: f64 = 1e-10;
 
 /// Says how long each step took.
@@ -76,18 +75,18 @@ pub fn run(options: &Tour) -> Outcome {
     let certificate = validate::of(&variant.model, &[ORDER])?;
     watch.lap("validate, including a compilation of the emitted Rust");
     drop(note);
-    let run = Run::new(&variant.model, variant.evaluator(), HeldInputs::zero(0))?;
+    let run = Run::new(&variant, HeldInputs::zero(0), Solver::Auto, TOLERANCE)?;
     let times: Vec<f64> = (0..=(UNTIL / SAMPLE) as usize)
         .map(|i| i as f64 * SAMPLE)
         .collect();
-    let trajectory = run.trajectory(&times, TOLERANCE)?;
-    let table = run.table(&trajectory);
+    let simulated = run.simulate(&times)?;
+    let table = run.table(&simulated.trajectory);
     watch.lap("simulate two seconds");
     let figure = figure(&variant, &table)?;
     leave(options, &variant, &rust, &certificate, &table, &figure)?;
-    let page = page_text(&variant, &rust, &certificate, &trajectory, &figure, &watch)?;
+    let page = page_text(&variant, &rust, &certificate, &simulated, &figure, &watch)?;
     write_file(&path, page.as_bytes())?;
-    say(&summary(options.json, &certificate, &trajectory, &path))?;
+    say(&summary(options.json, &certificate, &simulated, &path))?;
     if certificate.passed {
         Ok(())
     } else {
@@ -96,8 +95,11 @@ pub fn run(options: &Tour) -> Outcome {
 }
 
 /// What is said at the end.
-fn summary(json: bool, certificate: &Certificate, trajectory: &Trajectory, page: &Path) -> String {
-    let (checks, switches) = (certificate.checks.len(), trajectory.switches.len());
+fn summary(json: bool, certificate: &Certificate, simulated: &Simulated, page: &Path) -> String {
+    let (checks, switches) = (
+        certificate.checks.len(),
+        simulated.trajectory.switches.len(),
+    );
     if json {
         let document = json!({
             "page": page.display().to_string(),
@@ -201,7 +203,7 @@ fn page_text(
     variant: &Variant,
     rust: &str,
     certificate: &Certificate,
-    trajectory: &Trajectory,
+    simulated: &Simulated,
     figure: &str,
     watch: &Stopwatch,
 ) -> Outcome<String> {
@@ -209,10 +211,10 @@ fn page_text(
     let notation = Notation::text(&variant.model);
     let report = Report::new(&variant.model, &variant.equations, &evaluator, &notation);
     let summary = format!(
-        "From rest over {UNTIL} s at order {ORDER} with the paper's values and those assumed where it gives none, relative tolerance {TOLERANCE:e}: \
-         the meshes made or lost contact {} times, {} evaluations of the right-hand side.",
-        trajectory.switches.len(),
-        trajectory.work.evaluations
+        "From rest over {UNTIL} s at order {ORDER} with the paper's values and those assumed where it gives none: \
+         the meshes made or lost contact {} times, {}.",
+        simulated.trajectory.switches.len(),
+        simulated.work()
     );
     let checks = certificate
         .checks

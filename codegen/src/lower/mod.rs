@@ -4,6 +4,7 @@
 //! A term `c P X` of a sum, P of parameters and X of the state, becomes one prepared
 //! coefficient |c| P times X, added or subtracted by the sign of c.
 
+mod affine;
 mod arithmetic;
 mod values;
 
@@ -15,11 +16,16 @@ use crate::print::{Notation, formula};
 use crate::program::{
     Extent, Op, Program, ProgramField, ProgramGuard, ProgramParameter, Quantity, ValueId,
 };
+pub use affine::lower_affine;
 use values::Lowering;
 
 /// The program of one variant.
 pub fn lower(model: &Model, equations: &Equations, parameter_values: &[f64]) -> Program {
-    let mut lowering = Lowering::new(&equations.graph, equations);
+    let mut lowering = Lowering::new(
+        &equations.graph,
+        &equations.derived_parameters,
+        &equations.parameter_names,
+    );
     let accelerations = lowering.rows(&equations.accelerations.rows);
     let mass = lowering.mass(equations);
     let velocity_terms = lowering.rows(&equations.velocity_terms);

@@ -23,10 +23,11 @@ pub(super) struct Lowering<'g> {
 }
 
 impl<'g> Lowering<'g> {
-    pub(super) fn new(graph: &'g Graph, equations: &'g Equations) -> Self {
+    /// A lowering of nodes of `graph`, whose parameters have these names and, if they are
+    /// derived from others, these expressions.
+    pub(super) fn new(graph: &'g Graph, derived: &'g [Option<Id>], names: &[String]) -> Self {
         let mut next = 0;
-        let independent = equations
-            .derived_parameters
+        let independent = derived
             .iter()
             .map(|derived| {
                 let place = next;
@@ -36,9 +37,9 @@ impl<'g> Lowering<'g> {
             .collect();
         Self {
             graph,
-            derived: &equations.derived_parameters,
+            derived,
             independent,
-            parameter_names: equations.parameter_names.clone(),
+            parameter_names: names.to_vec(),
             values: Vec::new(),
             known: HashMap::new(),
             lowered: HashMap::new(),

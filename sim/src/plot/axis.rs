@@ -92,6 +92,14 @@ impl Range {
             high: self.high + margin,
         }
     }
+
+    /// With this share of the whole free above what was there.
+    pub fn raised(self, share: f64) -> Self {
+        Self {
+            low: self.low,
+            high: self.high + share / (1.0 - share) * (self.high - self.low),
+        }
+    }
 }
 
 impl Axis {

@@ -79,6 +79,14 @@ impl Canvas {
         ));
     }
 
+    /// Another drawing, moved.
+    pub fn place(&mut self, drawing: Self, (x, y): Point) {
+        self.element(format_args!(
+            "<g transform=\"translate({x} {y})\">\n{}</g>",
+            drawing.body
+        ));
+    }
+
     /// A level text.
     pub fn text(&mut self, text: Text<'_>) {
         self.turned_text(text, 0.0);

@@ -41,6 +41,27 @@ pub enum PlotError {
         /// Which sample.
         sample: usize,
     },
+    /// A map has more or fewer values than cells.
+    Cells {
+        /// The number of values along the horizontal axis.
+        columns: usize,
+        /// The number of values along the vertical axis.
+        rows: usize,
+        /// The number of values in the cells.
+        values: usize,
+    },
+    /// The values along an axis of a map do not ascend, or one has no place on it.
+    Grid {
+        /// The name of the quantity along the axis.
+        axis: String,
+        /// Which value.
+        index: usize,
+    },
+    /// The picture could not be encoded.
+    Encoding {
+        /// What the encoder says.
+        reason: String,
+    },
 }
 
 impl fmt::Display for PlotError {
@@ -71,6 +92,20 @@ impl fmt::Display for PlotError {
                 "the series `{series}` in panel {panel} of the figure: the abscissa of sample \
                  {sample} is not finite or smaller than the one before"
             ),
+            Self::Cells {
+                columns,
+                rows,
+                values,
+            } => write!(
+                f,
+                "the map has {values} values for {columns} columns and {rows} rows"
+            ),
+            Self::Grid { axis, index } => write!(
+                f,
+                "the values of `{axis}` along an axis of the map: value {index} is not above \
+                 the one before, or has no place on the axis"
+            ),
+            Self::Encoding { reason } => write!(f, "the picture could not be encoded: {reason}"),
         }
     }
 }

@@ -7,7 +7,7 @@ use super::figure::{Panel, Series};
 use super::lettering::{fitted, width};
 use super::quantity::Quantity;
 
-/// The width of every figure, px.
+/// The width of a figure of stacked panels, px.
 pub(super) const WIDTH: f64 = 900.0;
 /// Font sizes, px.
 pub(super) const TICK_SIZE: f64 = 14.0;
@@ -32,6 +32,39 @@ pub(super) struct Abscissa {
     pub symbol: &'static str,
     pub unit: &'static str,
     pub scale: Scale,
+}
+
+/// How large frames are and about how many ticks they have room for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Format {
+    /// The width of the whole, px.
+    pub width: f64,
+    /// The height of a frame, px.
+    pub frame: f64,
+    /// Ticks along and up.
+    pub ticks: (usize, usize),
+    /// What is left free at least to the left and to the right of the frame, px.
+    pub margins: (f64, f64),
+    /// The share of a frame's height that is left free at its top for the names of marks.
+    pub headroom: f64,
+}
+
+impl Format {
+    /// That of so many panels stacked over one axis.
+    pub fn stacked(panels: usize) -> Self {
+        let (frame, up) = match panels {
+            1 => (300.0, 7),
+            2 => (200.0, 6),
+            _ => (150.0, 5),
+        };
+        Self {
+            width: WIDTH,
+            frame,
+            ticks: (8, up),
+            margins: (0.0, 22.0),
+            headroom: 0.0,
+        }
+    }
 }
 
 /// Where a figure's parts are, px.
@@ -68,15 +101,23 @@ struct Ordinate {
 
 impl Layout {
     /// Places checked panels.
-    pub fn new(panels: &[Panel<'_>], abscissa: &Abscissa, scale: Scale) -> Result<Self, PlotError> {
-        let (frame, marks) = frame(panels.len());
+    pub fn new(
+        panels: &[Panel<'_>],
+        abscissa: &Abscissa,
+        scale: Scale,
+        format: Format,
+    ) -> Result<Self, PlotError> {
+        let (along, up) = (format.ticks.0, (format.ticks.1, format.headroom));
         let ordinates = panels
             .iter()
             .enumerate()
-            .map(|(index, panel)| Ordinate::new(index, panel, (abscissa.scale, scale), marks))
+            .map(|(index, panel)| Ordinate::new(index, panel, (abscissa.scale, scale), up))
             .collect::<Result<Vec<_>, _>>()?;
         let (range, quantity) = shared_range(panels, abscissa);
-        let edges = (left_edge(&ordinates), right_edge(panels));
+        let edges = (
+            left_edge(&ordinates, format.margins.0),
+            right_edge(panels, format),
+        );
         let axis = Axis {
             scale: abscissa.scale,
             range,
@@ -85,7 +126,7 @@ impl Layout {
         let mut top = 6.0;
         let mut places = Vec::with_capacity(panels.len());
         for (panel, ordinate) in panels.iter().zip(ordinates) {
-            let place = Place::new(panel, ordinate, scale, (top, frame), edges);
+            let place = Place::new(panel, ordinate, scale, (top, format.frame), edges);
             top = place.ordinate.pixels.0 + 16.0;
             places.push(place);
         }
@@ -94,7 +135,7 @@ impl Layout {
         Ok(Self {
             abscissa: axis,
             abscissa_quantity: quantity,
-            abscissa_ticks: ticks(abscissa.scale, range, 8),
+            abscissa_ticks: ticks(abscissa.scale, range, along),
             places,
             height: (top + 40.0).ceil(),
             column: (span * COLUMN_CHARACTERS * curves as f64 / CURVE_CHARACTERS).max(1.0),
@@ -103,12 +144,13 @@ impl Layout {
 }
 
 impl Ordinate {
-    /// The vertical axis of a panel, given both scales and how many ticks there may be.
+    /// The vertical axis of a panel, given both scales, how many ticks there may be, and the
+    /// share that is left free at the top.
     fn new(
         index: usize,
         panel: &Panel<'_>,
         (along, scale): (Scale, Scale),
-        marks: usize,
+        (marks, headroom): (usize, f64),
     ) -> Result<Self, PlotError> {
         for series in &panel.series {
             if drawable_values(series, along, scale).next().is_none() {
@@ -139,7 +181,7 @@ impl Ordinate {
                 low: 0.0,
                 high: 1.0,
             },
-            |range| range.opened().padded(0.05),
+            |range| range.opened().padded(0.05).raised(headroom),
         );
         Ok(Self {
             range,
@@ -216,34 +258,25 @@ fn shared_range(panels: &[Panel<'_>], abscissa: &Abscissa) -> (Range, Quantity) 
     (range.opened(), quantity)
 }
 
-fn left_edge(ordinates: &[Ordinate]) -> f64 {
+fn left_edge(ordinates: &[Ordinate], least: f64) -> f64 {
     let labels = ordinates.iter().flat_map(|ordinate| &ordinate.ticks);
     let widest = labels
         .map(|tick| width(&tick.label, TICK_SIZE))
         .fold(0.0, f64::max);
-    LEFT_OF_TICKS + widest
+    (LEFT_OF_TICKS + widest).max(least)
 }
 
-fn right_edge(panels: &[Panel<'_>]) -> f64 {
+fn right_edge(panels: &[Panel<'_>], format: Format) -> f64 {
     let references = panels.iter().flat_map(|panel| &panel.references);
     let widest = references
         .map(|reference| width(&reference_label(&reference.label), TICK_SIZE))
         .fold(0.0, f64::max);
-    WIDTH - (widest + 10.0).max(22.0)
+    format.width - (widest + 10.0).max(format.margins.1)
 }
 
 /// A reference line's label as it is drawn.
 pub(super) fn reference_label(label: &str) -> String {
     fitted(label, TICK_SIZE, LARGEST_REFERENCE_LABEL)
-}
-
-/// The height of a frame, and about how many ticks it has room for.
-fn frame(panels: usize) -> (f64, usize) {
-    match panels {
-        1 => (300.0, 7),
-        2 => (200.0, 6),
-        _ => (150.0, 5),
-    }
 }
 
 /// The legend's entries in rows below `top`.

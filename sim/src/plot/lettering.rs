@@ -6,7 +6,7 @@ use super::symbol::Symbol;
 /// The width of a character in units of the font size: that of a digit in a wide sans serif.
 const CHARACTER: f64 = 0.62;
 /// The share of the font size at which subscripts are set.
-const SUBSCRIPT: f64 = 0.8;
+pub(super) const SUBSCRIPT: f64 = 0.8;
 
 /// The width of a text, in pixels.
 pub(super) fn width(text: &str, size: f64) -> f64 {
@@ -72,14 +72,14 @@ pub(super) fn escaped(text: &str) -> String {
 }
 
 /// A stretch of text on one line.
-struct Run {
-    text: String,
-    lowered: bool,
+pub(super) struct Run {
+    pub text: String,
+    pub lowered: bool,
 }
 
 /// Text cut into words and what is between them; words that are names are cut into head and
 /// subscript.
-fn runs(text: &str) -> impl Iterator<Item = Run> {
+pub(super) fn runs(text: &str) -> impl Iterator<Item = Run> {
     let in_word = |c: char| c.is_alphanumeric() || c == '_';
     let mut rest = text;
     let mut pieces = Vec::new();

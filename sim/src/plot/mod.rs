@@ -1,10 +1,12 @@
-//! Figures as self-contained SVG: time histories and power spectra.
+//! Figures: time histories and power spectra as self-contained SVG, maps over parameters as
+//! PNG.
 //!
 //! A figure goes through these files: [`figure`] (what the caller states), `quantity` (SI
 //! prefixes and axis labels), `axis` (positions and ticks), `decimate` (many samples to few
 //! points), `layout` (where everything goes), `panel` (drawing it), `canvas` (SVG elements);
-//! [`symbol`] and `lettering` write names and text. What is drawn, and why, is the caller's
-//! business: nothing here knows of a model.
+//! [`symbol`] and `lettering` write names and text. [`mod@plate`] sets frames with axes of their
+//! own side by side. [`map`] has the pictures made of pixels.
+//! What is drawn, and why, is the caller's business: nothing here knows of a model.
 //!
 //! The SVG has no script, no style sheet, no identifiers and refers to nothing outside, so
 //! that it can stand in a page as often as wanted. It is written directly: plotting crates
@@ -17,7 +19,9 @@ mod error;
 pub mod figure;
 mod layout;
 mod lettering;
+pub mod map;
 mod panel;
+pub mod plate;
 mod quantity;
 pub mod symbol;
 
@@ -26,9 +30,11 @@ mod tests;
 
 pub use error::PlotError;
 pub use figure::{FrequencyAxis, Panel, Reference, Series, Spectrum, TimeHistory};
+pub use map::{map_png, scatter_png};
+pub use plate::{Axes, Frame, Plate, plate};
 
 use axis::Scale;
-use layout::{Abscissa, Layout};
+use layout::{Abscissa, Format, Layout};
 
 /// Draws quantities over time, the panels stacked over one time axis.
 ///
@@ -75,7 +81,7 @@ fn draw(
     ordinate: Scale,
 ) -> Result<String, PlotError> {
     error::check(panels)?;
-    let layout = Layout::new(panels, abscissa, ordinate)?;
+    let layout = Layout::new(panels, abscissa, ordinate, Format::stacked(panels.len()))?;
     let mut canvas = canvas::Canvas::default();
     for (panel, place) in panels.iter().zip(&layout.places) {
         panel::draw(&mut canvas, panel, place, &layout);

@@ -5,11 +5,11 @@ use super::axis::{Axis, Scale, Tick};
 use super::canvas::{Anchor, Canvas, Stroke, Text};
 use super::decimate::{Point, polylines};
 use super::error::is_drawable;
-use super::figure::{Panel, Series};
+use super::figure::{Panel, Reference, Series};
 use super::layout::{
     LABEL_SIZE, LEGEND_LINE, LEGEND_ROW, Layout, Place, TICK_SIZE, TITLE_SIZE, reference_label,
 };
-use super::lettering::fitted;
+use super::lettering::{fitted, width};
 
 /// Okabe and Ito's colours, told apart by colour-blind readers; without the yellow, which is
 /// too pale for thin lines.
@@ -25,6 +25,11 @@ const REFERENCE: Stroke = Stroke {
     colour: "#6a6a6a",
     width: 1.1,
     dashes: "6 4",
+};
+const MARK: Stroke = Stroke {
+    colour: "#8a8a8a",
+    width: 0.9,
+    dashes: "2 3",
 };
 
 const fn full(colour: &'static str, width: f64) -> Stroke {
@@ -45,6 +50,34 @@ pub(super) fn draw(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
     }
     draw_frame(canvas, place, layout);
     draw_text(canvas, panel, place, layout);
+}
+
+/// Draws upright lines with their names beside them at the top, where there is room.
+pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place, layout: &Layout) {
+    let axis = &layout.abscissa;
+    let (bottom, top) = place.ordinate.pixels;
+    let mut free_from = f64::NEG_INFINITY;
+    for mark in marks.iter().filter(|mark| is_drawable(mark.value)) {
+        let along = axis
+            .scale
+            .place(mark.value / layout.abscissa_quantity.scale);
+        if !(axis.range.low..=axis.range.high).contains(&along) {
+            continue;
+        }
+        let x = axis.pixel(along);
+        canvas.segments(&[((x, bottom), (x, top))], MARK);
+        if x < free_from {
+            continue;
+        }
+        free_from = x + width(&mark.label, TICK_SIZE) + 6.0;
+        canvas.text(Text {
+            text: &mark.label,
+            at: (x + 3.0, top + TICK_SIZE),
+            size: TICK_SIZE,
+            anchor: Anchor::Start,
+            bold: false,
+        });
+    }
 }
 
 /// Draws the labels of the axis that all panels share, below the last of them.

@@ -37,8 +37,8 @@ const GREEK: [(&str, &str); 24] = [
     ("betal", "βl"),
 ];
 
-const DOT_ABOVE: char = '\u{307}';
-const TWO_DOTS_ABOVE: char = '\u{308}';
+pub(super) const DOT_ABOVE: char = '\u{307}';
+pub(super) const TWO_DOTS_ABOVE: char = '\u{308}';
 
 impl Symbol {
     /// The parts of an identifier: what follows the first underscore is a subscript, with

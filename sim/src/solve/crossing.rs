@@ -6,18 +6,18 @@
 //! short to carry an error, whatever side its trial states are on.
 
 use super::error::SolveError;
-use super::stepper::{Point, single_step};
+use super::stepper::Stepper;
 use super::system::System;
 use super::watch::Watched;
 
 /// How much of an approach is left, relative to its length, before the next one begins.
-const REMAINDER: f64 = 1e-4;
+const REMAINDER: f64 = 1e-3;
 
 /// The step over the surface, relative to the step that ran into it. A jump of the rates
 /// that changes the state by as much as itself within that step leaves this error.
 const OVER: f64 = 1e-13;
 
-/// Trial steps in one approach; bisection alone needs 14.
+/// Trial steps in one approach; bisection alone needs 10.
 const MAX_TRIALS: u64 = 60;
 
 /// What a search between a start and a step beyond the surface found.
@@ -26,6 +26,8 @@ pub struct Approach {
     pub length: f64,
     /// How far beyond it the surface may lie, s.
     pub rest: f64,
+    /// The switching functions there; none if they are not known.
+    pub beyond: Vec<f64>,
     /// The trial steps made.
     pub trials: u64,
 }
@@ -35,26 +37,28 @@ pub fn over(length: f64) -> f64 {
     length * OVER
 }
 
-/// Searches the longest step from `start` that stays on the near side of all surfaces,
-/// given that one of `length` s does not.
-pub fn approach<S: System + ?Sized>(
+/// Searches the longest step from where `stepper` stands that stays on the near side of
+/// all surfaces, given that one of `length` s does not.
+pub fn approach<S: System + ?Sized, M: Stepper>(
     watched: &Watched<'_, S>,
-    start: &Point,
+    stepper: &mut M,
     length: f64,
+    beyond: Vec<f64>,
 ) -> Result<Approach, SolveError> {
+    let start = stepper.here();
     let mut near = End {
         at: 0.0,
         guards: watched.guards_at(start.t, &start.y),
     };
     let mut far = End {
         at: length,
-        guards: Vec::new(),
+        guards: beyond,
     };
     let mut trials = 0;
     while far.at - near.at > REMAINDER * length && trials < MAX_TRIALS {
         let at = next_trial(watched, &near, &far, trials, length);
         watched.reset();
-        let point = single_step(watched, start, at)?;
+        let point = stepper.trial(watched, at)?;
         trials += 1;
         let guards = watched.guards_at(point.t, &point.y);
         let end = if watched.crossed().is_some() {
@@ -67,6 +71,7 @@ pub fn approach<S: System + ?Sized>(
     Ok(Approach {
         length: near.at,
         rest: far.at - near.at,
+        beyond: far.guards,
         trials,
     })
 }

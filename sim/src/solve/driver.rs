@@ -2,11 +2,13 @@
 
 use std::collections::VecDeque;
 
+use super::adams::Adams;
 use super::crossing::{approach, over};
+use super::dormand_prince::{DormandPrince853, single_step};
 use super::error::SolveError;
 use super::request;
-use super::settings::Settings;
-use super::stepper::{Outcome, Point, Stepper, single_step};
+use super::settings::{Method, Settings};
+use super::stepper::{Outcome, Point, Stepper};
 use super::system::System;
 use super::trajectory::{Switch, Trajectory};
 use super::watch::Watched;
@@ -38,6 +40,22 @@ pub fn simulate<S: System + ?Sized>(
     progress: &mut dyn FnMut(f64),
 ) -> Result<Trajectory, SolveError> {
     request::check(system, initial, span, samples, settings)?;
+    let run = match settings.method {
+        Method::DormandPrince853 => run::<S, DormandPrince853>,
+        Method::Adams => run::<S, Adams>,
+    };
+    run(system, initial, span, samples, settings, progress)
+}
+
+/// The simulation with one method.
+fn run<S: System + ?Sized, M: Stepper>(
+    system: &S,
+    initial: &[f64],
+    span: (f64, f64),
+    samples: &[f64],
+    settings: &Settings,
+    progress: &mut dyn FnMut(f64),
+) -> Result<Trajectory, SolveError> {
     let start = Point {
         t: span.0,
         y: initial.to_vec(),
@@ -46,7 +64,7 @@ pub fn simulate<S: System + ?Sized>(
     let step = FIRST_STEP * (span.1 - span.0);
     let mut driver = Driver {
         watched: &watched,
-        stepper: Stepper::new(start, step, settings.tolerance),
+        stepper: M::new(start, step, settings.tolerance),
         settings,
         samples,
         end: span.1,
@@ -62,9 +80,9 @@ pub fn simulate<S: System + ?Sized>(
 }
 
 /// A simulation under way.
-struct Driver<'a, S: System + ?Sized> {
+struct Driver<'a, S: System + ?Sized, M: Stepper> {
     watched: &'a Watched<'a, S>,
-    stepper: Stepper,
+    stepper: M,
     settings: &'a Settings,
     samples: &'a [f64],
     end: f64,
@@ -72,13 +90,11 @@ struct Driver<'a, S: System + ?Sized> {
     trajectory: Trajectory,
 }
 
-impl<S: System + ?Sized> Driver<'_, S> {
+impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// One accepted step, or the way to and over a switching surface.
     fn advance(&mut self, system: &S) -> Result<(), SolveError> {
-        let start = self.stepper.here().clone();
-        let next = system
-            .next_breakpoint(start.t)
-            .filter(|next| *next > start.t);
+        let begin = self.stepper.here().t;
+        let next = system.next_breakpoint(begin).filter(|next| *next > begin);
         let until = next.map_or(self.end, |next| next.min(self.end));
         self.watched.see_until(next.unwrap_or(f64::INFINITY));
         loop {
@@ -87,11 +103,13 @@ impl<S: System + ?Sized> Driver<'_, S> {
             if self.watched.crossed().is_some() {
                 // Also when the error refused the step: it is the surface that makes it
                 // large, and ever shorter steps would creep towards it.
-                self.stepper.restart(start, outcome.length);
+                if outcome.is_accepted {
+                    self.stepper.take_back();
+                }
                 return self.cross(outcome.length);
             }
             if outcome.is_accepted {
-                return self.accept(&start);
+                return self.accept(begin);
             }
         }
     }
@@ -110,18 +128,20 @@ impl<S: System + ?Sized> Driver<'_, S> {
     /// Goes to the surface that may lie within `length` of here, and over it.
     fn cross(&mut self, length: f64) -> Result<(), SolveError> {
         let mut window = length;
+        let mut beyond = Vec::new();
         while window > over(length) {
-            let start = self.stepper.here().clone();
-            let found = approach(self.watched, &start, window)?;
+            let begin = self.stepper.here().t;
+            let found = approach(self.watched, &mut self.stepper, window, beyond)?;
             self.trajectory.work.trials += found.trials;
             window = found.rest;
+            beyond = found.beyond;
             if found.length > 0.0 {
-                self.stepper.restart(start.clone(), found.length);
+                self.stepper.set_step(found.length);
                 if !self.controlled_step(f64::INFINITY)?.is_accepted {
                     // Not the surface alone: shorter steps, and then again.
                     return Ok(());
                 }
-                self.accept(&start)?;
+                self.accept(begin)?;
             }
         }
         self.step_over(window.max(over(length)), length)
@@ -132,10 +152,15 @@ impl<S: System + ?Sized> Driver<'_, S> {
     fn step_over(&mut self, mut window: f64, length: f64) -> Result<(), SolveError> {
         let start = self.stepper.here().clone();
         while window < length {
-            let point = self.trial(&start, window)?;
+            self.check_steps()?;
+            self.trajectory.work.trials += 1;
+            self.watched.reset();
+            // By Runge-Kutta for every method: what a multistep method remembers holds
+            // on the near side only.
+            let point = single_step(self.watched, &start, window)?;
             if self.is_beyond(&point) {
                 self.stepper.restart(point, length);
-                return self.accept(&start);
+                return self.accept(start.t);
             }
             window *= 4.0;
         }
@@ -150,19 +175,19 @@ impl<S: System + ?Sized> Driver<'_, S> {
         (guards.iter().enumerate()).any(|(guard, value)| self.watched.is_beyond(guard, *value))
     }
 
-    /// The point a step of exactly `length` s leads to.
-    fn trial(&mut self, start: &Point, length: f64) -> Result<Point, SolveError> {
+    /// The state at `t` (s), which lies inside the last step.
+    fn inside(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
         self.check_steps()?;
         self.trajectory.work.trials += 1;
         self.watched.reset();
-        single_step(self.watched, start, length)
+        self.stepper.inside(self.watched, t)
     }
 
-    /// Samples between `start` and here, and enters the regime found here.
-    fn accept(&mut self, start: &Point) -> Result<(), SolveError> {
+    /// Samples from `begin` (s) to here, and enters the regime found here.
+    fn accept(&mut self, begin: f64) -> Result<(), SolveError> {
         let here = self.stepper.here();
         if let Some(state) = here.y.iter().position(|y| !y.is_finite()) {
-            return Err(SolveError::NotFinite { t: start.t, state });
+            return Err(SolveError::NotFinite { t: begin, state });
         }
         self.trajectory.work.steps += 1;
         let t = here.t;
@@ -171,7 +196,7 @@ impl<S: System + ?Sized> Driver<'_, S> {
                 break;
             }
             let state = if sample < t {
-                self.trial(start, sample - start.t)?.y
+                self.inside(sample)?
             } else {
                 self.stepper.here().y.clone()
             };
@@ -199,7 +224,7 @@ impl<S: System + ?Sized> Driver<'_, S> {
 }
 
 /// Limits, samples at the start and the end.
-impl<S: System + ?Sized> Driver<'_, S> {
+impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     /// Whether the next step would still move the time; if not, what the last trial ran
     /// into says why.
     fn check_step_size(&self) -> Result<(), SolveError> {

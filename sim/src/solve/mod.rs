@@ -1,16 +1,20 @@
 //! A general solver for y' = f(t, y) with switching surfaces.
 //!
 //! The pipeline: a [`System`] is evaluated under `watch`, which notices when a trial
-//! leaves the regime the step began in; `stepper` makes single steps of the
-//! Dormand-Prince method of order 8; `crossing` approaches a switching surface by
-//! steps that stay on one side and then steps over it; `driver` strings these together
-//! into a [`Trajectory`]. A step therefore never averages over a kink or a jump of the
-//! right-hand side, which is what ruins the order of a method applied blindly.
+//! leaves the regime the step began in; a `stepper` makes single steps, those of the
+//! Dormand-Prince method of order 8 (`dormand_prince`) or of Adams' method of variable
+//! order (`adams`, of `attempt`s that continue a `history`); `crossing` approaches a switching
+//! surface by steps that stay on one side and then steps over it; `driver` strings these
+//! together into a [`Trajectory`]. A step therefore never averages over a kink or a jump
+//! of the right-hand side, which is what ruins the order of a method applied blindly.
 //!
-//! The steps come from the crate `differential-equations`. Its interpolation between
-//! steps is not used: in version 0.7 that of its DOP853 is of order 4 instead of 7, and
-//! the tables of its Verner methods carry eleven digits. A state inside a step is
+//! The Runge-Kutta steps come from the crate `differential-equations`. Its interpolation
+//! between steps is not used: in version 0.7 that of its DOP853 is of order 4 instead of
+//! 7, and the tables of its Verner methods carry eleven digits. A state inside a step is
 //! computed instead by one shorter step from the same start, which has the full order.
+//! Its predictor-corrector method is no multistep method of variable step: it replaces
+//! its memory by three Runge-Kutta steps after every step, without control of their
+//! error, so Adams' method is written here.
 //!
 //! # Tolerance
 //!
@@ -21,9 +25,14 @@
 //! of digits. While a component has not moved yet its largest magnitude counts as
 //! [`SMALLEST_MAGNITUDE`].
 
+mod adams;
+mod attempt;
 mod crossing;
+mod dormand_prince;
 mod driver;
 mod error;
+mod history;
+mod magnitudes;
 mod request;
 mod settings;
 mod stepper;
@@ -33,6 +42,6 @@ mod watch;
 
 pub use driver::simulate;
 pub use error::SolveError;
-pub use settings::{SMALLEST_MAGNITUDE, Settings};
+pub use settings::{Method, SMALLEST_MAGNITUDE, Settings};
 pub use system::System;
 pub use trajectory::{Switch, Trajectory, Work};

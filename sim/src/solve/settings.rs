@@ -9,9 +9,22 @@ pub(super) const TIGHTEST_TOLERANCE: f64 = 1e-14;
 /// The loosest tolerance that still means something.
 pub(super) const LOOSEST_TOLERANCE: f64 = 1e-1;
 
-/// Accuracy and limits of a simulation.
+/// How to step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Runge-Kutta steps of order 8 by Dormand and Prince.
+    #[default]
+    DormandPrince853,
+    /// The multistep method of Adams with variable order, which begins anew behind every
+    /// switching surface.
+    Adams,
+}
+
+/// Method, accuracy and limits of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
+    /// How to step.
+    pub method: Method,
     /// Relative error of one step, 1e-14 to 0.1; see the module's page.
     pub tolerance: f64,
     /// Give up after this many steps, rejected ones and those towards a switching
@@ -35,6 +48,7 @@ impl Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
+            method: Method::default(),
             tolerance: 1e-9,
             max_steps: 20_000_000,
             max_switch_rate: 1e6,

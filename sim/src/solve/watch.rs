@@ -65,6 +65,19 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         self.evaluations.get()
     }
 
+    /// Notices if a trial state lies on another side of a surface, without its rates.
+    pub fn look(&self, t: f64, y: &[f64]) {
+        let mut guards = self.guards.borrow_mut();
+        if guards.is_empty() || self.crossed.get().is_some() {
+            return;
+        }
+        self.system.guards(t, y, &mut guards);
+        let regime = self.regime.borrow();
+        let mut sides = guards.iter().zip(regime.iter());
+        self.crossed
+            .set(sides.position(|(guard, side)| side * guard < 0.0));
+    }
+
     /// The switching functions at `t` and `y`.
     pub fn guards_at(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut guards = vec![0.0; self.system.guard_count()];
@@ -116,14 +129,6 @@ impl<S: System + ?Sized> ODE<f64, Vec<f64>> for Watched<'_, S> {
         if let Some(state) = out.iter().position(|rate| !rate.is_finite()) {
             self.not_finite.set(Some(state));
         }
-        let mut guards = self.guards.borrow_mut();
-        if guards.is_empty() || self.crossed.get().is_some() {
-            return;
-        }
-        self.system.guards(t, y, &mut guards);
-        let regime = self.regime.borrow();
-        let mut sides = guards.iter().zip(regime.iter());
-        self.crossed
-            .set(sides.position(|(guard, side)| side * guard < 0.0));
+        self.look(t, y);
     }
 }

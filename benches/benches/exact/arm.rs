@@ -1,0 +1,145 @@
+//! The arm at S = 4 as the general solvers see it: the generated equations with their
+//! switching surfaces, and the same motion in variables that make the right-hand side
+//! continuous. No solver is called here.
+
+use generated::planetary_arm_order_4 as g;
+use sim::solve::System;
+
+/// Numbers in the state: x_sp, x_pr, x_c, q_1 .. q_4 (m), then their rates (m/s).
+pub const STATES: usize = g::STATES;
+
+const DEGREES: usize = STATES / 2;
+
+/// The generated equations, with both ends of either play as switching surfaces.
+pub struct Located {
+    coefficients: g::Coefficients,
+}
+
+impl Located {
+    /// The reference case: the specification's own parameters.
+    pub fn new() -> Self {
+        Self {
+            coefficients: g::Coefficients::prepare(&g::Parameters::default()),
+        }
+    }
+}
+
+impl System for Located {
+    fn states(&self) -> usize {
+        STATES
+    }
+
+    fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        if let Some(state) = y.first_chunk() {
+            let inputs = g::Inputs::default();
+            out.copy_from_slice(&g::rates(t, state, &inputs, &self.coefficients));
+        }
+    }
+
+    fn guard_count(&self) -> usize {
+        4
+    }
+
+    fn guards(&self, _t: f64, y: &[f64], out: &mut [f64]) {
+        let (sp, pr) = (self.coefficients.b_sp, self.coefficients.b_pr);
+        out.copy_from_slice(&[y[0] - sp, y[0] + sp, y[1] - pr, y[1] + pr]);
+    }
+}
+
+/// One row of accelerations, padded to whole lanes.
+type Lanes = [f64; DEGREES + 1];
+
+/// The equations in momentum-like variables.
+///
+/// The damping force of a mesh is c times the rate of its compression, so with
+/// u = q' + d_sp psi(x_sp) + d_pr psi(x_pr), where psi(x) is the compression and -d the
+/// accelerations by unit rates of compression, u' is the acceleration without mesh damping:
+/// continuous where a mesh opens or closes, which the acceleration is not.
+pub struct Momentum {
+    half_width: [f64; 2],
+    /// d_sp and d_pr, 1/s.
+    damping: [Lanes; 2],
+    /// Accelerations by unit compression of either mesh, 1/s^2.
+    stiffness: [Lanes; 2],
+    /// Accelerations by unit deflection of each mode, 1/s^2.
+    modes: [Lanes; 4],
+    /// The motor's constant part and the amplitude of its ripple on x_sp'', m/s^2.
+    motor: [f64; 2],
+    /// The motor's fall with x_sp' + x_pr' + 2 x_c', 1/s.
+    fall: f64,
+    /// Angular frequency of the ripple, rad/s.
+    omega: f64,
+}
+
+impl Momentum {
+    /// The reference case. The coefficients are read off the generated equations, which
+    /// are linear where the meshes stay on one side.
+    pub fn new() -> Self {
+        let damped = g::Parameters::default();
+        let undamped = g::Parameters {
+            c_sp: 0.0,
+            c_pr: 0.0,
+            ..damped
+        };
+        let [damped_rows, rows] = [&damped, &undamped].map(g::Coefficients::prepare);
+        let half_width = [damped.b_sp, damped.b_pr];
+        let at = |coefficients: &g::Coefficients, t: f64, state: &[f64; STATES]| -> Lanes {
+            let rates = g::rates(t, state, &g::Inputs::default(), coefficients);
+            std::array::from_fn(|row| rates.get(DEGREES + row).copied().unwrap_or(0.0))
+        };
+        let still = at(&rows, 0.0, &[0.0; STATES]);
+        let unit = |place: usize, value: f64| -> Lanes {
+            let mut state = [0.0; STATES];
+            state[place] = value;
+            minus(&at(&rows, 0.0, &state), &still)
+        };
+        let quarter = std::f64::consts::FRAC_PI_2 / damped.omega;
+        Self {
+            half_width,
+            damping: [0, 1].map(|mesh| {
+                let mut closed = [0.0; STATES];
+                closed[mesh] = 2.0 * half_width[mesh];
+                closed[DEGREES + mesh] = 1.0;
+                minus(&at(&rows, 0.0, &closed), &at(&damped_rows, 0.0, &closed))
+            }),
+            stiffness: [0, 1].map(|mesh| unit(mesh, half_width[mesh] + 1.0)),
+            modes: [3, 4, 5, 6].map(|mode| unit(mode, 1.0)),
+            motor: [still[0], at(&rows, quarter, &[0.0; STATES])[0] - still[0]],
+            fall: unit(DEGREES, 1.0)[0],
+            omega: damped.omega,
+        }
+    }
+
+    /// The rates of x_sp, x_pr, x_c, q_1 .. q_4 (m) and their u (m/s).
+    #[inline]
+    pub fn rates(&self, t: f64, y: &[f64; STATES]) -> [f64; STATES] {
+        let sp = compression(y[0], self.half_width[0]);
+        let pr = compression(y[1], self.half_width[1]);
+        let mut rates = [0.0; STATES];
+        for place in 0..DEGREES {
+            rates[place] =
+                y[DEGREES + place] - self.damping[0][place] * sp - self.damping[1][place] * pr;
+        }
+        let mut rows: Lanes =
+            std::array::from_fn(|row| self.stiffness[0][row] * sp + self.stiffness[1][row] * pr);
+        for (mode, column) in self.modes.iter().enumerate() {
+            for (row, factor) in rows.iter_mut().zip(column) {
+                *row += factor * y[3 + mode];
+            }
+        }
+        let ripple = self.motor[1] * (self.omega * t).sin();
+        let turning = rates[0] + rates[1] + 2.0 * rates[2];
+        rows[0] += self.motor[0] + ripple + self.fall * turning;
+        rates[DEGREES..].copy_from_slice(&rows[..DEGREES]);
+        rates
+    }
+}
+
+/// What remains of x outside the play, m.
+fn compression(x: f64, half_width: f64) -> f64 {
+    x - x.clamp(-half_width, half_width)
+}
+
+fn minus(a: &Lanes, b: &Lanes) -> Lanes {
+    std::array::from_fn(|row| a[row] - b[row])
+}

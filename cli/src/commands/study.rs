@@ -1,0 +1,75 @@
+//! `eomgen study`: the paper's numerical studies, each a folder of data and figures with
+//! `study.json`, which says what they are and what was measured.
+
+use std::path::Path;
+use std::sync::Mutex;
+
+use serde_json::Value;
+use sim::studies::{StudyError, order, report, responses};
+
+use crate::arguments::{Study, StudyName};
+use crate::output::{file_place, write_file};
+use crate::problem::{Outcome, Problem, say};
+use crate::progress::Bar;
+use crate::table::Table;
+
+/// Runs the command.
+pub fn run(options: &Study) -> Outcome {
+    let document_path = options.out.join("study.json");
+    file_place(&document_path)?;
+    let (name, make): (_, fn(responses::Progress<'_>) -> _) = match options.name {
+        StudyName::Order => ("order", order::order),
+        StudyName::Backlash => ("backlash", responses::backlash),
+        StudyName::Frequency => ("frequency", responses::frequency),
+        StudyName::Flexibility => ("flexibility", responses::flexibility),
+    };
+    let bar = Mutex::new(Bar::new("simulating and measuring", 100.0, "%"));
+    let found = make(&|share| {
+        // Another thread cannot have panicked; if it had, only the bar would stand still.
+        if let Ok(bar) = bar.lock() {
+            bar.set(100.0 * share);
+        }
+    });
+    drop(bar);
+    let (study, arm) = found.map_err(|error: StudyError| Problem::input(error.to_string()))?;
+    let document = study.document(name, arm.model());
+    write(&study, &options.out)?;
+    // Last, so that a folder with this file is whole.
+    let text = format!("{document:#}\n");
+    write_file(&document_path, text.as_bytes())?;
+    say(&if options.json {
+        text
+    } else {
+        summary(&study, &options.out)
+    })
+}
+
+fn write(study: &report::Study, out: &Path) -> Outcome {
+    for table in &study.tables {
+        let path = out.join(&table.file);
+        write_file(&path, &Table::of(&table.columns).encode(&path)?)?;
+    }
+    for figure in &study.figures {
+        write_file(&out.join(&figure.file), figure.svg.as_bytes())?;
+    }
+    Ok(())
+}
+
+/// What was found, a line for each case, and where the rest is.
+fn summary(study: &report::Study, out: &Path) -> String {
+    let text = |case: &Value, name: &str| case[name].as_str().unwrap_or_default().to_owned();
+    let mut lines: Vec<String> = study
+        .cases
+        .iter()
+        .map(|case| format!("{}  {}", text(case, "case"), text(case, "verdict")))
+        .collect();
+    let figures = study.figures.iter().map(|figure| figure.file.as_str());
+    let figures: Vec<&str> = figures.collect();
+    lines.push(format!(
+        "{}: {}, {} tables and study.json\n",
+        out.display(),
+        figures.join(", "),
+        study.tables.len()
+    ));
+    lines.join("\n")
+}

@@ -1,0 +1,203 @@
+//! `eomgen study-search`: the paper's claims at the assumed values and over plausible ranges
+//! of what the paper does not disclose.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+use sim::studies::StudyError;
+use sim::studies::arm::{Arm, Undisclosed};
+use sim::studies::case::Length;
+use sim::studies::claims::CLAIMS;
+use sim::studies::judge::Judgement;
+use sim::studies::search::{Found, Judged, Request, judge_all, orders, ranked, search};
+use sim::studies::sets::RANGES;
+use sim::studies::tally::{exclusive, histogram, share_with, shares};
+
+use crate::output::{file_place, write_file};
+use crate::problem::{Outcome, Problem, say};
+use crate::progress::Bar;
+
+/// How many of the best sets are judged again with longer runs, and how many sets around the
+/// best of these.
+const CONFIRMED: usize = 60;
+const NEIGHBOURS: usize = 32;
+
+/// How many sets `search.json` names.
+const NAMED: usize = 20;
+
+/// Runs the command: `sets` parameter sets of the sequence `seed`, into the folder `out`.
+pub fn run(out: &Path, sets: usize, seed: u64, as_json: bool) -> Outcome {
+    let (document, table) = (out.join("search.json"), out.join("search.csv"));
+    file_place(&document)?;
+    file_place(&table)?;
+    let arm = Arm::new(&orders()).map_err(refused)?;
+    let (_, assumed) = judge_all(&arm, Undisclosed::ASSUMED, &Length::FULL);
+    let request = Request {
+        sets,
+        seed,
+        confirmed: CONFIRMED,
+        neighbours: NEIGHBOURS,
+        screening: Length::SCREENING,
+        confirming: Length::CONFIRMING,
+    };
+    let bar = Bar::new(
+        "judging",
+        (sets + CONFIRMED.min(sets) + NEIGHBOURS) as f64,
+        "sets",
+    );
+    let found = search(&arm, &request, &out.join("parts"), &mut |done| {
+        bar.set(done as f64);
+    })
+    .map_err(refused)?;
+    drop(bar);
+    write_file(&table, csv(&found).as_bytes())?;
+    let report = report(&request, &assumed, &found);
+    write_file(&document, format!("{report:#}\n").as_bytes())?;
+    if as_json {
+        return say(&format!("{report:#}\n"));
+    }
+    say(&summary(&assumed, &found, out))
+}
+
+fn refused(error: StudyError) -> Problem {
+    Problem::input(error.to_string())
+}
+
+/// Every judged set, one column per claim: H holds, F fails, U undecided.
+fn csv(found: &Found) -> String {
+    let mut text = "stage,set,I,a_m,b_m,F_w,c,holding,strictly_holding".to_owned();
+    for claim in &CLAIMS {
+        text.push(',');
+        text.push_str(claim.id);
+    }
+    for claim in &CLAIMS {
+        text.push_str(",strict_");
+        text.push_str(claim.id);
+    }
+    text.push('\n');
+    let stages = [
+        ("screened", &found.screened),
+        ("confirmed", &found.confirmed),
+        ("neighbours", &found.neighbours),
+    ];
+    for (stage, sets) in stages {
+        for set in sets {
+            let u = set.undisclosed;
+            text.push_str(&format!(
+                "{stage},{},{:?},{:?},{:?},{:?},{:?},{},{}",
+                set.index,
+                u.second_moment,
+                u.a_m,
+                u.b_m,
+                u.f_w,
+                u.c,
+                set.holding(),
+                set.strictly_holding()
+            ));
+            for letter in set.verdicts.iter().chain(&set.strict) {
+                text.push(',');
+                text.push(*letter);
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
+
+fn report(request: &Request, assumed: &[Judgement], found: &Found) -> Value {
+    let best = found.confirmed.first();
+    let most = best.map_or(0, Judged::holding);
+    let claims: Vec<Value> = CLAIMS
+        .iter()
+        .zip(assumed)
+        .zip(shares(&found.screened))
+        .map(|((claim, judged), share)| {
+            json!({
+                "id": claim.id, "place": claim.place, "says": claim.says,
+                "rule": format!("{:?}", claim.rule),
+                "assumed": {
+                    "verdict": judged.holding.letter().to_string(),
+                    "strict": judged.strict.letter().to_string(),
+                    "evidence": judged.evidence,
+                },
+                "screened": {
+                    "holds": share.holds, "fails": share.fails,
+                    "holds_strictly": share.holds_strictly,
+                },
+            })
+        })
+        .collect();
+    let ranges = RANGES.iter().map(|range| {
+        json!({
+            "name": range.name, "unit": range.unit, "from": range.bounds.0,
+            "to": range.bounds.1, "reason": range.reason,
+        })
+    });
+    let pairs = exclusive(&found.screened);
+    json!({
+        "schema": "eomgen-search-1",
+        "sets": request.sets,
+        "seed": request.seed,
+        "ranges": ranges.collect::<Vec<_>>(),
+        "claims": claims,
+        "histogram": histogram(&found.screened),
+        "best_screened": ranked(&found.screened).into_iter().take(NAMED).map(named).collect::<Vec<_>>(),
+        "confirmed": found.confirmed.iter().take(NAMED).map(named).collect::<Vec<_>>(),
+        "neighbourhood": {
+            "sets": found.neighbours.len(),
+            "within": 0.1,
+            "keep_all": share_with(&found.neighbours, most),
+            "lose_at_most_one": share_with(&found.neighbours, most.saturating_sub(1)),
+            "lose_at_most_two": share_with(&found.neighbours, most.saturating_sub(2)),
+        },
+        "never_together": pairs.iter()
+            .map(|(one, other)| [CLAIMS[*one].id, CLAIMS[*other].id])
+            .collect::<Vec<_>>(),
+    })
+}
+
+fn named(set: &Judged) -> Value {
+    let u = set.undisclosed;
+    let with = |letter: char| -> Vec<&str> {
+        let verdicts = CLAIMS.iter().zip(&set.verdicts);
+        let found = verdicts.filter(|(_, verdict)| **verdict == letter);
+        found.map(|(claim, _)| claim.id).collect()
+    };
+    json!({
+        "set": set.index,
+        "I": u.second_moment, "a_m": u.a_m, "b_m": u.b_m, "F_w": u.f_w, "c": u.c,
+        "holding": set.holding(), "strictly_holding": set.strictly_holding(),
+        "fail": with('F'), "undecided": with('U'),
+    })
+}
+
+fn summary(assumed: &[Judgement], found: &Found, out: &Path) -> String {
+    let mut text = String::new();
+    for (claim, judged) in CLAIMS.iter().zip(assumed) {
+        let letter = judged.holding.letter();
+        text.push_str(&format!("{letter}  {:18} {}\n", claim.id, claim.says));
+    }
+    let count = |letter| {
+        assumed
+            .iter()
+            .filter(|j| j.holding.letter() == letter)
+            .count()
+    };
+    text.push_str(&format!(
+        "with the assumed values {} of {} claims hold, {} fail, {} are undecided\n",
+        count('H'),
+        CLAIMS.len(),
+        count('F'),
+        count('U')
+    ));
+    if let Some(best) = found.confirmed.first() {
+        text.push_str(&format!(
+            "at best {} hold at once, of {} sets: {:?}\n",
+            best.holding(),
+            found.screened.len(),
+            best.undisclosed
+        ));
+    }
+    text.push_str(&format!("{}\n", out.join("search.json").display()));
+    text
+}

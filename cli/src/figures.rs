@@ -1,0 +1,171 @@
+//! The pictures of a finished sweep: a map over two axes, a diagram over one.
+
+use model_spec::unit::Unit;
+use sim::plot::map::{Coordinate, Map, Scatter, Shades};
+use sim::plot::{PlotError, map_png, scatter_png};
+use sim::sweep::{Column, Description, Job, Table};
+
+/// A picture of each measure as PNG, with the measure's name; none where not one or two
+/// axes have several values.
+pub fn draw(job: &Job, table: &Table) -> Vec<(String, Result<Vec<u8>, PlotError>)> {
+    let axes = job.grid().axes();
+    let wide: Vec<usize> = (0..axes.len())
+        .filter(|axis| axes.get(*axis).is_some_and(|axis| axis.count > 1))
+        .collect();
+    let picture = |measure: &Description| match wide[..] {
+        [along] => diagram(job, table, along, measure),
+        [along, up] => map(job, table, (along, up), measure),
+        _ => None,
+    };
+    let measures = job.plan().measures.iter();
+    measures
+        .filter_map(|measure| Some((measure.name.clone(), picture(measure)?)))
+        .collect()
+}
+
+/// The first drawn column over the first axis, to the right, and the second, upwards.
+fn map(
+    job: &Job,
+    table: &Table,
+    (along, up): (usize, usize),
+    measure: &Description,
+) -> Option<Result<Vec<u8>, PlotError>> {
+    let drawn = measure.drawn.first()?;
+    let column = measure
+        .columns
+        .iter()
+        .find(|column| column.name == *drawn)?;
+    let (along, up) = (Line::of(job, along)?, Line::of(job, up)?);
+    let shown = Shown::new(column);
+    // The grid's last axis goes fastest; a map goes to the right first.
+    let numbers = table.column(drawn)?;
+    let rows = up.order.len();
+    let cells = up.order.iter().flat_map(|j| {
+        let row = along.order.iter().map(move |i| numbers.get(i * rows + j));
+        row.map(|number| number.map_or(f64::NAN, |number| shown.si(*number)))
+    });
+    let values: Vec<f64> = cells.collect();
+    let signed = values.iter().any(|value| *value < 0.0) && values.iter().any(|value| *value > 0.0);
+    Some(map_png(&Map {
+        title: title(job, &column.about),
+        horizontal: along.coordinate(),
+        vertical: up.coordinate(),
+        quantity: measure.quantity.clone(),
+        unit: shown.unit,
+        shades: if signed {
+            Shades::Signed
+        } else {
+            Shades::Sequential
+        },
+        values: &values,
+    }))
+}
+
+/// All drawn columns over the axis.
+fn diagram(
+    job: &Job,
+    table: &Table,
+    axis: usize,
+    measure: &Description,
+) -> Option<Result<Vec<u8>, PlotError>> {
+    let line = Line::of(job, axis)?;
+    let drawn = |column: &&Column| measure.drawn.contains(&column.name);
+    let columns: Vec<&Column> = measure.columns.iter().filter(drawn).collect();
+    let first = columns.first()?;
+    let shown = Shown::new(first);
+    let (mut abscissae, mut ordinates) = (Vec::new(), Vec::new());
+    for column in &columns {
+        let numbers = table.column(&column.name)?;
+        for (value, point) in line.values.iter().zip(&line.order) {
+            abscissae.push(*value);
+            ordinates.push(
+                numbers
+                    .get(*point)
+                    .map_or(f64::NAN, |number| shown.si(*number)),
+            );
+        }
+    }
+    let horizontal = Coordinate {
+        values: &abscissae,
+        ..line.coordinate()
+    };
+    let vertical = Coordinate {
+        name: measure.quantity.clone(),
+        unit: shown.unit,
+        values: &ordinates,
+        ..Coordinate::default()
+    };
+    Some(scatter_png(&Scatter {
+        title: title(job, &first.about),
+        horizontal,
+        vertical,
+    }))
+}
+
+fn title(job: &Job, about: &str) -> String {
+    format!("{}: {about}", job.plan().model)
+}
+
+/// An axis as figures want it: ascending, in SI.
+struct Line {
+    name: String,
+    shown: Shown,
+    values: Vec<f64>,
+    /// The places of these values on the axis of the grid.
+    order: Vec<usize>,
+}
+
+impl Line {
+    fn of(job: &Job, axis: usize) -> Option<Self> {
+        let axis = job.grid().axes().get(axis)?;
+        let name = axis.names.first()?;
+        let mut parameters = job.plan().parameters.iter();
+        let shown = Shown::new(parameters.find(|column| column.name == *name)?);
+        let mut order: Vec<usize> = (0..axis.count).collect();
+        if axis.to < axis.from {
+            order.reverse();
+        }
+        Some(Self {
+            values: order
+                .iter()
+                .map(|place| shown.si(axis.value(*place)))
+                .collect(),
+            name: name.clone(),
+            shown,
+            order,
+        })
+    }
+
+    fn coordinate(&self) -> Coordinate<'_> {
+        Coordinate {
+            name: self.name.clone(),
+            unit: self.shown.unit.clone(),
+            values: &self.values,
+            ..Coordinate::default()
+        }
+    }
+}
+
+/// A column's unit in SI, which is what figures put prefixes on.
+struct Shown {
+    declared: Option<Unit>,
+    unit: String,
+}
+
+impl Shown {
+    fn new(column: &Column) -> Self {
+        let declared = Unit::parse(&column.unit).ok();
+        let unit = match &declared {
+            Some(unit) if !unit.is_coherent() => Unit::coherent(unit.dimension).text,
+            _ => column.unit.clone(),
+        };
+        let unit = if unit == "1" { String::new() } else { unit };
+        Self { declared, unit }
+    }
+
+    fn si(&self, value: f64) -> f64 {
+        self.declared
+            .as_ref()
+            .map_or(value, |unit| unit.to_si(value))
+    }
+}

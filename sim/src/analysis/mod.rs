@@ -1,0 +1,20 @@
+//! What kind of motion a sampled trajectory is: spectra, sections, exponents, tests for chaos.
+//!
+//! Pure functions of slices. Nothing here simulates, knows of a model, draws or writes files.
+//! [`spectrum`] estimates power spectral densities, [`zero_one`] tests a series for chaos,
+//! [`poincare`] describes a stroboscopic section, [`exponent`] averages logarithmic growth,
+//! and [`classify`] weighs these against each other by a stated rule. [`modes`] says which
+//! mode of a flexible body carries the motion.
+
+pub mod classify;
+mod error;
+pub mod exponent;
+pub mod modes;
+pub mod poincare;
+pub mod spectrum;
+pub mod zero_one;
+
+#[cfg(test)]
+mod maps;
+
+pub use error::AnalysisError;

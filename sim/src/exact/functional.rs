@@ -1,0 +1,174 @@
+//! A linear function of the motion within one regime, prepared so that its value and its
+//! derivatives by time cost a few products per mode, and the limits between which it stays
+//! while the regime lasts.
+
+use codegen::affine::system::AffineRows;
+use nalgebra::{Complex, DVector};
+
+use super::forced::factorial;
+use super::lanes::Lane;
+use super::regime::{Cluster, Modes, Polynomial};
+
+/// A function of state, inputs and sinusoids: coefficients as in [`AffineRows`].
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Linear {
+    pub state: DVector<f64>,
+    pub inputs: Vec<f64>,
+    pub sines: Vec<f64>,
+    pub cosines: Vec<f64>,
+    pub constant: f64,
+}
+
+impl Linear {
+    /// Row `row` of some functions.
+    pub fn row(rows: &AffineRows, row: usize) -> Self {
+        let part = |values: &[f64]| {
+            let width = values.len().checked_div(rows.rows).unwrap_or(0);
+            values[row * width..(row + 1) * width].to_vec()
+        };
+        Self {
+            state: DVector::from_vec(part(&rows.state)),
+            inputs: part(&rows.inputs),
+            sines: part(&rows.sines),
+            cosines: part(&rows.cosines),
+            constant: rows.constant[row],
+        }
+    }
+
+    /// The value at a state, with the sines and cosines of the phases.
+    pub fn value(&self, state: &[f64], inputs: &[f64], phases: &[Complex<f64>]) -> f64 {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let mut value = dot(self.state.as_slice(), state) + dot(&self.inputs, inputs);
+        for (place, phase) in phases.iter().enumerate() {
+            value += self.sines[place] * phase.im + self.cosines[place] * phase.re;
+        }
+        value + self.constant
+    }
+}
+
+/// What happens to a regime when a function reaches a limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Limits {
+    /// The switching group the function belongs to.
+    pub group: usize,
+    /// The regime lasts while the function is above.
+    pub low: f64,
+    /// The regime lasts while the function is below.
+    pub high: f64,
+}
+
+/// The factors of a mode in a function.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Weights {
+    /// Real parts in the derivatives of order 0 to 3.
+    pub re: Lane,
+    /// Imaginary parts.
+    pub im: Lane,
+    /// Magnitudes for the orders 0, 1 and 4.
+    pub size: Lane,
+}
+
+/// A function prepared for one regime.
+#[derive(Clone, Debug)]
+pub(super) struct Functional {
+    pub linear: Linear,
+    pub limits: Limits,
+    /// Each mode's factors.
+    pub weights: Vec<Weights>,
+    /// row N^k for each power, one after the other: the integrals' factors in a polynomial
+    /// of time.
+    pub powers: Vec<f64>,
+    /// For each phase and power the factor of I_k: beta + i gamma.
+    pub forced: Vec<Vec<Complex<f64>>>,
+    /// The value with the modes and integrals at zero, for unit constant and unit inputs.
+    pub offsets: Vec<f64>,
+    /// row columns N^k of each cluster.
+    pub cluster_powers: Vec<Vec<DVector<Complex<f64>>>>,
+}
+
+impl Functional {
+    /// Prepares a function for a regime with these parts.
+    pub fn new(
+        linear: Linear,
+        limits: Limits,
+        modes: &Modes,
+        integrals: &Polynomial,
+        clusters: &[Cluster],
+        steady: &[DVector<f64>],
+    ) -> Self {
+        let values: Vec<Complex<f64>> = (0..modes.count())
+            .map(|mode| {
+                let weight = modes.projection(mode, &linear.state);
+                match modes.phase[mode] {
+                    // beta sin + gamma cos = Re((gamma - i beta) exp(i theta)).
+                    Some(phase) => {
+                        weight + Complex::new(linear.cosines[phase], -linear.sines[phase])
+                    }
+                    None => weight,
+                }
+            })
+            .collect();
+        let powers = integrals.projections(&linear.state);
+        let forced = integrals.forced(&powers);
+        let powers = powers
+            .iter()
+            .flat_map(|power| power.iter().copied())
+            .collect();
+        let mut offsets = vec![linear.constant];
+        offsets.extend(&linear.inputs);
+        offsets.resize(steady.len(), 0.0);
+        for (offset, column) in offsets.iter_mut().zip(steady) {
+            *offset += linear.state.dot(column);
+        }
+        let cluster_powers = clusters
+            .iter()
+            .map(|c| c.projections(&linear.state))
+            .collect();
+        Self {
+            weights: weights(&values, modes),
+            linear,
+            limits,
+            powers,
+            forced,
+            offsets,
+            cluster_powers,
+        }
+    }
+
+    /// Whether the integrals have any part in it.
+    pub fn has_integrals(&self) -> bool {
+        !self.powers.is_empty()
+    }
+}
+
+/// The factors of all modes, given those in the value.
+fn weights(values: &[Complex<f64>], modes: &Modes) -> Vec<Weights> {
+    let of = |(mode, value): (usize, &Complex<f64>)| {
+        let factor = |order: u32| value * modes.rate[mode].powu(order);
+        let size = |order: i32| value.norm() * modes.magnitude[mode].powi(order);
+        let factors = [0, 1, 2, 3].map(factor);
+        Weights {
+            re: Lane::from(factors.map(|f| f.re)),
+            im: Lane::from(factors.map(|f| f.im)),
+            size: Lane::from([size(0), size(1), size(4), 0.0]),
+        }
+    };
+    values.iter().enumerate().map(of).collect()
+}
+
+/// tau^k / k! for k = 0 .. out.len() - 1.
+pub(super) fn monomials(tau: f64, out: &mut [f64]) {
+    let mut value = 1.0;
+    for (k, slot) in out.iter_mut().enumerate() {
+        *slot = value;
+        value *= tau / (k + 1) as f64;
+    }
+}
+
+/// T^k / k!, for a bound; 0 for a negative k.
+pub(super) fn monomial(time: f64, k: i32) -> f64 {
+    if k < 0 {
+        return 0.0;
+    }
+    time.powi(k) / factorial(k as usize)
+}

@@ -1,0 +1,87 @@
+//! Steps of fixed lengths, each half as long as the one before, with every mode's factor
+//! over each of them: during a search the modes advance by multiplications alone.
+
+use nalgebra::Complex;
+
+use super::lanes::Pairs;
+use super::regime::Modes;
+
+/// The longest step times the fastest rate.
+const LONGEST: f64 = 1024.0;
+
+/// The shortest step times the fastest rate.
+const SHORTEST: f64 = 1.0 / 65536.0;
+
+/// Modes that turn by more than this within a step are bounded by their amplitudes.
+const TURN: f64 = 2.5;
+
+/// A step of one length.
+#[derive(Clone, Debug)]
+pub(super) struct Rung {
+    /// Its length, s.
+    pub length: f64,
+    /// exp(rate length) of each mode.
+    pub factors: Pairs,
+    /// The largest growth of a mode within the step, at least 1.
+    pub growth: f64,
+    /// So many modes, the slowest ones, turn little within the step.
+    pub slow: usize,
+}
+
+/// So many steps at least, where no mode says how short they should be.
+const FEWEST: usize = 25;
+
+/// Steps from the longest to the shortest.
+#[derive(Clone, Debug)]
+pub(super) struct Ladder {
+    pub rungs: Vec<Rung>,
+    /// No step leads further from the start of a regime, s.
+    pub window: f64,
+}
+
+impl Ladder {
+    /// The longest step with this fastest rate, s.
+    pub fn longest(fastest: f64) -> f64 {
+        if fastest > 0.0 {
+            (LONGEST / fastest).min(1e6)
+        } else {
+            1.0
+        }
+    }
+
+    /// The steps for these modes.
+    pub fn new(modes: &Modes, window: f64, fastest: f64) -> Self {
+        // A power of two: sums of steps are then exact.
+        let mut length = window.log2().floor().exp2();
+        let mut rungs = Vec::new();
+        while rungs.len() < FEWEST || (length * fastest > SHORTEST && rungs.len() < 80) {
+            rungs.push(Rung::new(modes, length));
+            length *= 0.5;
+        }
+        Self { rungs, window }
+    }
+}
+
+impl Rung {
+    fn new(modes: &Modes, length: f64) -> Self {
+        let factors: Vec<Complex<f64>> = modes
+            .rate
+            .iter()
+            .map(|rate| (rate * length).exp())
+            .collect();
+        let growth = modes
+            .rate
+            .iter()
+            .map(|rate| (rate.re * length).exp())
+            .fold(1.0, f64::max);
+        let slow = modes
+            .magnitude
+            .partition_point(|rate| rate * length <= TURN);
+        Self {
+            length,
+            factors: Pairs::of(&factors),
+            growth,
+            slow,
+        }
+    }
+}

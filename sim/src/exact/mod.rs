@@ -1,0 +1,42 @@
+//! Exact simulation of models that are linear between their switching surfaces.
+//!
+//! Within a regime the motion is a sum of exponentials, a polynomial and the response to
+//! constant and sinusoidal forces; it is stepped from switch to switch with no error but
+//! rounding. The pipeline, one file each: [`model`] (what can be propagated), `groups`
+//! (parallel switching surfaces), `sliding` (motion held on them), `schur`, `blocks` and
+//! `decomposition` (a regime's matrix by parts that move by themselves), `regime`,
+//! `functional` and `ladder` (prepared for stepping), `lanes` (sums side by side), `forced`
+//! (forced polynomials), `flow` and `cluster_flow` (the motion in a regime), `search` (the next switch, which cannot be missed), `clock`,
+//! [`propagator`] (from switch to switch), `simulate` (samples); for neighbouring motions
+//! `saltation`, `tangent`, [`lyapunov`] and [`sensitivity`].
+//!
+//! What is not linear between switches belongs to [`crate::solve`].
+
+mod blocks;
+mod clock;
+mod cluster_flow;
+mod decomposition;
+pub mod error;
+mod flow;
+mod forced;
+mod functional;
+mod groups;
+mod ladder;
+mod lanes;
+pub mod lyapunov;
+pub mod model;
+pub mod propagator;
+mod regime;
+mod saltation;
+mod schur;
+mod search;
+pub mod sensitivity;
+mod simulate;
+mod sliding;
+mod tangent;
+
+pub use error::ExactError;
+pub use lyapunov::{Growth, Lyapunov};
+pub use model::PiecewiseLinear;
+pub use propagator::{Motion, Propagator};
+pub use sensitivity::{By, Sensitivities};

@@ -1,0 +1,98 @@
+//! Which models can be propagated exactly, and what is derived once for all parameters.
+
+use codegen::affine::affine;
+use codegen::affine::system::{AffineEvaluator, AffineProgram};
+use codegen::equations::derive;
+use codegen::lower::lower_affine;
+use model_spec::model::{Model, ParameterValue};
+
+use super::error::ExactError;
+use super::propagator::Propagator;
+
+/// A model that is linear between its switching surfaces, at one order: the coefficients of
+/// its equations as a program of the parameters. It may be shared between threads; each
+/// makes its own [`Propagator`]s from it.
+pub struct PiecewiseLinear {
+    program: AffineProgram,
+    /// Names of the guards' formulas are the caller's business; these are the parameters'.
+    independent: Vec<String>,
+}
+
+impl PiecewiseLinear {
+    /// Derives the coefficients of a model with fields of these orders.
+    ///
+    /// # Errors
+    /// If the model is not linear between its switching surfaces, or cannot be derived.
+    pub fn of(model: &Model, orders: &[usize]) -> Result<Self, ExactError> {
+        let equations =
+            derive(model, orders).map_err(|error| ExactError::Model(error.message.clone()))?;
+        let notation = codegen::print::Notation::text(model);
+        // The node in the way is named while its graph is still there.
+        if let codegen::linearity::Linearity::Nonlinear(node) =
+            codegen::linearity::linearity(&equations)
+        {
+            let formula = codegen::print::formula(&equations.graph, &notation, node);
+            return Err(ExactError::NotLinear { formula });
+        }
+        let affine = affine(equations).map_err(|_| ExactError::NotLinear {
+            formula: "a function over the modes that switches".to_owned(),
+        })?;
+        let values = model
+            .parameter_values()
+            .map_err(|error| ExactError::Model(error.diagnostic().message))?;
+        Ok(Self {
+            program: lower_affine(model, &affine, &values),
+            independent: independent(model)
+                .map(|(name, _)| name.to_owned())
+                .collect(),
+        })
+    }
+
+    /// A propagator at the parameters of `model`, which is the one this was derived from or
+    /// one that differs in values alone.
+    ///
+    /// # Errors
+    /// If the model has other independent parameters, or its matrices are not finite.
+    pub fn propagator(&self, model: &Model) -> Result<Propagator, ExactError> {
+        if !independent(model)
+            .map(|(name, _)| name)
+            .eq(self.independent.iter().map(String::as_str))
+        {
+            return Err(ExactError::Model(
+                "a parameter given by an expression was set to a number: derive the model again"
+                    .to_owned(),
+            ));
+        }
+        let all = model
+            .parameter_values()
+            .map_err(|error| ExactError::Model(error.diagnostic().message))?;
+        let values: Vec<f64> = independent(model).map(|(_, place)| all[place]).collect();
+        self.at(&values)
+    }
+
+    /// A propagator at these values of the independent parameters, SI, in the order of the
+    /// specification.
+    ///
+    /// # Errors
+    /// If the matrices are not finite or a dead zone has a negative half-width.
+    pub fn at(&self, values: &[f64]) -> Result<Propagator, ExactError> {
+        let mut evaluator = AffineEvaluator::new(self.program.clone());
+        evaluator.set_parameters(values);
+        Propagator::new(evaluator)
+    }
+
+    /// The names of the independent parameters, in the order of their values.
+    pub fn parameters(&self) -> &[String] {
+        &self.independent
+    }
+}
+
+/// The independent parameters with their places among all.
+fn independent(model: &Model) -> impl Iterator<Item = (&str, usize)> {
+    model
+        .parameters
+        .iter()
+        .enumerate()
+        .filter(|(_, parameter)| matches!(parameter.value, ParameterValue::Number(_)))
+        .map(|(place, parameter)| (parameter.name.as_str(), place))
+}

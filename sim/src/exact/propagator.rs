@@ -1,0 +1,726 @@
+//! From switch to switch: regimes are made when they are first entered, and kept.
+
+use std::collections::HashMap;
+
+use codegen::affine::system::{AffineEvaluator, AffineSystem};
+use nalgebra::{Complex, DVector};
+
+use super::clock::Clock;
+use super::decomposition::Failure;
+use super::error::ExactError;
+use super::flow::Flow;
+use super::functional::{Limits, Linear};
+use super::groups::{Group, Place, groups};
+use super::regime::Regime;
+use super::saltation;
+use super::search::{Effort, Found, passed, search};
+use super::sliding::slide;
+use crate::record::HeldInputs;
+use crate::solve::{SolveError, Switch};
+
+/// Rates that differ by less than this part of their size are continuous.
+const CONTINUOUS: f64 = 1e-12;
+
+/// The roundings of a sum of products of size 1.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+/// Switches in one instant before the motion is moved on by the shortest step.
+const AT_ONCE: u32 = 16;
+
+/// Decays that are slower than what switches by this factor are carried as polynomials: as
+/// modes they would hold large amplitudes that cancel.
+const SLOW: f64 = 1e-4;
+
+/// A motion that would need more steps than this, hours of them, is not begun.
+const MOST_STEPS: f64 = 1e8;
+
+/// Over this many switches their rate is averaged.
+const SWITCHES_AVERAGED: u64 = 1024;
+
+/// Exact motion at fixed parameters.
+pub struct Propagator {
+    evaluator: AffineEvaluator,
+    groups: Vec<Group>,
+    regimes: Vec<Entered>,
+    known: HashMap<Vec<Place>, usize>,
+    flow: Flow,
+    inputs: usize,
+    states: usize,
+    phases: Vec<[f64; 2]>,
+    saltations: Vec<DVector<f64>>,
+    /// Decays up to this rate are slow beside what happens between switches, 1/s.
+    slow: f64,
+    /// Give up when switches come faster than this on average, 1/s.
+    pub max_switch_rate: f64,
+}
+
+/// A regime that has been entered.
+pub(super) struct Entered {
+    pub places: Vec<Place>,
+    pub regime: Regime,
+    /// The group's function as the regime has it, for each group.
+    functions: Vec<Linear>,
+    /// The rung at which the last search ended.
+    rung: usize,
+    /// For each function and limit the regime beyond, once it is known.
+    beyond: Vec<[Option<Beyond>; 2]>,
+}
+
+/// What lies beyond a limit.
+#[derive(Clone, Copy, Debug)]
+struct Beyond {
+    regime: usize,
+    /// Whether the rate of the group's function may jump there.
+    jumps: bool,
+    /// Where the constant saltation matrix of the passage is kept, if it is constant.
+    saltation: Option<usize>,
+    /// Whether the functions of other groups may jump in the passage.
+    moves_others: bool,
+}
+
+/// Where a motion stands.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    pub(super) clock: Clock,
+    pub(super) state: Vec<f64>,
+    pub(super) regime: usize,
+    at_once: u32,
+    /// Whether a function may have jumped beyond its limit, and of which group it cannot.
+    jumped: Option<Option<usize>>,
+    /// Switches so far and the time at which the present average began.
+    switches: u64,
+    averaged_from: f64,
+    /// What was done so far.
+    pub(super) effort: Effort,
+    /// The state at the start of the present segment.
+    before: Vec<f64>,
+}
+
+/// Who follows a motion.
+pub(super) trait Follow {
+    /// The motion went on in one regime; `flow` stands at the end and may be moved.
+    fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow);
+
+    /// The motion changed from one regime to another at a switching surface.
+    fn switched(&mut self, change: &Change<'_>);
+}
+
+/// A motion within one regime.
+pub(super) struct Segment<'a> {
+    pub regime: &'a Regime,
+    pub places: &'a [Place],
+    /// When it began.
+    pub start: Clock,
+    /// The state then.
+    pub state: &'a [f64],
+    pub inputs: &'a [f64],
+    /// How long it took, s.
+    pub tau: f64,
+}
+
+/// A change of regime.
+pub(super) struct Change<'a> {
+    pub clock: Clock,
+    /// Where the groups stood before.
+    pub places: &'a [Place],
+    /// The index of the function that reached its limit, and whether its upper one.
+    pub limit: (usize, bool),
+    pub before: &'a Regime,
+    pub after: &'a Regime,
+    /// The function that reached its limit, as the regime before has it.
+    pub function: &'a Linear,
+    pub state: &'a [f64],
+    pub inputs: &'a [f64],
+    pub phases: &'a [Complex<f64>],
+    /// The part of the function's rate that is not due to the state's, 1/s times its unit.
+    pub explicit_rate: f64,
+    /// u of the saltation matrix I + u grad g, if that is constant.
+    pub saltation: Option<&'a DVector<f64>>,
+    /// The first of the surfaces that were reached, and whether it is positive from here on.
+    pub switch: Switch,
+}
+
+impl Motion {
+    /// The time, s.
+    pub fn time(&self) -> f64 {
+        self.clock.time()
+    }
+
+    /// The state.
+    pub fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// How many switches there were.
+    pub fn switches(&self) -> u64 {
+        self.switches
+    }
+}
+
+impl Propagator {
+    pub(super) fn new(mut evaluator: AffineEvaluator) -> Result<Self, ExactError> {
+        let sides = vec![0.0; evaluator.guard_count()];
+        let system = evaluator.system(&sides);
+        if !evaluator.half_widths_are_right() {
+            return Err(ExactError::NegativeHalfWidth);
+        }
+        if !evaluator.pivots_are_positive() {
+            return Err(ExactError::NotPositiveDefinite);
+        }
+        if system.guards.constant.iter().any(|c| !c.is_finite()) {
+            return Err(ExactError::NotFinite);
+        }
+        Ok(Self {
+            groups: groups(&evaluator, &system),
+            regimes: Vec::new(),
+            known: HashMap::new(),
+            flow: Flow::default(),
+            inputs: evaluator.inputs(),
+            states: evaluator.states(),
+            phases: system.phases.clone(),
+            saltations: Vec::new(),
+            slow: SLOW * switched_rate(&mut evaluator, &system),
+            max_switch_rate: crate::solve::Settings::default().max_switch_rate,
+            evaluator,
+        })
+    }
+
+    /// Numbers in the state.
+    pub fn states(&self) -> usize {
+        self.states
+    }
+
+    /// How many regimes have been entered so far.
+    pub fn regimes(&self) -> usize {
+        self.regimes.len()
+    }
+
+    /// A motion from a state at a time, s.
+    ///
+    /// # Errors
+    /// If a regime cannot be prepared.
+    pub fn start(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        inputs: &HeldInputs,
+    ) -> Result<Motion, ExactError> {
+        if state.len() != self.states || state.iter().any(|y| !y.is_finite()) || !t.is_finite() {
+            let problem = format!(
+                "expected {} finite initial values and a finite time",
+                self.states
+            );
+            return Err(SolveError::Request { problem }.into());
+        }
+        // The same motion from the same start, whatever was computed before.
+        for entered in &mut self.regimes {
+            entered.rung = 0;
+        }
+        let clock = Clock::at(t);
+        let regime = self.regime_at(clock, state, held(inputs, t, self.inputs))?;
+        Ok(Motion {
+            clock,
+            state: state.to_vec(),
+            regime,
+            at_once: 0,
+            jumped: None,
+            switches: 0,
+            averaged_from: t,
+            effort: Effort::default(),
+            before: state.to_vec(),
+        })
+    }
+
+    pub(super) fn phases_at(&self, clock: Clock) -> Vec<Complex<f64>> {
+        self.phases
+            .iter()
+            .map(|phase| clock.phase(*phase))
+            .collect()
+    }
+
+    /// Goes on to a time, s, or to the next switch if that comes before; returns whether the
+    /// time was reached.
+    pub(super) fn advance(
+        &mut self,
+        motion: &mut Motion,
+        end: f64,
+        inputs: &HeldInputs,
+        follow: &mut dyn Follow,
+    ) -> Result<bool, ExactError> {
+        let now = motion.time();
+        let breakpoint = inputs.next_change(now).filter(|next| *next < end);
+        let target = breakpoint.unwrap_or(end);
+        let remaining = motion.clock.until(target);
+        self.check_window(motion, remaining)?;
+        let values = held(inputs, now, self.inputs);
+        let phases = self.phases_at(motion.clock);
+        let Entered {
+            regime,
+            rung,
+            places,
+            ..
+        } = &mut self.regimes[motion.regime];
+        motion.before.copy_from_slice(&motion.state);
+        let flow = &mut self.flow;
+        flow.start(regime, &motion.state, values, &phases);
+        let length = remaining.min(regime.ladder.window);
+        let start = motion.clock;
+        if motion.at_once > AT_ONCE {
+            // Rounding alone decides between surfaces: the motion itself must.
+            if let Some(shortest) = regime.ladder.rungs.last() {
+                flow.step(shortest);
+            }
+            motion.at_once = 0;
+        }
+        let leap = motion
+            .jumped
+            .take()
+            .and_then(|except| passed(flow, regime, except));
+        let found = match leap {
+            Some(found) => found,
+            None => search(flow, regime, length, rung, &mut motion.effort),
+        };
+        let reached = match found {
+            Found::Nothing => {
+                flow.go_to(regime, length);
+                if length < remaining {
+                    motion.clock = start.plus(length);
+                } else {
+                    motion.clock = Clock::at(target);
+                    motion.jumped = breakpoint.map(|_| None);
+                }
+                length >= remaining && breakpoint.is_none()
+            }
+            Found::Limit { .. } => {
+                motion.clock = start.plus(flow.tau);
+                false
+            }
+        };
+        flow.state(regime, &mut motion.state);
+        if let Some(state) = motion.state.iter().position(|y| !y.is_finite()) {
+            return Err(SolveError::NotFinite { t: now, state }.into());
+        }
+        let tau = flow.tau;
+        let segment = Segment {
+            regime,
+            places,
+            start,
+            state: &motion.before,
+            inputs: values,
+            tau,
+        };
+        follow.flowed(&segment, flow);
+        if let Found::Limit { functional, upper } = found {
+            motion.at_once = if tau > 0.0 { 0 } else { motion.at_once + 1 };
+            self.switch(motion, (functional, upper, leap.is_some()), inputs, follow)?;
+        }
+        Ok(reached)
+    }
+
+    /// Refuses a motion so fast, or a time so long, that there would be no end.
+    fn check_window(&self, motion: &Motion, remaining: f64) -> Result<(), SolveError> {
+        let window = self.regimes[motion.regime].regime.ladder.window;
+        if remaining <= MOST_STEPS * window {
+            return Ok(());
+        }
+        Err(SolveError::Request {
+            problem: format!(
+                "at t = {:?} s there are {remaining:e} s to go in steps of at most {window:e} s, \
+                 with no end in sight; expected a shorter time, or parameters of a slower motion",
+                motion.time()
+            ),
+        })
+    }
+
+    /// Enters the regime beyond a limit.
+    fn switch(
+        &mut self,
+        motion: &mut Motion,
+        (functional, upper, leapt): (usize, bool, bool),
+        inputs: &HeldInputs,
+        follow: &mut dyn Follow,
+    ) -> Result<(), ExactError> {
+        let before = motion.regime;
+        let values = held(inputs, motion.time(), self.inputs);
+        let phases = self.phases_at(motion.clock);
+        let group = self.regimes[before].regime.functionals[functional]
+            .limits
+            .group;
+        let beyond = match self.regimes[before].beyond[functional][usize::from(upper)] {
+            Some(beyond) => beyond,
+            None => self.find_beyond(before, functional, group, upper, motion.time())?,
+        };
+        let (mut after, mut saltation) = (beyond.regime, beyond.saltation);
+        let (rank, to_positive) = crossed(self.regimes[before].places[group], upper);
+        if beyond.jumps && !leapt {
+            let rate = |propagator: &Self, index: usize| {
+                propagator.rate(index, group, &motion.state, values, &phases)
+            };
+            let (here, there) = (rate(self, before), rate(self, after));
+            let outward = if upper { 1.0 } else { -1.0 };
+            // A motion that has just left the surface has no rate there but rounding.
+            let slack = self.rate_rounding(after, group, &motion.state);
+            if there * outward < -slack && here * outward > 0.0 {
+                let mut places = self.regimes[before].places.clone();
+                places[group] = Place::On(rank);
+                after = self.regime(&places, motion.time())?;
+                saltation = None;
+            }
+        }
+        let guard = self.groups[group].ranks[rank][0];
+        let function = &self.regimes[before].regime.functionals[functional].linear;
+        follow.switched(&Change {
+            clock: motion.clock,
+            places: &self.regimes[before].places,
+            limit: (functional, upper),
+            before: &self.regimes[before].regime,
+            after: &self.regimes[after].regime,
+            function,
+            explicit_rate: self.explicit_rate(function, &phases),
+            saltation: saltation.map(|place| &self.saltations[place]),
+            state: &motion.state,
+            inputs: values,
+            phases: &phases,
+            switch: Switch {
+                t: motion.time(),
+                guard,
+                to_positive,
+            },
+        });
+        motion.regime = after;
+        if leapt {
+            // A jump may have led over more than one limit.
+            motion.jumped = Some(None);
+        } else if beyond.moves_others || after != beyond.regime {
+            motion.jumped = Some(Some(group));
+        }
+        self.count_switch(motion, guard)
+    }
+
+    fn count_switch(&self, motion: &mut Motion, guard: usize) -> Result<(), ExactError> {
+        motion.switches += 1;
+        if motion.switches.is_multiple_of(SWITCHES_AVERAGED) {
+            let (t, rate) = (motion.time(), self.max_switch_rate);
+            if (t - motion.averaged_from) * rate < SWITCHES_AVERAGED as f64 {
+                return Err(SolveError::TooManySwitches { t, guard, rate }.into());
+            }
+            motion.averaged_from = t;
+        }
+        Ok(())
+    }
+
+    /// Finds what lies beyond a limit and remembers it.
+    fn find_beyond(
+        &mut self,
+        before: usize,
+        functional: usize,
+        group: usize,
+        upper: bool,
+        t: f64,
+    ) -> Result<Beyond, ExactError> {
+        let mut places = self.regimes[before].places.clone();
+        places[group] = match (places[group], upper) {
+            (Place::Between(above), true) => Place::Between(above + 1),
+            (Place::Between(above), false) => Place::Between(above - 1),
+            (Place::On(rank), true) => Place::Between(rank + 1),
+            (Place::On(rank), false) => Place::Between(rank),
+        };
+        let held = matches!(self.regimes[before].places[group], Place::On(_));
+        let regime = self.regime(&places, t)?;
+        let jumps = !held && self.rate_jumps(before, regime, group);
+        let entered = &self.regimes[before];
+        let limits = &entered.regime.functionals[functional].limits;
+        let constant = saltation::constant(
+            &entered.regime.system,
+            &self.regimes[regime].regime.system,
+            &entered.regime.functionals[functional].linear,
+            if upper { limits.high } else { limits.low },
+        );
+        let saltation = constant.map(|u| {
+            self.saltations.push(u);
+            self.saltations.len() - 1
+        });
+        let beyond = Beyond {
+            regime,
+            jumps,
+            saltation,
+            moves_others: held || self.moves_others(before, regime, group),
+        };
+        self.regimes[before].beyond[functional][usize::from(upper)] = Some(beyond);
+        Ok(beyond)
+    }
+
+    /// Whether what is watched of other groups differs between two regimes.
+    fn moves_others(&self, a: usize, b: usize, group: usize) -> bool {
+        let (a, b) = (&self.regimes[a].regime, &self.regimes[b].regime);
+        let mut pairs = a.functionals.iter().zip(&b.functionals);
+        pairs
+            .any(|(a, b)| a.limits.group != group && (a.linear != b.linear || a.limits != b.limits))
+    }
+
+    /// Whether the rate of a group's function differs between two regimes.
+    fn rate_jumps(&self, a: usize, b: usize, group: usize) -> bool {
+        let row = &self.regimes[a].functions[group].state;
+        let (a, b) = (
+            &self.regimes[a].regime.system.rates,
+            &self.regimes[b].regime.system.rates,
+        );
+        let blocks = [
+            (&a.state, &b.state),
+            (&a.inputs, &b.inputs),
+            (&a.sines, &b.sines),
+            (&a.cosines, &b.cosines),
+            (&a.constant, &b.constant),
+        ];
+        blocks.iter().any(|(a, b)| {
+            let width = a.len() / row.len().max(1);
+            (0..width).any(|column| {
+                let (mut difference, mut size) = (0.0, 0.0);
+                for (state, factor) in row.iter().enumerate() {
+                    let (x, y) = (a[state * width + column], b[state * width + column]);
+                    difference += factor * (x - y);
+                    size += (factor * x).abs() + (factor * y).abs();
+                }
+                difference.abs() > CONTINUOUS * size
+            })
+        })
+    }
+
+    /// The rate of a group's function at a state as a regime has it.
+    fn rate(
+        &self,
+        index: usize,
+        group: usize,
+        state: &[f64],
+        inputs: &[f64],
+        phases: &[Complex<f64>],
+    ) -> f64 {
+        let entered = &self.regimes[index];
+        let function = &entered.functions[group];
+        let mut rates = vec![0.0; self.states];
+        entered.regime.rates(state, inputs, phases, &mut rates);
+        let rate: f64 = function.state.iter().zip(&rates).map(|(a, b)| a * b).sum();
+        rate + self.explicit_rate(function, phases)
+    }
+
+    /// What rounding may make of the rate of a group's function.
+    fn rate_rounding(&self, index: usize, group: usize, state: &[f64]) -> f64 {
+        let entered = &self.regimes[index];
+        let matrix = &entered.regime.system.rates.state;
+        let mut size = 0.0;
+        for (factor, row) in entered.functions[group]
+            .state
+            .iter()
+            .zip(matrix.chunks(self.states.max(1)))
+        {
+            if *factor != 0.0 {
+                let sum: f64 = row.iter().zip(state).map(|(a, y)| (a * y).abs()).sum();
+                size += factor.abs() * sum;
+            }
+        }
+        ROUNDING * size
+    }
+
+    /// The rate of a function of sinusoids that is due to time alone.
+    fn explicit_rate(&self, function: &Linear, phases: &[Complex<f64>]) -> f64 {
+        let terms = phases.iter().enumerate().map(|(place, phase)| {
+            let omega = self.phases[place][0];
+            omega * (function.sines[place] * phase.re - function.cosines[place] * phase.im)
+        });
+        terms.sum()
+    }
+
+    /// Which states any rate or any switching function feels.
+    pub(super) fn felt_states(&mut self) -> Vec<bool> {
+        let guards = self.evaluator.guard_count();
+        let mut felt = vec![false; self.states];
+        for case in 0..guards + 2 {
+            let sides: Vec<f64> = (0..guards)
+                .map(|guard| f64::from(u8::from(case == guards + 1 || case == guard)))
+                .collect();
+            let system = self.evaluator.system(&sides);
+            let rows = [&system.rates.state, &system.guards.state];
+            let rows = rows.map(|rows| rows.chunks(self.states.max(1)));
+            for row in rows.into_iter().flatten() {
+                row.iter()
+                    .zip(&mut felt)
+                    .for_each(|(entry, felt)| *felt |= *entry != 0.0);
+            }
+        }
+        felt
+    }
+
+    /// A regime that has been made.
+    pub(super) fn made(&self, index: usize) -> &Regime {
+        &self.regimes[index].regime
+    }
+
+    /// The regime with these places, made if it is new.
+    pub(super) fn regime(&mut self, places: &[Place], t: f64) -> Result<usize, ExactError> {
+        if let Some(&known) = self.known.get(places) {
+            return Ok(known);
+        }
+        let mut sides = vec![0.0; self.evaluator.guard_count()];
+        let held = places
+            .iter()
+            .position(|place| matches!(place, Place::On(_)));
+        let (system, mut parts) = match held {
+            None => {
+                for (group, place) in self.groups.iter().zip(places) {
+                    group.write_sides(*place, 0.0, &mut sides);
+                }
+                (self.evaluator.system(&sides), Vec::new())
+            }
+            Some(group) => {
+                let guard = self.groups[group].first;
+                let sliding = slide(&mut self.evaluator, &self.groups, places)
+                    .ok_or(ExactError::Held { t, guard })?;
+                (sliding.system, sliding.parts)
+            }
+        };
+        let functions: Vec<Linear> = self
+            .groups
+            .iter()
+            .map(|group| group.function(&system))
+            .collect();
+        let mut watched = Vec::new();
+        for (index, (group, place)) in self.groups.iter().zip(places).enumerate() {
+            watched.push(match place {
+                Place::Between(above) => (
+                    functions[index].clone(),
+                    group.limits(&system, index, *above),
+                ),
+                Place::On(_) => (
+                    parts.remove(0),
+                    Limits {
+                        group: index,
+                        low: 0.0,
+                        high: 1.0,
+                    },
+                ),
+            });
+        }
+        let regime = Regime::new(system, watched, self.slow).map_err(|failure| match failure {
+            Failure::NotFinite => ExactError::NotFinite,
+            Failure::NotConverged => ExactError::NotConverged,
+        })?;
+        let beyond = vec![[None; 2]; regime.functionals.len()];
+        self.regimes.push(Entered {
+            places: places.to_vec(),
+            regime,
+            functions,
+            rung: 0,
+            beyond,
+        });
+        let index = self.regimes.len() - 1;
+        self.known.insert(places.to_vec(), index);
+        Ok(index)
+    }
+
+    /// The places of all groups at a state, below a threshold that is met, and the groups
+    /// and ranks of those that are.
+    fn places_at(
+        &mut self,
+        state: &[f64],
+        inputs: &[f64],
+        phases: &[Complex<f64>],
+    ) -> (Vec<Place>, Vec<(usize, usize)>) {
+        let mut sides = vec![0.0; self.evaluator.guard_count()];
+        let mut places = vec![Place::Between(0); self.groups.len()];
+        let mut tied = Vec::new();
+        // A function may depend on the places of others: once more until all agree.
+        for _ in 0..=self.groups.len() {
+            for (group, place) in self.groups.iter().zip(&places) {
+                group.write_sides(*place, 0.0, &mut sides);
+            }
+            let system = self.evaluator.system(&sides);
+            tied.clear();
+            let mut found = Vec::new();
+            for (index, group) in self.groups.iter().enumerate() {
+                let value = group.function(&system).value(state, inputs, phases);
+                let mut above = 0;
+                for rank in 0..group.ranks.len() {
+                    let threshold = group.threshold(&system, rank);
+                    if (value - threshold).abs() <= 4.0 * f64::EPSILON * threshold.abs() {
+                        tied.push((index, rank));
+                    } else if value > threshold {
+                        above = rank + 1;
+                    }
+                }
+                found.push(Place::Between(above));
+            }
+            if found == places {
+                break;
+            }
+            places = found;
+        }
+        (places, tied)
+    }
+
+    /// The regime of a motion that begins at a state.
+    fn regime_at(
+        &mut self,
+        clock: Clock,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<usize, ExactError> {
+        let phases = self.phases_at(clock);
+        let (mut places, tied) = self.places_at(state, inputs, &phases);
+        let mut found = self.regime(&places, clock.time())?;
+        for (group, rank) in tied {
+            let mut side = |propagator: &mut Self, place: Place| {
+                places[group] = place;
+                propagator.regime(&places, clock.time())
+            };
+            let (down, up) = (
+                side(self, Place::Between(rank))?,
+                side(self, Place::Between(rank + 1))?,
+            );
+            let below = self.rate(down, group, state, inputs, &phases);
+            let above = self.rate(up, group, state, inputs, &phases);
+            found = if above > 0.0 && below >= 0.0 {
+                side(self, Place::Between(rank + 1))?
+            } else if above < 0.0 && below > 0.0 {
+                side(self, Place::On(rank))?
+            } else {
+                side(self, Place::Between(rank))?
+            };
+        }
+        Ok(found)
+    }
+}
+
+/// The fastest rate that switching can add, 1/s: the root of the largest change of a
+/// stiffness.
+fn switched_rate(evaluator: &mut AffineEvaluator, system: &AffineSystem) -> f64 {
+    let (guards, states) = (evaluator.guard_count(), evaluator.states());
+    let mut largest: f64 = 0.0;
+    for guard in 0..guards {
+        let sides: Vec<f64> = (0..guards)
+            .map(|g| f64::from(u8::from(g == guard)))
+            .collect();
+        let other = evaluator.system(&sides);
+        let rows = system.rates.state.chunks(states.max(1));
+        for (a, b) in rows.zip(other.rates.state.chunks(states.max(1))) {
+            let positions = a.iter().zip(b).take(states / 2);
+            largest = positions.fold(largest, |m, (a, b)| m.max((a - b).abs()));
+        }
+    }
+    largest.sqrt()
+}
+
+/// The inputs in force from a time on, as many as the model has.
+fn held(inputs: &HeldInputs, t: f64, count: usize) -> &[f64] {
+    let all = inputs.at(t);
+    &all[..count.min(all.len())]
+}
+
+/// The rank of the threshold at a limit of a place, and whether its surfaces are positive
+/// beyond.
+fn crossed(place: Place, upper: bool) -> (usize, bool) {
+    match (place, upper) {
+        (Place::Between(above), true) => (above, true),
+        (Place::Between(above), false) => (above - 1, false),
+        (Place::On(rank), upper) => (rank, upper),
+    }
+}

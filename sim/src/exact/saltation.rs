@@ -1,0 +1,105 @@
+//! What a switch does to neighbouring motions (the saltation matrix):
+//! I + (f_after - f_before) grad g / (rate of g).
+//!
+//! Where a force jumps in proportion to the rate of the function that switches, as damping
+//! in a mesh does, the quotient is the same for every crossing, f_after - f_before =
+//! u (rate of g) on the surface; it is then found once, and a grazing crossing divides
+//! nothing small by nothing small.
+
+use codegen::affine::system::{AffineRows, AffineSystem};
+use nalgebra::{DVector, Matrix2, Vector2};
+
+use super::functional::Linear;
+
+/// What is left of a jump that is proportional to the rate, relative.
+const ROUNDING: f64 = 1e-10;
+
+/// u of the constant saltation matrix I + u grad g, if it is constant.
+pub(super) fn constant(
+    before: &AffineSystem,
+    after: &AffineSystem,
+    function: &Linear,
+    threshold: f64,
+) -> Option<DVector<f64>> {
+    let states = before.states;
+    let row = &function.state;
+    let still = |block: &[f64]| block.iter().all(|entry| *entry == 0.0);
+    if !(still(&function.inputs) && still(&function.sines) && still(&function.cosines)) {
+        return None;
+    }
+    let rate = along(row, &before.rates);
+    // Each row of the jump is w row + u rate.state, by least squares.
+    let normal = Matrix2::new(
+        row.norm_squared(),
+        row.dot(&rate.state),
+        row.dot(&rate.state),
+        rate.state.norm_squared(),
+    );
+    let inverse = normal.try_inverse()?;
+    let mut factors = DVector::zeros(states);
+    for state in 0..states {
+        let jump = difference(&before.rates, &after.rates, state);
+        let right = Vector2::new(row.dot(&jump.state), rate.state.dot(&jump.state));
+        let [w, u] = (inverse * right).into();
+        let rest = &jump.state - row * w - &rate.state * u;
+        let size = jump.state.amax();
+        let constant = jump.constant + w * threshold - u * rate.constant;
+        let scale = jump.constant.abs() + (w * threshold).abs();
+        let others = [
+            (&jump.inputs, &rate.inputs),
+            (&jump.sines, &rate.sines),
+            (&jump.cosines, &rate.cosines),
+        ];
+        let differs = |(a, b): &(&Vec<f64>, &Vec<f64>)| {
+            a.iter()
+                .zip(*b)
+                .any(|(a, b)| (a - u * b).abs() > ROUNDING * a.abs().max((u * b).abs()))
+        };
+        if rest.amax() > ROUNDING * size
+            || constant.abs() > ROUNDING * scale
+            || others.iter().any(differs)
+        {
+            return None;
+        }
+        factors[state] = u;
+    }
+    Some(factors)
+}
+
+/// row f as a function of the motion.
+fn along(row: &DVector<f64>, rates: &AffineRows) -> Linear {
+    let of = |block: &[f64]| -> Vec<f64> {
+        let width = block.len() / row.len().max(1);
+        (0..width)
+            .map(|column| {
+                row.iter()
+                    .enumerate()
+                    .map(|(state, r)| r * block[state * width + column])
+                    .sum()
+            })
+            .collect()
+    };
+    Linear {
+        state: DVector::from_vec(of(&rates.state)),
+        inputs: of(&rates.inputs),
+        sines: of(&rates.sines),
+        cosines: of(&rates.cosines),
+        constant: of(&rates.constant)[0],
+    }
+}
+
+/// Row `state` of f_after - f_before.
+fn difference(before: &AffineRows, after: &AffineRows, state: usize) -> Linear {
+    let (mut a, b) = (Linear::row(after, state), Linear::row(before, state));
+    a.state -= b.state;
+    a.constant -= b.constant;
+    let pairs = [
+        (&mut a.inputs, b.inputs),
+        (&mut a.sines, b.sines),
+        (&mut a.cosines, b.cosines),
+    ];
+    for (a, b) in pairs {
+        a.iter_mut().zip(b).for_each(|(a, b)| *a -= b);
+    }
+    a
+}

@@ -1,0 +1,153 @@
+//! The complex Schur form of a real matrix, balanced and in an order of one's choice.
+
+use nalgebra::linalg::balancing::balance_parlett_reinsch;
+use nalgebra::{Complex, DMatrix, Schur};
+
+/// QR iterations per eigenvalue before one gives up; two or three are usual.
+const ITERATIONS: usize = 100;
+
+/// Squares of larger entries overflow, where balancing never ends, 1/s.
+const LARGEST: f64 = 1e150;
+
+/// Entries below this part of the largest one do not take part in the balance: what matters
+/// that little must not decide on the scale of a state.
+const NEGLIGIBLE: f64 = 1e-6;
+
+/// Powers of two that bring rows and columns to like size.
+fn balance(matrix: &DMatrix<f64>, mut scale: Vec<f64>) -> Vec<f64> {
+    // The second time around the large entries are balanced among themselves.
+    for _ in 0..2 {
+        let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+            matrix[(i, j)] * scale[j] / scale[i]
+        });
+        let least = NEGLIGIBLE * scaled.amax();
+        let mut kept = scaled.map(|entry| if entry.abs() < least { 0.0 } else { entry });
+        let found = balance_parlett_reinsch(&mut kept);
+        scale
+            .iter_mut()
+            .zip(found.iter())
+            .for_each(|(slot, factor)| *slot *= factor);
+    }
+    scale
+}
+
+/// A = D Q T Q^H D^-1 with T upper triangular, Q unitary and D diagonal.
+pub(super) struct SchurForm {
+    /// Upper triangular; its diagonal holds the eigenvalues, 1/s.
+    pub triangle: DMatrix<Complex<f64>>,
+    /// Unitary.
+    pub basis: DMatrix<Complex<f64>>,
+    /// The diagonal of D: powers of two that bring rows and columns to like size.
+    pub scale: Vec<f64>,
+}
+
+impl SchurForm {
+    /// The Schur form of a square matrix, or nothing if the iteration does not converge.
+    /// `scale`: a first guess of D, powers of two.
+    pub fn of(matrix: &DMatrix<f64>, scale: Vec<f64>) -> Option<Self> {
+        let size = matrix.nrows();
+        if size == 0 {
+            return Some(Self {
+                triangle: DMatrix::zeros(0, 0),
+                basis: DMatrix::zeros(0, 0),
+                scale: Vec::new(),
+            });
+        }
+        if !matrix.iter().all(|entry| entry.abs() < LARGEST) {
+            return None;
+        }
+        let scale = balance(matrix, scale);
+        let complex = DMatrix::from_fn(size, size, |i, j| {
+            Complex::new(matrix[(i, j)] * scale[j] / scale[i], 0.0)
+        });
+        let schur = Schur::try_new(complex, f64::EPSILON, ITERATIONS * size)?;
+        let (basis, triangle) = schur.unpack();
+        Some(Self {
+            triangle,
+            basis,
+            scale,
+        })
+    }
+
+    /// The eigenvalues in the present order, 1/s.
+    pub fn eigenvalues(&self) -> Vec<Complex<f64>> {
+        (0..self.triangle.nrows())
+            .map(|place| self.triangle[(place, place)])
+            .collect()
+    }
+
+    /// Brings the eigenvalues into ascending order of `key`, equal ones as they stand.
+    pub fn sort_by_key(&mut self, mut key: Vec<usize>) {
+        for end in (1..key.len()).rev() {
+            for place in 0..end {
+                if key[place] > key[place + 1] {
+                    key.swap(place, place + 1);
+                    self.swap(place);
+                }
+            }
+        }
+    }
+
+    /// Exchanges eigenvalues `place` and `place` + 1 by a rotation (Golub and Van Loan,
+    /// Matrix Computations, 7.6.2).
+    fn swap(&mut self, place: usize) {
+        let (p, q) = (place, place + 1);
+        let difference = self.triangle[(q, q)] - self.triangle[(p, p)];
+        let coupling = self.triangle[(p, q)];
+        let length = (coupling.norm_sqr() + difference.norm_sqr()).sqrt();
+        if length == 0.0 {
+            return;
+        }
+        let (c, s) = (coupling / length, difference / length);
+        // The first new basis vector is the eigenvector of the second eigenvalue.
+        let rotate_columns = |matrix: &mut DMatrix<Complex<f64>>, rows: usize| {
+            for row in 0..rows {
+                let (a, b) = (matrix[(row, p)], matrix[(row, q)]);
+                matrix[(row, p)] = a * c + b * s;
+                matrix[(row, q)] = b * c.conj() - a * s.conj();
+            }
+        };
+        let size = self.triangle.nrows();
+        rotate_columns(&mut self.triangle, q + 1);
+        rotate_columns(&mut self.basis, size);
+        for column in p..size {
+            let (a, b) = (self.triangle[(p, column)], self.triangle[(q, column)]);
+            self.triangle[(p, column)] = a * c.conj() + b * s.conj();
+            self.triangle[(q, column)] = b * c - a * s;
+        }
+        self.triangle[(q, p)] = Complex::new(0.0, 0.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn residual(matrix: &DMatrix<f64>, form: &SchurForm) -> f64 {
+        let size = matrix.nrows();
+        let scaled = DMatrix::from_fn(size, size, |i, j| {
+            Complex::new(matrix[(i, j)] * form.scale[j] / form.scale[i], 0.0)
+        });
+        let back = &form.basis * &form.triangle * form.basis.adjoint();
+        (back - &scaled).norm() / scaled.norm()
+    }
+
+    #[test]
+    fn sorting_keeps_the_matrix() {
+        let size = 9;
+        let matrix = DMatrix::from_fn(size, size, |i, j| {
+            ((7 * i + 3 * j * j + 1) % 11) as f64 - 5.0 + if i == j { 0.5 * i as f64 } else { 0.0 }
+        });
+        let mut form = SchurForm::of(&matrix, vec![1.0; size]).expect("converges");
+        // A hundred roundings of a matrix of size 9.
+        assert!(residual(&matrix, &form) < 1e-14);
+        let before = form.eigenvalues();
+        let key: Vec<usize> = (0..size).map(|i| (i * 5) % size).collect();
+        form.sort_by_key(key.clone());
+        assert!(residual(&matrix, &form) < 1e-14);
+        for (place, value) in form.eigenvalues().iter().enumerate() {
+            let from = key.iter().position(|k| *k == place).expect("a permutation");
+            assert!((value - before[from]).norm() < 1e-11 * before[from].norm());
+        }
+    }
+}

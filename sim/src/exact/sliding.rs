@@ -1,0 +1,169 @@
+//! Motion held on switching surfaces, such as dry friction that sticks: the rates lead onto
+//! the surface from both sides, and the convex combination of both that keeps to the surface
+//! is followed (Filippov). How much of either side is a linear function of the motion
+//! again; where it leaves 0 to 1 the surface is left.
+
+use codegen::affine::system::{AffineEvaluator, AffineRows, AffineSystem};
+use nalgebra::{DMatrix, DVector};
+
+use super::functional::Linear;
+use super::groups::{Group, Place};
+
+/// What is left of a jump that is constant on its surface, relative.
+const ROUNDING: f64 = 1e-11;
+
+/// A regime held on surfaces.
+pub(super) struct Sliding {
+    /// The equations of motion on the surfaces.
+    pub system: AffineSystem,
+    /// For each surface the part of its upper side, 0 to 1.
+    pub parts: Vec<Linear>,
+}
+
+/// The motion with the places of all groups, some of them held; nothing if the jumps are
+/// not constant on the surfaces or the surfaces do not hold the motion.
+pub(super) fn slide(
+    evaluator: &mut AffineEvaluator,
+    groups: &[Group],
+    places: &[Place],
+) -> Option<Sliding> {
+    let mut sides = vec![0.0; evaluator.guard_count()];
+    let mut base = |held: Option<usize>| {
+        for (index, (group, place)) in groups.iter().zip(places).enumerate() {
+            let side = if held == Some(index) { 1.0 } else { 0.0 };
+            group.write_sides(*place, side, &mut sides);
+        }
+        evaluator.system(&sides)
+    };
+    let below = base(None);
+    let mut rows = Vec::new();
+    let mut jumps = Vec::new();
+    for (index, (group, place)) in groups.iter().zip(places).enumerate() {
+        let Place::On(rank) = *place else { continue };
+        let above = base(Some(index));
+        let function = group.function(&below);
+        let still = [&function.inputs, &function.sines, &function.cosines];
+        if still
+            .iter()
+            .any(|block| block.iter().any(|entry| *entry != 0.0))
+        {
+            return None;
+        }
+        let threshold = group.threshold(&below, rank);
+        jumps.push(jump(
+            &below.rates,
+            &above.rates,
+            &function.state,
+            threshold,
+        )?);
+        rows.push(function.state);
+    }
+    combine(below, &rows, &jumps)
+}
+
+/// The constant jump of the rates across a surface row y = threshold.
+fn jump(
+    below: &AffineRows,
+    above: &AffineRows,
+    row: &DVector<f64>,
+    threshold: f64,
+) -> Option<DVector<f64>> {
+    let same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| a == b);
+    let driven_alike = same(&below.inputs, &above.inputs)
+        && same(&below.sines, &above.sines)
+        && same(&below.cosines, &above.cosines);
+    if !driven_alike {
+        return None;
+    }
+    let states = row.len();
+    let length = row.norm_squared();
+    let mut jump = DVector::zeros(states);
+    for place in 0..states {
+        let range = place * states..(place + 1) * states;
+        let pairs = above.state[range.clone()].iter().zip(&below.state[range]);
+        let difference = DVector::from_iterator(states, pairs.map(|(a, b)| a - b));
+        let along = difference.dot(row) / length;
+        let rest = &difference - row * along;
+        let scale = above.state.iter().fold(0.0, |m: f64, e| m.max(e.abs()));
+        if rest.amax() > ROUNDING * scale {
+            return None;
+        }
+        jump[place] = above.constant[place] - below.constant[place] + along * threshold;
+    }
+    Some(jump)
+}
+
+/// f = f_below + sum of jumps times parts, with the parts such that every row f = 0.
+fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -> Option<Sliding> {
+    let held = rows.len();
+    let gain = DMatrix::from_fn(held, held, |i, j| rows[i].dot(&jumps[j]));
+    let inverse = gain.try_inverse()?;
+    // parts = -inverse rows f_below.
+    let weights = DMatrix::from_fn(held, below.states, |i, state| {
+        -(0..held)
+            .map(|j| inverse[(i, j)] * rows[j][state])
+            .sum::<f64>()
+    });
+    let rates = &below.rates;
+    let states = below.states;
+    let of = |block: &[f64], part: usize| -> Vec<f64> {
+        let width = block.len() / states.max(1);
+        (0..width)
+            .map(|column| {
+                (0..states)
+                    .map(|row| weights[(part, row)] * block[row * width + column])
+                    .sum()
+            })
+            .collect()
+    };
+    let parts: Vec<Linear> = (0..held)
+        .map(|part| Linear {
+            state: DVector::from_vec(of(&rates.state, part)),
+            inputs: of(&rates.inputs, part),
+            sines: of(&rates.sines, part),
+            cosines: of(&rates.cosines, part),
+            constant: of(&rates.constant, part)[0],
+        })
+        .collect();
+    let mut system = below.clone();
+    for (part, jump) in parts.iter().zip(jumps) {
+        let add = |block: &mut [f64], row: &[f64]| {
+            let width = row.len();
+            for state in 0..states {
+                for (column, entry) in row.iter().enumerate() {
+                    block[state * width + column] += jump[state] * entry;
+                }
+            }
+        };
+        add(&mut system.rates.state, part.state.as_slice());
+        add(&mut system.rates.inputs, &part.inputs);
+        add(&mut system.rates.sines, &part.sines);
+        add(&mut system.rates.cosines, &part.cosines);
+        add(&mut system.rates.constant, &[part.constant]);
+    }
+    for row in rows {
+        hold(&mut system, row);
+    }
+    Some(Sliding { system, parts })
+}
+
+/// Where one state alone is held, its rate is zero without rounding.
+fn hold(system: &mut AffineSystem, row: &DVector<f64>) {
+    let mut felt = row.iter().enumerate().filter(|(_, entry)| **entry != 0.0);
+    let (Some((state, _)), None) = (felt.next(), felt.next()) else {
+        return;
+    };
+    let states = system.states;
+    let rates = &mut system.rates;
+    let blocks = [
+        &mut rates.state,
+        &mut rates.inputs,
+        &mut rates.sines,
+        &mut rates.cosines,
+        &mut rates.constant,
+    ];
+    for block in blocks {
+        let width = block.len() / states;
+        block[state * width..(state + 1) * width].fill(0.0);
+    }
+}

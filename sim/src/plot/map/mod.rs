@@ -1,0 +1,244 @@
+//! Pictures over parameters, as PNG: a quantity over two parameters in colours, and points
+//! over one parameter, as in a bifurcation diagram.
+//!
+//! [`map_png`] and [`scatter_png`] take what the caller states; `frame` lays out the axes,
+//! `shades` turns values into colours and draws their bar, `raster` holds the pixels and
+//! `typeface` writes on them. Pixels rather than SVG: a map has ten thousands of cells and a
+//! diagram a million points. The letters come from a font in the program, so a picture has
+//! the same bytes on every machine.
+
+mod frame;
+mod raster;
+mod shades;
+mod typeface;
+
+#[cfg(test)]
+mod tests;
+
+use super::axis::{Range, Scale};
+use super::error::{PlotError, is_drawable};
+use frame::{Frame, Side};
+use raster::{Colour, Raster};
+use shades::Bar;
+use typeface::Typeface;
+
+/// A quantity over two parameters.
+#[derive(Clone, Debug, Default)]
+pub struct Map<'a> {
+    /// Written above the frame, as it stands.
+    pub title: String,
+    /// The parameter of the columns, its values ascending.
+    pub horizontal: Coordinate<'a>,
+    /// The parameter of the rows, its values ascending upwards.
+    pub vertical: Coordinate<'a>,
+    /// The name of the quantity.
+    pub quantity: String,
+    /// Its SI unit as specifications write it; empty for a number.
+    pub unit: String,
+    /// Which colours it has.
+    pub shades: Shades,
+    /// Row by row: the value at column i and row j is `values[j * columns + i]`. One that is
+    /// not finite leaves its cell grey.
+    pub values: &'a [f64],
+}
+
+/// Points in a plane.
+#[derive(Clone, Debug, Default)]
+pub struct Scatter<'a> {
+    /// Written above the frame, as it stands.
+    pub title: String,
+    /// The abscissae, in any order.
+    pub horizontal: Coordinate<'a>,
+    /// As many ordinates. A point that has no place on the axes is left out.
+    pub vertical: Coordinate<'a>,
+}
+
+/// Values along an axis.
+#[derive(Clone, Debug, Default)]
+pub struct Coordinate<'a> {
+    /// The name of the quantity, `b_sp` say.
+    pub name: String,
+    /// Its SI unit as specifications write it; empty for a number.
+    pub unit: String,
+    /// How values are spaced along the axis.
+    pub spacing: Spacing,
+    /// The values, in SI units.
+    pub values: &'a [f64],
+}
+
+/// How values are spaced along an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spacing {
+    /// Equal differences look equal.
+    #[default]
+    Linear,
+    /// Equal ratios look equal.
+    Logarithmic,
+}
+
+/// Which colours values have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shades {
+    /// Dark blue over green to yellow (viridis), from the least value to the greatest.
+    #[default]
+    Sequential,
+    /// Blue below zero, white at zero, red above: for an exponent, say. The two sides have
+    /// the same shades for the same magnitudes unless one reaches more than three times as
+    /// far as the other; then each side has shades of its own, so that both can be read.
+    Signed,
+}
+
+const WHITE: Colour = [255; 3];
+/// Of cells without a value.
+const GREY: Colour = [158; 3];
+/// Of the points of a diagram.
+const INK: Colour = [0, 60, 110];
+/// What one point hides of the paper.
+const OPACITY: f64 = 0.6;
+
+/// Draws a quantity over two parameters: a PNG, 1000 px wide and 760 px high.
+///
+/// Each cell reaches halfway to its neighbours on the axis.
+///
+/// # Errors
+///
+/// Not one value per cell, no finite value at all, parameters that are not finite or do not
+/// ascend or, on a logarithmic axis, are not positive.
+pub fn map_png(map: &Map<'_>) -> Result<Vec<u8>, PlotError> {
+    let (columns, rows) = (map.horizontal.values.len(), map.vertical.values.len());
+    if columns.checked_mul(rows) != Some(map.values.len()) {
+        return Err(PlotError::Cells {
+            columns,
+            rows,
+            values: map.values.len(),
+        });
+    }
+    let bar = Bar::new(map)?;
+    let cells = (
+        frame::cell_edges(&map.horizontal)?,
+        frame::cell_edges(&map.vertical)?,
+    );
+    let ranges = (ends(&cells.0, map)?, ends(&cells.1, map)?);
+    let typeface = Typeface::new()?;
+    let mut raster = Raster::new(WHITE);
+    let beside = bar.width(&typeface);
+    let frame = Frame::new(&map.horizontal, &map.vertical, ranges, beside, &typeface);
+    let colour_at = |x: f64, y: f64| {
+        let (column, row) = (cell_of(&cells.0, x)?, cell_of(&cells.1, y)?);
+        let value = map.values.get(row * columns + column)?;
+        Some(bar.colour(*value).unwrap_or(GREY))
+    };
+    for (column, row) in frame.pixels() {
+        let (x, y) = frame.place(column, row);
+        if let Some(colour) = colour_at(x, y) {
+            raster.set(column, row, colour);
+        }
+    }
+    frame.draw(&mut raster, &typeface, &map.title, Side::Outside);
+    bar.draw(&mut raster, &typeface, &frame);
+    raster.png(&map.title)
+}
+
+/// Draws points over a parameter: a PNG, 1000 px wide and 760 px high.
+///
+/// Where points lie upon each other the picture is darker; their order does not matter.
+///
+/// # Errors
+///
+/// More or fewer ordinates than abscissae, no point that can be drawn.
+pub fn scatter_png(scatter: &Scatter<'_>) -> Result<Vec<u8>, PlotError> {
+    let (horizontal, vertical) = (&scatter.horizontal, &scatter.vertical);
+    if horizontal.values.len() != vertical.values.len() {
+        return Err(PlotError::Lengths {
+            panel: 0,
+            series: vertical.name.clone(),
+            abscissae: horizontal.values.len(),
+            values: vertical.values.len(),
+        });
+    }
+    let scales = (frame::units(horizontal), frame::units(vertical));
+    let pairs = horizontal.values.iter().zip(vertical.values);
+    let points: Vec<(f64, f64)> = pairs
+        .map(|(x, y)| (scales.0.place(*x), scales.1.place(*y)))
+        .filter(|(x, y)| x.is_finite() && y.is_finite())
+        .collect();
+    let range = |values: Vec<f64>| Range::of(values.into_iter());
+    let spans = (
+        range(points.iter().map(|point| point.0).collect()),
+        range(points.iter().map(|point| point.1).collect()),
+    );
+    let (Some(along), Some(up)) = spans else {
+        return Err(empty(&vertical.name));
+    };
+    let ranges = (along.opened().padded(0.01), up.opened().padded(0.03));
+    let typeface = Typeface::new()?;
+    let mut raster = Raster::new(WHITE);
+    let frame = Frame::new(horizontal, vertical, ranges, 0.0, &typeface);
+    frame.draw_grid(&mut raster);
+    draw_points(&mut raster, &frame, &points);
+    frame.draw(&mut raster, &typeface, &scatter.title, Side::Inside);
+    raster.png(&scatter.title)
+}
+
+/// Dots that let what is below shine through, so that density shows.
+fn draw_points(raster: &mut Raster, frame: &Frame, points: &[(f64, f64)]) {
+    let room = frame.pixels().count() as f64;
+    // So large that together they would cover a tenth of the frame, within reason.
+    let radius = (0.1 * room / (points.len() as f64 * std::f64::consts::PI)).sqrt();
+    let radius = radius.clamp(0.7, 3.0);
+    let mut paper = vec![1.0; raster::WIDTH * raster::HEIGHT];
+    for (x, y) in points {
+        let (x, y) = frame.pixel(*x, *y);
+        raster::disc(x, y, radius, |column, row, share| {
+            if let Some(left) = paper.get_mut(row * raster::WIDTH + column) {
+                *left *= 1.0 - OPACITY * share;
+            }
+        });
+    }
+    for (column, row) in frame.pixels() {
+        if let Some(left) = paper.get(row * raster::WIDTH + column) {
+            raster.blend(column, row, INK, 1.0 - left);
+        }
+    }
+}
+
+fn empty(name: &str) -> PlotError {
+    PlotError::Empty {
+        panel: 0,
+        series: name.to_owned(),
+    }
+}
+
+fn ends(edges: &[f64], map: &Map<'_>) -> Result<Range, PlotError> {
+    match edges {
+        [low, .., high] => Ok(Range {
+            low: *low,
+            high: *high,
+        }
+        .opened()),
+        _ => Err(empty(&map.quantity)),
+    }
+}
+
+/// Which cell a place lies in.
+fn cell_of(edges: &[f64], place: f64) -> Option<usize> {
+    let cell = edges
+        .partition_point(|edge| *edge <= place)
+        .checked_sub(1)?;
+    (cell + 1 < edges.len()).then_some(cell)
+}
+
+impl Spacing {
+    fn scale(self) -> Scale {
+        match self {
+            Self::Linear => Scale::Linear,
+            Self::Logarithmic => Scale::Logarithmic,
+        }
+    }
+}
+
+/// The greatest magnitude of what can be drawn.
+fn largest(values: &[f64]) -> f64 {
+    let drawable = values.iter().filter(|value| is_drawable(**value));
+    drawable.fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}

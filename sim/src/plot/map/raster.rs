@@ -1,0 +1,97 @@
+//! The pixels of a picture: setting, blending, rectangles and discs, and the PNG they become.
+
+use super::super::error::PlotError;
+
+/// The size of every picture, px.
+pub const WIDTH: usize = 1000;
+pub const HEIGHT: usize = 760;
+
+/// Red, green and blue.
+pub type Colour = [u8; 3];
+
+/// A picture; columns count from the left, rows from the top.
+#[derive(Clone, Debug)]
+pub struct Raster {
+    pixels: Vec<Colour>,
+}
+
+impl Raster {
+    /// A picture of one colour.
+    pub fn new(colour: Colour) -> Self {
+        Self {
+            pixels: vec![colour; WIDTH * HEIGHT],
+        }
+    }
+
+    /// Colours a pixel; outside the picture nothing happens.
+    pub fn set(&mut self, column: usize, row: usize, colour: Colour) {
+        self.blend(column, row, colour, 1.0);
+    }
+
+    /// Mixes a share of a colour, from 0 to 1, into a pixel.
+    pub fn blend(&mut self, column: usize, row: usize, colour: Colour, share: f64) {
+        if column >= WIDTH {
+            return;
+        }
+        if let Some(pixel) = self.pixels.get_mut(row * WIDTH + column) {
+            *pixel = mixed(*pixel, colour, share);
+        }
+    }
+
+    /// Fills whole pixels from (left, top) on, `size` px wide and high.
+    pub fn fill(&mut self, (left, top): (usize, usize), size: (usize, usize), colour: Colour) {
+        for row in top..top + size.1 {
+            for column in left..left + size.0 {
+                self.set(column, row, colour);
+            }
+        }
+    }
+
+    /// The picture as a PNG with its title.
+    pub fn png(&self, title: &str) -> Result<Vec<u8>, PlotError> {
+        let encoding = |error: png::EncodingError| PlotError::Encoding {
+            reason: error.to_string(),
+        };
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, WIDTH as u32, HEIGHT as u32);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::High);
+        encoder
+            .add_itxt_chunk("Title".to_owned(), title.replace('\0', " "))
+            .map_err(encoding)?;
+        let mut writer = encoder.write_header().map_err(encoding)?;
+        writer
+            .write_image_data(self.pixels.as_flattened())
+            .map_err(encoding)?;
+        writer.finish().map_err(encoding)?;
+        Ok(bytes)
+    }
+}
+
+/// The pixels that a disc touches, with the share of each that it covers; to a tenth of a
+/// pixel, as the eye sees it.
+pub fn disc(x: f64, y: f64, radius: f64, mut cover: impl FnMut(usize, usize, f64)) {
+    let reach = radius + 1.0;
+    let pixels =
+        |centre: f64| (centre - reach).max(0.0) as usize..=(centre + reach).max(0.0) as usize;
+    for row in pixels(y) {
+        for column in pixels(x) {
+            let away = f64::hypot(column as f64 + 0.5 - x, row as f64 + 0.5 - y);
+            let share = (radius + 0.5 - away).clamp(0.0, 1.0);
+            if share > 0.0 {
+                cover(column, row, share);
+            }
+        }
+    }
+}
+
+/// A share of one colour, from 0 to 1, in another.
+pub fn mixed(under: Colour, over: Colour, share: f64) -> Colour {
+    let mut mixture = under;
+    for (channel, over) in mixture.iter_mut().zip(over) {
+        let (low, high) = (f64::from(*channel), f64::from(over));
+        *channel = (low + share.clamp(0.0, 1.0) * (high - low)).round() as u8;
+    }
+    mixture
+}

@@ -1,0 +1,205 @@
+//! From values to colours, and the bar that says which colour is which value.
+
+use super::super::axis::{Range, Scale, Tick, ticks};
+use super::super::error::{PlotError, is_drawable};
+use super::super::quantity::Quantity;
+use super::frame::{FRAME, Frame, LABEL_SIZE, TICK_LENGTH, outline};
+use super::raster::{Colour, Raster, mixed};
+use super::typeface::{Align, Direction, Line, TICK_SIZE, Typeface};
+use super::{GREY, Map, Shades, WHITE, empty};
+
+/// Viridis by S. van der Walt and N. Smith, at every tenth.
+const VIRIDIS: [Colour; 11] = [
+    [0x44, 0x01, 0x54],
+    [0x48, 0x24, 0x75],
+    [0x41, 0x44, 0x87],
+    [0x35, 0x5f, 0x8d],
+    [0x2a, 0x78, 0x8e],
+    [0x21, 0x91, 0x8c],
+    [0x22, 0xa8, 0x84],
+    [0x44, 0xbf, 0x70],
+    [0x7a, 0xd1, 0x51],
+    [0xbd, 0xdf, 0x26],
+    [0xfd, 0xe7, 0x25],
+];
+/// C. Brewer's RdBu from its blue end, white in the middle.
+const BLUE_TO_RED: [Colour; 11] = [
+    [0x05, 0x30, 0x61],
+    [0x21, 0x66, 0xac],
+    [0x43, 0x93, 0xc3],
+    [0x92, 0xc5, 0xde],
+    [0xd1, 0xe5, 0xf0],
+    WHITE,
+    [0xfd, 0xdb, 0xc7],
+    [0xf4, 0xa5, 0x82],
+    [0xd6, 0x60, 0x4d],
+    [0xb2, 0x18, 0x2b],
+    [0x67, 0x00, 0x1f],
+];
+/// A side that reaches less than this share of the other is rounding noise around zero.
+const NOISE: f64 = 1e-6;
+/// By how much one side must outreach the other to get shades of its own.
+const LOPSIDED: f64 = 3.0;
+
+/// From the frame to the bar, and from the bar to its labels, px.
+const GAP: f64 = 28.0;
+const LABEL_GAP: f64 = TICK_LENGTH + 6.0;
+/// The width of the bar, px.
+const BAR: usize = 24;
+/// The room that the name of the quantity needs beside the labels, px.
+const LABEL: f64 = 34.0;
+
+/// The colours of a map.
+#[derive(Debug)]
+pub struct Bar {
+    shades: Shades,
+    quantity: Quantity,
+    /// What the ends stand for, in the unit of the quantity; zero is in the middle of signed
+    /// shades, wherever the ends are.
+    range: Range,
+    ticks: Vec<Tick>,
+    has_gaps: bool,
+}
+
+impl Bar {
+    /// The colours for the values of a map; an error if it has none that can be drawn.
+    pub fn new(map: &Map<'_>) -> Result<Self, PlotError> {
+        let drawable = map.values.iter().filter(|value| is_drawable(**value));
+        let found = Range::of(drawable.copied()).ok_or_else(|| empty(&map.quantity))?;
+        let range = match map.shades {
+            Shades::Sequential => found.opened(),
+            Shades::Signed => around_zero(found),
+        };
+        // Both sides of zero must be readable in one unit, even if they differ in size.
+        let magnitude = match map.shades {
+            Shades::Sequential => found.high.abs().max(found.low.abs()),
+            Shades::Signed => (-range.low).sqrt() * range.high.sqrt(),
+        };
+        let quantity = Quantity::scaled(&map.quantity, &map.unit, magnitude);
+        let range = Range {
+            low: range.low / quantity.scale,
+            high: range.high / quantity.scale,
+        };
+        let ticks = match map.shades {
+            Shades::Sequential => ticks(Scale::Linear, range, 7),
+            Shades::Signed => signed_ticks(range),
+        };
+        Ok(Self {
+            shades: map.shades,
+            quantity,
+            range,
+            ticks,
+            has_gaps: map.values.iter().any(|value| !is_drawable(*value)),
+        })
+    }
+
+    /// The colour of a value in SI units; none if it cannot be drawn.
+    pub fn colour(&self, value: f64) -> Option<Colour> {
+        let share = self.share(value / self.quantity.scale);
+        is_drawable(value).then(|| self.colour_at(share))
+    }
+
+    /// How much room the bar and its labels need, px.
+    pub fn width(&self, typeface: &Typeface) -> f64 {
+        GAP + BAR as f64 + LABEL_GAP + typeface.widest(&self.ticks) + LABEL
+    }
+
+    /// Where a value lies on the bar, from 0 at its lower end to 1.
+    fn share(&self, value: f64) -> f64 {
+        let Range { low, high } = self.range;
+        match self.shades {
+            Shades::Sequential => (value - low) / (high - low),
+            Shades::Signed if value < 0.0 => 0.5 - 0.5 * value / low,
+            Shades::Signed => 0.5 + 0.5 * value / high,
+        }
+    }
+
+    fn colour_at(&self, share: f64) -> Colour {
+        match self.shades {
+            Shades::Sequential => interpolated(&VIRIDIS, share),
+            Shades::Signed => interpolated(&BLUE_TO_RED, share),
+        }
+    }
+
+    /// Draws the bar to the right of a frame.
+    pub fn draw(&self, raster: &mut Raster, typeface: &Typeface, frame: &Frame) {
+        let (left, (bottom, top)) = (frame.right() + GAP, frame.vertical_pixels());
+        for row in top as usize..bottom as usize {
+            let colour = self.colour_at((bottom - row as f64 - 0.5) / (bottom - top));
+            raster.fill((left as usize, row), (BAR, 1), colour);
+        }
+        let edge = left + BAR as f64;
+        outline(raster, (left, edge), (bottom, top));
+        for tick in &self.ticks {
+            let y = bottom - self.share(tick.place) * (bottom - top);
+            let mark = (edge as usize + 1, y.round() as usize);
+            raster.fill(mark, (TICK_LENGTH as usize, 1), FRAME);
+            let at = (edge + LABEL_GAP, y + 0.36 * TICK_SIZE);
+            typeface.write(raster, Line::level(&tick.label, Align::Start), at);
+        }
+        let name = Line {
+            size: LABEL_SIZE,
+            direction: Direction::Up,
+            ..Line::level(&self.quantity.label, Align::Middle)
+        };
+        let beyond = edge + LABEL_GAP + typeface.widest(&self.ticks) + 24.0;
+        let at = (beyond, (top + bottom) / 2.0);
+        typeface.write_within(raster, name, at, bottom - top);
+        if self.has_gaps {
+            draw_gap_key(raster, typeface, (left, bottom + 16.0));
+        }
+    }
+}
+
+/// What grey means.
+fn draw_gap_key(raster: &mut Raster, typeface: &Typeface, (left, top): (f64, f64)) {
+    let side = 16;
+    raster.fill((left as usize, top as usize), (BAR, side), GREY);
+    let (right, bottom) = (left + BAR as f64, top + side as f64);
+    outline(raster, (left, right), (bottom, top));
+    let line = Line::level("no value", Align::Start);
+    typeface.write(raster, line, (right + LABEL_GAP, bottom - 3.0));
+}
+
+/// A range with zero inside: the same on both sides unless one reaches much farther.
+fn around_zero(found: Range) -> Range {
+    let (below, above) = (-found.low.min(0.0), found.high.max(0.0));
+    let (less, more) = (below.min(above), below.max(above));
+    if more < 1e-100 {
+        return Range {
+            low: -1.0,
+            high: 1.0,
+        };
+    }
+    // A side without values takes the other's reach: its half of the bar stays unused.
+    if less < NOISE * more || more <= LOPSIDED * less {
+        return Range {
+            low: -more,
+            high: more,
+        };
+    }
+    Range {
+        low: -below,
+        high: above,
+    }
+}
+
+/// Ticks of each half, with zero once.
+fn signed_ticks(range: Range) -> Vec<Tick> {
+    let lower = Range { high: 0.0, ..range };
+    let upper = Range { low: 0.0, ..range };
+    let below = ticks(Scale::Linear, lower, 4).into_iter();
+    below
+        .filter(|tick| tick.place < 0.0)
+        .chain(ticks(Scale::Linear, upper, 4))
+        .collect()
+}
+
+fn interpolated(colours: &[Colour; 11], share: f64) -> Colour {
+    let along = 10.0 * share.clamp(0.0, 1.0);
+    let below = (along.floor() as usize).min(9);
+    match colours.get(below..) {
+        Some([low, high, ..]) => mixed(*low, *high, along - below as f64),
+        _ => GREY,
+    }
+}

@@ -1,0 +1,226 @@
+//! Whole pictures: size, colours at known places, and what must not be drawn.
+
+use super::*;
+
+const NAN: f64 = f64::NAN;
+
+/// A picture decoded by the library's reader.
+struct Picture {
+    width: usize,
+    height: usize,
+    bytes: Vec<u8>,
+}
+
+impl Picture {
+    fn decode(png: &[u8]) -> Self {
+        let decoder = png::Decoder::new(std::io::Cursor::new(png));
+        let mut reader = decoder.read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut bytes).unwrap();
+        assert_eq!(info.color_type, png::ColorType::Rgb);
+        Self {
+            width: info.width as usize,
+            height: info.height as usize,
+            bytes,
+        }
+    }
+
+    fn at(&self, column: usize, row: usize) -> Colour {
+        let first = 3 * (row * self.width + column);
+        self.bytes[first..first + 3].try_into().unwrap()
+    }
+
+    /// The colours along a row, without repetition.
+    fn along(&self, row: usize) -> Vec<Colour> {
+        let mut colours: Vec<Colour> = (0..self.width).map(|x| self.at(x, row)).collect();
+        colours.dedup();
+        colours
+    }
+
+    fn count(&self, is_meant: impl Fn(Colour) -> bool) -> usize {
+        let pixels = self.bytes.chunks_exact(3);
+        pixels.filter(|p| is_meant([p[0], p[1], p[2]])).count()
+    }
+}
+
+fn coordinate<'a>(name: &str, unit: &str, values: &'a [f64]) -> Coordinate<'a> {
+    Coordinate {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        spacing: Spacing::Linear,
+        values,
+    }
+}
+
+fn exponents<'a>(columns: &'a [f64], rows: &'a [f64], values: &'a [f64]) -> Map<'a> {
+    Map {
+        title: "Largest exponent".to_owned(),
+        horizontal: coordinate("b_sp", "m", columns),
+        vertical: coordinate("omega", "rad/s", rows),
+        quantity: "lambda_1".to_owned(),
+        unit: "1/s".to_owned(),
+        shades: Shades::Signed,
+        values,
+    }
+}
+
+#[test]
+fn cells_have_their_colours() -> Result<(), PlotError> {
+    // Bottom row: least, zero; top row: greatest, nothing.
+    let (columns, rows) = ([0.0, 1e-4], [10.0, 20.0]);
+    let map = exponents(&columns, &rows, &[-8.0, 0.0, 8.0, NAN]);
+    let picture = Picture::decode(&map_png(&map)?);
+    assert_eq!((picture.width, picture.height), (1000, 760));
+    // The middles of the four quarters of the frame, whose left edge is near 85 px and right
+    // edge near 845 px.
+    let (left, right, low, high) = (280, 650, 530, 210);
+    assert_eq!(picture.at(left, low), [0x05, 0x30, 0x61]);
+    assert_eq!(picture.at(right, low), [0xff, 0xff, 0xff]);
+    assert_eq!(picture.at(left, high), [0x67, 0x00, 0x1f]);
+    assert_eq!(picture.at(right, high), [158; 3]);
+    Ok(())
+}
+
+#[test]
+fn a_lopsided_map_shows_both_signs() -> Result<(), PlotError> {
+    let (columns, rows) = ([0.0, 1.0, 2.0], [1.0]);
+    let strong = exponents(&columns, &rows, &[-2.0, 5.0, 100.0]);
+    let picture = Picture::decode(&map_png(&strong)?);
+    // Row 600 lies within the only row of cells; the bar is of one colour along it.
+    let colours = picture.along(600);
+    for end in [[0x05, 0x30, 0x61], [0x67, 0x00, 0x1f]] {
+        assert!(colours.contains(&end), "{end:?} in {colours:?}");
+    }
+    // Within a factor of three, equal magnitudes have equal shades: -4 of 8 is half way.
+    let even = exponents(&columns, &rows, &[-4.0, 4.0, 8.0]);
+    let picture = Picture::decode(&map_png(&even)?);
+    let colours = picture.along(600);
+    // Half way between the middle and an end of eleven colours: between two of them.
+    let (blue, red) = ([0x6b, 0xac, 0xd1], [0xe5, 0x83, 0x68]);
+    assert!(
+        colours.contains(&blue) && colours.contains(&red),
+        "{colours:02x?}"
+    );
+    Ok(())
+}
+
+#[test]
+fn sequential_shades_run_from_least_to_greatest() -> Result<(), PlotError> {
+    let (columns, rows) = ([1.0, 10.0, 100.0], [1.0]);
+    let mut map = exponents(&columns, &rows, &[1e-6, 2e-6, 3e-6]);
+    map.shades = Shades::Sequential;
+    map.horizontal.spacing = Spacing::Logarithmic;
+    let picture = Picture::decode(&map_png(&map)?);
+    let colours = picture.along(400);
+    for shade in [[0x44, 0x01, 0x54], [0x21, 0x91, 0x8c], [0xfd, 0xe7, 0x25]] {
+        assert!(colours.contains(&shade), "{shade:02x?} in {colours:02x?}");
+    }
+    // Equal ratios are equally wide: a third of the frame each.
+    let width = |shade| (0..1000).filter(|x| picture.at(*x, 400) == shade).count();
+    let (first, last) = (width([0x44, 0x01, 0x54]), width([0xfd, 0xe7, 0x25]));
+    assert!(first > 200 && first.abs_diff(last) <= 1, "{first} {last}");
+    Ok(())
+}
+
+#[test]
+fn points_lie_where_they_belong() -> Result<(), PlotError> {
+    let (along, up) = ([0.0, 1.0, 2.0, NAN], [0.0, 1e-6, -1e-6, 5.0]);
+    let scatter = Scatter {
+        title: "Section".to_owned(),
+        horizontal: coordinate("b_sp", "m", &along),
+        vertical: coordinate("x_sp", "m", &up),
+    };
+    let picture = Picture::decode(&scatter_png(&scatter)?);
+    let is_ink = |colour: Colour| colour[2].saturating_sub(colour[0]) > 60;
+    // Three discs of radius 3 px: 28 px each, less at their edges.
+    let ink = picture.count(is_ink);
+    assert!((60..120).contains(&ink), "{ink}");
+    let middle = (0..760).filter(|row| (450..600).any(|x| is_ink(picture.at(x, *row))));
+    let rows: Vec<usize> = middle.collect();
+    // The middle abscissa has the greatest value: near the top, at 52 px, less its margin.
+    assert!(rows.iter().all(|row| (60..90).contains(row)), "{rows:?}");
+    Ok(())
+}
+
+#[test]
+fn order_does_not_change_a_diagram_and_pictures_repeat() -> Result<(), PlotError> {
+    let along: Vec<f64> = (0..5000).map(|i| f64::from(i / 50)).collect();
+    let up: Vec<f64> = (0..5000).map(|i| (f64::from(i) * 0.7).sin()).collect();
+    let picture = |along: &[f64], up: &[f64]| {
+        scatter_png(&Scatter {
+            title: "t".to_owned(),
+            horizontal: coordinate("b", "m", along),
+            vertical: coordinate("x", "m", up),
+        })
+    };
+    let forwards = picture(&along, &up)?;
+    assert_eq!(forwards, picture(&along, &up)?);
+    let reversed = |values: &[f64]| values.iter().rev().copied().collect::<Vec<_>>();
+    let backwards = Picture::decode(&picture(&reversed(&along), &reversed(&up))?);
+    let forwards = Picture::decode(&forwards);
+    // Products in another order differ in the last bit, which a rounding can show.
+    let differing = forwards.bytes.iter().zip(&backwards.bytes);
+    assert!(differing.into_iter().all(|(a, b)| a.abs_diff(*b) <= 1));
+    Ok(())
+}
+
+#[test]
+fn extreme_maps_are_drawn() -> Result<(), PlotError> {
+    let hostile = "\0\u{1b}[31m θ̈ 漢字 ".repeat(200);
+    for (columns, values) in [
+        ([0.0, 1e-300], [0.0, 0.0]),
+        ([1.0, 1.0 + 1e-15], [5.0, 5.0]),
+        ([-1e99, 1e99], [1e99, -1e99]),
+        ([1.0, 2.0], [NAN, 5e-324]),
+        ([1.0, 2.0], [f64::INFINITY, -3.0]),
+    ] {
+        for shades in [Shades::Signed, Shades::Sequential] {
+            let mut map = exponents(&columns, &[1.0], &values);
+            map.shades = shades;
+            map.title = hostile.clone();
+            map.quantity = hostile.clone();
+            map.vertical.name = hostile.clone();
+            Picture::decode(&map_png(&map)?);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn what_cannot_be_drawn_is_an_error() {
+    let attempt = |columns: &[f64], values: &[f64]| map_png(&exponents(columns, &[1.0], values));
+    assert_eq!(
+        attempt(&[1.0, 2.0], &[1.0]),
+        Err(PlotError::Cells {
+            columns: 2,
+            rows: 1,
+            values: 1
+        })
+    );
+    let nothing = Err(empty("lambda_1"));
+    assert_eq!(attempt(&[], &[]), nothing);
+    assert_eq!(attempt(&[1.0, 2.0], &[NAN, NAN]), nothing);
+    for columns in [[2.0, 2.0], [2.0, 1.0], [2.0, NAN]] {
+        let refused = attempt(&columns, &[1.0, 1.0]);
+        assert!(matches!(refused, Err(PlotError::Grid { index: 1, .. })));
+    }
+    let mut logarithmic = exponents(&[0.0, 1.0], &[1.0], &[1.0, 1.0]);
+    logarithmic.horizontal.spacing = Spacing::Logarithmic;
+    assert!(matches!(
+        map_png(&logarithmic),
+        Err(PlotError::Grid { index: 0, .. })
+    ));
+    let scatter = |along, up| {
+        scatter_png(&Scatter {
+            title: String::new(),
+            horizontal: coordinate("b", "m", along),
+            vertical: coordinate("x", "m", up),
+        })
+    };
+    assert!(matches!(
+        scatter(&[1.0], &[]),
+        Err(PlotError::Lengths { .. })
+    ));
+    assert_eq!(scatter(&[], &[]), Err(empty("x")));
+    assert_eq!(scatter(&[1.0], &[NAN]), Err(empty("x")));
+}

@@ -1,0 +1,287 @@
+//! The method of Adams: predict, evaluate, correct, evaluate, with steps and orders that
+//! follow from the error (Shampine and Gordon, "Computer Solution of Ordinary
+//! Differential Equations", 1975).
+//!
+//! A step costs two evaluations of the right-hand side whatever its order, a trial step
+//! one, a state inside a step none. The price is the start: with nothing to remember the
+//! order is 1 and the step short, and both grow step by step. Behind every switching
+//! surface and every breakpoint of the inputs that begins anew.
+//!
+//! The formulas of a step are in `history`.
+
+use differential_equations::ode::ODE;
+
+use super::attempt::{Attempt, Errors};
+use super::dormand_prince::single_step;
+use super::error::SolveError;
+use super::history::{History, MAX_ORDER};
+use super::magnitudes::Magnitudes;
+use super::stepper::{Outcome, Point, Stepper, refusal};
+use super::system::System;
+use super::watch::Watched;
+
+/// The error aimed at, relative to what is allowed.
+const AIM: f64 = 0.5;
+
+/// After so many refusals at one point the memory is of no use.
+const REFUSALS: u32 = 3;
+
+/// Where the method stands and what it remembers there.
+#[derive(Clone)]
+struct Stand {
+    point: Point,
+    history: History,
+    /// The order of the next predictor; the corrector's is one higher.
+    order: usize,
+    /// Step and order still grow from the start.
+    is_starting: bool,
+    /// The number of steps of the same length that led here.
+    even: usize,
+}
+
+impl Stand {
+    fn new(point: Point) -> Self {
+        Self {
+            point,
+            history: History::new(),
+            order: 1,
+            is_starting: true,
+            even: 0,
+        }
+    }
+
+    /// A step of `length` s from here.
+    fn attempt<S: System + ?Sized>(&self, watched: &Watched<'_, S>, length: f64) -> Attempt {
+        Attempt::new(watched, &self.point, &self.history, self.order, length)
+    }
+}
+
+/// Steps of the method.
+pub struct Adams {
+    now: Stand,
+    before: Stand,
+    /// The step from `before` to `now`, if this method made it.
+    last: Option<Attempt>,
+    /// The length of the next step, s.
+    step: f64,
+    magnitudes: Magnitudes,
+    /// Steps refused where the method stands.
+    refusals: u32,
+}
+
+impl Stepper for Adams {
+    fn new(start: Point, step: f64, tolerance: f64) -> Self {
+        let mut magnitudes = Magnitudes::new(start.y.len(), tolerance);
+        magnitudes.raise(&start.y);
+        Self {
+            before: Stand::new(start.clone()),
+            now: Stand::new(start),
+            last: None,
+            step,
+            magnitudes,
+            refusals: 0,
+        }
+    }
+
+    fn here(&self) -> &Point {
+        &self.now.point
+    }
+
+    fn step(&self) -> f64 {
+        self.step
+    }
+
+    fn set_step(&mut self, step: f64) {
+        self.step = step;
+        self.refusals = 0;
+    }
+
+    fn restart(&mut self, point: Point, step: f64) {
+        self.last = None;
+        self.magnitudes.raise(&point.y);
+        self.before = std::mem::replace(&mut self.now, Stand::new(point));
+        self.set_step(step);
+    }
+
+    fn advance<S: System + ?Sized>(
+        &mut self,
+        watched: &Watched<'_, S>,
+        until: f64,
+    ) -> Result<Outcome, SolveError> {
+        self.begin(watched)?;
+        let limit = until - self.now.point.t;
+        let is_cut = limit <= self.step;
+        let length = if is_cut { limit } else { self.step };
+        let mut outcome = Outcome {
+            is_accepted: false,
+            length,
+        };
+        let attempt = self.now.attempt(watched, length);
+        if watched.crossed().is_some() {
+            return Ok(outcome);
+        }
+        let errors = attempt.errors(&self.now.history, &self.magnitudes);
+        outcome.is_accepted = errors.same <= 1.0;
+        if !outcome.is_accepted {
+            self.refuse(errors, length);
+            return Ok(outcome);
+        }
+        let step = self.step;
+        self.accept(watched, attempt, errors);
+        if is_cut {
+            // A step cut short says nothing against the longer one, and what the rates
+            // were before says nothing of those after `until`.
+            let point = Point {
+                t: until,
+                y: self.now.point.y.clone(),
+            };
+            self.now = Stand::new(point);
+            self.step = self.step.max(step);
+        }
+        Ok(outcome)
+    }
+
+    fn take_back(&mut self) {
+        std::mem::swap(&mut self.now, &mut self.before);
+    }
+
+    fn trial<S: System + ?Sized>(
+        &mut self,
+        watched: &Watched<'_, S>,
+        length: f64,
+    ) -> Result<Point, SolveError> {
+        self.begin(watched)?;
+        let end = self.now.attempt(watched, length).end;
+        watched.look(end.t, &end.y);
+        if end.y.iter().all(|y| y.is_finite()) {
+            Ok(end)
+        } else {
+            Err(refusal(watched, self.now.point.t, length))
+        }
+    }
+
+    fn inside<S: System + ?Sized>(
+        &mut self,
+        watched: &Watched<'_, S>,
+        t: f64,
+    ) -> Result<Vec<f64>, SolveError> {
+        let Stand { point, history, .. } = &self.before;
+        let Some(last) = &self.last else {
+            // The driver stepped over a surface; what is remembered says nothing of that.
+            return Ok(single_step(watched, point, t - point.t)?.y);
+        };
+        let weights = history.weights(t - point.t);
+        let mut y = point.y.clone();
+        history.predict(&weights, last.order, &mut y);
+        let factor = history.correction_inside(&weights, last.order, last.weights.length);
+        for (y, surprise) in y.iter_mut().zip(&last.surprise) {
+            *y += factor * surprise;
+        }
+        Ok(y)
+    }
+}
+
+impl Adams {
+    /// Evaluates the rates at a start and shortens the step to what they allow.
+    fn begin<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>) -> Result<(), SolveError> {
+        if self.now.history.points() > 0 {
+            return Ok(());
+        }
+        let Point { t, y } = &self.now.point;
+        let mut rates = vec![0.0; y.len()];
+        watched.diff(*t, y, &mut rates);
+        let norm = self.magnitudes.norm(rates.iter().copied(), y);
+        if !norm.is_finite() {
+            return Err(refusal(watched, *t, self.step));
+        }
+        // Shampine and Gordon's guess; a refusal at order 1 corrects it at once.
+        self.step = self.step.min(0.25 / norm.sqrt());
+        self.now.history.begin(&rates);
+        Ok(())
+    }
+
+    /// A shorter step, of a lower order if that does as well.
+    fn refuse(&mut self, errors: Errors, length: f64) {
+        self.refusals += 1;
+        self.now.even = 0;
+        if self.now.order == 1 {
+            // The error of order 1 is known well: go there at once.
+            let factor = (AIM / errors.same).sqrt();
+            let factor = if factor.is_finite() { factor } else { 0.0 };
+            self.step = length * factor.clamp(1e-3, 0.5);
+            return;
+        }
+        self.step = 0.5 * length;
+        self.now.is_starting = false;
+        if self.refusals >= REFUSALS {
+            self.now.order = 1;
+            self.now.is_starting = true;
+        } else if errors.is_lower_enough {
+            self.now.order -= 1;
+        }
+    }
+
+    /// Moves to the end of a step and decides about the next one.
+    fn accept<S: System + ?Sized>(
+        &mut self,
+        watched: &Watched<'_, S>,
+        attempt: Attempt,
+        errors: Errors,
+    ) {
+        let end = &attempt.end;
+        let mut rates = vec![0.0; end.y.len()];
+        watched.diff(end.t, &end.y, &mut rates);
+        self.magnitudes.raise(&end.y);
+        std::mem::swap(&mut self.now, &mut self.before);
+        let Attempt { weights, order, .. } = &attempt;
+        let (now, before) = (&mut self.now, &self.before);
+        (now.history).follow(&before.history, weights, *order, &rates);
+        now.point.clone_from(end);
+        let is_even =
+            (self.last.as_ref()).is_some_and(|last| last.weights.length == weights.length);
+        now.even = if is_even { before.even + 1 } else { 1 };
+        now.is_starting = before.is_starting;
+        now.order = *order;
+        self.refusals = 0;
+        self.choose(&attempt, errors);
+        self.last = Some(attempt);
+    }
+
+    /// The order and the length of the next step, after one that was accepted.
+    fn choose(&mut self, attempt: &Attempt, errors: Errors) {
+        let length = attempt.weights.length;
+        let stand = &mut self.now;
+        let order = stand.order;
+        if stand.is_starting && !errors.is_lower_enough && order < MAX_ORDER {
+            stand.order += 1;
+            self.step = 2.0 * length;
+            return;
+        }
+        stand.is_starting = false;
+        let mut error = errors.same;
+        if errors.is_lower_enough {
+            stand.order -= 1;
+            error = errors.lower;
+        } else if order < MAX_ORDER && stand.even > order {
+            // The new difference of the next order, known only after even steps.
+            let higher = stand.history.difference(order + 1);
+            let higher = attempt.norm(order + 1, higher, &self.magnitudes);
+            if order > 1 && errors.lower <= errors.same.min(higher) {
+                stand.order -= 1;
+                error = errors.lower;
+            } else if higher < errors.same * if order > 1 { 1.0 } else { 0.5 } {
+                stand.order += 1;
+                error = higher;
+            }
+        }
+        let exponent = (stand.order + 1) as f64;
+        let factor = (AIM / error).powf(1.0 / exponent);
+        self.step = if factor >= 2.0 {
+            2.0 * length
+        } else if factor >= 1.0 {
+            length
+        } else {
+            length * factor.clamp(0.5, 0.9)
+        };
+    }
+}

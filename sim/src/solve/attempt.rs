@@ -1,0 +1,103 @@
+//! One step of Adams' method of a given length and order: prediction, evaluation,
+//! correction, and what the errors of this and of lower orders are. What follows from
+//! the errors is decided in `adams`.
+
+use differential_equations::ode::ODE;
+
+use super::history::{History, Weights};
+use super::magnitudes::Magnitudes;
+use super::stepper::Point;
+use super::system::System;
+use super::watch::Watched;
+
+/// A step of one length, as far as it goes without the final rates.
+pub struct Attempt {
+    /// The coefficients of the step.
+    pub weights: Weights,
+    /// The order of the predictor; the corrector's is one higher.
+    pub order: usize,
+    /// The new difference of the predicted rates.
+    pub surprise: Vec<f64>,
+    /// Where it leads.
+    pub end: Point,
+}
+
+/// Errors of a step relative to what is allowed, by the order of the predictor.
+#[derive(Clone, Copy)]
+pub struct Errors {
+    /// Of the order used.
+    pub same: f64,
+    /// Of one less; infinite if there is none.
+    pub lower: f64,
+    /// One less would have done as well.
+    pub is_lower_enough: bool,
+}
+
+impl Attempt {
+    /// Makes a step of `length` s from `start`, where `history` ends.
+    pub fn new<S: System + ?Sized>(
+        watched: &Watched<'_, S>,
+        start: &Point,
+        history: &History,
+        order: usize,
+        length: f64,
+    ) -> Self {
+        let weights = history.weights(length);
+        let mut y = start.y.clone();
+        history.predict(&weights, order, &mut y);
+        let t = start.t + length;
+        let mut surprise = vec![0.0; y.len()];
+        watched.diff(t, &y, &mut surprise);
+        history.surprise(&weights, order, &mut surprise);
+        let factor = length * weights.g(order);
+        for (y, surprise) in y.iter_mut().zip(&surprise) {
+            *y += factor * surprise;
+        }
+        Self {
+            weights,
+            order,
+            surprise,
+            end: Point { t, y },
+        }
+    }
+
+    /// The errors that predictors of this order and of lower ones make.
+    pub fn errors(&self, history: &History, magnitudes: &Magnitudes) -> Errors {
+        let same = self.norm(self.order, self.surprise.iter().copied(), magnitudes);
+        let mut difference = self.surprise.clone();
+        let mut at_order = |order: usize| {
+            let continued = history.continued(&self.weights, order);
+            for (entry, continued) in difference.iter_mut().zip(continued) {
+                *entry += continued;
+            }
+            self.norm(order, difference.iter().copied(), magnitudes)
+        };
+        let (lower, is_lower_enough) = match self.order {
+            0 | 1 => (f64::INFINITY, false),
+            2 => {
+                let lower = at_order(1);
+                (lower, lower <= 0.5 * same)
+            }
+            order => {
+                let lower = at_order(order - 1);
+                (lower, lower.max(at_order(order - 2)) <= same)
+            }
+        };
+        Errors {
+            same,
+            lower,
+            is_lower_enough,
+        }
+    }
+
+    /// The error of an order, given the new differences of that order.
+    pub fn norm(
+        &self,
+        order: usize,
+        differences: impl Iterator<Item = f64>,
+        magnitudes: &Magnitudes,
+    ) -> f64 {
+        let errors = differences.map(|entry| self.weights.error(order) * entry);
+        magnitudes.norm(errors, &self.end.y)
+    }
+}

@@ -1,0 +1,277 @@
+//! The Dormand-Prince method of order 8 (Hairer, Norsett and Wanner, "Solving Ordinary
+//! Differential Equations I", section II.5), with and without control of the error.
+
+use differential_equations::error::Error;
+use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
+use differential_equations::ode::OrdinaryNumericalMethod;
+use differential_equations::status::Status;
+use differential_equations::tolerance::Tolerance;
+
+use super::error::SolveError;
+use super::magnitudes::Magnitudes;
+use super::stepper::{Outcome, Point, Stepper, refusal};
+use super::system::System;
+use super::watch::Watched;
+
+type Method = ExplicitRungeKutta<Ordinary, DormandPrince, f64, Vec<f64>, 8, 12, 16>;
+
+/// Steps of the method.
+pub struct DormandPrince853 {
+    method: Method,
+    /// Where the last step began.
+    last: Point,
+    /// Where the next step begins.
+    here: Point,
+    /// The length of the next step, s.
+    step: f64,
+    magnitudes: Magnitudes,
+    /// The method stands at `here`.
+    ready: bool,
+}
+
+impl Stepper for DormandPrince853 {
+    fn new(start: Point, step: f64, tolerance: f64) -> Self {
+        let mut stepper = Self {
+            method: Method::dop853(),
+            magnitudes: Magnitudes::new(start.y.len(), tolerance),
+            last: start.clone(),
+            here: start,
+            step,
+            ready: false,
+        };
+        stepper.raise_floors();
+        stepper.set_step(step);
+        stepper
+    }
+
+    fn here(&self) -> &Point {
+        &self.here
+    }
+
+    fn step(&self) -> f64 {
+        self.step
+    }
+
+    fn set_step(&mut self, step: f64) {
+        self.step = step;
+        self.ready = false;
+        // A new method, since it would refuse a step much shorter than its last one.
+        let tolerance = self.magnitudes.tolerance();
+        self.method = Method::dop853().rtol(tolerance).max_steps(usize::MAX);
+        self.method.atol = Tolerance::Vector(self.magnitudes.floors());
+    }
+
+    fn restart(&mut self, point: Point, step: f64) {
+        self.last = std::mem::replace(&mut self.here, point);
+        self.raise_floors();
+        self.set_step(step);
+    }
+
+    fn advance<S: System + ?Sized>(
+        &mut self,
+        watched: &Watched<'_, S>,
+        until: f64,
+    ) -> Result<Outcome, SolveError> {
+        let limit = until - self.here.t;
+        let is_cut = limit <= self.step;
+        let length = if is_cut { limit } else { self.step };
+        if !self.ready {
+            self.begin(watched, length)?;
+        }
+        self.method.set_h(length);
+        match self.method.step(watched) {
+            Ok(_) => {}
+            Err(Error::Stiffness { .. }) => {
+                // Short steps are this solver's answer to stiffness; begin the count anew.
+                self.ready = false;
+                return Ok(Outcome {
+                    is_accepted: false,
+                    length,
+                });
+            }
+            Err(_) => return Err(refusal(watched, self.here.t, length)),
+        }
+        if matches!(self.method.status(), Status::RejectedStep) {
+            self.step = self.method.h().min(0.9 * length);
+            return Ok(Outcome {
+                is_accepted: false,
+                length,
+            });
+        }
+        // A step cut short says nothing against the longer one.
+        self.step = if is_cut {
+            self.method.h().max(self.step)
+        } else {
+            self.method.h()
+        };
+        std::mem::swap(&mut self.last, &mut self.here);
+        self.here.y.clone_from(self.method.y());
+        self.here.t = if is_cut { until } else { self.method.t() };
+        self.ready = !is_cut;
+        self.raise_floors();
+        Ok(Outcome {
+            is_accepted: true,
+            length,
+        })
+    }
+
+    fn take_back(&mut self) {
+        std::mem::swap(&mut self.last, &mut self.here);
+        self.ready = false;
+    }
+
+    fn trial<S: System + ?Sized>(
+        &mut self,
+        watched: &Watched<'_, S>,
+        length: f64,
+    ) -> Result<Point, SolveError> {
+        single_step(watched, &self.here, length)
+    }
+
+    fn inside<S: System + ?Sized>(
+        &mut self,
+        watched: &Watched<'_, S>,
+        t: f64,
+    ) -> Result<Vec<f64>, SolveError> {
+        // The crate's interpolation is of order 4; a step from the same start is of 8.
+        Ok(single_step(watched, &self.last, t - self.last.t)?.y)
+    }
+}
+
+impl DormandPrince853 {
+    /// Lets the absolute tolerances follow the largest magnitudes.
+    fn raise_floors(&mut self) {
+        self.magnitudes.raise(&self.here.y);
+        self.method.atol = Tolerance::Vector(self.magnitudes.floors());
+    }
+
+    /// Initialises the method at the start.
+    fn begin<S: System + ?Sized>(
+        &mut self,
+        watched: &Watched<'_, S>,
+        length: f64,
+    ) -> Result<(), SolveError> {
+        self.method.h0 = length;
+        self.method
+            .init(
+                watched,
+                self.here.t,
+                horizon(&self.here, length),
+                &self.here.y,
+            )
+            .map_err(|_| refusal(watched, self.here.t, length))?;
+        self.ready = true;
+        Ok(())
+    }
+}
+
+/// The state one step of exactly `length` s after `start`, whatever its error.
+pub fn single_step<S: System + ?Sized>(
+    watched: &Watched<'_, S>,
+    start: &Point,
+    length: f64,
+) -> Result<Point, SolveError> {
+    /// Refuses nothing finite. A large number in its place does not: relative to it the
+    /// square of an error can be subnormal, and the method divides by that.
+    const ANY: f64 = f64::INFINITY;
+    let refused = || refusal(watched, start.t, length);
+    let mut method = Method::dop853().rtol(0.0).atol(ANY).h0(length);
+    let end = horizon(start, length);
+    method
+        .init(watched, start.t, end, &start.y)
+        .map_err(|_| refused())?;
+    method.step(watched).map_err(|_| refused())?;
+    if matches!(method.status(), Status::RejectedStep) {
+        return Err(refused());
+    }
+    Ok(Point {
+        t: method.t(),
+        y: method.y().clone(),
+    })
+}
+
+/// An end of the integration beyond a step of `length`, which the method wants to know.
+fn horizon(start: &Point, length: f64) -> f64 {
+    start.t + 2.0 * length.max(f64::EPSILON * start.t.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// y' = y cos t, so that the nodes of the method matter: y = exp(sin t).
+    struct Growth;
+
+    impl System for Growth {
+        fn states(&self) -> usize {
+            1
+        }
+
+        fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
+            out[0] = y[0] * t.cos();
+        }
+    }
+
+    /// The error at t = 4 with steps of 4/`steps`.
+    fn error(steps: u32) -> f64 {
+        let mut point = Point {
+            t: 0.0,
+            y: vec![1.0],
+        };
+        let watched = Watched::new(&Growth, point.t, &point.y);
+        for _ in 0..steps {
+            point = single_step(&watched, &point, 4.0 / f64::from(steps)).expect("a step");
+        }
+        (point.y[0] - 4.0_f64.sin().exp()).abs()
+    }
+
+    #[test]
+    fn a_single_step_is_of_order_8() {
+        let order = (error(8) / error(16)).log2();
+        assert!((7.5..9.5).contains(&order), "order {order}");
+    }
+
+    #[test]
+    fn a_single_step_is_made_however_large_its_error() {
+        for exponent in 0..300 {
+            let start = Point {
+                t: 0.0,
+                y: vec![10.0_f64.powi(exponent)],
+            };
+            let watched = Watched::new(&Growth, start.t, &start.y);
+            let point = single_step(&watched, &start, 3.0);
+            assert!(point.is_ok(), "from {:e}: {point:?}", start.y[0]);
+        }
+    }
+
+    #[test]
+    fn a_step_is_refused_where_the_error_is_too_large() {
+        let start = Point {
+            t: 0.0,
+            y: vec![1.0],
+        };
+        let watched = Watched::new(&Growth, start.t, &start.y);
+        let mut stepper = DormandPrince853::new(start, 3.0, 1e-10);
+        let outcome = stepper.advance(&watched, 10.0).expect("a trial");
+        assert_eq!(
+            outcome,
+            Outcome {
+                is_accepted: false,
+                length: 3.0
+            }
+        );
+        assert!(stepper.step() < 3.0 && stepper.here().t == 0.0);
+    }
+
+    #[test]
+    fn a_step_ends_exactly_where_it_must() {
+        let start = Point {
+            t: 0.1,
+            y: vec![1.0],
+        };
+        let watched = Watched::new(&Growth, start.t, &start.y);
+        let mut stepper = DormandPrince853::new(start, 0.5, 1e-3);
+        let outcome = stepper.advance(&watched, 0.3).expect("a step");
+        assert!(outcome.is_accepted && stepper.here().t == 0.3 && stepper.step() >= 0.5);
+    }
+}

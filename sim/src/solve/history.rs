@@ -1,0 +1,232 @@
+//! What the method of Adams remembers: the rates at its last points, as modified divided
+//! differences, and what follows from them for a step of any length.
+//!
+//! The formulas are those of Krogh in the notation of Hairer, Norsett and Wanner,
+//! "Solving Ordinary Differential Equations I", section III.5, with the last point x_n,
+//! the new one x, and tau = x - x_n:
+//!
+//! ```text
+//! Phi_j   = (x_n - x_(n-1)) ... (x_n - x_(n-j)) y'[x_n, ..., x_(n-j)]
+//! beta_j  = (x - x_n) ... (x - x_(n-j+1)) / ((x_n - x_(n-1)) ... (x_n - x_(n-j)))
+//! y(x)    = y_n + tau (g_0 beta_0 Phi_0 + ... + g_(k-1) beta_(k-1) Phi_(k-1))
+//! ```
+//!
+//! where g_j is the integral of the j-th Newton polynomial over the step. How long a step
+//! is and of which order is not decided here.
+
+/// The highest order of the predictor.
+pub const MAX_ORDER: usize = 12;
+
+/// The differences kept: two more than the highest order, to judge whether a higher one
+/// would do better.
+const DIFFERENCES: usize = MAX_ORDER + 2;
+
+/// The rates at the last points.
+#[derive(Clone)]
+pub struct History {
+    /// x_n - x_(n-j), s.
+    ages: Vec<f64>,
+    /// Phi_j, per point; as many as there are ages.
+    differences: Vec<Vec<f64>>,
+}
+
+/// The coefficients of a step.
+pub struct Weights {
+    /// The length of the step, s.
+    pub length: f64,
+    beta: [f64; DIFFERENCES],
+    g: [f64; DIFFERENCES],
+}
+
+impl Weights {
+    /// g_j.
+    pub fn g(&self, j: usize) -> f64 {
+        self.g.get(j).copied().unwrap_or(0.0)
+    }
+
+    /// The error, in s, that a unit of the q-th new difference means for order q: what
+    /// the q-th corrector adds to the one before it.
+    pub fn error(&self, q: usize) -> f64 {
+        q.checked_sub(1).map_or(0.0, |before| {
+            self.length * (self.g(q) - self.g(before)).abs()
+        })
+    }
+}
+
+impl History {
+    /// No points.
+    pub fn new() -> Self {
+        Self {
+            ages: Vec::with_capacity(DIFFERENCES),
+            differences: Vec::with_capacity(DIFFERENCES),
+        }
+    }
+
+    /// The number of points known.
+    pub fn points(&self) -> usize {
+        self.ages.len()
+    }
+
+    /// Forgets all points.
+    pub fn clear(&mut self) {
+        self.ages.clear();
+        self.differences.clear();
+    }
+
+    /// Begins with one point, where the rates are `rates`.
+    pub fn begin(&mut self, rates: &[f64]) {
+        self.clear();
+        self.ages.push(0.0);
+        self.differences.push(rates.to_vec());
+    }
+
+    /// The coefficients of a step of `length` s.
+    pub fn weights(&self, length: f64) -> Weights {
+        let mut beta = [0.0; DIFFERENCES];
+        let mut g = [0.0; DIFFERENCES];
+        // Row j of the scheme: entry q is c_(j,q+1), so that g_j = c_(j,1).
+        let mut row: [f64; DIFFERENCES + 1] = std::array::from_fn(|q| 1.0 / (q + 1) as f64);
+        let mut product = 1.0;
+        for (j, (beta, g)) in beta.iter_mut().zip(&mut g).enumerate() {
+            if let Some(age) = j.checked_sub(1).and_then(|before| self.ages.get(before)) {
+                let reach = length + age;
+                for q in 0..DIFFERENCES - j {
+                    row[q] -= row[q + 1] * (length / reach);
+                }
+                product *= self.ages.get(j).map_or(0.0, |age| reach / age);
+            } else if j > 0 {
+                break;
+            }
+            *g = row[0];
+            *beta = product;
+        }
+        Weights { length, beta, g }
+    }
+
+    /// y(x) - y_n of the predictor of this order, added to `y`.
+    pub fn predict(&self, weights: &Weights, order: usize, y: &mut [f64]) {
+        for (j, difference) in self.differences.iter().enumerate().take(order) {
+            let factor = weights.length * weights.g[j] * weights.beta[j];
+            add(factor, difference, y);
+        }
+    }
+
+    /// Turns the rates at the new point into its `order`-th modified difference: how far
+    /// they are from the continuation of the rates before.
+    pub fn surprise(&self, weights: &Weights, order: usize, rates: &mut [f64]) {
+        for (j, difference) in self.differences.iter().enumerate().take(order) {
+            add(-weights.beta[j], difference, rates);
+        }
+    }
+
+    /// beta_j Phi_j, entry by entry; zeros where it is not known.
+    pub fn continued(&self, weights: &Weights, j: usize) -> impl Iterator<Item = f64> {
+        let beta = weights.beta.get(j).copied().unwrap_or(0.0);
+        self.difference(j).map(move |difference| beta * difference)
+    }
+
+    /// Phi_j, entry by entry; zeros where it is not known.
+    pub fn difference(&self, j: usize) -> impl Iterator<Item = f64> {
+        let known = self.differences.get(j).map_or(&[][..], Vec::as_slice);
+        known.iter().copied().chain(std::iter::repeat(0.0))
+    }
+
+    /// The part of the `order`-th Newton polynomial's integral that belongs to `inside`,
+    /// which shares its start with the step of `length` s: what the new difference adds
+    /// to y there, in s.
+    pub fn correction_inside(&self, inside: &Weights, order: usize, length: f64) -> f64 {
+        let ratios = self.ages.iter().take(order);
+        let ratios = ratios.map(|age| (inside.length + age) / (length + age));
+        inside.length * inside.g(order) * ratios.product::<f64>()
+    }
+
+    /// Becomes what `before` is after a step with these weights to a point with these
+    /// rates; keeps the differences that a step of the next higher order needs.
+    pub fn follow(&mut self, before: &Self, weights: &Weights, order: usize, rates: &[f64]) {
+        let points = (before.points() + 1).min(order + 2).min(DIFFERENCES);
+        self.ages.clear();
+        self.ages.push(0.0);
+        let older = before.ages.iter().take(points - 1);
+        self.ages.extend(older.map(|age| age + weights.length));
+        self.differences.resize_with(points, Vec::new);
+        let mut difference = rates.to_vec();
+        for (j, place) in self.differences.iter_mut().enumerate() {
+            place.clone_from(&difference);
+            let continued = before.continued(weights, j);
+            for (difference, continued) in difference.iter_mut().zip(continued) {
+                *difference -= continued;
+            }
+        }
+    }
+}
+
+/// y += factor x.
+fn add(factor: f64, x: &[f64], y: &mut [f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += factor * x;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The end of an integration of y' = f(t) from 0 with uneven steps and `order`,
+    /// beginning with exact values.
+    fn integral(f: impl Fn(f64) -> f64, exact: impl Fn(f64) -> f64, order: usize) -> (f64, f64) {
+        let mut history = History::new();
+        history.begin(&[f(0.0)]);
+        let (mut t, mut y) = (0.0, exact(0.0));
+        for step in 0..3 * order {
+            let weights = history.weights(0.1 + 0.05 * (1.7 * step as f64).sin());
+            let order = order.min(history.points());
+            let next = t + weights.length;
+            let mut predicted = [y];
+            history.predict(&weights, order, &mut predicted);
+            let mut surprise = [f(next)];
+            history.surprise(&weights, order, &mut surprise);
+            y = predicted[0] + weights.length * weights.g(order) * surprise[0];
+            if step < order {
+                y = exact(next);
+            }
+            t = next;
+            let mut after = History::new();
+            after.follow(&history, &weights, order, &[f(t)]);
+            history = after;
+        }
+        (t, y)
+    }
+
+    #[test]
+    fn corrected_steps_of_any_length_integrate_polynomials_exactly() {
+        for order in 1..=MAX_ORDER {
+            let power = order as i32;
+            let exact = |t: f64| t.powi(power + 1) / f64::from(power + 1);
+            let (t, y) = integral(|t| t.powi(power), exact, order);
+            // Rounding in differences of `order` neighbours, a few digits for the highest.
+            assert!((y / exact(t) - 1.0).abs() < 1e-11, "order {order}: {y}");
+            // One degree higher is not exact: the test sees the order.
+            let exact = |t: f64| t.powi(power + 2) / f64::from(power + 2);
+            let (t, y) = integral(|t| t.powi(power + 1), exact, order);
+            assert!((y / exact(t) - 1.0).abs() > 1e-13, "order {order}: {y}");
+        }
+    }
+
+    #[test]
+    fn even_steps_have_the_coefficients_of_the_textbook() {
+        let mut history = History::new();
+        history.begin(&[1.0]);
+        for _ in 0..5 {
+            let mut after = History::new();
+            after.follow(&history, &history.weights(0.25), MAX_ORDER, &[1.0]);
+            history = after;
+        }
+        let weights = history.weights(0.25);
+        // Hairer, Norsett and Wanner, table III.1.1.
+        let expected = [1.0, 1.0 / 2.0, 5.0 / 12.0, 3.0 / 8.0, 251.0 / 720.0];
+        for (j, expected) in expected.into_iter().enumerate() {
+            assert!((weights.g(j) - expected).abs() < 1e-15, "g_{j}");
+            assert!((weights.beta[j] - 1.0).abs() < 1e-15, "beta_{j}");
+        }
+    }
+}

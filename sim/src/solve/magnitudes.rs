@@ -1,0 +1,49 @@
+//! The scale on which the errors of a step are measured; see the solver's page.
+
+use super::settings::SMALLEST_MAGNITUDE;
+
+/// The largest magnitude of each component so far, and the tolerance relative to it.
+pub struct Magnitudes {
+    largest: Vec<f64>,
+    tolerance: f64,
+}
+
+impl Magnitudes {
+    /// Components that have not moved yet.
+    pub fn new(states: usize, tolerance: f64) -> Self {
+        Self {
+            largest: vec![SMALLEST_MAGNITUDE; states],
+            tolerance,
+        }
+    }
+
+    /// The relative tolerance.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Takes note of a state reached.
+    pub fn raise(&mut self, y: &[f64]) {
+        for (largest, y) in self.largest.iter_mut().zip(y) {
+            *largest = largest.max(y.abs());
+        }
+    }
+
+    /// The error allowed to each component at y = 0, in its own unit.
+    pub fn floors(&self) -> Vec<f64> {
+        let floors = self.largest.iter().map(|largest| largest * self.tolerance);
+        floors.collect()
+    }
+
+    /// The root-mean-square of `errors` relative to what is allowed at `y`: at most 1 is
+    /// small enough.
+    pub fn norm(&self, errors: impl Iterator<Item = f64>, y: &[f64]) -> f64 {
+        let allowed = self.largest.iter().zip(y);
+        let allowed = allowed.map(|(largest, y)| self.tolerance * (largest + y.abs()));
+        let squares = errors.zip(allowed).map(|(error, allowed)| {
+            let relative = error / allowed;
+            relative * relative
+        });
+        (squares.sum::<f64>() / y.len() as f64).sqrt()
+    }
+}

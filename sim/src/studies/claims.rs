@@ -1,0 +1,164 @@
+//! The claims of the paper's sections 3, 4.1 to 4.3 and 5 as data: what is said, where, the
+//! cases it needs and the rule that decides.
+//!
+//! The paper calls every motion that is not chaotic quasi-periodic. A claim of that kind
+//! holds here for regular motion, periodic or quasi-periodic; the strict reading, under
+//! which a periodic motion contradicts it, is judged beside it and counted apart. So is the
+//! positioning error as printed, against that of the right sign.
+
+use super::reading::{Forcing, Key};
+
+/// What a claim is about: which rule decides it, and on which cases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// The motion is regular.
+    Regular(Key),
+    /// The motion is chaotic.
+    Chaotic(Key),
+    /// Regular at b = 10 um, chaotic at 100 um, and never back to regular in between.
+    Route(Forcing),
+    /// The greatest positioning error grows from each b to the next, 0 to 100 um, and by 5 %
+    /// in all; a step back of 1 % is forgiven. Strictly it is f_la as Eq. (24) prints it, a sum
+    /// whose parts oppose each other; else the error dr - l dtheta of the end point will do.
+    ErrorGrows(Forcing),
+    /// dr is larger than l dtheta, peak to peak and in rms; undecided if these disagree.
+    DeflectionDominates(Key),
+    /// l dtheta is larger than dr, likewise.
+    TransmissionDominates(Key),
+    /// The ratio of l dtheta to dr, peak to peak, grows from each b to the next.
+    ShareGrows(Forcing),
+    /// This mode, counted from 1, vibrates most at the arm's end.
+    DominantMode(Key, usize),
+    /// Not the same mode vibrates most for all b > 0.
+    ModeChanges(Forcing),
+    /// Between b = 10 and 100 um dr changes, peak to peak and in rms, by less than a factor
+    /// 1.5, and by less than l dtheta does.
+    DeflectionSteady(Forcing),
+    /// For at least one b > 0 the motion is regular at one forcing frequency and chaotic at
+    /// the other.
+    FrequencyMatters,
+    /// The rigid arm's motion is of the other kind than the flexible arm's.
+    FlexibilityMatters,
+    /// dr without backlash differs by less than 2 % between S = 4 and S = 5, peak to peak and
+    /// in rms.
+    OrderSuffices,
+}
+
+/// A claim of the paper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Claim {
+    /// Its name in tables and files.
+    pub id: &'static str,
+    /// Where the paper makes it.
+    pub place: &'static str,
+    /// What it says, in other words.
+    pub says: &'static str,
+    /// How it is decided.
+    pub rule: Rule,
+}
+
+/// The backlashes of the paper, micrometres.
+pub const BACKLASHES: [u32; 5] = [0, 10, 25, 50, 100];
+
+use Forcing::{FivePi, TenPi};
+
+const fn five(b: u32) -> Key {
+    Key::flexible(FivePi, b)
+}
+
+const fn ten(b: u32) -> Key {
+    Key::flexible(TenPi, b)
+}
+
+const RIGID: Key = Key {
+    order: 0,
+    forcing: TenPi,
+    micrometres: 100,
+};
+
+const fn claim(id: &'static str, place: &'static str, says: &'static str, rule: Rule) -> Claim {
+    Claim {
+        id,
+        place,
+        says,
+        rule,
+    }
+}
+
+/// The claims, in the order of the paper.
+#[rustfmt::skip]
+pub const CLAIMS: [Claim; 30] = [
+    claim("order", "Sec. 3, Fig. 4", "four modes are enough: five change the tip's motion little", Rule::OrderSuffices),
+    claim("regular_5pi_10", "Sec. 4.2, Fig. 6", "quasi-periodic at 5 pi, b = 10 um", Rule::Regular(five(10))),
+    claim("regular_5pi_25", "Sec. 4.2, Fig. 7", "quasi-periodic at 5 pi, b = 25 um", Rule::Regular(five(25))),
+    claim("chaos_5pi_50", "Sec. 4.2, Fig. 8", "chaotic at 5 pi, b = 50 um", Rule::Chaotic(five(50))),
+    claim("chaos_5pi_100", "Sec. 4.2, Fig. 9", "chaotic at 5 pi, b = 100 um", Rule::Chaotic(five(100))),
+    claim("route_5pi", "Sec. 4.1; 5 (2)", "from quasi-periodic to chaotic as b grows, at 5 pi", Rule::Route(FivePi)),
+    claim("error_5pi", "Sec. 4.1, Fig. 5-9", "the positioning error grows with b, at 5 pi", Rule::ErrorGrows(FivePi)),
+    claim("small_b_5pi", "Sec. 4.1; 5 (3)", "the arm's deflection is the larger part of the error for small b (10 um, 5 pi)", Rule::DeflectionDominates(five(10))),
+    claim("large_b_5pi", "Sec. 4.1; 5 (3)", "the transmission error is the larger part for large b (100 um, 5 pi)", Rule::TransmissionDominates(five(100))),
+    claim("share_5pi", "Sec. 4.1; 5 (3)", "the transmission error gains on the deflection step by step, at 5 pi", Rule::ShareGrows(FivePi)),
+    claim("mode_5pi_10", "Sec. 4.1, Fig. 10 (a)", "the first mode dominates dr at 5 pi, b = 10 um", Rule::DominantMode(five(10), 1)),
+    claim("mode_5pi_25", "Sec. 4.1, Fig. 10 (b)", "the first mode dominates dr at 5 pi, b = 25 um", Rule::DominantMode(five(25), 1)),
+    claim("mode_5pi_50", "Sec. 4.1, Fig. 10 (c)", "the first mode dominates dr at 5 pi, b = 50 um", Rule::DominantMode(five(50), 1)),
+    claim("mode_5pi_100", "Sec. 4.1, Fig. 10 (d)", "the third mode dominates dr at 5 pi, b = 100 um", Rule::DominantMode(five(100), 3)),
+    claim("regular_10pi_10", "Sec. 4.2, Fig. 12", "quasi-periodic at 10 pi, b = 10 um", Rule::Regular(ten(10))),
+    claim("chaos_10pi_25", "Sec. 4.2, Fig. 13", "chaotic at 10 pi, b = 25 um", Rule::Chaotic(ten(25))),
+    claim("chaos_10pi_50", "Sec. 4.2, Fig. 14", "chaotic at 10 pi, b = 50 um", Rule::Chaotic(ten(50))),
+    claim("chaos_10pi_100", "Sec. 4.2, Fig. 15", "chaotic at 10 pi, b = 100 um", Rule::Chaotic(ten(100))),
+    claim("route_10pi", "Sec. 5 (2)", "from quasi-periodic to chaotic as b grows, at 10 pi", Rule::Route(TenPi)),
+    claim("frequency", "Sec. 4.2; 5 (2)", "the kind of motion depends on the forcing frequency", Rule::FrequencyMatters),
+    claim("rigid_10pi_100", "Sec. 4.3, Fig. 19", "quasi-periodic with a rigid arm at 10 pi, b = 100 um", Rule::Regular(RIGID)),
+    claim("flexibility", "Sec. 4.3; 5 (5)", "the arm's flexibility changes the kind of motion of the gears (10 pi, b = 100 um)", Rule::FlexibilityMatters),
+    claim("error_10pi", "Sec. 5 (1), Fig. 11-15", "backlash impairs the positioning, at 10 pi", Rule::ErrorGrows(TenPi)),
+    claim("small_b_10pi", "Sec. 5 (3)", "the deflection is the larger part for small b (10 um, 10 pi)", Rule::DeflectionDominates(ten(10))),
+    claim("large_b_10pi", "Sec. 5 (3)", "the transmission error is the larger part for large b (100 um, 10 pi)", Rule::TransmissionDominates(ten(100))),
+    claim("share_10pi", "Sec. 5 (3)", "the transmission error gains on the deflection step by step, at 10 pi", Rule::ShareGrows(TenPi)),
+    claim("steady_5pi", "Sec. 5 (4)", "backlash changes the amplitude of the deflection little, at 5 pi", Rule::DeflectionSteady(FivePi)),
+    claim("steady_10pi", "Sec. 5 (4)", "backlash changes the amplitude of the deflection little, at 10 pi", Rule::DeflectionSteady(TenPi)),
+    claim("mode_changes_5pi", "Sec. 5 (4)", "the dominant mode depends on b, at 5 pi", Rule::ModeChanges(FivePi)),
+    claim("mode_changes_10pi", "Sec. 5 (4)", "the dominant mode depends on b, at 10 pi", Rule::ModeChanges(TenPi)),
+];
+
+impl Rule {
+    /// The cases that the rule looks at.
+    pub fn cases(self) -> Vec<Key> {
+        let all = |forcing, backlashes: &[u32]| -> Vec<Key> {
+            let keys = backlashes.iter().map(|b| Key::flexible(forcing, *b));
+            keys.collect()
+        };
+        match self {
+            Self::Regular(key)
+            | Self::Chaotic(key)
+            | Self::DeflectionDominates(key)
+            | Self::TransmissionDominates(key)
+            | Self::DominantMode(key, _) => vec![key],
+            Self::ErrorGrows(forcing) => all(forcing, &BACKLASHES),
+            Self::Route(forcing)
+            | Self::ShareGrows(forcing)
+            | Self::ModeChanges(forcing)
+            | Self::DeflectionSteady(forcing) => all(forcing, &BACKLASHES[1..]),
+            Self::FrequencyMatters => {
+                let mut keys = all(FivePi, &BACKLASHES[1..]);
+                keys.extend(all(TenPi, &BACKLASHES[1..]));
+                keys
+            }
+            Self::FlexibilityMatters => vec![RIGID, ten(100)],
+            Self::OrderSuffices => vec![
+                five(0),
+                Key {
+                    order: 5,
+                    ..five(0)
+                },
+            ],
+        }
+    }
+}
+
+/// All cases that the claims need, each once, in a fixed order.
+pub fn cases() -> Vec<Key> {
+    let mut keys: Vec<Key> = CLAIMS.iter().flat_map(|claim| claim.rule.cases()).collect();
+    keys.sort_unstable();
+    keys.dedup();
+    keys
+}

@@ -1,0 +1,79 @@
+//! What was found for a claim, in words and numbers.
+
+use super::claims::Rule;
+use super::reading::{Key, Reading};
+
+/// A sentence or several on the readings that a rule looks at.
+pub(super) fn evidence(rule: Rule, keys: &[Key], found: &[&Reading]) -> String {
+    let cases: Vec<(&Key, &&Reading)> = keys.iter().zip(found).collect();
+    let each = |say: &dyn Fn(&Key, &Reading) -> String| -> String {
+        let parts: Vec<String> = cases
+            .iter()
+            .map(|(key, reading)| say(key, reading))
+            .collect();
+        parts.join("; ")
+    };
+    match rule {
+        Rule::Regular(_) | Rule::Chaotic(_) | Rule::FlexibilityMatters => {
+            let parts = cases.iter().map(|(key, reading)| match cases.len() {
+                1 => reading.sentence.clone(),
+                _ => format!("{key}: {}", reading.sentence),
+            });
+            parts.collect::<Vec<_>>().join(" ")
+        }
+        Rule::Route(_) | Rule::FrequencyMatters => {
+            each(&|key, reading| format!("{key}: {}", kind(reading)))
+        }
+        Rule::ErrorGrows(_) => each(&|key, reading| {
+            let printed = 1e3 * reading.f_la.largest;
+            let signed = 1e3 * reading.f_la_signed.largest;
+            let b = key.micrometres;
+            format!("b = {b}: |f_la| <= {printed:.3} mm, |dr - l dtheta| <= {signed:.3} mm")
+        }),
+        Rule::DeflectionDominates(_)
+        | Rule::TransmissionDominates(_)
+        | Rule::ShareGrows(_)
+        | Rule::DeflectionSteady(_) => each(&components),
+        Rule::DominantMode(..) | Rule::ModeChanges(_) => each(&modes),
+        Rule::OrderSuffices => each(&|key, reading| {
+            let (span, rms) = (1e3 * reading.dr.span, 1e3 * reading.dr.rms);
+            format!(
+                "S = {}: dr {span:.4} mm peak to peak, rms {rms:.4}",
+                key.order
+            )
+        }),
+    }
+}
+
+fn kind(reading: &Reading) -> &str {
+    // The verdict stands before the first colon of its sentence.
+    reading.sentence.split(':').next().unwrap_or_default()
+}
+
+fn components(key: &Key, reading: &Reading) -> String {
+    let (t, d) = (&reading.transmission, &reading.dr);
+    format!(
+        "b = {}: l dtheta {:.3} mm peak to peak, rms {:.4}; dr {:.3} mm, rms {:.4}",
+        key.micrometres,
+        1e3 * t.span,
+        1e3 * t.rms,
+        1e3 * d.span,
+        1e3 * d.rms
+    )
+}
+
+/// The share of each mode in the sum of the vibrations.
+fn modes(key: &Key, reading: &Reading) -> String {
+    let sum: f64 = reading.vibration.iter().sum();
+    let shares: Vec<String> = reading
+        .vibration
+        .iter()
+        .map(|power| format!("{:.1}", 100.0 * power / sum))
+        .collect();
+    let rms = 1e6 * sum.sqrt();
+    format!(
+        "b = {}: modes 1.. have {} % of a vibration of {rms:.1} um rms",
+        key.micrometres,
+        shares.join(", ")
+    )
+}

@@ -1,0 +1,30 @@
+//! The paper's numerical studies: its cases, its claims, and what this model says of them.
+//!
+//! [`arm`] makes the paper's arm at any values of what the paper does not disclose, and
+//! [`case`](mod@case) measures one case: `run` follows its motion, `neighbours` says how
+//! fast neighbouring motions part, `series` has the paper's quantities. [`reading`] is what the claims need of it, [`claims`]
+//! states them with their rules, [`judge`] decides, `evidence` says on what grounds.
+//! [`sets`] spreads the undisclosed values over plausible ranges, [`search`] judges all
+//! claims at each, [`tally`] counts what holds together. `display` samples cases for
+//! `figures`; [`responses`] and [`order`] are the paper's studies as `report` hands them out.
+
+pub mod arm;
+pub mod case;
+pub mod claims;
+mod display;
+pub mod error;
+mod evidence;
+mod figures;
+pub mod judge;
+mod neighbours;
+pub mod order;
+pub mod reading;
+pub mod report;
+pub mod responses;
+mod run;
+pub mod search;
+mod series;
+pub mod sets;
+pub mod tally;
+
+pub use error::StudyError;

@@ -1,0 +1,283 @@
+//! The search: all claims judged at thousands of parameter sets, the best again with longer
+//! runs, and the neighbourhood of the very best.
+//!
+//! Sets are judged in parallel, in chunks that are written beside their place and moved
+//! there when whole. A search that was killed goes on where it stopped, and gives the same
+//! bytes as one that was not.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::arm::{Arm, Undisclosed};
+use super::case::{Length, measure};
+use super::claims::{CLAIMS, cases};
+use super::error::StudyError;
+use super::judge::{Holding, Judgement, Readings, judge};
+use super::reading::Reading;
+use super::sets::{neighbour, set};
+
+/// Sets in a chunk.
+const CHUNK: usize = 20;
+
+/// What is searched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Request {
+    /// How many sets are screened.
+    pub sets: usize,
+    /// Which sequence of sets.
+    pub seed: u64,
+    /// How many of the best are judged again with longer runs.
+    pub confirmed: usize,
+    /// How many sets around the best are judged, within 10 % in every parameter.
+    pub neighbours: usize,
+    /// How long cases are run when screened.
+    pub screening: Length,
+    /// How long they are run when judged again.
+    pub confirming: Length,
+}
+
+/// A parameter set with its verdicts, one letter per claim: H, F or U.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judged {
+    /// Its place in the sequence.
+    pub index: usize,
+    /// The values.
+    pub undisclosed: Undisclosed,
+    /// In the generous reading.
+    pub verdicts: Vec<char>,
+    /// In the strict reading.
+    pub strict: Vec<char>,
+}
+
+/// What a search found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// All sets as screened, in the order of the sequence.
+    pub screened: Vec<Judged>,
+    /// The best of these judged again, the best first.
+    pub confirmed: Vec<Judged>,
+    /// Sets around the best confirmed one.
+    pub neighbours: Vec<Judged>,
+}
+
+impl Judged {
+    /// How many claims hold.
+    pub fn holding(&self) -> usize {
+        self.verdicts
+            .iter()
+            .filter(|letter| **letter == 'H')
+            .count()
+    }
+
+    /// How many hold strictly.
+    pub fn strictly_holding(&self) -> usize {
+        self.strict.iter().filter(|letter| **letter == 'H').count()
+    }
+
+    /// One line: index, values, counts, verdicts, strict verdicts.
+    pub fn line(&self) -> String {
+        let Undisclosed {
+            second_moment,
+            a_m,
+            b_m,
+            f_w,
+            c,
+        } = self.undisclosed;
+        let (letters, strict): (String, String) =
+            (self.verdicts.iter().collect(), self.strict.iter().collect());
+        format!(
+            "{},{second_moment:?},{a_m:?},{b_m:?},{f_w:?},{c:?},{},{},{letters},{strict}",
+            self.index,
+            self.holding(),
+            self.strictly_holding(),
+        )
+    }
+
+    /// Reads what [`Judged::line`] wrote.
+    pub fn parse(line: &str) -> Option<Self> {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [index, i, a, b, f, c, _, _, letters, strict] = fields[..] else {
+            return None;
+        };
+        let judged = Self {
+            index: index.parse().ok()?,
+            undisclosed: Undisclosed {
+                second_moment: i.parse().ok()?,
+                a_m: a.parse().ok()?,
+                b_m: b.parse().ok()?,
+                f_w: f.parse().ok()?,
+                c: c.parse().ok()?,
+            },
+            verdicts: letters.chars().collect(),
+            strict: strict.chars().collect(),
+        };
+        let whole = judged.verdicts.len() == CLAIMS.len() && judged.strict.len() == CLAIMS.len();
+        whole.then_some(judged)
+    }
+}
+
+/// The orders that the claims need.
+pub fn orders() -> Vec<usize> {
+    let mut orders: Vec<usize> = cases().iter().map(|key| key.order).collect();
+    orders.sort_unstable();
+    orders.dedup();
+    orders
+}
+
+/// Measures all cases and judges all claims at one set. A case that cannot be measured
+/// leaves its claims undecided.
+pub fn judge_all(
+    arm: &Arm,
+    undisclosed: Undisclosed,
+    length: &Length,
+) -> (Readings, Vec<Judgement>) {
+    let mut readings = Readings::new();
+    for key in cases() {
+        if let Ok(measurement) = measure(arm, &key.case(undisclosed), length) {
+            readings.insert(key, Reading::of(&measurement));
+        }
+    }
+    let judgements = CLAIMS.iter().map(|claim| judge(claim, &readings)).collect();
+    (readings, judgements)
+}
+
+fn judged(arm: &Arm, index: usize, undisclosed: Undisclosed, length: &Length) -> Judged {
+    let (_, judgements) = judge_all(arm, undisclosed, length);
+    let letters =
+        |of: fn(&Judgement) -> Holding| judgements.iter().map(|j| of(j).letter()).collect();
+    Judged {
+        index,
+        undisclosed,
+        verdicts: letters(|judgement| judgement.holding),
+        strict: letters(|judgement| judgement.strict),
+    }
+}
+
+/// Searches, in a folder of its own; `progress` is called with how many sets are done.
+///
+/// # Errors
+/// A folder that cannot be written to, or that holds another search.
+pub fn search(
+    arm: &Arm,
+    request: &Request,
+    folder: &Path,
+    progress: &mut dyn FnMut(usize),
+) -> Result<Found, StudyError> {
+    let store = Store::open(folder, request)?;
+    let sets: Vec<(usize, Undisclosed)> = (0..request.sets)
+        .map(|index| (index, set(index, request.seed)))
+        .collect();
+    let mut run = |stage: &str, sets: &[(usize, Undisclosed)], length: &Length, done: usize| {
+        store.stage(
+            stage,
+            sets,
+            &|set| judged(arm, set.0, set.1, length),
+            &mut |count| progress(done + count),
+        )
+    };
+    let screened = run("screened", &sets, &request.screening, 0)?;
+    let best: Vec<(usize, Undisclosed)> = ranked(&screened)
+        .into_iter()
+        .take(request.confirmed)
+        .map(|judged| (judged.index, judged.undisclosed))
+        .collect();
+    let again = run("confirmed", &best, &request.confirming, request.sets)?;
+    let confirmed: Vec<Judged> = ranked(&again).into_iter().cloned().collect();
+    let around: Vec<(usize, Undisclosed)> = confirmed.first().map_or(Vec::new(), |best| {
+        (0..request.neighbours)
+            .map(|index| (index, neighbour(&best.undisclosed, index, request.seed)))
+            .collect()
+    });
+    let done = request.sets + best.len();
+    let neighbours = run("neighbours", &around, &request.confirming, done)?;
+    Ok(Found {
+        screened,
+        confirmed,
+        neighbours,
+    })
+}
+
+/// By how many claims hold, then by how many hold strictly, then by place.
+pub fn ranked(judged: &[Judged]) -> Vec<&Judged> {
+    let mut ranked: Vec<&Judged> = judged.iter().collect();
+    ranked.sort_by_key(|judged| {
+        let counts = (judged.holding(), judged.strictly_holding());
+        (std::cmp::Reverse(counts), judged.index)
+    });
+    ranked
+}
+
+/// The folder of a search: one file for each finished chunk.
+struct Store {
+    folder: PathBuf,
+}
+
+impl Store {
+    fn open(folder: &Path, request: &Request) -> Result<Self, StudyError> {
+        let store = Self {
+            folder: folder.to_owned(),
+        };
+        fs::create_dir_all(folder).map_err(|error| refused("make", folder, &error))?;
+        let description = folder.join("request.txt");
+        let claims: Vec<&str> = CLAIMS.iter().map(|claim| claim.id).collect();
+        let text = format!("{request:?}\n{}\n", claims.join(" "));
+        match fs::read_to_string(&description) {
+            Ok(found) if found == text => {}
+            Ok(_) => {
+                return Err(StudyError::Request(format!(
+                    "{} holds a different search; give another folder, or remove that one",
+                    folder.display()
+                )));
+            }
+            Err(_) => store.write(&description, &text)?,
+        }
+        Ok(store)
+    }
+
+    /// Judges what is not yet there, chunk by chunk.
+    fn stage(
+        &self,
+        stage: &str,
+        sets: &[(usize, Undisclosed)],
+        judge: &(dyn Fn(&(usize, Undisclosed)) -> Judged + Sync),
+        progress: &mut dyn FnMut(usize),
+    ) -> Result<Vec<Judged>, StudyError> {
+        let mut all = Vec::with_capacity(sets.len());
+        for (number, chunk) in sets.chunks(CHUNK).enumerate() {
+            let path = self.folder.join(format!("{stage}_{number:05}.csv"));
+            let judged = match read(&path, chunk.len()) {
+                Some(judged) => judged,
+                None => {
+                    let judged: Vec<Judged> = chunk.par_iter().map(judge).collect();
+                    let lines: Vec<String> = judged.iter().map(Judged::line).collect();
+                    self.write(&path, &(lines.join("\n") + "\n"))?;
+                    judged
+                }
+            };
+            all.extend(judged);
+            progress(all.len());
+        }
+        Ok(all)
+    }
+
+    /// Writes a file beside its place and moves it there.
+    fn write(&self, path: &Path, text: &str) -> Result<(), StudyError> {
+        let unfinished = path.with_extension("unfinished");
+        fs::write(&unfinished, text)
+            .and_then(|()| fs::rename(&unfinished, path))
+            .map_err(|error| refused("write", path, &error))
+    }
+}
+
+/// A finished chunk, if it is there and whole.
+fn read(path: &Path, length: usize) -> Option<Vec<Judged>> {
+    let text = fs::read_to_string(path).ok()?;
+    let judged: Option<Vec<Judged>> = text.lines().map(Judged::parse).collect();
+    judged.filter(|judged| judged.len() == length)
+}
+
+fn refused(action: &str, path: &Path, error: &std::io::Error) -> StudyError {
+    StudyError::File(format!("cannot {action} {}: {error}", path.display()))
+}

@@ -1,0 +1,78 @@
+//! The undisclosed parameters, spread evenly over plausible ranges.
+
+use super::arm::Undisclosed;
+
+/// A range of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// The parameter.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The least and the greatest value.
+    pub bounds: (f64, f64),
+    /// Why these.
+    pub reason: &'static str,
+}
+
+/// The ranges searched; values are spread evenly in their logarithms.
+#[rustfmt::skip]
+pub const RANGES: [Range; 5] = [
+    Range { name: "I", unit: "m^4", bounds: (1e-10, 1e-8), reason: "sections of 1e-4 m^2: a strip 3.5 mm thick (1e-10), a 10 mm square (8.3e-10), a bar 30 mm high (7.5e-9), a thin tube (1e-8)" },
+    Range { name: "a_m", unit: "N m", bounds: (0.1, 20.0), reason: "motors that can swing a 0.4 kg arm through a reducer of 4.7, up to some ten times what it needs" },
+    Range { name: "b_m", unit: "N m s", bounds: (1e-3, 0.5), reason: "time constants J/b_m of the drive from 6 s to 12 ms; one set in four has 0, a drive that accelerates all the time it is watched" },
+    Range { name: "F_w", unit: "N m", bounds: (0.1, 20.0), reason: "ripple from a few per cent of the smallest a_m, to torques that bend the arm by centimetres" },
+    Range { name: "c", unit: "N s/m", bounds: (195.0, 1950.0), reason: "3 % to 30 % of critical damping of the sun-planet mesh; damping ratios of 3 % to 17 % are usual for gear meshes" },
+];
+
+/// One set in so many has b_m = 0.
+const UNDAMPED: usize = 4;
+
+/// The least root above 1 of x^6 = x + 1: powers of its inverse fill five dimensions evenly
+/// (M. Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
+const HARMONIOUS: f64 = 1.134_724_138_401_519_5;
+
+/// The point `index` of a sequence that fills the unit cube evenly; seeds shift it.
+pub fn point(index: usize, seed: u64) -> [f64; 5] {
+    let golden = 0.618_033_988_749_894_9;
+    let mut inverse = 1.0;
+    std::array::from_fn(|axis| {
+        inverse /= HARMONIOUS;
+        let shift = 0.5 + golden * (seed % 1_000_003) as f64 * (axis + 1) as f64;
+        (shift + inverse * (index + 1) as f64).fract()
+    })
+}
+
+/// The parameter set `index` of a search.
+pub fn set(index: usize, seed: u64) -> Undisclosed {
+    let mut values = point(index, seed);
+    for (value, range) in values.iter_mut().zip(&RANGES) {
+        let (low, high) = range.bounds;
+        *value = low * (high / low).powf(*value);
+    }
+    let [second_moment, a_m, b_m, f_w, c] = values;
+    let b_m = if index % UNDAMPED == UNDAMPED - 1 {
+        0.0
+    } else {
+        b_m
+    };
+    Undisclosed {
+        second_moment,
+        a_m,
+        b_m,
+        f_w,
+        c,
+    }
+}
+
+/// The set `index` within +-10 % of another in every parameter.
+pub fn neighbour(of: &Undisclosed, index: usize, seed: u64) -> Undisclosed {
+    let [i, a, b, f, c] = point(index, seed).map(|share| 0.9 + 0.2 * share);
+    Undisclosed {
+        second_moment: i * of.second_moment,
+        a_m: a * of.a_m,
+        b_m: b * of.b_m,
+        f_w: f * of.f_w,
+        c: c * of.c,
+    }
+}

@@ -1,0 +1,76 @@
+//! What a search found, counted: how often each claim holds, how many hold at once, which
+//! never do.
+
+use super::claims::CLAIMS;
+use super::search::Judged;
+
+/// How often one claim holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Share {
+    /// The share of the sets where it holds.
+    pub holds: f64,
+    /// Where it fails.
+    pub fails: f64,
+    /// Where it holds strictly.
+    pub holds_strictly: f64,
+}
+
+/// Each claim's share, in the order of [`CLAIMS`].
+pub fn shares(judged: &[Judged]) -> Vec<Share> {
+    let count = judged.len().max(1) as f64;
+    let share = |claim: usize, letter: char| {
+        let found = judged
+            .iter()
+            .filter(|set| set.verdicts.get(claim) == Some(&letter));
+        found.count() as f64 / count
+    };
+    (0..CLAIMS.len())
+        .map(|claim| Share {
+            holds: share(claim, 'H'),
+            fails: share(claim, 'F'),
+            holds_strictly: {
+                let found = judged
+                    .iter()
+                    .filter(|set| set.strict.get(claim) == Some(&'H'));
+                found.count() as f64 / count
+            },
+        })
+        .collect()
+}
+
+/// How many sets have 0, 1, 2, ... claims that hold.
+pub fn histogram(judged: &[Judged]) -> Vec<usize> {
+    let mut counts = vec![0; CLAIMS.len() + 1];
+    for set in judged {
+        if let Some(count) = counts.get_mut(set.holding()) {
+            *count += 1;
+        }
+    }
+    counts
+}
+
+/// Pairs of claims that each hold somewhere and never hold together.
+pub fn exclusive(judged: &[Judged]) -> Vec<(usize, usize)> {
+    let holds = |set: &Judged, claim: usize| set.verdicts.get(claim) == Some(&'H');
+    let somewhere: Vec<usize> = (0..CLAIMS.len())
+        .filter(|claim| judged.iter().any(|set| holds(set, *claim)))
+        .collect();
+    let mut pairs = Vec::new();
+    for (place, &one) in somewhere.iter().enumerate() {
+        for &other in somewhere.iter().skip(place + 1) {
+            if !judged
+                .iter()
+                .any(|set| holds(set, one) && holds(set, other))
+            {
+                pairs.push((one, other));
+            }
+        }
+    }
+    pairs
+}
+
+/// The share of the sets with at least so many claims that hold.
+pub fn share_with(judged: &[Judged], holding: usize) -> f64 {
+    let found = judged.iter().filter(|set| set.holding() >= holding).count();
+    found as f64 / judged.len().max(1) as f64
+}

@@ -1,0 +1,244 @@
+//! What is varied: axes of parameter values and the grid they span.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::SweepError;
+
+/// The most points of a grid.
+pub const MOST_POINTS: usize = 10_000_000;
+
+/// Parameters that take the same evenly spaced values together.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Axis {
+    /// The parameters.
+    pub names: Vec<String>,
+    /// The first value, in the unit that the specification declares for each.
+    pub from: f64,
+    /// The last value.
+    pub to: f64,
+    /// How many values; with one it is `from`.
+    pub count: usize,
+}
+
+impl Axis {
+    /// Reads `NAME[,NAME...]=FROM:TO:COUNT`.
+    ///
+    /// # Errors
+    /// Says which part is wrong and what would be right.
+    pub fn parse(text: &str) -> Result<Self, SweepError> {
+        let refused = |reason: String| {
+            SweepError::Request(format!(
+                "--vary {text}: {reason}; expected NAME[,NAME...]=FROM:TO:COUNT, such as \
+                 b_sp,b_pr=0:100e-6:200"
+            ))
+        };
+        let (names, range) = text
+            .split_once('=')
+            .ok_or_else(|| refused("no `=`".to_owned()))?;
+        let names: Vec<String> = names
+            .split(',')
+            .map(|name| name.trim().to_owned())
+            .collect();
+        let parts: Vec<&str> = range.split(':').map(str::trim).collect();
+        let [from, to, count] = parts[..] else {
+            return Err(refused(format!("{} numbers in the range", parts.len())));
+        };
+        let number = |part: &str| {
+            part.parse::<f64>()
+                .map_err(|_| refused(format!("\"{part}\" is no number")))
+        };
+        let axis = Self {
+            names,
+            from: number(from)?,
+            to: number(to)?,
+            count: count
+                .parse()
+                .map_err(|_| refused(format!("\"{count}\" is no whole number")))?,
+        };
+        axis.check().map_err(refused)?;
+        Ok(axis)
+    }
+
+    /// What is wrong with an axis by itself.
+    fn check(&self) -> Result<(), String> {
+        if self.names.iter().any(String::is_empty) {
+            return Err("a name is missing".to_owned());
+        }
+        if !(self.from.is_finite() && self.to.is_finite()) {
+            return Err("the ends of the range must be finite".to_owned());
+        }
+        if self.count == 0 {
+            return Err("there is at least one value".to_owned());
+        }
+        if self.count > MOST_POINTS {
+            return Err(format!("the limit is {MOST_POINTS} points"));
+        }
+        if self.count > 1 && self.from == self.to {
+            return Err("the ends of the range are the same, so there is one value".to_owned());
+        }
+        if !((self.to - self.from) * self.count as f64).is_finite() {
+            return Err("the range is too wide".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Value `index`, counted from 0: evenly spaced, the first and the last exact.
+    pub fn value(&self, index: usize) -> f64 {
+        if index == 0 {
+            return self.from;
+        }
+        if index + 1 >= self.count {
+            return self.to;
+        }
+        self.from + (self.to - self.from) * index as f64 / (self.count - 1) as f64
+    }
+
+    /// All values in order.
+    pub fn values(&self) -> Vec<f64> {
+        (0..self.count).map(|index| self.value(index)).collect()
+    }
+}
+
+/// All combinations of the values of some axes. Points are counted from 0; the last axis
+/// goes fastest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Grid {
+    axes: Vec<Axis>,
+    points: usize,
+}
+
+impl Grid {
+    /// Spans the axes.
+    ///
+    /// # Errors
+    /// No axis, an axis that makes no sense, a parameter that is varied twice, more than
+    /// [`MOST_POINTS`] points.
+    pub fn new(axes: Vec<Axis>) -> Result<Self, SweepError> {
+        let refused = |reason: String| Err(SweepError::Request(reason));
+        if axes.is_empty() {
+            return refused("nothing is varied: give --vary NAME=FROM:TO:COUNT".to_owned());
+        }
+        if let Some(problem) = axes.iter().find_map(|axis| axis.check().err()) {
+            return refused(problem);
+        }
+        let names: Vec<&String> = axes.iter().flat_map(|axis| &axis.names).collect();
+        for (place, name) in names.iter().enumerate() {
+            if names[..place].contains(name) {
+                return refused(format!("`{name}` is varied twice; name it once"));
+            }
+        }
+        let points = axes
+            .iter()
+            .try_fold(1_usize, |points, axis| points.checked_mul(axis.count))
+            .filter(|points| *points <= MOST_POINTS);
+        match points {
+            Some(points) => Ok(Self { axes, points }),
+            None => refused(format!(
+                "the grid has more than {MOST_POINTS} points; give smaller counts"
+            )),
+        }
+    }
+
+    /// The axes.
+    pub fn axes(&self) -> &[Axis] {
+        &self.axes
+    }
+
+    /// How many points there are.
+    pub fn points(&self) -> usize {
+        self.points
+    }
+
+    /// The varied parameters, in the order of the axes.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.axes
+            .iter()
+            .flat_map(|axis| axis.names.iter().map(String::as_str))
+    }
+
+    /// The parameters' values at a point, in the order of [`Grid::names`].
+    pub fn settings(&self, point: usize) -> Vec<(&str, f64)> {
+        let mut settings = Vec::new();
+        let mut stride = self.points;
+        for axis in &self.axes {
+            stride /= axis.count;
+            let value = axis.value(point / stride % axis.count);
+            settings.extend(axis.names.iter().map(|name| (name.as_str(), value)));
+        }
+        settings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Axis, Grid};
+
+    fn grid(texts: &[&str]) -> Result<Grid, String> {
+        let axes = texts.iter().map(|text| Axis::parse(text));
+        let axes = axes
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(|e| e.to_string())?;
+        Grid::new(axes).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn the_last_axis_goes_fastest_and_names_go_together() {
+        let grid = grid(&["a,b=0:1:3", "c=-5:5:2"]).expect("a grid");
+        assert_eq!(grid.points(), 6);
+        assert_eq!(grid.names().collect::<Vec<_>>(), ["a", "b", "c"]);
+        assert_eq!(grid.settings(0), [("a", 0.0), ("b", 0.0), ("c", -5.0)]);
+        assert_eq!(grid.settings(1), [("a", 0.0), ("b", 0.0), ("c", 5.0)]);
+        assert_eq!(grid.settings(2), [("a", 0.5), ("b", 0.5), ("c", -5.0)]);
+        assert_eq!(grid.settings(5), [("a", 1.0), ("b", 1.0), ("c", 5.0)]);
+    }
+
+    #[test]
+    fn ends_are_exact_and_one_value_is_the_first() {
+        let axis = Axis::parse("b = 0.1 : 0.7 : 7").expect("an axis");
+        let values = axis.values();
+        assert_eq!((values[0], values[6], values.len()), (0.1, 0.7, 7));
+        assert!(values.windows(2).all(|pair| pair[0] < pair[1]));
+        assert_eq!(Axis::parse("b=3:9:1").expect("an axis").values(), [3.0]);
+        assert_eq!(
+            Axis::parse("b=1:0:2").expect("an axis").values(),
+            [1.0, 0.0]
+        );
+    }
+
+    #[test]
+    fn malformed_ranges_are_refused_with_what_would_be_right() {
+        for (text, part) in [
+            ("b", "no `=`"),
+            ("b=1:2", "2 numbers"),
+            ("b=1:2:3:4", "4 numbers"),
+            ("b=x:2:3", "\"x\" is no number"),
+            ("b=0:1:2.5", "\"2.5\" is no whole number"),
+            ("b=0:1:-3", "\"-3\" is no whole number"),
+            ("b=0:1:0", "at least one value"),
+            ("b=0:inf:3", "finite"),
+            ("b=NaN:1:3", "finite"),
+            ("b=-1e308:1e308:3", "too wide"),
+            ("b=1:1:3", "the same"),
+            ("b=0:1:99999999999", "10000000 points"),
+            ("b,=0:1:3", "a name is missing"),
+            ("=0:1:3", "a name is missing"),
+        ] {
+            let error = grid(&[text]).expect_err(text);
+            assert!(error.contains(part), "{text}: {error}");
+            assert!(error.contains("FROM:TO:COUNT"), "{text}: {error}");
+        }
+    }
+
+    #[test]
+    fn grids_that_are_too_large_or_vary_a_name_twice_are_refused() {
+        let large = grid(&["a=0:1:4000", "b=0:1:4000"]).expect_err("16 million points");
+        assert!(large.contains("more than 10000000 points"), "{large}");
+        let overflow = ["a=0:1:9000000", "b=0:1:9000000", "c=0:1:9000000"];
+        assert!(grid(&overflow).is_err());
+        for twice in [vec!["a,a=0:1:2"], vec!["a=0:1:2", "b,a=0:1:2"]] {
+            let error = grid(&twice).expect_err("varied twice");
+            assert!(error.contains("`a` is varied twice"), "{error}");
+        }
+        assert!(grid(&[]).is_err());
+    }
+}

@@ -1,0 +1,73 @@
+//! All chunks of a job to one table.
+
+use std::ops::Range;
+
+use super::error::SweepError;
+use super::folder::Folder;
+
+/// The result of a sweep, in the order of the grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// The names of [`Job::columns`](super::Job::columns).
+    pub names: Vec<String>,
+    /// As many columns, each with one number per point.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl Table {
+    /// A column by its name.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let place = self.names.iter().position(|known| known == name)?;
+        self.columns.get(place).map(Vec::as_slice)
+    }
+}
+
+/// Puts all chunks together, and tidies up after runs that were killed.
+///
+/// # Errors
+/// Chunks that are missing or damaged, all of them named; parts of another job; files that
+/// cannot be read.
+pub fn merge(folder: &Folder) -> Result<Table, SweepError> {
+    let job = folder.job();
+    let (grid, measured) = (job.grid(), job.measured());
+    let varied = job.plan().parameters.len();
+    let names: Vec<String> = job
+        .columns()
+        .into_iter()
+        .map(|column| column.name)
+        .collect();
+    let mut columns = vec![Vec::with_capacity(grid.points()); names.len()];
+    let mut missing: Vec<Range<usize>> = Vec::new();
+    for chunk in 0..job.chunks() {
+        let points = job.chunk(chunk);
+        let Some(numbers) = folder.load(chunk)? else {
+            add(&mut missing, points);
+            continue;
+        };
+        for (point, row) in points.zip(numbers.chunks(measured)) {
+            for (column, (_, value)) in columns.iter_mut().zip(grid.settings(point)) {
+                column.push(value);
+            }
+            for (column, value) in columns.iter_mut().skip(varied).zip(row) {
+                column.push(*value);
+            }
+        }
+    }
+    if !missing.is_empty() {
+        return Err(SweepError::Gaps {
+            folder: folder.path().to_owned(),
+            missing,
+            points: grid.points(),
+        });
+    }
+    folder.tidy()?;
+    Ok(Table { names, columns })
+}
+
+/// Adds a gap, or lengthens the last one.
+fn add(missing: &mut Vec<Range<usize>>, points: Range<usize>) {
+    match missing.last_mut() {
+        Some(last) if last.end == points.start => last.end = points.end,
+        _ => missing.push(points),
+    }
+}

@@ -1,0 +1,43 @@
+//! Maps over parameters: a grid of parameter values, something measured at every point, in
+//! parallel, in parts that survive a kill and can be computed on several machines.
+//!
+//! The pipeline: [`grid`] (what is varied), [`measure`] (what is measured; [`family`] has
+//! the model at a point, [`span`] how long is looked; [`poincare`] and [`lyapunov`] are
+//! measures), [`job`] (all of that as data, with a
+//! hash that names it), [`folder`] and `part` (the job and its finished chunks as files),
+//! [`shard`] (who computes which chunk), [`run`](mod@run) (computing them), [`merge`](mod@merge) (all chunks to one
+//! table). Messages and final files are the caller's.
+//!
+//! # The same bytes
+//!
+//! A number in the result depends on the job and the point alone: a worker keeps nothing
+//! from the point before, chunks are cut by the job and not by the number of threads, and
+//! the table is in the order of the grid. Threads, shards, kills and resumptions therefore
+//! leave no trace in it.
+
+pub mod error;
+pub mod family;
+pub mod folder;
+pub mod grid;
+pub mod job;
+pub mod lyapunov;
+pub mod measure;
+pub mod merge;
+mod part;
+pub mod poincare;
+pub mod run;
+pub mod shard;
+pub mod span;
+
+pub use error::SweepError;
+pub use family::{Family, Member};
+pub use folder::Folder;
+pub use grid::{Axis, Grid};
+pub use job::Job;
+pub use lyapunov::Lyapunov;
+pub use measure::{Column, Description, Failure, Measure, Worker};
+pub use merge::{Table, merge};
+pub use poincare::Poincare;
+pub use run::{Done, run};
+pub use shard::Shard;
+pub use span::Span;

@@ -1,0 +1,157 @@
+//! A finished chunk as a file.
+//!
+//! Text. Three lines say whose it is, then one line per point in the order of the grid:
+//!
+//! ```text
+//! eomgen sweep part 1
+//! job 64 HEXADECIMAL DIGITS
+//! points 00000120 00000130
+//! 3ff0000000000000 7ff8000000000000 ...
+//! ```
+//!
+//! The points are counted from 0, the last one is excluded. A number is the 16 hexadecimal
+//! digits of its bits, so that nothing is lost and every part has a length known
+//! beforehand: a file of another length is not whole.
+
+use std::fmt::Write;
+
+use super::job::Job;
+
+/// The first line.
+const TITLE: &str = "eomgen sweep part 1";
+
+/// What a file turned out to be.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Found {
+    /// The whole chunk.
+    Whole,
+    /// Not the whole of it, or not a part at all.
+    Damaged,
+    /// A part of another job.
+    Other,
+}
+
+/// The bytes of a chunk with its numbers, point by point. Every NaN is written as the one
+/// NaN: its sign and payload depend on the machine.
+pub fn encode(job: &Job, chunk: usize, numbers: &[f64]) -> String {
+    let mut text = header(job, chunk);
+    text.reserve(numbers.len() * 17);
+    for row in numbers.chunks(job.measured()) {
+        for (place, number) in row.iter().enumerate() {
+            let number = if number.is_nan() { f64::NAN } else { *number };
+            let between = if place == 0 { "" } else { " " };
+            // Writing to a String cannot fail.
+            let _ = write!(text, "{between}{:016x}", number.to_bits());
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// How many bytes the header has.
+pub fn header_length(job: &Job) -> usize {
+    header(job, 0).len()
+}
+
+/// What a file is, by its length and its first bytes.
+pub fn judge(job: &Job, chunk: usize, length: u64, start: &[u8]) -> Found {
+    let expected = header(job, chunk);
+    let whole = expected.len() + job.chunk(chunk).len() * job.measured() * 17;
+    if start == expected.as_bytes() {
+        return if length == whole as u64 {
+            Found::Whole
+        } else {
+            Found::Damaged
+        };
+    }
+    let lines = |text: &str| text.lines().take(2).map(str::to_owned).collect::<Vec<_>>();
+    let found = lines(&String::from_utf8_lossy(start));
+    let is_part = found.len() == 2 && found[0] == TITLE && start.len() == expected.len();
+    if is_part && found != lines(&expected) {
+        return Found::Other;
+    }
+    Found::Damaged
+}
+
+/// The numbers of a whole part, point by point; `None` if it is not the whole chunk.
+pub fn decode(job: &Job, chunk: usize, bytes: &[u8]) -> Option<Vec<f64>> {
+    let text = std::str::from_utf8(bytes).ok()?;
+    let body = text.strip_prefix(&header(job, chunk))?;
+    let count = job.chunk(chunk).len() * job.measured();
+    if body.len() != count * 17 {
+        return None;
+    }
+    let numbers = body.split_ascii_whitespace().map(|digits| {
+        let bits = u64::from_str_radix(digits, 16).ok()?;
+        (digits.len() == 16).then(|| f64::from_bits(bits))
+    });
+    let numbers = numbers.collect::<Option<Vec<f64>>>()?;
+    (numbers.len() == count).then_some(numbers)
+}
+
+fn header(job: &Job, chunk: usize) -> String {
+    let points = job.chunk(chunk);
+    format!(
+        "{TITLE}\njob {}\npoints {:08} {:08}\n",
+        job.hash(),
+        points.start,
+        points.end
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::job::tests::job;
+    use super::*;
+
+    /// Two points a chunk, two numbers a point.
+    fn numbers() -> [f64; 4] {
+        [-0.0, f64::NAN, f64::NEG_INFINITY, 5e-324]
+    }
+
+    #[test]
+    fn every_number_is_read_back_with_all_its_bits() {
+        let job = job(2000);
+        let text = encode(&job, 7, &numbers());
+        let read = decode(&job, 7, text.as_bytes()).expect("a whole part");
+        let bits = |numbers: &[f64]| numbers.iter().map(|n| n.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&read), bits(&numbers()));
+        assert_eq!(
+            encode(&job, 7, &[-f64::NAN; 4]),
+            encode(&job, 7, &[f64::NAN; 4])
+        );
+    }
+
+    #[test]
+    fn only_a_whole_part_of_the_job_and_chunk_is_taken() {
+        let job = job(2000);
+        let text = encode(&job, 7, &numbers());
+        let start = header_length(&job);
+        let judged = |job: &Job, chunk, text: &str| {
+            let bytes = text.as_bytes();
+            judge(
+                job,
+                chunk,
+                bytes.len() as u64,
+                &bytes[..start.min(bytes.len())],
+            )
+        };
+        assert_eq!(judged(&job, 7, &text), Found::Whole);
+        assert_eq!(judged(&job, 8, &text), Found::Damaged);
+        assert_eq!(
+            judged(&super::super::job::tests::job(1999), 7, &text),
+            Found::Other
+        );
+        for length in 0..text.len() {
+            assert_eq!(judged(&job, 7, &text[..length]), Found::Damaged, "{length}");
+            assert_eq!(
+                decode(&job, 7, &text.as_bytes()[..length]),
+                None,
+                "{length}"
+            );
+        }
+        assert_eq!(decode(&job, 8, text.as_bytes()), None);
+        let broken = text.replace("8000000000000000", "80000000 0000000");
+        assert_eq!(decode(&job, 7, broken.as_bytes()), None);
+    }
+}

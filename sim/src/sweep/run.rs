@@ -1,0 +1,236 @@
+//! Computes the chunks of a job that are not there yet, in parallel.
+
+use std::ops::Range;
+use std::sync::Mutex;
+
+use rayon::ThreadPoolBuilder;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+
+use super::error::SweepError;
+use super::folder::Folder;
+use super::job::Job;
+use super::measure::{Measure, Worker};
+use super::shard::Shard;
+
+/// What a run did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Done {
+    /// Points of this shard that were there before.
+    pub found: usize,
+    /// Points computed.
+    pub computed: usize,
+}
+
+/// A measure's place among the numbers of a point, and whoever measures.
+type Place<'a> = (Range<usize>, Box<dyn Worker + 'a>);
+
+/// Computes what a shard lacks.
+///
+/// `measures`: in the order of the plan, as [`Measure::describe`] put them there.
+/// `threads`: how many; 0 for one per core.
+/// `progress`: told how many points are computed, and of how many.
+///
+/// # Errors
+/// Parts of another job in the folder, files that cannot be read or written, threads that
+/// cannot be had. What is finished by then stays and counts at the next run.
+pub fn run(
+    folder: &Folder,
+    measures: &[Box<dyn Measure + '_>],
+    shard: Shard,
+    threads: usize,
+    progress: &mut (dyn FnMut(usize, usize) + Send),
+) -> Result<Done, SweepError> {
+    let job = folder.job();
+    let (missing, found) = missing(folder, shard)?;
+    let whole = missing.iter().map(|chunk| job.chunk(*chunk).len()).sum();
+    let state = Mutex::new((0, progress));
+    let point_is_done = || {
+        // A thread that panicked while it held the count left it as it was.
+        let mut state = state
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        state.0 += 1;
+        let computed = state.0;
+        (state.1)(computed, whole);
+    };
+    let pool = ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|error| SweepError::Request(format!("no threads can be had: {error}")))?;
+    pool.install(|| {
+        missing.par_iter().try_for_each_init(
+            || workers(measures),
+            |workers, chunk| {
+                let numbers = compute(job, *chunk, workers, &point_is_done);
+                folder.store(*chunk, &numbers)
+            },
+        )
+    })?;
+    Ok(Done {
+        found,
+        computed: whole,
+    })
+}
+
+/// The chunks of a shard that are not there, and how many of its points are.
+fn missing(folder: &Folder, shard: Shard) -> Result<(Vec<usize>, usize), SweepError> {
+    let job = folder.job();
+    let (mut missing, mut found) = (Vec::new(), 0);
+    for chunk in (0..job.chunks()).filter(|chunk| shard.holds(*chunk)) {
+        if folder.holds(chunk)? {
+            found += job.chunk(chunk).len();
+        } else {
+            missing.push(chunk);
+        }
+    }
+    Ok((missing, found))
+}
+
+fn workers<'a>(measures: &'a [Box<dyn Measure + 'a>]) -> Vec<Place<'a>> {
+    let mut start = 0;
+    let mut workers = Vec::with_capacity(measures.len());
+    for measure in measures {
+        let end = start + measure.describe().columns.len();
+        workers.push((start..end, measure.worker()));
+        start = end + 1;
+    }
+    workers
+}
+
+/// The numbers of a chunk, point by point: each measure's, then its status.
+fn compute(
+    job: &Job,
+    chunk: usize,
+    workers: &mut [Place<'_>],
+    point_is_done: &dyn Fn(),
+) -> Vec<f64> {
+    let points = job.chunk(chunk);
+    let mut numbers = vec![f64::NAN; points.len() * job.measured()];
+    for (point, row) in points.zip(numbers.chunks_mut(job.measured())) {
+        let settings = job.grid().settings(point);
+        for (place, worker) in workers.iter_mut() {
+            let outcome = worker.measure(&settings, &mut row[place.clone()]);
+            if outcome.is_err() {
+                row[place.clone()].fill(f64::NAN);
+            }
+            row[place.end] = outcome.map_or_else(|failure| f64::from(failure.code()), |()| 0.0);
+        }
+        point_is_done();
+    }
+    numbers
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::job::tests::job;
+    use super::super::measure::{Description, Failure};
+    use super::super::merge::merge;
+    use super::*;
+
+    /// 1/x, undefined at 0. Leaves what it knows in its memory, which nobody may see.
+    struct Reciprocal;
+
+    impl Measure for Reciprocal {
+        fn describe(&self) -> Description {
+            job(2).plan().measures[0].clone()
+        }
+
+        fn worker(&self) -> Box<dyn Worker + '_> {
+            Box::new(Reciprocal)
+        }
+    }
+
+    impl Worker for Reciprocal {
+        fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
+            out[0] = 1.0 / settings[0].1;
+            if settings[0].1 == 0.0 {
+                return Err(Failure::Undefined);
+            }
+            Ok(())
+        }
+    }
+
+    fn measures() -> Vec<Box<dyn Measure>> {
+        vec![Box::new(Reciprocal)]
+    }
+
+    #[test]
+    fn failures_are_told_by_their_code_and_the_rest_goes_on() {
+        let place = tempfile::tempdir().expect("a folder");
+        let folder = Folder::open(place.path(), job(5)).expect("a new sweep");
+        let mut seen = Vec::new();
+        let mut progress = |done, whole| seen.push((done, whole));
+        let done = run(&folder, &measures(), Shard::WHOLE, 2, &mut progress).expect("a run");
+        assert_eq!((done.found, done.computed), (0, 5));
+        assert_eq!(seen, [(1, 5), (2, 5), (3, 5), (4, 5), (5, 5)]);
+        let table = merge(&folder).expect("all is there");
+        assert_eq!(table.names, ["x", "m_value", "m_status"]);
+        assert_eq!(table.columns[0], [0.0, 0.25, 0.5, 0.75, 1.0]);
+        assert!(table.columns[1][0].is_nan());
+        assert_eq!(table.columns[1][1..], [4.0, 2.0, 1.0 / 0.75, 1.0]);
+        assert_eq!(table.columns[2], [5.0, 0.0, 0.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn what_is_there_is_kept_and_what_is_damaged_done_again() {
+        let place = tempfile::tempdir().expect("a folder");
+        let folder = Folder::open(place.path(), job(5)).expect("a new sweep");
+        let go = || run(&folder, &measures(), Shard::WHOLE, 1, &mut |_, _| {}).expect("a run");
+        go();
+        let first = merge(&folder).expect("all is there");
+        assert_eq!(
+            go(),
+            Done {
+                found: 5,
+                computed: 0
+            }
+        );
+        let part = place.path().join("parts/0003.part");
+        let bytes = std::fs::read(&part).expect("the part");
+        std::fs::write(&part, &bytes[..bytes.len() - 1]).expect("a part cut short");
+        assert_eq!(
+            go(),
+            Done {
+                found: 4,
+                computed: 1
+            }
+        );
+        assert_eq!(std::fs::read(&part).expect("the part"), bytes);
+        assert_eq!(
+            merge(&folder).expect("all is there").columns[2],
+            first.columns[2]
+        );
+    }
+
+    #[test]
+    fn a_merge_names_the_gaps() {
+        let place = tempfile::tempdir().expect("a folder");
+        let folder = Folder::open(place.path(), job(7)).expect("a new sweep");
+        let shard = Shard::parse("2/3").expect("a shard");
+        run(&folder, &measures(), shard, 1, &mut |_, _| {}).expect("a run");
+        let error = merge(&folder)
+            .expect_err("two shards are missing")
+            .to_string();
+        assert!(error.contains("5 of 7 points"), "{error}");
+        assert!(error.contains("0 to 0, 2 to 3, 5 to 6"), "{error}");
+    }
+
+    #[test]
+    fn another_job_in_the_folder_is_refused() {
+        let place = tempfile::tempdir().expect("a folder");
+        let folder = Folder::open(place.path(), job(5)).expect("a new sweep");
+        run(&folder, &measures(), Shard::WHOLE, 1, &mut |_, _| {}).expect("a run");
+        let error = Folder::open(place.path(), job(6))
+            .expect_err("another job")
+            .to_string();
+        assert!(error.contains("not the same: --vary"), "{error}");
+        let elsewhere = tempfile::tempdir().expect("a folder");
+        let other = Folder::open(elsewhere.path(), job(6)).expect("a new sweep");
+        let name = "parts/0001.part";
+        std::fs::copy(place.path().join(name), elsewhere.path().join(name)).expect("a copy");
+        let error = merge(&other)
+            .expect_err("a part of another job")
+            .to_string();
+        assert!(error.contains("belongs to a different sweep"), "{error}");
+    }
+}

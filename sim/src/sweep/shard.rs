@@ -1,0 +1,84 @@
+//! Which chunks of a sweep one run computes.
+
+use super::error::SweepError;
+
+/// Part `number` of `count`, counted from 1. Chunks are dealt out one by one, so that
+/// regions of the grid that take long are shared by all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    number: usize,
+    count: usize,
+}
+
+impl Shard {
+    /// The whole sweep.
+    pub const WHOLE: Self = Self {
+        number: 1,
+        count: 1,
+    };
+
+    /// Reads `2/3`.
+    ///
+    /// # Errors
+    /// A text that is not of this form, or a number outside 1 to the count.
+    pub fn parse(text: &str) -> Result<Self, SweepError> {
+        let refused = |reason: &str| {
+            Err(SweepError::Request(format!(
+                "--shard {text}: {reason}, such as 2/3 for the second of three"
+            )))
+        };
+        let numbers = text.split_once('/').and_then(|(number, count)| {
+            Some((
+                number.trim().parse::<usize>().ok()?,
+                count.trim().parse::<usize>().ok()?,
+            ))
+        });
+        match numbers {
+            None => refused("expected NUMBER/COUNT"),
+            Some((_, 0)) => refused("there is at least one shard"),
+            Some((number, count)) if number == 0 || number > count => {
+                refused("shards are counted from 1 to their count")
+            }
+            Some((number, count)) => Ok(Self { number, count }),
+        }
+    }
+
+    /// Whether this is all there is.
+    pub fn is_whole(self) -> bool {
+        self.count == 1
+    }
+
+    /// Whether a chunk, counted from 0, belongs to this shard.
+    pub fn holds(self, chunk: usize) -> bool {
+        chunk % self.count == self.number - 1
+    }
+}
+
+impl std::fmt::Display for Shard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.number, self.count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Shard;
+
+    #[test]
+    fn every_chunk_belongs_to_one_shard() {
+        let shards = ["1/3", "2/3", "3/3"].map(|text| Shard::parse(text).expect("a shard"));
+        for chunk in 0..20 {
+            let holders = shards.iter().filter(|shard| shard.holds(chunk)).count();
+            assert_eq!(holders, 1, "chunk {chunk}");
+            assert!(Shard::WHOLE.holds(chunk));
+        }
+    }
+
+    #[test]
+    fn what_is_no_shard_is_refused() {
+        for text in ["0/3", "4/3", "1/0", "0/0", "3", "a/b", "1/2/3", "-1/3", ""] {
+            let error = Shard::parse(text).expect_err(text).to_string();
+            assert!(error.contains("2/3"), "{text}: {error}");
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Sensitivities of exact trajectories against difference quotients of whole trajectories,
+//! through many switches, and Lyapunov exponents against those of a system that has a
+//! closed form.
+
+use std::path::Path;
+
+use model_spec::model::Model;
+use sim::exact::{By, Lyapunov, PiecewiseLinear};
+use sim::record::HeldInputs;
+
+fn model(text_or_name: &str) -> Model {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../model-spec/models")
+        .join(text_or_name);
+    model_spec::load(&path)
+        .expect("the specification is right")
+        .model
+}
+
+fn values(model: &Model, exact: &PiecewiseLinear) -> Vec<f64> {
+    let all = model.parameter_values().expect("values");
+    let place = |name: &String| model.parameters.iter().position(|p| p.name == *name);
+    exact
+        .parameters()
+        .iter()
+        .map(|name| all[place(name).expect("known")])
+        .collect()
+}
+
+/// Largest difference and largest size.
+fn compare(derivative: &[f64], plus: &[f64], minus: &[f64], step: f64) -> (f64, f64) {
+    let quotient = plus.iter().zip(minus).map(|(a, b)| (a - b) / (2.0 * step));
+    derivative
+        .iter()
+        .zip(quotient)
+        .fold((0.0, 0.0), |(worst, size): (f64, f64), (d, q)| {
+            (worst.max((d - q).abs()), size.max(q.abs()))
+        })
+}
+
+#[test]
+fn derivatives_by_parameters_are_those_of_whole_trajectories() {
+    let model = model("planetary_arm.toml");
+    let exact = PiecewiseLinear::of(&model, &[2]).expect("piecewise linear");
+    let values = values(&model, &exact);
+    let initial = model.initial_state(&[2]).expect("initial state");
+    let (none, samples) = (HeldInputs::zero(0), [0.0333, 0.1]);
+    for name in ["b_sp", "c_pr", "k_sp", "omega", "F_w", "b_m", "I", "l"] {
+        let place = exact
+            .parameters()
+            .iter()
+            .position(|p| p == name)
+            .expect("known");
+        let by = [By::Parameter(place, vec![0.0; initial.len()])];
+        let found = exact
+            .sensitivities(&values, &initial, (0.0, 0.1), &samples, &none, &by)
+            .expect("sensitivities");
+        let step = 1e-5 * values[place].abs();
+        let shifted = |sign: f64| {
+            let mut shifted = values.clone();
+            shifted[place] += sign * step;
+            let mut propagator = exact.at(&shifted).expect("a propagator");
+            propagator
+                .simulate(&initial, (0.0, 0.1), &samples, &none, &mut |_| {})
+                .expect("a trajectory")
+        };
+        let (plus, minus) = (shifted(1.0), shifted(-1.0));
+        assert_eq!(plus.switches.len(), minus.switches.len(), "{name}");
+        for (k, derivative) in found.derivatives.iter().enumerate() {
+            let (worst, size) = compare(&derivative[0], &plus.states[k], &minus.states[k], step);
+            // The quotient of whole trajectories is right to about 1e-5: its step squared
+            // times the curvature, and rounding over the step.
+            assert!(worst < 2e-5 * size, "{name}: {worst:e} of {size:e}");
+        }
+    }
+}
+
+#[test]
+fn derivatives_by_the_initial_state_are_those_of_whole_trajectories() {
+    let model = model("planetary_arm.toml");
+    let exact = PiecewiseLinear::of(&model, &[1]).expect("piecewise linear");
+    let values = values(&model, &exact);
+    let initial = model.initial_state(&[1]).expect("initial state");
+    let (none, samples) = (HeldInputs::zero(0), [0.02, 0.06]);
+    for state in [0, 3, 4, 6] {
+        let mut direction = vec![0.0; initial.len()];
+        direction[state] = 1.0;
+        let found = exact
+            .sensitivities(
+                &values,
+                &initial,
+                (0.0, 0.06),
+                &samples,
+                &none,
+                &[By::Initial(direction)],
+            )
+            .expect("sensitivities");
+        // Well above the rounding of a trajectory over its step, well below what a switch
+        // takes: positions in m, rates in m/s.
+        let step = if state < initial.len() / 2 {
+            1e-10
+        } else {
+            1e-7
+        };
+        let shifted = |sign: f64| {
+            let mut start = initial.clone();
+            start[state] += sign * step;
+            let mut propagator = exact.at(&values).expect("a propagator");
+            propagator
+                .simulate(&start, (0.0, 0.06), &samples, &none, &mut |_| {})
+                .expect("a trajectory")
+        };
+        let (plus, minus) = (shifted(1.0), shifted(-1.0));
+        for (k, derivative) in found.derivatives.iter().enumerate() {
+            let (worst, size) = compare(&derivative[0], &plus.states[k], &minus.states[k], step);
+            // Rounding of 1e-14 m over the step, and the step times the curvature.
+            assert!(worst < 1e-3 * size, "{state}: {worst:e} of {size:e}");
+        }
+    }
+}
+
+#[test]
+fn exponents_of_a_damped_oscillator_are_its_decay() {
+    let text = "[model]\nname = \"mass\"\ntitle = \"A mass\"\n[parameters]\n\
+                m = { value = 2, unit = \"kg\" }\nk = { value = 50, unit = \"N/m\" }\n\
+                c = { value = 0.8, unit = \"N s/m\" }\nF = { value = 1, unit = \"N\" }\n\
+                omega = { value = 3, unit = \"rad/s\" }\n[coordinates]\nx = { unit = \"m\" }\n\
+                [kinetic]\nmass = \"1/2*m*dot(x)^2\"\n[potential]\nspring = \"1/2*k*x^2\"\n\
+                [forces]\nextra = { on = \"x\", value = \"F*sin(omega*t) - c*dot(x)\" }\n";
+    let source = model_spec::source::Source::new("mass.toml", text);
+    let model = model_spec::check(source).expect("right").model;
+    let exact = PiecewiseLinear::of(&model, &[]).expect("linear");
+    let mut propagator = exact.propagator(&model).expect("a propagator");
+    let request = Lyapunov {
+        transient: 20.0,
+        interval: 2.0,
+        intervals: 400,
+        exponents: 2,
+    };
+    let growth = propagator
+        .lyapunov(&[0.1, 0.0], 0.0, &HeldInputs::zero(0), &request)
+        .expect("exponents");
+    // Both exponents are -c/(2 m); what a vector turns within the last interval, over the
+    // whole time, is left.
+    for growths in &growth.growths {
+        let mean = growths.iter().sum::<f64>() / (growths.len() as f64 * growth.interval);
+        assert!((mean + 0.2).abs() < 5e-3, "{mean}");
+    }
+}

@@ -1,0 +1,208 @@
+//! Models made on the spot and their motions by the exact and by the general solver. What
+//! the two have in common ends at the derived equations. Nothing is checked here.
+
+use std::fmt::Write;
+
+use model_spec::check;
+use model_spec::model::Model;
+use model_spec::source::Source;
+use sim::derived::Driven;
+use sim::exact::{ExactError, PiecewiseLinear, Propagator};
+use sim::record::HeldInputs;
+use sim::solve::{Settings, SolveError, Trajectory, simulate};
+
+use crate::models::variant;
+
+/// A specification being written, in SI.
+#[derive(Clone, Debug, Default)]
+pub struct Spec {
+    sections: [String; 6],
+    count: usize,
+}
+
+/// The sections in the order they are written.
+const SECTIONS: [&str; 6] = [
+    "parameters",
+    "coordinates",
+    "inputs",
+    "kinetic",
+    "potential",
+    "forces",
+];
+
+impl Spec {
+    /// A parameter with its value and unit.
+    pub fn parameter(self, name: &str, value: f64, unit: &str) -> Self {
+        self.entry(
+            0,
+            &format!("{name} = {{ value = {value:e}, unit = \"{unit}\" }}"),
+        )
+    }
+
+    /// A coordinate in m with where it begins, m and m/s.
+    pub fn coordinate(self, name: &str, [place, rate]: [f64; 2]) -> Self {
+        let initial = format!("initial = {place:e}, initial_rate = {rate:e}");
+        self.entry(1, &format!("{name} = {{ unit = \"m\", {initial} }}"))
+    }
+
+    /// A signal supplied at run time.
+    pub fn input(self, name: &str, unit: &str) -> Self {
+        self.entry(2, &format!("{name} = {{ unit = \"{unit}\" }}"))
+    }
+
+    /// A kinetic energy.
+    pub fn kinetic(mut self, energy: &str) -> Self {
+        self.count += 1;
+        let name = self.count;
+        self.entry(3, &format!("T_{name} = \"{energy}\""))
+    }
+
+    /// A potential energy.
+    pub fn potential(mut self, energy: &str) -> Self {
+        self.count += 1;
+        let name = self.count;
+        self.entry(4, &format!("V_{name} = \"{energy}\""))
+    }
+
+    /// A force on a coordinate.
+    pub fn force(mut self, on: &str, force: &str) -> Self {
+        self.count += 1;
+        let name = self.count;
+        self.entry(
+            5,
+            &format!("Q_{name} = {{ on = \"{on}\", value = \"{force}\" }}"),
+        )
+    }
+
+    fn entry(mut self, section: usize, line: &str) -> Self {
+        self.sections[section].push_str(line);
+        self.sections[section].push('\n');
+        self
+    }
+
+    /// The specification as text.
+    pub fn text(&self) -> String {
+        let mut text = "[model]\nname = \"made\"\ntitle = \"Made for a test\"\n".to_owned();
+        for (name, lines) in SECTIONS.iter().zip(&self.sections) {
+            if !lines.is_empty() {
+                write!(text, "[{name}]\n{lines}").expect("text can be written");
+            }
+        }
+        text
+    }
+
+    /// The model.
+    pub fn model(&self) -> Model {
+        let text = self.text();
+        match check(Source::new("made.toml", text.as_str())) {
+            Ok(checked) => checked.model,
+            Err(found) => panic!("{text}\n{}", found.render(false)),
+        }
+    }
+}
+
+/// A model at an order with where its motion begins and what drives it.
+pub struct Subject {
+    /// The model.
+    pub model: Model,
+    /// The order of every field.
+    pub order: usize,
+    /// The state at the start.
+    pub initial: Vec<f64>,
+    /// The inputs.
+    pub inputs: HeldInputs,
+}
+
+impl Subject {
+    /// A model from where it says that it begins, its inputs zero.
+    pub fn new(model: Model, order: usize) -> Self {
+        let orders = vec![order; model.fields.len()];
+        let initial = model.initial_state(&orders).expect("an initial state");
+        let inputs = HeldInputs::zero(model.inputs.len());
+        Self {
+            model,
+            order,
+            initial,
+            inputs,
+        }
+    }
+
+    /// The same from another state.
+    pub fn from(mut self, initial: &[f64]) -> Self {
+        self.initial = initial.to_vec();
+        self
+    }
+
+    /// The exact propagator, or why there is none.
+    pub fn propagator(&self) -> Result<Propagator, ExactError> {
+        let orders = vec![self.order; self.model.fields.len()];
+        PiecewiseLinear::of(&self.model, &orders)?.propagator(&self.model)
+    }
+
+    /// The motion over a span of time, s, by the exact solver.
+    pub fn try_exact(&self, span: (f64, f64), times: &[f64]) -> Result<Trajectory, ExactError> {
+        let mut propagator = self.propagator()?;
+        propagator.simulate(&self.initial, span, times, &self.inputs, &mut |_| {})
+    }
+
+    /// The same; it must succeed and give every sample.
+    pub fn exact(&self, span: (f64, f64), times: &[f64]) -> Trajectory {
+        let trajectory = self.try_exact(span, times).expect("an exact motion");
+        assert_eq!(trajectory.times, times, "every sample is there");
+        trajectory
+    }
+
+    /// The model as the general solver takes it.
+    pub fn driven(&self) -> Driven {
+        let evaluator = variant(&self.model, self.order).evaluator;
+        Driven::new(evaluator, self.inputs.clone()).expect("a positive mass matrix")
+    }
+
+    /// The motion by the general solver.
+    pub fn general(
+        &self,
+        span: (f64, f64),
+        times: &[f64],
+        tolerance: f64,
+    ) -> Result<Trajectory, SolveError> {
+        let settings = Settings {
+            max_steps: 20_000,
+            ..Settings::with_tolerance(tolerance)
+        };
+        let driven = self.driven();
+        simulate(&driven, &self.initial, span, times, &settings, &mut |_| {})
+    }
+
+    /// The energy at a state, J.
+    pub fn energy(&self, driven: &Driven, t: f64, state: &[f64]) -> f64 {
+        let count = variant(&self.model, self.order)
+            .evaluator
+            .program()
+            .observables
+            .len();
+        let mut values = vec![0.0; count];
+        driven.observables(t, state, &mut values);
+        values[count - 2]
+    }
+}
+
+/// `count` equal steps from 0 to `until`, both included.
+pub fn grid(until: f64, count: usize) -> Vec<f64> {
+    (0..=count)
+        .map(|k| until * k as f64 / count as f64)
+        .collect()
+}
+
+/// The largest difference of two motions at their samples, relative to the largest magnitude
+/// that each state has in the second one; a state that stays below `smallest` counts as that.
+pub fn difference(a: &[Vec<f64>], b: &[Vec<f64>], smallest: f64) -> f64 {
+    assert_eq!(a.len(), b.len(), "samples");
+    let states = b.first().map_or(0, Vec::len);
+    let worst = (0..states).map(|state| {
+        let size = b.iter().fold(smallest, |size, y| size.max(y[state].abs()));
+        let deviations = a.iter().zip(b).map(|(a, b)| (a[state] - b[state]).abs());
+        // A state that is no number is infinitely far away.
+        deviations.fold(0.0, |worst: f64, d| if d <= worst { worst } else { d }) / size
+    });
+    worst.fold(0.0, |a: f64, b| if b <= a { a } else { b })
+}

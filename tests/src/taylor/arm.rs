@@ -1,0 +1,137 @@
+//! The arm on its reducer with the numbers of Table I, ready for the equations of motion.
+//! No motion here.
+//!
+//! The numbers are doubles, as a specification states them; all that follows from them is
+//! computed in the arithmetic asked for.
+
+use super::modes::Mode;
+use super::scalar::Scalar;
+
+/// What is varied between runs. The rest is Table I and the values assumed for what the
+/// paper does not disclose.
+#[derive(Clone, Copy, Debug)]
+pub struct Case {
+    /// Number of modes, S.
+    pub order: usize,
+    /// Half the backlash of both meshes, in m.
+    pub b: f64,
+    /// Frequency of the torque ripple, in rad/s.
+    pub omega: f64,
+}
+
+/// One mode of the arm.
+#[derive(Clone, Copy, Debug)]
+pub struct ArmMode<T> {
+    /// K/M, in rad^2/s^2.
+    pub stiffness: T,
+    /// h, in kg m.
+    pub h: T,
+    /// h/M, in m.
+    pub share: T,
+    /// phi(l).
+    pub tip: T,
+}
+
+/// The constants of the equations, in SI.
+#[derive(Clone, Debug)]
+pub struct Arm<T> {
+    /// I_s/r_s^2, in kg.
+    pub m_s: T,
+    /// I_p/r_p^2, in kg.
+    pub m_p: T,
+    /// r_c cos(alpha), in m.
+    pub lever: T,
+    /// I_tot less the sum of h_i^2/M_i: what the carrier feels of its own inertia and the
+    /// arm's once the modes are eliminated, in kg m^2.
+    pub inertia: T,
+    /// Stiffness of either mesh, in N/m.
+    pub k: T,
+    /// Damping of either mesh, in N s/m.
+    pub c: T,
+    /// Half the backlash, in m.
+    pub b: T,
+    /// a_m/r_s, in N.
+    pub drive: T,
+    /// b_m/r_s^2, in N s/m.
+    pub drag: T,
+    /// F_w/r_s, in N.
+    pub ripple: T,
+    /// Frequency of the ripple, in rad/s.
+    pub omega: T,
+    /// The modes of the arm.
+    pub modes: Vec<ArmMode<T>>,
+}
+
+impl<T: Scalar> Arm<T> {
+    /// The arm in one case.
+    pub fn of(case: Case) -> Self {
+        let number = T::exactly;
+        let pressure_angle = number(24.6) * T::PI / number(180.0);
+        let (_, cos) = pressure_angle.sin_cos();
+        let module = number(3.0) / number(1000.0);
+        let r_s = module * cos.times(27.0 / 2.0);
+        let r_c = module.times((27.0 + 36.0) / 2.0);
+        let carrier = (number(6.29) + number(0.66).times(3.0)) * r_c * r_c;
+        let beam = Beam::steel();
+        let modes: Vec<ArmMode<T>> = (1..=case.order).map(|r| beam.mode(r)).collect();
+        let whole = carrier + beam.inertia();
+        let inertia = modes
+            .iter()
+            .fold(whole, |inertia, mode| inertia - mode.h * mode.share);
+        Self {
+            m_s: number(0.39),
+            m_p: number(0.61),
+            lever: r_c * cos,
+            inertia,
+            k: number(1e8),
+            c: number(650.0),
+            b: number(case.b),
+            drive: number(2.0) / r_s,
+            drag: number(0.05) / (r_s * r_s),
+            ripple: number(5.0) / r_s,
+            omega: number(case.omega),
+            modes,
+        }
+    }
+}
+
+/// A uniform cantilever.
+struct Beam<T> {
+    /// rho A, in kg/m.
+    mass: T,
+    /// E I, in N m^2.
+    stiffness: T,
+    /// In m.
+    length: T,
+}
+
+impl<T: Scalar> Beam<T> {
+    /// The paper's arm, with the section assumed for it.
+    fn steel() -> Self {
+        Self {
+            mass: T::exactly(7900.0) * T::exactly(1e-4),
+            stiffness: T::exactly(2e11) * T::exactly(8.333e-10),
+            length: T::exactly(0.5),
+        }
+    }
+
+    /// rho A l^3/3, in kg m^2.
+    fn inertia(&self) -> T {
+        self.mass * self.length * self.length * self.length / T::exactly(3.0)
+    }
+
+    /// Mode `r` with h = rho A int x phi, M = rho A int phi^2, K = E I int phi''^2.
+    fn mode(&self, r: usize) -> ArmMode<T> {
+        let mode = Mode::<T>::clamped_free(r);
+        let l = self.length;
+        let h = self.mass * l * l * mode.moment;
+        let m = self.mass * l * mode.square;
+        let k = self.stiffness / (l * l * l) * mode.bending;
+        ArmMode {
+            stiffness: k / m,
+            h,
+            share: h / m,
+            tip: mode.tip,
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! The first instant at which a polynomial becomes positive.
+//!
+//! On an interval a polynomial lies within the hull of its Bernstein coefficients, and the
+//! number of its roots there is the number of their changes of sign, less an even number
+//! (Descartes' rule; Lane and Riesenfeld, "Bounds on a polynomial", BIT 21 (1981)). No
+//! change: no root. One: one root. More: the interval is halved. So no root is
+//! overlooked, however close to another.
+
+use super::scalar::Scalar;
+
+/// Halvings after which two roots closer than the arithmetic resolves count as none.
+const HALVINGS: u32 = 50;
+
+/// The first u in 0..=1 at which the polynomial with these coefficients (of the powers of
+/// u, the lowest first) passes from at most zero to above. One that begins above zero and
+/// rises, as after a step that ended on the root, passes at 0.
+pub fn first_rise<T: Scalar>(coefficients: &[T]) -> Option<T> {
+    let zero = T::exactly(0.0);
+    if stays_negative(coefficients) {
+        return None;
+    }
+    let (start, slope) = (*coefficients.first()?, *coefficients.get(1)?);
+    if start > zero && slope > zero {
+        return Some(zero);
+    }
+    rise_within(coefficients, bernstein(coefficients), 0.0, 1.0, HALVINGS)
+}
+
+/// Whether the first coefficient is below zero by more than all others can raise it.
+fn stays_negative<T: Scalar>(coefficients: &[T]) -> bool {
+    let mut doubles = coefficients.iter().map(|coefficient| coefficient.nearest());
+    let start = doubles.next().unwrap_or(0.0);
+    // A sum of fifty doubles is off by 1e-14 of itself at most.
+    start < 0.0 && doubles.map(f64::abs).sum::<f64>() < -0.999 * start
+}
+
+/// The Bernstein coefficients on 0..=1 of a polynomial in powers: Pascal's transform of
+/// a_k/C(n, k), by additions.
+fn bernstein<T: Scalar>(coefficients: &[T]) -> Vec<T> {
+    let degree = coefficients.len() - 1;
+    let mut binomial = 1.0;
+    let mut values = Vec::with_capacity(coefficients.len());
+    for (k, coefficient) in coefficients.iter().enumerate() {
+        values.push(*coefficient / T::exactly(binomial));
+        // Exact up to degree 56.
+        binomial = binomial * (degree - k) as f64 / (k + 1) as f64;
+    }
+    for first in 1..=degree {
+        for k in (first..=degree).rev() {
+            values[k] = values[k] + values[k - 1];
+        }
+    }
+    values
+}
+
+/// The first rise within `from..=from + width`, of which `values` are the Bernstein
+/// coefficients.
+fn rise_within<T: Scalar>(
+    coefficients: &[T],
+    values: Vec<T>,
+    from: f64,
+    width: f64,
+    halvings: u32,
+) -> Option<T> {
+    let zero = T::exactly(0.0);
+    let changes = values
+        .windows(2)
+        .filter(|pair| (pair[0] > zero) != (pair[1] > zero))
+        .count();
+    let rises = values[values.len() - 1] > zero;
+    if changes == 0 || (changes == 1 && !rises) {
+        return None;
+    }
+    if changes == 1 || (halvings == 0 && rises) {
+        return Some(root(
+            coefficients,
+            T::exactly(from),
+            T::exactly(from + width),
+        ));
+    }
+    let halvings = halvings.checked_sub(1)?;
+    let (left, right) = halved(values);
+    let width = width / 2.0;
+    rise_within(coefficients, left, from, width, halvings)
+        .or_else(|| rise_within(coefficients, right, from + width, width, halvings))
+}
+
+/// The Bernstein coefficients on the two halves of the interval (de Casteljau).
+fn halved<T: Scalar>(mut values: Vec<T>) -> (Vec<T>, Vec<T>) {
+    let degree = values.len() - 1;
+    let mut left = Vec::with_capacity(values.len());
+    left.push(values[0]);
+    for last in (0..degree).rev() {
+        for k in 0..=last {
+            values[k] = (values[k] + values[k + 1]).times(0.5);
+        }
+        left.push(values[0]);
+    }
+    // What remains in place is the right half.
+    (left, values)
+}
+
+/// The value and the derivative of a polynomial in powers, by Horner's rule.
+fn value_and_slope<T: Scalar>(coefficients: &[T], at: T) -> (T, T) {
+    let zero = T::exactly(0.0);
+    coefficients
+        .iter()
+        .rev()
+        .fold((zero, zero), |(value, slope), coefficient| {
+            (value * at + *coefficient, slope * at + value)
+        })
+}
+
+/// The only root in `low..=high`, where the polynomial rises: Newton's method, bisection
+/// where that leaves the bracket.
+fn root<T: Scalar>(coefficients: &[T], mut low: T, mut high: T) -> T {
+    let mut at = (low + high).times(0.5);
+    for _ in 0..200 {
+        let (value, slope) = value_and_slope(coefficients, at);
+        if value > T::exactly(0.0) {
+            high = at;
+        } else {
+            low = at;
+        }
+        let mut next = at - value / slope;
+        if !(next >= low && next <= high) {
+            next = (low + high).times(0.5);
+        }
+        let moved = (next - at).magnitude().nearest();
+        at = next;
+        if moved <= 2.0 * T::EPSILON {
+            break;
+        }
+    }
+    at
+}

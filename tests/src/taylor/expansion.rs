@@ -1,0 +1,272 @@
+//! Taylor series of the motion about an instant, by the equations of motion within one
+//! regime.
+//!
+//! With x_s = x_sp + x_pr + 2 x_c and x_p = x_pr + x_c, the balances of sun, planet,
+//! carrier and modes are
+//!
+//! ```text
+//! M_s x_s'' = (a_m + F_w sin(omega t))/r_s - b_m/r_s^2 x_s' - 3 F_sp
+//! M_p x_p'' = F_sp - F_pr
+//! I_tot th_c'' + sum_i h_i q_i'' = 3 r_c cos(alpha) (F_sp + F_pr)
+//! M_i q_i'' + h_i th_c'' + K_i q_i = 0
+//! ```
+//!
+//! with x_c = r_c cos(alpha) th_c. The last, put into the third, leaves the inertia
+//! I_tot - sum_i h_i^2/M_i and the load sum_i h_i K_i/M_i q_i on the carrier.
+//!
+//! Time is counted in a unit sigma, a power of two in seconds, so that the coefficients of
+//! the series are displacements of the motion's own size and a whole step is their sum.
+//! With u = (t - t_0)/sigma, the coefficients of x(u) follow from
+//! (k + 1)(k + 2) x_(k+2) = sigma^2 x''_k, and those of x' are (k + 1) x_(k+1)/sigma.
+
+use super::arm::Arm;
+use super::scalar::Scalar;
+
+/// Where one mesh is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// x > b.
+    Positive,
+    /// Within the play.
+    Free,
+    /// x < -b.
+    Negative,
+}
+
+impl Side {
+    /// The sign of the deflection in contact, 0 without.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Positive => 1.0,
+            Self::Free => 0.0,
+            Self::Negative => -1.0,
+        }
+    }
+}
+
+/// Displacements and rates; in the order x_sp, x_pr, x_c, q_1, ..., q_S, in m and m/s.
+#[derive(Clone, Debug)]
+pub struct State<T> {
+    /// Displacements.
+    pub positions: Vec<T>,
+    /// Rates.
+    pub rates: Vec<T>,
+}
+
+/// The arm's constants in units of time sigma: what multiplies a displacement carries
+/// sigma^2, what multiplies a rate carries sigma.
+#[derive(Clone, Debug)]
+struct Scaled<T> {
+    k: T,
+    c: T,
+    drive: T,
+    drag: T,
+    ripple: T,
+    omega: T,
+    stiffness: Vec<T>,
+    loads: Vec<T>,
+}
+
+/// Makes the series of one arm; keeps what does not change from step to step.
+#[derive(Clone, Debug)]
+pub struct Expander<T> {
+    arm: Arm<T>,
+    sigma: f64,
+    scaled: Scaled<T>,
+    /// 1/((k + 1)(k + 2)).
+    inverses: Vec<T>,
+    inverse_m_s: T,
+    inverse_m_p: T,
+    inverse_inertia: T,
+}
+
+/// The series of all displacements about one instant.
+#[derive(Clone, Debug)]
+pub struct Series<T> {
+    /// Unit of time, in s.
+    pub sigma: f64,
+    /// Number of displacements.
+    pub width: usize,
+    /// Coefficients in m: a row of displacements per power of u.
+    pub coefficients: Vec<T>,
+}
+
+impl<T: Scalar> Expander<T> {
+    /// For this arm, with a unit of time in s: a power of two.
+    pub fn new(arm: Arm<T>, sigma: f64) -> Self {
+        let one = T::exactly(1.0);
+        let inverses = (0..T::DEGREE)
+            .map(|k| one / T::exactly(((k + 1) * (k + 2)) as f64))
+            .collect();
+        let stiffness: Vec<T> = (arm.modes.iter())
+            .map(|mode| mode.stiffness.times(sigma * sigma))
+            .collect();
+        let loads = (arm.modes.iter().zip(&stiffness))
+            .map(|(mode, stiffness)| mode.h * *stiffness)
+            .collect();
+        Self {
+            scaled: Scaled {
+                k: arm.k.times(sigma * sigma),
+                c: arm.c.times(sigma),
+                drive: arm.drive.times(sigma * sigma),
+                drag: arm.drag.times(sigma),
+                ripple: arm.ripple.times(sigma * sigma),
+                omega: arm.omega.times(sigma),
+                stiffness,
+                loads,
+            },
+            inverses,
+            inverse_m_s: one / arm.m_s,
+            inverse_m_p: one / arm.m_p,
+            inverse_inertia: one / arm.inertia,
+            sigma,
+            arm,
+        }
+    }
+
+    /// The same arm with half the unit of time.
+    pub fn finer(&self) -> Self {
+        Self::new(self.arm.clone(), self.sigma / 2.0)
+    }
+
+    /// The unit of time, in s.
+    pub fn sigma(&self) -> f64 {
+        self.sigma
+    }
+
+    /// The arm.
+    pub fn arm(&self) -> &Arm<T> {
+        &self.arm
+    }
+
+    /// Number of displacements.
+    pub fn width(&self) -> usize {
+        3 + self.arm.modes.len()
+    }
+
+    /// The series of the motion from `state` at `time` (in s) with the meshes sun-planet
+    /// and planet-ring on these sides.
+    pub fn expand(&self, time: T, state: &State<T>, sides: [Side; 2]) -> Series<T> {
+        let width = self.width();
+        let mut coefficients = Vec::with_capacity((T::DEGREE + 1) * width);
+        coefficients.extend_from_slice(&state.positions);
+        coefficients.extend(state.rates.iter().map(|rate| rate.times(self.sigma)));
+        let torque = self.torque(time);
+        for (k, torque) in torque.into_iter().enumerate() {
+            self.next(k, torque, sides, &mut coefficients);
+        }
+        Series {
+            sigma: self.sigma,
+            width,
+            coefficients,
+        }
+    }
+
+    /// sigma^2 (a_m + F_w sin(omega t))/r_s as a series about `time`.
+    fn torque(&self, time: T) -> Vec<T> {
+        let (sin, cos) = (self.arm.omega * time).sin_cos();
+        let mut factor = self.scaled.ripple;
+        let mut series = Vec::with_capacity(T::DEGREE - 1);
+        for k in 0..T::DEGREE - 1 {
+            series.push(match k % 4 {
+                0 => factor * sin,
+                1 => factor * cos,
+                2 => -(factor * sin),
+                _ => -(factor * cos),
+            });
+            factor = factor * self.scaled.omega / T::exactly((k + 1) as f64);
+        }
+        series[0] = series[0] + self.scaled.drive;
+        series
+    }
+
+    /// Appends row k + 2 of the coefficients to rows 0 to k + 1.
+    fn next(&self, k: usize, torque: T, sides: [Side; 2], coefficients: &mut Vec<T>) {
+        let (arm, scaled) = (&self.arm, &self.scaled);
+        let (now, after) = coefficients[k * self.width()..].split_at(self.width());
+        let rate = |j: usize| after[j].times((k + 1) as f64);
+        let [f_sp, f_pr] = [0, 1].map(|mesh| self.force(k, sides[mesh], now[mesh], rate(mesh)));
+        let sun_rate = rate(0) + rate(1) + rate(2).times(2.0);
+        let sun = (torque - scaled.drag * sun_rate - f_sp.times(3.0)) * self.inverse_m_s;
+        let planet = (f_sp - f_pr) * self.inverse_m_p;
+        let bending = (scaled.loads.iter().zip(&now[3..]))
+            .fold(T::exactly(0.0), |sum, (load, q)| sum + *load * *q);
+        let angle = ((f_sp + f_pr).times(3.0) * arm.lever + bending) * self.inverse_inertia;
+        let carrier = angle * arm.lever;
+        let modes: Vec<T> = (arm.modes.iter().zip(&scaled.stiffness).zip(&now[3..]))
+            .map(|((mode, stiffness), q)| -(*stiffness * *q + mode.share * angle))
+            .collect();
+        let accelerations = [sun - planet - carrier, planet - carrier, carrier];
+        let accelerations = accelerations.into_iter().chain(modes);
+        coefficients.extend(accelerations.map(|acceleration| acceleration * self.inverses[k]));
+    }
+
+    /// Coefficient `k` of sigma^2 k f_k + sigma c f_c, Eq. (6) to (9), of one mesh.
+    fn force(&self, k: usize, side: Side, deflection: T, rate: T) -> T {
+        if side == Side::Free {
+            return T::exactly(0.0);
+        }
+        // The edge of the play is a constant, which only the first coefficient has.
+        let edge = if k == 0 { side.sign() } else { 0.0 };
+        self.scaled.k * (deflection - self.arm.b.times(edge)) + self.scaled.c * rate
+    }
+}
+
+impl<T: Scalar> Series<T> {
+    /// Row `k` of the coefficients.
+    fn row(&self, k: usize) -> &[T] {
+        &self.coefficients[k * self.width..(k + 1) * self.width]
+    }
+
+    /// The coefficients of one displacement, in m.
+    pub fn of(&self, displacement: usize) -> Vec<T> {
+        (self.coefficients.iter())
+            .skip(displacement)
+            .step_by(self.width)
+            .copied()
+            .collect()
+    }
+
+    /// The largest of the last two rows of coefficients, in m; the remainder of a whole
+    /// step is smaller.
+    pub fn tail(&self) -> f64 {
+        (self.coefficients.iter().rev().take(2 * self.width))
+            .map(|coefficient| coefficient.nearest().abs())
+            .fold(0.0, f64::max)
+    }
+
+    /// The state at u = `at` in 0..=1, by Horner's rule.
+    pub fn state(&self, at: T) -> State<T> {
+        let zero = T::exactly(0.0);
+        let mut positions = vec![zero; self.width];
+        let mut rates = vec![zero; self.width];
+        for k in (0..=T::DEGREE).rev() {
+            for (j, coefficient) in self.row(k).iter().enumerate() {
+                rates[j] = rates[j] * at + positions[j];
+                positions[j] = positions[j] * at + *coefficient;
+            }
+        }
+        self.in_seconds(positions, rates)
+    }
+
+    /// The state at u = 1.
+    pub fn end(&self) -> State<T> {
+        let zero = T::exactly(0.0);
+        let mut positions = vec![zero; self.width];
+        let mut rates = vec![zero; self.width];
+        for k in (0..=T::DEGREE).rev() {
+            for (j, coefficient) in self.row(k).iter().enumerate() {
+                positions[j] = positions[j] + *coefficient;
+                rates[j] = rates[j] + coefficient.times(k as f64);
+            }
+        }
+        self.in_seconds(positions, rates)
+    }
+
+    fn in_seconds(&self, positions: Vec<T>, rates: Vec<T>) -> State<T> {
+        let rates = (rates.into_iter())
+            .map(|rate| rate.times(1.0 / self.sigma))
+            .collect();
+        State { positions, rates }
+    }
+}

@@ -1,0 +1,64 @@
+//! The clamped-free beam's modes in the paper's normalisation, Eq. (17), over the unit span.
+//!
+//! phi(s) = sin zs - sinh zs + xi (cos zs - cosh zs). It meets phi'''' = z^4 phi,
+//! phi(0) = phi'(0) = 0 and phi''(1) = phi'''(1) = 0, whence by partial integration
+//! int s phi = z^-4 [s phi''' - phi''] = phi''(0)/z^4 = -2 xi/z^2, int phi''^2 = z^4 int phi^2,
+//! and with int phi^2 = phi(1)^2/4 (Rayleigh, "The theory of sound", art. 173) and
+//! cos z cosh z = -1, phi(1) = 2 xi (-1)^r and int phi^2 = xi^2.
+
+use super::scalar::Scalar;
+
+/// What the equations need of one mode; dimensionless.
+#[derive(Clone, Copy, Debug)]
+pub struct Mode<T> {
+    /// beta l, the root of cos z cosh z = -1.
+    pub z: T,
+    /// xi = -(sin z + sinh z)/(cos z + cosh z).
+    pub xi: T,
+    /// Integral of s phi.
+    pub moment: T,
+    /// Integral of phi^2.
+    pub square: T,
+    /// Integral of (d^2 phi/ds^2)^2.
+    pub bending: T,
+    /// phi(1).
+    pub tip: T,
+}
+
+impl<T: Scalar> Mode<T> {
+    /// Mode `r`, counted from 1.
+    pub fn clamped_free(r: usize) -> Self {
+        let z: T = root(r);
+        let (sin, cos) = z.sin_cos();
+        let decay = (-z).exp();
+        let one = T::exactly(1.0);
+        // Above and below multiplied by exp(-z), so that nothing overflows.
+        let sines = decay * sin + (one - decay * decay).times(0.5);
+        let cosines = decay * cos + (one + decay * decay).times(0.5);
+        let xi = -sines / cosines;
+        let square = xi * xi;
+        Self {
+            z,
+            xi,
+            moment: xi.times(-2.0) / (z * z),
+            square,
+            bending: z * z * z * z * square,
+            tip: xi.times(if r.is_multiple_of(2) { 2.0 } else { -2.0 }),
+        }
+    }
+}
+
+/// The r-th positive root of cos z + 1/cosh z by Newton's method from (r - 1/2) pi, which
+/// is off by 0.3 at r = 1 and by 2 exp(-z) later.
+fn root<T: Scalar>(r: usize) -> T {
+    let one = T::exactly(1.0);
+    let mut z = T::PI.times(r as f64 - 0.5);
+    for _ in 0..12 {
+        let (sin, cos) = z.sin_cos();
+        let decay = (-z).exp();
+        let secant = decay.times(2.0) / (one + decay * decay);
+        let tangent = (one - decay * decay) / (one + decay * decay);
+        z = z + (cos + secant) / (sin + secant * tangent);
+    }
+    z
+}

@@ -1,0 +1,192 @@
+//! A run of the arm from rest at zero: from step to step and from switch to switch.
+
+use super::arm::{Arm, Case};
+use super::crossing::first_rise;
+use super::expansion::{Expander, Series, Side, State};
+use super::scalar::Scalar;
+
+/// The longest step, in s.
+pub const LONGEST: f64 = 1.0 / 1024.0;
+
+/// Size in m of the motions that the steps resolve to the arithmetic's rounding: a
+/// twenty-fifth of the reference's half backlash.
+const RESOLVED: f64 = 1e-6;
+
+/// One mesh changes its side.
+#[derive(Clone, Copy, Debug)]
+pub struct Switch<T> {
+    /// When, in s.
+    pub time: T,
+    /// 0 is sun-planet, 1 is planet-ring.
+    pub mesh: usize,
+    /// The side it comes to.
+    pub to: Side,
+}
+
+/// States at given times, and all switches up to the last of them.
+#[derive(Clone, Debug)]
+pub struct Run<T> {
+    /// A state per time asked for.
+    pub states: Vec<State<T>>,
+    /// In the order of time. The side on which a mesh without play starts is none.
+    pub switches: Vec<Switch<T>>,
+    /// Number of Taylor series summed.
+    pub steps: usize,
+    /// phi_i(l).
+    pub tips: Vec<T>,
+}
+
+impl<T: Scalar> Run<T> {
+    /// Follows the arm from rest at zero through `times`, in s and ascending, in steps of
+    /// `longest` (in s, a power of two; [`LONGEST`] lets the motion choose) at most.
+    pub fn of(case: Case, times: &[f64], longest: f64) -> Self {
+        let arm = Arm::<T>::of(case);
+        let tips = arm.modes.iter().map(|mode| mode.tip).collect();
+        let mut motion = Motion::at_rest(Expander::new(arm, longest));
+        let mut run = Self {
+            states: Vec::with_capacity(times.len()),
+            switches: Vec::new(),
+            steps: 0,
+            tips,
+        };
+        while run.states.len() < times.len() {
+            motion.step(times, &mut run);
+            run.steps += 1;
+        }
+        run
+    }
+
+    /// The deflection of the arm's end at the time of index `sample`, in m.
+    pub fn tip(&self, sample: usize) -> T {
+        let positions = &self.states[sample].positions[3..];
+        (self.tips.iter().zip(positions)).fold(T::exactly(0.0), |tip, (phi, q)| tip + *phi * *q)
+    }
+
+    /// The number of switches of each mesh.
+    pub fn counts(&self) -> [usize; 2] {
+        [0, 1].map(|mesh| {
+            self.switches
+                .iter()
+                .filter(|switch| switch.mesh == mesh)
+                .count()
+        })
+    }
+}
+
+/// The state of an integration.
+struct Motion<T> {
+    expander: Expander<T>,
+    time: T,
+    state: State<T>,
+    sides: [Side; 2],
+}
+
+impl<T: Scalar> Motion<T> {
+    fn at_rest(expander: Expander<T>) -> Self {
+        let rest = vec![T::exactly(0.0); expander.width()];
+        let state = State {
+            positions: rest.clone(),
+            rates: rest,
+        };
+        let sides = first_sides(&expander, &state);
+        Self {
+            expander,
+            time: T::exactly(0.0),
+            state,
+            sides,
+        }
+    }
+
+    /// One series: to its end, or to the first switch on its way.
+    fn step(&mut self, times: &[f64], run: &mut Run<T>) {
+        let series = self.resolved();
+        let sigma = self.expander.sigma();
+        let switch = self.first_switch(&series);
+        let until = switch.map_or(T::exactly(1.0), |(at, ..)| at);
+        while let Some(time) = times.get(run.states.len()) {
+            let at = (T::exactly(*time) - self.time).times(1.0 / sigma);
+            if at > until {
+                break;
+            }
+            run.states.push(series.state(at));
+        }
+        self.time = self.time + until.times(sigma);
+        let Some((at, mesh, to)) = switch else {
+            self.state = series.end();
+            return;
+        };
+        self.state = series.state(at);
+        self.sides[mesh] = to;
+        if run.states.len() < times.len() {
+            let time = self.time;
+            run.switches.push(Switch { time, mesh, to });
+        }
+    }
+
+    /// The series about now, in a unit of time that leaves no remainder. The unit shrinks
+    /// as faster motions appear and does not grow again.
+    fn resolved(&mut self) -> Series<T> {
+        loop {
+            let series = self.expander.expand(self.time, &self.state, self.sides);
+            if series.tail() <= T::EPSILON * RESOLVED {
+                return series;
+            }
+            self.expander = self.expander.finer();
+        }
+    }
+
+    /// The first switch within the series: its place, its mesh and the new side.
+    fn first_switch(&self, series: &Series<T>) -> Option<(T, usize, Side)> {
+        let b = self.expander.arm().b;
+        let mut first: Option<(T, usize, Side)> = None;
+        for (mesh, side) in self.sides.into_iter().enumerate() {
+            let deflection = series.of(mesh);
+            for (outside, to) in edges(&deflection, side, b) {
+                let Some(at) = first_rise(&outside) else {
+                    continue;
+                };
+                if first.is_none_or(|(earliest, ..)| at < earliest) {
+                    first = Some((at, mesh, to));
+                }
+            }
+        }
+        first
+    }
+}
+
+/// For every side that a mesh on `side` can go to, the series of its way beyond the edge.
+fn edges<T: Scalar>(deflection: &[T], side: Side, b: T) -> Vec<(Vec<T>, Side)> {
+    let beyond = |sign: f64, edge: T| {
+        let mut outside: Vec<T> = deflection.iter().map(|x| x.times(sign)).collect();
+        outside[0] = outside[0] - edge;
+        outside
+    };
+    let without_play = b == T::exactly(0.0);
+    match side {
+        Side::Free => vec![
+            (beyond(1.0, b), Side::Positive),
+            (beyond(-1.0, b), Side::Negative),
+        ],
+        Side::Positive if without_play => vec![(beyond(-1.0, b), Side::Negative)],
+        Side::Negative if without_play => vec![(beyond(1.0, b), Side::Positive)],
+        Side::Positive => vec![(beyond(-1.0, -b), Side::Free)],
+        Side::Negative => vec![(beyond(1.0, -b), Side::Free)],
+    }
+}
+
+/// The sides at rest at zero. Without play it is the sign of the first derivative that
+/// does not vanish: both contacts have the same equations then, and up to that
+/// derivative the mesh carries no force.
+fn first_sides<T: Scalar>(expander: &Expander<T>, rest: &State<T>) -> [Side; 2] {
+    let zero = T::exactly(0.0);
+    if expander.arm().b > zero {
+        return [Side::Free; 2];
+    }
+    let series = expander.expand(zero, rest, [Side::Positive; 2]);
+    [0, 1].map(
+        |mesh| match series.of(mesh).into_iter().find(|x| *x != zero) {
+            Some(leading) if leading < zero => Side::Negative,
+            _ => Side::Positive,
+        },
+    )
+}

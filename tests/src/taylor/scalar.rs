@@ -1,0 +1,78 @@
+//! The arithmetic that the integrator asks for, and doubles as its first instance.
+
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A real number of fixed relative precision.
+pub trait Scalar:
+    Copy
+    + Debug
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Send
+    + Sync
+{
+    /// Relative rounding error of one operation, at most.
+    const EPSILON: f64;
+
+    /// Degree of the Taylor polynomials: high enough that a step of two to five radians of
+    /// the fastest mode leaves a remainder below the rounding.
+    const DEGREE: usize;
+
+    /// The circle's constant.
+    const PI: Self;
+
+    /// The number with exactly this value.
+    fn exactly(value: f64) -> Self;
+
+    /// The nearest double.
+    fn nearest(self) -> f64;
+
+    /// The product with a double, which costs less than with a number of this type.
+    fn times(self, factor: f64) -> Self;
+
+    /// Sine and cosine, in radians.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// The exponential.
+    fn exp(self) -> Self;
+
+    /// The magnitude.
+    fn magnitude(self) -> Self {
+        if self < Self::exactly(0.0) {
+            -self
+        } else {
+            self
+        }
+    }
+}
+
+impl Scalar for f64 {
+    const EPSILON: f64 = f64::EPSILON / 2.0;
+    const DEGREE: usize = 24;
+    const PI: Self = std::f64::consts::PI;
+
+    fn exactly(value: f64) -> Self {
+        value
+    }
+
+    fn nearest(self) -> f64 {
+        self
+    }
+
+    fn times(self, factor: f64) -> Self {
+        self * factor
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        f64::sin_cos(self)
+    }
+
+    fn exp(self) -> Self {
+        f64::exp(self)
+    }
+}

@@ -1,0 +1,206 @@
+//! Random parameters over decades: the exact solver against the general one over short
+//! times, for the arm and for small machines of springs, stops and dry friction.
+//!
+//! What the general solver knows of a motion is how much it changes when its tolerance does;
+//! the exact one may differ by as much, and by what rounding does.
+
+use std::time::{Duration, Instant};
+
+use eomgen_tests::models::load;
+use eomgen_tests::motions::{Spec, Subject, difference, grid};
+use proptest::prelude::*;
+use sim::exact::ExactError;
+use sim::solve::{SolveError, Trajectory};
+
+/// The longest that the exact solver may take for one motion.
+const LIMIT: Duration = Duration::from_secs(2);
+
+/// What rounding makes of motions with so many switches, each of which may magnify what it
+/// finds, relative to the largest magnitude of each state.
+const ROUNDING: f64 = 1e-10;
+
+fn config() -> ProptestConfig {
+    ProptestConfig {
+        failure_persistence: None,
+        ..ProptestConfig::with_cases(64)
+    }
+}
+
+/// The exact motion, in time.
+fn exact(subject: &Subject, until: f64, times: &[f64]) -> Result<Trajectory, ExactError> {
+    let begun = Instant::now();
+    let motion = subject.try_exact((0.0, until), times);
+    assert!(begun.elapsed() < LIMIT, "{:?}", begun.elapsed());
+    motion
+}
+
+/// Whether both solvers tell the same.
+fn agree(subject: &Subject, until: f64, smallest: f64) -> Result<(), TestCaseError> {
+    let times = grid(until, 16);
+    let exact = match exact(subject, until, &times) {
+        Ok(motion) => motion,
+        // Too fast for any solver, and said so.
+        Err(ExactError::Stopped(SolveError::TooManySwitches { .. })) => return Ok(()),
+        Err(error) => return Err(TestCaseError::fail(error.to_string())),
+    };
+    prop_assert_eq!(&exact.times, &times);
+    let general = |tolerance: f64| subject.general((0.0, until), &times, tolerance);
+    let (Ok(coarse), Ok(fine)) = (general(1e-10), general(1e-12)) else {
+        // Held on a surface, or too stiff for it.
+        return Ok(());
+    };
+    let doubt = difference(&coarse.states, &fine.states, smallest);
+    let found = difference(&exact.states, &fine.states, smallest);
+    prop_assert!(
+        found <= 2.0 * doubt + ROUNDING,
+        "{:e} where {:e}, {} switches",
+        found,
+        doubt,
+        exact.switches.len()
+    );
+    Ok(())
+}
+
+/// A number over decades.
+fn decades(low: f64, high: f64) -> impl Strategy<Value = f64> + Clone {
+    (low.log10()..high.log10()).prop_map(|power| 10.0_f64.powf(power))
+}
+
+/// Zero now and then.
+fn or_zero(of: impl Strategy<Value = f64>) -> impl Strategy<Value = f64> {
+    (of, 0..5_u32).prop_map(|(value, die)| if die == 0 { 0.0 } else { value })
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    #[test]
+    #[ignore = "open: rare machines agree to 1e-7 only"]
+    fn the_arm(
+        stiffness in [decades(1e5, 1e9), decades(1e5, 1e9)],
+        damping in [or_zero(decades(1.0, 3e3)), or_zero(decades(1.0, 3e3))],
+        play in [or_zero(decades(1e-9, 1e-3)), or_zero(decades(1e-9, 1e-3))],
+        masses in [decades(0.04, 4.0), decades(0.06, 6.0)],
+        motor in (or_zero(decades(0.01, 100.0)), or_zero(decades(0.01, 100.0)), or_zero(decades(1e-12, 1.0))),
+        omega in or_zero(decades(0.1, 1e5)),
+        order in 0..7_usize,
+        deflections in [-2.0..2.0_f64, -2.0..2.0_f64],
+        rates in [-0.3..0.3_f64, -0.3..0.3_f64],
+    ) {
+        let values = [
+            ("k_sp", stiffness[0]), ("k_pr", stiffness[1]), ("c_sp", damping[0]), ("c_pr", damping[1]),
+            ("b_sp", play[0]), ("b_pr", play[1]), ("M_s", masses[0]), ("M_p", masses[1]),
+            ("a_m", motor.0), ("F_w", motor.1), ("b_m", motor.2), ("omega", omega),
+        ];
+        let model = load("planetary_arm").with_parameters(&values).expect("values within bounds");
+        let subject = Subject::new(model, order);
+        let mut initial = subject.initial.clone();
+        let half = initial.len() / 2;
+        for mesh in 0..2 {
+            initial[mesh] = deflections[mesh] * play[mesh].max(1e-6);
+            initial[half + mesh] = rates[mesh];
+        }
+        agree(&subject.from(&initial), 5e-4, 1e-6)?;
+    }
+}
+
+/// One more term of a machine.
+#[derive(Clone, Debug)]
+enum Term {
+    Spring(f64),
+    Damper(f64),
+    Stop(f64, f64, f64),
+    OneSided(f64, f64),
+    Dry(f64),
+    Push(f64, f64, f64),
+}
+
+fn term() -> impl Strategy<Value = Term> {
+    prop_oneof![
+        decades(1.0, 1e4).prop_map(Term::Spring),
+        decades(0.01, 10.0).prop_map(Term::Damper),
+        (
+            decades(100.0, 1e6),
+            or_zero(decades(0.1, 30.0)),
+            or_zero(decades(1e-6, 1e-1))
+        )
+            .prop_map(|(k, c, b)| Term::Stop(k, c, b)),
+        (decades(100.0, 1e6), -0.1..0.1_f64).prop_map(|(k, b)| Term::OneSided(k, b)),
+        decades(0.01, 10.0).prop_map(Term::Dry),
+        (
+            decades(0.1, 100.0),
+            or_zero(decades(0.1, 1e3)),
+            -3.0..3.0_f64
+        )
+            .prop_map(|(force, omega, phi)| Term::Push(force, omega, phi)),
+    ]
+}
+
+/// Up to three masses; each term acts on one of them or between two.
+fn machine(masses: &[f64], starts: &[[f64; 2]; 3], terms: &[(Term, usize, usize)]) -> Spec {
+    let mut spec = Spec::default();
+    for (place, mass) in masses.iter().enumerate() {
+        spec = spec
+            .parameter(&format!("m_{place}"), *mass, "kg")
+            .coordinate(&format!("x_{place}"), starts[place])
+            .kinetic(&format!("1/2*m_{place}*dot(x_{place})^2"));
+    }
+    for (index, (term, on, other)) in terms.iter().enumerate() {
+        let (on, other) = (on % masses.len(), other % masses.len());
+        let x = if on == other {
+            format!("x_{on}")
+        } else {
+            format!("(x_{on} - x_{other})")
+        };
+        let v = if on == other {
+            format!("dot(x_{on})")
+        } else {
+            format!("(dot(x_{on}) - dot(x_{other}))")
+        };
+        let name = |letter: &str| format!("{letter}_t{index}");
+        let (k, c, b, w) = (name("k"), name("c"), name("b"), name("w"));
+        let force;
+        (spec, force) = match term {
+            Term::Spring(stiffness) => (spec.parameter(&k, *stiffness, "N/m"), format!("-{k}*{x}")),
+            Term::Damper(damping) => (spec.parameter(&c, *damping, "N s/m"), format!("-{c}*{v}")),
+            Term::Stop(stiffness, damping, play) => (
+                spec.parameter(&k, *stiffness, "N/m")
+                    .parameter(&c, *damping, "N s/m")
+                    .parameter(&b, *play, "m"),
+                format!("-{k}*deadzone({x}, {b}) - {c}*contact({x}, {b})*{v}"),
+            ),
+            Term::OneSided(stiffness, place) => (
+                spec.parameter(&k, *stiffness, "N/m")
+                    .parameter(&b, *place, "m"),
+                format!("-{k}*(max({x}, {b}) - {b})"),
+            ),
+            Term::Dry(level) => (spec.parameter(&k, *level, "N"), format!("-{k}*sign({v})")),
+            Term::Push(force, omega, phi) => (
+                spec.parameter(&k, *force, "N")
+                    .parameter(&w, *omega, "rad/s")
+                    .parameter(&b, *phi, "rad"),
+                format!("{k}*sin({w}*t + {b})"),
+            ),
+        };
+        spec = spec.force(&format!("x_{on}"), &force);
+        if on != other && !matches!(term, Term::Push(..)) {
+            spec = spec.force(&format!("x_{other}"), &format!("-({force})"));
+        }
+    }
+    spec
+}
+
+proptest! {
+    #![proptest_config(config())]
+
+    #[test]
+    #[ignore = "open: rare machines agree to 1e-7 only"]
+    fn small_machines(
+        masses in proptest::collection::vec(decades(0.1, 10.0), 1..=3),
+        starts in [[-0.1..0.1_f64, -1.0..1.0_f64], [-0.1..0.1_f64, -1.0..1.0_f64], [-0.1..0.1_f64, -1.0..1.0_f64]],
+        terms in proptest::collection::vec((term(), 0..3_usize, 0..3_usize), 1..=6),
+    ) {
+        let subject = Subject::new(machine(&masses, &starts, &terms).model(), 0);
+        agree(&subject, 0.3, 1e-4)?;
+    }
+}

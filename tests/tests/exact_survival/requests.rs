@@ -1,0 +1,162 @@
+//! Requests that make no sense and models that cannot move are refused in words.
+
+use eomgen_tests::models::load;
+use eomgen_tests::motions::{Spec, Subject};
+use sim::exact::ExactError;
+use sim::solve::SolveError;
+
+fn mass(m: f64) -> Subject {
+    let spec = Spec::default()
+        .parameter("m", m, "kg")
+        .parameter("k", 100.0, "N/m")
+        .parameter("b", 1e-3, "m")
+        .coordinate("x", [0.01, 0.0])
+        .kinetic("1/2*m*dot(x)^2")
+        .potential("1/2*k*deadzone(x, b)^2");
+    Subject::new(spec.model(), 0)
+}
+
+fn refused(subject: &Subject, span: (f64, f64), times: &[f64]) -> String {
+    match subject.try_exact(span, times) {
+        Ok(motion) => panic!("went to {:?}", motion.last),
+        Err(error) => {
+            println!("{error}");
+            error.to_string()
+        }
+    }
+}
+
+#[test]
+fn states_that_are_none() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for state in [[bad, 0.0], [0.0, bad]] {
+            let message = refused(&mass(1.0).from(&state), (0.0, 1.0), &[]);
+            assert!(message.contains("finite"), "{message}");
+        }
+    }
+    for state in [vec![], vec![0.0], vec![0.0; 3]] {
+        let message = refused(&mass(1.0).from(&state), (0.0, 1.0), &[]);
+        assert!(message.contains('2'), "{message}");
+    }
+}
+
+#[test]
+fn times_that_are_none() {
+    let subject = mass(1.0);
+    for span in [
+        (0.0, f64::NAN),
+        (f64::NAN, 1.0),
+        (0.0, f64::INFINITY),
+        (1.0, 0.0),
+    ] {
+        refused(&subject, span, &[]);
+    }
+    for times in [&[2.0][..], &[-0.1], &[0.5, 0.4], &[f64::NAN]] {
+        refused(&subject, (0.0, 1.0), times);
+    }
+    // A span of no length has its first state.
+    let still = subject.exact((0.5, 0.5), &[0.5, 0.5]);
+    assert_eq!(still.states, vec![subject.initial.clone(); 2]);
+    assert_eq!(still.last, subject.initial);
+    // The shortest one moves by nothing that can be seen.
+    let short = subject.exact((0.0, 5e-324), &[0.0, 5e-324]);
+    assert!((short.last[0] - 0.01).abs() < 1e-17);
+    let late = subject.exact((1e9, 1e9 + 1.0), &[1e9 + 1.0]);
+    let early = subject.exact((0.0, 1.0), &[1.0]);
+    assert!((late.last[0] - early.last[0]).abs() < 1e-15);
+}
+
+#[test]
+fn motions_that_leave_all_bounds() {
+    for state in [[1e308, 1e308], [1e200, 0.0], [0.0, -1e308]] {
+        match mass(1.0).from(&state).try_exact((0.0, 10.0), &[10.0]) {
+            Ok(motion) => assert!(motion.last.iter().all(|y| y.is_finite())),
+            Err(error) => println!("{error}"),
+        }
+    }
+    // A negative spring: e^(1000 t).
+    let spec = Spec::default()
+        .parameter("m", 1.0, "kg")
+        .parameter("k", -1e6, "N/m")
+        .coordinate("x", [1.0, 0.0])
+        .kinetic("1/2*m*dot(x)^2")
+        .potential("1/2*k*x^2");
+    let subject = Subject::new(spec.model(), 0);
+    let near = subject.exact((0.0, 0.1), &[0.1]);
+    assert!((near.last[0] / 100.0_f64.cosh() - 1.0).abs() < 1e-12);
+    let message = refused(&subject, (0.0, 100.0), &[100.0]);
+    assert!(message.contains("infinite"), "{message}");
+}
+
+#[test]
+fn masses_that_are_none() {
+    for m in [0.0, -0.0] {
+        let message = refused(&mass(m), (0.0, 1.0), &[1.0]);
+        assert!(message.contains("mass"), "{message}");
+    }
+    // The general solver refuses these, too.
+    let message = refused(&mass(-1.0), (0.0, 1.0), &[1.0]);
+    assert!(message.contains("mass"), "{message}");
+    let model = load("planetary_arm");
+    for (name, value) in [("M_s", 0.0), ("M_s", -0.39), ("rho", 0.0), ("M_p", -0.3)] {
+        let model = model.with_parameter(name, value).expect("a value");
+        let message = refused(&Subject::new(model, 4), (0.0, 0.01), &[0.01]);
+        assert!(message.contains("mass"), "{name}: {message}");
+    }
+    // Two coordinates that are one.
+    let spec = Spec::default()
+        .parameter("m", 1.0, "kg")
+        .parameter("k", 100.0, "N/m")
+        .coordinate("x", [0.1, 0.0])
+        .coordinate("y", [0.0, 0.0])
+        .kinetic("1/2*m*(dot(x) + dot(y))^2")
+        .potential("1/2*k*(x - y)^2");
+    refused(&Subject::new(spec.model(), 0), (0.0, 1.0), &[1.0]);
+}
+
+#[test]
+fn numbers_out_of_range() {
+    let model = load("planetary_arm");
+    for (name, value) in [
+        ("k_sp", 1e300),
+        ("k_sp", -1e8),
+        ("c_sp", -650.0),
+        ("omega", 1e300),
+        ("omega", 1e12),
+        ("F_w", 1e300),
+        ("E", 0.0),
+        ("a_m", 1e-300),
+    ] {
+        let Ok(model) = model.with_parameter(name, value) else {
+            continue;
+        };
+        let begun = std::time::Instant::now();
+        match Subject::new(model, 4).try_exact((0.0, 1e-4), &[1e-4]) {
+            Ok(motion) => assert!(motion.last.iter().all(|y| y.is_finite())),
+            Err(error) => println!("{name} = {value:e}: {error}"),
+        }
+        println!("{name} = {value:e}: {:?}", begun.elapsed());
+        assert!(begun.elapsed().as_secs() < 10);
+    }
+}
+
+#[test]
+fn friction_that_is_not_constant_is_refused_where_it_holds() {
+    // The level follows a spring: sticking is not linear for this solver.
+    let spec = Spec::default()
+        .parameter("m", 1.0, "kg")
+        .parameter("mu", 0.5, "1")
+        .parameter("k", 100.0, "N/m")
+        .parameter("w", 1.0, "kg")
+        .coordinate("x", [0.0, 1.0])
+        .coordinate("y", [0.5, 0.0])
+        .kinetic("1/2*m*dot(x)^2 + 1/2*w*dot(y)^2")
+        .potential("1/2*k*y^2")
+        .force("x", "-mu*k*y*sign(dot(x))");
+    match Subject::new(spec.model(), 0).try_exact((0.0, 1.0), &[1.0]) {
+        Ok(_) => {}
+        Err(error @ ExactError::Held { .. }) => println!("{error}"),
+        Err(error @ ExactError::Stopped(SolveError::TooManySwitches { .. })) => println!("{error}"),
+        Err(error) => panic!("{error}"),
+    }
+}

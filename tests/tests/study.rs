@@ -1,0 +1,123 @@
+//! `eomgen study`: whole folders, figures that can be opened, and numbers that hold by other
+//! means than those that made them.
+
+use std::path::Path;
+use std::time::Duration;
+
+use eomgen_tests::program::{accepted, eomgen, refused, text};
+use serde_json::Value;
+
+/// Runs a study into a folder; its document.
+fn study(name: &str, out: &Path) -> Value {
+    let mut command = eomgen();
+    command.timeout(Duration::from_secs(120));
+    command.args(["study", name, "--json", "--out"]).arg(out);
+    let output = command.output().expect("the program can be run");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let written = std::fs::read(out.join("study.json")).expect("study.json");
+    assert_eq!(written, output.stdout, "--json prints what is written");
+    serde_json::from_slice(&written).expect("JSON")
+}
+
+/// The entries of a list.
+fn list<'a>(document: &'a Value, name: &str) -> &'a [Value] {
+    document[name].as_array().expect(name)
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+fn file(out: &Path, name: &Value) -> Vec<u8> {
+    let name = name.as_str().expect("the name of a file");
+    std::fs::read(out.join(name)).expect(name)
+}
+
+#[test]
+fn a_study_leaves_what_its_document_names() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("made/on the way");
+    let document = study("frequency", &out);
+    assert_eq!(
+        (&document["schema"], &document["study"]),
+        (&Value::from(1), &Value::from("frequency"))
+    );
+    let figures = list(&document, "figures");
+    for number in 11..=15 {
+        let paper = Value::from(format!("Fig. {number}"));
+        assert!(figures.iter().any(|f| f["paper"] == paper), "{paper}");
+    }
+    for figure in figures {
+        let svg = file(&out, &figure["file"]);
+        assert!(svg.starts_with(b"<svg") && svg.ends_with(b"</svg>\n"));
+    }
+    let assumed = ["I", "a_m", "b_m", "F_w", "c_sp", "c_pr"];
+    for (name, parameter) in document["parameters"].as_object().expect("parameters") {
+        let expected = if assumed.contains(&&**name) {
+            "assumed"
+        } else {
+            "paper"
+        };
+        assert_eq!(parameter["origin"], expected, "{name}");
+    }
+    let cases = list(&document, "cases");
+    assert_eq!(cases.len(), 5);
+    for case in cases {
+        for data in ["history", "spectra"] {
+            assert!(file(&out, &case[data]).starts_with(b"PAR1"), "{case}");
+        }
+        check_numbers(case);
+    }
+    check_closed_form(&cases[0]);
+}
+
+/// What holds of any motion.
+fn check_numbers(case: &Value) {
+    for name in ["x_sp", "f_la", "l_dtheta", "dr"] {
+        let [rms, peak] = ["rms", "peak"].map(|of| number(&case[name][of]));
+        assert!(0.0 < rms && rms <= peak, "{name}: {case}");
+    }
+    // f_la is the sum of the other two at every time; 1e-12 is more than sums of two round.
+    let peak = |name: &str| number(&case[name]["peak"]);
+    let sum = peak("l_dtheta") + peak("dr");
+    assert!(peak("f_la") <= sum * (1.0 + 1e-12), "{case}");
+    // A torque that changes its sign presses the flanks together on both sides.
+    assert!(peak("x_sp") > number(&case["b"]), "{case}");
+    let verdict = case["verdict"].as_str().expect("a sentence");
+    let motion = case["motion"].as_str().expect("a kind of motion");
+    assert!(verdict.starts_with(motion), "{case}");
+}
+
+/// Without backlash the forced motion far below every natural frequency is that of a rigid
+/// machine: the meshes carry the ripple's torque less what accelerates the sun.
+fn check_closed_form(case: &Value) {
+    assert_eq!(number(&case["b"]), 0.0);
+    // Two meshes pass from flank to flank, twice in each of the five periods of a second.
+    assert_eq!(number(&case["switches_per_second"]), 20.0);
+    let tooth = 3e-3_f64 * 24.6_f64.to_radians().cos() / 2.0;
+    let (r_s, r_c) = (27.0 * tooth, 3e-3 * 63.0 / 2.0);
+    let (sun, planet) = (0.39 * r_s * r_s, 0.61);
+    let arm = 7900.0 * 1e-4 * 0.5_f64.powi(3) / 3.0;
+    let carrier = 6.29 * r_c * r_c + 3.0 * 0.66 * r_c * r_c + arm;
+    let ratio = 1.0 + 99.0 / 27.0;
+    // A planet turns with half the sun's velocity along the line of action.
+    let planets = 3.0 * planet * (r_s / 2.0).powi(2);
+    let inertia = sun + planets + carrier / (ratio * ratio);
+    let omega = number(&case["omega"]);
+    let (f_w, b_m, k_sp) = (5.0, 0.05, 1e8);
+    let rate = f_w / (inertia * omega).hypot(b_m);
+    // T - I_s alpha = 3 r_s k x_sp with T = F_w sin - b_m theta_s', as complex amplitudes:
+    // what passes the sun is the rest of the inertia times its acceleration.
+    let expected = (inertia - sun) * omega * rate / (3.0 * r_s * k_sp);
+    let found = number(&case["x_sp"]["peak"]);
+    // The arm bends: at 5 Hz below a first frequency of 37 Hz it adds up to (5/37)^2 = 1.8 %
+    // to its own share of the inertia.
+    assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+}
+
+#[test]
+fn wrong_use_is_refused() {
+    assert!(refused(&["study", "fly", "--out", "never-made"]).contains("backlash"));
+    assert!(refused(&["study", "order"]).contains("--out"));
+    assert!(accepted(&["study", "--help"]).contains("eomgen study backlash"));
+}

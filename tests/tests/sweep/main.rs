@@ -1,0 +1,199 @@
+//! `eomgen sweep` and `eomgen merge`: the same bytes whatever the threads, shards and kills,
+//! against the closed form of a forced oscillator; what is refused.
+
+mod exponents;
+mod place;
+mod refusals;
+
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use eomgen_tests::models::path;
+use eomgen_tests::program::{self, accepted};
+
+use place::{MAP, Place, accept, column, merge_command, parts, refuse, results, table};
+
+#[test]
+fn the_numbers_are_those_of_the_closed_form() {
+    let place = Place::new();
+    let span = ["--transient", "60", "--periods", "4"];
+    let axes = ["--vary", "c=400:1000:3", "--vary", "omega=1:3:4"];
+    accept(&place.sweep("map", &[&axes[..], &span[..]].concat()));
+    let table = table(&place.at("map"));
+    let (c, omega) = (column(&table, "c"), column(&table, "omega"));
+    assert_eq!(c[..5], [400.0, 400.0, 400.0, 400.0, 700.0]);
+    assert_eq!((omega[0], omega[3], omega[4]), (1.0, 3.0, 1.0));
+    for (point, mean) in column(&table, "poincare_mean").iter().enumerate() {
+        // x = A sin(omega t) + B cos(omega t); at the forcing period that is B.
+        let (c, omega) = (c[point] / 1000.0, omega[point]);
+        let stiffness = 4.0 - omega * omega;
+        let amplitude = 3.0 / (stiffness.powi(2) + (c * omega).powi(2));
+        let expected = -amplitude * c * omega;
+        // The transient decays as exp(-c t/(2 m)): 3e-11 after 60 periods at the smallest c
+        // and largest omega, times a resonance of a few m.
+        assert!(
+            (mean - expected).abs() < 1e-9,
+            "{point}: {mean} for {expected}"
+        );
+        for name in ["poincare_min", "poincare_max"] {
+            assert!((column(&table, name)[point] - expected).abs() < 1e-9);
+        }
+        assert_eq!(column(&table, "poincare_period")[point], 1.0);
+        assert_eq!(column(&table, "poincare_clusters")[point], 1.0);
+        assert_eq!(column(&table, "poincare_status")[point], 0.0);
+    }
+}
+
+#[test]
+fn a_varied_expression_and_a_set_parameter_are_those_of_simulate() {
+    let place = Place::new();
+    let vary = ["--vary", "zeta=0.1:0.3:2", "--set", "F=-2"];
+    let span = ["--transient", "2", "--periods", "2"];
+    accept(&place.sweep("line", &[&vary[..], &span[..]].concat()));
+    let swept = table(&place.at("line"));
+    let csv = place.at("x.csv").display().to_string();
+    let spec = place.at("oscillator.toml").display().to_string();
+    // omega = 2: the fourth period begins at 3 pi.
+    let (until, sample) = (format!("{:?}", TAU * 1.5), format!("{:?}", TAU / 2.0));
+    let settings = ["--set", "zeta=0.3", "--set", "F=-2", "--out", &csv];
+    let times = ["--until", &until, "--sample", &sample];
+    accepted(&[&["simulate", &spec], &settings[..], &times[..]].concat());
+    let text = fs::read_to_string(&csv).expect("the trajectory");
+    let last = text.lines().last().expect("a row").split(',').nth(1);
+    let expected: f64 = last.expect("x").parse().expect("a number");
+    let found = column(&swept, "poincare_2")[1];
+    // Two runs of the exact solver, with other samples; the table has all digits.
+    assert!((found - expected).abs() < 1e-13, "{found} for {expected}");
+}
+
+#[test]
+fn threads_and_shards_leave_no_trace() {
+    let place = Place::new();
+    let (one, two, shards) = (place.at("one"), place.at("two"), place.at("shards"));
+    accept(&place.sweep("one", &[&MAP[..], &["--threads", "1"]].concat()));
+    accept(&place.sweep("two", &[&MAP[..], &["--threads", "2"]].concat()));
+    assert!(results(&one) == results(&two), "two threads");
+    for shard in ["3/3", "1/3", "2/3"] {
+        let error = merge_command(&shards);
+        assert!(refuse(&error).contains(if shard == "3/3" {
+            "sweep.json"
+        } else {
+            "missing"
+        }));
+        accept(&place.sweep("shards", &[&MAP[..], &["--shard", shard]].concat()));
+        assert!(!shards.join("sweep.parquet").exists());
+    }
+    accept(&merge_command(&shards));
+    assert!(results(&one) == results(&shards), "three shards");
+    // Once more, with nothing left to do.
+    let text = accept(&place.sweep("one", &MAP));
+    assert!(text.contains("0 points computed, 20 were there"), "{text}");
+    assert!(results(&one) == results(&two), "again");
+}
+
+#[test]
+fn shards_in_folders_of_their_own_can_be_collected() {
+    let place = Place::new();
+    accept(&place.sweep("whole", &MAP));
+    for shard in ["1/2", "2/2"] {
+        let folder = format!("shard{}", &shard[..1]);
+        accept(&place.sweep(&folder, &[&MAP[..], &["--shard", shard]].concat()));
+    }
+    let (first, second) = (place.at("shard1"), place.at("shard2"));
+    let gap = refuse(&merge_command(&first));
+    assert!(gap.contains("10 of 20 points are missing"), "{gap}");
+    for part in parts(&second) {
+        let to = first.join("parts").join(&part);
+        fs::copy(second.join("parts").join(&part), to).expect("a copy");
+    }
+    accept(&merge_command(&first));
+    assert!(results(&place.at("whole")) == results(&first));
+}
+
+/// Kills the program, without a chance to tidy up, once it has left some parts.
+fn kill_after(mut child: Child, folder: &Path, some: usize) {
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while parts(folder).len() < some {
+        assert!(Instant::now() < deadline, "no parts in a minute");
+        let ended = child.try_wait().expect("a child");
+        assert!(ended.is_none(), "it ended before it was killed: {ended:?}");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().expect("SIGKILL");
+    child.wait().expect("its end");
+}
+
+#[test]
+fn a_killed_run_goes_on_to_the_same_bytes() {
+    let place = Place::new();
+    // Points of some hundredths of a second, so that a kill falls between the first and last.
+    let slow = [
+        "--vary",
+        "c=400:1000:5",
+        "--vary",
+        "omega=1:3:12",
+        "--transient",
+        "20000",
+        "--periods",
+        "8",
+    ];
+    accept(&place.sweep("whole", &slow));
+    let killed = place.at("killed");
+    for some in [5, 20] {
+        let child = Command::new(program::path())
+            .args(place.sweep("killed", &slow))
+            .stdout(Stdio::null())
+            .spawn()
+            .expect("the program can be run");
+        kill_after(child, &killed, some);
+        let refusal = refuse(&merge_command(&killed));
+        assert!(refusal.contains("points are missing"), "{refusal}");
+    }
+    let text = accept(&place.sweep("killed", &slow));
+    let computed: usize = text
+        .split(' ')
+        .next()
+        .and_then(|n| n.parse().ok())
+        .expect("a number");
+    assert!((1..=41).contains(&computed), "{text}");
+    assert!(results(&place.at("whole")) == results(&killed));
+    assert_eq!(
+        parts(&killed),
+        parts(&place.at("whole")),
+        "nothing unfinished is left"
+    );
+}
+
+#[test]
+fn the_arm_is_swept_in_both_meshes_at_once() {
+    let place = Place::new();
+    let (arm, out) = (path("planetary_arm").display().to_string(), place.at("arm"));
+    accepted(&[
+        "sweep",
+        &arm,
+        "--order",
+        "0",
+        "--vary",
+        "b_sp,b_pr=0:50e-6:2",
+        "--measure",
+        "poincare",
+        "--transient",
+        "1",
+        "--periods",
+        "2",
+        "--out",
+        &out.display().to_string(),
+    ]);
+    let found = table(&out);
+    assert_eq!(column(&found, "b_sp"), [0.0, 50e-6]);
+    assert_eq!(column(&found, "b_pr"), [0.0, 50e-6]);
+    assert_eq!(column(&found, "poincare_status"), [0.0, 0.0]);
+    let greatest = column(&found, "poincare_max");
+    assert!(
+        greatest[1] > 50e-6 * 0.9 && greatest[0] < 5e-6,
+        "{greatest:?}"
+    );
+}
