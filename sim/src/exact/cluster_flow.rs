@@ -101,11 +101,15 @@ impl ClusterFlow {
             }
         }
         add_derivatives(cluster, tau, end, &inner, &bound, local);
+        // Where it stood at the start is known from the state.
+        if let Some(power) = powers.first() {
+            local.derivatives[0] -= dot(power, &self.zeta).re;
+        }
     }
 
-    /// Adds the cluster's part of the state at `tau`.
+    /// Adds how far the cluster has moved the state at `tau`.
     pub fn add_state(&self, cluster: &Cluster, phases: &[[f64; 2]], tau: f64, out: &mut [f64]) {
-        let values = self.at(cluster, phases, tau);
+        let values = self.at(cluster, phases, tau) - &self.zeta;
         for (slot, row) in out.iter_mut().zip(cluster.columns.row_iter()) {
             *slot += row
                 .iter()

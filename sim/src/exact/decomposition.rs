@@ -11,6 +11,7 @@ use std::ops::Range;
 use nalgebra::{Complex, DMatrix};
 
 use super::blocks::{decouple, inverse};
+use super::refine::Subspaces;
 use super::schur::SchurForm;
 
 /// Eigenvalues below this part of the fastest rate, or of 1 1/s, count as near zero: as modes
@@ -60,6 +61,8 @@ pub(super) struct Integrals {
     pub rows: DMatrix<f64>,
     /// The largest magnitude of its eigenvalues, 1/s.
     pub radius: f64,
+    /// So many of its coordinates, the first ones, are felt by no other.
+    pub pure: usize,
 }
 
 /// A matrix by parts: its exponential is the sum of theirs, twice the real part for a
@@ -95,8 +98,11 @@ impl Decomposition {
         let near_zero = near_zero(&schur.eigenvalues(), forcing, slow);
         schur.sort_by_key(near_zero.iter().map(|near| usize::from(!near)).collect());
         let zeros = near_zero.iter().filter(|near| **near).count();
-        let found = best_parts(schur, zeros);
-        Ok(found.in_full_state(&inner, &outer, &pure, &felt))
+        let mut found = best_parts(schur, zeros);
+        if !found.refine(&inner) {
+            return Err(Failure::NotConverged);
+        }
+        Ok(found.in_full_state(&outer, &pure, &felt))
     }
 }
 
@@ -186,12 +192,11 @@ fn groups(
 
 /// Parts found with one grouping, in the balanced inner state.
 struct Found {
-    schur_basis: DMatrix<Complex<f64>>,
-    triangle: DMatrix<Complex<f64>>,
-    columns: DMatrix<Complex<f64>>,
-    rows: DMatrix<Complex<f64>>,
-    blocks: Vec<Range<usize>>,
+    subspaces: Subspaces,
+    /// How many dimensions are near zero, the first ones.
     zeros: usize,
+    /// The largest magnitude of the eigenvalues near zero, 1/s.
+    radius: f64,
     scale: Vec<f64>,
     /// The sensitivity of each eigenvalue, in the order of the Schur form.
     sensitivity: Vec<f64>,
@@ -210,6 +215,8 @@ impl Found {
         form.sort_by_key(group.clone());
         group.sort_unstable();
         let blocks = runs(&group);
+        let near_zero = (0..zeros).map(|place| form.triangle[(place, place)].norm());
+        let radius = near_zero.fold(0.0, f64::max);
         let coupling = decouple(&form.triangle, &blocks);
         let columns = &form.basis * &coupling;
         let rows = inverse(&coupling) * form.basis.adjoint();
@@ -218,15 +225,45 @@ impl Found {
             sensitivity[original] = columns.column(place).norm() * rows.row(place).norm();
         }
         Self {
-            schur_basis: form.basis,
-            triangle: form.triangle,
-            columns,
-            rows,
-            blocks,
+            subspaces: Subspaces {
+                columns,
+                rows,
+                matrix: form.triangle,
+                blocks,
+            },
             zeros,
+            radius,
             scale: form.scale,
             sensitivity,
         }
+    }
+
+    /// Makes the parts exact, those near zero in a real basis; returns whether they are.
+    fn refine(&mut self, inner: &DMatrix<f64>) -> bool {
+        let balanced = DMatrix::from_fn(inner.nrows(), inner.ncols(), |i, j| {
+            inner[(i, j)] * self.scale[j] / self.scale[i]
+        });
+        let (size, zeros) = (balanced.nrows(), self.zeros);
+        let Subspaces {
+            columns,
+            rows,
+            matrix,
+            ..
+        } = &mut self.subspaces;
+        let spanned = columns.columns(0, zeros).into_owned();
+        let basis = real_basis(&spanned);
+        let slow = basis.transpose() * &balanced * &basis;
+        let complex = |real: &DMatrix<f64>| real.map(|entry| Complex::new(entry, 0.0));
+        let turned = complex(&basis).transpose() * &spanned * rows.rows(0, zeros);
+        let real = turned.map(|entry| Complex::new(entry.re, 0.0));
+        columns
+            .view_mut((0, 0), (size, zeros))
+            .copy_from(&complex(&basis));
+        rows.view_mut((0, 0), (zeros, size)).copy_from(&real);
+        matrix
+            .view_mut((0, 0), (zeros, zeros))
+            .copy_from(&complex(&slow));
+        self.subspaces.refine(&balanced)
     }
 
     /// The sensitivity of the most sensitive eigenvalue.
@@ -241,13 +278,7 @@ impl Found {
     }
 
     /// The parts in the whole state, where `pure` states integrate `outer` times the inner.
-    fn in_full_state(
-        self,
-        inner: &DMatrix<f64>,
-        outer: &DMatrix<f64>,
-        pure: &[usize],
-        felt: &[usize],
-    ) -> Decomposition {
+    fn in_full_state(self, outer: &DMatrix<f64>, pure: &[usize], felt: &[usize]) -> Decomposition {
         let unscaled = |mut matrix: DMatrix<Complex<f64>>, power: i32| {
             for (place, scale) in self.scale.iter().enumerate() {
                 let factor = Complex::new(scale.powi(power), 0.0);
@@ -259,30 +290,31 @@ impl Found {
             }
             matrix
         };
-        let columns = unscaled(self.columns.clone(), 1);
-        let rows = unscaled(self.rows.clone(), -1);
+        let columns = unscaled(self.subspaces.columns.clone(), 1);
+        let rows = unscaled(self.subspaces.rows.clone(), -1);
         let outer_complex = outer.map(|entry| Complex::new(entry, 0.0));
         let states = pure.len() + felt.len();
         let mut parts = Vec::new();
         // What the moving parts contribute to the pure integrals, to be taken off them.
         let mut carried = DMatrix::<f64>::zeros(pure.len(), felt.len());
         let simple = self.weights();
-        for (block, weight) in self.blocks.iter().zip(simple) {
+        for (block, weight) in self.subspaces.blocks.iter().zip(simple) {
             if block.start < self.zeros || weight == 0.0 {
                 continue;
             }
             let size = block.len();
-            let triangle = self
-                .triangle
+            let own = self
+                .subspaces
+                .matrix
                 .view((block.start, block.start), (size, size))
                 .into_owned();
             let inner_columns = columns.columns(block.start, size).into_owned();
             let inner_rows = rows.rows(block.start, size).into_owned();
-            let integrated = solve_from_right(&outer_complex * &inner_columns, &triangle);
+            let integrated = divide_from_right(&outer_complex * &inner_columns, &own);
             let product = &integrated * &inner_rows;
             carried += product.map(|entry| weight * entry.re);
-            let centre = triangle.diagonal().sum() / size as f64;
-            let matrix = triangle - DMatrix::from_diagonal_element(size, size, centre);
+            let centre = own.diagonal().sum() / size as f64;
+            let matrix = own - DMatrix::from_diagonal_element(size, size, centre);
             parts.push(Part {
                 centre,
                 matrix,
@@ -291,20 +323,21 @@ impl Found {
                 weight,
             });
         }
-        let integrals = self.integrals(inner, outer, pure, felt, &rows, &carried);
+        let integrals = self.integrals(outer, pure, felt, [&columns, &rows], &carried);
         Decomposition { integrals, parts }
     }
 
     /// For each block 2, 1 or, for those that another one stands for, 0.
     fn weights(&self) -> Vec<f64> {
+        let matrix = &self.subspaces.matrix;
         let imaginary = |block: &Range<usize>| -> (f64, f64) {
-            let parts = block.clone().map(|place| self.triangle[(place, place)].im);
+            let parts = block.clone().map(|place| matrix[(place, place)].im);
             let (low, high) = (f64::INFINITY, f64::NEG_INFINITY);
             parts.fold((low, high), |(low, high), im| (low.min(im), high.max(im)))
         };
-        let bounds: Vec<(f64, f64)> = self.blocks.iter().map(imaginary).collect();
-        let largest = (0..self.triangle.nrows())
-            .map(|place| self.triangle[(place, place)].norm())
+        let bounds: Vec<(f64, f64)> = self.subspaces.blocks.iter().map(imaginary).collect();
+        let largest = (0..matrix.nrows())
+            .map(|place| matrix[(place, place)].norm())
             .fold(0.0, f64::max);
         let mut tolerance = REAL * largest;
         loop {
@@ -326,54 +359,53 @@ impl Found {
     /// The part near zero together with the pure integrals, in a real basis.
     fn integrals(
         &self,
-        inner: &DMatrix<f64>,
         outer: &DMatrix<f64>,
         pure: &[usize],
         felt: &[usize],
-        rows: &DMatrix<Complex<f64>>,
+        [inner_columns, inner_rows]: [&DMatrix<Complex<f64>>; 2],
         carried: &DMatrix<f64>,
     ) -> Integrals {
         let zeros = self.zeros;
-        let schur = self.schur_basis.columns(0, zeros).into_owned();
-        let basis = real_basis(&schur);
-        let turn = basis.map(|entry| Complex::new(entry, 0.0)).transpose() * &schur;
-        let real_rows = (turn * rows.rows(0, zeros)).map(|entry| entry.re);
-        let scale = |place: usize| self.scale[place];
-        let unscaled = DMatrix::from_fn(felt.len(), zeros, |i, j| basis[(i, j)] * scale(i));
-        let balanced = DMatrix::from_fn(felt.len(), felt.len(), |i, j| {
-            inner[(i, j)] * scale(j) / scale(i)
-        });
-        let slow = basis.transpose() * balanced * &basis;
+        let real = |matrix: &DMatrix<Complex<f64>>| matrix.map(|entry| entry.re);
+        let inner_columns = real(&inner_columns.columns(0, zeros).into_owned());
+        let inner_rows = real(&inner_rows.rows(0, zeros).into_owned());
+        let slow = real(
+            &self
+                .subspaces
+                .matrix
+                .view((0, 0), (zeros, zeros))
+                .into_owned(),
+        );
         let size = pure.len() + zeros;
         let mut matrix = DMatrix::zeros(size, size);
         matrix
             .view_mut((0, pure.len()), (pure.len(), zeros))
-            .copy_from(&(outer * &unscaled));
+            .copy_from(&(outer * &inner_columns));
         matrix
             .view_mut((pure.len(), pure.len()), (zeros, zeros))
             .copy_from(&slow);
         let states = pure.len() + felt.len();
         let mut columns = DMatrix::zeros(states, size);
-        let mut all_rows = DMatrix::zeros(size, states);
+        let mut rows = DMatrix::zeros(size, states);
         for (place, state) in pure.iter().enumerate() {
             columns[(*state, place)] = 1.0;
-            all_rows[(place, *state)] = 1.0;
+            rows[(place, *state)] = 1.0;
             for (column, other) in felt.iter().enumerate() {
-                all_rows[(place, *other)] = -carried[(place, column)];
+                rows[(place, *other)] = -carried[(place, column)];
             }
         }
         for (place, state) in felt.iter().enumerate() {
             for column in 0..zeros {
-                columns[(*state, pure.len() + column)] = unscaled[(place, column)];
-                all_rows[(pure.len() + column, *state)] = real_rows[(column, place)];
+                columns[(*state, pure.len() + column)] = inner_columns[(place, column)];
+                rows[(pure.len() + column, *state)] = inner_rows[(column, place)];
             }
         }
-        let radius = (0..zeros).map(|place| self.triangle[(place, place)].norm());
         Integrals {
             matrix,
             columns,
-            rows: all_rows,
-            radius: radius.fold(0.0, f64::max),
+            rows,
+            radius: self.radius,
+            pure: pure.len(),
         }
     }
 }
@@ -390,21 +422,17 @@ fn runs(group: &[usize]) -> Vec<Range<usize>> {
     runs
 }
 
-/// X of X T = B with T upper triangular.
-fn solve_from_right(
-    mut right: DMatrix<Complex<f64>>,
-    triangle: &DMatrix<Complex<f64>>,
-) -> DMatrix<Complex<f64>> {
-    for row in 0..right.nrows() {
-        for column in 0..triangle.ncols() {
-            let mut sum = right[(row, column)];
-            for before in 0..column {
-                sum -= right[(row, before)] * triangle[(before, column)];
-            }
-            right[(row, column)] = sum / triangle[(column, column)];
-        }
+/// X of X A = B.
+fn divide_from_right(b: DMatrix<Complex<f64>>, a: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
+    let (rows, columns) = b.shape();
+    if columns == 1 {
+        return b / a[(0, 0)];
     }
-    right
+    let solved = a.transpose().lu().solve(&b.transpose());
+    solved.map_or_else(
+        || DMatrix::from_element(rows, columns, Complex::new(f64::NAN, 0.0)),
+        |solved| solved.transpose(),
+    )
 }
 
 /// A matrix of `states` rows with the rows of others at the given places.

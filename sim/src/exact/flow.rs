@@ -1,72 +1,68 @@
-//! The motion within one regime from one state on: amplitudes, polynomial, time.
+//! The motion within one regime from one state on: how far it has moved after a time tau.
 //!
-//! A flow stands at a time tau after its start. It advances by a step of the ladder or to
-//! any time, gives the values and derivatives of the regime's functions where it stands,
-//! and the state there.
+//! Nothing but differences from the start is summed up: a motion that has hardly moved is as
+//! accurate as its start, though it may be made of modes whose amplitudes are thousands of
+//! times larger and nearly cancel. A flow advances by a step of the ladder or by any time,
+//! gives the values and derivatives of the regime's functions where it stands, and the state
+//! there.
 
-use nalgebra::{Complex, DVector};
+use nalgebra::Complex;
 
 use super::cluster_flow::ClusterFlow;
-use super::forced::{DERIVATIVES, integrals, reciprocal};
-use super::functional::{Functional, monomials};
+use super::forced::reciprocal;
+use super::functional::Functional;
 use super::ladder::Rung;
-use super::lanes::{LITTLE, Lane, Pairs, dot, groups};
+use super::lanes::{LITTLE, Lane, Pairs, groups, numbers, numbers_mut};
 use super::regime::Regime;
 
 /// The roundings of a few operations on a number of size 1.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Powers of time beyond those of the integrals that a sinusoidal force adds.
-const SINUSOIDAL: usize = 8;
-
-/// The largest angle by which a sinusoid turns in a window if the integrals matter: then
-/// the first power left out is below 1e-17 of the response.
-pub(super) const SINUSOIDAL_ANGLE: f64 = 1.0 / 16.0;
+/// Terms of a polynomial below this part of another one of lower order are left out.
+const NEGLIGIBLE: f64 = 1e-19;
 
 /// A motion in one regime. Its memory is used again for the next one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Flow {
     /// Since the start, s.
     pub tau: f64,
-    /// Each mode's amplitude at the start.
-    start: Pairs,
-    /// The same at tau.
-    now: Pairs,
-    /// Magnitudes of the amplitudes at tau.
+    /// The state at the start.
+    origin: Vec<Lane>,
+    /// The coordinates at the start, as [`Regime`] has them.
+    start: Vec<Lane>,
+    /// How far they have moved.
+    moved: Vec<Lane>,
+    /// The modes' amplitudes at tau.
+    now: Vec<Lane>,
+    /// Their magnitudes.
     size: Vec<Lane>,
-    /// exp(i theta) of each phase at the start.
-    phases: Vec<Complex<f64>>,
-    /// Integrals at the start.
-    zeta: DVector<f64>,
-    /// Their constant rates.
-    drift: DVector<f64>,
-    /// The constant part of the state.
-    steady: Vec<f64>,
+    /// Derivatives of the integrals at the start, from the first on.
+    derivatives: Vec<Lane>,
     /// For each function what is particular to this flow.
     own: Vec<Own>,
     clusters: Vec<ClusterFlow>,
-    /// The state without what is constant and forced; scratch.
-    free: Vec<f64>,
-    /// Scratch for the integrals at the end.
-    value: DVector<f64>,
-    product: DVector<f64>,
-    monomials: Vec<f64>,
-    forced: Vec<Complex<f64>>,
+    /// The state to be.
+    sum: Vec<Lane>,
 }
 
 /// What a function is made of in one flow.
 #[derive(Clone, Debug, Default)]
 struct Own {
-    /// Coefficients of the powers of tau.
+    /// The value at the start.
+    start: f64,
+    /// The sum of its terms' magnitudes.
+    start_size: f64,
+    /// Coefficients of the powers of tau from the first on.
     polynomial: Vec<f64>,
     /// A bound of the polynomial's fourth derivative within the window.
     fourth: f64,
-    /// The sum of its terms' magnitudes.
+    /// The value, and what its terms' magnitudes add up to.
+    value: f64,
     size: f64,
     /// Sums over the first modes, from none to all.
     partial: Vec<Partial>,
-    /// The polynomial's derivatives of order 0 to 3.
-    derivatives: [f64; 4],
+    /// The polynomial's derivatives of order 1 to 3.
+    derivatives: [f64; 3],
 }
 
 /// Value and derivatives of a function where a flow stands, with bounds.
@@ -89,11 +85,16 @@ pub(super) struct Local {
 /// Sums over the slowest modes.
 #[derive(Clone, Copy, Debug)]
 struct Partial {
-    /// Derivatives of order 0 to 3.
+    /// The amplitudes' part of the value, and derivatives of order 1 to 3.
     derivatives: Lane,
     /// Magnitudes of the orders 0, 1 and 4.
     sizes: Lane,
 }
+
+const NOTHING: Partial = Partial {
+    derivatives: Lane::ZERO,
+    sizes: Lane::ZERO,
+};
 
 impl Flow {
     /// Starts at a state, with exp(i theta) of the phases there.
@@ -105,85 +106,88 @@ impl Flow {
         phases: &[Complex<f64>],
     ) {
         self.tau = 0.0;
-        self.phases.clear();
-        self.phases.extend_from_slice(phases);
-        combine(&regime.steady, inputs, &mut self.steady);
-        self.start_modes(regime, state);
-        self.start_integrals(regime, state, inputs);
+        self.origin.resize(groups(state.len()), Lane::ZERO);
+        numbers_mut(&mut self.origin)[..state.len()].copy_from_slice(state);
+        self.find_coordinates(regime, state, inputs, phases);
+        let modes = 2 * regime.modes.groups();
+        regime.integrals.derivatives(
+            &self.start[modes..],
+            Some((inputs, phases)),
+            &mut self.derivatives,
+        );
         self.clusters.clear();
         for cluster in &regime.clusters {
             self.clusters
                 .push(ClusterFlow::new(cluster, state, inputs, phases));
         }
         self.own.resize_with(regime.functionals.len(), Own::default);
-        let none = Partial {
-            derivatives: Lane::ZERO,
-            sizes: Lane::ZERO,
-        };
         for (own, functional) in self.own.iter_mut().zip(&regime.functionals) {
-            own.partial.resize(regime.modes.count() + 1, none);
-            own.partial[0] = none;
-            own.start(regime, functional, inputs, phases, &self.zeta, &self.drift);
+            own.partial.resize(regime.modes.count() + 1, NOTHING);
+            (own.start, own.start_size) = functional.at(state, inputs, phases);
+            own.find_polynomial(regime, functional, &self.derivatives);
         }
         self.measure();
     }
 
-    fn start_modes(&mut self, regime: &Regime, state: &[f64]) {
-        let modes = &regime.modes;
-        let states = state.len();
-        let free = &mut self.free;
-        free.clear();
-        free.extend(state.iter().zip(&self.steady).map(|(y, steady)| y - steady));
-        for (mode, phase) in modes.phase.iter().enumerate() {
-            let Some(phase) = phase else { continue };
-            let (e, place) = (self.phases[*phase], mode * states..(mode + 1) * states);
-            let columns = modes.columns[0][place.clone()]
-                .iter()
-                .zip(&modes.columns[1][place]);
-            for (slot, (re, im)) in free.iter_mut().zip(columns) {
-                *slot -= re * e.re - im * e.im;
-            }
-        }
+    fn find_coordinates(
+        &mut self,
+        regime: &Regime,
+        state: &[f64],
+        inputs: &[f64],
+        phases: &[Complex<f64>],
+    ) {
+        let modes = regime.modes.groups();
         let start = &mut self.start;
-        for (slots, part) in [(&mut start.re, 0), (&mut start.im, 1)] {
-            slots.clear();
-            slots.resize(groups(modes.count()), Lane::ZERO);
-            for (value, rows) in free.iter().zip(&modes.rows) {
-                let value = Lane::splat(*value);
-                let rows = if part == 0 { &rows.re } else { &rows.im };
-                for (slot, row) in slots.iter_mut().zip(rows) {
-                    *slot += *row * value;
-                }
-            }
+        start.clear();
+        start.resize(2 * modes + regime.integrals.groups(), Lane::ZERO);
+        regime.coordinates.add_product(state, start);
+        let units = std::iter::once(&1.0).chain(inputs);
+        for (rest, unit) in regime.rest.iter().zip(units) {
+            subtract(rest, *unit, start);
         }
-        for (mode, phase) in modes.phase.iter().enumerate() {
+        for ([sine, cosine], e) in regime.forced.iter().zip(phases) {
+            subtract(sine, e.im, start);
+            subtract(cosine, e.re, start);
+        }
+        let slots = numbers_mut(start);
+        for (mode, phase) in regime.modes.phase.iter().enumerate() {
             if let Some(phase) = phase {
-                start.set(mode, self.phases[*phase]);
+                slots[mode] = phases[*phase].re;
+                slots[4 * modes + mode] = phases[*phase].im;
             }
         }
-        self.now.re.clone_from(&self.start.re);
-        self.now.im.clone_from(&self.start.im);
+        self.rewind(regime);
     }
 
-    fn start_integrals(&mut self, regime: &Regime, state: &[f64], inputs: &[f64]) {
-        let polynomial = &regime.polynomial;
-        let size = polynomial.rows.nrows();
-        resize(&mut self.zeta, size);
-        let rows = polynomial.flat_rows.chunks_exact(state.len().max(1));
-        for (slot, row) in self.zeta.iter_mut().zip(rows) {
-            *slot = dot(row, state);
-        }
-        resize(&mut self.drift, size);
-        self.drift.copy_from(&polynomial.constants[0]);
-        for (column, input) in polynomial.constants[1..].iter().zip(inputs) {
-            self.drift.axpy(*input, column, 1.0);
+    /// Goes back to the start.
+    fn rewind(&mut self, regime: &Regime) {
+        self.moved.clear();
+        self.moved.resize(self.start.len(), Lane::ZERO);
+        self.now.clear();
+        self.now
+            .extend_from_slice(&self.start[..2 * regime.modes.groups()]);
+    }
+
+    /// Advances the modes by their gains over some time.
+    fn advance(&mut self, gains: &Pairs) {
+        let groups = gains.re.len();
+        let (now_re, now_im) = self.now.split_at_mut(groups);
+        let (moved_re, moved_im) = self.moved.split_at_mut(groups);
+        let (start_re, start_im) = self.start.split_at(groups);
+        for group in 0..groups {
+            let (a, b) = (now_re[group], now_im[group]);
+            let (c, d) = (gains.re[group], gains.im[group]);
+            moved_re[group] += a * c - b * d;
+            moved_im[group] += a * d + b * c;
+            now_re[group] = start_re[group] + moved_re[group];
+            now_im[group] = start_im[group] + moved_im[group];
         }
     }
 
     /// Advances by a step of the ladder.
     pub fn step(&mut self, rung: &Rung) {
         self.tau += rung.length;
-        self.now.multiply(&rung.factors);
+        self.advance(&rung.gains);
         self.measure();
     }
 
@@ -197,77 +201,77 @@ impl Flow {
                 break;
             }
             if rung.length <= rest {
-                self.now.multiply(&rung.factors);
+                self.advance(&rung.gains);
                 rest -= rung.length;
             }
         }
         if fastest * rest.abs() <= LITTLE {
-            self.now.turn_little(&regime.modes.rates, rest);
+            self.advance_little(&regime.modes.rates, rest);
         } else {
-            let factors: Vec<Complex<f64>> = regime
-                .modes
-                .rate
-                .iter()
-                .map(|rate| (rate * rest).exp())
-                .collect();
-            self.now.multiply(&Pairs::of(&factors));
+            self.advance(&Pairs::gains(&regime.modes.rate, rest));
         }
         self.measure();
     }
 
+    /// Advances by so little that a short series gives the gains.
+    fn advance_little(&mut self, rates: &Pairs, time: f64) {
+        let groups = rates.re.len();
+        let time = Lane::splat(time);
+        for group in 0..groups {
+            let (c, d) = rates.little_gain(group, time);
+            let (a, b) = (self.now[group], self.now[groups + group]);
+            self.moved[group] += a * c - b * d;
+            self.moved[groups + group] += a * d + b * c;
+            self.now[group] = self.start[group] + self.moved[group];
+            self.now[groups + group] = self.start[groups + group] + self.moved[groups + group];
+        }
+    }
+
     /// Goes to a time after the start.
     pub fn go_to(&mut self, regime: &Regime, tau: f64) {
-        let factors: Vec<Complex<f64>> = regime
-            .modes
-            .rate
-            .iter()
-            .map(|rate| (rate * tau).exp())
-            .collect();
-        self.now.re.clone_from(&self.start.re);
-        self.now.im.clone_from(&self.start.im);
-        self.now.multiply(&Pairs::of(&factors));
+        self.rewind(regime);
+        self.advance(&Pairs::gains(&regime.modes.rate, tau));
         self.tau = tau;
         self.measure();
     }
 
     /// Whether no amplitude has overflowed.
     pub fn is_finite(&self) -> bool {
-        let polynomials = self.own.iter().flat_map(|own| &own.derivatives);
-        let sizes = self.size.iter().flat_map(|size| size.as_array());
-        polynomials.chain(sizes).all(|value| value.is_finite())
+        let values = self.own.iter().flat_map(|own| [own.value, own.size]);
+        let sizes = self.size.iter().flat_map(|size| size.to_array());
+        values.chain(sizes).all(|value| value.is_finite())
     }
 
     fn measure(&mut self) {
-        self.size.resize(self.now.re.len(), Lane::ZERO);
-        for (slot, (a, b)) in self
-            .size
-            .iter_mut()
-            .zip(self.now.re.iter().zip(&self.now.im))
-        {
-            *slot = (*a * *a + *b * *b).sqrt();
-        }
+        let (re, im) = self.now.split_at(self.now.len() / 2);
+        self.size.clear();
+        let squares = re.iter().zip(im).map(|(a, b)| *a * *a + *b * *b);
+        self.size.extend(squares.map(Lane::sqrt));
     }
 
     /// Sums up a function over its modes here.
     pub fn sum_up(&mut self, regime: &Regime, place: usize) {
         let own = &mut self.own[place];
-        let mut partial = Partial {
-            derivatives: Lane::ZERO,
-            sizes: Lane::ZERO,
-        };
-        let groups = self.now.re.iter().zip(&self.now.im).zip(&self.size);
-        let weights = regime.functionals[place].weights.chunks(4);
-        let slots = own.partial[1..].chunks_mut(4);
-        for ((weights, slots), ((re, im), size)) in weights.zip(slots).zip(groups) {
-            let amplitudes = re.as_array().iter().zip(im.as_array()).zip(size.as_array());
-            for ((weights, slot), ((re, im), size)) in weights.iter().zip(slots).zip(amplitudes) {
-                partial.derivatives +=
-                    weights.re * Lane::splat(*re) - weights.im * Lane::splat(*im);
-                partial.sizes += weights.size * Lane::splat(*size);
-                *slot = partial;
-            }
+        let functional = &regime.functionals[place];
+        let (re, im) = self.now.split_at(self.now.len() / 2);
+        let mut partial = NOTHING;
+        let amplitudes = numbers(re).iter().zip(numbers(im)).zip(numbers(&self.size));
+        let slots = own.partial[1..].iter_mut().zip(&functional.weights);
+        for ((slot, weights), ((re, im), size)) in slots.zip(amplitudes) {
+            partial.derivatives += weights.re * Lane::splat(*re) - weights.im * Lane::splat(*im);
+            partial.sizes += weights.size * Lane::splat(*size);
+            *slot = partial;
+        }
+        let (moved_re, moved_im) = self.moved.split_at(re.len());
+        let (mut value, mut size) = (Lane::ZERO, Lane::ZERO);
+        for (group, bound) in functional.sizes.iter().enumerate() {
+            let (a, b) = (moved_re[group], moved_im[group]);
+            value += functional.values.re[group] * a - functional.values.im[group] * b;
+            size += *bound * (a.abs() + b.abs());
         }
         own.evaluate(self.tau);
+        own.value += value.reduce_add();
+        own.size += size.reduce_add();
     }
 
     /// Value and derivatives of a function that has been summed up here, with bounds over
@@ -276,24 +280,28 @@ impl Flow {
         let own = &self.own[place];
         let (slow, last) = (&own.partial[rung.slow], own.partial.len() - 1);
         let mut derivatives = slow.derivatives.to_array();
-        for (slot, value) in derivatives.iter_mut().zip(own.derivatives) {
+        for (slot, value) in derivatives[1..].iter_mut().zip(own.derivatives) {
             *slot += value;
         }
         let all = own.partial[last].sizes.to_array();
         let some = slow.sizes.to_array();
         let (mut fast, mut fast_rate) = (0.0, 0.0);
         if rung.slow < last {
+            let amplitudes = own.partial[last].derivatives.to_array()[0];
+            derivatives[0] = own.value - (amplitudes - derivatives[0]);
             // The difference of two sums, with their rounding.
             fast = (all[0] - some[0] + ROUNDING * all[0]) * rung.growth;
             fast_rate = (all[1] - some[1] + ROUNDING * all[1]) * rung.growth;
+        } else {
+            derivatives[0] = own.value;
         }
         let mut local = Local {
             derivatives,
             fourth: some[2] * rung.growth + own.fourth,
             fast,
             fast_rate,
-            noise: all[0] + own.size,
-            rate_noise: all[1] + own.derivatives[1].abs(),
+            noise: own.size,
+            rate_noise: all[1] + own.derivatives[0].abs(),
         };
         for (cluster, flow) in self.clusters.iter().enumerate() {
             let powers = &regime.functionals[place].cluster_powers[cluster];
@@ -313,142 +321,67 @@ impl Flow {
 
     /// The state here.
     pub fn state(&mut self, regime: &Regime, out: &mut [f64]) {
-        out.copy_from_slice(&self.steady);
-        let modes = &regime.modes;
+        let modes = self.now.len();
+        regime
+            .integrals
+            .moved(&self.derivatives, self.tau, &mut self.moved[modes..]);
+        self.sum.clone_from(&self.origin);
+        regime
+            .states
+            .add_product(numbers(&self.moved), &mut self.sum);
         let states = out.len();
-        for mode in 0..modes.count() {
-            let place = mode * states..(mode + 1) * states;
-            let amplitude = self.now.get(mode);
-            let columns = modes.columns[0][place.clone()]
-                .iter()
-                .zip(&modes.columns[1][place]);
-            for (slot, (re, im)) in out.iter_mut().zip(columns) {
-                *slot += re * amplitude.re - im * amplitude.im;
-            }
-        }
-        self.add_integrals(regime, out);
+        out.copy_from_slice(&numbers(&self.sum)[..states]);
         for (flow, cluster) in self.clusters.iter().zip(&regime.clusters) {
             flow.add_state(cluster, &regime.system.phases, self.tau, out);
         }
     }
-
-    fn add_integrals(&mut self, regime: &Regime, out: &mut [f64]) {
-        let polynomial = &regime.polynomial;
-        let (terms, size) = (polynomial.terms, polynomial.rows.nrows());
-        if size == 0 {
-            return;
-        }
-        self.monomials.resize(terms + 1, 0.0);
-        monomials(self.tau, &mut self.monomials);
-        let orders = DERIVATIVES + terms;
-        self.forced
-            .resize(orders * self.phases.len(), Complex::new(0.0, 0.0));
-        for (place, values) in self.forced.chunks_exact_mut(orders).enumerate() {
-            let nu = Complex::new(0.0, regime.system.phases[place][0]);
-            integrals(nu, self.tau, (nu * self.tau).exp(), values);
-            values
-                .iter_mut()
-                .for_each(|value| *value *= self.phases[place]);
-        }
-        resize(&mut self.value, size);
-        resize(&mut self.product, size);
-        for k in (0..terms).rev() {
-            self.product.gemv(1.0, &polynomial.matrix, &self.value, 0.0);
-            std::mem::swap(&mut self.value, &mut self.product);
-            self.value.axpy(self.monomials[k], &self.zeta, 1.0);
-            self.value.axpy(self.monomials[k + 1], &self.drift, 1.0);
-            for (place, [beta, gamma]) in polynomial.sinusoids.iter().enumerate() {
-                let forced = self.forced[place * orders + DERIVATIVES + k];
-                self.value.axpy(forced.im, beta, 1.0);
-                self.value.axpy(forced.re, gamma, 1.0);
-            }
-        }
-        for (column, amplitude) in polynomial.columns.column_iter().zip(self.value.iter()) {
-            for (slot, entry) in out.iter_mut().zip(column.iter()) {
-                *slot += entry * amplitude;
-            }
-        }
-    }
 }
 
-/// Zeros, so many.
-fn resize(vector: &mut DVector<f64>, size: usize) {
-    if vector.len() == size {
-        vector.fill(0.0);
-    } else {
-        *vector = DVector::zeros(size);
-    }
-}
-
-/// first + sum of the others times the inputs.
-fn combine(columns: &[DVector<f64>], inputs: &[f64], out: &mut Vec<f64>) {
-    out.clear();
-    out.extend(columns[0].iter());
-    for (column, input) in columns[1..].iter().zip(inputs) {
-        for (slot, entry) in out.iter_mut().zip(column.iter()) {
-            *slot += entry * input;
-        }
+/// out - factor column.
+fn subtract(column: &[Lane], factor: f64, out: &mut [Lane]) {
+    let factor = Lane::splat(factor);
+    for (slot, entry) in out.iter_mut().zip(column) {
+        *slot -= *entry * factor;
     }
 }
 
 impl Own {
-    fn start(
-        &mut self,
-        regime: &Regime,
-        functional: &Functional,
-        inputs: &[f64],
-        phases: &[Complex<f64>],
-        zeta: &DVector<f64>,
-        drift: &DVector<f64>,
-    ) {
-        let mut offset = functional.offsets[0];
-        for (factor, input) in functional.offsets[1..].iter().zip(inputs) {
-            offset += factor * input;
-        }
+    /// The part of the integrals, as a polynomial in tau.
+    fn find_polynomial(&mut self, regime: &Regime, functional: &Functional, derivatives: &[Lane]) {
         let polynomial = &mut self.polynomial;
         polynomial.clear();
         self.fourth = 0.0;
-        if !functional.has_integrals() {
-            polynomial.push(offset);
-            self.size = offset.abs();
+        if functional.integrals.is_empty() {
             return;
         }
-        let terms = functional.powers.len() / zeta.len().max(1);
-        let sinusoidal = if phases.is_empty() { 0 } else { SINUSOIDAL };
-        polynomial.resize(terms + 1 + sinusoidal, 0.0);
-        let powers = functional.powers.chunks_exact(zeta.len().max(1));
-        for (k, power) in powers.enumerate() {
-            for ((factor, zeta), drift) in power.iter().zip(zeta.iter()).zip(drift.iter()) {
-                polynomial[k] += factor * zeta;
-                polynomial[k + 1] += factor * drift;
-            }
-        }
-        for (place, factors) in functional.forced.iter().enumerate() {
-            // The sum of factors times I_k as a series in time.
-            let turn = Complex::new(0.0, regime.system.phases[place][0]);
-            let mut sum = Complex::new(0.0, 0.0);
-            for (k, slot) in polynomial[1..].iter_mut().enumerate() {
-                sum *= turn;
-                if let Some(factor) = factors.get(k) {
-                    sum += factor * phases[place];
-                }
-                *slot += sum.im;
-            }
+        let width = regime.integrals.groups();
+        let mut factor = 1.0;
+        for (order, derivative) in derivatives.chunks_exact(width).enumerate() {
+            factor *= reciprocal(order + 1);
+            let terms = functional.integrals.iter().zip(numbers(derivative));
+            polynomial.push(factor * terms.map(|(a, b)| a * b).sum::<f64>());
         }
         let window = regime.ladder.window;
-        let (mut factor, mut power) = (1.0, 1.0);
-        for (k, slot) in polynomial.iter_mut().enumerate() {
-            if k >= 4 {
-                self.fourth += slot.abs() * power;
-                power *= window * reciprocal(k - 3);
+        let (mut power, mut largest, mut needed) = (1.0, 0.0_f64, 0);
+        for (order, coefficient) in polynomial.iter().enumerate() {
+            power *= window;
+            let size = coefficient.abs() * power;
+            if !(size <= NEGLIGIBLE * largest) {
+                needed = order + 1;
             }
-            *slot *= factor;
-            factor *= reciprocal(k + 1);
+            largest = largest.max(size);
         }
-        polynomial[0] += offset;
+        polynomial.truncate(needed);
+        power = 1.0;
+        for (place, coefficient) in polynomial.iter().enumerate().skip(3) {
+            // The fourth derivative of tau^k, k = place + 1.
+            let falling = (place + 1) * place * (place - 1) * (place - 2);
+            self.fourth += coefficient.abs() * falling as f64 * power;
+            power *= window;
+        }
     }
 
-    /// The polynomial with three derivatives, by Horner's scheme.
+    /// The polynomial and the start with three derivatives, by Horner's scheme.
     fn evaluate(&mut self, tau: f64) {
         let [mut a, mut b, mut c, mut d, mut size] = [0.0; 5];
         for coefficient in self.polynomial.iter().rev() {
@@ -458,7 +391,9 @@ impl Own {
             b = b * tau + a;
             a = a * tau + coefficient;
         }
-        self.size = size;
-        self.derivatives = [a, b, 2.0 * c, 6.0 * d];
+        // a is the polynomial over tau.
+        self.value = self.start + a * tau;
+        self.size = self.start_size + size * tau;
+        self.derivatives = [a + b * tau, 2.0 * (b + c * tau), 6.0 * (c + d * tau)];
     }
 }

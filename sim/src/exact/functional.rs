@@ -6,8 +6,10 @@ use codegen::affine::system::AffineRows;
 use nalgebra::{Complex, DVector};
 
 use super::forced::factorial;
-use super::lanes::Lane;
-use super::regime::{Cluster, Modes, Polynomial};
+use super::integrals::Integrals;
+use super::lanes::{Lane, Pairs, pack};
+use super::modes::Modes;
+use super::regime::Cluster;
 
 /// A function of state, inputs and sinusoids: coefficients as in [`AffineRows`].
 #[derive(Clone, Debug, PartialEq)]
@@ -73,17 +75,18 @@ pub(super) struct Weights {
 pub(super) struct Functional {
     pub linear: Linear,
     pub limits: Limits,
-    /// Each mode's factors.
+    /// Each mode's factors in the derivatives.
     pub weights: Vec<Weights>,
-    /// row N^k for each power, one after the other: the integrals' factors in a polynomial
-    /// of time.
-    pub powers: Vec<f64>,
-    /// For each phase and power the factor of I_k: beta + i gamma.
-    pub forced: Vec<Vec<Complex<f64>>>,
-    /// The value with the modes and integrals at zero, for unit constant and unit inputs.
-    pub offsets: Vec<f64>,
+    /// Each mode's factor in the value.
+    pub values: Pairs,
+    /// The magnitudes of these.
+    pub sizes: Vec<Lane>,
+    /// The factors of the integrals; none if it does not feel them.
+    pub integrals: Vec<f64>,
     /// row columns N^k of each cluster.
     pub cluster_powers: Vec<Vec<DVector<Complex<f64>>>>,
+    /// The states it reads, with their factors.
+    felt: Vec<(usize, f64)>,
 }
 
 impl Functional {
@@ -92,52 +95,57 @@ impl Functional {
         linear: Linear,
         limits: Limits,
         modes: &Modes,
-        integrals: &Polynomial,
+        integrals: &Integrals,
         clusters: &[Cluster],
-        steady: &[DVector<f64>],
     ) -> Self {
-        let values: Vec<Complex<f64>> = (0..modes.count())
-            .map(|mode| {
-                let weight = modes.projection(mode, &linear.state);
-                match modes.phase[mode] {
-                    // beta sin + gamma cos = Re((gamma - i beta) exp(i theta)).
-                    Some(phase) => {
-                        weight + Complex::new(linear.cosines[phase], -linear.sines[phase])
-                    }
-                    None => weight,
-                }
-            })
-            .collect();
-        let powers = integrals.projections(&linear.state);
-        let forced = integrals.forced(&powers);
-        let powers = powers
-            .iter()
-            .flat_map(|power| power.iter().copied())
-            .collect();
-        let mut offsets = vec![linear.constant];
-        offsets.extend(&linear.inputs);
-        offsets.resize(steady.len(), 0.0);
-        for (offset, column) in offsets.iter_mut().zip(steady) {
-            *offset += linear.state.dot(column);
+        let row = linear
+            .state
+            .map(|entry| Complex::new(entry, 0.0))
+            .transpose();
+        let mut values: Vec<Complex<f64>> = (row * &modes.columns).iter().copied().collect();
+        for (value, phase) in values.iter_mut().zip(&modes.phase) {
+            if let Some(phase) = phase {
+                // beta sin + gamma cos = Re((gamma - i beta) exp(i theta)).
+                *value += Complex::new(linear.cosines[*phase], -linear.sines[*phase]);
+            }
         }
-        let cluster_powers = clusters
-            .iter()
-            .map(|c| c.projections(&linear.state))
-            .collect();
+        let mut of_integrals = integrals.weights(&linear.state);
+        if of_integrals.iter().all(|weight| *weight == 0.0) {
+            of_integrals.clear();
+        }
+        let sizes: Vec<f64> = values.iter().map(|value| value.norm()).collect();
+        let felt = linear.state.iter().copied().enumerate();
         Self {
             weights: weights(&values, modes),
+            values: Pairs::of(&values),
+            sizes: pack(&sizes),
+            integrals: of_integrals,
+            cluster_powers: clusters
+                .iter()
+                .map(|c| c.projections(&linear.state))
+                .collect(),
+            felt: felt.filter(|(_, factor)| *factor != 0.0).collect(),
             linear,
             limits,
-            powers,
-            forced,
-            offsets,
-            cluster_powers,
         }
     }
 
-    /// Whether the integrals have any part in it.
-    pub fn has_integrals(&self) -> bool {
-        !self.powers.is_empty()
+    /// The value at a state, and the sum of its terms' magnitudes.
+    pub fn at(&self, state: &[f64], inputs: &[f64], phases: &[Complex<f64>]) -> (f64, f64) {
+        let linear = &self.linear;
+        let (mut value, mut size) = (linear.constant, linear.constant.abs());
+        let states = self
+            .felt
+            .iter()
+            .map(|(state_index, factor)| factor * state[*state_index]);
+        let inputs = linear.inputs.iter().zip(inputs).map(|(a, b)| a * b);
+        let sinusoids = phases.iter().enumerate();
+        let sinusoids = sinusoids.map(|(p, e)| linear.sines[p] * e.im + linear.cosines[p] * e.re);
+        for term in states.chain(inputs).chain(sinusoids) {
+            value += term;
+            size += term.abs();
+        }
+        (value, size)
     }
 }
 

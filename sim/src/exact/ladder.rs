@@ -1,10 +1,8 @@
-//! Steps of fixed lengths, each half as long as the one before, with every mode's factor
+//! Steps of fixed lengths, each half as long as the one before, with every mode's gain
 //! over each of them: during a search the modes advance by multiplications alone.
 
-use nalgebra::Complex;
-
 use super::lanes::Pairs;
-use super::regime::Modes;
+use super::modes::Modes;
 
 /// The longest step times the fastest rate.
 const LONGEST: f64 = 1024.0;
@@ -20,8 +18,8 @@ const TURN: f64 = 2.5;
 pub(super) struct Rung {
     /// Its length, s.
     pub length: f64,
-    /// exp(rate length) of each mode.
-    pub factors: Pairs,
+    /// exp(rate length) - 1 of each mode.
+    pub gains: Pairs,
     /// The largest growth of a mode within the step, at least 1.
     pub growth: f64,
     /// So many modes, the slowest ones, turn little within the step.
@@ -64,11 +62,6 @@ impl Ladder {
 
 impl Rung {
     fn new(modes: &Modes, length: f64) -> Self {
-        let factors: Vec<Complex<f64>> = modes
-            .rate
-            .iter()
-            .map(|rate| (rate * length).exp())
-            .collect();
         let growth = modes
             .rate
             .iter()
@@ -79,7 +72,7 @@ impl Rung {
             .partition_point(|rate| rate * length <= TURN);
         Self {
             length,
-            factors: Pairs::of(&factors),
+            gains: Pairs::gains(&modes.rate, length),
             growth,
             slow,
         }

@@ -22,6 +22,68 @@ pub(super) fn pack(values: &[f64]) -> Vec<Lane> {
     values.chunks(4).map(group).collect()
 }
 
+/// The numbers of groups, one after the other.
+pub(super) fn numbers(groups: &[Lane]) -> &[f64] {
+    bytemuck::cast_slice(groups)
+}
+
+/// The same, to be written.
+pub(super) fn numbers_mut(groups: &mut [Lane]) -> &mut [f64] {
+    bytemuck::cast_slice_mut(groups)
+}
+
+/// A real matrix whose rows stand in groups, for products with vectors.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Packed {
+    columns: usize,
+    /// Group of rows by group of rows, in each the columns one after the other.
+    entries: Vec<Lane>,
+}
+
+impl Packed {
+    /// A matrix from its entries.
+    pub fn of(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
+        let entries = (0..groups(rows)).flat_map(|group| {
+            let entry = &entry;
+            (0..columns).map(move |column| {
+                let value = |lane: usize| {
+                    let row = 4 * group + lane;
+                    if row < rows { entry(row, column) } else { 0.0 }
+                };
+                Lane::from([0, 1, 2, 3].map(value))
+            })
+        });
+        let entries = entries.collect();
+        Self { columns, entries }
+    }
+
+    /// Adds the product with a vector.
+    pub fn add_product(&self, vector: &[f64], out: &mut [Lane]) {
+        let columns = self.columns;
+        if columns == 0 {
+            return;
+        }
+        let vector = &vector[..columns];
+        let mut pairs = self.entries.chunks_exact(2 * columns);
+        let mut slots = out.chunks_exact_mut(2);
+        for (rows, slots) in pairs.by_ref().zip(slots.by_ref()) {
+            let (upper, lower) = rows.split_at(columns);
+            let (mut a, mut b) = (slots[0], slots[1]);
+            for ((x, y), value) in upper.iter().zip(lower).zip(vector) {
+                let value = Lane::splat(*value);
+                a += *x * value;
+                b += *y * value;
+            }
+            (slots[0], slots[1]) = (a, b);
+        }
+        if let (row, [slot, ..]) = (pairs.remainder(), slots.into_remainder()) {
+            for (x, value) in row.iter().zip(vector) {
+                *slot += *x * Lane::splat(*value);
+            }
+        }
+    }
+}
+
 /// Complex numbers in groups, real and imaginary parts apart.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {
@@ -42,94 +104,81 @@ impl Pairs {
         }
     }
 
-    /// Number `place`.
-    pub fn get(&self, place: usize) -> Complex<f64> {
-        let (group, lane) = (place / 4, place % 4);
-        Complex::new(
-            self.re[group].as_array()[lane],
-            self.im[group].as_array()[lane],
-        )
+    /// exp(rate time) - 1 of each rate.
+    pub fn gains(rates: &[Complex<f64>], time: f64) -> Self {
+        let gains: Vec<Complex<f64>> = rates.iter().map(|rate| gain(rate * time)).collect();
+        Self::of(&gains)
     }
 
-    /// Replaces number `place`.
-    pub fn set(&mut self, place: usize, value: Complex<f64>) {
-        let (group, lane) = (place / 4, place % 4);
-        self.re[group].as_mut_array()[lane] = value.re;
-        self.im[group].as_mut_array()[lane] = value.im;
-    }
-
-    /// Multiplies number by number.
-    pub fn multiply(&mut self, factors: &Self) {
-        let parts = self.re.iter_mut().zip(&mut self.im);
-        for ((a, b), (c, d)) in parts.zip(factors.re.iter().zip(&factors.im)) {
-            (*a, *b) = (*a * *c - *b * *d, *a * *d + *b * *c);
+    /// exp(rate time) - 1 of each of these rates by seven terms of the series.
+    pub fn little_gain(&self, group: usize, time: Lane) -> (Lane, Lane) {
+        let (x, y) = (self.re[group] * time, self.im[group] * time);
+        let (mut c, mut d) = (Lane::ONE, Lane::ZERO);
+        for reciprocal in RECIPROCALS {
+            let reciprocal = Lane::splat(reciprocal);
+            let (u, v) = (x * reciprocal, y * reciprocal);
+            (c, d) = (Lane::ONE + (u * c - v * d), u * d + v * c);
         }
-    }
-
-    /// Multiplies every number by exp(rate time), for small arguments: seven terms.
-    pub fn turn_little(&mut self, rates: &Self, time: f64) {
-        let time = Lane::splat(time);
-        let parts = self.re.iter_mut().zip(&mut self.im);
-        for ((a, b), (p, q)) in parts.zip(rates.re.iter().zip(&rates.im)) {
-            let (x, y) = (*p * time, *q * time);
-            let (mut c, mut d) = (Lane::ONE, Lane::ZERO);
-            for reciprocal in RECIPROCALS {
-                let reciprocal = Lane::splat(reciprocal);
-                let (u, v) = (x * reciprocal, y * reciprocal);
-                (c, d) = (Lane::ONE + (u * c - v * d), u * d + v * c);
-            }
-            (*a, *b) = (*a * c - *b * d, *a * d + *b * c);
-        }
+        (x * c - y * d, x * d + y * c)
     }
 }
 
-/// Of 7 to 1.
-const RECIPROCALS: [f64; 7] = [1.0 / 7.0, 1.0 / 6.0, 0.2, 0.25, 1.0 / 3.0, 0.5, 1.0];
+/// exp(z) - 1, as accurate for small z as for large ones.
+pub(super) fn gain(z: Complex<f64>) -> Complex<f64> {
+    let (sine, cosine) = z.im.sin_cos();
+    let grown = z.re.exp_m1();
+    let half = (0.5 * z.im).sin();
+    Complex::new(grown * cosine - 2.0 * half * half, (grown + 1.0) * sine)
+}
 
-/// The largest argument of [`Pairs::turn_little`]: the first term left out is below 1e-18.
+/// Of 8 to 2.
+const RECIPROCALS: [f64; 7] = [0.125, 1.0 / 7.0, 1.0 / 6.0, 0.2, 0.25, 1.0 / 3.0, 0.5];
+
+/// The largest argument of [`Pairs::little_gain`]: the first term left out is below 1e-19.
 pub(super) const LITTLE: f64 = 1.0 / 64.0;
-
-/// The sum of products, four side by side.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sum = [0.0; 4];
-    let (left, right) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = left
-        .remainder()
-        .iter()
-        .zip(right.remainder())
-        .map(|(x, y)| x * y)
-        .sum();
-    for (x, y) in left.zip(right) {
-        for lane in 0..4 {
-            sum[lane] += x[lane] * y[lane];
-        }
-    }
-    (sum[0] + sum[1]) + (sum[2] + sum[3]) + rest
-}
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn little_turns_are_exponentials() {
+    fn little_gains_are_exponentials_less_one() {
         let rates = [
             Complex::new(-3.0, 40.0),
             Complex::new(0.0, 63.0),
             Complex::new(-9.0, 0.0),
         ];
-        let start = [
-            Complex::new(1.0, 0.0),
-            Complex::new(0.3, -2.0),
-            Complex::new(5.0, 0.1),
-        ];
+        let pairs = Pairs::of(&rates);
         for time in [1e-3 * LITTLE, LITTLE / 64.0, -LITTLE / 70.0] {
-            let mut pairs = Pairs::of(&start);
-            pairs.turn_little(&Pairs::of(&rates), time);
-            for place in 0..3 {
-                let wanted = start[place] * (rates[place] * time).exp();
-                // A few roundings.
-                assert!((pairs.get(place) - wanted).norm() < 1e-15 * wanted.norm());
+            let (re, im) = pairs.little_gain(0, Lane::splat(time));
+            for (place, rate) in rates.iter().enumerate() {
+                let found = Complex::new(re.as_array()[place], im.as_array()[place]);
+                let wanted = gain(rate * time);
+                // A few roundings of either.
+                assert!((found - wanted).norm() < 1e-15 * wanted.norm());
+            }
+        }
+    }
+
+    #[test]
+    fn gains_of_large_arguments_are_exponentials_less_one() {
+        for z in [Complex::new(-2.0, 7.0), Complex::new(1.5, -300.0)] {
+            assert!((gain(z) - (z.exp() - 1.0)).norm() < 1e-15 * z.exp().norm());
+        }
+    }
+
+    #[test]
+    fn packed_matrices_multiply() {
+        for (rows, columns) in [(1, 3), (4, 2), (7, 5), (9, 1), (12, 4), (3, 0)] {
+            let entry = |i: usize, j: usize| (3 * i + j * j) as f64 - 4.0;
+            let packed = Packed::of(rows, columns, entry);
+            let vector: Vec<f64> = (0..columns).map(|j| j as f64 + 0.5).collect();
+            let mut out = vec![Lane::ONE; groups(rows)];
+            packed.add_product(&vector, &mut out);
+            for row in 0..rows {
+                let wanted: f64 = (0..columns).map(|j| entry(row, j) * vector[j]).sum();
+                // Small integers and halves: no rounding.
+                assert_eq!(numbers(&out)[row], 1.0 + wanted);
             }
         }
     }

@@ -3,8 +3,8 @@
 //! Within a regime the motion is a sum of exponentials, a polynomial and the response to
 //! constant and sinusoidal forces; it is stepped from switch to switch with no error but
 //! rounding. The pipeline, one file each: [`model`] (what can be propagated), `groups`
-//! (parallel switching surfaces), `sliding` (motion held on them), `schur`, `blocks` and
-//! `decomposition` (a regime's matrix by parts that move by themselves), `regime`,
+//! (parallel switching surfaces), `sliding` (motion held on them), `schur`, `blocks`,
+//! `refine` and `decomposition` (a regime's matrix by parts that move by themselves), `modes`, `integrals`, `regime`,
 //! `functional` and `ladder` (prepared for stepping), `lanes` (sums side by side), `forced`
 //! (forced polynomials), `flow` and `cluster_flow` (the motion in a regime), `search` (the next switch, which cannot be missed), `clock`,
 //! [`propagator`] (from switch to switch), `simulate` (samples); for neighbouring motions
@@ -21,11 +21,14 @@ mod flow;
 mod forced;
 mod functional;
 mod groups;
+mod integrals;
 mod ladder;
 mod lanes;
 pub mod lyapunov;
 pub mod model;
+mod modes;
 pub mod propagator;
+mod refine;
 mod regime;
 mod saltation;
 mod schur;

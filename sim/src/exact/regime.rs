@@ -1,17 +1,17 @@
 //! One regime: the linear motion between switches, decomposed and prepared for stepping.
 //!
-//! The state is the sum of a polynomial (the integrals), of exponentials (the modes, and
-//! one per sinusoid for the response it forces), of a constant, and in rare cases of
-//! clusters: eigenvalues that nearly agree, or that a forcing frequency nearly meets.
+//! The state moves from where it began by a polynomial (the integrals), by exponentials (the
+//! modes, and one per sinusoid for the response it forces), and in rare cases by clusters: eigenvalues that nearly agree, or that a forcing frequency nearly meets.
 
 use codegen::affine::system::AffineSystem;
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::decomposition::{Decomposition, Failure, Integrals, Part};
-use super::flow::SINUSOIDAL_ANGLE;
+use super::decomposition::{Decomposition, Failure, Part};
 use super::functional::{Functional, Limits, Linear};
+use super::integrals::Integrals;
 use super::ladder::Ladder;
-use super::lanes::Pairs;
+use super::lanes::{Lane, Packed, numbers_mut};
+use super::modes::{Forcing, Modes, project};
 
 /// A forcing frequency closer to an eigenvalue than this part of it is resonant: the forced
 /// and the free response grow large against each other and would cancel.
@@ -20,46 +20,8 @@ const RESONANT: f64 = 1e-3;
 /// A series is used up to where its argument reaches this.
 const SERIES: f64 = 0.25;
 
-/// The remainder of a series in powers of the integrals' matrix, relative.
+/// The remainder of a series in powers of a cluster's matrix, relative.
 const REMAINDER: f64 = 1e-19;
-
-/// The modes of a regime and its sinusoids, in ascending order of the magnitude of their
-/// rates.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Modes {
-    /// Eigenvalue, or i times the frequency of a sinusoid, 1/s.
-    pub rate: Vec<Complex<f64>>,
-    /// Their magnitudes, 1/s.
-    pub magnitude: Vec<f64>,
-    /// Which phase a sinusoid belongs to; nothing for a mode.
-    pub phase: Vec<Option<usize>>,
-    /// The same rates in groups.
-    pub rates: Pairs,
-    /// Amplitudes of the modes from a state: for each state its factors in all of them.
-    pub rows: Vec<Pairs>,
-    /// State from an amplitude: real and imaginary columns, one after the other.
-    pub columns: [Vec<f64>; 2],
-    states: usize,
-}
-
-/// The polynomial part of a regime.
-#[derive(Clone, Debug)]
-pub(super) struct Polynomial {
-    /// size x size, 1/s: what the integrals feel of each other.
-    pub matrix: DMatrix<f64>,
-    /// states x size.
-    pub columns: DMatrix<f64>,
-    /// size x states.
-    pub rows: DMatrix<f64>,
-    /// The same, row by row.
-    pub flat_rows: Vec<f64>,
-    /// Powers of the matrix that count.
-    pub terms: usize,
-    /// For each phase the factors of its sine and of its cosine.
-    pub sinusoids: Vec<[DVector<f64>; 2]>,
-    /// The constant rates, for a unit constant and unit inputs.
-    pub constants: Vec<DVector<f64>>,
-}
 
 /// A cluster of eigenvalues away from zero.
 #[derive(Clone, Debug)]
@@ -81,15 +43,24 @@ pub(super) struct Cluster {
 }
 
 /// A regime.
+///
+/// Its coordinates stand in one vector of groups: the real parts of the modes' amplitudes,
+/// the imaginary ones, the integrals.
 #[derive(Clone, Debug)]
 pub(super) struct Regime {
     /// Its equations.
     pub system: AffineSystem,
     pub modes: Modes,
-    pub polynomial: Polynomial,
+    pub integrals: Integrals,
     pub clusters: Vec<Cluster>,
-    /// The constant part of the state, for a unit constant and unit inputs.
-    pub steady: Vec<DVector<f64>>,
+    /// Coordinates from a state.
+    pub coordinates: Packed,
+    /// The coordinates that a unit constant and unit inputs hold.
+    pub rest: Vec<Vec<Lane>>,
+    /// For each phase the coordinates per sine and per cosine that it forces.
+    pub forced: Vec<[Vec<Lane>; 2]>,
+    /// A state from coordinates, without what is constant.
+    pub states: Packed,
     /// What is watched.
     pub functionals: Vec<Functional>,
     pub ladder: Ladder,
@@ -113,7 +84,7 @@ impl Regime {
             return Err(Failure::NotFinite);
         }
         let (simple, clustered) = divide(decomposition.parts, &frequencies);
-        let modes = Modes::new(&simple, &forcing, &frequencies, states);
+        let mut modes = Modes::new(&simple, &forcing, &frequencies, states);
         let fastest = modes.magnitude.last().copied().unwrap_or(0.0);
         let fastest = clustered
             .iter()
@@ -133,31 +104,33 @@ impl Regime {
             // Keeps exp(-centre tau) far from overflow.
             window = window.min(100.0 / part.centre.norm());
         }
-        let steady = steady(&simple, &forcing);
-        let polynomial = Polynomial::new(decomposition.integrals, &forcing, window);
+        let (integrals, window) =
+            Integrals::new(decomposition.integrals, &forcing, &frequencies, window);
+        modes.add_forced(&integrals);
         let clusters: Vec<Cluster> = clustered
             .into_iter()
             .map(|part| Cluster::new(part, &forcing, window))
             .collect();
         let functionals: Vec<Functional> = watched
             .into_iter()
-            .map(|(linear, limits)| {
-                Functional::new(linear, limits, &modes, &polynomial, &clusters, &steady)
-            })
+            .map(|(linear, limits)| Functional::new(linear, limits, &modes, &integrals, &clusters))
             .collect();
-        let angle = SINUSOIDAL_ANGLE;
-        if functionals.iter().any(Functional::has_integrals) && highest * window > angle {
-            window = angle / highest;
-        }
-        let ladder = Ladder::new(&modes, window, fastest);
+        let places = Places::of(&modes, &integrals);
         Ok(Self {
+            coordinates: places.coordinates(&modes, &integrals),
+            rest: modes
+                .rest
+                .iter()
+                .map(|rest| places.pack(rest, None))
+                .collect(),
+            forced: places.forced(&modes, &integrals),
+            states: places.states(&modes, &integrals),
+            ladder: Ladder::new(&modes, window, fastest),
             system,
             modes,
-            polynomial,
+            integrals,
             clusters,
-            steady,
             functionals,
-            ladder,
         })
     }
 
@@ -181,12 +154,79 @@ impl Regime {
     }
 }
 
-/// What acts on the rates of the state.
-struct Forcing {
-    /// For each phase the factors of its sine and of its cosine.
-    sinusoids: Vec<[DVector<f64>; 2]>,
-    /// Constant, then per unit of each input.
-    constants: Vec<DVector<f64>>,
+/// Where the coordinates stand in their vector.
+struct Places {
+    /// How many numbers the real parts of the modes' amplitudes fill.
+    modes: usize,
+    /// How many groups the whole vector fills.
+    groups: usize,
+}
+
+impl Places {
+    fn of(modes: &Modes, integrals: &Integrals) -> Self {
+        Self {
+            modes: 4 * modes.groups(),
+            groups: 2 * modes.groups() + integrals.groups(),
+        }
+    }
+
+    /// Amplitudes and integrals in one vector.
+    fn pack(
+        &self,
+        amplitudes: &DVector<Complex<f64>>,
+        integrals: Option<&DVector<f64>>,
+    ) -> Vec<Lane> {
+        let mut packed = vec![Lane::ZERO; self.groups];
+        let slots = numbers_mut(&mut packed);
+        for (mode, amplitude) in amplitudes.iter().enumerate() {
+            slots[mode] = amplitude.re;
+            slots[self.modes + mode] = amplitude.im;
+        }
+        for (place, value) in integrals.into_iter().flat_map(|v| v.iter()).enumerate() {
+            slots[2 * self.modes + place] = *value;
+        }
+        packed
+    }
+
+    fn forced(&self, modes: &Modes, integrals: &Integrals) -> Vec<[Vec<Lane>; 2]> {
+        let pairs = modes.forced.iter().zip(&integrals.forced);
+        pairs
+            .map(|(of_modes, of_integrals)| {
+                [0, 1].map(|kind| self.pack(&of_modes[kind], Some(&of_integrals[kind])))
+            })
+            .collect()
+    }
+
+    fn coordinates(&self, modes: &Modes, integrals: &Integrals) -> Packed {
+        let states = modes.rows.ncols();
+        Packed::of(4 * self.groups, states, |row, state| {
+            let (kind, place) = (row / self.modes.max(1), row % self.modes.max(1));
+            match kind {
+                _ if row >= 2 * self.modes => integrals
+                    .rows
+                    .get((row - 2 * self.modes, state))
+                    .copied()
+                    .unwrap_or(0.0),
+                0 => modes.rows.get((place, state)).map_or(0.0, |z| z.re),
+                _ => modes.rows.get((place, state)).map_or(0.0, |z| z.im),
+            }
+        })
+    }
+
+    fn states(&self, modes: &Modes, integrals: &Integrals) -> Packed {
+        let states = modes.columns.nrows();
+        let width = 2 * self.modes + integrals.size;
+        Packed::of(states, width, |state, column| {
+            let (kind, place) = (column / self.modes.max(1), column % self.modes.max(1));
+            match kind {
+                _ if column >= 2 * self.modes => {
+                    integrals.columns[(state, column - 2 * self.modes)]
+                }
+                0 => modes.columns.get((state, place)).map_or(0.0, |z| z.re),
+                _ => modes.columns.get((state, place)).map_or(0.0, |z| -z.im),
+            }
+        })
+    }
 }
 
 impl Forcing {
@@ -251,160 +291,6 @@ fn terms(size: usize, radius: f64, window: f64) -> usize {
         term *= argument / (terms - size + 1) as f64;
     }
     terms
-}
-
-/// The constant response of the modes to unit constant and inputs.
-fn steady(simple: &[Part], forcing: &Forcing) -> Vec<DVector<f64>> {
-    let response = |force: &DVector<f64>| {
-        let mut sum = DVector::zeros(force.len());
-        for part in simple {
-            let amplitude = -project(&part.rows, force)[0] / part.centre;
-            for (slot, entry) in sum.iter_mut().zip(part.columns.column(0).iter()) {
-                *slot += part.weight * (entry * amplitude).re;
-            }
-        }
-        sum
-    };
-    forcing.constants.iter().map(response).collect()
-}
-
-fn project(rows: &DMatrix<Complex<f64>>, vector: &DVector<f64>) -> DVector<Complex<f64>> {
-    rows * vector.map(|entry| Complex::new(entry, 0.0))
-}
-
-impl Modes {
-    fn new(simple: &[Part], forcing: &Forcing, frequencies: &[f64], states: usize) -> Self {
-        let mut all: Vec<(Complex<f64>, Option<usize>)> = Vec::new();
-        all.extend(simple.iter().map(|part| (part.centre, None)));
-        let sinusoids = frequencies.iter().enumerate();
-        all.extend(sinusoids.map(|(phase, f)| (Complex::new(0.0, *f), Some(phase))));
-        let mut order: Vec<usize> = (0..all.len()).collect();
-        order.sort_by(|a, b| all[*a].0.norm().total_cmp(&all[*b].0.norm()));
-        let mut modes = Self {
-            states,
-            ..Self::default()
-        };
-        let mut rows = Vec::with_capacity(all.len());
-        for place in order {
-            let (rate, phase) = all[place];
-            modes.rate.push(rate);
-            modes.magnitude.push(rate.norm());
-            modes.phase.push(phase);
-            let (row, column) = match phase {
-                None => {
-                    let part = &simple[place];
-                    let column = part.columns.column(0) * Complex::new(part.weight, 0.0);
-                    (part.rows.row(0).transpose(), column)
-                }
-                Some(phase) => (
-                    DVector::zeros(states),
-                    forced_response(simple, &forcing.sinusoids[phase], rate.im),
-                ),
-            };
-            rows.push(row);
-            modes.columns[0].extend(column.iter().map(|entry| entry.re));
-            modes.columns[1].extend(column.iter().map(|entry| entry.im));
-        }
-        modes.rates = Pairs::of(&modes.rate);
-        modes.rows = (0..states)
-            .map(|state| {
-                let factors: Vec<Complex<f64>> = rows.iter().map(|row| row[state]).collect();
-                Pairs::of(&factors)
-            })
-            .collect();
-        modes
-    }
-
-    /// How many there are.
-    pub fn count(&self) -> usize {
-        self.rate.len()
-    }
-
-    /// The factor of a mode's amplitude in a linear function of the state.
-    pub fn projection(&self, mode: usize, row: &DVector<f64>) -> Complex<f64> {
-        let place = mode * self.states..(mode + 1) * self.states;
-        let part = |columns: &[f64]| -> f64 {
-            columns[place.clone()]
-                .iter()
-                .zip(row.iter())
-                .map(|(a, b)| a * b)
-                .sum()
-        };
-        Complex::new(part(&self.columns[0]), part(&self.columns[1]))
-    }
-}
-
-/// The factor of exp(i theta) in the response of the modes to a force beta sin theta +
-/// gamma cos theta: a mode answers -(beta (rate sin + omega cos) + gamma (rate cos - omega
-/// sin)) / (rate^2 + omega^2).
-fn forced_response(
-    simple: &[Part],
-    sinusoid: &[DVector<f64>; 2],
-    omega: f64,
-) -> DVector<Complex<f64>> {
-    let mut response = DVector::zeros(sinusoid[0].len());
-    for part in simple {
-        let rate = part.centre;
-        let [beta, gamma] = [0, 1].map(|kind| project(&part.rows, &sinusoid[kind])[0]);
-        let determinant = rate * rate + omega * omega;
-        let sine = -(beta * rate - gamma * omega) / determinant;
-        let cosine = -(beta * omega + gamma * rate) / determinant;
-        for (slot, entry) in response.iter_mut().zip(part.columns.column(0).iter()) {
-            let real = |factor: Complex<f64>| part.weight * (entry * factor).re;
-            *slot += Complex::new(real(cosine), -real(sine));
-        }
-    }
-    response
-}
-
-impl Polynomial {
-    fn new(integrals: Integrals, forcing: &Forcing, window: f64) -> Self {
-        let size = integrals.matrix.nrows();
-        let rows = integrals.rows;
-        Self {
-            terms: terms(size, integrals.radius, window),
-            sinusoids: forcing
-                .sinusoids
-                .iter()
-                .map(|pair| [&rows * &pair[0], &rows * &pair[1]])
-                .collect(),
-            constants: forcing
-                .constants
-                .iter()
-                .map(|force| &rows * force)
-                .collect(),
-            matrix: integrals.matrix,
-            columns: integrals.columns,
-            flat_rows: rows.transpose().iter().copied().collect(),
-            rows,
-        }
-    }
-
-    /// row columns N^k for every power; nothing if the row does not feel the integrals.
-    pub fn projections(&self, row: &DVector<f64>) -> Vec<DVector<f64>> {
-        let mut power = self.columns.transpose() * row;
-        if power.iter().all(|entry| *entry == 0.0) {
-            return Vec::new();
-        }
-        let transposed = self.matrix.transpose();
-        let mut powers = Vec::with_capacity(self.terms);
-        for _ in 0..self.terms {
-            let next = &transposed * &power;
-            powers.push(std::mem::replace(&mut power, next));
-        }
-        powers
-    }
-
-    /// For each phase and power the factor beta + i gamma of I_k.
-    pub fn forced(&self, powers: &[DVector<f64>]) -> Vec<Vec<Complex<f64>>> {
-        let factor = |power: &DVector<f64>, pair: &[DVector<f64>; 2]| {
-            Complex::new(power.dot(&pair[0]), power.dot(&pair[1]))
-        };
-        self.sinusoids
-            .iter()
-            .map(|pair| powers.iter().map(|power| factor(power, pair)).collect())
-            .collect()
-    }
 }
 
 impl Cluster {

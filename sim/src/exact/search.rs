@@ -317,7 +317,7 @@ fn polish(
         }
         let settled =
             (here.rate * shift).abs() <= here.noise && here.value.abs() <= 8.0 * here.noise;
-        if settled || flow.tau + shift == flow.tau {
+        if flow.tau + shift == flow.tau {
             return;
         }
         flow.shift(regime, shift);
@@ -325,7 +325,7 @@ fn polish(
         let rest = shift
             * shift
             * (here.second.abs() + shift.abs() * (here.third.abs() + here.fourth * shift.abs()));
-        if rest <= here.noise {
+        if settled || rest <= here.noise {
             return;
         }
     }

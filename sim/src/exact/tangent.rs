@@ -5,17 +5,25 @@ use nalgebra::{Complex, DVector};
 
 use super::flow::Flow;
 use super::functional::monomials;
+use super::lanes::{self, Lane, Pairs, numbers, numbers_mut};
 use super::propagator::{Change, Follow, Segment};
-use super::regime::Regime;
+use super::regime::{Cluster, Regime};
 
 /// Tangent vectors of a motion.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tangents {
     /// One state difference each.
     pub vectors: Vec<Vec<f64>>,
-    factors: Vec<Complex<f64>>,
-    sum: Vec<f64>,
+    neighbour: Neighbour,
     rates: [Vec<f64>; 2],
+}
+
+/// Memory for one vector on its way.
+#[derive(Clone, Debug, Default)]
+struct Neighbour {
+    coordinates: Vec<Lane>,
+    derivatives: Vec<Lane>,
+    sum: Vec<Lane>,
 }
 
 impl Tangents {
@@ -29,11 +37,9 @@ impl Tangents {
 
     /// Carries the vectors on for `tau` s.
     pub fn advance(&mut self, regime: &Regime, tau: f64) {
-        self.factors.clear();
-        self.factors
-            .extend(regime.modes.rate.iter().map(|rate| (rate * tau).exp()));
+        let gains = Pairs::gains(&regime.modes.rate, tau);
         for vector in &mut self.vectors {
-            carry(regime, &self.factors, tau, vector, &mut self.sum);
+            self.neighbour.carry(regime, &gains, tau, vector);
         }
     }
 }
@@ -81,73 +87,58 @@ impl Follow for Tangents {
     }
 }
 
-/// Replaces a state difference by what the flow makes of it after `tau` s, given the
-/// modes' factors exp(rate tau).
-fn carry(
-    regime: &Regime,
-    factors: &[Complex<f64>],
-    tau: f64,
-    vector: &mut [f64],
-    sum: &mut Vec<f64>,
-) {
-    let states = vector.len();
-    let modes = &regime.modes;
-    sum.clear();
-    sum.resize(states, 0.0);
-    let mut amplitudes = vec![Complex::new(0.0, 0.0); factors.len()];
-    for (value, rows) in vector.iter().zip(&modes.rows) {
-        for (mode, amplitude) in amplitudes.iter_mut().enumerate() {
-            *amplitude += rows.get(mode) * *value;
+impl Neighbour {
+    /// Adds to a state difference what the flow makes of it after `tau` s, given the modes'
+    /// gains over that time.
+    fn carry(&mut self, regime: &Regime, gains: &Pairs, tau: f64, vector: &mut [f64]) {
+        let groups = regime.modes.groups();
+        self.coordinates.clear();
+        self.coordinates
+            .resize(2 * groups + regime.integrals.groups(), Lane::ZERO);
+        regime
+            .coordinates
+            .add_product(vector, &mut self.coordinates);
+        for group in 0..groups {
+            let (a, b) = (self.coordinates[group], self.coordinates[groups + group]);
+            let (c, d) = (gains.re[group], gains.im[group]);
+            self.coordinates[group] = a * c - b * d;
+            self.coordinates[groups + group] = a * d + b * c;
+        }
+        let integrals = &mut self.coordinates[2 * groups..];
+        regime
+            .integrals
+            .derivatives(integrals, None, &mut self.derivatives);
+        regime.integrals.moved(&self.derivatives, tau, integrals);
+        self.sum.clear();
+        self.sum.resize(lanes::groups(vector.len()), Lane::ZERO);
+        regime
+            .states
+            .add_product(numbers(&self.coordinates), &mut self.sum);
+        for cluster in &regime.clusters {
+            add_cluster(cluster, tau, vector, numbers_mut(&mut self.sum));
+        }
+        for (slot, moved) in vector.iter_mut().zip(numbers(&self.sum)) {
+            *slot += moved;
         }
     }
-    for (mode, (start, factor)) in amplitudes.iter().zip(factors).enumerate() {
-        let place = mode * states..(mode + 1) * states;
-        let now = start * factor;
-        let columns = modes.columns[0][place.clone()]
-            .iter()
-            .zip(&modes.columns[1][place]);
-        for (slot, (re, im)) in sum.iter_mut().zip(columns) {
-            *slot += re * now.re - im * now.im;
-        }
-    }
-    let difference = DVector::from_column_slice(vector);
-    add_polynomial(regime, tau, &difference, sum);
-    for cluster in &regime.clusters {
-        let start = &cluster.rows * difference.map(|entry| Complex::new(entry, 0.0));
-        let mut powers = vec![0.0; cluster.terms];
-        monomials(tau, &mut powers);
-        let mut value = DVector::zeros(start.len());
-        for power in powers.iter().rev() {
-            value = &cluster.matrix * value + &start * Complex::new(*power, 0.0);
-        }
-        value *= (cluster.centre * tau).exp();
-        for (slot, row) in sum.iter_mut().zip(cluster.columns.row_iter()) {
-            *slot += row
-                .iter()
-                .zip(value.iter())
-                .map(|(c, v)| (c * v).re)
-                .sum::<f64>();
-        }
-    }
-    vector.copy_from_slice(sum);
 }
 
-fn add_polynomial(regime: &Regime, tau: f64, difference: &DVector<f64>, sum: &mut [f64]) {
-    let polynomial = &regime.polynomial;
-    if polynomial.terms == 0 {
-        return;
-    }
-    let start = &polynomial.rows * difference;
-    let mut powers = vec![0.0; polynomial.terms];
+/// Adds how far a cluster moves a state difference in `tau` s.
+fn add_cluster(cluster: &Cluster, tau: f64, vector: &[f64], sum: &mut [f64]) {
+    let difference = DVector::from_iterator(
+        vector.len(),
+        vector.iter().map(|entry| Complex::new(*entry, 0.0)),
+    );
+    let start = &cluster.rows * difference;
+    let mut powers = vec![0.0; cluster.terms];
     monomials(tau, &mut powers);
     let mut value = DVector::zeros(start.len());
     for power in powers.iter().rev() {
-        value = &polynomial.matrix * value;
-        value.axpy(*power, &start, 1.0);
+        value = &cluster.matrix * value + &start * Complex::new(*power, 0.0);
     }
-    for (column, amplitude) in polynomial.columns.column_iter().zip(value.iter()) {
-        for (slot, entry) in sum.iter_mut().zip(column.iter()) {
-            *slot += entry * amplitude;
-        }
+    let moved = value * (cluster.centre * tau).exp() - start;
+    for (slot, row) in sum.iter_mut().zip(cluster.columns.row_iter()) {
+        let terms = row.iter().zip(moved.iter());
+        *slot += terms.map(|(c, v)| (c * v).re).sum::<f64>();
     }
 }

@@ -1,0 +1,213 @@
+//! The part of a regime with eigenvalues near zero, as a Taylor series in time.
+//!
+//! Its coordinates obey z' = N z + f(t), where N is nearly nilpotent and f constant or
+//! slowly sinusoidal; the derivatives follow one from the other and soon vanish. A sinusoid
+//! that turns many times within the series' reach is answered by a sinusoid instead.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::decomposition;
+use super::forced::reciprocal;
+use super::lanes::{Lane, Packed, groups, numbers, pack};
+use super::modes::Forcing;
+
+/// A sinusoid that turns by more than this within the series' reach is a fast one, rad.
+const FAST: f64 = 4.0;
+
+/// A slow one turns by no more than this: the reach is cut accordingly, rad.
+const SLOW: f64 = 0.25;
+
+/// Terms of the series that are below this part of the first are left out.
+const REMAINDER: f64 = 1e-18;
+
+/// More are never needed: arguments are below 1.
+const MOST_TERMS: usize = 24;
+
+/// A sinusoidal force on the integrals, which the series follows.
+#[derive(Clone, Debug)]
+struct Sinusoid {
+    phase: usize,
+    /// rad/s.
+    frequency: f64,
+    /// beta + i gamma of the force beta sin + gamma cos: real and imaginary parts.
+    force: [Vec<Lane>; 2],
+}
+
+/// The integrals of a regime.
+#[derive(Clone, Debug)]
+pub(super) struct Integrals {
+    /// How many coordinates there are.
+    pub size: usize,
+    /// How many of them no other one feels, the first ones.
+    pure: usize,
+    /// What they feel of those beyond the first `pure` ones, 1/s.
+    matrix: Packed,
+    /// The order of the last derivative that counts.
+    pub orders: usize,
+    /// size x states.
+    pub rows: DMatrix<f64>,
+    /// states x size.
+    pub columns: DMatrix<f64>,
+    /// Constant rates, for a unit constant and unit inputs.
+    constants: Vec<Vec<Lane>>,
+    sinusoids: Vec<Sinusoid>,
+    /// For each phase the coordinates per sine and per cosine that it forces, if it is fast.
+    pub forced: Vec<[DVector<f64>; 2]>,
+}
+
+impl Integrals {
+    /// The integrals with a series that reaches as far as `window`, s, or less: returns how
+    /// far.
+    pub fn new(
+        found: decomposition::Integrals,
+        forcing: &Forcing,
+        frequencies: &[f64],
+        mut window: f64,
+    ) -> (Self, f64) {
+        let decomposition::Integrals {
+            matrix,
+            columns,
+            rows,
+            radius,
+            pure,
+        } = found;
+        let size = matrix.nrows();
+        let (mut sinusoids, mut forced) = (Vec::new(), Vec::new());
+        let longest = window;
+        for (phase, (pair, frequency)) in forcing.sinusoids.iter().zip(frequencies).enumerate() {
+            let [beta, gamma] = [&rows * &pair[0], &rows * &pair[1]];
+            let mut answer = [DVector::zeros(size), DVector::zeros(size)];
+            if size > 0 && frequency.abs() * longest > FAST {
+                answer = forced_coordinates(&matrix, &beta, &gamma, *frequency);
+            } else if beta.iter().chain(gamma.iter()).any(|entry| *entry != 0.0) {
+                if frequency.abs() * window > SLOW {
+                    window = SLOW / frequency.abs();
+                }
+                sinusoids.push(Sinusoid {
+                    phase,
+                    frequency: *frequency,
+                    force: [pack(beta.as_slice()), pack(gamma.as_slice())],
+                });
+            }
+            forced.push(answer);
+        }
+        let fastest = sinusoids.iter().map(|s| s.frequency.abs());
+        let angle = fastest.fold(0.0, f64::max) * window;
+        let constant = |force: &DVector<f64>| pack((&rows * force).as_slice());
+        let integrals = Self {
+            size,
+            pure,
+            matrix: Packed::of(size, size - pure, |i, j| matrix[(i, pure + j)]),
+            orders: match size {
+                0 => 0,
+                _ => 1 + size - pure + terms(radius * window) + terms(angle),
+            },
+            constants: forcing.constants.iter().map(constant).collect(),
+            columns,
+            rows,
+            sinusoids,
+            forced,
+        };
+        (integrals, window)
+    }
+
+    /// How many groups the coordinates fill.
+    pub fn groups(&self) -> usize {
+        groups(self.size)
+    }
+
+    /// Writes the derivatives of order 1 to `orders` at coordinates `zeta`, order by order.
+    /// Without `forces` (inputs and exp(i theta) of the phases) those of a free motion.
+    pub fn derivatives(
+        &self,
+        zeta: &[Lane],
+        forces: Option<(&[f64], &[Complex<f64>])>,
+        out: &mut Vec<Lane>,
+    ) {
+        let width = zeta.len();
+        out.clear();
+        out.resize(self.orders * width, Lane::ZERO);
+        for order in 1..=self.orders {
+            let (before, slots) = out.split_at_mut((order - 1) * width);
+            let last = match order {
+                1 => zeta,
+                _ => &before[(order - 2) * width..],
+            };
+            let slots = &mut slots[..width];
+            self.matrix
+                .add_product(&numbers(last)[self.pure..self.size], slots);
+            let Some((inputs, phases)) = forces else {
+                continue;
+            };
+            if order == 1 {
+                let factors = std::iter::once(&1.0).chain(inputs);
+                for (column, factor) in self.constants.iter().zip(factors) {
+                    add_multiple(column, *factor, slots);
+                }
+            }
+            for sinusoid in &self.sinusoids {
+                // Im((i omega)^(order - 1) (beta + i gamma) exp(i theta)).
+                let turned = phases[sinusoid.phase]
+                    * Complex::new(0.0, sinusoid.frequency).powu(order as u32 - 1);
+                add_multiple(&sinusoid.force[0], turned.im, slots);
+                add_multiple(&sinusoid.force[1], turned.re, slots);
+            }
+        }
+    }
+
+    /// Writes how far the coordinates have moved after `tau` s, given their derivatives.
+    pub fn moved(&self, derivatives: &[Lane], tau: f64, out: &mut [Lane]) {
+        out.fill(Lane::ZERO);
+        let width = out.len();
+        for order in (1..=self.orders).rev() {
+            let factor = Lane::splat(tau * reciprocal(order));
+            let derivatives = &derivatives[(order - 1) * width..order * width];
+            for (slot, derivative) in out.iter_mut().zip(derivatives) {
+                *slot = (*slot + *derivative) * factor;
+            }
+        }
+    }
+
+    /// The factors of the coordinates in a linear function of the state.
+    pub fn weights(&self, row: &DVector<f64>) -> Vec<f64> {
+        (self.columns.transpose() * row).as_slice().to_vec()
+    }
+}
+
+/// Z of the answer Im(Z exp(i theta)) to a force beta sin + gamma cos: its real and its
+/// imaginary part.
+fn forced_coordinates(
+    matrix: &DMatrix<f64>,
+    beta: &DVector<f64>,
+    gamma: &DVector<f64>,
+    omega: f64,
+) -> [DVector<f64>; 2] {
+    let size = matrix.nrows();
+    let mut system = matrix.map(|entry| Complex::new(-entry, 0.0));
+    for place in 0..size {
+        system[(place, place)] += Complex::new(0.0, omega);
+    }
+    let force = beta.zip_map(gamma, Complex::new);
+    // Regular: the frequency is far above every eigenvalue of the matrix.
+    let answer = system.lu().solve(&force);
+    let answer = answer.unwrap_or_else(|| DVector::from_element(size, Complex::new(f64::NAN, 0.0)));
+    [answer.map(|z| z.re), answer.map(|z| z.im)]
+}
+
+/// How many terms of an exponential series count at this argument.
+fn terms(argument: f64) -> usize {
+    let (mut terms, mut term) = (0, 1.0);
+    while term > REMAINDER && terms < MOST_TERMS {
+        terms += 1;
+        term *= argument / terms as f64;
+    }
+    terms
+}
+
+/// out + factor column.
+fn add_multiple(column: &[Lane], factor: f64, out: &mut [Lane]) {
+    let factor = Lane::splat(factor);
+    for (slot, entry) in out.iter_mut().zip(column) {
+        *slot += *entry * factor;
+    }
+}

@@ -1,0 +1,150 @@
+//! The modes of a regime: eigenvalues of their own, and one per sinusoid for the response
+//! that it forces. What they answer to constant and sinusoidal forces.
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::decomposition::Part;
+use super::integrals::Integrals;
+use super::lanes::{Pairs, groups};
+
+/// What acts on the rates of the state.
+pub(super) struct Forcing {
+    /// For each phase the factors of its sine and of its cosine.
+    pub sinusoids: Vec<[DVector<f64>; 2]>,
+    /// Constant, then per unit of each input.
+    pub constants: Vec<DVector<f64>>,
+}
+
+/// The modes of a regime and its sinusoids, in ascending order of the magnitude of their
+/// rates.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Modes {
+    /// Eigenvalue, or i times the frequency of a sinusoid, 1/s.
+    pub rate: Vec<Complex<f64>>,
+    /// Their magnitudes, 1/s.
+    pub magnitude: Vec<f64>,
+    /// Which phase a sinusoid belongs to; nothing for a mode.
+    pub phase: Vec<Option<usize>>,
+    /// The same rates in groups.
+    pub rates: Pairs,
+    /// modes x states: amplitudes without forces.
+    pub rows: DMatrix<Complex<f64>>,
+    /// states x modes: what an amplitude adds to the state, with the weight of the conjugate.
+    pub columns: DMatrix<Complex<f64>>,
+    /// The amplitudes that a unit constant and unit inputs hold.
+    pub rest: Vec<DVector<Complex<f64>>>,
+    /// For each phase the amplitudes per sine and per cosine that it forces.
+    pub forced: Vec<[DVector<Complex<f64>>; 2]>,
+}
+
+impl Modes {
+    /// The modes of simple parts and the sinusoids of these frequencies, rad/s.
+    pub fn new(simple: &[Part], forcing: &Forcing, frequencies: &[f64], states: usize) -> Self {
+        let mut all: Vec<(Complex<f64>, Option<usize>)> = Vec::new();
+        all.extend(simple.iter().map(|part| (part.centre, None)));
+        let sinusoids = frequencies.iter().enumerate();
+        all.extend(sinusoids.map(|(phase, f)| (Complex::new(0.0, *f), Some(phase))));
+        let mut order: Vec<usize> = (0..all.len()).collect();
+        order.sort_by(|a, b| all[*a].0.norm().total_cmp(&all[*b].0.norm()));
+        let count = order.len();
+        let nothing = DVector::zeros(count);
+        let mut modes = Self {
+            rows: DMatrix::zeros(count, states),
+            columns: DMatrix::zeros(states, count),
+            rest: vec![nothing.clone(); forcing.constants.len()],
+            forced: vec![[nothing.clone(), nothing]; frequencies.len()],
+            ..Self::default()
+        };
+        for (mode, place) in order.into_iter().enumerate() {
+            let (rate, phase) = all[place];
+            modes.rate.push(rate);
+            modes.magnitude.push(rate.norm());
+            modes.phase.push(phase);
+            match phase {
+                None => modes.add_part(mode, &simple[place], forcing, frequencies),
+                Some(phase) => {
+                    let response = forced_response(simple, &forcing.sinusoids[phase], rate.im);
+                    modes.columns.set_column(mode, &response);
+                }
+            }
+        }
+        modes.rates = Pairs::of(&modes.rate);
+        modes
+    }
+
+    fn add_part(&mut self, mode: usize, part: &Part, forcing: &Forcing, frequencies: &[f64]) {
+        let weighted = part.columns.column(0) * Complex::new(part.weight, 0.0);
+        self.columns.set_column(mode, &weighted);
+        self.rows.set_row(mode, &part.rows.row(0));
+        for (rest, force) in self.rest.iter_mut().zip(&forcing.constants) {
+            rest[mode] = -project(&part.rows, force)[0] / part.centre;
+        }
+        let sinusoids = forcing.sinusoids.iter().zip(frequencies);
+        for (forced, (sinusoid, omega)) in self.forced.iter_mut().zip(sinusoids) {
+            let [sine, cosine] = answer(part, sinusoid, *omega);
+            forced[0][mode] = sine;
+            forced[1][mode] = cosine;
+        }
+    }
+
+    /// Adds what the integrals answer to fast sinusoids.
+    pub fn add_forced(&mut self, integrals: &Integrals) {
+        for (mode, phase) in self.phase.iter().enumerate() {
+            let Some(phase) = phase else { continue };
+            let [sine, cosine] = &integrals.forced[*phase];
+            // Z.re sin + Z.im cos = Re((Z.im - i Z.re) exp(i theta)).
+            let turned = cosine.zip_map(sine, |c, s| Complex::new(c, -s));
+            let columns = integrals.columns.map(|entry| Complex::new(entry, 0.0));
+            let added = self.columns.column(mode) + columns * turned;
+            self.columns.set_column(mode, &added);
+        }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.rate.len()
+    }
+
+    /// How many groups they fill.
+    pub fn groups(&self) -> usize {
+        groups(self.count())
+    }
+}
+
+/// A vector in the coordinates of a part.
+pub(super) fn project(
+    rows: &DMatrix<Complex<f64>>,
+    vector: &DVector<f64>,
+) -> DVector<Complex<f64>> {
+    rows * vector.map(|entry| Complex::new(entry, 0.0))
+}
+
+/// The amplitudes per sine and per cosine with which a mode answers the force
+/// beta sin theta + gamma cos theta:
+/// -(beta (rate sin + omega cos) + gamma (rate cos - omega sin)) / (rate^2 + omega^2).
+fn answer(part: &Part, sinusoid: &[DVector<f64>; 2], omega: f64) -> [Complex<f64>; 2] {
+    let rate = part.centre;
+    let [beta, gamma] = [0, 1].map(|kind| project(&part.rows, &sinusoid[kind])[0]);
+    let determinant = rate * rate + omega * omega;
+    [
+        -(beta * rate - gamma * omega) / determinant,
+        -(beta * omega + gamma * rate) / determinant,
+    ]
+}
+
+/// The factor of exp(i theta) in the response of the modes to a sinusoid.
+fn forced_response(
+    simple: &[Part],
+    sinusoid: &[DVector<f64>; 2],
+    omega: f64,
+) -> DVector<Complex<f64>> {
+    let mut response = DVector::zeros(sinusoid[0].len());
+    for part in simple {
+        let [sine, cosine] = answer(part, sinusoid, omega);
+        for (slot, entry) in response.iter_mut().zip(part.columns.column(0).iter()) {
+            let real = |factor: Complex<f64>| part.weight * (entry * factor).re;
+            *slot += Complex::new(real(cosine), -real(sine));
+        }
+    }
+    response
+}
