@@ -11,6 +11,7 @@ use nalgebra::Complex;
 use super::cluster_flow::ClusterFlow;
 use super::forced::reciprocal;
 use super::functional::Functional;
+use super::integrals::Series;
 use super::ladder::Rung;
 use super::lanes::{LITTLE, Lane, Pairs, groups, numbers, numbers_mut};
 use super::regime::Regime;
@@ -36,8 +37,8 @@ pub(super) struct Flow {
     now: Vec<Lane>,
     /// Their magnitudes.
     size: Vec<Lane>,
-    /// Derivatives of the integrals at the start, from the first on.
-    derivatives: Vec<Lane>,
+    /// The integrals.
+    series: Series,
     /// For each function what is particular to this flow.
     own: Vec<Own>,
     clusters: Vec<ClusterFlow>,
@@ -113,7 +114,7 @@ impl Flow {
         regime.integrals.derivatives(
             &self.start[modes..],
             Some((inputs, phases)),
-            &mut self.derivatives,
+            &mut self.series,
         );
         self.clusters.clear();
         for cluster in &regime.clusters {
@@ -124,7 +125,7 @@ impl Flow {
         for (own, functional) in self.own.iter_mut().zip(&regime.functionals) {
             own.partial.resize(regime.modes.count() + 1, NOTHING);
             (own.start, own.start_size) = functional.at(state, inputs, phases);
-            own.find_polynomial(regime, functional, &self.derivatives);
+            own.find_polynomial(regime, functional, &self.series.derivatives);
         }
         self.measure();
     }
@@ -324,7 +325,7 @@ impl Flow {
         let modes = self.now.len();
         regime
             .integrals
-            .moved(&self.derivatives, self.tau, &mut self.moved[modes..]);
+            .moved(&self.series, self.tau, &mut self.moved[modes..]);
         self.sum.clone_from(&self.origin);
         regime
             .states

@@ -24,13 +24,20 @@ const REMAINDER: f64 = 1e-18;
 const MOST_TERMS: usize = 24;
 
 /// A sinusoidal force on the integrals, which the series follows.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Sinusoid {
     phase: usize,
     /// rad/s.
     frequency: f64,
-    /// beta + i gamma of the force beta sin + gamma cos: real and imaginary parts.
-    force: [Vec<Lane>; 2],
+}
+
+/// The derivatives of a motion's integrals at its start.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Series {
+    /// Order by order, from the first on.
+    pub derivatives: Vec<Lane>,
+    /// What drives the next order: coordinates that are felt, sines and cosines.
+    driving: Vec<f64>,
 }
 
 /// The integrals of a regime.
@@ -40,10 +47,11 @@ pub(super) struct Integrals {
     pub size: usize,
     /// How many of them no other one feels, the first ones.
     pure: usize,
-    /// What they feel of those beyond the first `pure` ones, 1/s.
+    /// What they feel of those beyond the first `pure` ones, 1/s, and of the sine and the
+    /// cosine of each slow sinusoid.
     matrix: Packed,
     /// The order of the last derivative that counts.
-    pub orders: usize,
+    orders: usize,
     /// size x states.
     pub rows: DMatrix<f64>,
     /// states x size.
@@ -72,37 +80,45 @@ impl Integrals {
             pure,
         } = found;
         let size = matrix.nrows();
-        let (mut sinusoids, mut forced) = (Vec::new(), Vec::new());
+        let (mut sinusoids, mut felt, mut forced) = (Vec::new(), Vec::new(), Vec::new());
         let longest = window;
-        for (phase, (pair, frequency)) in forcing.sinusoids.iter().zip(frequencies).enumerate() {
-            let [beta, gamma] = [&rows * &pair[0], &rows * &pair[1]];
+        for (phase, (pair, &frequency)) in forcing.sinusoids.iter().zip(frequencies).enumerate() {
+            let force = [&rows * &pair[0], &rows * &pair[1]];
             let mut answer = [DVector::zeros(size), DVector::zeros(size)];
             if size > 0 && frequency.abs() * longest > FAST {
-                answer = forced_coordinates(&matrix, &beta, &gamma, *frequency);
-            } else if beta.iter().chain(gamma.iter()).any(|entry| *entry != 0.0) {
+                answer = forced_coordinates(&matrix, &force, frequency);
+            } else if force
+                .iter()
+                .flat_map(|f| f.iter())
+                .any(|entry| *entry != 0.0)
+            {
                 if frequency.abs() * window > SLOW {
                     window = SLOW / frequency.abs();
                 }
-                sinusoids.push(Sinusoid {
-                    phase,
-                    frequency: *frequency,
-                    force: [pack(beta.as_slice()), pack(gamma.as_slice())],
-                });
+                sinusoids.push(Sinusoid { phase, frequency });
+                felt.extend(force);
             }
             forced.push(answer);
         }
         let fastest = sinusoids.iter().map(|s| s.frequency.abs());
-        let angle = fastest.fold(0.0, f64::max) * window;
-        let constant = |force: &DVector<f64>| pack((&rows * force).as_slice());
+        let fastest = fastest.fold(radius, f64::max);
+        let inner = size - pure;
         let integrals = Self {
             size,
             pure,
-            matrix: Packed::of(size, size - pure, |i, j| matrix[(i, pure + j)]),
-            orders: match size {
-                0 => 0,
-                _ => 1 + size - pure + terms(radius * window) + terms(angle),
-            },
-            constants: forcing.constants.iter().map(constant).collect(),
+            matrix: Packed::of(size, inner + felt.len(), |i, j| {
+                match j.checked_sub(inner) {
+                    None => matrix[(i, pure + j)],
+                    Some(place) => felt[place][i],
+                }
+            }),
+            // The matrix is nilpotent but for its radius.
+            orders: 1 + inner + terms(fastest * window),
+            constants: forcing
+                .constants
+                .iter()
+                .map(|force| pack((&rows * force).as_slice()))
+                .collect(),
             columns,
             rows,
             sinusoids,
@@ -122,46 +138,46 @@ impl Integrals {
         &self,
         zeta: &[Lane],
         forces: Option<(&[f64], &[Complex<f64>])>,
-        out: &mut Vec<Lane>,
+        series: &mut Series,
     ) {
         let width = zeta.len();
-        out.clear();
-        out.resize(self.orders * width, Lane::ZERO);
-        for order in 1..=self.orders {
-            let (before, slots) = out.split_at_mut((order - 1) * width);
-            let last = match order {
-                1 => zeta,
-                _ => &before[(order - 2) * width..],
-            };
-            let slots = &mut slots[..width];
-            self.matrix
-                .add_product(&numbers(last)[self.pure..self.size], slots);
-            let Some((inputs, phases)) = forces else {
-                continue;
-            };
-            if order == 1 {
+        let inner = self.size - self.pure;
+        let Series {
+            derivatives,
+            driving,
+        } = series;
+        derivatives.clear();
+        derivatives.resize(self.orders * width, Lane::ZERO);
+        driving.clear();
+        driving.extend_from_slice(&numbers(zeta)[self.pure..self.size]);
+        for sinusoid in &self.sinusoids {
+            let e = forces.map_or(Complex::new(0.0, 0.0), |(_, phases)| phases[sinusoid.phase]);
+            driving.extend([e.im, e.re]);
+        }
+        for (order, slots) in derivatives.chunks_exact_mut(width).enumerate() {
+            self.matrix.add_product(driving, slots);
+            if let (0, Some((inputs, _))) = (order, forces) {
                 let factors = std::iter::once(&1.0).chain(inputs);
                 for (column, factor) in self.constants.iter().zip(factors) {
                     add_multiple(column, *factor, slots);
                 }
             }
-            for sinusoid in &self.sinusoids {
-                // Im((i omega)^(order - 1) (beta + i gamma) exp(i theta)).
-                let turned = phases[sinusoid.phase]
-                    * Complex::new(0.0, sinusoid.frequency).powu(order as u32 - 1);
-                add_multiple(&sinusoid.force[0], turned.im, slots);
-                add_multiple(&sinusoid.force[1], turned.re, slots);
+            driving[..inner].copy_from_slice(&numbers(slots)[self.pure..self.size]);
+            let pairs = driving[inner..].chunks_exact_mut(2);
+            for (pair, sinusoid) in pairs.zip(&self.sinusoids) {
+                let omega = sinusoid.frequency;
+                (pair[0], pair[1]) = (omega * pair[1], -omega * pair[0]);
             }
         }
     }
 
     /// Writes how far the coordinates have moved after `tau` s, given their derivatives.
-    pub fn moved(&self, derivatives: &[Lane], tau: f64, out: &mut [Lane]) {
+    pub fn moved(&self, series: &Series, tau: f64, out: &mut [Lane]) {
         out.fill(Lane::ZERO);
-        let width = out.len();
-        for order in (1..=self.orders).rev() {
-            let factor = Lane::splat(tau * reciprocal(order));
-            let derivatives = &derivatives[(order - 1) * width..order * width];
+        let width = out.len().max(1);
+        let orders = series.derivatives.chunks_exact(width).enumerate();
+        for (order, derivatives) in orders.rev() {
+            let factor = Lane::splat(tau * reciprocal(order + 1));
             for (slot, derivative) in out.iter_mut().zip(derivatives) {
                 *slot = (*slot + *derivative) * factor;
             }
@@ -178,8 +194,7 @@ impl Integrals {
 /// imaginary part.
 fn forced_coordinates(
     matrix: &DMatrix<f64>,
-    beta: &DVector<f64>,
-    gamma: &DVector<f64>,
+    [beta, gamma]: &[DVector<f64>; 2],
     omega: f64,
 ) -> [DVector<f64>; 2] {
     let size = matrix.nrows();

@@ -29,7 +29,7 @@ const AT_ONCE: u32 = 16;
 
 /// Decays that are slower than what switches by this factor are carried as polynomials: as
 /// modes they would hold large amplitudes that cancel.
-const SLOW: f64 = 1e-4;
+const SLOW: f64 = 1e-2;
 
 /// A motion that would need more steps than this, hours of them, is not begun.
 const MOST_STEPS: f64 = 1e8;

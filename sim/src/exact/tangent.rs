@@ -5,6 +5,7 @@ use nalgebra::{Complex, DVector};
 
 use super::flow::Flow;
 use super::functional::monomials;
+use super::integrals::Series;
 use super::lanes::{self, Lane, Pairs, numbers, numbers_mut};
 use super::propagator::{Change, Follow, Segment};
 use super::regime::{Cluster, Regime};
@@ -22,7 +23,7 @@ pub(super) struct Tangents {
 #[derive(Clone, Debug, Default)]
 struct Neighbour {
     coordinates: Vec<Lane>,
-    derivatives: Vec<Lane>,
+    series: Series,
     sum: Vec<Lane>,
 }
 
@@ -107,8 +108,8 @@ impl Neighbour {
         let integrals = &mut self.coordinates[2 * groups..];
         regime
             .integrals
-            .derivatives(integrals, None, &mut self.derivatives);
-        regime.integrals.moved(&self.derivatives, tau, integrals);
+            .derivatives(integrals, None, &mut self.series);
+        regime.integrals.moved(&self.series, tau, integrals);
         self.sum.clear();
         self.sum.resize(lanes::groups(vector.len()), Lane::ZERO);
         regime
