@@ -13,7 +13,7 @@ use super::forced::reciprocal;
 use super::functional::Functional;
 use super::integrals::Series;
 use super::ladder::Rung;
-use super::lanes::{LITTLE, Lane, Pairs, groups, numbers, numbers_mut};
+use super::lanes::{LITTLE, Lane, Pairs, TINY, groups, numbers, numbers_mut};
 use super::regime::Regime;
 
 /// The roundings of a few operations on a number of size 1.
@@ -60,8 +60,12 @@ struct Own {
     /// The value, and what its terms' magnitudes add up to.
     value: f64,
     size: f64,
-    /// Sums over the first modes, from none to all.
+    /// Sums over the first groups of modes, from none to all.
     partial: Vec<Partial>,
+    /// The amplitudes' part of the value, and derivatives of order 1 to 3, of all modes.
+    amplitudes: [f64; 4],
+    /// Magnitudes of the orders 0, 1 and 4, of all modes.
+    all: [f64; 3],
     /// The polynomial's derivatives of order 1 to 3.
     derivatives: [f64; 3],
 }
@@ -83,18 +87,49 @@ pub(super) struct Local {
     pub rate_noise: f64,
 }
 
-/// Sums over the slowest modes.
+/// Sums over the slowest groups of modes, four side by side.
 #[derive(Clone, Copy, Debug)]
 struct Partial {
     /// The amplitudes' part of the value, and derivatives of order 1 to 3.
-    derivatives: Lane,
+    derivatives: [Lane; 4],
     /// Magnitudes of the orders 0, 1 and 4.
-    sizes: Lane,
+    sizes: [Lane; 3],
 }
 
+impl Partial {
+    /// What the last sums hold beyond the first ones, without so many modes of the first
+    /// group beyond.
+    #[inline]
+    fn beyond(sums: &[Self], modes: usize) -> Self {
+        let (before, first, last) = (&sums[0], &sums[1], &sums[sums.len() - 1]);
+        let mask = MASKS[modes];
+        let left_out =
+            |before: Lane, first: Lane, last: Lane| last - before - (first - before) * mask;
+        let orders = [0, 1, 2, 3];
+        Self {
+            derivatives: orders.map(|order: usize| {
+                let of = |sums: &Self| sums.derivatives[order];
+                left_out(of(before), of(first), of(last))
+            }),
+            sizes: [0, 1, 2].map(|place: usize| {
+                let of = |sums: &Self| sums.sizes[place];
+                left_out(of(before), of(first), of(last))
+            }),
+        }
+    }
+}
+
+/// One for so many lanes.
+const MASKS: [Lane; 4] = [
+    Lane::new([0.0; 4]),
+    Lane::new([1.0, 0.0, 0.0, 0.0]),
+    Lane::new([1.0, 1.0, 0.0, 0.0]),
+    Lane::new([1.0, 1.0, 1.0, 0.0]),
+];
+
 const NOTHING: Partial = Partial {
-    derivatives: Lane::ZERO,
-    sizes: Lane::ZERO,
+    derivatives: [Lane::ZERO; 4],
+    sizes: [Lane::ZERO; 3],
 };
 
 impl Flow {
@@ -123,7 +158,7 @@ impl Flow {
         }
         self.own.resize_with(regime.functionals.len(), Own::default);
         for (own, functional) in self.own.iter_mut().zip(&regime.functionals) {
-            own.partial.resize(regime.modes.count() + 1, NOTHING);
+            own.partial.resize(regime.modes.groups() + 1, NOTHING);
             (own.start, own.start_size) = functional.at(state, inputs, phases);
             own.find_polynomial(regime, functional, &self.series.derivatives);
         }
@@ -207,7 +242,7 @@ impl Flow {
             }
         }
         if fastest * rest.abs() <= LITTLE {
-            self.advance_little(&regime.modes.rates, rest);
+            self.advance_little(&regime.modes.rates, rest, fastest);
         } else {
             self.advance(&Pairs::gains(&regime.modes.rate, rest));
         }
@@ -215,11 +250,12 @@ impl Flow {
     }
 
     /// Advances by so little that a short series gives the gains.
-    fn advance_little(&mut self, rates: &Pairs, time: f64) {
+    fn advance_little(&mut self, rates: &Pairs, time: f64, fastest: f64) {
         let groups = rates.re.len();
+        let terms = if fastest * time.abs() <= TINY { 3 } else { 7 };
         let time = Lane::splat(time);
         for group in 0..groups {
-            let (c, d) = rates.little_gain(group, time);
+            let (c, d) = rates.little_gain(group, time, terms);
             let (a, b) = (self.now[group], self.now[groups + group]);
             self.moved[group] += a * c - b * d;
             self.moved[groups + group] += a * d + b * c;
@@ -253,52 +289,62 @@ impl Flow {
     /// Sums up a function over its modes here.
     pub fn sum_up(&mut self, regime: &Regime, place: usize) {
         let own = &mut self.own[place];
-        let functional = &regime.functionals[place];
-        let (re, im) = self.now.split_at(self.now.len() / 2);
+        let groups = self.size.len();
+        let (now_re, now_im) = self.now.split_at(groups);
+        let (moved_re, moved_im) = self.moved[..2 * groups].split_at(groups);
+        let weights = &regime.functionals[place].weights[..groups];
+        let slots = &mut own.partial[1..=groups];
         let mut partial = NOTHING;
-        let amplitudes = numbers(re).iter().zip(numbers(im)).zip(numbers(&self.size));
-        let slots = own.partial[1..].iter_mut().zip(&functional.weights);
-        for ((slot, weights), ((re, im), size)) in slots.zip(amplitudes) {
-            partial.derivatives += weights.re * Lane::splat(*re) - weights.im * Lane::splat(*im);
-            partial.sizes += weights.size * Lane::splat(*size);
-            *slot = partial;
-        }
-        let (moved_re, moved_im) = self.moved.split_at(re.len());
         let (mut value, mut size) = (Lane::ZERO, Lane::ZERO);
-        for (group, bound) in functional.sizes.iter().enumerate() {
-            let (a, b) = (moved_re[group], moved_im[group]);
-            value += functional.values.re[group] * a - functional.values.im[group] * b;
-            size += *bound * (a.abs() + b.abs());
+        for group in 0..groups {
+            let weights = &weights[group];
+            let (re, im) = (now_re[group], now_im[group]);
+            for order in 0..4 {
+                partial.derivatives[order] += weights.re[order] * re - weights.im[order] * im;
+            }
+            for order in 0..3 {
+                partial.sizes[order] += weights.size[order] * self.size[group];
+            }
+            slots[group] = partial;
+            let (re, im) = (moved_re[group], moved_im[group]);
+            value += weights.re[0] * re - weights.im[0] * im;
+            size += weights.size[0] * (re.abs() + im.abs());
         }
         own.evaluate(self.tau);
         own.value += value.reduce_add();
         own.size += size.reduce_add();
+        own.all = partial.sizes.map(Lane::reduce_add);
+        own.amplitudes = partial.derivatives.map(Lane::reduce_add);
     }
 
     /// Value and derivatives of a function that has been summed up here, with bounds over
     /// the next step of `rung`.
     pub fn local(&self, regime: &Regime, place: usize, rung: &Rung) -> Local {
         let own = &self.own[place];
-        let (slow, last) = (&own.partial[rung.slow], own.partial.len() - 1);
-        let mut derivatives = slow.derivatives.to_array();
+        let mut derivatives = own.amplitudes;
         for (slot, value) in derivatives[1..].iter_mut().zip(own.derivatives) {
             *slot += value;
         }
-        let all = own.partial[last].sizes.to_array();
-        let some = slow.sizes.to_array();
+        let all = own.all;
         let (mut fast, mut fast_rate) = (0.0, 0.0);
-        if rung.slow < last {
-            let amplitudes = own.partial[last].derivatives.to_array()[0];
-            derivatives[0] = own.value - (amplitudes - derivatives[0]);
-            // The difference of two sums, with their rounding.
-            fast = (all[0] - some[0] + ROUNDING * all[0]) * rung.growth;
-            fast_rate = (all[1] - some[1] + ROUNDING * all[1]) * rung.growth;
-        } else {
-            derivatives[0] = own.value;
+        let mut fourth = all[2];
+        derivatives[0] = own.value;
+        if rung.slow < regime.modes.count() {
+            let (group, lane) = (rung.slow / 4, rung.slow % 4);
+            let left_out = Partial::beyond(&own.partial[group..], lane);
+            // Without the fast modes, at whatever phase they are.
+            for (slot, sum) in derivatives.iter_mut().zip(left_out.derivatives) {
+                *slot -= sum.reduce_add();
+            }
+            // With the rounding of the sums.
+            let sizes = left_out.sizes.map(Lane::reduce_add);
+            fast = (sizes[0] + ROUNDING * all[0]) * rung.growth;
+            fast_rate = (sizes[1] + ROUNDING * all[1]) * rung.growth;
+            fourth -= sizes[2];
         }
         let mut local = Local {
             derivatives,
-            fourth: some[2] * rung.growth + own.fourth,
+            fourth: fourth * rung.growth + own.fourth,
             fast,
             fast_rate,
             noise: own.size,

@@ -59,15 +59,15 @@ pub(super) struct Limits {
     pub high: f64,
 }
 
-/// The factors of a mode in a function.
+/// The factors of a group of modes in a function.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weights {
     /// Real parts in the derivatives of order 0 to 3.
-    pub re: Lane,
+    pub re: [Lane; 4],
     /// Imaginary parts.
-    pub im: Lane,
+    pub im: [Lane; 4],
     /// Magnitudes for the orders 0, 1 and 4.
-    pub size: Lane,
+    pub size: [Lane; 3],
 }
 
 /// A function prepared for one regime.
@@ -75,12 +75,8 @@ pub(super) struct Weights {
 pub(super) struct Functional {
     pub linear: Linear,
     pub limits: Limits,
-    /// Each mode's factors in the derivatives.
+    /// The factors of each group of modes.
     pub weights: Vec<Weights>,
-    /// Each mode's factor in the value.
-    pub values: Pairs,
-    /// The magnitudes of these.
-    pub sizes: Vec<Lane>,
     /// The factors of the integrals; none if it does not feel them.
     pub integrals: Vec<f64>,
     /// row columns N^k of each cluster.
@@ -113,12 +109,9 @@ impl Functional {
         if of_integrals.iter().all(|weight| *weight == 0.0) {
             of_integrals.clear();
         }
-        let sizes: Vec<f64> = values.iter().map(|value| value.norm()).collect();
         let felt = linear.state.iter().copied().enumerate();
         Self {
             weights: weights(&values, modes),
-            values: Pairs::of(&values),
-            sizes: pack(&sizes),
             integrals: of_integrals,
             cluster_powers: clusters
                 .iter()
@@ -151,17 +144,27 @@ impl Functional {
 
 /// The factors of all modes, given those in the value.
 fn weights(values: &[Complex<f64>], modes: &Modes) -> Vec<Weights> {
-    let of = |(mode, value): (usize, &Complex<f64>)| {
-        let factor = |order: u32| value * modes.rate[mode].powu(order);
-        let size = |order: i32| value.norm() * modes.magnitude[mode].powi(order);
-        let factors = [0, 1, 2, 3].map(factor);
-        Weights {
-            re: Lane::from(factors.map(|f| f.re)),
-            im: Lane::from(factors.map(|f| f.im)),
-            size: Lane::from([size(0), size(1), size(4), 0.0]),
-        }
+    let factors = |order: u32| -> Pairs {
+        let pairs = values.iter().zip(&modes.rate);
+        let all: Vec<Complex<f64>> = pairs
+            .map(|(value, rate)| value * rate.powu(order))
+            .collect();
+        Pairs::of(&all)
     };
-    values.iter().enumerate().map(of).collect()
+    let sizes = |order: i32| -> Vec<Lane> {
+        let pairs = values.iter().zip(&modes.magnitude);
+        let all: Vec<f64> = pairs
+            .map(|(value, rate)| value.norm() * rate.powi(order))
+            .collect();
+        pack(&all)
+    };
+    let (factors, sizes) = ([0, 1, 2, 3].map(factors), [0, 1, 4].map(sizes));
+    let of = |group: usize| Weights {
+        re: [0, 1, 2, 3].map(|order: usize| factors[order].re[group]),
+        im: [0, 1, 2, 3].map(|order: usize| factors[order].im[group]),
+        size: [0, 1, 2].map(|place: usize| sizes[place][group]),
+    };
+    (0..modes.groups()).map(of).collect()
 }
 
 /// tau^k / k! for k = 0 .. out.len() - 1.

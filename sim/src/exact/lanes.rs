@@ -110,12 +110,14 @@ impl Pairs {
         Self::of(&gains)
     }
 
-    /// exp(rate time) - 1 of each of these rates by seven terms of the series.
-    pub fn little_gain(&self, group: usize, time: Lane) -> (Lane, Lane) {
+    /// exp(rate time) - 1 of a group of these rates by one more than so many terms of the
+    /// series.
+    #[inline(always)]
+    pub fn little_gain(&self, group: usize, time: Lane, terms: usize) -> (Lane, Lane) {
         let (x, y) = (self.re[group] * time, self.im[group] * time);
         let (mut c, mut d) = (Lane::ONE, Lane::ZERO);
-        for reciprocal in RECIPROCALS {
-            let reciprocal = Lane::splat(reciprocal);
+        for reciprocal in &RECIPROCALS[7 - terms..] {
+            let reciprocal = Lane::splat(*reciprocal);
             let (u, v) = (x * reciprocal, y * reciprocal);
             (c, d) = (Lane::ONE + (u * c - v * d), u * d + v * c);
         }
@@ -134,8 +136,11 @@ pub(super) fn gain(z: Complex<f64>) -> Complex<f64> {
 /// Of 8 to 2.
 const RECIPROCALS: [f64; 7] = [0.125, 1.0 / 7.0, 1.0 / 6.0, 0.2, 0.25, 1.0 / 3.0, 0.5];
 
-/// The largest argument of [`Pairs::little_gain`]: the first term left out is below 1e-19.
+/// The largest argument of [`Pairs::little_gain`] with seven terms: the first term left out is below 1e-19.
 pub(super) const LITTLE: f64 = 1.0 / 64.0;
+
+/// The same with three terms.
+pub(super) const TINY: f64 = 1e-4;
 
 #[cfg(test)]
 mod tests {
@@ -150,7 +155,7 @@ mod tests {
         ];
         let pairs = Pairs::of(&rates);
         for time in [1e-3 * LITTLE, LITTLE / 64.0, -LITTLE / 70.0] {
-            let (re, im) = pairs.little_gain(0, Lane::splat(time));
+            let (re, im) = pairs.little_gain(0, Lane::splat(time), 7);
             for (place, rate) in rates.iter().enumerate() {
                 let found = Complex::new(re.as_array()[place], im.as_array()[place]);
                 let wanted = gain(rate * time);
