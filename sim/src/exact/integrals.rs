@@ -154,7 +154,7 @@ impl Integrals {
             let e = forces.map_or(Complex::new(0.0, 0.0), |(_, phases)| phases[sinusoid.phase]);
             driving.extend([e.im, e.re]);
         }
-        for (order, slots) in derivatives.chunks_exact_mut(width).enumerate() {
+        for (order, slots) in derivatives.chunks_exact_mut(width.max(1)).enumerate() {
             self.matrix.add_product(driving, slots);
             if let (0, Some((inputs, _))) = (order, forces) {
                 let factors = std::iter::once(&1.0).chain(inputs);
