@@ -11,7 +11,7 @@ use std::ops::Range;
 use nalgebra::{Complex, DMatrix};
 
 use super::blocks::{decouple, inverse};
-use super::refine::Subspaces;
+use super::refine::{Refinement, Subspaces};
 use super::schur::SchurForm;
 
 /// Eigenvalues below this part of the fastest rate, or of 1 1/s, count as near zero: as modes
@@ -98,11 +98,17 @@ impl Decomposition {
         let near_zero = near_zero(&schur.eigenvalues(), forcing, slow);
         schur.sort_by_key(near_zero.iter().map(|near| usize::from(!near)).collect());
         let zeros = near_zero.iter().filter(|near| **near).count();
-        let mut found = best_parts(schur, zeros);
-        if !found.refine(&inner) {
-            return Err(Failure::NotConverged);
+        let mut found = best_parts(&schur, zeros);
+        for _ in 0..=zeros.max(inner.nrows()) {
+            let refinement = found.refine(&inner);
+            if refinement.converged {
+                return Ok(found.in_full_state(&outer, &pure, &felt));
+            }
+            found = found
+                .merged(&schur, &refinement.inseparable)
+                .ok_or(Failure::NotConverged)?;
         }
-        Ok(found.in_full_state(&outer, &pure, &felt))
+        Err(Failure::NotConverged)
     }
 }
 
@@ -142,9 +148,9 @@ fn near_zero(eigenvalues: &[Complex<f64>], forcing: f64, slow: f64) -> Vec<bool>
 }
 
 /// The parts, with those eigenvalues together that are sensitive because of each other.
-fn best_parts(schur: SchurForm, zeros: usize) -> Found {
+fn best_parts(schur: &SchurForm, zeros: usize) -> Found {
     let eigenvalues = schur.eigenvalues();
-    let first = Found::with_groups(&schur, zeros, &groups(&eigenvalues, zeros, |_, _, _| false));
+    let first = Found::with_groups(schur, zeros, groups(&eigenvalues, zeros, |_, _, _| false));
     if first.condition() <= WELL_CONDITIONED {
         return first;
     }
@@ -155,7 +161,7 @@ fn best_parts(schur: SchurForm, zeros: usize) -> Found {
         let explained = least > WELL_CONDITIONED && least * distance <= SHARED;
         explained || (least > HOPELESS.0 && distance <= HOPELESS.1)
     };
-    let second = Found::with_groups(&schur, zeros, &groups(&eigenvalues, zeros, shared));
+    let second = Found::with_groups(schur, zeros, groups(&eigenvalues, zeros, shared));
     if second.condition() < 0.5 * first.condition() {
         second
     } else {
@@ -200,13 +206,17 @@ struct Found {
     scale: Vec<f64>,
     /// The sensitivity of each eigenvalue, in the order of the Schur form.
     sensitivity: Vec<f64>,
+    /// The group of each, in the same order.
+    numbers: Vec<usize>,
 }
 
 impl Found {
-    fn with_groups(schur: &SchurForm, zeros: usize, numbers: &[usize]) -> Self {
+    /// `numbers`: the group of each eigenvalue, 0 for those near zero, in the order of the
+    /// Schur form.
+    fn with_groups(schur: &SchurForm, zeros: usize, numbers: Vec<usize>) -> Self {
         let mut order: Vec<usize> = (0..numbers.len()).collect();
         order.sort_by_key(|place| numbers[*place]);
-        let mut group = numbers.to_vec();
+        let mut group = numbers.clone();
         let mut form = SchurForm {
             triangle: schur.triangle.clone(),
             basis: schur.basis.clone(),
@@ -235,11 +245,34 @@ impl Found {
             radius,
             scale: form.scale,
             sensitivity,
+            numbers,
         }
     }
 
-    /// Makes the parts exact, those near zero in a real basis; returns whether they are.
-    fn refine(&mut self, inner: &DMatrix<f64>) -> bool {
+    /// The same with these pairs of blocks made one; nothing if there are none, or if what is
+    /// near zero would have to join.
+    fn merged(self, schur: &SchurForm, pairs: &[(usize, usize)]) -> Option<Self> {
+        let mut sorted = self.numbers.clone();
+        sorted.sort_unstable();
+        let mut numbers = self.numbers;
+        for (a, b) in pairs {
+            let number = |block: usize| sorted[self.subspaces.blocks[block].start];
+            let (kept, gone) = (number(*a).min(number(*b)), number(*a).max(number(*b)));
+            if kept == 0 {
+                return None;
+            }
+            for slot in numbers.iter_mut().chain(&mut sorted) {
+                if *slot == gone {
+                    *slot = kept;
+                }
+            }
+        }
+        let found = !pairs.is_empty();
+        found.then(|| Self::with_groups(schur, self.zeros, numbers))
+    }
+
+    /// Makes the parts exact, those near zero in a real basis.
+    fn refine(&mut self, inner: &DMatrix<f64>) -> Refinement {
         let balanced = DMatrix::from_fn(inner.nrows(), inner.ncols(), |i, j| {
             inner[(i, j)] * self.scale[j] / self.scale[i]
         });

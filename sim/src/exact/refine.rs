@@ -11,13 +11,17 @@ use std::ops::Range;
 use nalgebra::{Complex, DMatrix};
 
 /// Corrections that are made at most; each squares the relative error.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 5;
 
-/// A correction of the basis by less than this is rounding, and the last one.
-const SETTLED: f64 = 1e-12;
+/// What is wrong by less than this part of the eigenvalues is rounding and stays: among
+/// eigenvalues that nearly agree there is no telling their vectors apart, nor a need to.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// A correction larger than this in the last round leaves no digits to rely on.
-const HOPELESS: f64 = 1e-6;
+/// A vector turned by more than this is beyond first order, and left as it is.
+const TURN: f64 = 0.1;
+
+/// What is still wrong by more than this part of the eigenvalues cannot be relied on.
+const HOPELESS: f64 = 1e-9;
 
 /// A matrix by invariant subspaces, D being block-diagonal.
 pub(super) struct Subspaces {
@@ -31,28 +35,51 @@ pub(super) struct Subspaces {
     pub blocks: Vec<Range<usize>>,
 }
 
+/// How a refinement ended.
+pub(super) struct Refinement {
+    /// Whether the subspaces can be relied on.
+    pub converged: bool,
+    /// Pairs of blocks that rounding does not tell apart, if not.
+    pub inseparable: Vec<(usize, usize)>,
+}
+
 impl Subspaces {
-    /// Refines the subspaces of a matrix; returns whether that converged.
-    pub fn refine(&mut self, of: &DMatrix<f64>) -> bool {
-        let mut change = f64::INFINITY;
+    /// Refines the subspaces of a matrix.
+    pub fn refine(&mut self, of: &DMatrix<f64>) -> Refinement {
+        let mut inseparable = Vec::new();
+        let mut wrong = f64::INFINITY;
         for _ in 0..ROUNDS {
             self.refine_rows();
-            change = self.refine_columns(of);
-            if !(change > SETTLED) {
+            inseparable.clear();
+            wrong = self.refine_columns(of, &mut inseparable);
+            if !(wrong > ROUNDING) {
                 break;
             }
         }
         self.refine_rows();
-        change <= HOPELESS
+        Refinement {
+            converged: wrong <= HOPELESS,
+            inseparable,
+        }
     }
 
     /// Corrects X and D by first-order perturbation: with E = Y (A X - X D) the blocks of D
-    /// change by those of E, and X by X F with D_i F_ij - F_ij D_j = -E_ij. Returns the
-    /// largest entry of F.
-    fn refine_columns(&mut self, of: &DMatrix<f64>) -> f64 {
+    /// change by those of E, and X by X F with D_i F_ij - F_ij D_j = -E_ij. Returns how
+    /// large E was, relative to the eigenvalues, and adds the pairs of blocks that it turns
+    /// into each other.
+    fn refine_columns(&mut self, of: &DMatrix<f64>, inseparable: &mut Vec<(usize, usize)>) -> f64 {
         let error = &self.rows * self.residual(of);
         let size = error.nrows();
         let mut turn = DMatrix::zeros(size, size);
+        let magnitude = |range: &Range<usize>| -> f64 {
+            range
+                .clone()
+                .map(|place| self.matrix[(place, place)].norm())
+                .fold(0.0, f64::max)
+        };
+        let magnitudes: Vec<f64> = self.blocks.iter().map(magnitude).collect();
+        let largest = magnitudes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        let mut wrong = 0.0_f64;
         for (i, rows) in self.blocks.iter().enumerate() {
             for (j, columns) in self.blocks.iter().enumerate() {
                 let place = (rows.start, columns.start);
@@ -61,14 +88,28 @@ impl Subspaces {
                 if i == j {
                     let mut block = self.matrix.view_mut(place, shape);
                     block += found;
+                    continue;
+                }
+                let relative =
+                    found.norm() / (magnitudes[i] + magnitudes[j]).max(f64::EPSILON * largest);
+                // Numbers that are none shall not pass for small ones.
+                wrong = if relative.is_nan() {
+                    f64::INFINITY
                 } else {
+                    wrong.max(relative)
+                };
+                if relative > ROUNDING {
                     let solved = sylvester(&self.block(rows), &self.block(columns), &found);
-                    turn.view_mut(place, shape).copy_from(&solved);
+                    if solved.norm() <= TURN {
+                        turn.view_mut(place, shape).copy_from(&solved);
+                    } else if relative > HOPELESS {
+                        inseparable.push((i, j));
+                    }
                 }
             }
         }
         self.columns += &self.columns * &turn;
-        turn.iter().map(|entry| entry.norm()).fold(0.0, f64::max)
+        wrong
     }
 
     fn block(&self, range: &Range<usize>) -> DMatrix<Complex<f64>> {
