@@ -55,6 +55,8 @@ struct Own {
     start_size: f64,
     /// Coefficients of the powers of tau from the first on.
     polynomial: Vec<f64>,
+    /// The sum of the magnitudes of the terms of the first coefficient, which may cancel.
+    rate_size: f64,
     /// A bound of the polynomial's fourth derivative within the window.
     fourth: f64,
     /// The value, and what its terms' magnitudes add up to.
@@ -85,6 +87,8 @@ pub(super) struct Local {
     pub noise: f64,
     /// What rounding may make of the first derivative.
     pub rate_noise: f64,
+    /// The part of it that adds to the value in proportion to time.
+    pub drift_noise: f64,
 }
 
 /// Sums over the slowest groups of modes, four side by side.
@@ -161,6 +165,11 @@ impl Flow {
             own.partial.resize(regime.modes.groups() + 1, NOTHING);
             (own.start, own.start_size) = functional.at(state, inputs, phases);
             own.find_polynomial(regime, functional, &self.series.derivatives);
+            let zeta = &self.start[modes..];
+            let forces = (inputs, phases);
+            own.rate_size = regime
+                .integrals
+                .rate_size(&functional.rate_terms, zeta, forces);
         }
         self.measure();
     }
@@ -348,7 +357,8 @@ impl Flow {
             fast,
             fast_rate,
             noise: own.size,
-            rate_noise: all[1] + own.derivatives[0].abs(),
+            rate_noise: all[1] + own.derivatives[0].abs() + own.rate_size,
+            drift_noise: own.rate_size,
         };
         for (cluster, flow) in self.clusters.iter().enumerate() {
             let powers = &regime.functionals[place].cluster_powers[cluster];
@@ -363,6 +373,7 @@ impl Flow {
         }
         local.noise *= ROUNDING;
         local.rate_noise *= ROUNDING;
+        local.drift_noise *= ROUNDING;
         local
     }
 
@@ -440,7 +451,7 @@ impl Own {
         }
         // a is the polynomial over tau.
         self.value = self.start + a * tau;
-        self.size = self.start_size + size * tau;
+        self.size = self.start_size + (size + self.rate_size) * tau;
         self.derivatives = [a + b * tau, 2.0 * (b + c * tau), 6.0 * (c + d * tau)];
     }
 }

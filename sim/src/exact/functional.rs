@@ -6,7 +6,7 @@ use codegen::affine::system::AffineRows;
 use nalgebra::{Complex, DVector};
 
 use super::forced::factorial;
-use super::integrals::Integrals;
+use super::integrals::{Integrals, RateTerms};
 use super::lanes::{Lane, Pairs, pack};
 use super::modes::Modes;
 use super::regime::Cluster;
@@ -79,6 +79,8 @@ pub(super) struct Functional {
     pub weights: Vec<Weights>,
     /// The factors of the integrals; none if it does not feel them.
     pub integrals: Vec<f64>,
+    /// The terms of the rate that the integrals make up.
+    pub rate_terms: RateTerms,
     /// row columns N^k of each cluster.
     pub cluster_powers: Vec<Vec<DVector<Complex<f64>>>>,
     /// The states it reads, with their factors.
@@ -112,6 +114,7 @@ impl Functional {
         let felt = linear.state.iter().copied().enumerate();
         Self {
             weights: weights(&values, modes),
+            rate_terms: integrals.rate_terms(&of_integrals),
             integrals: of_integrals,
             cluster_powers: clusters
                 .iter()

@@ -31,6 +31,15 @@ struct Sinusoid {
     frequency: f64,
 }
 
+/// The magnitudes of the factors that drive a function's rate.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RateTerms {
+    /// Of coordinates that are felt, sines and cosines.
+    driving: Vec<f64>,
+    /// Of a unit constant and unit inputs.
+    constants: Vec<f64>,
+}
+
 /// The derivatives of a motion's integrals at its start.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Series {
@@ -182,6 +191,48 @@ impl Integrals {
                 *slot = (*slot + *derivative) * factor;
             }
         }
+    }
+
+    /// The terms that make up the rate of a function with these weights of the coordinates.
+    pub fn rate_terms(&self, weights: &[f64]) -> RateTerms {
+        let of = |entry: &dyn Fn(usize) -> f64| -> f64 {
+            let terms = weights.iter().enumerate();
+            terms
+                .map(|(place, weight)| weight * entry(place))
+                .sum::<f64>()
+                .abs()
+        };
+        RateTerms {
+            driving: (0..self.matrix.columns())
+                .map(|column| of(&|row| self.matrix.entry(row, column)))
+                .collect(),
+            constants: self
+                .constants
+                .iter()
+                .map(|constant| of(&|row| numbers(constant)[row]))
+                .collect(),
+        }
+    }
+
+    /// The sum of the magnitudes of such terms, which may cancel.
+    pub fn rate_size(
+        &self,
+        terms: &RateTerms,
+        zeta: &[Lane],
+        (inputs, phases): (&[f64], &[Complex<f64>]),
+    ) -> f64 {
+        let inner = numbers(zeta)[self.pure..self.size].iter().copied();
+        let waves = self.sinusoids.iter().flat_map(|sinusoid| {
+            let e = phases[sinusoid.phase];
+            [e.im, e.re]
+        });
+        let units = std::iter::once(1.0).chain(inputs.iter().copied());
+        let driving = terms.driving.iter().zip(inner.chain(waves));
+        let constants = terms.constants.iter().zip(units);
+        driving
+            .chain(constants)
+            .map(|(size, value)| size * value.abs())
+            .sum()
     }
 
     /// The factors of the coordinates in a linear function of the state.

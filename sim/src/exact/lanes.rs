@@ -57,6 +57,16 @@ impl Packed {
         Self { columns, entries }
     }
 
+    /// How many columns there are.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// An entry.
+    pub fn entry(&self, row: usize, column: usize) -> f64 {
+        self.entries[(row / 4) * self.columns + column].as_array()[row % 4]
+    }
+
     /// Adds the product with a vector.
     pub fn add_product(&self, vector: &[f64], out: &mut [Lane]) {
         let columns = self.columns;

@@ -343,8 +343,9 @@ fn over(local: &Local, [low, high]: [f64; 2], length: f64) -> Verdict {
     let highest = first.max(middle).max(late).max(end + m).max(0.0);
     // Up to rounding a limit is not reached; moving inward from it is safe.
     let (above, below) = (value - low, high - value);
-    let low_margin = above.max(0.0) + local.noise - local.fast;
-    let high_margin = below.max(0.0) + local.noise - local.fast;
+    let noise = local.noise + local.drift_noise * h;
+    let low_margin = above.max(0.0) + noise - local.fast;
+    let high_margin = below.max(0.0) + noise - local.fast;
     let safe_below = low_margin + lowest >= 0.0;
     let safe_above = high_margin - highest >= 0.0;
     if safe_below && safe_above {
