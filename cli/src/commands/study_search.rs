@@ -7,20 +7,24 @@ use serde_json::{Value, json};
 use sim::studies::StudyError;
 use sim::studies::arm::{Arm, Undisclosed};
 use sim::studies::case::Length;
+use sim::studies::charts::charts;
 use sim::studies::claims::CLAIMS;
 use sim::studies::judge::Judgement;
 use sim::studies::search::{Found, Judged, Request, judge_all, orders, ranked, search};
 use sim::studies::sets::RANGES;
-use sim::studies::tally::{exclusive, histogram, share_with, shares};
+use sim::studies::tally::{exclusive, histogram, share_with, shares, undecided};
 
 use crate::output::{file_place, write_file};
 use crate::problem::{Outcome, Problem, say};
 use crate::progress::Bar;
 
 /// How many of the best sets are judged again with longer runs, and how many sets around the
-/// best of these.
+/// best of these; no more than there are sets.
 const CONFIRMED: usize = 60;
 const NEIGHBOURS: usize = 32;
+
+/// A search of more sets would take months.
+const MOST_SETS: usize = 1_000_000;
 
 /// How many sets `search.json` names.
 const NAMED: usize = 20;
@@ -30,19 +34,24 @@ pub fn run(out: &Path, sets: usize, seed: u64, as_json: bool) -> Outcome {
     let (document, table) = (out.join("search.json"), out.join("search.csv"));
     file_place(&document)?;
     file_place(&table)?;
+    if !(1..=MOST_SETS).contains(&sets) {
+        return Err(Problem::input(format!(
+            "--sets {sets}: expected 1 to {MOST_SETS} parameter sets"
+        )));
+    }
     let arm = Arm::new(&orders()).map_err(refused)?;
     let (_, assumed) = judge_all(&arm, Undisclosed::ASSUMED, &Length::FULL);
     let request = Request {
         sets,
         seed,
-        confirmed: CONFIRMED,
-        neighbours: NEIGHBOURS,
+        confirmed: CONFIRMED.min(sets),
+        neighbours: NEIGHBOURS.min(sets),
         screening: Length::SCREENING,
         confirming: Length::CONFIRMING,
     };
     let bar = Bar::new(
         "judging",
-        (sets + CONFIRMED.min(sets) + NEIGHBOURS) as f64,
+        (sets + request.confirmed + request.neighbours) as f64,
         "sets",
     );
     let found = search(&arm, &request, &out.join("parts"), &mut |done| {
@@ -51,6 +60,9 @@ pub fn run(out: &Path, sets: usize, seed: u64, as_json: bool) -> Outcome {
     .map_err(refused)?;
     drop(bar);
     write_file(&table, csv(&found).as_bytes())?;
+    for figure in charts(&found, &assumed).map_err(refused)? {
+        write_file(&out.join(&figure.file), figure.svg.as_bytes())?;
+    }
     let report = report(&request, &assumed, &found);
     write_file(&document, format!("{report:#}\n").as_bytes())?;
     if as_json {
@@ -121,7 +133,7 @@ fn report(request: &Request, assumed: &[Judgement], found: &Found) -> Value {
                     "evidence": judged.evidence,
                 },
                 "screened": {
-                    "holds": share.holds, "fails": share.fails,
+                    "holds": share.holds, "fails": share.fails, "undecided": share.undecided,
                     "holds_strictly": share.holds_strictly,
                 },
             })
@@ -141,6 +153,7 @@ fn report(request: &Request, assumed: &[Judgement], found: &Found) -> Value {
         "ranges": ranges.collect::<Vec<_>>(),
         "claims": claims,
         "histogram": histogram(&found.screened),
+        "undecided": undecided(&found.screened),
         "best_screened": ranked(&found.screened).into_iter().take(NAMED).map(named).collect::<Vec<_>>(),
         "confirmed": found.confirmed.iter().take(NAMED).map(named).collect::<Vec<_>>(),
         "neighbourhood": {
