@@ -40,7 +40,6 @@ pub fn run(out: &Path, sets: usize, seed: u64, as_json: bool) -> Outcome {
         )));
     }
     let arm = Arm::new(&orders()).map_err(refused)?;
-    let (_, assumed) = judge_all(&arm, Undisclosed::ASSUMED, &Length::FULL);
     let request = Request {
         sets,
         seed,
@@ -59,6 +58,7 @@ pub fn run(out: &Path, sets: usize, seed: u64, as_json: bool) -> Outcome {
     })
     .map_err(refused)?;
     drop(bar);
+    let (_, assumed) = judge_all(&arm, Undisclosed::ASSUMED, &Length::FULL);
     write_file(&table, csv(&found).as_bytes())?;
     for figure in charts(&found, &assumed).map_err(refused)? {
         write_file(&out.join(&figure.file), figure.svg.as_bytes())?;
