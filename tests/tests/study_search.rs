@@ -94,6 +94,11 @@ fn a_killed_search_goes_on_to_the_same_bytes() {
             "{name}"
         );
     }
+    let table = fs::read_to_string(whole.join("claims.md")).expect("claims.md");
+    // A line per claim below the heading; no bar within a cell but those escaped.
+    assert_eq!(table.lines().count(), 32);
+    let bars = |line: &str| line.matches('|').count() - line.matches("\\|").count();
+    assert!(table.lines().all(|line| bars(line) == 9), "{table}");
     let other = whole.display().to_string();
     let error = refused(&[
         "study-search",

@@ -14,6 +14,7 @@ use sim::studies::search::{Found, Judged, Request, judge_all, orders, ranked, se
 use sim::studies::sets::RANGES;
 use sim::studies::tally::{exclusive, histogram, share_with, shares, undecided};
 
+use crate::claims_table::markdown;
 use crate::output::{file_place, write_file};
 use crate::problem::{Outcome, Problem, say};
 use crate::progress::Bar;
@@ -60,6 +61,8 @@ pub fn run(out: &Path, sets: usize, seed: u64, as_json: bool) -> Outcome {
     drop(bar);
     let (_, assumed) = judge_all(&arm, Undisclosed::ASSUMED, &Length::FULL);
     write_file(&table, csv(&found).as_bytes())?;
+    let claims = markdown(&assumed, &shares(&found.screened));
+    write_file(&out.join("claims.md"), claims.as_bytes())?;
     for figure in charts(&found, &assumed).map_err(refused)? {
         write_file(&out.join(&figure.file), figure.svg.as_bytes())?;
     }
@@ -204,13 +207,41 @@ fn summary(assumed: &[Judgement], found: &Found, out: &Path) -> String {
         count('U')
     ));
     if let Some(best) = found.confirmed.first() {
-        text.push_str(&format!(
-            "at best {} hold at once, of {} sets: {:?}\n",
-            best.holding(),
-            found.screened.len(),
-            best.undisclosed
-        ));
+        text.push_str(&together(best, found));
     }
     text.push_str(&format!("{}\n", out.join("search.json").display()));
     text
+}
+
+/// How many claims hold at once, where, and how robustly.
+fn together(best: &Judged, found: &Found) -> String {
+    let u = best.undisclosed;
+    let sets = found.screened.len();
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let counts = histogram(&found.screened);
+    let as_many: usize = counts.iter().skip(best.holding()).sum();
+    let within = |fewer: usize| {
+        let least = best.holding().saturating_sub(fewer);
+        percent(share_with(&found.neighbours, least))
+    };
+    format!(
+        "of {sets} sets, {} of all verdicts undecided, {as_many} have {} or more claims that hold\n\
+         at best, with longer runs, {} hold at once ({} strictly): I = {:.3e} m^4, a_m = {:.3} N m, \
+         b_m = {:.4} N m s, F_w = {:.3} N m, c = {:.0} N s/m\n\
+         around it, within 10 %: {} of the sets keep them all, {} lose one at most, {} two\n\
+         {} pairs of claims that hold somewhere never hold together\n",
+        percent(undecided(&found.screened)),
+        best.holding(),
+        best.holding(),
+        best.strictly_holding(),
+        u.second_moment,
+        u.a_m,
+        u.b_m,
+        u.f_w,
+        u.c,
+        within(0),
+        within(1),
+        within(2),
+        exclusive(&found.screened).len(),
+    )
 }
