@@ -108,6 +108,7 @@ fn title(job: &Job, about: &str) -> String {
 
 /// An axis as figures want it: ascending, in SI.
 struct Line {
+    /// Of all parameters that go along it.
     name: String,
     shown: Shown,
     values: Vec<f64>,
@@ -118,9 +119,14 @@ struct Line {
 impl Line {
     fn of(job: &Job, axis: usize) -> Option<Self> {
         let axis = job.grid().axes().get(axis)?;
-        let name = axis.names.first()?;
-        let mut parameters = job.plan().parameters.iter();
-        let shown = Shown::new(parameters.find(|column| column.name == *name)?);
+        let parameters = &job.plan().parameters;
+        let of = |name: &String| parameters.iter().find(|column| column.name == *name);
+        let first = of(axis.names.first()?)?;
+        let shown = Shown::new(first);
+        // The same numbers are other values in another unit.
+        let columns = axis.names.iter().filter_map(of);
+        let columns = columns.filter(|column| column.unit == first.unit);
+        let names: Vec<&str> = columns.map(|column| column.name.as_str()).collect();
         let mut order: Vec<usize> = (0..axis.count).collect();
         if axis.to < axis.from {
             order.reverse();
@@ -130,7 +136,7 @@ impl Line {
                 .iter()
                 .map(|place| shown.si(axis.value(*place)))
                 .collect(),
-            name: name.clone(),
+            name: names.join(", "),
             shown,
             order,
         })

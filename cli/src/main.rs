@@ -6,6 +6,7 @@
 //! is what can go wrong and with which exit status.
 
 mod arguments;
+mod claims_table;
 mod commands;
 mod figures;
 mod motion;

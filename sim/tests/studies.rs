@@ -13,6 +13,7 @@ use sim::studies::judge::{Holding, Readings, judge};
 use sim::studies::reading::{Forcing, Key, Kind, Reading};
 use sim::studies::search::{Judged, Request, orders, search};
 use sim::studies::sets::{RANGES, set};
+use sim::studies::tally::{exclusive, histogram, share_with, shares, undecided};
 
 /// A reading with a transmission error that follows b and a deflection that does not.
 fn reading(key: &Key, kind: Kind) -> Reading {
@@ -240,4 +241,37 @@ fn a_killed_search_goes_on_to_the_same_bytes() {
     }
     let other = Request { seed: 8, ..request };
     assert!(run(&other).is_err());
+}
+
+#[test]
+fn what_holds_is_counted() {
+    let judged = |index: usize, first: &str| {
+        let letters = |first: &str| {
+            let rest = std::iter::repeat_n('F', CLAIMS.len() - first.len());
+            first.chars().chain(rest).collect()
+        };
+        Judged {
+            index,
+            undisclosed: Undisclosed::ASSUMED,
+            verdicts: letters(first),
+            strict: letters(&first.replacen('H', "F", 1)),
+        }
+    };
+    // The first two claims hold somewhere, never together; the first and the third do.
+    let sets = [
+        judged(0, "HFH"),
+        judged(1, "FHU"),
+        judged(2, "HUF"),
+        judged(3, "FFF"),
+    ];
+    let all = shares(&sets);
+    let of = |place: usize| (all[place].holds, all[place].fails, all[place].undecided);
+    assert_eq!(of(0), (0.5, 0.5, 0.0));
+    assert_eq!(of(1), (0.25, 0.5, 0.25));
+    assert_eq!(of(2), (0.25, 0.5, 0.25));
+    assert_eq!((all[0].holds_strictly, all[2].holds_strictly), (0.0, 0.25));
+    assert!((undecided(&sets) - 0.5 / CLAIMS.len() as f64).abs() < 1e-15);
+    assert_eq!(histogram(&sets)[..4], [1, 2, 1, 0]);
+    assert_eq!(exclusive(&sets), [(0, 1), (1, 2)]);
+    assert_eq!((share_with(&sets, 1), share_with(&sets, 2)), (0.75, 0.25));
 }

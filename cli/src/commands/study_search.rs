@@ -7,20 +7,25 @@ use serde_json::{Value, json};
 use sim::studies::StudyError;
 use sim::studies::arm::{Arm, Undisclosed};
 use sim::studies::case::Length;
+use sim::studies::charts::charts;
 use sim::studies::claims::CLAIMS;
 use sim::studies::judge::Judgement;
 use sim::studies::search::{Found, Judged, Request, judge_all, orders, ranked, search};
 use sim::studies::sets::RANGES;
-use sim::studies::tally::{exclusive, histogram, share_with, shares};
+use sim::studies::tally::{exclusive, histogram, share_with, shares, undecided};
 
+use crate::claims_table::markdown;
 use crate::output::{file_place, write_file};
 use crate::problem::{Outcome, Problem, say};
 use crate::progress::Bar;
 
 /// How many of the best sets are judged again with longer runs, and how many sets around the
-/// best of these.
+/// best of these; no more than there are sets.
 const CONFIRMED: usize = 60;
 const NEIGHBOURS: usize = 32;
+
+/// A search of more sets would take months.
+const MOST_SETS: usize = 1_000_000;
 
 /// How many sets `search.json` names.
 const NAMED: usize = 20;
@@ -30,19 +35,23 @@ pub fn run(out: &Path, sets: usize, seed: u64, as_json: bool) -> Outcome {
     let (document, table) = (out.join("search.json"), out.join("search.csv"));
     file_place(&document)?;
     file_place(&table)?;
+    if !(1..=MOST_SETS).contains(&sets) {
+        return Err(Problem::input(format!(
+            "--sets {sets}: expected 1 to {MOST_SETS} parameter sets"
+        )));
+    }
     let arm = Arm::new(&orders()).map_err(refused)?;
-    let (_, assumed) = judge_all(&arm, Undisclosed::ASSUMED, &Length::FULL);
     let request = Request {
         sets,
         seed,
-        confirmed: CONFIRMED,
-        neighbours: NEIGHBOURS,
+        confirmed: CONFIRMED.min(sets),
+        neighbours: NEIGHBOURS.min(sets),
         screening: Length::SCREENING,
         confirming: Length::CONFIRMING,
     };
     let bar = Bar::new(
         "judging",
-        (sets + CONFIRMED.min(sets) + NEIGHBOURS) as f64,
+        (sets + request.confirmed + request.neighbours) as f64,
         "sets",
     );
     let found = search(&arm, &request, &out.join("parts"), &mut |done| {
@@ -50,7 +59,13 @@ pub fn run(out: &Path, sets: usize, seed: u64, as_json: bool) -> Outcome {
     })
     .map_err(refused)?;
     drop(bar);
+    let (_, assumed) = judge_all(&arm, Undisclosed::ASSUMED, &Length::FULL);
     write_file(&table, csv(&found).as_bytes())?;
+    let claims = markdown(&assumed, &shares(&found.screened));
+    write_file(&out.join("claims.md"), claims.as_bytes())?;
+    for figure in charts(&found, &assumed).map_err(refused)? {
+        write_file(&out.join(&figure.file), figure.svg.as_bytes())?;
+    }
     let report = report(&request, &assumed, &found);
     write_file(&document, format!("{report:#}\n").as_bytes())?;
     if as_json {
@@ -121,7 +136,7 @@ fn report(request: &Request, assumed: &[Judgement], found: &Found) -> Value {
                     "evidence": judged.evidence,
                 },
                 "screened": {
-                    "holds": share.holds, "fails": share.fails,
+                    "holds": share.holds, "fails": share.fails, "undecided": share.undecided,
                     "holds_strictly": share.holds_strictly,
                 },
             })
@@ -141,6 +156,7 @@ fn report(request: &Request, assumed: &[Judgement], found: &Found) -> Value {
         "ranges": ranges.collect::<Vec<_>>(),
         "claims": claims,
         "histogram": histogram(&found.screened),
+        "undecided": undecided(&found.screened),
         "best_screened": ranked(&found.screened).into_iter().take(NAMED).map(named).collect::<Vec<_>>(),
         "confirmed": found.confirmed.iter().take(NAMED).map(named).collect::<Vec<_>>(),
         "neighbourhood": {
@@ -191,13 +207,41 @@ fn summary(assumed: &[Judgement], found: &Found, out: &Path) -> String {
         count('U')
     ));
     if let Some(best) = found.confirmed.first() {
-        text.push_str(&format!(
-            "at best {} hold at once, of {} sets: {:?}\n",
-            best.holding(),
-            found.screened.len(),
-            best.undisclosed
-        ));
+        text.push_str(&together(best, found));
     }
     text.push_str(&format!("{}\n", out.join("search.json").display()));
     text
+}
+
+/// How many claims hold at once, where, and how robustly.
+fn together(best: &Judged, found: &Found) -> String {
+    let u = best.undisclosed;
+    let sets = found.screened.len();
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let counts = histogram(&found.screened);
+    let as_many: usize = counts.iter().skip(best.holding()).sum();
+    let within = |fewer: usize| {
+        let least = best.holding().saturating_sub(fewer);
+        percent(share_with(&found.neighbours, least))
+    };
+    format!(
+        "of {sets} sets, {} of all verdicts undecided, {as_many} have {} or more claims that hold\n\
+         at best, with longer runs, {} hold at once ({} strictly): I = {:.3e} m^4, a_m = {:.3} N m, \
+         b_m = {:.4} N m s, F_w = {:.3} N m, c = {:.0} N s/m\n\
+         around it, within 10 %: {} of the sets keep them all, {} lose one at most, {} two\n\
+         {} pairs of claims that hold somewhere never hold together\n",
+        percent(undecided(&found.screened)),
+        best.holding(),
+        best.holding(),
+        best.strictly_holding(),
+        u.second_moment,
+        u.a_m,
+        u.b_m,
+        u.f_w,
+        u.c,
+        within(0),
+        within(1),
+        within(2),
+        exclusive(&found.screened).len(),
+    )
 }

@@ -6,7 +6,7 @@
 
 use super::error::ExactError;
 use super::flow::Flow;
-use super::propagator::{Change, Follow, Motion, Propagator, Segment};
+use super::propagator::{Change, Follow, Propagator, Segment};
 use super::tangent::Tangents;
 use crate::record::HeldInputs;
 use crate::solve::SolveError;
@@ -80,17 +80,6 @@ impl Propagator {
             section,
             switches: motion.switches(),
         })
-    }
-
-    fn follow_until(
-        &mut self,
-        motion: &mut Motion,
-        end: f64,
-        inputs: &HeldInputs,
-        frame: &mut Frame,
-    ) -> Result<(), ExactError> {
-        while motion.time() < end && !self.advance(motion, end, inputs, frame)? {}
-        Ok(())
     }
 }
 

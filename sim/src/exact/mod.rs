@@ -7,7 +7,7 @@
 //! `refine` and `decomposition` (a regime's matrix by parts that move by themselves), `modes`, `integrals`, `regime`,
 //! `functional` and `ladder` (prepared for stepping), `lanes` (sums side by side), `forced`
 //! (forced polynomials), `flow` and `cluster_flow` (the motion in a regime), `search` (the next switch, which cannot be missed), `clock`,
-//! [`propagator`] (from switch to switch), `simulate` (samples); for neighbouring motions
+//! [`propagator`] (from switch to switch), `follow` (to a time, with samples), `simulate`; for neighbouring motions
 //! `saltation`, `tangent`, [`lyapunov`] and [`sensitivity`].
 //!
 //! What is not linear between switches belongs to [`crate::solve`].
@@ -18,6 +18,7 @@ mod cluster_flow;
 mod decomposition;
 pub mod error;
 mod flow;
+mod follow;
 mod forced;
 mod functional;
 mod groups;

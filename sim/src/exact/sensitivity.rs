@@ -11,6 +11,7 @@ use nalgebra::Complex;
 
 use super::error::ExactError;
 use super::flow::Flow;
+use super::follow::Samples;
 use super::model::PiecewiseLinear;
 use super::propagator::{Change, Follow, Propagator, Segment};
 use super::tangent::Tangents;
@@ -58,22 +59,21 @@ impl PiecewiseLinear {
         inputs: &HeldInputs,
         directions: &[By],
     ) -> Result<Sensitivities, ExactError> {
-        super::simulate::check(span, samples)?;
+        let samples = Samples::new(span, samples)?;
         let mut propagator = self.at(values)?;
         let mut motion = propagator.start(span.0, initial, inputs)?;
         let mut follower = Follower::new(self, values, directions, samples)?;
-        follower.take(span.0, initial);
-        while motion.time() < span.1 {
-            let reached = propagator.advance(&mut motion, span.1, inputs, &mut follower)?;
-            if let Some(error) = follower.failure.take() {
-                return Err(error);
-            }
-            if reached {
-                break;
-            }
+        follower.take_until(span.0, initial);
+        propagator.follow_until(&mut motion, span.1, inputs, &mut follower)?;
+        if let Some(error) = follower.failure {
+            return Err(error);
         }
-        follower.take(span.1, motion.state());
-        Ok(follower.result)
+        follower.take_until(span.1, motion.state());
+        Ok(Sensitivities {
+            times: follower.samples.times,
+            states: follower.samples.states,
+            derivatives: follower.derivatives,
+        })
     }
 }
 
@@ -88,13 +88,15 @@ struct Neighbours {
 
 /// Carries sensitivities along.
 struct Follower<'s> {
-    samples: &'s [f64],
+    samples: Samples<'s>,
     tangents: Tangents,
     neighbours: Vec<Option<Neighbours>>,
     /// Scratch: tangent vectors at a sample.
     at_sample: Tangents,
     state: Vec<f64>,
-    result: Sensitivities,
+    /// The tangent vectors at the samples taken so far.
+    derivatives: Vec<Vec<Vec<f64>>>,
+    /// Why nothing more is carried.
     failure: Option<ExactError>,
 }
 
@@ -103,7 +105,7 @@ impl<'s> Follower<'s> {
         model: &PiecewiseLinear,
         values: &[f64],
         directions: &[By],
-        samples: &'s [f64],
+        samples: Samples<'s>,
     ) -> Result<Self, ExactError> {
         let mut neighbours = Vec::with_capacity(directions.len());
         let mut vectors = Vec::with_capacity(directions.len());
@@ -125,22 +127,44 @@ impl<'s> Follower<'s> {
             neighbours,
             at_sample: Tangents::default(),
             state: Vec::new(),
-            result: Sensitivities::default(),
+            derivatives: Vec::new(),
             failure: None,
         })
     }
 
-    /// The samples until a time at which state and tangents are known.
-    fn take(&mut self, t: f64, state: &[f64]) {
-        while let Some(&sample) = self.next().filter(|sample| **sample <= t) {
-            self.result.times.push(sample);
-            self.result.states.push(state.to_vec());
-            self.result.derivatives.push(self.tangents.vectors.clone());
-        }
+    /// Takes the samples until a time at which state and tangents are known.
+    fn take_until(&mut self, t: f64, state: &[f64]) {
+        self.samples.take_until(t, state);
+        let taken = self.samples.times.len();
+        self.derivatives
+            .resize(taken, self.tangents.vectors.clone());
     }
 
-    fn next(&self) -> Option<&f64> {
-        self.samples.get(self.result.times.len())
+    /// Takes the samples within a segment and carries the tangents to its end.
+    fn carry(&mut self, segment: &Segment<'_>, flow: &mut Flow) -> Result<(), ExactError> {
+        while let Some(after) = self.samples.next_in(segment) {
+            self.at_sample.vectors.clone_from(&self.tangents.vectors);
+            self.at_sample.advance(segment.regime, after);
+            self.drive(segment, after, true)?;
+            self.samples.take_in(segment, after, flow);
+            self.derivatives.push(self.at_sample.vectors.clone());
+        }
+        self.tangents.advance(segment.regime, segment.tau);
+        self.drive(segment, segment.tau, false)
+    }
+
+    /// Takes the tangents through a switch.
+    fn switch(&mut self, change: &Change<'_>) -> Result<(), ExactError> {
+        let displacements = self
+            .neighbours
+            .iter_mut()
+            .map(|neighbours| match neighbours {
+                None => Ok(0.0),
+                Some(neighbours) => neighbours.displacement(change),
+            });
+        let displacements: Vec<f64> = displacements.collect::<Result<_, _>>()?;
+        self.tangents.switch(change, &displacements);
+        Ok(())
     }
 
     /// Adds to tangent vectors what the parameters do to the flow within `tau` s.
@@ -232,45 +256,14 @@ impl Neighbours {
 
 impl Follow for Follower<'_> {
     fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
-        while let Some(&sample) = self.next() {
-            let after = segment.start.until(sample);
-            if after > segment.tau {
-                break;
-            }
-            self.at_sample.vectors.clone_from(&self.tangents.vectors);
-            self.at_sample.advance(segment.regime, after);
-            if let Err(error) = self.drive(segment, after, true) {
-                self.failure = Some(error);
-                return;
-            }
-            flow.go_to(segment.regime, after);
-            let mut state = vec![0.0; segment.state.len()];
-            flow.state(segment.regime, &mut state);
-            self.result.times.push(sample);
-            self.result.states.push(state);
-            self.result.derivatives.push(self.at_sample.vectors.clone());
-        }
-        self.tangents.advance(segment.regime, segment.tau);
-        if let Err(error) = self.drive(segment, segment.tau, false) {
-            self.failure = Some(error);
+        if self.failure.is_none() {
+            self.failure = self.carry(segment, flow).err();
         }
     }
 
     fn switched(&mut self, change: &Change<'_>) {
-        let mut displacements = Vec::with_capacity(self.neighbours.len());
-        for neighbours in &mut self.neighbours {
-            let displacement = match neighbours {
-                None => Ok(0.0),
-                Some(neighbours) => neighbours.displacement(change),
-            };
-            match displacement {
-                Ok(value) => displacements.push(value),
-                Err(error) => {
-                    self.failure = Some(error);
-                    return;
-                }
-            }
+        if self.failure.is_none() {
+            self.failure = self.switch(change).err();
         }
-        self.tangents.switch(change, &displacements);
     }
 }

@@ -64,6 +64,19 @@ impl Canvas {
         self.path(&data, stroke);
     }
 
+    /// A filled rectangle from its upper left corner; none where it has no extent.
+    pub fn rectangle(&mut self, (x, y): Point, (width, height): Point, colour: &str) {
+        if width > 0.0 && height > 0.0 {
+            self.element(format_args!(
+                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{colour}\"/>",
+                hundredths(x),
+                hundredths(y),
+                hundredths(width),
+                hundredths(height)
+            ));
+        }
+    }
+
     fn path(&mut self, data: &str, stroke: Stroke) {
         if data.is_empty() {
             return;

@@ -47,6 +47,8 @@ pub(super) struct Format {
     pub margins: (f64, f64),
     /// The share of a frame's height that is left free at its top for the names of marks.
     pub headroom: f64,
+    /// Whether later curves are dashed, so that what is below them shows.
+    pub overlaid: bool,
 }
 
 impl Format {
@@ -63,6 +65,7 @@ impl Format {
             ticks: (8, up),
             margins: (0.0, 22.0),
             headroom: 0.0,
+            overlaid: false,
         }
     }
 }
@@ -77,6 +80,8 @@ pub(super) struct Layout {
     pub height: f64,
     /// The width of the columns that curves are decimated to.
     pub column: f64,
+    /// Whether later curves are dashed.
+    pub overlaid: bool,
 }
 
 /// Where a panel's parts are, px.
@@ -139,6 +144,7 @@ impl Layout {
             places,
             height: (top + 40.0).ceil(),
             column: (span * COLUMN_CHARACTERS * curves as f64 / CURVE_CHARACTERS).max(1.0),
+            overlaid: format.overlaid,
         })
     }
 }

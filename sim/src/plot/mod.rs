@@ -5,7 +5,7 @@
 //! prefixes and axis labels), `axis` (positions and ticks), `decimate` (many samples to few
 //! points), `layout` (where everything goes), `panel` (drawing it), `canvas` (SVG elements);
 //! [`symbol`] and `lettering` write names and text. [`mod@plate`] sets frames with axes of their
-//! own side by side. [`map`] has the pictures made of pixels.
+//! own side by side. [`bars`] has histograms and shares, [`map`] the pictures made of pixels.
 //! What is drawn, and why, is the caller's business: nothing here knows of a model.
 //!
 //! The SVG has no script, no style sheet, no identifiers and refers to nothing outside, so
@@ -13,6 +13,7 @@
 //! round points to whole pixels or leave the frames of stacked panels misaligned.
 
 mod axis;
+pub mod bars;
 mod canvas;
 mod decimate;
 mod error;

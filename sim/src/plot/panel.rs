@@ -16,7 +16,7 @@ use super::lettering::{fitted, width};
 const COLOURS: [&str; 7] = [
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000",
 ];
-/// When the colours are used up, dashes.
+/// When the colours are used up, or where curves lie on each other, dashes.
 const DASHES: [&str; 3] = ["", "7 3", "2 3"];
 
 const GRID: Stroke = full("#e6e6e6", 0.8);
@@ -46,38 +46,48 @@ pub(super) fn draw(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout
     draw_references(canvas, panel, place, layout);
     for (index, series) in panel.series.iter().enumerate() {
         let samples = samples(series, place, layout);
-        canvas.lines(&polylines(samples, layout.column), curve(index));
+        canvas.lines(&polylines(samples, layout.column), curve(index, layout));
     }
     draw_frame(canvas, place, layout);
     draw_text(canvas, panel, place, layout);
 }
 
-/// Draws upright lines with their names beside them at the top, where there is room.
+/// Draws upright lines.
 pub(super) fn draw_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place, layout: &Layout) {
-    let axis = &layout.abscissa;
     let (bottom, top) = place.ordinate.pixels;
-    let mut free_from = f64::NEG_INFINITY;
-    for mark in marks.iter().filter(|mark| is_drawable(mark.value)) {
-        let along = axis
-            .scale
-            .place(mark.value / layout.abscissa_quantity.scale);
-        if !(axis.range.low..=axis.range.high).contains(&along) {
-            continue;
-        }
-        let x = axis.pixel(along);
+    for (x, _) in marked(marks, layout) {
         canvas.segments(&[((x, bottom), (x, top))], MARK);
+    }
+}
+
+/// Writes the names of upright lines beside them at the top, where there is room.
+pub(super) fn name_marks(canvas: &mut Canvas, marks: &[Reference], place: &Place, layout: &Layout) {
+    let (_, top) = place.ordinate.pixels;
+    let mut free_from = f64::NEG_INFINITY;
+    for (x, name) in marked(marks, layout) {
         if x < free_from {
             continue;
         }
-        free_from = x + width(&mark.label, TICK_SIZE) + 6.0;
+        free_from = x + width(name, TICK_SIZE) + 6.0;
         canvas.text(Text {
-            text: &mark.label,
+            text: name,
             at: (x + 3.0, top + TICK_SIZE),
             size: TICK_SIZE,
             anchor: Anchor::Start,
             bold: false,
         });
     }
+}
+
+/// Where the marks that the axis reaches are, px, with their names.
+fn marked<'a>(marks: &'a [Reference], layout: &'a Layout) -> impl Iterator<Item = (f64, &'a str)> {
+    let (axis, unit) = (&layout.abscissa, layout.abscissa_quantity.scale);
+    let places = marks
+        .iter()
+        .filter(|mark| is_drawable(mark.value))
+        .map(move |mark| (axis.scale.place(mark.value / unit), &*mark.label));
+    let reached = places.filter(|(place, _)| (axis.range.low..=axis.range.high).contains(place));
+    reached.map(|(place, name)| (axis.pixel(place), name))
 }
 
 /// Draws the labels of the axis that all panels share, below the last of them.
@@ -105,11 +115,16 @@ pub(super) fn draw_abscissa(canvas: &mut Canvas, layout: &Layout) {
     });
 }
 
-fn curve(index: usize) -> Stroke {
+fn curve(index: usize, layout: &Layout) -> Stroke {
+    let dashes = if layout.overlaid {
+        index
+    } else {
+        index / COLOURS.len()
+    };
     Stroke {
         colour: COLOURS[index % COLOURS.len()],
         width: 1.2,
-        dashes: DASHES[index / COLOURS.len() % DASHES.len()],
+        dashes: DASHES[dashes % DASHES.len()],
     }
 }
 
@@ -259,15 +274,15 @@ fn draw_text(canvas: &mut Canvas, panel: &Panel<'_>, place: &Place, layout: &Lay
             bold: true,
         });
     }
-    draw_legend(canvas, place);
+    draw_legend(canvas, place, layout);
 }
 
-fn draw_legend(canvas: &mut Canvas, place: &Place) {
+fn draw_legend(canvas: &mut Canvas, place: &Place, layout: &Layout) {
     for (index, ((x, y), label)) in place.legend.iter().enumerate() {
         let middle = y - 0.25 * LEGEND_ROW;
         let stroke = Stroke {
             width: 2.0,
-            ..curve(index)
+            ..curve(index, layout)
         };
         canvas.segments(&[((*x, middle), (x + LEGEND_LINE, middle))], stroke);
         canvas.text(Text {

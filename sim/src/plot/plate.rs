@@ -15,6 +15,7 @@ const FORMAT: Format = Format {
     ticks: (6, 6),
     margins: (82.0, 36.0),
     headroom: 0.0,
+    overlaid: false,
 };
 /// The share of a frame with marks that their names take.
 const NAMES_OF_MARKS: f64 = 0.09;
@@ -31,7 +32,7 @@ pub struct Plate<'a> {
 }
 
 /// A panel with its own axes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Frame<'a> {
     /// What is drawn.
     pub panel: Panel<'a>,
@@ -39,12 +40,16 @@ pub struct Frame<'a> {
     pub axes: Axes,
     /// Upright lines with their names, natural frequencies say; abscissae in SI, ascending.
     pub marks: Vec<Reference>,
+    /// Whether curves may lie on each other: then each later one is dashed, and what is below
+    /// shows through.
+    pub overlaid: bool,
 }
 
 /// The axes of a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Axes {
     /// A quantity over time in s.
+    #[default]
     Time,
     /// The logarithm of a positive quantity over time in s.
     Growth,
@@ -99,18 +104,20 @@ pub fn plate(plate: &Plate<'_>) -> Result<String, PlotError> {
 fn draw(frame: &Frame<'_>) -> Result<(Canvas, f64), PlotError> {
     let (abscissa, scale) = frame.axes.scales();
     let panels = std::slice::from_ref(&frame.panel);
-    let format = match frame.marks.as_slice() {
-        [] => FORMAT,
-        _ => Format {
-            headroom: NAMES_OF_MARKS,
-            ..FORMAT
+    let format = Format {
+        headroom: match frame.marks.as_slice() {
+            [] => 0.0,
+            _ => NAMES_OF_MARKS,
         },
+        overlaid: frame.overlaid,
+        ..FORMAT
     };
     let layout = Layout::new(panels, &abscissa, scale, format)?;
     let mut canvas = Canvas::default();
     for place in &layout.places {
         panel::draw_marks(&mut canvas, &frame.marks, place, &layout);
         panel::draw(&mut canvas, &frame.panel, place, &layout);
+        panel::name_marks(&mut canvas, &frame.marks, place, &layout);
     }
     panel::draw_abscissa(&mut canvas, &layout);
     Ok((canvas, layout.height))

@@ -262,3 +262,41 @@ fn what_cannot_be_drawn_is_an_error() {
         );
     }
 }
+
+#[test]
+fn overlaid_curves_let_what_is_below_show() -> Result<(), Box<dyn std::error::Error>> {
+    let t = [1.0, 10.0, 100.0];
+    let values = [1.0, 2.0, 3.0];
+    let dashes = |overlaid| -> Result<Vec<bool>, Box<dyn std::error::Error>> {
+        let frame = Frame {
+            panel: panel(
+                "dr",
+                "m",
+                vec![series("S = 4", &t, &values), series("S = 5", &t, &values)],
+            ),
+            axes: Axes::Frequency,
+            marks: vec![Reference {
+                label: "f_1".to_owned(),
+                value: 10.0,
+            }],
+            overlaid,
+        };
+        let svg = plate(&Plate {
+            title: String::new(),
+            columns: 1,
+            frames: vec![frame],
+        })?;
+        let document = Document::parse(&svg)?;
+        assert!(texts(&document).iter().any(|text| text == "f1"));
+        let is_curve =
+            |n: &Node<'_, '_>| matches!(n.attribute("stroke"), Some("#0072b2" | "#d55e00"));
+        let curves = document.descendants().filter(is_curve);
+        Ok(curves
+            .map(|n| n.has_attribute("stroke-dasharray"))
+            .collect())
+    };
+    // Each curve, then each line of the legend.
+    assert_eq!(dashes(true)?, [false, true, false, true]);
+    assert_eq!(dashes(false)?, [false; 4]);
+    Ok(())
+}

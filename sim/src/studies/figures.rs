@@ -8,6 +8,7 @@ use crate::plot::{Axes, Frame, Panel, Plate, Reference, Series, plate};
 
 use super::display::Display;
 use super::error::StudyError;
+use super::report::{Figure, id};
 
 /// Densities below this part of the greatest are rounding or leakage of the window; they are
 /// drawn at it, so that lines stand on a level ground.
@@ -55,22 +56,48 @@ impl Quantity {
     }
 }
 
-/// Draws rows of time history and spectrum.
-pub(super) fn rows(title: &str, rows: &[Row<'_>]) -> Result<String, StudyError> {
-    let drawn: Vec<Vec<Vec<f64>>> = rows.iter().map(densities).collect();
-    let frames = rows.iter().zip(&drawn);
-    svg(&Plate {
-        title: title.to_owned(),
-        columns: 2,
-        frames: frames
-            .flat_map(|(row, drawn)| [history(row), spectrum(row, drawn)])
-            .collect(),
-    })
+/// What a figure is called.
+pub(super) struct Heading {
+    pub file: String,
+    /// The paper's figure it corresponds to, or an empty text.
+    pub paper: String,
+    pub caption: String,
 }
 
-/// The document of a plate.
-pub(super) fn svg(of: &Plate<'_>) -> Result<String, StudyError> {
-    plate(of).map_err(|error| StudyError::Request(error.to_string()))
+/// Draws rows of time history and spectrum.
+pub(super) fn rows(heading: Heading, rows: &[Row<'_>]) -> Result<Figure, StudyError> {
+    let drawn: Vec<Vec<Vec<f64>>> = rows.iter().map(densities).collect();
+    let frames = rows.iter().zip(&drawn);
+    let frames = frames.flat_map(|(row, drawn)| [history(row), spectrum(row, drawn)]);
+    let shown = rows.iter().flat_map(|row| &row.cases);
+    let mut cases: Vec<String> = shown.map(|(_, display)| id(&display.case)).collect();
+    cases.dedup();
+    figure(heading, cases, frames.collect())
+}
+
+/// Draws frames, two side by side.
+pub(super) fn figure(
+    Heading {
+        file,
+        paper,
+        caption,
+    }: Heading,
+    cases: Vec<String>,
+    frames: Vec<Frame<'_>>,
+) -> Result<Figure, StudyError> {
+    let of = Plate {
+        title: caption.clone(),
+        columns: 2,
+        frames,
+    };
+    let svg = plate(&of).map_err(|error| StudyError::Request(error.to_string()))?;
+    Ok(Figure {
+        file,
+        paper,
+        caption,
+        cases,
+        svg,
+    })
 }
 
 /// The densities of a row's cases as drawn.
@@ -101,8 +128,7 @@ fn history<'a>(row: &Row<'a>) -> Frame<'a> {
             series: curves.collect(),
             references: flanks(row),
         },
-        axes: Axes::Time,
-        marks: Vec::new(),
+        ..Frame::default()
     }
 }
 
@@ -131,6 +157,7 @@ fn spectrum<'a>(row: &Row<'a>, drawn: &'a [Vec<f64>]) -> Frame<'a> {
         panel: density_panel(row.quantity.name(), curves.collect()),
         axes: Axes::Frequency,
         marks: row.cases.last().map_or_else(Vec::new, |(_, d)| marks(d)),
+        ..Frame::default()
     }
 }
 
@@ -148,7 +175,7 @@ pub(super) fn density_panel<'a>(of: &str, series: Vec<Series<'a>>) -> Panel<'a> 
 /// The forcing and the first four natural frequencies of the clamped arm.
 pub(super) fn marks(display: &Display) -> Vec<Reference> {
     let forcing = Reference {
-        label: "ω".to_owned(),
+        label: "ω/2π".to_owned(),
         value: display.case.omega / TAU,
     };
     let natural = display.natural.iter().take(4).enumerate();

@@ -5,11 +5,12 @@
 //! fast neighbouring motions part, `series` has the paper's quantities. [`reading`] is what the claims need of it, [`claims`]
 //! states them with their rules, [`judge`] decides, `evidence` says on what grounds.
 //! [`sets`] spreads the undisclosed values over plausible ranges, [`search`] judges all
-//! claims at each, [`tally`] counts what holds together. `display` samples cases for
+//! claims at each, [`tally`] counts what holds together, [`charts`] draws it. `display` samples cases for
 //! `figures`; [`responses`] and [`order`] are the paper's studies as `report` hands them out.
 
 pub mod arm;
 pub mod case;
+pub mod charts;
 pub mod claims;
 mod display;
 pub mod error;

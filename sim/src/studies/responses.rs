@@ -12,8 +12,8 @@ use super::case::{Length, measure};
 use super::claims::BACKLASHES;
 use super::display::Display;
 use super::error::StudyError;
-use super::figures::{Quantity, Row, rows};
-use super::report::{Figure, Study, case, id, tables};
+use super::figures::{Heading, Quantity, Row, rows};
+use super::report::{Figure, Study, case, tables};
 
 /// The paper's truncation order.
 const ORDER: usize = 4;
@@ -52,7 +52,7 @@ pub fn flexibility(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
     for (place, pair) in displays.chunks(2).enumerate() {
         let [rigid, flexible] = pair else { continue };
         let row = |title: &str, display| Row {
-            title: title.to_owned(),
+            title: format!("{title}, {}", brief(&rigid.case)),
             quantity: Quantity::MeshDeflection,
             cases: vec![(String::new(), display)],
         };
@@ -65,13 +65,12 @@ pub fn flexibility(progress: Progress<'_>) -> Result<(Study, Arm), StudyError> {
             row("(a) rigid arm", rigid),
             row("(b) flexible arm", flexible),
         ];
-        study.figures.push(Figure {
+        let heading = Heading {
             file: format!("fig_{:02}.svg", 16 + place),
             paper: format!("Fig. {}", 16 + place),
-            svg: rows(&caption, &drawn)?,
-            cases: vec![id(&rigid.case), id(&flexible.case)],
             caption,
-        });
+        };
+        study.figures.push(rows(heading, &drawn)?);
     }
     Ok((study, arm))
 }
@@ -108,7 +107,7 @@ fn responses(
 /// x_sp and f_la of one case.
 fn response(number: usize, display: &Display) -> Result<Figure, StudyError> {
     let row = |title: &str, quantity| Row {
-        title: title.to_owned(),
+        title: format!("{title}, {}", brief(&display.case)),
         quantity,
         cases: vec![(String::new(), display)],
     };
@@ -121,13 +120,12 @@ fn response(number: usize, display: &Display) -> Result<Figure, StudyError> {
         row("(a) x_sp", Quantity::MeshDeflection),
         row("(b) f_la", Quantity::PositioningError),
     ];
-    Ok(Figure {
+    let heading = Heading {
         file: format!("fig_{number:02}.svg"),
         paper: format!("Fig. {number}"),
-        svg: rows(&caption, &drawn)?,
-        cases: vec![id(&display.case)],
         caption,
-    })
+    };
+    rows(heading, &drawn)
 }
 
 /// dr of several cases, one below the other.
@@ -137,7 +135,7 @@ fn deflections(paper: &str, file: &str, displays: &[Display]) -> Result<Figure, 
         .iter()
         .zip(letters)
         .map(|(display, letter)| Row {
-            title: format!("{letter} b = {:.0} µm", display.case.backlash * 1e6),
+            title: format!("{letter} {}", brief(&display.case)),
             quantity: Quantity::ArmDeflection,
             cases: vec![(String::new(), display)],
         })
@@ -147,13 +145,18 @@ fn deflections(paper: &str, file: &str, displays: &[Display]) -> Result<Figure, 
         "Flexible deformation dr = w(l, t) of the arm's end, omega = {omega:.0} pi rad/s, after \
          the transient; f_1 to f_4 are the clamped arm's natural frequencies"
     );
-    Ok(Figure {
+    let heading = Heading {
         file: file.to_owned(),
         paper: paper.to_owned(),
-        svg: rows(&caption, &drawn)?,
-        cases: displays.iter().map(|d| id(&d.case)).collect(),
         caption,
-    })
+    };
+    rows(heading, &drawn)
+}
+
+/// The case in the title of a panel.
+fn brief(case: &Case) -> String {
+    let (micrometres, multiple) = (case.backlash * 1e6, case.omega / PI);
+    format!("b = {micrometres:.0} µm, ω = {multiple:.0}π rad/s")
 }
 
 fn conditions(case: &Case) -> String {

@@ -126,19 +126,18 @@ pub fn orders() -> Vec<usize> {
     orders
 }
 
-/// Measures all cases and judges all claims at one set. A case that cannot be measured
+/// Measures all cases, in parallel, and judges all claims at one set. A case that cannot be measured
 /// leaves its claims undecided.
 pub fn judge_all(
     arm: &Arm,
     undisclosed: Undisclosed,
     length: &Length,
 ) -> (Readings, Vec<Judgement>) {
-    let mut readings = Readings::new();
-    for key in cases() {
-        if let Ok(measurement) = measure(arm, &key.case(undisclosed), length) {
-            readings.insert(key, Reading::of(&measurement));
-        }
-    }
+    let readings = cases().into_par_iter().filter_map(|key| {
+        let measured = measure(arm, &key.case(undisclosed), length);
+        measured.ok().map(|measured| (key, Reading::of(&measured)))
+    });
+    let readings: Readings = readings.collect();
     let judgements = CLAIMS.iter().map(|claim| judge(claim, &readings)).collect();
     (readings, judgements)
 }

@@ -11,6 +11,8 @@ pub struct Share {
     pub holds: f64,
     /// Where it fails.
     pub fails: f64,
+    /// Where the evidence does not decide.
+    pub undecided: f64,
     /// Where it holds strictly.
     pub holds_strictly: f64,
 }
@@ -18,24 +20,26 @@ pub struct Share {
 /// Each claim's share, in the order of [`CLAIMS`].
 pub fn shares(judged: &[Judged]) -> Vec<Share> {
     let count = judged.len().max(1) as f64;
-    let share = |claim: usize, letter: char| {
-        let found = judged
-            .iter()
-            .filter(|set| set.verdicts.get(claim) == Some(&letter));
-        found.count() as f64 / count
+    let share = |verdicts: fn(&Judged) -> &[char], claim: usize, letter: char| {
+        let has_letter = |set: &&Judged| verdicts(set).get(claim) == Some(&letter);
+        judged.iter().filter(has_letter).count() as f64 / count
     };
+    let generous: fn(&Judged) -> &[char] = |set| &set.verdicts;
     (0..CLAIMS.len())
         .map(|claim| Share {
-            holds: share(claim, 'H'),
-            fails: share(claim, 'F'),
-            holds_strictly: {
-                let found = judged
-                    .iter()
-                    .filter(|set| set.strict.get(claim) == Some(&'H'));
-                found.count() as f64 / count
-            },
+            holds: share(generous, claim, 'H'),
+            fails: share(generous, claim, 'F'),
+            undecided: share(generous, claim, 'U'),
+            holds_strictly: share(|set| &set.strict, claim, 'H'),
         })
         .collect()
+}
+
+/// The share of all verdicts that are undecided.
+pub fn undecided(judged: &[Judged]) -> f64 {
+    let shares = shares(judged);
+    let sum: f64 = shares.iter().map(|share| share.undecided).sum();
+    sum / shares.len().max(1) as f64
 }
 
 /// How many sets have 0, 1, 2, ... claims that hold.

@@ -1,0 +1,35 @@
+//! The paper's claims as a Markdown table: what the paper says, what was found at the assumed
+//! values, and in what share of the searched sets each claim holds.
+
+use sim::studies::claims::CLAIMS;
+use sim::studies::judge::{Holding, Judgement};
+use sim::studies::tally::Share;
+
+/// The table, with the claims judged at the assumed values and their shares in a search.
+pub fn markdown(assumed: &[Judgement], shares: &[Share]) -> String {
+    let mut text = "| claim | where | the paper says | here | strictly | holds in | undecided in | evidence |\n\
+                    | --- | --- | --- | --- | --- | --- | --- | --- |\n"
+        .to_owned();
+    for ((claim, judged), share) in CLAIMS.iter().zip(assumed).zip(shares) {
+        text.push_str(&format!(
+            "| `{}` | {} | {} | {} | {} | {:.0} % | {:.0} % | {} |\n",
+            claim.id,
+            claim.place,
+            claim.says,
+            word(judged.holding),
+            word(judged.strict),
+            100.0 * share.holds,
+            100.0 * share.undecided,
+            judged.evidence.replace('|', "\\|"),
+        ));
+    }
+    text
+}
+
+fn word(holding: Holding) -> &'static str {
+    match holding {
+        Holding::Holds => "holds",
+        Holding::Fails => "fails",
+        Holding::Undecided => "undecided",
+    }
+}

@@ -1,0 +1,297 @@
+//! Counts as columns side by side, and shares of a whole as bars one below the other.
+
+use super::PlotError;
+use super::axis::{Axis, Range, Scale, Tick, ticks};
+use super::canvas::{Anchor, Canvas, Stroke, Text};
+use super::figure::Reference;
+use super::layout::{LABEL_SIZE, TICK_SIZE, TITLE_SIZE};
+use super::lettering::width;
+
+/// How often each whole number from 0 on was counted.
+#[derive(Clone, Debug, Default)]
+pub struct Histogram<'a> {
+    /// Written above the frame.
+    pub title: String,
+    /// What was counted up: the label below.
+    pub number: String,
+    /// What there are so many of: the label to the left.
+    pub count: String,
+    /// The counts of 0, 1, 2, ...
+    pub counts: &'a [usize],
+    /// Numbers with a name, ascending: dashed upright lines.
+    pub marks: Vec<Reference>,
+}
+
+/// Wholes, each divided into the same parts.
+#[derive(Clone, Debug, Default)]
+pub struct Shares {
+    /// Written above the frame.
+    pub title: String,
+    /// The names of the parts, from left to right; at most four.
+    pub parts: Vec<String>,
+    /// From top to bottom: a name and the parts' shares, 1 in all. The first two parts
+    /// together are written beside the bar, in per cent.
+    pub rows: Vec<(String, Vec<f64>)>,
+}
+
+const WIDTH: f64 = 720.0;
+const HEIGHT: f64 = 330.0;
+/// Left and right of the frame, above and below it, px.
+const MARGINS: ((f64, f64), (f64, f64)) = ((78.0, 24.0), (54.0, 62.0));
+/// The height of a row of shares and of the bar in it, px.
+const ROW: (f64, f64) = (20.0, 14.0);
+const COLUMN: &str = "#56a0d3";
+/// Two strong colours for what counts, grey and a pale one for the rest; all differ in
+/// lightness too.
+const PARTS: [&str; 4] = ["#0b4f86", "#56a0d3", "#c4c4c4", "#f2cfae"];
+
+const GRID: Stroke = line("#e6e6e6", "");
+const FRAME: Stroke = line("#444444", "");
+const MARK: Stroke = line("#555555", "5 4");
+
+const fn line(colour: &'static str, dashes: &'static str) -> Stroke {
+    Stroke {
+        colour,
+        width: 1.0,
+        dashes,
+    }
+}
+
+/// Draws a histogram as an SVG document, 720 px wide.
+///
+/// # Errors
+///
+/// Nothing counted.
+pub fn histogram(of: &Histogram<'_>) -> Result<String, PlotError> {
+    let most = of.counts.iter().copied().max().unwrap_or(0);
+    if most == 0 {
+        return Err(empty(&of.count));
+    }
+    let ((left, right), (above, below)) = MARGINS;
+    let linear = |low, high, pixels| Axis {
+        scale: Scale::Linear,
+        range: Range { low, high },
+        pixels,
+    };
+    let last = of.counts.len() as f64 - 0.5;
+    let along = linear(-0.5, last, (left, WIDTH - right));
+    let up = linear(0.0, 1.08 * most as f64, (HEIGHT - below, above));
+    let mut canvas = Canvas::default();
+    for tick in ticks(up.scale, up.range, 6) {
+        draw_level(&mut canvas, &tick, &up, along.pixels);
+    }
+    for (number, count) in of.counts.iter().enumerate() {
+        let middle = number as f64;
+        let (from, to) = (along.pixel(middle - 0.42), along.pixel(middle + 0.42));
+        let top = up.pixel(*count as f64);
+        canvas.rectangle((from, top), (to - from, up.pixels.0 - top), COLUMN);
+    }
+    for tick in ticks(along.scale, along.range, 12) {
+        let at = (along.pixel(tick.place), up.pixels.0 + 19.0);
+        write(&mut canvas, &tick.label, at, Anchor::Middle);
+    }
+    draw_marks(&mut canvas, &of.marks, &along, &up);
+    outline(&mut canvas, along.pixels, up.pixels);
+    let middle = (along.pixels.0 + along.pixels.1) / 2.0;
+    label(&mut canvas, &of.number, (middle, up.pixels.0 + 44.0), 0.0);
+    let middle = (up.pixels.0 + up.pixels.1) / 2.0;
+    label(&mut canvas, &of.count, (19.0, middle), -90.0);
+    title(&mut canvas, &of.title, (left, 22.0));
+    Ok(canvas.document(&of.title, WIDTH, HEIGHT))
+}
+
+/// Draws shares as an SVG document, 720 px wide.
+///
+/// # Errors
+///
+/// No row.
+pub fn shares(of: &Shares) -> Result<String, PlotError> {
+    let names = of.rows.iter().map(|(name, _)| width(name, TICK_SIZE));
+    let widest = names.fold(0.0, f64::max);
+    if of.rows.is_empty() {
+        return Err(empty(&of.title));
+    }
+    let (top, (row, bar)) = (62.0, ROW);
+    let bottom = top + row * of.rows.len() as f64 + 6.0;
+    let along = Axis {
+        scale: Scale::Linear,
+        range: Range {
+            low: 0.0,
+            high: 100.0,
+        },
+        pixels: (widest + 20.0, WIDTH - 64.0),
+    };
+    let mut canvas = Canvas::default();
+    for tick in ticks(along.scale, along.range, 6) {
+        let x = along.pixel(tick.place);
+        canvas.segments(&[((x, bottom), (x, top))], GRID);
+        write(&mut canvas, &tick.label, (x, bottom + 19.0), Anchor::Middle);
+    }
+    for (place, (name, parts)) in of.rows.iter().enumerate() {
+        let y = top + 6.0 + row * place as f64;
+        let base = y + 0.5 * bar + 0.36 * TICK_SIZE;
+        write(&mut canvas, name, (along.pixels.0 - 8.0, base), Anchor::End);
+        let mut from = 0.0;
+        for (part, colour) in parts.iter().zip(PARTS) {
+            let to = from + 100.0 * part;
+            let (start, end) = (along.pixel(from), along.pixel(to));
+            canvas.rectangle((start, y), (end - start, bar), colour);
+            from = to;
+        }
+        let together = 100.0 * parts.iter().take(2).sum::<f64>();
+        let text = format!("{together:.0} %");
+        let at = (WIDTH - 12.0, base);
+        write(&mut canvas, &text, at, Anchor::End);
+    }
+    outline(&mut canvas, along.pixels, (bottom, top));
+    let middle = (along.pixels.0 + along.pixels.1) / 2.0;
+    label(&mut canvas, "share [%]", (middle, bottom + 42.0), 0.0);
+    title(&mut canvas, &of.title, (16.0, 22.0));
+    draw_legend(&mut canvas, &of.parts, (along.pixels.0, 48.0));
+    Ok(canvas.document(&of.title, WIDTH, bottom + 56.0))
+}
+
+fn draw_level(canvas: &mut Canvas, tick: &Tick, up: &Axis, (left, right): (f64, f64)) {
+    let y = up.pixel(tick.place);
+    canvas.segments(&[((left, y), (right, y))], GRID);
+    let at = (left - 7.0, y + 0.35 * TICK_SIZE);
+    write(canvas, &tick.label, at, Anchor::End);
+}
+
+/// Upright lines with their names above the frame, each beginning where the last has ended.
+fn draw_marks(canvas: &mut Canvas, marks: &[Reference], along: &Axis, up: &Axis) {
+    let mut free_from = along.pixels.0;
+    for mark in marks {
+        let x = along.pixel(mark.value);
+        canvas.segments(&[((x, up.pixels.0), (x, up.pixels.1))], MARK);
+        let long = width(&mark.label, TICK_SIZE);
+        let start = (x - long / 2.0).min(along.pixels.1 - long).max(free_from);
+        free_from = start + long + 10.0;
+        let at = (start, up.pixels.1 - 8.0);
+        write(canvas, &mark.label, at, Anchor::Start);
+    }
+}
+
+fn draw_legend(canvas: &mut Canvas, parts: &[String], (mut x, y): (f64, f64)) {
+    for (name, colour) in parts.iter().zip(PARTS) {
+        canvas.rectangle((x, y - 11.0), (ROW.1, 12.0), colour);
+        write(canvas, name, (x + ROW.1 + 6.0, y), Anchor::Start);
+        x += ROW.1 + 22.0 + width(name, TICK_SIZE);
+    }
+}
+
+fn outline(canvas: &mut Canvas, (left, right): (f64, f64), (bottom, top): (f64, f64)) {
+    let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
+    let around = corners.into_iter().chain([(left, top)]);
+    canvas.lines(&[around.collect()], FRAME);
+}
+
+fn write(canvas: &mut Canvas, text: &str, at: (f64, f64), anchor: Anchor) {
+    canvas.text(Text {
+        text,
+        at,
+        size: TICK_SIZE,
+        anchor,
+        bold: false,
+    });
+}
+
+fn label(canvas: &mut Canvas, text: &str, at: (f64, f64), angle: f64) {
+    let text = Text {
+        text,
+        at,
+        size: LABEL_SIZE,
+        anchor: Anchor::Middle,
+        bold: false,
+    };
+    canvas.turned_text(text, angle);
+}
+
+fn title(canvas: &mut Canvas, text: &str, at: (f64, f64)) {
+    canvas.text(Text {
+        text,
+        at,
+        size: TITLE_SIZE,
+        anchor: Anchor::Start,
+        bold: true,
+    });
+}
+
+fn empty(name: &str) -> PlotError {
+    PlotError::Empty {
+        panel: 0,
+        series: name.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use roxmltree::Document;
+
+    use super::*;
+
+    /// Position along `axis` and extent of the rectangles of a colour.
+    fn rectangles(svg: &str, colour: &str, [at, extent]: [&str; 2]) -> Vec<(f64, f64)> {
+        let document = Document::parse(svg).unwrap();
+        let number = |node: roxmltree::Node<'_, '_>, name| {
+            let value: f64 = node.attribute(name).unwrap().parse().unwrap();
+            value
+        };
+        document
+            .descendants()
+            .filter(|n| n.has_tag_name("rect") && n.attribute("fill") == Some(colour))
+            .map(|n| (number(n, at), number(n, extent)))
+            .collect()
+    }
+
+    #[test]
+    fn columns_are_as_high_as_their_counts() {
+        let svg = histogram(&Histogram {
+            counts: &[2, 0, 8, 4],
+            marks: vec![Reference {
+                label: "here: 2".to_owned(),
+                value: 2.0,
+            }],
+            ..Histogram::default()
+        })
+        .unwrap();
+        let found = rectangles(&svg, COLUMN, ["y", "height"]);
+        // None for a count of 0; all stand on one line. Pixels have two decimals.
+        let [two, eight, four] = found[..] else {
+            panic!("{found:?}")
+        };
+        assert!((four.1 - 2.0 * two.1).abs() < 0.03 && (eight.1 - 4.0 * two.1).abs() < 0.05);
+        assert!((two.0 + two.1 - eight.0 - eight.1).abs() < 0.03);
+        assert!(svg.contains("here: 2"));
+    }
+
+    #[test]
+    fn parts_lie_end_to_end_and_fill_the_bar() {
+        let row = |parts: &[f64]| ("a claim".to_owned(), parts.to_vec());
+        let svg = shares(&Shares {
+            rows: vec![row(&[0.25, 0.25, 0.0, 0.5]), row(&[1.0])],
+            ..Shares::default()
+        })
+        .unwrap();
+        let of = |colour| rectangles(&svg, colour, ["x", "width"]);
+        let [first, whole] = of(PARTS[0])[..] else {
+            panic!("{svg}")
+        };
+        let (second, last) = (of(PARTS[1])[0], of(PARTS[3])[0]);
+        assert!(of(PARTS[2]).is_empty());
+        assert!((first.1 - 0.25 * whole.1).abs() < 0.02 && (last.1 - 0.5 * whole.1).abs() < 0.02);
+        assert!((second.0 - first.0 - first.1).abs() < 0.02);
+        assert!((last.0 - second.0 - second.1).abs() < 0.02);
+        assert!(svg.contains("50 %") && svg.contains("100 %"));
+    }
+
+    #[test]
+    fn nothing_to_draw_is_an_error() {
+        let none = Histogram {
+            counts: &[0, 0],
+            ..Histogram::default()
+        };
+        assert!(histogram(&none).is_err());
+        assert!(shares(&Shares::default()).is_err());
+    }
+}

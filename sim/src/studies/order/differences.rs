@@ -1,0 +1,126 @@
+//! How far runs at different orders are from the one that stands for all modes: over time,
+//! in the mean, and in the statistics of a long time.
+
+use serde_json::{Value, json};
+
+use crate::studies::case::Record;
+use crate::studies::error::StudyError;
+use crate::studies::report::{Columns, amplitude};
+
+use super::{OMEGA, REFERENCE, Run, STATISTICS, STEP, TRANSIENT};
+
+/// The differences' largest values are taken over pieces of this many samples: 5 ms.
+const PIECE: usize = 102;
+
+/// The quantities compared.
+pub(super) const NAMES: [&str; 3] = ["x_sp", "f_la", "dr"];
+
+/// Differences of x_sp, f_la and dr, one value per order.
+pub(super) struct Convergence {
+    pub orders: Vec<f64>,
+    pub values: [Vec<f64>; 3],
+}
+
+/// The run at an order.
+pub(super) fn at(runs: &[Run], order: usize) -> Result<&Run, StudyError> {
+    let found = runs.iter().find(|run| run.order == order);
+    found.ok_or_else(|| StudyError::Request(format!("order {order} was not run")))
+}
+
+/// The rms difference to the reference over so many seconds from the start, m.
+pub(super) fn convergence(runs: &[Run], seconds: f64) -> Result<Convergence, StudyError> {
+    let reference = at(runs, REFERENCE)?;
+    let count = (seconds / STEP) as usize;
+    Ok(Convergence::of(runs, |run, which| {
+        let pairs = series(&run.start, which)
+            .iter()
+            .zip(series(&reference.start, which));
+        let squares: f64 = pairs.take(count).map(|(a, b)| (a - b).powi(2)).sum();
+        (squares / count.max(1) as f64).sqrt()
+    }))
+}
+
+/// The difference of the rms over a long time, relative to that of the reference.
+pub(super) fn statistics(runs: &[Run]) -> Result<Convergence, StudyError> {
+    let reference = at(runs, REFERENCE)?;
+    Ok(Convergence::of(runs, |run, which| {
+        (rms(run, which) / rms(reference, which) - 1.0).abs()
+    }))
+}
+
+impl Convergence {
+    fn of(runs: &[Run], difference: impl Fn(&Run, usize) -> f64) -> Self {
+        Self {
+            orders: compared(runs).map(|run| run.order as f64).collect(),
+            values: [0, 1, 2]
+                .map(|which| compared(runs).map(|run| difference(run, which)).collect()),
+        }
+    }
+}
+
+/// All runs but the reference.
+fn compared(runs: &[Run]) -> impl Iterator<Item = &Run> {
+    runs.iter().filter(|run| run.order != REFERENCE)
+}
+
+/// x_sp, f_la or dr.
+fn series(record: &Record, which: usize) -> &[f64] {
+    match which {
+        0 => &record.x_sp,
+        1 => &record.f_la,
+        _ => &record.dr,
+    }
+}
+
+fn rms(run: &Run, which: usize) -> f64 {
+    let amplitude = run.statistics.get(which);
+    amplitude.map_or(f64::NAN, |amplitude| amplitude.rms)
+}
+
+/// The largest difference of x_sp, m, in each 5 ms, with the times, s.
+pub(super) fn largest(of: &Record, reference: &Record) -> (Vec<f64>, Vec<f64>) {
+    let pieces = of.x_sp.chunks(PIECE).zip(reference.x_sp.chunks(PIECE));
+    let greatest = pieces.map(|(a, b)| {
+        let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        differences.fold(0.0, f64::max)
+    });
+    (
+        of.times.iter().step_by(PIECE).copied().collect(),
+        greatest.collect(),
+    )
+}
+
+/// The differences and the rms over a long time as data.
+pub(super) fn table(file: &str, runs: &[Run], of: &Convergence) -> Columns {
+    let mut columns = vec![("S".to_owned(), of.orders.clone())];
+    for (which, (name, values)) in NAMES.iter().zip(&of.values).enumerate() {
+        columns.push((format!("difference_{name}"), values.clone()));
+        let long = compared(runs).map(|run| rms(run, which));
+        columns.push((format!("rms_{name}"), long.collect()));
+    }
+    Columns {
+        file: file.to_owned(),
+        columns,
+    }
+}
+
+/// The same for the study's document.
+pub(super) fn numbers(micrometres: u32, seconds: f64, runs: &[Run], of: &Convergence) -> Value {
+    let statistics = runs.iter().map(|run| {
+        let [x_sp, f_la, dr] = &run.statistics;
+        json!({ "order": run.order, "x_sp": amplitude(x_sp), "f_la": amplitude(f_la), "dr": amplitude(dr) })
+    });
+    let [x_sp, f_la, dr] = &of.values;
+    json!({
+        "b": f64::from(micrometres) * 1e-6,
+        "omega": OMEGA,
+        "data": format!("convergence_b{micrometres:03}.csv"),
+        "reference_order": REFERENCE,
+        "differences_over_s": seconds,
+        "orders": of.orders,
+        "rms_difference": { "x_sp": x_sp, "f_la": f_la, "dr": dr },
+        "statistics_over_s": STATISTICS,
+        "statistics_after_s": TRANSIENT,
+        "statistics": statistics.collect::<Vec<_>>(),
+    })
+}
