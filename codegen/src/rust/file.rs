@@ -55,7 +55,7 @@ pub fn tokens(program: &Program, packaging: Packaging) -> Emitted<TokenStream> {
         let module = identifier(ITEMS_MODULE)?;
         return Ok(quote! {
             #docs
-            #[allow(non_snake_case, dead_code, clippy::all)]
+            #[allow(non_snake_case, dead_code, clippy::all, clippy::pedantic, clippy::nursery)]
             #[forbid(unsafe_code)]
             mod #module { #items }
             #[allow(unused_imports)]
