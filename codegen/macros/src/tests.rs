@@ -310,3 +310,59 @@ fn what_is_not_used_is_a_warning() {
     );
     assert!(!expanded(SOUND).contains("deprecated"));
 }
+
+const PENDULUM: &str = "model { name : pendulum } parameters { m : { value : 1 , unit : kg } , \
+    l : { value : 300 , unit : mm , min : 0 } , g : { value : 9.81 , unit : m / s ^ 2 } } \
+    coordinates { theta : { unit : rad , initial : pi / 2 } } \
+    definitions { y : - l * cos ( theta ) } kinetic { bob : 1 / 2 * m * ( l * dot ( theta ) ) ^ 2 } \
+    potential { gravity : m * g * y } forces { motor : { on : theta , value : \"-0\" } }";
+
+/// Every text that is `words` with one word left out, doubled, changed for the next one or
+/// for something foreign.
+fn slips(words: &[&str]) -> Vec<String> {
+    let slip = |index: usize, with: &[&str]| {
+        let behind = &words[index + 1..];
+        [&words[..index], with, behind].concat().join(" ")
+    };
+    let mut texts = Vec::new();
+    for (index, word) in words.iter().enumerate() {
+        texts.push(slip(index, &[]));
+        texts.push(slip(index, &[word, word]));
+        texts.push(slip(index, &[words.get(index + 1).unwrap_or(&"")]));
+        for foreign in [
+            "#",
+            "\"\\\"\\n\"",
+            "'a'",
+            "..",
+            "{ }",
+            "1e999",
+            "theta",
+            "θ",
+            "r#fn",
+        ] {
+            texts.push(slip(index, &[foreign]));
+        }
+    }
+    texts
+}
+
+#[test]
+fn every_slip_gives_items_or_errors() {
+    let words: Vec<&str> = PENDULUM.split_whitespace().collect();
+    let (mut errors, mut items) = (0, 0);
+    for text in slips(&words) {
+        // What is no Rust never reaches a macro.
+        let Ok(stream) = text.parse() else { continue };
+        let tokens = model(stream, None).to_string();
+        let refused = tokens.contains("compile_error !");
+        assert!(
+            refused || tokens.contains("pub const SPECIFICATION"),
+            "{text}"
+        );
+        *if refused { &mut errors } else { &mut items } += 1;
+    }
+    assert!(
+        errors > 500 && items > 10,
+        "{errors} refused, {items} accepted"
+    );
+}
