@@ -3,7 +3,7 @@
 //!
 //! ```toml
 //! [build-dependencies]
-//! eomgen-build = { git = "..." }
+//! eomgen-build = { path = "../eomgen/eomgen-build" }
 //! ```
 //!
 //! ```no_run
