@@ -5,8 +5,7 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use codegen::translate::DeriveError;
-use model_spec::diagnostic::{Diagnostic, Diagnostics};
+use model_spec::diagnostic::Diagnostics;
 use model_spec::source::Source;
 use model_spec::variant::ModelError;
 
@@ -32,15 +31,6 @@ impl Problem {
     /// A file that could not be read or written.
     pub fn file(action: &str, path: &Path, error: &dyn std::fmt::Display) -> Self {
         Self::Input(format!("cannot {action} {}: {error}", path.display()))
-    }
-
-    /// A specification that could not be derived.
-    pub fn derivation(source: &Source, error: &DeriveError) -> Self {
-        let mut diagnostic = Diagnostic::error(&error.message).at(error.span, "");
-        if let Some(help) = &error.help {
-            diagnostic = diagnostic.help(help);
-        }
-        Self::Specification(Diagnostics::one(source.clone(), diagnostic))
     }
 
     /// A model that cannot be had with the numbers asked for.

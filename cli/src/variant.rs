@@ -3,9 +3,8 @@
 use std::io::IsTerminal;
 use std::path::Path;
 
-use codegen::equations::{Equations, derive};
+use codegen::equations::Equations;
 use codegen::evaluator::Evaluator;
-use codegen::lower::lower;
 use codegen::program::Program;
 use model_spec::Checked;
 use model_spec::model::Model;
@@ -49,16 +48,12 @@ pub fn orders(model: &Model, text: Option<&str>) -> Outcome<Vec<usize>> {
 
 /// Derives a model at the given orders.
 pub fn derive_variant(model: Model, orders: &[usize]) -> Outcome<Variant> {
-    let values = model
-        .parameter_values()
-        .map_err(|error| Problem::model(&model.source, error))?;
-    let equations =
-        derive(&model, orders).map_err(|error| Problem::derivation(&model.source, &error))?;
-    let program = lower(&model, &equations, &values);
+    let derived =
+        codegen::variant::Variant::derive(&model, orders).map_err(Problem::Specification)?;
     Ok(Variant {
         model,
-        equations,
-        program,
+        equations: derived.equations,
+        program: derived.program,
     })
 }
 

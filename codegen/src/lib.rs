@@ -10,7 +10,7 @@
 //! `report` (for people).
 //!
 //! The arrows are two functions: [`equations::derive`] from a model to equations and
-//! [`lower::lower`] from equations to a program.
+//! [`lower::lower`] from equations to a program; [`variant`] goes both.
 
 pub mod affine;
 pub mod coefficients;
@@ -41,3 +41,4 @@ mod substitute;
 mod table_text;
 pub mod tables;
 pub mod translate;
+pub mod variant;

@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 
 use model_spec::ast::BinaryOperator;
+use model_spec::diagnostic::Diagnostic;
 use model_spec::model::{Expr, ExprKind, Model};
 use model_spec::span::Span;
 
@@ -30,6 +31,15 @@ impl std::fmt::Display for DeriveError {
 }
 
 impl std::error::Error for DeriveError {}
+
+impl DeriveError {
+    /// The same as a finding on the model's source.
+    pub fn diagnostic(self) -> Diagnostic {
+        Diagnostic::error(self.message)
+            .at(self.span, "")
+            .help_if(self.help)
+    }
+}
 
 /// Result of a derivation step.
 pub type Derived<T> = Result<T, DeriveError>;

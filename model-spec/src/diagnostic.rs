@@ -180,6 +180,11 @@ impl Diagnostics {
         &self.list
     }
 
+    /// How many findings are only counted.
+    pub fn omitted(&self) -> usize {
+        self.omitted
+    }
+
     /// The text they are about.
     pub fn source(&self) -> &Source {
         &self.source

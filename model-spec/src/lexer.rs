@@ -1,5 +1,5 @@
-//! From the text of an expression to tokens. Another front end may make the same tokens
-//! of its own text: positions are opaque to everything behind this module.
+//! From the text of an expression to tokens. Positions are opaque to everything behind this
+//! module.
 
 use crate::diagnostic::{Diagnostic, quoted};
 use crate::span::Span;

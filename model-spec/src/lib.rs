@@ -36,4 +36,4 @@ pub mod unit;
 mod units_check;
 pub mod variant;
 
-pub use load::{Checked, MAX_SIZE, check, load};
+pub use load::{Checked, MAX_SIZE, check, load, load_from};

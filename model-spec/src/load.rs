@@ -32,8 +32,16 @@ pub struct Checked {
 /// A file that cannot be read, is larger than [`MAX_SIZE`] or is not UTF-8, and all that
 /// [`check`] finds.
 pub fn load(path: &Path) -> Result<Checked, Diagnostics> {
+    load_from(Path::new(""), path)
+}
+
+/// Reads and checks the specification in a file below `root`; findings show `path` alone.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_from(root: &Path, path: &Path) -> Result<Checked, Diagnostics> {
     let shown = path.display().to_string();
-    let bytes = read(path)
+    let bytes = read(&root.join(path))
         .map_err(|diagnostic| Diagnostics::one(Source::new(shown.clone(), ""), diagnostic))?;
     let text = String::from_utf8(bytes).map_err(|error| not_utf8(shown.clone(), &error))?;
     check(Source::new(shown, text))

@@ -1,5 +1,5 @@
-//! Positions in a source. In a specification file a position is a byte offset; for
-//! tokens handed in by a macro it is the token's number. Nothing here knows which.
+//! Positions in a source: byte offsets in its text. The text may be a file's or one that a
+//! macro wrote down from its tokens; nothing here knows which.
 
 use serde::Serialize;
 

@@ -20,7 +20,14 @@ pub enum Packaging {
     Crate,
     /// A module of a crate that is `no_std` already.
     Module,
+    /// What a module is filled with, by `include!` or by a macro, where the attributes of
+    /// a file may not stand: the items come out of an inner module, [`ITEMS_MODULE`], that
+    /// keeps its helpers to itself.
+    Items,
 }
+
+/// The inner module of [`Packaging::Items`].
+pub const ITEMS_MODULE: &str = "eomgen_emitted";
 
 pub(super) type Emitted<T> = Result<T, EmitError>;
 
@@ -29,11 +36,42 @@ pub(super) type Emitted<T> = Result<T, EmitError>;
 /// # Errors
 /// If a name of the program is no Rust identifier.
 pub fn emit(program: &Program, packaging: Packaging) -> Result<String, EmitError> {
-    let file = File::new(program)?;
-    let tokens = file.tokens(packaging)?;
+    let tokens = tokens(program, packaging)?;
     let parsed: syn::File =
         syn::parse2(tokens).map_err(|error| EmitError::Syntax(error.to_string()))?;
     Ok(spaced(&prettyplease::unparse(&parsed)))
+}
+
+/// The same as [`emit`] as tokens, for a macro.
+///
+/// # Errors
+/// As [`emit`].
+pub fn tokens(program: &Program, packaging: Packaging) -> Emitted<TokenStream> {
+    let file = File::new(program)?;
+    let items = file.items()?;
+    let lines = file.documentation();
+    if packaging == Packaging::Items {
+        let docs = doc(&lines);
+        let module = identifier(ITEMS_MODULE)?;
+        return Ok(quote! {
+            #docs
+            #[allow(non_snake_case, dead_code, clippy::all, clippy::pedantic, clippy::nursery)]
+            #[forbid(unsafe_code)]
+            mod #module { #items }
+            #[allow(unused_imports)]
+            pub use #module::*;
+        });
+    }
+    let docs = file_doc(&lines);
+    let no_std = (packaging == Packaging::Crate).then(|| quote!(#![no_std]));
+    Ok(quote! {
+        #docs
+        #no_std
+        #![allow(non_snake_case)]
+        #![allow(clippy::all)]
+        #![forbid(unsafe_code)]
+        #items
+    })
 }
 
 /// With an empty line before every documented item, as a person would set it.
@@ -76,9 +114,8 @@ impl<'p> File<'p> {
         })
     }
 
-    fn tokens(&self, packaging: Packaging) -> Emitted<TokenStream> {
+    fn items(&self) -> Emitted<TokenStream> {
         let mut needed = Needed::default();
-        let header = self.header(packaging);
         let constants = self.constants();
         let tables = self.tables()?;
         let parameters = self.parameters()?;
@@ -90,7 +127,6 @@ impl<'p> File<'p> {
         let mass = self.mass_matrix(&mut needed)?;
         let functions = items(&needed);
         Ok(quote! {
-            #header
             #constants
             #parameters
             #inputs
@@ -104,7 +140,8 @@ impl<'p> File<'p> {
         })
     }
 
-    fn header(&self, packaging: Packaging) -> TokenStream {
+    /// What the file is and where it comes from, by lines.
+    fn documentation(&self) -> Vec<String> {
         let program = self.program;
         let orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
         let order = if orders.is_empty() {
@@ -112,7 +149,7 @@ impl<'p> File<'p> {
         } else {
             format!("modal truncation order {}", orders.join(", "))
         };
-        let lines = [
+        vec![
             format!("{}: equations of motion, {order}.", program.title.trim_end_matches('.')),
             String::new(),
             format!(
@@ -126,16 +163,7 @@ impl<'p> File<'p> {
             format!("State: {}.", program.state_names().join(", ")),
             "All quantities are in SI units. Nothing here allocates, panics or needs the standard library."
                 .to_owned(),
-        ];
-        let docs = file_doc(&lines);
-        let no_std = (packaging == Packaging::Crate).then(|| quote!(#![no_std]));
-        quote! {
-            #docs
-            #no_std
-            #![allow(non_snake_case)]
-            #![allow(clippy::all)]
-            #![forbid(unsafe_code)]
-        }
+        ]
     }
 
     fn constants(&self) -> TokenStream {

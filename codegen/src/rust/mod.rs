@@ -16,7 +16,7 @@ mod names;
 mod stages;
 mod types;
 
-pub use file::{Packaging, emit};
+pub use file::{ITEMS_MODULE, Packaging, emit, tokens};
 
 /// Why a program could not be emitted.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,0 +1,107 @@
+//! From the macro's arguments to the items of a model, through `model-spec` and `codegen`.
+
+use std::path::Path;
+
+use codegen::rust::{Packaging, tokens};
+use codegen::variant::Variant;
+use model_spec::diagnostic::Diagnostics;
+use model_spec::source::Source;
+use proc_macro2::{Span, TokenStream};
+use quote::quote;
+use syn::{Error, LitStr};
+
+use crate::arguments::{Arguments, Order};
+use crate::findings::{at_tokens, in_file, warnings_at_tokens, warnings_in_file};
+use crate::tables::sections;
+use crate::write::specification;
+
+/// What findings call a specification written in place.
+const IN_PLACE: &str = "model!";
+
+/// The items of a model; paths are from `root`. What is wrong becomes errors of the
+/// compiler.
+pub fn model(input: TokenStream, root: Option<&Path>) -> TokenStream {
+    items(input, root).unwrap_or_else(Error::into_compile_error)
+}
+
+fn items(input: TokenStream, root: Option<&Path>) -> syn::Result<TokenStream> {
+    match syn::parse2(input)? {
+        Arguments::File(path, order) => file(&path, order, root),
+        Arguments::Sections(stream) => in_place(stream),
+    }
+}
+
+fn file(path: &LitStr, order: Option<Order>, root: Option<&Path>) -> syn::Result<TokenStream> {
+    let place = path.span();
+    let root = root.ok_or_else(|| {
+        let message = "CARGO_MANIFEST_DIR is not set, so the path leads nowhere\n\
+                       help: compile with cargo, or write the sections in place";
+        Error::new(place, message)
+    })?;
+    let written = path.value();
+    let checked = model_spec::load_from(root, Path::new(&written))
+        .map_err(|found| refused(&found, &root.join(&written), place))?;
+    let model = checked.model;
+    let orders = model.orders(order.as_ref().map(|order| order.value));
+    let orders = orders.map_err(|error| {
+        let place = order.as_ref().map_or(place, |order| order.span);
+        Error::new(place, described(&error))
+    })?;
+    let variant = Variant::derive(&model, &orders).map_err(|found| in_file(&found, place))?;
+    let items = emitted(&variant)?;
+    let warnings = warnings_in_file(&checked.warnings, place);
+    let Some(path) = root.join(&written).to_str().map(str::to_owned) else {
+        return Err(Error::new(place, "the path of the file is not Unicode"));
+    };
+    Ok(quote! {
+        #items
+        #warnings
+        // The compiler looks at the file again when it has changed.
+        const _: &[u8] = ::core::include_bytes!(#path);
+    })
+}
+
+fn refused(found: &Diagnostics, path: &Path, place: Span) -> Error {
+    match found.list().first() {
+        Some(unreadable) if !path.is_file() => Error::new(
+            place,
+            format!(
+                "{}\nhelp: the path is from the root of the crate, the folder of its Cargo.toml",
+                unreadable.message
+            ),
+        ),
+        _ => in_file(found, place),
+    }
+}
+
+fn in_place(stream: TokenStream) -> syn::Result<TokenStream> {
+    let placed = specification(&sections(stream)?)?;
+    let source = Source::new(IN_PLACE, placed.text.as_str());
+    let checked = model_spec::check(source).map_err(|found| at_tokens(&found, &placed))?;
+    let model = checked.model;
+    let orders = model
+        .orders(None)
+        .map_err(|error| Error::new(Span::call_site(), described(&error)))?;
+    let variant = Variant::derive(&model, &orders).map_err(|found| at_tokens(&found, &placed))?;
+    let items = emitted(&variant)?;
+    let warnings = warnings_at_tokens(&checked.warnings, &placed);
+    let text = &placed.text;
+    Ok(quote! {
+        #items
+        #warnings
+        #[doc = " The specification as a file says it: written to one, every command of the program `eomgen` takes it."]
+        pub const SPECIFICATION: &'static str = #text;
+    })
+}
+
+fn emitted(variant: &Variant) -> syn::Result<TokenStream> {
+    tokens(&variant.program, Packaging::Items)
+        .map_err(|error| Error::new(Span::call_site(), error.to_string()))
+}
+
+fn described(error: &model_spec::variant::ModelError) -> String {
+    match &error.help {
+        Some(help) => format!("{}\nhelp: {help}", error.message),
+        None => error.message.clone(),
+    }
+}

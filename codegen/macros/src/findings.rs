@@ -1,0 +1,90 @@
+//! What is wrong with a specification as errors and warnings of the compiler. What is
+//! wrong is decided elsewhere.
+
+use model_spec::diagnostic::{Diagnostic, Diagnostics, Label};
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{quote, quote_spanned};
+use syn::Error;
+
+use crate::places::Placed;
+
+/// Findings on a specification written in place, each at its tokens.
+pub fn at_tokens(found: &Diagnostics, placed: &Placed) -> Error {
+    let mut errors = found.list().iter().map(|finding| {
+        let text = message(finding, placed);
+        match token_range(finding, placed) {
+            // Only the first and the last token count.
+            Some((first, last)) => {
+                let (first, last) = (Ident::new("_a", first), Ident::new("_b", last));
+                Error::new_spanned(quote!(#first #last), text)
+            }
+            None => Error::new(Span::call_site(), text),
+        }
+    });
+    let nothing = || Error::new(Span::call_site(), "the specification is not sound");
+    let mut error = errors.next().unwrap_or_else(nothing);
+    error.extend(errors);
+    if found.omitted() > 0 {
+        let more = format!("and {} more", found.omitted());
+        error.combine(Error::new(Span::call_site(), more));
+    }
+    error
+}
+
+/// Findings on a file, with its lines, at the place that names it.
+pub fn in_file(found: &Diagnostics, place: Span) -> Error {
+    let text = format!("the specification is refused\n\n{}", found.render(false));
+    Error::new(place, text)
+}
+
+/// Statements that make the compiler warn of what was found in place.
+pub fn warnings_at_tokens(found: &Diagnostics, placed: &Placed) -> TokenStream {
+    let warnings = found.list().iter().map(|finding| {
+        let (place, _) =
+            token_range(finding, placed).unwrap_or((Span::call_site(), Span::call_site()));
+        warning(&message(finding, placed), place)
+    });
+    quote!(#(#warnings)*)
+}
+
+/// Statements that make the compiler warn of what was found in a file.
+pub fn warnings_in_file(found: &Diagnostics, place: Span) -> TokenStream {
+    let texts = (!found.is_empty()).then(|| found.render(false));
+    let warnings = texts.iter().map(|text| warning(text, place));
+    quote!(#(#warnings)*)
+}
+
+/// A macro cannot warn. The use of something deprecated does.
+fn warning(text: &str, place: Span) -> TokenStream {
+    let name = Ident::new("WARNING", place.resolved_at(Span::mixed_site()));
+    let used = quote_spanned!(place=> #name);
+    quote! {
+        const _: () = {
+            #[deprecated(note = #text)]
+            const #name: () = ();
+            #used
+        };
+    }
+}
+
+fn token_range(finding: &Diagnostic, placed: &Placed) -> Option<(Span, Span)> {
+    let primary = finding.primary.as_ref()?;
+    placed.tokens(primary.span)
+}
+
+/// The whole finding: the compiler underlines its place and no other.
+fn message(finding: &Diagnostic, placed: &Placed) -> String {
+    let mut text = finding.message.clone();
+    let primary = finding.primary.iter().filter(|label| label.text != "here");
+    for Label { text: remark, .. } in primary.filter(|label| !label.text.is_empty()) {
+        text.push_str(&format!("\n{remark}"));
+    }
+    for Label { span, text: remark } in &finding.secondary {
+        let shown = placed.shown(*span).unwrap_or_default();
+        text.push_str(&format!("\n`{shown}`: {remark}"));
+    }
+    if let Some(help) = &finding.help {
+        text.push_str(&format!("\nhelp: {help}"));
+    }
+    text
+}

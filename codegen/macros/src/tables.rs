@@ -1,0 +1,184 @@
+//! From tokens to the tables they spell: `name { entry, ... }` and within it
+//! `name: value` or `name = value`. Which names there are, and what a value says, is not
+//! looked at; a specification in place has the sections and keys of one in a file.
+
+use proc_macro2::{Delimiter, Group, Ident, Spacing, Span, TokenStream, TokenTree};
+use syn::{Error, LitStr};
+
+/// The deepest nesting of braces and brackets; what comes after walks it recursively.
+pub const MAX_DEPTH: usize = 200;
+
+/// A name and what it stands for.
+pub struct Entry {
+    /// The name.
+    pub key: Ident,
+    /// Its value.
+    pub value: Value,
+}
+
+/// A value.
+pub enum Value {
+    /// `{ entry, ... }`
+    Table(Table),
+    /// A string literal.
+    Text(LitStr),
+    /// Anything else, one token at least.
+    Tokens(Vec<TokenTree>),
+}
+
+/// The entries between two braces.
+pub struct Table {
+    /// Where it opens.
+    pub open: Span,
+    /// What it holds.
+    pub entries: Vec<Entry>,
+    /// Where it closes.
+    pub close: Span,
+}
+
+/// The sections of a specification.
+///
+/// # Errors
+/// The first token that is not where the grammar has it.
+pub fn sections(stream: TokenStream) -> syn::Result<Vec<Entry>> {
+    let mut tokens = flat(stream).into_iter().peekable();
+    let mut sections = Vec::new();
+    while let Some(token) = tokens.next() {
+        let key = match token {
+            TokenTree::Ident(key) => key,
+            TokenTree::Punct(mark) if matches!(mark.as_char(), ',' | ';') => {
+                let message = "nothing stands between sections\nhelp: leave this out";
+                return Err(Error::new(mark.span(), message));
+            }
+            other => {
+                let message = "expected a section\nhelp: such as kinetic { ... }";
+                return Err(Error::new(other.span(), message));
+            }
+        };
+        match tokens.next() {
+            Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Brace => {
+                let value = Value::Table(table(&group, 1)?);
+                add(&mut sections, Entry { key, value })?;
+            }
+            other => {
+                let place = other.map_or(key.span(), |token| token.span());
+                let message = format!("expected braces after `{key}`\nhelp: {key} {{ ... }}");
+                return Err(Error::new(place, message));
+            }
+        }
+    }
+    Ok(sections)
+}
+
+/// Tokens without the invisible groups that a macro puts around what it was given.
+fn flat(stream: TokenStream) -> Vec<TokenTree> {
+    let mut tokens = Vec::new();
+    for token in stream {
+        match token {
+            TokenTree::Group(group) if group.delimiter() == Delimiter::None => {
+                tokens.extend(flat(group.stream()));
+            }
+            other => tokens.push(other),
+        }
+    }
+    tokens
+}
+
+fn table(group: &Group, depth: usize) -> syn::Result<Table> {
+    if depth > MAX_DEPTH {
+        let message = format!("braces are nested more than {MAX_DEPTH} deep");
+        return Err(Error::new(group.span_open(), message));
+    }
+    let tokens = flat(group.stream());
+    let mut entries = Vec::new();
+    let mut rest: &[TokenTree] = &tokens;
+    while !rest.is_empty() {
+        let (key, behind) = key(rest)?;
+        let length = behind.iter().position(is(',')).unwrap_or(behind.len());
+        let value = value(&key, &behind[..length], depth)?;
+        add(&mut entries, Entry { key, value })?;
+        rest = behind.get(length + 1..).unwrap_or_default();
+    }
+    Ok(Table {
+        open: group.span_open(),
+        entries,
+        close: group.span_close(),
+    })
+}
+
+fn is(wanted: char) -> impl Fn(&TokenTree) -> bool {
+    move |token| matches!(token, TokenTree::Punct(mark) if mark.as_char() == wanted)
+}
+
+/// The key at the front and what stands behind its colon.
+fn key(tokens: &[TokenTree]) -> syn::Result<(Ident, &[TokenTree])> {
+    match tokens {
+        [TokenTree::Ident(key), colon, rest @ ..] if is(':')(colon) || is('=')(colon) => {
+            Ok((key.clone(), rest))
+        }
+        [TokenTree::Ident(key), rest @ ..] => {
+            let place = rest.first().map_or(key.span(), TokenTree::span);
+            let message = format!("expected `:` after `{key}`\nhelp: {key}: ...");
+            Err(Error::new(place, message))
+        }
+        [first, ..] if is('#')(first) => Err(Error::new(
+            first.span(),
+            "expected a name\nhelp: a comment begins with //; documentation is an entry's \
+             doc: \"...\"",
+        )),
+        [first, ..] => Err(Error::new(first.span(), "expected a name")),
+        [] => Err(Error::new(Span::call_site(), "expected a name")),
+    }
+}
+
+fn value(key: &Ident, tokens: &[TokenTree], depth: usize) -> syn::Result<Value> {
+    match tokens {
+        [] => {
+            let message = format!("`{key}` has no value");
+            Err(Error::new(key.span(), message))
+        }
+        [TokenTree::Group(group)] if group.delimiter() == Delimiter::Brace => {
+            Ok(Value::Table(table(group, depth + 1)?))
+        }
+        [TokenTree::Literal(literal)] => {
+            let single = TokenStream::from(TokenTree::from(literal.clone()));
+            Ok(match syn::parse2(single) {
+                Ok(text) => Value::Text(text),
+                Err(_) => Value::Tokens(tokens.to_vec()),
+            })
+        }
+        _ => {
+            refuse_two_entries(tokens)?;
+            Ok(Value::Tokens(tokens.to_vec()))
+        }
+    }
+}
+
+/// A further `name:` inside a value is the next entry.
+fn refuse_two_entries(tokens: &[TokenTree]) -> syn::Result<()> {
+    for (index, token) in tokens.iter().enumerate().skip(1) {
+        let TokenTree::Punct(mark) = token else {
+            continue;
+        };
+        if mark.as_char() == ';' {
+            let message = "entries are separated by commas";
+            return Err(Error::new(mark.span(), message));
+        }
+        let alone = mark.spacing() == Spacing::Alone && matches!(mark.as_char(), ':' | '=');
+        let before = &tokens[index - 1];
+        if alone && index > 1 && matches!(before, TokenTree::Ident(_)) {
+            let message = format!("a comma is missing before `{before}`");
+            return Err(Error::new(before.span(), message));
+        }
+    }
+    Ok(())
+}
+
+fn add(entries: &mut Vec<Entry>, entry: Entry) -> syn::Result<()> {
+    if entries.iter().any(|known| known.key == entry.key) {
+        let message = format!("`{}` is given twice", entry.key);
+        return Err(Error::new(entry.key.span(), message));
+    }
+    entries.push(entry);
+    Ok(())
+}

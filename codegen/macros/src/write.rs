@@ -1,0 +1,172 @@
+//! From the tables of a macro to the text of a specification. The text is the same however
+//! the tokens were spaced, and so is its hash.
+
+use proc_macro2::{Delimiter, Ident, Span, TokenTree};
+use syn::Error;
+
+use crate::places::Placed;
+use crate::tables::{Entry, MAX_DEPTH, Table, Value};
+
+/// The specification of these sections.
+///
+/// # Errors
+/// An expression whose brackets are nested too deep.
+pub fn specification(sections: &[Entry]) -> syn::Result<Placed> {
+    let mut placed = Placed::default();
+    for (index, section) in sections.iter().enumerate() {
+        placed.add(if index == 0 { "[" } else { "\n[" });
+        key(&mut placed, &section.key);
+        placed.add("]\n");
+        let Value::Table(table) = &section.value else {
+            continue;
+        };
+        for entry in &table.entries {
+            self::entry(&mut placed, entry)?;
+            placed.add("\n");
+        }
+    }
+    Ok(placed)
+}
+
+fn entry(placed: &mut Placed, entry: &Entry) -> syn::Result<()> {
+    key(placed, &entry.key);
+    placed.add(" = ");
+    match &entry.value {
+        Value::Table(inline) => table(placed, inline),
+        Value::Text(text) => {
+            placed.mark(&format!("\"{}\"", escaped(&text.value())), text.span());
+            Ok(())
+        }
+        Value::Tokens(tokens) => expression(placed, tokens),
+    }
+}
+
+fn table(placed: &mut Placed, table: &Table) -> syn::Result<()> {
+    placed.mark("{", table.open);
+    for (index, entry) in table.entries.iter().enumerate() {
+        placed.add(if index == 0 { " " } else { ", " });
+        self::entry(placed, entry)?;
+    }
+    placed.add(" ");
+    placed.mark("}", table.close);
+    Ok(())
+}
+
+/// A name, in quotes where TOML takes no other letters bare.
+fn key(placed: &mut Placed, key: &Ident) {
+    let name = key.to_string();
+    let bare = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
+    if name.bytes().all(bare) {
+        placed.mark(&name, key.span());
+    } else {
+        placed.mark(&format!("\"{}\"", escaped(&name)), key.span());
+    }
+}
+
+/// A number as it is, anything else in quotes.
+fn expression(placed: &mut Placed, tokens: &[TokenTree]) -> syn::Result<()> {
+    let mut pieces = Vec::new();
+    for token in tokens {
+        take_apart(token, 1, &mut pieces)?;
+    }
+    let quote = if is_number(&pieces) { "" } else { "\"" };
+    placed.add(quote);
+    for (index, piece) in pieces.iter().enumerate() {
+        let apart = index > 0 && pieces[index - 1].word && (piece.word || piece.text == ".");
+        placed.add(if apart { " " } else { "" });
+        placed.mark(&escaped(&piece.text), piece.span);
+        // No space after the last comma, if a person left one there.
+        let goes_on = index + 1 < pieces.len();
+        placed.add(if goes_on && piece.text == "," {
+            " "
+        } else {
+            ""
+        });
+    }
+    // Of nobody's: what is missing at the end of an expression is missed by its last token.
+    placed.add(quote);
+    Ok(())
+}
+
+/// A token of Rust, a bracket being one.
+struct Piece {
+    text: String,
+    /// Whether it is a name or a literal, which must not touch the next.
+    word: bool,
+    span: Span,
+}
+
+fn take_apart(token: &TokenTree, depth: usize, pieces: &mut Vec<Piece>) -> syn::Result<()> {
+    let mut add = |text: String, word: bool, span: Span| pieces.push(Piece { text, word, span });
+    let group = match token {
+        TokenTree::Group(group) => group,
+        TokenTree::Punct(mark) => {
+            add(mark.as_char().to_string(), false, mark.span());
+            return Ok(());
+        }
+        word => {
+            add(word.to_string(), true, word.span());
+            return Ok(());
+        }
+    };
+    if depth > MAX_DEPTH {
+        let message = format!("the expression is nested more than {MAX_DEPTH} deep");
+        return Err(Error::new(group.span_open(), message));
+    }
+    let (open, close) = match group.delimiter() {
+        Delimiter::Parenthesis => ("(", ")"),
+        Delimiter::Bracket => ("[", "]"),
+        Delimiter::Brace => ("{", "}"),
+        Delimiter::None => ("", ""),
+    };
+    add(open.to_owned(), false, group.span_open());
+    for inner in group.stream() {
+        take_apart(&inner, depth + 1, pieces)?;
+    }
+    pieces.push(Piece {
+        text: close.to_owned(),
+        word: false,
+        span: group.span_close(),
+    });
+    Ok(())
+}
+
+/// Whether the pieces are a number as TOML writes it: a sign, digits, then perhaps a
+/// fraction and an exponent. `2.` and `.5` are numbers of expressions alone.
+fn is_number(pieces: &[Piece]) -> bool {
+    let literal = match pieces {
+        [literal] => literal,
+        [sign, literal] if matches!(sign.text.as_str(), "+" | "-") => literal,
+        _ => return false,
+    };
+    let text = literal.text.strip_prefix('-').unwrap_or(&literal.text);
+    let (mantissa, exponent) = match text.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (mantissa, Some(exponent)),
+        None => (text, None),
+    };
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
+    let (whole, fraction) = match mantissa.split_once('.') {
+        Some((whole, fraction)) => (whole, Some(fraction)),
+        None => (mantissa, None),
+    };
+    let unsigned = |text: &str| digits(text.strip_prefix(['+', '-']).unwrap_or(text));
+    digits(whole)
+        && (whole == "0" || !whole.starts_with('0'))
+        && fraction.is_none_or(digits)
+        && exponent.is_none_or(unsigned)
+}
+
+/// Text between the quotes of a TOML string.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '"' | '\\' => escaped.extend(['\\', letter]),
+            letter if letter.is_control() => {
+                escaped.push_str(&format!("\\u{:04X}", u32::from(letter)));
+            }
+            letter => escaped.push(letter),
+        }
+    }
+    escaped
+}

@@ -1,0 +1,35 @@
+//! The whole way from a checked model to its program, for those who come with a
+//! specification and want what is emitted: what goes wrong on it is a finding on the
+//! specification. Nothing is derived here.
+
+use model_spec::diagnostic::Diagnostics;
+use model_spec::model::Model;
+
+use crate::equations::{Equations, derive};
+use crate::lower::lower;
+use crate::program::Program;
+
+/// A model derived at one order for each of its fields.
+pub struct Variant {
+    /// Its equations.
+    pub equations: Equations,
+    /// Its program, with the model's parameter values as defaults.
+    pub program: Program,
+}
+
+impl Variant {
+    /// Derives `model` with its fields at `orders`, one for each field.
+    ///
+    /// # Errors
+    /// Parameter values that are not admissible, and what cannot be derived, each at its
+    /// place in the specification.
+    pub fn derive(model: &Model, orders: &[usize]) -> Result<Self, Diagnostics> {
+        let found = |diagnostic| Diagnostics::one(model.source.clone(), diagnostic);
+        let values = model
+            .parameter_values()
+            .map_err(|error| found(error.diagnostic()))?;
+        let equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
+        let program = lower(model, &equations, &values);
+        Ok(Self { equations, program })
+    }
+}

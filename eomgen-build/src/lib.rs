@@ -1,0 +1,224 @@
+//! Equations of motion in a build script, for those who like to see the emitted source and
+//! to keep procedural macros out.
+//!
+//! ```toml
+//! [build-dependencies]
+//! eomgen-build = { path = "../eomgen/eomgen-build" }
+//! ```
+//!
+//! ```no_run
+//! // build.rs
+//! fn main() -> Result<(), eomgen_build::Error> {
+//!     eomgen_build::generate("models/planetary_arm.toml", &[4, 8])?;
+//!     Ok(())
+//! }
+//! ```
+//!
+//! ```ignore
+//! // src/lib.rs
+//! pub mod arm {
+//!     include!(concat!(env!("OUT_DIR"), "/planetary_arm_order_4.rs"));
+//! }
+//! use arm::{Coefficients, Inputs, Parameters, rates};
+//! ```
+//!
+//! The emitted items are those of `eomgen generate` and of the macro `eomgen::model!`; they
+//! need neither this crate nor another one.
+
+use std::path::{Path, PathBuf};
+
+use codegen::rust::{Packaging, emit};
+use codegen::variant::Variant;
+use model_spec::Checked;
+use model_spec::diagnostic::{Diagnostics, Record};
+
+/// Why nothing, or not everything, was generated. Its `Debug` is its message, so that
+/// `fn main() -> Result<(), eomgen_build::Error>` shows it as it is meant to be read.
+pub struct Error(String);
+
+impl std::fmt::Display for Error {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::fmt::Debug for Error {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Emits a specification at each of `orders` into the folder `OUT_DIR`, and has cargo run the
+/// build script again when the specification changes. Relative paths are from the root of
+/// the crate. Gives the files' paths, in the order of `orders`:
+///
+/// | `orders` | file, for a model named `arm` |
+/// | --- | --- |
+/// | `&[4, 8]` | `arm_order_4.rs` and `arm_order_8.rs`, every field with 4 and with 8 modes |
+/// | `&[0]` | `arm_rigid.rs`, no modes |
+/// | `&[]` | `arm.rs`, as the specification says; also for models without a field |
+///
+/// What may not be as it was meant, such as a parameter that is never used, becomes a
+/// warning of cargo.
+///
+/// # Errors
+/// All that is wrong with the specification, with file, line and column; an order that it
+/// cannot have; a file that cannot be written; a call outside a build script.
+pub fn generate(specification: impl AsRef<Path>, orders: &[usize]) -> Result<Vec<PathBuf>, Error> {
+    let folder = std::env::var_os("OUT_DIR").map(PathBuf::from);
+    let Some(folder) = folder else {
+        let message = "OUT_DIR is not set: eomgen_build::generate is called from a build script";
+        return Err(Error(message.to_owned()));
+    };
+    let root = std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(PathBuf::new, PathBuf::from);
+    let path = specification.as_ref();
+    println!("cargo::rerun-if-changed={}", root.join(path).display());
+    let checked = model_spec::load_from(&root, path).map_err(|found| refused(&found))?;
+    for warning in checked.warnings.records() {
+        println!("cargo::warning={}", line(&warning));
+    }
+    variants(&checked, orders, &folder)
+}
+
+fn variants(checked: &Checked, orders: &[usize], folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let name = &checked.model.name;
+    if orders.is_empty() {
+        return Ok(vec![variant(
+            checked,
+            None,
+            &folder.join(format!("{name}.rs")),
+        )?]);
+    }
+    let of = |order: &usize| {
+        let file = match order {
+            0 => format!("{name}_rigid.rs"),
+            order => format!("{name}_order_{order}.rs"),
+        };
+        variant(checked, Some(*order), &folder.join(file))
+    };
+    orders.iter().map(of).collect()
+}
+
+fn variant(checked: &Checked, order: Option<usize>, path: &Path) -> Result<PathBuf, Error> {
+    let model = &checked.model;
+    let orders = model.orders(order).map_err(|error| {
+        let found = Diagnostics::one(model.source.clone(), error.diagnostic());
+        refused(&found)
+    })?;
+    let variant = Variant::derive(model, &orders).map_err(|found| refused(&found))?;
+    let text =
+        emit(&variant.program, Packaging::Items).map_err(|error| Error(error.to_string()))?;
+    write(path, &text)
+        .map_err(|error| Error(format!("cannot write {}: {error}", path.display())))?;
+    Ok(path.to_owned())
+}
+
+/// Writes beside the place and moves there what is whole.
+fn write(path: &Path, text: &str) -> std::io::Result<()> {
+    let beside = path.with_extension("rs.new");
+    std::fs::write(&beside, text)?;
+    std::fs::rename(&beside, path)
+}
+
+fn refused(found: &Diagnostics) -> Error {
+    Error(format!(
+        "the specification is refused\n\n{}",
+        found.render(false)
+    ))
+}
+
+/// A finding on one line, which is what cargo shows of a warning.
+fn line(finding: &Record) -> String {
+    let place = match (finding.line, finding.column) {
+        (Some(line), Some(column)) => format!("{}:{line}:{column}", finding.file),
+        _ => finding.file.clone(),
+    };
+    let help = finding.help.iter().map(|help| format!("; {help}"));
+    let text = format!("{place}: {}{}", finding.message, help.collect::<String>());
+    text.replace(['\n', '\r'], " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use model_spec::source::Source;
+
+    use super::*;
+
+    const PENDULUM: &str = "[model]\nname = \"p\"\n[parameters]\nJ = { value = 1, unit = \"kg m^2\" }\n\
+                            [coordinates]\na = { unit = \"rad\" }\n[kinetic]\nrotor = \"1/2*J*dot(a)^2\"\n";
+
+    fn checked(text: &str) -> Checked {
+        model_spec::check(Source::new("p.toml", text)).expect("sound")
+    }
+
+    fn arm() -> Checked {
+        let path =
+            Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm.toml");
+        model_spec::load(&path).expect("sound")
+    }
+
+    fn names(paths: &[PathBuf]) -> Vec<String> {
+        let name = |path: &PathBuf| {
+            path.file_name()
+                .expect("a file")
+                .to_string_lossy()
+                .into_owned()
+        };
+        paths.iter().map(name).collect()
+    }
+
+    #[test]
+    fn each_order_has_its_file() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let paths = variants(&arm(), &[0, 2], folder.path()).expect("generated");
+        assert_eq!(
+            names(&paths),
+            ["planetary_arm_rigid.rs", "planetary_arm_order_2.rs"]
+        );
+        let text = std::fs::read_to_string(&paths[1]).expect("readable");
+        assert!(text.contains("ORDERS: [usize; 1] = [2]"), "{text}");
+        // Nothing half written and nothing else is left.
+        let left = std::fs::read_dir(folder.path()).expect("readable").count();
+        assert_eq!(left, 2);
+    }
+
+    #[test]
+    fn without_orders_the_specification_decides() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let paths = variants(&checked(PENDULUM), &[], folder.path()).expect("generated");
+        assert_eq!(names(&paths), ["p.rs"]);
+        let paths = variants(&arm(), &[], folder.path()).expect("generated");
+        let text = std::fs::read_to_string(&paths[0]).expect("readable");
+        assert!(text.contains("ORDERS: [usize; 1] = [4]"), "{text}");
+    }
+
+    #[test]
+    fn what_cannot_be_had_is_said() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let no_field = variants(&checked(PENDULUM), &[3], folder.path()).expect_err("refused");
+        assert!(
+            format!("{no_field:?}").contains("no field, so no order 3"),
+            "{no_field}"
+        );
+        let nowhere = folder.path().join("missing");
+        let unwritten = variants(&checked(PENDULUM), &[], &nowhere).expect_err("refused");
+        assert!(
+            unwritten.to_string().starts_with("cannot write"),
+            "{unwritten}"
+        );
+    }
+
+    #[test]
+    fn warnings_take_one_line() {
+        let text = format!("{PENDULUM}[inputs]\nu = {{ unit = \"N\" }}\n");
+        let warnings = checked(&text).warnings.records();
+        let shown = line(&warnings[0]);
+        assert!(
+            shown.starts_with("p.toml:10:1: the input `u` is not used; "),
+            "{shown}"
+        );
+        assert!(!shown.contains('\n'));
+    }
+}

@@ -1,0 +1,89 @@
+//! Equations of motion from energies, at compile time: [`model!`] derives them from a
+//! specification and expands to fast Rust that needs neither the standard library nor this crate.
+//!
+//! ```
+//! mod pendulum {
+//!     eomgen::model! {
+//!         model { name: pendulum }
+//!         parameters {
+//!             m: { value: 0.15, unit: kg },
+//!             l: { value: 300, unit: mm },
+//!             g: { value: 9.81, unit: m/s^2 },
+//!         }
+//!         coordinates { theta: { unit: rad } }
+//!         kinetic { bob: 1/2*m*(l*dot(theta))^2 }
+//!         potential { gravity: -m*g*l*cos(theta) }
+//!     }
+//! }
+//!
+//! use pendulum::{Coefficients, Inputs, Parameters, rates};
+//!
+//! let coefficients = Coefficients::prepare(&Parameters::default());
+//! let [rate, acceleration] = rates(0.0, &[0.5, 0.0], &Inputs::default(), &coefficients);
+//! assert_eq!(rate, 0.0);
+//! assert!((acceleration + 9.81 / 0.3 * 0.5_f64.sin()).abs() < 1e-12);
+//! ```
+#![no_std]
+
+/// The equations of motion of a specification, as items of the module around it.
+///
+/// From a file, `spec` being its path from the root of the crate, and `order` the number
+/// of modes of every field, as the file says if it is left out:
+///
+/// ```
+/// mod arm {
+///     eomgen::model! { spec = "../model-spec/models/planetary_arm.toml", order = 6 }
+/// }
+/// use arm::{Coefficients, Parameters};
+///
+/// assert_eq!(arm::ORDERS, [6]);
+/// assert!(Coefficients::prepare(&Parameters::default()).positive_definite);
+/// ```
+///
+/// In place, the sections of a file with braces around, commas between and no quotes:
+///
+/// ```
+/// mod slider {
+///     eomgen::model! {
+///         model { name: slider }
+///         parameters { m: { value: 2, unit: kg, doc: "moved mass", min: 0 } }
+///         coordinates { x: { unit: m } }
+///         inputs { u: { unit: N } }
+///         kinetic { slider: 1/2*m*dot(x)^2 }
+///         forces { drive: { on: x, value: u } }
+///     }
+/// }
+/// use slider::{Coefficients, Inputs, Parameters, rates};
+///
+/// let coefficients = Coefficients::prepare(&Parameters { m: 4.0 });
+/// let rates = rates(0.0, &[0.0, 1.0], &Inputs { u: 8.0 }, &coefficients);
+/// assert_eq!(rates, [1.0, 2.0]);
+/// ```
+///
+/// The items are those of a file that `eomgen generate` writes, among them:
+///
+/// | item | what it is |
+/// | --- | --- |
+/// | `Parameters` | numbers in SI; `Default` gives those of the specification |
+/// | `Coefficients` | what depends on them alone: `prepare` once, use in every call |
+/// | `Inputs` | signals at run time; `Default` gives zeros |
+/// | `rates(t, &state, &inputs, &coefficients)` | the rates of the state, `[f64; STATES]` |
+/// | `observables`, `energy`, `power`, `guards`, `mass_matrix` | of the same arguments |
+/// | `STATES`, `STATE_NAMES`, `ORDERS`, `OBSERVABLE_NAMES` | constants |
+/// | `SPECIFICATION` | in place only: the specification as the text of a file |
+///
+/// Helpers such as the emitted sine stay in an inner module. Two models cannot share a
+/// module.
+///
+/// What is wrong with the specification is an error at its token, or at the path with the
+/// file's line in the message:
+///
+/// ```compile_fail
+/// eomgen::model! {
+///     model { name: slider }
+///     parameters { m: { value: 2, unit: kg } }
+///     coordinates { x: { unit: m } }
+///     kinetic { slider: 1/2*m*dot(x) } // in kg m/s, expected J
+/// }
+/// ```
+pub use eomgen_macros::model;

@@ -1,0 +1,3 @@
+eomgen::model! { spec = "specifications/rotr.toml" }
+
+fn main() {}

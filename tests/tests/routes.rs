@@ -1,0 +1,231 @@
+//! The routes by which emitted code gets into a program (macro, build script, command line)
+//! give the same bits, and bring nothing along.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use eomgen_tests::models::{load, path, project, samples};
+use eomgen_tests::program::{eomgen, run};
+
+/// The order of the examples' arm.
+const ORDER: usize = 4;
+
+/// The seed of the states.
+const SEED: u64 = 0x5eed_0400;
+
+/// States in each of the nine mesh regimes.
+const STATES_PER_REGIME: usize = 20;
+
+/// Bits of a time and a state, then those of what a route gives there.
+type Bits = Vec<u64>;
+
+fn points() -> Vec<(f64, [f64; 14])> {
+    let drawn = samples(&load("planetary_arm"), ORDER, SEED, STATES_PER_REGIME);
+    let point = |sample: &sim::validate::sampler::Sample| {
+        let state = sample.state.as_slice().try_into();
+        (sample.time, state.expect("a state of the arm"))
+    };
+    drawn.iter().map(point).collect()
+}
+
+/// Rates, observables and guards of a module at every point.
+macro_rules! bits {
+    ($module:path) => {{
+        use $module as module;
+        let coefficients = module::Coefficients::prepare(&module::Parameters::default());
+        let inputs = module::Inputs::default();
+        let all = points().into_iter().map(|(t, state)| {
+            let numbers = [
+                module::rates(t, &state, &inputs, &coefficients).to_vec(),
+                module::observables(t, &state, &inputs, &coefficients).to_vec(),
+                module::guards(t, &state, &inputs, &coefficients).to_vec(),
+            ];
+            numbers.concat().into_iter().map(f64::to_bits).collect()
+        });
+        all.collect::<Vec<Bits>>()
+    }};
+}
+
+/// A program around the file that `eomgen generate` leaves: bits of a time and a state on
+/// every line of its input, bits of the numbers there on every line of its output.
+const PROBE: &str = r#"
+use arm4::*;
+
+fn main() {
+    let coefficients = Coefficients::prepare(&Parameters::default());
+    let inputs = Inputs::default();
+    for line in std::io::stdin().lines() {
+        let line = line.unwrap();
+        let numbers: Vec<f64> = line
+            .split(' ')
+            .map(|bits| f64::from_bits(u64::from_str_radix(bits, 16).unwrap()))
+            .collect();
+        let (t, state) = (numbers[0], numbers[1..].try_into().unwrap());
+        let rates = rates(t, &state, &inputs, &coefficients);
+        let observables = observables(t, &state, &inputs, &coefficients);
+        let guards = guards(t, &state, &inputs, &coefficients);
+        for number in rates.iter().chain(&observables).chain(&guards) {
+            print!("{:x} ", number.to_bits());
+        }
+        println!();
+    }
+}
+"#;
+
+fn rustc(arguments: &[&str], folder: &Path) {
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let status = Command::new(rustc)
+        .args(["--edition", "2024", "-O"])
+        .args(arguments)
+        .current_dir(folder)
+        .status()
+        .expect("rustc can be run");
+    assert!(status.success(), "{arguments:?}");
+}
+
+/// The crate `arm4` of what `eomgen generate` leaves, compiled into `folder`.
+fn arm4(folder: &Path) {
+    let status = eomgen()
+        .args(["generate", "--order", "4", "--out", "arm4"])
+        .arg(path("planetary_arm"))
+        .current_dir(folder)
+        .ok();
+    status.expect("the arm is emitted");
+    let library = ["--crate-type", "lib", "--crate-name", "arm4"];
+    rustc(&[&library[..], &["arm4/lib.rs"]].concat(), folder);
+}
+
+/// What a program around that file says of the points.
+fn by_command_line(folder: &Path) -> Vec<Bits> {
+    arm4(folder);
+    std::fs::write(folder.join("probe.rs"), PROBE).expect("writable");
+    rustc(&["probe.rs", "--extern", "arm4=libarm4.rlib"], folder);
+    let mut input = String::new();
+    for (t, state) in points() {
+        let bits = state.iter().map(|x| format!(" {:x}", x.to_bits()));
+        writeln!(input, "{:x}{}", t.to_bits(), bits.collect::<String>()).expect("written");
+    }
+    let mut probe = Command::new(folder.join("probe"))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("the probe can be run");
+    let mut stdin = probe.stdin.take().expect("a pipe");
+    let writer = std::thread::spawn(move || stdin.write_all(input.as_bytes()));
+    let output = probe.wait_with_output().expect("the probe ends");
+    writer.join().expect("no panic").expect("the probe reads");
+    let text = String::from_utf8(output.stdout).expect("digits");
+    let number = |bits: &str| u64::from_str_radix(bits, 16).expect("digits");
+    let line = |line: &str| line.split_whitespace().map(number).collect();
+    text.lines().map(line).collect()
+}
+
+#[test]
+fn all_routes_give_the_same_bits() {
+    let checked_in = bits!(generated::planetary_arm_order_4);
+    assert_eq!(checked_in.len(), 9 * STATES_PER_REGIME);
+    assert!(checked_in == bits!(with_macro::arm), "the macro differs");
+    assert!(
+        checked_in == bits!(with_build_script::arm),
+        "the build script differs"
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    assert!(
+        checked_in == by_command_line(folder.path()),
+        "the command line differs"
+    );
+}
+
+#[test]
+fn the_example_of_the_command_line_runs() {
+    let folder = tempfile::tempdir().expect("a folder");
+    arm4(folder.path());
+    let example = project().join("examples/with_command_line/controller.rs");
+    std::fs::copy(example, folder.path().join("controller.rs")).expect("copied");
+    rustc(
+        &["controller.rs", "--extern", "arm4=libarm4.rlib"],
+        folder.path(),
+    );
+    let output = Command::new(folder.path().join("controller")).output();
+    let output = output.expect("the controller runs").stdout;
+    assert_eq!(
+        String::from_utf8_lossy(&output),
+        "x_c = 0.000437 m after 10 ms\n"
+    );
+}
+
+/// The Rust of a page, by blocks.
+fn rust_blocks(page: &str) -> Vec<String> {
+    let text = std::fs::read_to_string(project().join(page)).expect("the page");
+    let blocks = text.split("```rust\n").skip(1);
+    let blocks = blocks.filter_map(|rest| rest.split("```").next());
+    blocks.map(str::to_owned).collect()
+}
+
+#[test]
+fn the_pages_show_the_examples() {
+    let pages = ["README.md", "docs/embedding.md"];
+    let blocks: Vec<String> = pages.into_iter().flat_map(rust_blocks).collect();
+    let examples: Vec<String> = [
+        "with_macro/src/lib.rs",
+        "with_macro/src/main.rs",
+        "with_build_script/build.rs",
+        "with_build_script/src/lib.rs",
+        "with_command_line/controller.rs",
+    ]
+    .iter()
+    .map(|file| std::fs::read_to_string(project().join("examples").join(file)).expect("a file"))
+    .collect();
+    for block in &blocks {
+        let shown = examples.iter().any(|example| example.contains(block));
+        assert!(shown, "in no example:\n{block}");
+    }
+    for example in &examples {
+        let shown = blocks.iter().any(|block| example.contains(block));
+        assert!(shown, "on no page:\n{example}");
+    }
+}
+
+#[test]
+fn a_specification_in_place_can_be_certified() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("pendulum.toml");
+    std::fs::write(&file, with_macro::pendulum::SPECIFICATION).expect("writable");
+    let output = run(&["validate", &file.display().to_string()]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+}
+
+/// The packages of `cargo tree`, each on a line.
+fn tree(package: &str, edges: &str) -> Vec<String> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo)
+        .args(["tree", "--offline", "--locked", "--prefix", "none"])
+        .args(["--package", package, "--edges", edges, "--format", "{lib}"])
+        .current_dir(project())
+        .output()
+        .expect("cargo can be run");
+    assert!(output.status.success(), "{output:?}");
+    let text = String::from_utf8(output.stdout).expect("names");
+    text.lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn a_controller_links_nothing_but_itself() {
+    assert_eq!(tree("eomgen", "normal,no-proc-macro"), ["eomgen"]);
+    let example = tree("eomgen-example-with-build-script", "normal");
+    assert_eq!(example, ["with_build_script"]);
+}
+
+#[test]
+fn the_macro_needs_no_program_and_no_simulation() {
+    for package in ["eomgen", "eomgen-build"] {
+        let packages = tree(package, "normal");
+        let has = |name: &str| packages.iter().any(|package| package.starts_with(name));
+        assert!(has("codegen") && has("model_spec"), "{packages:?}");
+        for heavy in ["clap", "cranelift", "parquet", "sim", "rayon", "nalgebra"] {
+            assert!(!has(heavy), "{package} builds {heavy}");
+        }
+    }
+}
