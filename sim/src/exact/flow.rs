@@ -10,7 +10,7 @@ use nalgebra::Complex;
 
 use super::cluster_flow::ClusterFlow;
 use super::forced::reciprocal;
-use super::functional::Functional;
+use super::functional::{Functional, Weights};
 use super::integrals::Series;
 use super::ladder::Rung;
 use super::lanes::{LITTLE, Lane, Pairs, TINY, groups, numbers, numbers_mut};
@@ -21,6 +21,10 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Terms of a polynomial below this part of another one of lower order are left out.
 const NEGLIGIBLE: f64 = 1e-19;
+
+/// Magnitudes of amplitudes are found anew when the fastest decay since would make this much
+/// of a difference to their logarithm.
+const DECAYED: f64 = 0.25;
 
 /// A motion in one regime. Its memory is used again for the next one.
 #[derive(Clone, Debug, Default)]
@@ -35,8 +39,10 @@ pub(super) struct Flow {
     moved: Vec<Lane>,
     /// The modes' amplitudes at tau.
     now: Vec<Lane>,
-    /// Their magnitudes.
+    /// Their magnitudes, when they were found, s, and how often.
     size: Vec<Lane>,
+    measured_at: f64,
+    measurements: u64,
     /// The integrals.
     series: Series,
     /// For each function what is particular to this flow.
@@ -62,8 +68,12 @@ struct Own {
     /// The value, and what its terms' magnitudes add up to.
     value: f64,
     size: f64,
-    /// Sums over the first groups of modes, from none to all.
-    partial: Vec<Partial>,
+    /// Sums over the first groups of modes, from none to all: the amplitudes' part of the
+    /// value, and derivatives of order 1 to 3.
+    partial: Vec<Sums<4>>,
+    /// The same of the magnitudes of the orders 0, 1 and 4, and of which measurement.
+    sizes: Vec<Sums<3>>,
+    measurement: u64,
     /// The amplitudes' part of the value, and derivatives of order 1 to 3, of all modes.
     amplitudes: [f64; 4],
     /// Magnitudes of the orders 0, 1 and 4, of all modes.
@@ -92,35 +102,17 @@ pub(super) struct Local {
 }
 
 /// Sums over the slowest groups of modes, four side by side.
-#[derive(Clone, Copy, Debug)]
-struct Partial {
-    /// The amplitudes' part of the value, and derivatives of order 1 to 3.
-    derivatives: [Lane; 4],
-    /// Magnitudes of the orders 0, 1 and 4.
-    sizes: [Lane; 3],
-}
+type Sums<const KINDS: usize> = [Lane; KINDS];
 
-impl Partial {
-    /// What the last sums hold beyond the first ones, without so many modes of the first
-    /// group beyond.
-    #[inline]
-    fn beyond(sums: &[Self], modes: usize) -> Self {
-        let (before, first, last) = (&sums[0], &sums[1], &sums[sums.len() - 1]);
-        let mask = MASKS[modes];
-        let left_out =
-            |before: Lane, first: Lane, last: Lane| last - before - (first - before) * mask;
-        let orders = [0, 1, 2, 3];
-        Self {
-            derivatives: orders.map(|order: usize| {
-                let of = |sums: &Self| sums.derivatives[order];
-                left_out(of(before), of(first), of(last))
-            }),
-            sizes: [0, 1, 2].map(|place: usize| {
-                let of = |sums: &Self| sums.sizes[place];
-                left_out(of(before), of(first), of(last))
-            }),
-        }
-    }
+/// What the last sums hold beyond the first ones, without so many modes of the first group
+/// beyond.
+#[inline]
+fn beyond<const KINDS: usize>(sums: &[Sums<KINDS>], modes: usize) -> [f64; KINDS] {
+    let (before, first, last) = (&sums[0], &sums[1], &sums[sums.len() - 1]);
+    std::array::from_fn(|kind| {
+        let skipped = (first[kind] - before[kind]) * MASKS[modes];
+        (last[kind] - before[kind] - skipped).reduce_add()
+    })
 }
 
 /// One for so many lanes.
@@ -130,11 +122,6 @@ const MASKS: [Lane; 4] = [
     Lane::new([1.0, 1.0, 0.0, 0.0]),
     Lane::new([1.0, 1.0, 1.0, 0.0]),
 ];
-
-const NOTHING: Partial = Partial {
-    derivatives: [Lane::ZERO; 4],
-    sizes: [Lane::ZERO; 3],
-};
 
 impl Flow {
     /// Starts at a state, with exp(i theta) of the phases there.
@@ -146,6 +133,7 @@ impl Flow {
         phases: &[Complex<f64>],
     ) {
         self.tau = 0.0;
+        self.measured_at = f64::NAN;
         self.origin.resize(groups(state.len()), Lane::ZERO);
         numbers_mut(&mut self.origin)[..state.len()].copy_from_slice(state);
         self.find_coordinates(regime, state, inputs, phases);
@@ -162,7 +150,9 @@ impl Flow {
         }
         self.own.resize_with(regime.functionals.len(), Own::default);
         for (own, functional) in self.own.iter_mut().zip(&regime.functionals) {
-            own.partial.resize(regime.modes.groups() + 1, NOTHING);
+            let sums = regime.modes.groups() + 1;
+            own.partial.resize(sums, [Lane::ZERO; 4]);
+            own.sizes.resize(sums, [Lane::ZERO; 3]);
             (own.start, own.start_size) = functional.at(state, inputs, phases);
             own.find_polynomial(regime, functional, &self.series.derivatives);
             let zeta = &self.start[modes..];
@@ -171,7 +161,7 @@ impl Flow {
                 .integrals
                 .rate_size(&functional.rate_terms, zeta, forces);
         }
-        self.measure();
+        self.measure(regime);
     }
 
     fn find_coordinates(
@@ -230,10 +220,10 @@ impl Flow {
     }
 
     /// Advances by a step of the ladder.
-    pub fn step(&mut self, rung: &Rung) {
+    pub fn step(&mut self, regime: &Regime, rung: &Rung) {
         self.tau += rung.length;
         self.advance(&rung.gains);
-        self.measure();
+        self.measure(regime);
     }
 
     /// Advances by any time, which may be negative.
@@ -255,7 +245,7 @@ impl Flow {
         } else {
             self.advance(&Pairs::gains(&regime.modes.rate, rest));
         }
-        self.measure();
+        self.measure(regime);
     }
 
     /// Advances by so little that a short series gives the gains.
@@ -278,7 +268,7 @@ impl Flow {
         self.rewind(regime);
         self.advance(&Pairs::gains(&regime.modes.rate, tau));
         self.tau = tau;
-        self.measure();
+        self.measure(regime);
     }
 
     /// Whether no amplitude has overflowed.
@@ -288,8 +278,15 @@ impl Flow {
         values.chain(sizes).all(|value| value.is_finite())
     }
 
-    fn measure(&mut self) {
+    /// Finds the amplitudes' magnitudes anew, if they may have shrunk by much.
+    fn measure(&mut self, regime: &Regime) {
+        let decayed = (self.tau - self.measured_at) * regime.modes.damping;
+        if (0.0..DECAYED).contains(&decayed) {
+            return;
+        }
+        self.measured_at = self.tau;
         let (re, im) = self.now.split_at(self.now.len() / 2);
+        self.measurements += 1;
         self.size.clear();
         let squares = re.iter().zip(im).map(|(a, b)| *a * *a + *b * *b);
         self.size.extend(squares.map(Lane::sqrt));
@@ -302,19 +299,20 @@ impl Flow {
         let (now_re, now_im) = self.now.split_at(groups);
         let (moved_re, moved_im) = self.moved[..2 * groups].split_at(groups);
         let weights = &regime.functionals[place].weights[..groups];
+        if own.measurement != self.measurements {
+            own.measurement = self.measurements;
+            own.sum_up_sizes(weights, &self.size);
+        }
         let slots = &mut own.partial[1..=groups];
-        let mut partial = NOTHING;
+        let mut sums = [Lane::ZERO; 4];
         let (mut value, mut size) = (Lane::ZERO, Lane::ZERO);
         for group in 0..groups {
             let weights = &weights[group];
             let (re, im) = (now_re[group], now_im[group]);
-            for order in 0..4 {
-                partial.derivatives[order] += weights.re[order] * re - weights.im[order] * im;
+            for (order, sum) in sums.iter_mut().enumerate() {
+                *sum += weights.re[order] * re - weights.im[order] * im;
             }
-            for order in 0..3 {
-                partial.sizes[order] += weights.size[order] * self.size[group];
-            }
-            slots[group] = partial;
+            slots[group] = sums;
             let (re, im) = (moved_re[group], moved_im[group]);
             value += weights.re[0] * re - weights.im[0] * im;
             size += weights.size[0] * (re.abs() + im.abs());
@@ -322,8 +320,13 @@ impl Flow {
         own.evaluate(self.tau);
         own.value += value.reduce_add();
         own.size += size.reduce_add();
-        own.all = partial.sizes.map(Lane::reduce_add);
-        own.amplitudes = partial.derivatives.map(Lane::reduce_add);
+        own.amplitudes = sums.map(Lane::reduce_add);
+    }
+
+    /// Whether a function that has been summed up here is certainly between two limits.
+    pub fn is_between(&self, place: usize, low: f64, high: f64) -> bool {
+        let value = self.own[place].value;
+        self.clusters.is_empty() && low < value && value < high
     }
 
     /// Value and derivatives of a function that has been summed up here, with bounds over
@@ -340,13 +343,13 @@ impl Flow {
         derivatives[0] = own.value;
         if rung.slow < regime.modes.count() {
             let (group, lane) = (rung.slow / 4, rung.slow % 4);
-            let left_out = Partial::beyond(&own.partial[group..], lane);
             // Without the fast modes, at whatever phase they are.
-            for (slot, sum) in derivatives.iter_mut().zip(left_out.derivatives) {
-                *slot -= sum.reduce_add();
+            let left_out = beyond(&own.partial[group..], lane);
+            for (slot, sum) in derivatives.iter_mut().zip(left_out) {
+                *slot -= sum;
             }
             // With the rounding of the sums.
-            let sizes = left_out.sizes.map(Lane::reduce_add);
+            let sizes = beyond(&own.sizes[group..], lane);
             fast = (sizes[0] + ROUNDING * all[0]) * rung.growth;
             fast_rate = (sizes[1] + ROUNDING * all[1]) * rung.growth;
             fourth -= sizes[2];
@@ -404,6 +407,17 @@ fn subtract(column: &[Lane], factor: f64, out: &mut [Lane]) {
 }
 
 impl Own {
+    fn sum_up_sizes(&mut self, weights: &[Weights], sizes: &[Lane]) {
+        let mut sums = [Lane::ZERO; 3];
+        for ((weights, size), slot) in weights.iter().zip(sizes).zip(&mut self.sizes[1..]) {
+            for (sum, weight) in sums.iter_mut().zip(weights.size) {
+                *sum += weight * *size;
+            }
+            *slot = sums;
+        }
+        self.all = sums.map(Lane::reduce_add);
+    }
+
     /// The part of the integrals, as a polynomial in tau.
     fn find_polynomial(&mut self, regime: &Regime, functional: &Functional, derivatives: &[Lane]) {
         let polynomial = &mut self.polynomial;

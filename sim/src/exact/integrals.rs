@@ -171,9 +171,12 @@ impl Integrals {
                     add_multiple(column, *factor, slots);
                 }
             }
-            driving[..inner].copy_from_slice(&numbers(slots)[self.pure..self.size]);
-            let pairs = driving[inner..].chunks_exact_mut(2);
-            for (pair, sinusoid) in pairs.zip(&self.sinusoids) {
+            let (coordinates, waves) = driving.split_at_mut(inner);
+            let found = &numbers(slots)[self.pure..self.size];
+            for (slot, value) in coordinates.iter_mut().zip(found) {
+                *slot = *value;
+            }
+            for (pair, sinusoid) in waves.chunks_exact_mut(2).zip(&self.sinusoids) {
                 let omega = sinusoid.frequency;
                 (pair[0], pair[1]) = (omega * pair[1], -omega * pair[0]);
             }

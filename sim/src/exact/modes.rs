@@ -23,6 +23,8 @@ pub(super) struct Modes {
     pub rate: Vec<Complex<f64>>,
     /// Their magnitudes, 1/s.
     pub magnitude: Vec<f64>,
+    /// The rate of the fastest decay; infinite if any mode grows, 1/s.
+    pub damping: f64,
     /// Which phase a sinusoid belongs to; nothing for a mode.
     pub phase: Vec<Option<usize>>,
     /// The same rates in groups.
@@ -69,6 +71,14 @@ impl Modes {
             }
         }
         modes.rates = Pairs::of(&modes.rate);
+        let damping = |rate: &Complex<f64>| {
+            if rate.re > 0.0 {
+                f64::INFINITY
+            } else {
+                -rate.re
+            }
+        };
+        modes.damping = modes.rate.iter().map(damping).fold(0.0, f64::max);
         modes
     }
 

@@ -94,6 +94,8 @@ pub struct Motion {
     pub(super) effort: Effort,
     /// The state at the start of the present segment.
     before: Vec<f64>,
+    /// exp(i theta) of the phases now.
+    phases: Vec<Complex<f64>>,
 }
 
 /// Who follows a motion.
@@ -228,6 +230,7 @@ impl Propagator {
             averaged_from: t,
             effort: Effort::default(),
             before: state.to_vec(),
+            phases: self.phases_at(clock),
         })
     }
 
@@ -253,7 +256,6 @@ impl Propagator {
         let remaining = motion.clock.until(target);
         self.check_window(motion, remaining)?;
         let values = held(inputs, now, self.inputs);
-        let phases = self.phases_at(motion.clock);
         let Entered {
             regime,
             rung,
@@ -262,13 +264,13 @@ impl Propagator {
         } = &mut self.regimes[motion.regime];
         motion.before.copy_from_slice(&motion.state);
         let flow = &mut self.flow;
-        flow.start(regime, &motion.state, values, &phases);
+        flow.start(regime, &motion.state, values, &motion.phases);
         let length = remaining.min(regime.ladder.window);
         let start = motion.clock;
         if motion.at_once > AT_ONCE {
             // Rounding alone decides between surfaces: the motion itself must.
             if let Some(shortest) = regime.ladder.rungs.last() {
-                flow.step(shortest);
+                flow.step(regime, shortest);
             }
             motion.at_once = 0;
         }
@@ -296,6 +298,9 @@ impl Propagator {
                 false
             }
         };
+        for (slot, phase) in motion.phases.iter_mut().zip(&self.phases) {
+            *slot = motion.clock.phase(*phase);
+        }
         flow.state(regime, &mut motion.state);
         if let Some(state) = motion.state.iter().position(|y| !y.is_finite()) {
             return Err(SolveError::NotFinite { t: now, state }.into());
@@ -342,7 +347,7 @@ impl Propagator {
     ) -> Result<(), ExactError> {
         let before = motion.regime;
         let values = held(inputs, motion.time(), self.inputs);
-        let phases = self.phases_at(motion.clock);
+        let phases = &motion.phases;
         let group = self.regimes[before].regime.functionals[functional]
             .limits
             .group;
@@ -354,7 +359,7 @@ impl Propagator {
         let (rank, to_positive) = crossed(self.regimes[before].places[group], upper);
         if beyond.jumps && !leapt {
             let rate = |propagator: &Self, index: usize| {
-                propagator.rate(index, group, &motion.state, values, &phases)
+                propagator.rate(index, group, &motion.state, values, phases)
             };
             let (here, there) = (rate(self, before), rate(self, after));
             let outward = if upper { 1.0 } else { -1.0 };
@@ -376,11 +381,11 @@ impl Propagator {
             before: &self.regimes[before].regime,
             after: &self.regimes[after].regime,
             function,
-            explicit_rate: self.explicit_rate(function, &phases),
+            explicit_rate: self.explicit_rate(function, phases),
             saltation: saltation.map(|place| &self.saltations[place]),
             state: &motion.state,
             inputs: values,
-            phases: &phases,
+            phases,
             switch: Switch {
                 t: motion.time(),
                 guard,

@@ -19,6 +19,10 @@ use super::regime::Regime;
 /// Newton steps towards a crossing; two or three are usual.
 const POLISHING: usize = 60;
 
+/// What Newton's next step would still correct, relative to the rounding of the function,
+/// which is a bound and mostly far from reached.
+const REST: f64 = 1e-3;
+
 /// A function that is beyond its limit by more than this many times its rounding has jumped.
 const JUMP: f64 = 64.0;
 
@@ -199,7 +203,7 @@ fn step(
             return Outcome::End;
         }
         if length == rung.length {
-            flow.step(rung);
+            flow.step(regime, rung);
         } else {
             flow.shift(regime, length);
         }
@@ -257,6 +261,10 @@ fn earliest_of_all(
 fn reached(flow: &Flow, regime: &Regime) -> Option<Found> {
     let all_slow = regime.ladder.rungs.last()?;
     for (functional, of) in regime.functionals.iter().enumerate() {
+        let Limits { low, high, .. } = of.limits;
+        if flow.is_between(functional, low, high) {
+            continue;
+        }
         let local = flow.local(regime, functional, all_slow);
         for upper in [false, true] {
             if Distance::to(&local, &of.limits, upper).is_reached() {
@@ -325,7 +333,7 @@ fn polish(
         let rest = shift
             * shift
             * (here.second.abs() + shift.abs() * (here.third.abs() + here.fourth * shift.abs()));
-        if settled || rest <= here.noise {
+        if settled || rest <= REST * here.noise {
             return;
         }
     }
