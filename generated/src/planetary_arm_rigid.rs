@@ -195,7 +195,7 @@ pub struct Coefficients {
     pub M_x_pr_x_pr: f64,
     /// `M_x_sp_x_c + pivot_x_pr`
     pub M_x_pr_x_c: f64,
-    /// `4.0*I_s/(r_s*r_s) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(...`
+    /// `4.0*I_s/(r_s*r_s) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
     pub M_x_c_x_c: f64,
     /// `2.0/r_s`
     pub c_13: f64,
@@ -254,20 +254,20 @@ impl Coefficients {
         let k_pr = parameters.k_pr;
         let s_6 = 3.0 * I_p;
         let s_7 = s_2 * s_2;
+        let m_p = parameters.m_p;
+        let s_8 = 3.0 * m_p / s_7;
         let r_c = s_1 * (z_s + z_p);
-        let s_8 = r_c * r_c;
-        let s_9 = s_7 * s_8;
+        let s_9 = r_c * r_c;
+        let s_10 = s_7 * s_9;
         let m_c = parameters.m_c;
-        let I_c = m_c * s_8;
-        let s_10 = I_c / s_9;
+        let I_c = m_c * s_9;
+        let s_11 = I_c / s_10;
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
-        let s_11 = l * (l * l);
-        let s_12 = 0.3333333333333333 * rho * A * s_11 / s_9;
-        let m_p = parameters.m_p;
-        let s_13 = 3.0 * m_p / s_7;
-        let pivot_x_c = s_10 + s_12 + s_13;
+        let s_12 = l * (l * l);
+        let s_13 = 0.3333333333333333 * rho * A * s_12 / s_10;
+        let pivot_x_c = s_8 + s_11 + s_13;
         let s_14 = pivot_reciprocal(pivot_x_c);
         let s_15 = 2.0 * I_s;
         let M_x_sp_x_sp = I_s / s_3;
@@ -275,7 +275,7 @@ impl Coefficients {
         let pivot_x_pr = s_6 / s_4;
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = 4.0 * I_s / s_3 + s_10 + s_12 + (pivot_x_pr + s_13);
+        let M_x_c_x_c = 4.0 * I_s / s_3 + (pivot_x_pr + s_8) + s_11 + s_13;
         let z_r = parameters.z_r;
         let i_sH = 1.0 + z_r / z_s;
         let s_16 = r_s * i_sH;
@@ -314,8 +314,8 @@ impl Coefficients {
             c_18: 0.5 * I_s / s_3,
             c_19: 1.5 * I_p / s_4,
             c_20: 1.5 * m_p / s_7,
-            c_21: 0.5 * I_c / s_9,
-            c_22: 0.16666666666666666 * rho * A * s_11 / s_9,
+            c_21: 0.5 * I_c / s_10,
+            c_22: 0.16666666666666666 * rho * A * s_12 / s_10,
             c_23: 1.5 * k_sp,
             c_24: 1.5 * k_pr,
             positive_definite: M_x_sp_x_sp > 0.0 && M_x_sp_x_sp < f64::INFINITY

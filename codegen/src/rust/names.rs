@@ -3,8 +3,6 @@
 
 use std::collections::{HashMap, HashSet};
 
-use proc_macro2::Ident;
-
 use super::EmitError;
 use super::literals::identifier;
 use crate::program::{Program, ValueId};
@@ -50,7 +48,7 @@ const TAKEN: [&str; 33] = [
 /// A supply of names, each handed out once.
 pub struct Names {
     used: HashSet<String>,
-    given: HashMap<ValueId, Ident>,
+    given: HashMap<ValueId, String>,
     next: HashMap<&'static str, usize>,
 }
 
@@ -74,7 +72,7 @@ impl Names {
         program: &Program,
         id: ValueId,
         stem: &'static str,
-    ) -> Result<Ident, EmitError> {
+    ) -> Result<String, EmitError> {
         if let Some(known) = self.given.get(&id) {
             return Ok(known.clone());
         }
@@ -84,7 +82,7 @@ impl Names {
             _ => self.numbered(stem),
         };
         self.used.insert(name.clone());
-        let name = identifier(&name)?;
+        let name = identifier(&name)?.to_owned();
         self.given.insert(id, name.clone());
         Ok(name)
     }
@@ -95,14 +93,14 @@ impl Names {
         id: ValueId,
         name: &str,
         stem: &'static str,
-    ) -> Result<Ident, EmitError> {
+    ) -> Result<String, EmitError> {
         let name = if self.used.contains(name) {
             self.numbered(stem)
         } else {
             name.to_owned()
         };
         self.used.insert(name.clone());
-        let name = identifier(&name)?;
+        let name = identifier(&name)?.to_owned();
         self.given.insert(id, name.clone());
         Ok(name)
     }

@@ -214,7 +214,7 @@ pub struct Coefficients {
     pub M_x_pr_x_pr: f64,
     /// `M_x_sp_x_c + pivot_x_pr`
     pub M_x_pr_x_c: f64,
-    /// `4.0*I_s/(r_s*r_s) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
+    /// `4.0*I_s/(r_s*r_s) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
     pub M_x_c_x_c: f64,
     /// `2.0/r_s`
     pub c_19: f64,
@@ -275,20 +275,20 @@ impl Coefficients {
         let k_pr = parameters.k_pr;
         let s_6 = 3.0 * I_p;
         let s_7 = s_2 * s_2;
-        let r_c = s_1 * (z_s + z_p);
-        let s_8 = r_c * r_c;
-        let s_9 = s_7 * s_8;
-        let m_c = parameters.m_c;
-        let I_c = m_c * s_8;
-        let s_10 = I_c / s_9;
         let m_p = parameters.m_p;
-        let s_11 = 3.0 * m_p / s_7;
+        let s_8 = 3.0 * m_p / s_7;
+        let r_c = s_1 * (z_s + z_p);
+        let s_9 = r_c * r_c;
+        let s_10 = s_7 * s_9;
+        let m_c = parameters.m_c;
+        let I_c = m_c * s_9;
+        let s_11 = I_c / s_10;
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
         let s_12 = l * l;
         let s_13 = l * s_12;
-        let s_14 = 0.3333333333333333 * rho * A * s_13 / s_9;
+        let s_14 = 0.3333333333333333 * rho * A * s_13 / s_10;
         let s_15 = s_2 * r_c;
         let s_16 = rho * A;
         let s_17 = s_16 * s_12;
@@ -310,7 +310,7 @@ impl Coefficients {
         for i in 0..2 {
             s_22 += INTEGRAL_S1_PHI[i] * s_21[i];
         }
-        let pivot_x_c = s_10 + s_11 + s_14 - s_17 * s_22 / s_15;
+        let pivot_x_c = s_8 + s_11 + s_14 - s_17 * s_22 / s_15;
         let s_23 = pivot_reciprocal(pivot_x_c);
         let E = parameters.E;
         let I = parameters.I;
@@ -324,7 +324,7 @@ impl Coefficients {
         let pivot_x_pr = s_6 / s_4;
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = 4.0 * I_s / s_3 + s_10 + (pivot_x_pr + s_11) + s_14;
+        let M_x_c_x_c = 4.0 * I_s / s_3 + (pivot_x_pr + s_8) + s_11 + s_14;
         let z_r = parameters.z_r;
         let i_sH = 1.0 + z_r / z_s;
         let s_26 = r_s * i_sH;
@@ -374,7 +374,7 @@ impl Coefficients {
             c_24: 0.5 * I_s / s_3,
             c_25: 1.5 * I_p / s_4,
             c_26: 1.5 * m_p / s_7,
-            c_27: 0.5 * I_c / s_9,
+            c_27: 0.5 * I_c / s_10,
             c_28: 2.0 * rho * A * s_12 / s_15,
             c_29: s_16 * l,
             c_30: 1.5 * k_sp,
@@ -734,6 +734,7 @@ fn cholesky<const N: usize>(matrix: &[[f64; N]; N]) -> [[f64; N]; N] {
     }
     factor
 }
+
 
 /// Solution of L L^T x = right.
 fn cholesky_solve<const N: usize>(factor: &[[f64; N]; N], right: &[f64; N]) -> [f64; N] {
