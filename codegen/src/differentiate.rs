@@ -37,10 +37,13 @@ impl Moving {
     }
 }
 
+/// The derivative of a leaf.
+pub type Tangent<'a> = dyn Fn(&mut Graph, Id) -> Id + 'a;
+
 /// Values that the leaves of the graph have as derivatives.
 #[derive(Default)]
 pub struct Direction<'a> {
-    tangent: Option<&'a dyn Fn(&mut Graph, Id) -> Id>,
+    tangent: Option<&'a Tangent<'a>>,
     known: HashMap<Id, Id>,
     moving: Moving,
 }
@@ -48,7 +51,7 @@ pub struct Direction<'a> {
 impl<'a> Direction<'a> {
     /// A direction given by the derivative of every leaf that is no parameter (0 for those
     /// that are constant).
-    pub fn new(tangent: &'a dyn Fn(&mut Graph, Id) -> Id) -> Self {
+    pub fn new(tangent: &'a Tangent<'a>) -> Self {
         Self {
             tangent: Some(tangent),
             ..Self::default()
@@ -190,7 +193,10 @@ fn partial_derivatives(
         Operation::Sum(terms) => terms
             .iter()
             .filter_map(|&(factor, term)| {
-                moves(graph, term).then(|| (term, graph.constant(factor.value())))
+                if !moves(graph, term) {
+                    return None;
+                }
+                Some((term, graph.constant(factor.value())))
             })
             .collect(),
         Operation::Product(factors) => factors

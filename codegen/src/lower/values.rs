@@ -56,6 +56,8 @@ pub(super) struct Lowering<'g> {
     lowered: HashMap<Id, ValueId>,
     pub(super) tables: Vec<ProgramTable>,
     table_places: HashMap<usize, usize>,
+    /// How often the accelerations read each node, while these are lowered.
+    pub(super) uses: HashMap<Id, usize>,
 }
 
 impl<'g> Lowering<'g> {
@@ -81,6 +83,7 @@ impl<'g> Lowering<'g> {
             lowered: HashMap::new(),
             tables: Vec::new(),
             table_places: HashMap::new(),
+            uses: HashMap::new(),
         }
     }
 
@@ -153,7 +156,7 @@ impl<'g> Lowering<'g> {
         id
     }
 
-    fn join(&self, a: ValueId, b: ValueId) -> Extent {
+    pub(super) fn join(&self, a: ValueId, b: ValueId) -> Extent {
         match self.values[a.0].extent {
             Extent::Scalar => self.values[b.0].extent,
             other => other,

@@ -61,7 +61,7 @@ impl Body<'_> {
                 self.needed.cholesky = true;
                 let matrix = reference(self.array(matrix)?);
                 let factor = Expression::call("cholesky", &[matrix]);
-                self.push(&assignment(&format!("let {name}"), &factor));
+                self.push(&assignment(&format!("let {name}"), factor));
             }
             Op::Gram {
                 left,

@@ -12,7 +12,7 @@ use super::functions::Needed;
 use super::literals::{block, identifier};
 use super::names::Names;
 use crate::evaluator::elementary_function;
-use crate::program::{Extent, Op, Program, ValueId};
+use crate::program::{Extent, Op, PARTIAL_SUMS, Program, ValueId};
 use elementary::Function as Elementary;
 use model_spec::model::Function;
 
@@ -123,7 +123,7 @@ impl<'a> Body<'a> {
     /// Prefers a name for a value of this stage.
     fn bind(&mut self, id: ValueId, expression: &Expression) -> Emitted<()> {
         let name = self.names.of(self.program, id, "s")?;
-        self.push(&assignment(&format!("let {name}"), &expression));
+        self.push(&assignment(&format!("let {name}"), expression));
         self.bound.insert(id, name);
         Ok(())
     }
@@ -144,7 +144,7 @@ impl<'a> Body<'a> {
                 let expression = self.leaf(id)?;
                 let name = self.leaf_name(id);
                 let name = self.names.assign(id, &name, "s")?;
-                self.push(&assignment(&format!("let {name}"), &expression));
+                self.push(&assignment(&format!("let {name}"), expression));
                 self.bound.insert(id, name);
                 Ok(())
             }
@@ -183,8 +183,15 @@ impl<'a> Body<'a> {
         let name = self.names.of(self.program, id, "s")?;
         let length = self.program.value(vector).extent.length();
         let element = self.element(vector)?;
-        self.push(&format!("let mut {name} = 0.0;"));
-        self.push_loop("i", length, &format!("{};", infix("+=", &name, element)));
+        let function = if length > PARTIAL_SUMS {
+            self.needed.sum = true;
+            "sum"
+        } else {
+            self.needed.sum_of_few = true;
+            "sum_of_few"
+        };
+        let sum = Expression::sum(function, length, &element);
+        self.push(&assignment(&format!("let {name}"), sum));
         self.bound.insert(id, name);
         Ok(())
     }
@@ -204,14 +211,14 @@ impl<'a> Body<'a> {
             let factor = reference(self.array(factor)?);
             let vector = reference(self.vector_array(vector, length)?);
             let solution = Expression::call("cholesky_solve", &[factor, vector]);
-            self.push(&assignment(&format!("let {name}"), &solution));
+            self.push(&assignment(&format!("let {name}"), solution));
             self.bound.insert(id, name);
             return Ok(());
         }
         if elementwise {
             let element = self.element(id)?;
             let name = self.names.of(self.program, id, "s")?;
-            self.push_filled(&name, length, &assignment(&format!("{name}[i]"), &element));
+            self.push_filled(&name, length, &assignment(&format!("{name}[i]"), element));
             self.bound.insert(id, name);
             return Ok(());
         }
@@ -400,7 +407,7 @@ impl<'a> Body<'a> {
         }
         let element = self.element(id)?;
         let name = self.names.of(self.program, id, "s")?;
-        self.push_filled(&name, length, &assignment(&format!("{name}[i]"), &element));
+        self.push_filled(&name, length, &assignment(&format!("{name}[i]"), element));
         Ok(name)
     }
 }

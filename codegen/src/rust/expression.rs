@@ -2,8 +2,8 @@
 //! order of evaluation needs them, marked for their layout.
 
 use super::layout::{
-    BLOCK, BLOCK_EVEN, BLOCK_OUT, CLOSE, COMMA_OUT, FIRM, FLOW, FLOW_EVEN, FLOW_OUT, SPACE,
-    SPACE_OUT, ZERO,
+    BLOCK, BLOCK_EVEN, BLOCK_OUT, BRACE, BRACE_OUT, CLOSE, COMMA_OUT, FIRM, FLOW, FLOW_EVEN,
+    FLOW_OUT, SPACE, SPACE_OUT, ZERO,
 };
 
 /// How tightly an expression holds together.
@@ -158,6 +158,16 @@ impl Expression {
             listed(arguments)
         );
         Self::new(text, Level::Atom, &parts)
+    }
+
+    /// The call of a function that sums this many elements i.
+    pub fn sum(function: &str, length: usize, element: &Self) -> Self {
+        let closure = format!(
+            "{FLOW_EVEN}{BLOCK}|{ZERO}i|{SPACE_OUT}{CLOSE}{FIRM}\
+             {BLOCK}{BRACE}{element}{BRACE_OUT}{CLOSE}{CLOSE}"
+        );
+        let length = Self::atom(length.to_string());
+        Self::call(function, &[length, Self::atom(closure)])
     }
 
     /// `if a OPERATOR b { then } else { otherwise }`

@@ -179,7 +179,7 @@ impl<'p> File<'p> {
                 }
                 other => (format!("[f64; {}]", other.length()), array(&values)),
             };
-            items.push_str(&doc(&[table.doc.clone()]));
+            items.push_str(&doc(std::slice::from_ref(&table.doc)));
             items.push_str(&format!("static {name}: {extent} = {content};\n"));
         }
         Ok(items)

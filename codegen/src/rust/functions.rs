@@ -20,6 +20,10 @@ pub struct Needed {
     pub pivot_reciprocal: bool,
     /// Cholesky factors and their solutions.
     pub cholesky: bool,
+    /// Sums of more elements than there are partial sums.
+    pub sum: bool,
+    /// Sums of no more.
+    pub sum_of_few: bool,
 }
 
 /// The items of every function needed.
@@ -35,6 +39,9 @@ pub fn items(needed: &Needed) -> String {
         (needed.contact, CONTACT),
         (needed.pivot_reciprocal, PIVOT_RECIPROCAL),
         (needed.cholesky, CHOLESKY),
+        (needed.sum || needed.sum_of_few, PAIRED),
+        (needed.sum_of_few, SUM_OF_FEW),
+        (needed.sum, SUM),
     ] {
         if needed {
             text.push_str(item);
@@ -115,6 +122,56 @@ fn cholesky_solve<const N: usize>(factor: &[[f64; N]; N], right: &[f64; N]) -> [
     x
 }
 ";
+/// How the partial sums of any sum are added.
+const PAIRED: &str = "\
+/// The sum of the first `length` of eight numbers, neighbours added in pairs.
+#[inline(always)]
+fn paired(length: usize, s: &[f64; 8]) -> f64 {
+    let a = if length > 1 { s[0] + s[1] } else { s[0] };
+    let b = if length > 3 { s[2] + s[3] } else { s[2] };
+    let c = if length > 5 { s[4] + s[5] } else { s[4] };
+    let d = if length > 7 { s[6] + s[7] } else { s[6] };
+    let left = if length > 2 { a + b } else { a };
+    let right = if length > 6 { c + d } else { c };
+    if length > 4 { left + right } else { left }
+}
+";
+
+/// Sums of no more elements than there are partial sums.
+const SUM_OF_FEW: &str = "\
+/// The sum of up to eight elements.
+#[inline(always)]
+fn sum_of_few<F: Fn(usize) -> f64>(length: usize, element: F) -> f64 {
+    let mut s = [0.0; 8];
+    for k in 0..length {
+        s[k] = element(k);
+    }
+    paired(length, &s)
+}
+";
+
+/// Sums of more elements. Not inlined: with the loops around it unrolled into one piece the
+/// compiler vectorises across them, and spills.
+const SUM: &str = "\
+/// The sum of elements in eight partial sums, number k of elements k, k + 8, k + 16, ...
+#[inline(never)]
+fn sum<F: Fn(usize) -> f64>(length: usize, element: F) -> f64 {
+    let mut s = [0.0; 8];
+    for k in 0..8 {
+        s[k] = element(k);
+    }
+    for block in 1..length / 8 {
+        for k in 0..8 {
+            s[k] += element(8 * block + k);
+        }
+    }
+    for i in length / 8 * 8..length {
+        s[i % 8] += element(i);
+    }
+    paired(length, &s)
+}
+";
+
 fn describe(function: Elementary) -> &'static str {
     match function {
         Elementary::Abs => "Absolute value.",
@@ -196,7 +253,7 @@ impl<'k> KernelBody<'k> {
                 self.expressions.push(expression);
             } else {
                 self.statements
-                    .push_str(&assignment(&format!("let v{index}"), &expression));
+                    .push_str(&assignment(&format!("let v{index}"), expression));
                 self.statements.push('\n');
                 self.expressions.push(Expression::atom(format!("v{index}")));
             }

@@ -36,6 +36,11 @@ pub const SPACE_OUT: char = '\u{11}';
 pub const ZERO: char = '\u{12}';
 /// Nothing, or a comma and the end of a line after which the group's indentation ends.
 pub const COMMA_OUT: char = '\u{e}';
+/// Nothing, or an opening brace and the end of a line.
+pub const BRACE: char = '\u{14}';
+/// Nothing, or the end of a line after which the group's indentation ends and a closing
+/// brace.
+pub const BRACE_OUT: char = '\u{15}';
 /// Nothing, and no end of a line; what stands before is laid out without regard to what
 /// follows.
 pub const FIRM: char = '\u{13}';
@@ -74,7 +79,8 @@ enum Token<'a> {
     Break {
         blank: isize,
         offset: isize,
-        comma: bool,
+        /// What stands before and after the end of the line if it ends here.
+        around: [&'a str; 2],
     },
     Firm,
 }
@@ -226,7 +232,7 @@ impl<'a> Printer<'a> {
                 Token::Break {
                     blank,
                     offset,
-                    comma,
+                    around,
                 } => {
                     let ends = match self.frames.last() {
                         Some(Frame::Fits) => false,
@@ -236,9 +242,12 @@ impl<'a> Printer<'a> {
                         _ => width > room,
                     };
                     if ends {
-                        self.out.push_str(if comma { ",\n" } else { "\n" });
+                        self.out.push_str(around[0]);
+                        self.out.push('\n');
                         self.blanks(indent + offset);
+                        self.out.push_str(around[1]);
                         room = (WIDTH - indent - offset).max(LEAST_WIDTH);
+                        room -= around[1].len() as isize;
                     } else {
                         self.blanks(blank);
                         room -= blank;
@@ -257,10 +266,10 @@ fn is_mark(byte: u8) -> bool {
 impl Token<'_> {
     fn mark(mark: char) -> Self {
         let open = |indent, everywhere| Self::Open { indent, everywhere };
-        let ends = |blank, offset, comma| Self::Break {
+        let ends = |blank, offset, around| Self::Break {
             blank,
             offset,
-            comma,
+            around,
         };
         match mark {
             FLOW => open(INDENT, false),
@@ -269,10 +278,12 @@ impl Token<'_> {
             BLOCK => open(INDENT, true),
             BLOCK_OUT => open(-INDENT, true),
             BLOCK_EVEN => open(0, true),
-            SPACE => ends(1, 0, false),
-            SPACE_OUT => ends(1, -INDENT, false),
-            ZERO => ends(0, 0, false),
-            COMMA_OUT => ends(0, -INDENT, true),
+            SPACE => ends(1, 0, [""; 2]),
+            SPACE_OUT => ends(1, -INDENT, [""; 2]),
+            ZERO => ends(0, 0, [""; 2]),
+            COMMA_OUT => ends(0, -INDENT, [",", ""]),
+            BRACE => ends(0, 0, ["{", ""]),
+            BRACE_OUT => ends(0, -INDENT, ["", "}"]),
             FIRM => Self::Firm,
             _ => Self::Close,
         }

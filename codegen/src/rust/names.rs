@@ -9,7 +9,7 @@ use crate::program::{Program, ValueId};
 
 /// Names that emitted functions use for themselves: variables, helpers, constants, fields,
 /// and what Rust's prelude gives a value of.
-const TAKEN: [&str; 33] = [
+const TAKEN: [&str; 36] = [
     "t",
     "state",
     "inputs",
@@ -24,6 +24,9 @@ const TAKEN: [&str; 33] = [
     "row",
     "column",
     "rest",
+    "sum",
+    "sum_of_few",
+    "paired",
     "pow",
     "exp_minus_one",
     "cholesky",

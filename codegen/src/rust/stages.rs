@@ -21,8 +21,11 @@ impl File<'_> {
         let degrees = program.degrees_of_freedom();
         body.push("let mut rates = [0.0; STATES];");
         let rate = infix("+", degrees, "i");
-        body.push_loop("i", degrees, &format!("rates[i] = state[{rate}];"));
-        self.write_rows(&mut body, rows, "rates", degrees)?;
+        let coordinates = program.coordinates.len();
+        if coordinates > 0 {
+            body.push_loop("i", coordinates, &format!("rates[i] = state[{rate}];"));
+        }
+        self.write_rows(&mut body, rows)?;
         body.push("rates");
         Ok(stage(
             "/// Rates of the state.\n///\n\
@@ -34,32 +37,29 @@ impl File<'_> {
         ))
     }
 
-    fn write_rows(
-        &self,
-        body: &mut Body<'_>,
-        rows: &RowValues,
-        target: &str,
-        offset: usize,
-    ) -> Emitted<()> {
+    /// The accelerations; with those of the modes also their rates. One loop for both is
+    /// not taken for a copy, which the compiler would call a function for.
+    fn write_rows(&self, body: &mut Body<'_>, rows: &RowValues) -> Emitted<()> {
+        let degrees = self.program.degrees_of_freedom();
         for (place, id) in rows.scalars.iter().enumerate() {
             let value = body.scalar(*id)?;
-            body.push(&assignment(
-                &format!("{target}[{}]", offset + place),
-                &value,
-            ));
+            body.push(&assignment(&format!("rates[{}]", degrees + place), value));
         }
         for (field, id) in rows.modal.iter().enumerate() {
             let order = self.program.fields[field].order;
             if order == 0 {
                 continue;
             }
-            let place = infix("+", offset + self.program.mode_offset(field), "i");
-            let value = body.element(*id)?;
-            body.push_loop(
-                "i",
-                order,
-                &assignment(&format!("{target}[{place}]"), &value),
+            let first = self.program.mode_offset(field);
+            let place = infix("+", first, "i");
+            let place_of_rate = infix("+", degrees + first, "i");
+            let rate = assignment(
+                &format!("rates[{place}]"),
+                format!("state[{place_of_rate}]"),
             );
+            let value = body.element(*id)?;
+            let acceleration = assignment(&format!("rates[{place_of_rate}]"), value);
+            body.push_loop("i", order, &format!("{rate}\n{acceleration}"));
         }
         Ok(())
     }
@@ -148,12 +148,12 @@ impl File<'_> {
                 Extent::Vector(length) => {
                     let value = body.element(guard.value)?;
                     let at = infix("+", place, "i");
-                    body.push_loop("i", length, &assignment(&format!("values[{at}]"), &value));
+                    body.push_loop("i", length, &assignment(&format!("values[{at}]"), value));
                     place += length;
                 }
                 _ => {
                     let value = body.scalar(guard.value)?;
-                    body.push(&assignment(&format!("values[{place}]"), &value));
+                    body.push(&assignment(&format!("values[{place}]"), value));
                     place += 1;
                 }
             }
@@ -184,7 +184,7 @@ impl File<'_> {
                     continue;
                 }
                 let value = body.scalar(*id)?;
-                body.push(&assignment(&format!("values[{row}][{column}]"), &value));
+                body.push(&assignment(&format!("values[{row}][{column}]"), value));
             }
         }
         self.write_coupling(&mut body)?;
@@ -210,8 +210,8 @@ impl File<'_> {
                 let value = body.element(*id)?;
                 let place = infix("+", program.mode_offset(field), "i");
                 let entry = format!("values[{row}][{place}]");
-                let upper = assignment(&entry, &value);
-                let lower = assignment(&format!("values[{place}][{row}]"), &entry);
+                let upper = assignment(&entry, value);
+                let lower = assignment(&format!("values[{place}][{row}]"), entry);
                 body.push(looped("i", order, &format!("{upper}\n{lower}\n")).trim_end());
             }
         }

@@ -110,7 +110,7 @@ impl File<'_> {
                     let flag = Expression::atom(name.as_str());
                     let all = Expression::and(&Expression::and(&flag, &above), &below);
                     body.push(&format!("let mut {name} = true;"));
-                    body.push_loop("i", length, &assignment(&name, &all));
+                    body.push_loop("i", length, &assignment(&name, all));
                     vec![flag]
                 }
             };
