@@ -1,59 +1,81 @@
-//! One right-hand side of the arm: generated against hand-assembled Eq. (22), both with
-//! prepared coefficients and the same sine, in one run.
+//! One right-hand side of the arm in one run: generated, hand-written in O(S), and
+//! hand-assembled Eq. (22), all with prepared coefficients and the same sine, beside the
+//! floor: one sine and copying the rates. Each is one call: emitted functions are not
+//! inlined into other crates, so neither are the others.
 
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use generated as g;
+use eomgen_benches::{state, variants};
 use sim::reference::PlanetaryArmParameters;
-use sim::reference::equation_22::Equation22;
+use sim::reference::equation_22::{Eliminated, Equation22};
 
-/// A state in contact on one mesh and free on the other, modes in motion.
-fn state<const N: usize>() -> [f64; N] {
-    let mut state = [0.0; N];
-    let degrees = N / 2;
-    state[..3].copy_from_slice(&[3e-5, -1e-5, 0.01]);
-    state[degrees..degrees + 3].copy_from_slice(&[0.02, -0.01, 0.1]);
-    for mode in 3..degrees {
-        state[mode] = 1e-4 / (mode * mode) as f64;
-        state[degrees + mode] = 1e-2 / mode as f64;
+/// What nobody can go below: one sine, and the rates as they stand in the state.
+#[inline(never)]
+fn floor<const N: usize>(t: f64, state: &[f64; N], omega: f64) -> [f64; N] {
+    let mut out = [0.0; N];
+    for i in 0..N / 2 {
+        out[i] = state[N / 2 + i];
     }
-    state
+    out[N / 2] = elementary::sin(omega * t);
+    out
 }
 
+#[inline(never)]
+fn equation_22<const S: usize, const N: usize>(
+    arm: &Equation22<S>,
+    t: f64,
+    state: &[f64; N],
+) -> [f64; N] {
+    let mut out = [0.0; N];
+    arm.rates(t, state, &mut out);
+    out
+}
+
+/// Results are looked at where they lie: a copy of them would be timed with the call.
 macro_rules! compare {
-    ($criterion:ident, $order:literal, $module:ident) => {{
+    ($criterion:ident, $($order:literal $module:ident),*) => {$({
+        use variants::$module as arm;
         let mut group = $criterion.benchmark_group(concat!("rates_order_", $order));
-        let state = state::<{ g::$module::STATES }>();
-        let coefficients = g::$module::Coefficients::prepare(&g::$module::Parameters::default());
-        let inputs = g::$module::Inputs::default();
-        group.bench_function("generated", |bencher| {
+        let state = state::<{ arm::STATES }>();
+        let inputs = arm::Inputs::default();
+        let parameters = PlanetaryArmParameters::default();
+        group.bench_function("floor", |bencher| {
             bencher.iter(|| {
-                g::$module::rates(
-                    black_box(0.3),
-                    black_box(&state),
-                    &inputs,
-                    black_box(&coefficients),
-                )
+                let out = floor(black_box(0.3), black_box(&state), black_box(31.4));
+                black_box(&out);
             })
         });
-        let equation = Equation22::<$order>::new(&PlanetaryArmParameters::default(), 1.0, 1.0);
+        let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
+        group.bench_function("generated", |bencher| {
+            bencher.iter(|| {
+                let out = arm::rates(black_box(0.3), black_box(&state), &inputs, black_box(&coefficients));
+                black_box(&out);
+            })
+        });
+        let eliminated = Eliminated::<$order>::new(&parameters);
+        group.bench_function("hand_written", |bencher| {
+            bencher.iter(|| {
+                let out = black_box(&eliminated).rates(black_box(0.3), black_box(&state));
+                black_box(&out);
+            })
+        });
+        let equation = Equation22::<$order>::new(&parameters, 1.0, 1.0);
         group.bench_function("equation_22", |bencher| {
             bencher.iter(|| {
-                let mut out = [0.0; g::$module::STATES];
-                black_box(&equation).rates(black_box(0.3), black_box(&state), &mut out);
-                out
+                let out = equation_22(black_box(&equation), black_box(0.3), black_box(&state));
+                black_box(&out);
             })
         });
         group.finish();
-    }};
+    })*};
 }
 
 fn rates(criterion: &mut Criterion) {
-    compare!(criterion, 1, planetary_arm_order_1);
-    compare!(criterion, 2, planetary_arm_order_2);
-    compare!(criterion, 4, planetary_arm_order_4);
-    compare!(criterion, 8, planetary_arm_order_8);
+    compare!(
+        criterion, 0 order_0, 1 order_1, 2 order_2, 4 order_4, 8 order_8, 16 order_16,
+        32 order_32, 64 order_64, 128 order_128
+    );
 }
 
 criterion_group!(benches, rates);

@@ -139,7 +139,7 @@ fn by_modes(graph: &mut Graph, row: Id, variable: Id) -> Id {
 /// With every coordinate, rate and switching function 0, except those to be kept.
 fn at_rest_except(graph: &mut Graph, id: Id, kept: &[Id]) -> Id {
     let replacement = |graph: &mut Graph, node: Id| {
-        if kept.contains(&node) {
+        if kept.contains(&node) || graph.dependence(node).is_prepared() {
             return Some(node);
         }
         let moves = match graph.operation(node) {
@@ -154,7 +154,7 @@ fn at_rest_except(graph: &mut Graph, id: Id, kept: &[Id]) -> Id {
                         | model_spec::model::Function::Contact
                         | model_spec::model::Function::Sign
                         | model_spec::model::Function::Abs
-                ) && !graph.dependence(node).is_prepared()
+                )
             }
             _ => false,
         };

@@ -10,18 +10,51 @@ use model_spec::model::Function;
 use crate::graph::{Graph, Id, Operation, Shape, Space};
 use crate::matrix::StructuredMatrix;
 
+/// Which nodes move at all along a direction. Asked before a derivative is formed: most of
+/// an expression is constant along most directions, and the partial derivatives by what is
+/// constant would be formed for nothing.
+#[derive(Default)]
+struct Moving {
+    known: HashMap<Id, bool>,
+}
+
+impl Moving {
+    /// Whether anything that `id` is computed from moves, by what `leaf` says of nodes that
+    /// it knows and of all that have no operands.
+    fn has(&mut self, graph: &Graph, id: Id, leaf: &dyn Fn(&Graph, Id) -> Option<bool>) -> bool {
+        if let Some(&known) = self.known.get(&id) {
+            return known;
+        }
+        let moves = match leaf(graph, id) {
+            Some(moves) => moves,
+            None => {
+                let operands = graph.operands(graph.operation(id));
+                operands.into_iter().any(|a| self.has(graph, a, leaf))
+            }
+        };
+        self.known.insert(id, moves);
+        moves
+    }
+}
+
+/// The derivative of a leaf.
+pub type Tangent<'a> = dyn Fn(&mut Graph, Id) -> Id + 'a;
+
 /// Values that the leaves of the graph have as derivatives.
+#[derive(Default)]
 pub struct Direction<'a> {
-    tangent: &'a dyn Fn(&mut Graph, Id) -> Id,
+    tangent: Option<&'a Tangent<'a>>,
     known: HashMap<Id, Id>,
+    moving: Moving,
 }
 
 impl<'a> Direction<'a> {
-    /// A direction given by the derivative of every leaf (0 for those that are constant).
-    pub fn new(tangent: &'a dyn Fn(&mut Graph, Id) -> Id) -> Self {
+    /// A direction given by the derivative of every leaf that is no parameter (0 for those
+    /// that are constant).
+    pub fn new(tangent: &'a Tangent<'a>) -> Self {
         Self {
-            tangent,
-            known: HashMap::new(),
+            tangent: Some(tangent),
+            ..Self::default()
         }
     }
 
@@ -40,10 +73,30 @@ impl<'a> Direction<'a> {
         result
     }
 
+    /// Whether `id` can have a derivative other than 0. No tangent is asked for, which would
+    /// put its nodes into the graph out of turn.
+    fn moves(&mut self, graph: &Graph, id: Id) -> bool {
+        let (known, tangents) = (&self.known, self.tangent.is_some());
+        self.moving
+            .has(graph, id, &|graph, id| match known.get(&id) {
+                Some(derivative) => Some(!graph.is_zero(*derivative)),
+                None => graph
+                    .operands(graph.operation(id))
+                    .is_empty()
+                    .then(|| tangents && !graph.dependence(id).is_prepared()),
+            })
+    }
+
     fn compute(&mut self, graph: &mut Graph, id: Id) -> Id {
+        if !self.moves(graph, id) {
+            return graph.zero();
+        }
         let operation = graph.operation(id).clone();
         if graph.operands(&operation).is_empty() {
-            return (self.tangent)(graph, id);
+            return match self.tangent {
+                Some(tangent) => tangent(graph, id),
+                None => graph.zero(),
+            };
         }
         match operation {
             Operation::Total(a) => {
@@ -69,7 +122,8 @@ impl<'a> Direction<'a> {
                 choose(graph, id, |graph, branch| self.derivative(graph, branch))
             }
             _ => {
-                let partials = partial_derivatives(graph, id);
+                let partials =
+                    partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
                 let mut terms = Vec::with_capacity(partials.len());
                 for (operand, partial) in partials {
                     let inner = self.derivative(graph, operand);
@@ -86,8 +140,7 @@ impl<'a> Direction<'a> {
 /// The derivative of a node by a scalar node taken as a variable of its own: a leaf, or an
 /// expression whose own operands then count as constant.
 pub fn by_scalar(graph: &mut Graph, id: Id, variable: Id) -> Id {
-    let constant = |graph: &mut Graph, _: Id| graph.zero();
-    let mut direction = Direction::new(&constant);
+    let mut direction = Direction::default();
     let one = graph.one();
     direction.seed(variable, one);
     direction.derivative(graph, id)
@@ -122,9 +175,14 @@ fn choose(graph: &mut Graph, id: Id, mut derivative: impl FnMut(&mut Graph, Id) 
     graph.select(a, b, taken, skipped)
 }
 
-/// For an element-wise operation: each operand with the partial derivative by it.
-/// Matrix operations, which depend on parameters alone, have none.
-fn partial_derivatives(graph: &mut Graph, id: Id) -> Vec<(Id, Id)> {
+/// For an element-wise operation: each operand that moves with the partial derivative by
+/// it (for functions every operand). Matrix operations, which depend on parameters alone,
+/// have none.
+fn partial_derivatives(
+    graph: &mut Graph,
+    id: Id,
+    mut moves: impl FnMut(&Graph, Id) -> bool,
+) -> Vec<(Id, Id)> {
     if let Some([a, b, then, otherwise]) = choice(graph, id) {
         let (zero, one) = (graph.zero(), graph.one());
         let taken = graph.select(a, b, one, zero);
@@ -134,17 +192,25 @@ fn partial_derivatives(graph: &mut Graph, id: Id) -> Vec<(Id, Id)> {
     match graph.operation(id).clone() {
         Operation::Sum(terms) => terms
             .iter()
-            .map(|&(factor, term)| (term, graph.constant(factor.value())))
+            .filter_map(|&(factor, term)| {
+                if !moves(graph, term) {
+                    return None;
+                }
+                Some((term, graph.constant(factor.value())))
+            })
             .collect(),
         Operation::Product(factors) => factors
             .iter()
-            .map(|&(factor, exponent)| {
+            .filter_map(|&(factor, exponent)| {
+                if !moves(graph, factor) {
+                    return None;
+                }
                 let lowered: Vec<(Id, i32)> = factors
                     .iter()
                     .map(|&(other, power)| (other, if other == factor { power - 1 } else { power }))
                     .collect();
                 let rest = graph.product(&lowered);
-                (factor, graph.scale(f64::from(exponent), rest))
+                Some((factor, graph.scale(f64::from(exponent), rest)))
             })
             .collect(),
         Operation::Power(base, exponent) => power_derivatives(graph, id, base, exponent),
@@ -248,6 +314,7 @@ fn derivative_of_function(graph: &mut Graph, id: Id, function: Function, a: Id) 
 pub struct ModalDerivative {
     variable: Id,
     space: Space,
+    moving: Moving,
     gradients: HashMap<Id, Id>,
     jacobians: HashMap<Id, StructuredMatrix>,
 }
@@ -259,6 +326,7 @@ impl ModalDerivative {
             Shape::Vector(space) => Some(Self {
                 variable,
                 space,
+                moving: Moving::default(),
                 gradients: HashMap::new(),
                 jacobians: HashMap::new(),
             }),
@@ -266,10 +334,21 @@ impl ModalDerivative {
         }
     }
 
+    fn moves(&mut self, graph: &Graph, id: Id) -> bool {
+        let variable = self.variable;
+        self.moving.has(graph, id, &|graph, id| {
+            let leaf = graph.operands(graph.operation(id)).is_empty();
+            leaf.then_some(id == variable)
+        })
+    }
+
     /// The gradient of a scalar node: a vector over the modes, or 0.
     pub fn gradient(&mut self, graph: &mut Graph, id: Id) -> Id {
         if let Some(&known) = self.gradients.get(&id) {
             return known;
+        }
+        if !self.moves(graph, id) {
+            return graph.zero();
         }
         let result = match graph.operation(id).clone() {
             Operation::Total(a) => {
@@ -280,7 +359,8 @@ impl ModalDerivative {
                 choose(graph, id, |graph, branch| self.gradient(graph, branch))
             }
             _ => {
-                let partials = partial_derivatives(graph, id);
+                let partials =
+                    partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
                 let mut terms = Vec::with_capacity(partials.len());
                 for (operand, partial) in partials {
                     let inner = self.gradient(graph, operand);
@@ -322,6 +402,9 @@ impl ModalDerivative {
             _ => self.space,
         };
         let mut result = StructuredMatrix::zero(rows, self.space);
+        if !self.moves(graph, id) {
+            return result;
+        }
         if id == self.variable {
             result.add_diagonal(graph, 1.0);
             return result;
@@ -339,7 +422,8 @@ impl ModalDerivative {
         if let Operation::CholeskySolve(factor, right) = *graph.operation(id) {
             return self.of_elements(graph, right, rows).solved(graph, factor);
         }
-        for (operand, partial) in partial_derivatives(graph, id) {
+        let partials = partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
+        for (operand, partial) in partials {
             match graph.shape(operand) {
                 Shape::Scalar => {
                     let gradient = self.gradient(graph, operand);

@@ -9,6 +9,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use model_spec::model::Function;
+
 pub use crate::operation::{Assembly, Bits, Dependence, Id, Operation, ScaledMatrix, Shape, Space};
 use crate::tables::{Table, TableKind};
 
@@ -16,6 +18,7 @@ struct Entry {
     operation: Operation,
     shape: Shape,
     dependence: Dependence,
+    waits: u32,
 }
 
 /// The graph of one variant: its nodes, constant tables and the sizes of its spaces.
@@ -83,6 +86,12 @@ impl Graph {
         self.entries[id.0 as usize].dependence
     }
 
+    /// How many elementary functions of the state stand one inside the other at most in what
+    /// a node is computed from. Each takes as long as some dozen additions in a row.
+    pub fn waits(&self, id: Id) -> u32 {
+        self.entries[id.0 as usize].waits
+    }
+
     /// A table of constants.
     pub fn table(&self, index: usize) -> &Table {
         &self.tables[index]
@@ -127,12 +136,14 @@ impl Graph {
         }
         let shape = self.shape_of(&operation);
         let dependence = self.dependence_of(&operation);
+        let waits = self.waits_of(&operation, dependence);
         let id = Id(self.entries.len() as u32);
         self.known.insert(operation.clone(), id);
         self.entries.push(Entry {
             operation,
             shape,
             dependence,
+            waits,
         });
         id
     }
@@ -230,6 +241,20 @@ impl Graph {
         }
     }
 
+    fn waits_of(&self, operation: &Operation, dependence: Dependence) -> u32 {
+        if dependence.is_prepared() {
+            return 0;
+        }
+        let own = match operation {
+            Operation::Call(function, _) => !is_quick(*function),
+            Operation::Power(..) => true,
+            _ => false,
+        };
+        let operands = self.operands(operation);
+        let inner = operands.into_iter().map(|id| self.waits(id)).max();
+        u32::from(own) + inner.unwrap_or(0)
+    }
+
     /// The nodes an operation reads.
     pub fn operands(&self, operation: &Operation) -> Vec<Id> {
         match operation {
@@ -270,6 +295,17 @@ impl Graph {
         }
     }
 
+    /// How often each node is an operand of what `roots` are computed from.
+    pub fn uses(&self, roots: &[Id]) -> HashMap<Id, usize> {
+        let mut uses = HashMap::new();
+        for id in self.reachable(roots) {
+            for operand in self.operands(self.operation(id)) {
+                *uses.entry(operand).or_insert(0) += 1;
+            }
+        }
+        uses
+    }
+
     /// Every node that `roots` are computed from, operands first.
     pub fn reachable(&self, roots: &[Id]) -> Vec<Id> {
         let mut needed = vec![false; self.entries.len()];
@@ -288,4 +324,17 @@ impl Graph {
             .map(|index| Id(index as u32))
             .collect()
     }
+}
+
+/// Whether a function takes no longer than a few additions.
+fn is_quick(function: Function) -> bool {
+    matches!(
+        function,
+        Function::Abs
+            | Function::Sign
+            | Function::Min
+            | Function::Max
+            | Function::Deadzone
+            | Function::Contact
+    )
 }

@@ -5,8 +5,8 @@
 //! Values that depend on parameters alone are prepared once; the rest is computed per
 //! call. A value is a number, a vector or a matrix of fixed extent; a scalar operand
 //! stands for every element. Every operation has one defined result in IEEE double
-//! arithmetic, sums run from the first element to the last, and nothing is contracted, so
-//! that all backends give the same bits.
+//! arithmetic, every sum has its order, and nothing is contracted, so that all backends give
+//! the same bits.
 
 use model_spec::model::Function;
 
@@ -42,6 +42,10 @@ impl Extent {
         }
     }
 }
+
+/// How many partial sums a long sum has: enough that an addition need not wait for the one
+/// before it, and for the widest vectors.
+pub const PARTIAL_SUMS: usize = 8;
 
 /// How a value is computed.
 #[derive(Clone, Debug, PartialEq)]
@@ -91,9 +95,13 @@ pub enum Op {
     },
     /// 1/a where a > 0, NaN elsewhere.
     PivotReciprocal(ValueId),
-    /// The sum of the elements, from 0 and the first element to the last.
+    /// The sum of the elements, 0 of none. The first [`PARTIAL_SUMS`] of them each begin a
+    /// partial sum, to which every eighth element from there on is added in order. Then
+    /// neighbours are added in pairs until one number is left; of an odd count the last
+    /// passes on to the next round.
     Total(ValueId),
-    /// Matrix (or its transpose) times vector; each element summed as in `Total`.
+    /// Matrix (or its transpose) times vector; each element from 0 and the first product to
+    /// the last.
     Apply {
         /// The matrix.
         matrix: ValueId,

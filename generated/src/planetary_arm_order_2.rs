@@ -149,18 +149,14 @@ pub struct Inputs {}
 /// What depends on the parameters alone: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
-    /// `r_s*r_s/I_s`
+    /// `r_s/I_s`
     pub c_1: f64,
-    /// `1.0/r_s`
-    pub c_2: f64,
     /// `a_m`
     pub a_m: f64,
     /// `b_m/r_s`
+    pub c_2: f64,
+    /// `r_s*r_s/I_s`
     pub c_3: f64,
-    /// `F_w`
-    pub F_w: f64,
-    /// `omega`
-    pub omega: f64,
     /// `c_sp`
     pub c_sp: f64,
     /// `3.0*c_sp`
@@ -189,17 +185,21 @@ pub struct Coefficients {
     pub c_10: f64,
     /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)`
     pub c_11: f64,
-    /// `E*I/(cos(alpha)*r_c*l*l)`
-    pub c_12: f64,
-    /// `INTEGRAL_S1_PHI*INTEGRAL_PHI_D2_SQUARED/INTEGRAL_PHI_SQUARED`
-    pub c_13: [f64; 2],
+    /// `E*I*INTEGRAL_S1_PHI*INTEGRAL_PHI_D2_SQUARED/(cos(alpha)*r_c*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_12: [f64; 2],
     /// `2.0*I_s*1/pivot_x_c/(r_s*r_s)`
+    pub c_13: f64,
+    /// `F_w`
+    pub F_w: f64,
+    /// `r_s*F_w/I_s`
     pub c_14: f64,
+    /// `omega`
+    pub omega: f64,
     /// `0.3333333333333333*r_p*r_p/I_p`
     pub c_15: f64,
-    /// `E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_16: [f64; 2],
     /// `l*1/pivot_x_c*INTEGRAL_S1_PHI/(cos(alpha)*r_c*INTEGRAL_PHI_SQUARED)`
+    pub c_16: [f64; 2],
+    /// `-(E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))`
     pub c_17: [f64; 2],
     /// `I_s/(r_s*r_s)`
     pub M_x_sp_x_sp: f64,
@@ -209,7 +209,7 @@ pub struct Coefficients {
     pub M_x_pr_x_pr: f64,
     /// `M_x_sp_x_c + pivot_x_pr`
     pub M_x_pr_x_c: f64,
-    /// `4.0*I_s/(r_s*r_s) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
+    /// `4.0*I_s/(r_s*r_s) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
     pub M_x_c_x_c: f64,
     /// `rho*A*l*l*INTEGRAL_S1_PHI/(cos(alpha)*r_c)`
     pub M_x_c_q: [f64; 2],
@@ -217,32 +217,34 @@ pub struct Coefficients {
     pub c_18: f64,
     /// `rho*A*l*INTEGRAL_PHI_SQUARED`
     pub c_19: [f64; 2],
-    /// `2.0/r_s`
+    /// `1.0/r_s`
     pub c_20: f64,
-    /// `1.0/r_p`
+    /// `2.0/r_s`
     pub c_21: f64,
-    /// `1.0/(cos(alpha)*r_c)`
+    /// `1.0/r_p`
     pub c_22: f64,
-    /// `1.0/(r_s*i_sH)`
+    /// `1.0/(cos(alpha)*r_c)`
     pub c_23: f64,
-    /// `l/(r_s*i_sH)`
+    /// `1.0/(r_s*i_sH)`
     pub c_24: f64,
-    /// `0.5*I_s/(r_s*r_s)`
+    /// `l/(r_s*i_sH)`
     pub c_25: f64,
-    /// `1.5*I_p/(r_p*r_p)`
+    /// `0.5*I_s/(r_s*r_s)`
     pub c_26: f64,
-    /// `1.5*m_p/(cos(alpha)*cos(alpha))`
+    /// `1.5*I_p/(r_p*r_p)`
     pub c_27: f64,
-    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
+    /// `1.5*m_p/(cos(alpha)*cos(alpha))`
     pub c_28: f64,
-    /// `2.0*rho*A*l*l/(cos(alpha)*r_c)`
+    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
     pub c_29: f64,
-    /// `1.5*k_sp`
+    /// `2.0*rho*A*l*l/(cos(alpha)*r_c)`
     pub c_30: f64,
-    /// `1.5*k_pr`
+    /// `1.5*k_sp`
     pub c_31: f64,
-    /// `0.5*E*I/(l*l*l)`
+    /// `1.5*k_pr`
     pub c_32: f64,
+    /// `0.5*E*I/(l*l*l)`
+    pub c_33: f64,
     /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
     pub positive_definite: bool,
 }
@@ -255,13 +257,11 @@ impl Coefficients {
         let alpha = parameters.alpha;
         let s_2 = cos(alpha);
         let r_s = s_1 * z_s * s_2;
-        let s_3 = r_s * r_s;
         let M_s = parameters.M_s;
+        let s_3 = r_s * r_s;
         let I_s = M_s * s_3;
         let a_m = parameters.a_m;
         let b_m = parameters.b_m;
-        let F_w = parameters.F_w;
-        let omega = parameters.omega;
         let c_sp = parameters.c_sp;
         let b_sp = parameters.b_sp;
         let k_sp = parameters.k_sp;
@@ -276,78 +276,79 @@ impl Coefficients {
         let k_pr = parameters.k_pr;
         let s_6 = 3.0 * I_p;
         let s_7 = s_2 * s_2;
-        let r_c = s_1 * (z_s + z_p);
-        let s_8 = r_c * r_c;
-        let s_9 = s_7 * s_8;
-        let m_c = parameters.m_c;
-        let I_c = m_c * s_8;
-        let s_10 = I_c / s_9;
         let m_p = parameters.m_p;
-        let s_11 = 3.0 * m_p / s_7;
+        let s_8 = 3.0 * m_p / s_7;
+        let r_c = s_1 * (z_s + z_p);
+        let s_9 = r_c * r_c;
+        let s_10 = s_7 * s_9;
+        let m_c = parameters.m_c;
+        let I_c = m_c * s_9;
+        let s_11 = I_c / s_10;
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
         let s_12 = l * l;
         let s_13 = l * s_12;
-        let s_14 = 0.3333333333333333 * rho * A * s_13 / s_9;
+        let s_14 = 0.3333333333333333 * rho * A * s_13 / s_10;
         let s_15 = rho * A;
-        let mut s_16 = 0.0;
-        for i in 0..2 {
-            s_16 += INTEGRAL_S1_PHI[i] * INTEGRAL_S1_PHI[i] / INTEGRAL_PHI_SQUARED[i];
-        }
-        let pivot_x_c = s_10 + s_11 + s_14 - s_15 * s_13 * s_16 / s_9;
+        let s_16 = sum_of_few(
+            2,
+            |i| INTEGRAL_S1_PHI[i] * INTEGRAL_S1_PHI[i] / INTEGRAL_PHI_SQUARED[i],
+        );
+        let pivot_x_c = s_8 + s_11 + s_14 - s_15 * s_13 * s_16 / s_10;
         let s_17 = pivot_reciprocal(pivot_x_c);
         let s_18 = s_2 * r_c;
+        let s_19 = s_18 * s_12;
         let E = parameters.E;
         let I = parameters.I;
-        let s_19 = E * I;
-        let mut s_20 = [0.0; 2];
+        let s_20 = E * I;
+        let mut s_21 = [0.0; 2];
         for i in 0..2 {
-            s_20[i] = INTEGRAL_S1_PHI[i] * INTEGRAL_PHI_D2_SQUARED[i]
-                / INTEGRAL_PHI_SQUARED[i];
+            s_21[i] = s_20 * INTEGRAL_S1_PHI[i] * INTEGRAL_PHI_D2_SQUARED[i]
+                / (s_19 * INTEGRAL_PHI_SQUARED[i]);
         }
-        let s_21 = 2.0 * I_s;
-        let s_22 = s_15 * (s_12 * s_12);
-        let mut s_23 = [0.0; 2];
-        for i in 0..2 {
-            s_23[i] = s_19 * INTEGRAL_PHI_D2_SQUARED[i]
-                / (s_22 * INTEGRAL_PHI_SQUARED[i]);
-        }
+        let s_22 = 2.0 * I_s;
+        let F_w = parameters.F_w;
+        let omega = parameters.omega;
+        let s_23 = s_15 * (s_12 * s_12);
         let s_24 = l * s_17;
         let mut s_25 = [0.0; 2];
         for i in 0..2 {
             s_25[i] = s_24 * INTEGRAL_S1_PHI[i] / (s_18 * INTEGRAL_PHI_SQUARED[i]);
         }
+        let mut s_26 = [0.0; 2];
+        for i in 0..2 {
+            s_26[i] = -(s_20 * INTEGRAL_PHI_D2_SQUARED[i]
+                / (s_23 * INTEGRAL_PHI_SQUARED[i]));
+        }
         let M_x_sp_x_sp = I_s / s_3;
-        let M_x_sp_x_c = s_21 / s_3;
+        let M_x_sp_x_c = s_22 / s_3;
         let pivot_x_pr = s_6 / s_4;
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = 4.0 * I_s / s_3 + s_10 + (pivot_x_pr + s_11) + s_14;
-        let s_26 = s_15 * s_12;
+        let M_x_c_x_c = 4.0 * I_s / s_3 + (pivot_x_pr + s_8) + s_11 + s_14;
+        let s_27 = s_15 * s_12;
         let mut M_x_c_q = [0.0; 2];
         for i in 0..2 {
-            M_x_c_q[i] = s_26 * INTEGRAL_S1_PHI[i] / s_18;
+            M_x_c_q[i] = s_27 * INTEGRAL_S1_PHI[i] / s_18;
         }
-        let s_27 = s_15 * l;
-        let mut s_28 = [0.0; 2];
+        let s_28 = s_15 * l;
+        let mut s_29 = [0.0; 2];
         for i in 0..2 {
-            s_28[i] = s_27 * INTEGRAL_PHI_SQUARED[i];
+            s_29[i] = s_28 * INTEGRAL_PHI_SQUARED[i];
         }
         let z_r = parameters.z_r;
         let i_sH = 1.0 + z_r / z_s;
-        let s_29 = r_s * i_sH;
+        let s_30 = r_s * i_sH;
         let mut positive_4 = true;
         for i in 0..2 {
-            positive_4 = positive_4 && s_28[i] > 0.0 && s_28[i] < f64::INFINITY;
+            positive_4 = positive_4 && s_29[i] > 0.0 && s_29[i] < f64::INFINITY;
         }
         Self {
-            c_1: s_3 / I_s,
-            c_2: 1.0 / r_s,
+            c_1: r_s / I_s,
             a_m: a_m,
-            c_3: b_m / r_s,
-            F_w: F_w,
-            omega: omega,
+            c_2: b_m / r_s,
+            c_3: s_3 / I_s,
             c_sp: c_sp,
             c_4: 3.0 * c_sp,
             b_sp: b_sp,
@@ -362,33 +363,36 @@ impl Coefficients {
             c_9: s_14,
             c_10: s_17,
             c_11: s_6 * s_17 / s_4,
-            c_12: s_19 / (s_18 * s_12),
-            c_13: s_20,
-            c_14: s_21 * s_17 / s_3,
+            c_12: s_21,
+            c_13: s_22 * s_17 / s_3,
+            F_w: F_w,
+            c_14: r_s * F_w / I_s,
+            omega: omega,
             c_15: s_5 / I_p,
-            c_16: s_23,
-            c_17: s_25,
+            c_16: s_25,
+            c_17: s_26,
             M_x_sp_x_sp: M_x_sp_x_sp,
             M_x_sp_x_c: M_x_sp_x_c,
             M_x_pr_x_pr: M_x_pr_x_pr,
             M_x_pr_x_c: M_x_pr_x_c,
             M_x_c_x_c: M_x_c_x_c,
             M_x_c_q: M_x_c_q,
-            c_18: s_27,
-            c_19: s_28,
-            c_20: 2.0 / r_s,
-            c_21: 1.0 / r_p,
-            c_22: 1.0 / s_18,
-            c_23: 1.0 / s_29,
-            c_24: l / s_29,
-            c_25: 0.5 * I_s / s_3,
-            c_26: 1.5 * I_p / s_4,
-            c_27: 1.5 * m_p / s_7,
-            c_28: 0.5 * I_c / s_9,
-            c_29: 2.0 * rho * A * s_12 / s_18,
-            c_30: 1.5 * k_sp,
-            c_31: 1.5 * k_pr,
-            c_32: 0.5 * E * I / s_13,
+            c_18: s_28,
+            c_19: s_29,
+            c_20: 1.0 / r_s,
+            c_21: 2.0 / r_s,
+            c_22: 1.0 / r_p,
+            c_23: 1.0 / s_18,
+            c_24: 1.0 / s_30,
+            c_25: l / s_30,
+            c_26: 0.5 * I_s / s_3,
+            c_27: 1.5 * I_p / s_4,
+            c_28: 1.5 * m_p / s_7,
+            c_29: 0.5 * I_c / s_10,
+            c_30: 2.0 * rho * A * s_12 / s_18,
+            c_31: 1.5 * k_sp,
+            c_32: 1.5 * k_pr,
+            c_33: 0.5 * E * I / s_13,
             positive_definite: M_x_sp_x_sp > 0.0 && M_x_sp_x_sp < f64::INFINITY
                 && pivot_x_pr > 0.0 && pivot_x_pr < f64::INFINITY && pivot_x_c > 0.0
                 && pivot_x_c < f64::INFINITY && positive_4,
@@ -409,36 +413,34 @@ pub fn rates(
     let x_sp_dot = state[5];
     let x_pr_dot = state[6];
     let x_c_dot = state[7];
-    let motor = coefficients.a_m
-        - coefficients.c_3 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot)
-        + coefficients.F_w * sin(coefficients.omega * t);
     let x_sp = state[0];
-    let s_1 = coefficients.c_4 * (x_sp_dot * contact(x_sp, coefficients.b_sp));
+    let s_1 = coefficients.c_4
+        * (if contact(x_sp, coefficients.b_sp) > 0.0 { x_sp_dot } else { 0.0 });
     let s_2 = coefficients.c_5 * deadzone(x_sp, coefficients.b_sp);
     let x_pr = state[1];
-    let s_3 = coefficients.c_7 * (x_pr_dot * contact(x_pr, coefficients.b_pr));
+    let s_3 = coefficients.c_7
+        * (if contact(x_pr, coefficients.b_pr) > 0.0 { x_pr_dot } else { 0.0 });
     let s_4 = coefficients.c_8 * deadzone(x_pr, coefficients.b_pr);
-    let mut s_5 = 0.0;
-    for i in 0..2 {
-        s_5 += coefficients.c_13[i] * state[3 + i];
-    }
-    let s_6 = s_1 + s_3 + s_2 + s_4 + coefficients.c_12 * s_5;
-    let s_7 = s_1 + s_2 - s_3 - s_4 - coefficients.c_11 * s_6;
-    let x_sp_ddot = coefficients.c_1
-        * (coefficients.c_2 * motor - s_1 - s_2 - coefficients.c_6 * s_7
-            - coefficients.c_14 * s_6);
-    let x_pr_ddot = coefficients.c_15 * s_7;
-    let x_c_ddot = coefficients.c_10 * s_6;
+    let s_5 = s_1 + s_2;
+    let s_6 = sum_of_few(2, |i| coefficients.c_12[i] * state[3 + i]);
+    let s_7 = s_1 + s_3 + s_2 + s_4 + s_6;
+    let s_8 = s_5 - s_3 - s_4 - coefficients.c_11 * s_7;
+    let s_9 = coefficients.c_1
+        * (coefficients.a_m - coefficients.c_2 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot))
+        - coefficients.c_3 * (s_5 + coefficients.c_6 * s_8 + coefficients.c_13 * s_7);
+    let x_sp_ddot = s_9 + coefficients.c_14 * sin(coefficients.omega * t);
+    let x_pr_ddot = coefficients.c_15 * s_8;
+    let x_c_ddot = coefficients.c_10 * s_7;
     let mut rates = [0.0; STATES];
-    for i in 0..5 {
+    for i in 0..3 {
         rates[i] = state[5 + i];
     }
     rates[5] = x_sp_ddot;
     rates[6] = x_pr_ddot;
     rates[7] = x_c_ddot;
     for i in 0..2 {
-        rates[8 + i] = -(coefficients.c_16[i] * state[3 + i])
-            - coefficients.c_17[i] * s_6;
+        rates[3 + i] = state[8 + i];
+        rates[8 + i] = coefficients.c_17[i] * state[3 + i] - coefficients.c_16[i] * s_7;
     }
     rates
 }
@@ -467,54 +469,48 @@ pub fn observables(
     let x_pr_dot = state[6];
     let x_c_dot = state[7];
     let s_1 = x_sp_dot + x_pr_dot + 2.0 * x_c_dot;
-    let motor = coefficients.a_m - coefficients.c_3 * s_1
-        + coefficients.F_w * sin(coefficients.omega * t);
-    let s_2 = coefficients.c_2 * motor;
     let x_sp = state[0];
-    let s_3 = x_sp_dot * contact(x_sp, coefficients.b_sp);
-    let s_4 = deadzone(x_sp, coefficients.b_sp);
+    let s_2 = if contact(x_sp, coefficients.b_sp) > 0.0 { x_sp_dot } else { 0.0 };
+    let s_3 = deadzone(x_sp, coefficients.b_sp);
     let x_pr = state[1];
-    let s_5 = x_pr_dot * contact(x_pr, coefficients.b_pr);
-    let s_6 = deadzone(x_pr, coefficients.b_pr);
+    let s_4 = if contact(x_pr, coefficients.b_pr) > 0.0 { x_pr_dot } else { 0.0 };
+    let s_5 = deadzone(x_pr, coefficients.b_pr);
+    let motor = coefficients.a_m - coefficients.c_2 * s_1
+        + coefficients.F_w * sin(coefficients.omega * t);
+    let s_6 = coefficients.c_20 * motor;
     let s_7 = x_sp + x_pr;
     let x_c = state[2];
     let x_s = s_7 + 2.0 * x_c;
-    let theta_s = coefficients.c_2 * x_s;
+    let theta_s = coefficients.c_20 * x_s;
     let x_p = x_pr + x_c;
-    let theta_p = coefficients.c_21 * x_p;
-    let theta_c = coefficients.c_22 * x_c;
-    let mut tip = 0.0;
-    for i in 0..2 {
-        tip += PHI_AT_END[i] * state[3 + i];
-    }
-    let dtheta = coefficients.c_23 * s_7;
-    let s_8 = coefficients.c_24 * s_7;
+    let theta_p = coefficients.c_22 * x_p;
+    let theta_c = coefficients.c_23 * x_c;
+    let tip = sum_of_few(2, |i| PHI_AT_END[i] * state[3 + i]);
+    let dtheta = coefficients.c_24 * s_7;
+    let s_8 = coefficients.c_25 * s_7;
     let f_la = tip + s_8;
     let f_la_signed = tip - s_8;
-    let F_sp = coefficients.c_sp * s_3 + coefficients.k_sp * s_4;
-    let F_pr = coefficients.c_pr * s_5 + coefficients.k_pr * s_6;
+    let F_sp = coefficients.c_sp * s_2 + coefficients.k_sp * s_3;
+    let F_pr = coefficients.c_pr * s_4 + coefficients.k_pr * s_5;
     let s_9 = x_pr_dot + x_c_dot;
     let s_10 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_26 * (s_9 * s_9) + coefficients.c_27 * s_10;
-    let mut s_11 = 0.0;
-    for i in 0..2 {
-        s_11 += INTEGRAL_S1_PHI[i] * state[8 + i];
-    }
-    let mut s_12 = 0.0;
-    for i in 0..2 {
-        s_12 += INTEGRAL_PHI_SQUARED[i] * (state[8 + i] * state[8 + i]);
-    }
-    let s_13 = coefficients.c_25 * (s_1 * s_1) + T_planets + coefficients.c_28 * s_10
+    let T_planets = coefficients.c_27 * (s_9 * s_9) + coefficients.c_28 * s_10;
+    let s_11 = sum_of_few(2, |i| INTEGRAL_S1_PHI[i] * state[8 + i]);
+    let s_12 = sum_of_few(
+        2,
+        |i| INTEGRAL_PHI_SQUARED[i] * (state[8 + i] * state[8 + i]),
+    );
+    let s_13 = coefficients.c_26 * (s_1 * s_1) + T_planets + coefficients.c_29 * s_10
         + 0.5
-            * (coefficients.c_9 * s_10 + coefficients.c_29 * (x_c_dot * s_11)
+            * (coefficients.c_9 * s_10 + coefficients.c_30 * (x_c_dot * s_11)
                 + coefficients.c_18 * s_12);
-    let mut s_14 = 0.0;
-    for i in 0..2 {
-        s_14 += INTEGRAL_PHI_D2_SQUARED[i] * (state[3 + i] * state[3 + i]);
-    }
-    let s_15 = x_sp_dot * (s_2 - coefficients.c_4 * s_3)
-        + x_pr_dot * (s_2 - coefficients.c_7 * s_5)
-        + coefficients.c_20 * (x_c_dot * motor);
+    let s_14 = sum_of_few(
+        2,
+        |i| INTEGRAL_PHI_D2_SQUARED[i] * (state[3 + i] * state[3 + i]),
+    );
+    let s_15 = x_sp_dot * (s_6 - coefficients.c_4 * s_2)
+        + x_pr_dot * (s_6 - coefficients.c_7 * s_4)
+        + coefficients.c_21 * (x_c_dot * motor);
     [
         theta_s,
         theta_p,
@@ -526,8 +522,8 @@ pub fn observables(
         F_sp,
         F_pr,
         s_13
-            + (coefficients.c_30 * (s_4 * s_4) + coefficients.c_31 * (s_6 * s_6)
-                + coefficients.c_32 * s_14),
+            + (coefficients.c_31 * (s_3 * s_3) + coefficients.c_32 * (s_5 * s_5)
+                + coefficients.c_33 * s_14),
         s_15,
     ]
 }
@@ -550,26 +546,20 @@ pub fn energy(
     let s_3 = deadzone(x_pr, coefficients.b_pr);
     let s_4 = x_pr_dot + x_c_dot;
     let s_5 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_26 * (s_4 * s_4) + coefficients.c_27 * s_5;
-    let mut s_6 = 0.0;
-    for i in 0..2 {
-        s_6 += INTEGRAL_S1_PHI[i] * state[8 + i];
-    }
-    let mut s_7 = 0.0;
-    for i in 0..2 {
-        s_7 += INTEGRAL_PHI_SQUARED[i] * (state[8 + i] * state[8 + i]);
-    }
-    let s_8 = coefficients.c_25 * (s_1 * s_1) + T_planets + coefficients.c_28 * s_5
+    let T_planets = coefficients.c_27 * (s_4 * s_4) + coefficients.c_28 * s_5;
+    let s_6 = sum_of_few(2, |i| INTEGRAL_S1_PHI[i] * state[8 + i]);
+    let s_7 = sum_of_few(2, |i| INTEGRAL_PHI_SQUARED[i] * (state[8 + i] * state[8 + i]));
+    let s_8 = coefficients.c_26 * (s_1 * s_1) + T_planets + coefficients.c_29 * s_5
         + 0.5
-            * (coefficients.c_9 * s_5 + coefficients.c_29 * (x_c_dot * s_6)
+            * (coefficients.c_9 * s_5 + coefficients.c_30 * (x_c_dot * s_6)
                 + coefficients.c_18 * s_7);
-    let mut s_9 = 0.0;
-    for i in 0..2 {
-        s_9 += INTEGRAL_PHI_D2_SQUARED[i] * (state[3 + i] * state[3 + i]);
-    }
+    let s_9 = sum_of_few(
+        2,
+        |i| INTEGRAL_PHI_D2_SQUARED[i] * (state[3 + i] * state[3 + i]),
+    );
     s_8
-        + (coefficients.c_30 * (s_2 * s_2) + coefficients.c_31 * (s_3 * s_3)
-            + coefficients.c_32 * s_9)
+        + (coefficients.c_31 * (s_2 * s_2) + coefficients.c_32 * (s_3 * s_3)
+            + coefficients.c_33 * s_9)
 }
 
 /// Power of all non-conservative forces, in W: the rate of the energy.
@@ -583,17 +573,25 @@ pub fn power(
     let x_sp_dot = state[5];
     let x_pr_dot = state[6];
     let x_c_dot = state[7];
-    let motor = coefficients.a_m
-        - coefficients.c_3 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot)
-        + coefficients.F_w * sin(coefficients.omega * t);
-    let s_1 = coefficients.c_2 * motor;
     let x_sp = state[0];
     let x_pr = state[1];
+    let motor = coefficients.a_m
+        - coefficients.c_2 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot)
+        + coefficients.F_w * sin(coefficients.omega * t);
+    let s_1 = coefficients.c_20 * motor;
     let s_2 = x_sp_dot
-        * (s_1 - coefficients.c_4 * (x_sp_dot * contact(x_sp, coefficients.b_sp)))
+        * (s_1
+            - coefficients.c_4
+                * (if contact(x_sp, coefficients.b_sp) > 0.0 { x_sp_dot } else { 0.0 }))
         + x_pr_dot
-            * (s_1 - coefficients.c_7 * (x_pr_dot * contact(x_pr, coefficients.b_pr)));
-    s_2 + coefficients.c_20 * (x_c_dot * motor)
+            * (s_1
+                - coefficients.c_7
+                    * (if contact(x_pr, coefficients.b_pr) > 0.0 {
+                        x_pr_dot
+                    } else {
+                        0.0
+                    }));
+    s_2 + coefficients.c_21 * (x_c_dot * motor)
 }
 
 /// Switching surfaces: the equations change where one of these changes sign.
@@ -675,6 +673,28 @@ fn contact(p: f64, b: f64) -> f64 {
 #[inline(always)]
 fn pivot_reciprocal(pivot: f64) -> f64 {
     if pivot > 0.0 { 1.0 / pivot } else { f64::NAN }
+}
+
+/// The sum of the first `length` of eight numbers, neighbours added in pairs.
+#[inline(always)]
+fn paired(length: usize, s: &[f64; 8]) -> f64 {
+    let a = if length > 1 { s[0] + s[1] } else { s[0] };
+    let b = if length > 3 { s[2] + s[3] } else { s[2] };
+    let c = if length > 5 { s[4] + s[5] } else { s[4] };
+    let d = if length > 7 { s[6] + s[7] } else { s[6] };
+    let left = if length > 2 { a + b } else { a };
+    let right = if length > 6 { c + d } else { c };
+    if length > 4 { left + right } else { left }
+}
+
+/// The sum of up to eight elements.
+#[inline(always)]
+fn sum_of_few<F: Fn(usize) -> f64>(length: usize, element: F) -> f64 {
+    let mut s = [0.0; 8];
+    for k in 0..length {
+        s[k] = element(k);
+    }
+    paired(length, &s)
 }
 
 /// Sine for |x| up to 1e9, NaN beyond. Plain operations in a fixed order: the same bits on every machine.

@@ -145,18 +145,14 @@ pub struct Inputs {}
 /// What depends on the parameters alone: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
-    /// `r_s*r_s/I_s`
+    /// `r_s/I_s`
     pub c_1: f64,
-    /// `1.0/r_s`
-    pub c_2: f64,
     /// `a_m`
     pub a_m: f64,
     /// `b_m/r_s`
+    pub c_2: f64,
+    /// `r_s*r_s/I_s`
     pub c_3: f64,
-    /// `F_w`
-    pub F_w: f64,
-    /// `omega`
-    pub omega: f64,
     /// `c_sp`
     pub c_sp: f64,
     /// `3.0*c_sp`
@@ -185,8 +181,14 @@ pub struct Coefficients {
     pub c_10: f64,
     /// `2.0*I_s*1/pivot_x_c/(r_s*r_s)`
     pub c_11: f64,
-    /// `0.3333333333333333*r_p*r_p/I_p`
+    /// `F_w`
+    pub F_w: f64,
+    /// `r_s*F_w/I_s`
     pub c_12: f64,
+    /// `omega`
+    pub omega: f64,
+    /// `0.3333333333333333*r_p*r_p/I_p`
+    pub c_13: f64,
     /// `I_s/(r_s*r_s)`
     pub M_x_sp_x_sp: f64,
     /// `2.0*I_s/(r_s*r_s)`
@@ -195,32 +197,36 @@ pub struct Coefficients {
     pub M_x_pr_x_pr: f64,
     /// `M_x_sp_x_c + pivot_x_pr`
     pub M_x_pr_x_c: f64,
-    /// `4.0*I_s/(r_s*r_s) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(...`
+    /// `4.0*I_s/(r_s*r_s) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
     pub M_x_c_x_c: f64,
-    /// `2.0/r_s`
-    pub c_13: f64,
-    /// `1.0/r_p`
+    /// `1.0/r_s`
     pub c_14: f64,
-    /// `1.0/(cos(alpha)*r_c)`
+    /// `2.0/r_s`
     pub c_15: f64,
-    /// `1.0/(r_s*i_sH)`
+    /// `1.0/r_p`
     pub c_16: f64,
-    /// `l/(r_s*i_sH)`
+    /// `1.0/(cos(alpha)*r_c)`
     pub c_17: f64,
-    /// `0.5*I_s/(r_s*r_s)`
+    /// `1.0/(r_s*i_sH)`
     pub c_18: f64,
-    /// `1.5*I_p/(r_p*r_p)`
+    /// `l/(r_s*i_sH)`
     pub c_19: f64,
-    /// `1.5*m_p/(cos(alpha)*cos(alpha))`
+    /// `-(l/(r_s*i_sH))`
     pub c_20: f64,
-    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
+    /// `0.5*I_s/(r_s*r_s)`
     pub c_21: f64,
-    /// `0.16666666666666666*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)`
+    /// `1.5*I_p/(r_p*r_p)`
     pub c_22: f64,
-    /// `1.5*k_sp`
+    /// `1.5*m_p/(cos(alpha)*cos(alpha))`
     pub c_23: f64,
-    /// `1.5*k_pr`
+    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
     pub c_24: f64,
+    /// `0.16666666666666666*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)`
+    pub c_25: f64,
+    /// `1.5*k_sp`
+    pub c_26: f64,
+    /// `1.5*k_pr`
+    pub c_27: f64,
     /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
     pub positive_definite: bool,
 }
@@ -233,13 +239,11 @@ impl Coefficients {
         let alpha = parameters.alpha;
         let s_2 = cos(alpha);
         let r_s = s_1 * z_s * s_2;
-        let s_3 = r_s * r_s;
         let M_s = parameters.M_s;
+        let s_3 = r_s * r_s;
         let I_s = M_s * s_3;
         let a_m = parameters.a_m;
         let b_m = parameters.b_m;
-        let F_w = parameters.F_w;
-        let omega = parameters.omega;
         let c_sp = parameters.c_sp;
         let b_sp = parameters.b_sp;
         let k_sp = parameters.k_sp;
@@ -254,38 +258,39 @@ impl Coefficients {
         let k_pr = parameters.k_pr;
         let s_6 = 3.0 * I_p;
         let s_7 = s_2 * s_2;
+        let m_p = parameters.m_p;
+        let s_8 = 3.0 * m_p / s_7;
         let r_c = s_1 * (z_s + z_p);
-        let s_8 = r_c * r_c;
-        let s_9 = s_7 * s_8;
+        let s_9 = r_c * r_c;
+        let s_10 = s_7 * s_9;
         let m_c = parameters.m_c;
-        let I_c = m_c * s_8;
-        let s_10 = I_c / s_9;
+        let I_c = m_c * s_9;
+        let s_11 = I_c / s_10;
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
-        let s_11 = l * (l * l);
-        let s_12 = 0.3333333333333333 * rho * A * s_11 / s_9;
-        let m_p = parameters.m_p;
-        let s_13 = 3.0 * m_p / s_7;
-        let pivot_x_c = s_10 + s_12 + s_13;
+        let s_12 = l * (l * l);
+        let s_13 = 0.3333333333333333 * rho * A * s_12 / s_10;
+        let pivot_x_c = s_8 + s_11 + s_13;
         let s_14 = pivot_reciprocal(pivot_x_c);
         let s_15 = 2.0 * I_s;
+        let F_w = parameters.F_w;
+        let omega = parameters.omega;
         let M_x_sp_x_sp = I_s / s_3;
         let M_x_sp_x_c = s_15 / s_3;
         let pivot_x_pr = s_6 / s_4;
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = 4.0 * I_s / s_3 + s_10 + s_12 + (pivot_x_pr + s_13);
+        let M_x_c_x_c = 4.0 * I_s / s_3 + (pivot_x_pr + s_8) + s_11 + s_13;
         let z_r = parameters.z_r;
         let i_sH = 1.0 + z_r / z_s;
         let s_16 = r_s * i_sH;
+        let s_17 = l / s_16;
         Self {
-            c_1: s_3 / I_s,
-            c_2: 1.0 / r_s,
+            c_1: r_s / I_s,
             a_m: a_m,
-            c_3: b_m / r_s,
-            F_w: F_w,
-            omega: omega,
+            c_2: b_m / r_s,
+            c_3: s_3 / I_s,
             c_sp: c_sp,
             c_4: 3.0 * c_sp,
             b_sp: b_sp,
@@ -300,24 +305,29 @@ impl Coefficients {
             c_9: s_14,
             c_10: s_6 * s_14 / s_4,
             c_11: s_15 * s_14 / s_3,
-            c_12: s_5 / I_p,
+            F_w: F_w,
+            c_12: r_s * F_w / I_s,
+            omega: omega,
+            c_13: s_5 / I_p,
             M_x_sp_x_sp: M_x_sp_x_sp,
             M_x_sp_x_c: M_x_sp_x_c,
             M_x_pr_x_pr: M_x_pr_x_pr,
             M_x_pr_x_c: M_x_pr_x_c,
             M_x_c_x_c: M_x_c_x_c,
-            c_13: 2.0 / r_s,
-            c_14: 1.0 / r_p,
-            c_15: 1.0 / (s_2 * r_c),
-            c_16: 1.0 / s_16,
-            c_17: l / s_16,
-            c_18: 0.5 * I_s / s_3,
-            c_19: 1.5 * I_p / s_4,
-            c_20: 1.5 * m_p / s_7,
-            c_21: 0.5 * I_c / s_9,
-            c_22: 0.16666666666666666 * rho * A * s_11 / s_9,
-            c_23: 1.5 * k_sp,
-            c_24: 1.5 * k_pr,
+            c_14: 1.0 / r_s,
+            c_15: 2.0 / r_s,
+            c_16: 1.0 / r_p,
+            c_17: 1.0 / (s_2 * r_c),
+            c_18: 1.0 / s_16,
+            c_19: s_17,
+            c_20: -s_17,
+            c_21: 0.5 * I_s / s_3,
+            c_22: 1.5 * I_p / s_4,
+            c_23: 1.5 * m_p / s_7,
+            c_24: 0.5 * I_c / s_10,
+            c_25: 0.16666666666666666 * rho * A * s_12 / s_10,
+            c_26: 1.5 * k_sp,
+            c_27: 1.5 * k_pr,
             positive_definite: M_x_sp_x_sp > 0.0 && M_x_sp_x_sp < f64::INFINITY
                 && pivot_x_pr > 0.0 && pivot_x_pr < f64::INFINITY && pivot_x_c > 0.0
                 && pivot_x_c < f64::INFINITY,
@@ -338,22 +348,23 @@ pub fn rates(
     let x_sp_dot = state[3];
     let x_pr_dot = state[4];
     let x_c_dot = state[5];
-    let motor = coefficients.a_m
-        - coefficients.c_3 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot)
-        + coefficients.F_w * sin(coefficients.omega * t);
     let x_sp = state[0];
-    let s_1 = coefficients.c_4 * (x_sp_dot * contact(x_sp, coefficients.b_sp));
+    let s_1 = coefficients.c_4
+        * (if contact(x_sp, coefficients.b_sp) > 0.0 { x_sp_dot } else { 0.0 });
     let s_2 = coefficients.c_5 * deadzone(x_sp, coefficients.b_sp);
     let x_pr = state[1];
-    let s_3 = coefficients.c_7 * (x_pr_dot * contact(x_pr, coefficients.b_pr));
+    let s_3 = coefficients.c_7
+        * (if contact(x_pr, coefficients.b_pr) > 0.0 { x_pr_dot } else { 0.0 });
     let s_4 = coefficients.c_8 * deadzone(x_pr, coefficients.b_pr);
-    let s_5 = s_1 + s_3 + s_2 + s_4;
-    let s_6 = s_1 + s_2 - s_3 - s_4 - coefficients.c_10 * s_5;
-    let x_sp_ddot = coefficients.c_1
-        * (coefficients.c_2 * motor - s_1 - s_2 - coefficients.c_6 * s_6
-            - coefficients.c_11 * s_5);
-    let x_pr_ddot = coefficients.c_12 * s_6;
-    let x_c_ddot = coefficients.c_9 * s_5;
+    let s_5 = s_1 + s_2;
+    let s_6 = s_1 + s_3 + s_2 + s_4;
+    let s_7 = s_5 - s_3 - s_4 - coefficients.c_10 * s_6;
+    let s_8 = coefficients.c_1
+        * (coefficients.a_m - coefficients.c_2 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot))
+        - coefficients.c_3 * (s_5 + coefficients.c_6 * s_7 + coefficients.c_11 * s_6);
+    let x_sp_ddot = s_8 + coefficients.c_12 * sin(coefficients.omega * t);
+    let x_pr_ddot = coefficients.c_13 * s_7;
+    let x_c_ddot = coefficients.c_9 * s_6;
     let mut rates = [0.0; STATES];
     for i in 0..3 {
         rates[i] = state[3 + i];
@@ -388,36 +399,36 @@ pub fn observables(
     let x_pr_dot = state[4];
     let x_c_dot = state[5];
     let s_1 = x_sp_dot + x_pr_dot + 2.0 * x_c_dot;
-    let motor = coefficients.a_m - coefficients.c_3 * s_1
-        + coefficients.F_w * sin(coefficients.omega * t);
-    let s_2 = coefficients.c_2 * motor;
     let x_sp = state[0];
-    let s_3 = x_sp_dot * contact(x_sp, coefficients.b_sp);
-    let s_4 = deadzone(x_sp, coefficients.b_sp);
+    let s_2 = if contact(x_sp, coefficients.b_sp) > 0.0 { x_sp_dot } else { 0.0 };
+    let s_3 = deadzone(x_sp, coefficients.b_sp);
     let x_pr = state[1];
-    let s_5 = x_pr_dot * contact(x_pr, coefficients.b_pr);
-    let s_6 = deadzone(x_pr, coefficients.b_pr);
+    let s_4 = if contact(x_pr, coefficients.b_pr) > 0.0 { x_pr_dot } else { 0.0 };
+    let s_5 = deadzone(x_pr, coefficients.b_pr);
+    let motor = coefficients.a_m - coefficients.c_2 * s_1
+        + coefficients.F_w * sin(coefficients.omega * t);
+    let s_6 = coefficients.c_14 * motor;
     let s_7 = x_sp + x_pr;
     let x_c = state[2];
     let x_s = s_7 + 2.0 * x_c;
-    let theta_s = coefficients.c_2 * x_s;
+    let theta_s = coefficients.c_14 * x_s;
     let x_p = x_pr + x_c;
-    let theta_p = coefficients.c_14 * x_p;
-    let theta_c = coefficients.c_15 * x_c;
-    let dtheta = coefficients.c_16 * s_7;
-    let f_la = coefficients.c_17 * s_7;
-    let f_la_signed = -f_la;
-    let F_sp = coefficients.c_sp * s_3 + coefficients.k_sp * s_4;
-    let F_pr = coefficients.c_pr * s_5 + coefficients.k_pr * s_6;
+    let theta_p = coefficients.c_16 * x_p;
+    let theta_c = coefficients.c_17 * x_c;
+    let dtheta = coefficients.c_18 * s_7;
+    let f_la = coefficients.c_19 * s_7;
+    let f_la_signed = coefficients.c_20 * s_7;
+    let F_sp = coefficients.c_sp * s_2 + coefficients.k_sp * s_3;
+    let F_pr = coefficients.c_pr * s_4 + coefficients.k_pr * s_5;
     let s_8 = x_pr_dot + x_c_dot;
     let s_9 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_19 * (s_8 * s_8) + coefficients.c_20 * s_9;
-    let s_10 = coefficients.c_18 * (s_1 * s_1) + T_planets + coefficients.c_21 * s_9
-        + coefficients.c_22 * s_9
-        + (coefficients.c_23 * (s_4 * s_4) + coefficients.c_24 * (s_6 * s_6));
-    let s_11 = x_sp_dot * (s_2 - coefficients.c_4 * s_3)
-        + x_pr_dot * (s_2 - coefficients.c_7 * s_5)
-        + coefficients.c_13 * (x_c_dot * motor);
+    let T_planets = coefficients.c_22 * (s_8 * s_8) + coefficients.c_23 * s_9;
+    let s_10 = coefficients.c_21 * (s_1 * s_1) + T_planets + coefficients.c_24 * s_9
+        + coefficients.c_25 * s_9
+        + (coefficients.c_26 * (s_3 * s_3) + coefficients.c_27 * (s_5 * s_5));
+    let s_11 = x_sp_dot * (s_6 - coefficients.c_4 * s_2)
+        + x_pr_dot * (s_6 - coefficients.c_7 * s_4)
+        + coefficients.c_15 * (x_c_dot * motor);
     [theta_s, theta_p, theta_c, 0.0, dtheta, f_la, f_la_signed, F_sp, F_pr, s_10, s_11]
 }
 
@@ -439,10 +450,10 @@ pub fn energy(
     let s_3 = deadzone(x_pr, coefficients.b_pr);
     let s_4 = x_pr_dot + x_c_dot;
     let s_5 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_19 * (s_4 * s_4) + coefficients.c_20 * s_5;
-    let s_6 = coefficients.c_18 * (s_1 * s_1) + T_planets + coefficients.c_21 * s_5
-        + coefficients.c_22 * s_5
-        + (coefficients.c_23 * (s_2 * s_2) + coefficients.c_24 * (s_3 * s_3));
+    let T_planets = coefficients.c_22 * (s_4 * s_4) + coefficients.c_23 * s_5;
+    let s_6 = coefficients.c_21 * (s_1 * s_1) + T_planets + coefficients.c_24 * s_5
+        + coefficients.c_25 * s_5
+        + (coefficients.c_26 * (s_2 * s_2) + coefficients.c_27 * (s_3 * s_3));
     s_6
 }
 
@@ -457,17 +468,25 @@ pub fn power(
     let x_sp_dot = state[3];
     let x_pr_dot = state[4];
     let x_c_dot = state[5];
-    let motor = coefficients.a_m
-        - coefficients.c_3 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot)
-        + coefficients.F_w * sin(coefficients.omega * t);
-    let s_1 = coefficients.c_2 * motor;
     let x_sp = state[0];
     let x_pr = state[1];
+    let motor = coefficients.a_m
+        - coefficients.c_2 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot)
+        + coefficients.F_w * sin(coefficients.omega * t);
+    let s_1 = coefficients.c_14 * motor;
     let s_2 = x_sp_dot
-        * (s_1 - coefficients.c_4 * (x_sp_dot * contact(x_sp, coefficients.b_sp)))
+        * (s_1
+            - coefficients.c_4
+                * (if contact(x_sp, coefficients.b_sp) > 0.0 { x_sp_dot } else { 0.0 }))
         + x_pr_dot
-            * (s_1 - coefficients.c_7 * (x_pr_dot * contact(x_pr, coefficients.b_pr)));
-    s_2 + coefficients.c_13 * (x_c_dot * motor)
+            * (s_1
+                - coefficients.c_7
+                    * (if contact(x_pr, coefficients.b_pr) > 0.0 {
+                        x_pr_dot
+                    } else {
+                        0.0
+                    }));
+    s_2 + coefficients.c_15 * (x_c_dot * motor)
 }
 
 /// Switching surfaces: the equations change where one of these changes sign.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use codegen::rust::{Packaging, tokens};
+use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 use model_spec::diagnostic::Diagnostics;
 use model_spec::source::Source;
@@ -95,8 +95,11 @@ fn in_place(stream: TokenStream) -> syn::Result<TokenStream> {
 }
 
 fn emitted(variant: &Variant) -> syn::Result<TokenStream> {
-    tokens(&variant.program, Packaging::Items)
-        .map_err(|error| Error::new(Span::call_site(), error.to_string()))
+    let failed = |message: String| Error::new(Span::call_site(), message);
+    emit(&variant.program, Packaging::Items)
+        .map_err(|error| failed(error.to_string()))?
+        .parse()
+        .map_err(|error: proc_macro2::LexError| failed(error.to_string()))
 }
 
 fn described(error: &model_spec::variant::ModelError) -> String {

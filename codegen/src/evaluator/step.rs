@@ -5,7 +5,7 @@ use elementary::Function as Elementary;
 use super::Point;
 use super::functions::{call, pivot_reciprocal};
 use super::matrices::matrix_step;
-use crate::program::{Extent, Op, Program, ValueId};
+use crate::program::{Extent, Op, PARTIAL_SUMS, Program, ValueId};
 
 /// Read access to operands while a value is computed: operands stand before it.
 pub(super) struct Operands<'a> {
@@ -99,9 +99,30 @@ pub(super) fn step(
                 };
             }
         }
-        Op::Total(a) => out[0] = operands.slice(*a).iter().fold(0.0, |total, x| total + x),
+        Op::Total(a) => out[0] = total(operands.slice(*a)),
         other => matrix_step(out, value.extent, &operands, other),
     }
+}
+
+/// The sum of the elements, in the order that `Op::Total` defines.
+fn total(elements: &[f64]) -> f64 {
+    let (first, rest) = elements.split_at(elements.len().min(PARTIAL_SUMS));
+    let mut partial = [0.0; PARTIAL_SUMS];
+    partial[..first.len()].copy_from_slice(first);
+    for (i, x) in rest.iter().enumerate() {
+        partial[i % PARTIAL_SUMS] += x;
+    }
+    let mut count = first.len();
+    while count > 1 {
+        for k in 0..count / 2 {
+            partial[k] = partial[2 * k] + partial[2 * k + 1];
+        }
+        if !count.is_multiple_of(2) {
+            partial[count / 2] = partial[count - 1];
+        }
+        count = count.div_ceil(2);
+    }
+    partial[0]
 }
 
 fn unary(out: &mut [f64], operands: &Operands<'_>, a: ValueId, function: impl Fn(f64) -> f64) {

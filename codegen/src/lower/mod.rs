@@ -26,7 +26,9 @@ pub fn lower(model: &Model, equations: &Equations, parameter_values: &[f64]) -> 
         &equations.derived_parameters,
         &equations.parameter_names,
     );
+    lowering.uses = equations.graph.uses(&equations.accelerations.rows.nodes());
     let accelerations = lowering.rows(&equations.accelerations.rows);
+    lowering.uses.clear();
     let mass = lowering.mass(equations);
     let velocity_terms = lowering.rows(&equations.velocity_terms);
     let forces = lowering.rows(&equations.forces);

@@ -1,12 +1,48 @@
 //! The values of a program, node by node, each once.
 
 use std::collections::HashMap;
+use std::hash::{Hash, Hasher};
 
 use crate::equations::{Equations, Rows};
 use crate::graph::{Assembly, Graph, Id, Operation, Shape};
 use crate::program::{
     Extent, MassBlocks, Op, ProgramTable, RowValues, ScaledValue, Value, ValueId,
 };
+
+/// An operation and its extent, to be found again: numbers are compared by their bits.
+struct Computation {
+    op: Op,
+    extent: Extent,
+}
+
+impl PartialEq for Computation {
+    fn eq(&self, other: &Self) -> bool {
+        let same = match (&self.op, &other.op) {
+            (Op::Constant(a), Op::Constant(b)) => a.to_bits() == b.to_bits(),
+            (a, b) => a == b,
+        };
+        same && self.extent == other.extent
+    }
+}
+
+impl Eq for Computation {}
+
+impl Hash for Computation {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        std::mem::discriminant(&self.op).hash(state);
+        match &self.op {
+            Op::Constant(number) => number.to_bits().hash(state),
+            Op::Table(place)
+            | Op::Parameter(place)
+            | Op::Coordinate(place)
+            | Op::Rate(place)
+            | Op::ModeCoordinates(place)
+            | Op::ModeRates(place)
+            | Op::Input(place) => place.hash(state),
+            op => op.operands().hash(state),
+        }
+    }
+}
 
 /// Values in the making.
 pub(super) struct Lowering<'g> {
@@ -16,10 +52,12 @@ pub(super) struct Lowering<'g> {
     independent: Vec<usize>,
     parameter_names: Vec<String>,
     pub(super) values: Vec<Value>,
-    known: HashMap<String, ValueId>,
+    known: HashMap<Computation, ValueId>,
     lowered: HashMap<Id, ValueId>,
     pub(super) tables: Vec<ProgramTable>,
     table_places: HashMap<usize, usize>,
+    /// How often the accelerations read each node, while these are lowered.
+    pub(super) uses: HashMap<Id, usize>,
 }
 
 impl<'g> Lowering<'g> {
@@ -45,6 +83,7 @@ impl<'g> Lowering<'g> {
             lowered: HashMap::new(),
             tables: Vec::new(),
             table_places: HashMap::new(),
+            uses: HashMap::new(),
         }
     }
 
@@ -91,10 +130,11 @@ impl<'g> Lowering<'g> {
 
     /// Adds a value, or finds it if it stands there already.
     pub(super) fn emit(&mut self, op: Op, extent: Extent) -> ValueId {
-        let key = format!("{op:?} {extent:?}");
+        let key = Computation { op, extent };
         if let Some(&known) = self.known.get(&key) {
             return known;
         }
+        let op = key.op.clone();
         let prepared = match op {
             Op::Constant(_) | Op::Table(_) | Op::Parameter(_) => true,
             Op::Coordinate(_)
@@ -116,7 +156,7 @@ impl<'g> Lowering<'g> {
         id
     }
 
-    fn join(&self, a: ValueId, b: ValueId) -> Extent {
+    pub(super) fn join(&self, a: ValueId, b: ValueId) -> Extent {
         match self.values[a.0].extent {
             Extent::Scalar => self.values[b.0].extent,
             other => other,

@@ -6,18 +6,15 @@
 
 use std::collections::{HashMap, HashSet};
 
-use elementary::Function as Elementary;
-use model_spec::model::Function;
-use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{format_ident, quote};
-
 use super::EmitError;
-use super::expression::Expression;
+use super::expression::{Expression, assignment, infix};
 use super::functions::Needed;
-use super::literals::{count, identifier};
+use super::literals::{block, identifier};
 use super::names::Names;
 use crate::evaluator::elementary_function;
-use crate::program::{Extent, Op, Program, ValueId};
+use crate::program::{Extent, Op, PARTIAL_SUMS, Program, ValueId};
+use elementary::Function as Elementary;
+use model_spec::model::Function;
 
 /// The most operations in one emitted expression.
 const EXPRESSION_SIZE: usize = 8;
@@ -27,7 +24,7 @@ pub enum Access<'a> {
     /// It prepares the coefficients itself, from `parameters`.
     Prepare,
     /// In these fields of `coefficients`.
-    Coefficients(&'a HashMap<ValueId, Ident>),
+    Coefficients(&'a HashMap<ValueId, String>),
 }
 
 /// Writes one stage.
@@ -37,8 +34,8 @@ pub struct Body<'a> {
     pub(super) names: Names,
     uses: HashMap<ValueId, usize>,
     in_loops: HashMap<ValueId, bool>,
-    pub(super) bound: HashMap<ValueId, Ident>,
-    pub(super) statements: Vec<TokenStream>,
+    pub(super) bound: HashMap<ValueId, String>,
+    pub(super) statements: String,
     pub(super) needed: &'a mut Needed,
     /// Vectors that the caller reads as arrays.
     arrays: HashSet<ValueId>,
@@ -61,7 +58,7 @@ impl<'a> Body<'a> {
             uses: HashMap::new(),
             in_loops: HashMap::new(),
             bound: HashMap::new(),
-            statements: Vec::new(),
+            statements: String::new(),
             needed,
             arrays: HashSet::new(),
         };
@@ -100,20 +97,33 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// The statements so far.
-    pub fn statements(self) -> Vec<TokenStream> {
+    /// The statements so far, a line each.
+    pub fn statements(self) -> String {
         self.statements
     }
 
     /// Adds a statement of the caller's.
-    pub fn push(&mut self, statement: TokenStream) {
-        self.statements.push(statement);
+    pub fn push(&mut self, statement: &str) {
+        self.statements.push_str(statement);
+        self.statements.push('\n');
+    }
+
+    /// Adds a loop over `index` with one statement in it.
+    pub fn push_loop(&mut self, index: &str, length: usize, statement: &str) {
+        self.statements
+            .push_str(&looped(index, length, &format!("{statement}\n")));
+    }
+
+    /// Adds a vector filled element by element.
+    fn push_filled(&mut self, name: &str, length: usize, statement: &str) {
+        self.push(&format!("let mut {name} = [0.0; {length}];"));
+        self.push_loop("i", length, statement);
     }
 
     /// Prefers a name for a value of this stage.
-    fn bind(&mut self, id: ValueId, expression: TokenStream) -> Emitted<()> {
+    fn bind(&mut self, id: ValueId, expression: &Expression) -> Emitted<()> {
         let name = self.names.of(self.program, id, "s")?;
-        self.statements.push(quote!(let #name = #expression;));
+        self.push(&assignment(&format!("let {name}"), expression));
         self.bound.insert(id, name);
         Ok(())
     }
@@ -134,7 +144,7 @@ impl<'a> Body<'a> {
                 let expression = self.leaf(id)?;
                 let name = self.leaf_name(id);
                 let name = self.names.assign(id, &name, "s")?;
-                self.statements.push(quote!(let #name = #expression;));
+                self.push(&assignment(&format!("let {name}"), expression));
                 self.bound.insert(id, name);
                 Ok(())
             }
@@ -163,7 +173,7 @@ impl<'a> Body<'a> {
         let expression = self.own_expression(id, None)?;
         let looped = self.in_loops.get(&id).copied().unwrap_or(false);
         if uses > 1 || value.name.is_some() || looped || expression.size > EXPRESSION_SIZE {
-            self.bind(id, expression.tokens())
+            self.bind(id, &expression)
         } else {
             Ok(())
         }
@@ -171,14 +181,17 @@ impl<'a> Body<'a> {
 
     fn total(&mut self, id: ValueId, vector: ValueId) -> Emitted<()> {
         let name = self.names.of(self.program, id, "s")?;
-        let length = count(self.program.value(vector).extent.length());
+        let length = self.program.value(vector).extent.length();
         let element = self.element(vector)?;
-        self.statements.push(quote! {
-            let mut #name = 0.0;
-            for i in 0..#length {
-                #name += #element;
-            }
-        });
+        let function = if length > PARTIAL_SUMS {
+            self.needed.sum = true;
+            "sum"
+        } else {
+            self.needed.sum_of_few = true;
+            "sum_of_few"
+        };
+        let sum = Expression::sum(function, length, &element);
+        self.push(&assignment(&format!("let {name}"), sum));
         self.bound.insert(id, name);
         Ok(())
     }
@@ -187,36 +200,30 @@ impl<'a> Body<'a> {
         let elementwise = is_elementwise(&self.program.value(id).op);
         let as_array = self.arrays.contains(&id) || self.is_operand_of_matrix(id);
         if elementwise && uses <= 1 && !as_array {
-            let expression = self.own_expression(id, Some(&format_ident!("i")))?;
+            let expression = self.own_expression(id, Some("i"))?;
             if expression.size <= EXPRESSION_SIZE {
                 return Ok(());
             }
         }
-        let length = count(length);
         if let Op::CholeskySolve(factor, vector) = self.program.value(id).op {
             self.needed.cholesky = true;
             let name = self.names.of(self.program, id, "s")?;
-            let factor = self.array(factor)?;
-            let vector = self.vector_array(vector, &length)?;
-            self.statements
-                .push(quote!(let #name = cholesky_solve(&#factor, &#vector);));
+            let factor = reference(self.array(factor)?);
+            let vector = reference(self.vector_array(vector, length)?);
+            let solution = Expression::call("cholesky_solve", &[factor, vector]);
+            self.push(&assignment(&format!("let {name}"), solution));
             self.bound.insert(id, name);
             return Ok(());
         }
-        let fill = if elementwise {
+        if elementwise {
             let element = self.element(id)?;
             let name = self.names.of(self.program, id, "s")?;
-            (quote!(#name[i] = #element;), name)
-        } else {
-            self.summed_element(id)?
-        };
-        let (statement, name) = fill;
-        self.statements.push(quote! {
-            let mut #name = [0.0; #length];
-            for i in 0..#length {
-                #statement
-            }
-        });
+            self.push_filled(&name, length, &assignment(&format!("{name}[i]"), element));
+            self.bound.insert(id, name);
+            return Ok(());
+        }
+        let (statement, name) = self.summed_element(id)?;
+        self.push_filled(&name, length, statement.trim_end());
         self.bound.insert(id, name);
         Ok(())
     }
@@ -231,32 +238,32 @@ impl<'a> Body<'a> {
     }
 
     /// A scalar.
-    pub fn scalar(&mut self, id: ValueId) -> Emitted<TokenStream> {
-        Ok(self.expression(id, None)?.tokens())
+    pub fn scalar(&mut self, id: ValueId) -> Emitted<Expression> {
+        self.expression(id, None)
     }
 
     /// Element i of a vector, or a scalar.
-    pub fn element(&mut self, id: ValueId) -> Emitted<TokenStream> {
-        Ok(self.element_at(id, &format_ident!("i"))?.tokens())
+    pub fn element(&mut self, id: ValueId) -> Emitted<Expression> {
+        self.element_at(id, "i")
     }
 
     /// Element `index` of a vector, or a scalar.
-    pub(super) fn element_at(&mut self, id: ValueId, index: &Ident) -> Emitted<Expression> {
+    pub(super) fn element_at(&mut self, id: ValueId, index: &str) -> Emitted<Expression> {
         let scalar = self.program.value(id).extent == Extent::Scalar;
         self.expression(id, (!scalar).then_some(index))
     }
 
     /// A scalar, or the element of a vector: by its name if it has one by now.
-    fn expression(&mut self, id: ValueId, index: Option<&Ident>) -> Emitted<Expression> {
+    fn expression(&mut self, id: ValueId, index: Option<&str>) -> Emitted<Expression> {
         match (self.bound.get(&id), index) {
-            (Some(name), Some(index)) => Ok(Expression::atom(quote!(#name[#index]))),
-            (Some(name), None) => Ok(Expression::atom(quote!(#name))),
+            (Some(name), Some(index)) => Ok(Expression::element(name, index)),
+            (Some(name), None) => Ok(Expression::atom(name)),
             (None, _) => self.own_expression(id, index),
         }
     }
 
     /// The expression that computes a value.
-    fn own_expression(&mut self, id: ValueId, index: Option<&Ident>) -> Emitted<Expression> {
+    fn own_expression(&mut self, id: ValueId, index: Option<&str>) -> Emitted<Expression> {
         if let Some(leaf) = self.leaf_or_prepared(id, index)? {
             return Ok(leaf);
         }
@@ -282,14 +289,14 @@ impl<'a> Body<'a> {
             (Op::Divide(..), [a, b]) => Expression::divide(a, b),
             (Op::Power(..), _) => {
                 self.needed.elementary.insert(Elementary::Pow);
-                Expression::call(&format_ident!("pow"), operands)
+                Expression::call("pow", operands)
             }
             (Op::PivotReciprocal(_), _) => {
                 self.needed.pivot_reciprocal = true;
-                Expression::call(&format_ident!("pivot_reciprocal"), operands)
+                Expression::call("pivot_reciprocal", operands)
             }
             (Op::Select { .. }, [a, b, then, otherwise]) => {
-                Expression::choice(quote!(>), [a, b, then, otherwise])
+                Expression::choice(">", [a, b, then, otherwise])
             }
             (Op::Call(function, _), _) => self.call(*function, operands),
             _ => Expression::number(f64::NAN),
@@ -311,84 +318,78 @@ impl<'a> Body<'a> {
                 "contact"
             }
         };
-        Expression::call(&format_ident!("{name}"), arguments)
+        Expression::call(name, arguments)
     }
 
     /// Constants, tables, state, and what was prepared before this stage.
-    fn leaf_or_prepared(&self, id: ValueId, index: Option<&Ident>) -> Emitted<Option<Expression>> {
+    fn leaf_or_prepared(&self, id: ValueId, index: Option<&str>) -> Emitted<Option<Expression>> {
         let value = self.program.value(id);
         let program = self.program;
-        Ok(Some(Expression::atom(match value.op {
-            Op::Constant(value) => return Ok(Some(Expression::number(value))),
-            Op::Time => quote!(t),
-            Op::Table(place) => {
-                let name = identifier(&program.tables[place].name)?;
-                quote!(#name[#index])
+        let place = |offset: usize| {
+            let place = index.map_or_else(String::new, |index| infix("+", offset, index));
+            Expression::element("state", &place)
+        };
+        Ok(Some(match value.op {
+            Op::Constant(value) => Expression::number(value),
+            Op::Time => Expression::atom("t"),
+            Op::Table(table) => {
+                let name = identifier(&program.tables[table].name)?;
+                Expression::element(name, index.unwrap_or_default())
             }
-            Op::ModeCoordinates(field) => {
-                let offset = count(program.mode_offset(field));
-                quote!(state[#offset + #index])
-            }
+            Op::ModeCoordinates(field) => place(program.mode_offset(field)),
             Op::ModeRates(field) => {
-                let offset = count(program.degrees_of_freedom() + program.mode_offset(field));
-                quote!(state[#offset + #index])
+                place(program.degrees_of_freedom() + program.mode_offset(field))
             }
             _ => match &self.access {
                 Access::Coefficients(fields) if value.prepared => {
                     let Some(name) = fields.get(&id) else {
-                        return Err(EmitError::Syntax(format!(
+                        return Err(EmitError::Value(format!(
                             "value {} was not prepared",
                             id.index()
                         )));
                     };
+                    let field = Expression::field("coefficients", name);
                     match index {
-                        Some(index) => quote!(coefficients.#name[#index]),
-                        None => quote!(coefficients.#name),
+                        Some(index) => Expression::element(&field.to_string(), index),
+                        None => field,
                     }
                 }
                 _ => return Ok(None),
             },
-        })))
+        }))
     }
 
-    fn leaf(&self, id: ValueId) -> Emitted<TokenStream> {
+    fn leaf(&self, id: ValueId) -> Emitted<Expression> {
         let program = self.program;
         Ok(match program.value(id).op {
-            Op::Coordinate(index) => {
-                let place = count(index);
-                quote!(state[#place])
-            }
+            Op::Coordinate(index) => Expression::atom(format!("state[{index}]")),
             Op::Rate(index) => {
-                let place = count(program.degrees_of_freedom() + index);
-                quote!(state[#place])
+                Expression::atom(format!("state[{}]", program.degrees_of_freedom() + index))
             }
             Op::Input(index) => {
-                let name = identifier(&program.inputs[index].name)?;
-                quote!(inputs.#name)
+                Expression::field("inputs", identifier(&program.inputs[index].name)?)
             }
             Op::Parameter(place) => {
                 let name = identifier(&program.parameters[place].quantity.name)?;
-                quote!(parameters.#name)
+                Expression::field("parameters", name)
             }
-            _ => quote!(f64::NAN),
+            _ => Expression::number(f64::NAN),
         })
     }
 
     /// A vector or matrix as a whole.
-    pub fn array(&mut self, id: ValueId) -> Emitted<TokenStream> {
+    pub fn array(&mut self, id: ValueId) -> Emitted<String> {
         if let Some(name) = self.bound.get(&id) {
-            return Ok(quote!(#name));
+            return Ok(name.clone());
         }
         if let Op::Table(place) = self.program.value(id).op {
-            let name = identifier(&self.program.tables[place].name)?;
-            return Ok(quote!(#name));
+            return Ok(identifier(&self.program.tables[place].name)?.to_owned());
         }
         match &self.access {
             Access::Coefficients(fields) if fields.contains_key(&id) => {
-                let name = &fields[&id];
-                Ok(quote!(coefficients.#name))
+                Ok(Expression::field("coefficients", &fields[&id]).to_string())
             }
-            _ => Err(EmitError::Syntax(format!(
+            _ => Err(EmitError::Value(format!(
                 "value {} is no array",
                 id.index()
             ))),
@@ -396,24 +397,29 @@ impl<'a> Body<'a> {
     }
 
     /// A vector as a whole array, copied where it is none; a scalar stands for every element.
-    fn vector_array(&mut self, id: ValueId, length: &Literal) -> Emitted<TokenStream> {
+    fn vector_array(&mut self, id: ValueId, length: usize) -> Emitted<String> {
         if self.program.value(id).extent == Extent::Scalar {
             let value = self.scalar(id)?;
-            return Ok(quote!([#value; #length]));
+            return Ok(format!("[{value}; {length}]"));
         }
         if let Ok(array) = self.array(id) {
             return Ok(array);
         }
         let element = self.element(id)?;
         let name = self.names.of(self.program, id, "s")?;
-        self.statements.push(quote! {
-            let mut #name = [0.0; #length];
-            for i in 0..#length {
-                #name[i] = #element;
-            }
-        });
-        Ok(quote!(#name))
+        self.push_filled(&name, length, &assignment(&format!("{name}[i]"), element));
+        Ok(name)
     }
+}
+
+/// A loop of these lines.
+pub(super) fn looped(index: &str, length: usize, lines: &str) -> String {
+    block(&format!("for {index} in 0..{length} {{"), lines, "}")
+}
+
+/// A reference to an array.
+pub(super) fn reference(array: String) -> Expression {
+    Expression::atom(format!("&{array}"))
 }
 
 /// Whether each element depends on the operands' elements of the same index alone.

@@ -1,13 +1,17 @@
 //! Emitted expressions with their precedence, so that parentheses stand only where the
-//! order of evaluation needs them.
+//! order of evaluation needs them, marked for their layout.
 
-use proc_macro2::TokenStream;
-use quote::quote;
+use super::layout::{
+    BLOCK, BLOCK_EVEN, BLOCK_OUT, BRACE, BRACE_OUT, CLOSE, COMMA_OUT, FIRM, FLOW, FLOW_EVEN,
+    FLOW_OUT, SPACE, SPACE_OUT, ZERO,
+};
 
 /// How tightly an expression holds together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     Choice,
+    And,
+    Comparison,
     Sum,
     Product,
     Negation,
@@ -17,17 +21,38 @@ enum Level {
 /// An emitted expression.
 #[derive(Clone, Debug)]
 pub struct Expression {
-    tokens: TokenStream,
+    text: String,
     level: Level,
     /// How many operations stand in it.
     pub size: usize,
 }
 
+impl std::fmt::Display for Expression {
+    /// Without parentheses around it.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+/// An expression with the parentheses that its place needs.
+struct At<'a>(&'a Expression, Level);
+
+impl std::fmt::Display for At<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self(expression, level) = *self;
+        if expression.level < level {
+            write!(f, "({expression})")
+        } else {
+            write!(f, "{expression}")
+        }
+    }
+}
+
 impl Expression {
     /// A name, an element, a call or a literal without sign.
-    pub fn atom(tokens: TokenStream) -> Self {
+    pub fn atom(text: impl Into<String>) -> Self {
         Self {
-            tokens,
+            text: text.into(),
             level: Level::Atom,
             size: 0,
         }
@@ -41,79 +66,150 @@ impl Expression {
             Level::Atom
         };
         Self {
-            tokens: super::literals::number(value),
+            text: super::literals::number(value),
             level,
             size: 0,
         }
     }
 
-    /// Without parentheses around it.
-    pub fn tokens(&self) -> TokenStream {
-        self.tokens.clone()
+    /// Element `index` of an array.
+    pub fn element(array: &str, index: &str) -> Self {
+        Self::atom(format!("{array}[{index}]"))
     }
 
-    fn at_least(&self, level: Level) -> TokenStream {
-        let tokens = &self.tokens;
-        if self.level < level {
-            quote!((#tokens))
-        } else {
-            quote!(#tokens)
-        }
+    /// A field of a struct.
+    pub fn field(of: &str, name: &str) -> Self {
+        Self::atom(format!("{BLOCK}{BLOCK_OUT}{of}{CLOSE}{ZERO}.{name}{CLOSE}"))
     }
 
-    fn new(tokens: TokenStream, level: Level, parts: &[&Self]) -> Self {
+    fn new(text: String, level: Level, parts: &[&Self]) -> Self {
         Self {
-            tokens,
+            text,
             level,
             size: 1 + parts.iter().map(|part| part.size).sum::<usize>(),
         }
     }
 
+    fn binary(
+        operator: &str,
+        level: Level,
+        (a, left): (&Self, Level),
+        (b, right): (&Self, Level),
+    ) -> Self {
+        let text = infix(operator, At(a, left), At(b, right));
+        Self::new(text, level, &[a, b])
+    }
+
     /// a + b
     pub fn add(a: &Self, b: &Self) -> Self {
-        let (left, right) = (a.at_least(Level::Sum), b.at_least(Level::Product));
-        Self::new(quote!(#left + #right), Level::Sum, &[a, b])
+        Self::binary("+", Level::Sum, (a, Level::Sum), (b, Level::Product))
     }
 
     /// a - b
     pub fn subtract(a: &Self, b: &Self) -> Self {
-        let (left, right) = (a.at_least(Level::Sum), b.at_least(Level::Product));
-        Self::new(quote!(#left - #right), Level::Sum, &[a, b])
+        Self::binary("-", Level::Sum, (a, Level::Sum), (b, Level::Product))
     }
 
     /// a b
     pub fn multiply(a: &Self, b: &Self) -> Self {
-        let (left, right) = (a.at_least(Level::Product), b.at_least(Level::Negation));
-        Self::new(quote!(#left * #right), Level::Product, &[a, b])
+        Self::binary(
+            "*",
+            Level::Product,
+            (a, Level::Product),
+            (b, Level::Negation),
+        )
     }
 
     /// a / b
     pub fn divide(a: &Self, b: &Self) -> Self {
-        let (left, right) = (a.at_least(Level::Product), b.at_least(Level::Negation));
-        Self::new(quote!(#left / #right), Level::Product, &[a, b])
+        Self::binary(
+            "/",
+            Level::Product,
+            (a, Level::Product),
+            (b, Level::Negation),
+        )
+    }
+
+    /// `a && b`
+    pub fn and(a: &Self, b: &Self) -> Self {
+        Self::binary("&&", Level::And, (a, Level::And), (b, Level::Comparison))
+    }
+
+    /// `a OPERATOR b`, a comparison
+    pub fn compare(operator: &str, a: &Self, b: &Self) -> Self {
+        Self::binary(
+            operator,
+            Level::Comparison,
+            (a, Level::Sum),
+            (b, Level::Sum),
+        )
     }
 
     /// -a
     pub fn negate(a: &Self) -> Self {
-        let operand = a.at_least(Level::Atom);
-        Self::new(quote!(-#operand), Level::Negation, &[a])
+        Self::new(format!("-{}", At(a, Level::Atom)), Level::Negation, &[a])
     }
 
     /// A call of a function.
-    pub fn call(name: &proc_macro2::Ident, arguments: &[Self]) -> Self {
-        let tokens = arguments.iter().map(Self::tokens);
+    pub fn call(name: &str, arguments: &[Self]) -> Self {
         let parts: Vec<&Self> = arguments.iter().collect();
-        Self::new(quote!(#name(#(#tokens),*)), Level::Atom, &parts)
+        let text = format!(
+            "{name}({BLOCK}{ZERO}{}{COMMA_OUT}{CLOSE})",
+            listed(arguments)
+        );
+        Self::new(text, Level::Atom, &parts)
+    }
+
+    /// The call of a function that sums this many elements i.
+    pub fn sum(function: &str, length: usize, element: &Self) -> Self {
+        let closure = format!(
+            "{FLOW_EVEN}{BLOCK}|{ZERO}i|{SPACE_OUT}{CLOSE}{FIRM}\
+             {BLOCK}{BRACE}{element}{BRACE_OUT}{CLOSE}{CLOSE}"
+        );
+        let length = Self::atom(length.to_string());
+        Self::call(function, &[length, Self::atom(closure)])
     }
 
     /// `if a OPERATOR b { then } else { otherwise }`
-    pub fn choice(operator: TokenStream, [a, b, then, otherwise]: [&Self; 4]) -> Self {
-        let (left, right) = (a.at_least(Level::Sum), b.at_least(Level::Sum));
-        let (yes, no) = (then.tokens(), otherwise.tokens());
-        Self::new(
-            quote!(if #left #operator #right { #yes } else { #no }),
-            Level::Choice,
-            &[a, b, then, otherwise],
-        )
+    pub fn choice(operator: &str, [a, b, then, otherwise]: [&Self; 4]) -> Self {
+        let condition = Self::compare(operator, a, b);
+        let branch = |value: &Self| format!("{{{SPACE}{FLOW_EVEN}{value}{CLOSE}{SPACE_OUT}}}");
+        let text = format!(
+            "{BLOCK}if {BLOCK_OUT}{BLOCK_EVEN}{condition}{SPACE}{CLOSE}{CLOSE}{} else {}{CLOSE}",
+            branch(then),
+            branch(otherwise)
+        );
+        Self::new(text, Level::Choice, &[a, b, then, otherwise])
     }
+}
+
+/// Two operands with an operator between them, broken before the operator.
+pub fn infix(operator: &str, a: impl std::fmt::Display, b: impl std::fmt::Display) -> String {
+    format!("{FLOW}{FLOW_OUT}{a}{CLOSE}{SPACE}{operator} {b}{CLOSE}")
+}
+
+/// An assignment to `target`, which may declare it.
+pub fn assignment(target: &str, value: impl std::fmt::Display) -> String {
+    format!("{target} = {FIRM}{value};")
+}
+
+/// Elements of an array or of a call, each on a line of its own if they do not fit on one.
+pub fn listed<T: std::fmt::Display>(items: &[T]) -> String {
+    let mut text = String::new();
+    for (place, item) in items.iter().enumerate() {
+        if place > 0 {
+            text.push(',');
+            text.push(SPACE);
+        }
+        text.push_str(&item.to_string());
+    }
+    text
+}
+
+/// An array of these elements.
+pub fn array<T: std::fmt::Display>(items: &[T]) -> String {
+    if items.is_empty() {
+        return "[]".to_owned();
+    }
+    format!("[{BLOCK}{ZERO}{}{COMMA_OUT}{CLOSE}]", listed(items))
 }

@@ -3,13 +3,11 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use proc_macro2::{Ident, TokenStream};
-use quote::quote;
-
 use super::EmitError;
-
+use super::expression::array;
 use super::functions::{Needed, items};
-use super::literals::{count, doc, file_doc, identifier, number};
+use super::layout;
+use super::literals::{block, doc, file_doc, identifier, number};
 use super::names::Names;
 use crate::program::{Extent, Op, Program, ValueId};
 
@@ -36,59 +34,8 @@ pub(super) type Emitted<T> = Result<T, EmitError>;
 /// # Errors
 /// If a name of the program is no Rust identifier.
 pub fn emit(program: &Program, packaging: Packaging) -> Result<String, EmitError> {
-    let tokens = tokens(program, packaging)?;
-    let parsed: syn::File =
-        syn::parse2(tokens).map_err(|error| EmitError::Syntax(error.to_string()))?;
-    Ok(spaced(&prettyplease::unparse(&parsed)))
-}
-
-/// The same as [`emit`] as tokens, for a macro.
-///
-/// # Errors
-/// As [`emit`].
-pub fn tokens(program: &Program, packaging: Packaging) -> Emitted<TokenStream> {
     let file = File::new(program)?;
-    let items = file.items()?;
-    let lines = file.documentation();
-    if packaging == Packaging::Items {
-        let docs = doc(&lines);
-        let module = identifier(ITEMS_MODULE)?;
-        return Ok(quote! {
-            #docs
-            #[allow(non_snake_case, dead_code, clippy::all, clippy::pedantic, clippy::nursery)]
-            #[forbid(unsafe_code)]
-            mod #module { #items }
-            #[allow(unused_imports)]
-            pub use #module::*;
-        });
-    }
-    let docs = file_doc(&lines);
-    let no_std = (packaging == Packaging::Crate).then(|| quote!(#![no_std]));
-    Ok(quote! {
-        #docs
-        #no_std
-        #![allow(non_snake_case)]
-        #![allow(clippy::all)]
-        #![forbid(unsafe_code)]
-        #items
-    })
-}
-
-/// With an empty line before every documented item, as a person would set it.
-fn spaced(source: &str) -> String {
-    let mut text = String::with_capacity(source.len() + 512);
-    let mut previous = "";
-    for line in source.lines() {
-        let starts_item = line.starts_with("///") && !previous.starts_with("///");
-        let after_header = previous.starts_with("#![") && !line.starts_with("#![");
-        if (starts_item || after_header) && !previous.is_empty() {
-            text.push('\n');
-        }
-        text.push_str(line);
-        text.push('\n');
-        previous = line;
-    }
-    text
+    Ok(layout::source(&file.marked(packaging)?))
 }
 
 /// What a file is written from.
@@ -96,7 +43,7 @@ pub(super) struct File<'p> {
     pub(super) program: &'p Program,
     /// Prepared values that the stages read, in the order of the program, by name.
     pub(super) fields: Vec<ValueId>,
-    pub(super) field_names: HashMap<ValueId, Ident>,
+    pub(super) field_names: HashMap<ValueId, String>,
 }
 
 impl<'p> File<'p> {
@@ -114,29 +61,36 @@ impl<'p> File<'p> {
         })
     }
 
-    fn items(&self) -> Emitted<TokenStream> {
+    /// The file as marked text.
+    fn marked(&self, packaging: Packaging) -> Emitted<String> {
         let mut needed = Needed::default();
-        let constants = self.constants();
-        let tables = self.tables()?;
-        let parameters = self.parameters()?;
-        let inputs = self.inputs()?;
-        let coefficients = self.coefficients(&mut needed)?;
-        let rates = self.rates(&mut needed)?;
-        let observables = self.observables(&mut needed)?;
-        let guards = self.guards(&mut needed)?;
-        let mass = self.mass_matrix(&mut needed)?;
-        let functions = items(&needed);
-        Ok(quote! {
-            #constants
-            #parameters
-            #inputs
-            #coefficients
-            #rates
-            #observables
-            #guards
-            #mass
-            #tables
-            #functions
+        let items = [
+            self.constants(),
+            self.parameters()?,
+            self.inputs()?,
+            self.coefficients(&mut needed)?,
+            self.rates(&mut needed)?,
+            self.observables(&mut needed)?,
+            self.guards(&mut needed)?,
+            self.mass_matrix(&mut needed)?,
+            self.tables()?,
+            items(&needed),
+        ]
+        .concat();
+        let documentation = self.documentation();
+        let allowed =
+            "#![allow(non_snake_case)]\n#![allow(clippy::all)]\n#![forbid(unsafe_code)]\n";
+        Ok(match packaging {
+            Packaging::Crate => file_doc(&documentation) + "#![no_std]\n" + allowed + &items,
+            Packaging::Module => file_doc(&documentation) + allowed + &items,
+            Packaging::Items => {
+                doc(&documentation)
+                    + "#[allow(non_snake_case, dead_code, clippy::all, clippy::pedantic, clippy::nursery)]\n"
+                    + "#[forbid(unsafe_code)]\n"
+                    + &block(&format!("mod {ITEMS_MODULE} {{"), &items, "}")
+                    + "#[allow(unused_imports)]\n"
+                    + &format!("pub use {ITEMS_MODULE}::*;\n")
+            }
         })
     }
 
@@ -166,40 +120,45 @@ impl<'p> File<'p> {
         ]
     }
 
-    fn constants(&self) -> TokenStream {
+    fn constants(&self) -> String {
         let program = self.program;
-        let degrees = count(program.degrees_of_freedom());
-        let states = count(program.states());
-        let state_names = program.state_names();
-        let observables = count(program.observables.len());
-        let observable_names = program.observables.iter().map(|o| &o.name);
-        let guards = count(self.guard_count());
-        let hash = &program.spec_hash;
-        let version = env!("CARGO_PKG_VERSION");
-        let order_lines = ["Modal truncation order of each field.".to_owned()];
-        let order_doc = doc(&order_lines);
-        let orders = program.fields.iter().map(|f| count(f.order));
-        let fields = count(program.fields.len());
-        quote! {
-            #order_doc
-            pub const ORDERS: [usize; #fields] = [#(#orders),*];
-            #[doc = " Degrees of freedom: coordinates and modes."]
-            pub const DEGREES_OF_FREEDOM: usize = #degrees;
-            #[doc = " Numbers in the state: coordinates, modes, and the rates of both."]
-            pub const STATES: usize = #states;
-            #[doc = " Names of the state, in its order."]
-            pub const STATE_NAMES: [&'static str; STATES] = [#(#state_names),*];
-            #[doc = " Numbers that [`observables`] returns."]
-            pub const OBSERVABLES: usize = #observables;
-            #[doc = " Names of the observables, in their order."]
-            pub const OBSERVABLE_NAMES: [&'static str; OBSERVABLES] = [#(#observable_names),*];
-            #[doc = " Switching surfaces."]
-            pub const GUARDS: usize = #guards;
-            #[doc = " SHA-256 of the specification."]
-            pub const SPECIFICATION_SHA256: &'static str = #hash;
-            #[doc = " Version of the generator."]
-            pub const GENERATOR_VERSION: &'static str = #version;
-        }
+        let quoted = |names: Vec<&str>| {
+            let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+            array(&quoted)
+        };
+        let orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
+        let states = program.state_names();
+        let state_names = quoted(states.iter().map(String::as_str).collect());
+        let observables = program.observables.iter().map(|o| o.name.as_str());
+        format!(
+            "/// Modal truncation order of each field.\n\
+             pub const ORDERS: [usize; {}] = {};\n\
+             /// Degrees of freedom: coordinates and modes.\n\
+             pub const DEGREES_OF_FREEDOM: usize = {};\n\
+             /// Numbers in the state: coordinates, modes, and the rates of both.\n\
+             pub const STATES: usize = {};\n\
+             /// Names of the state, in its order.\n\
+             pub const STATE_NAMES: [&'static str; STATES] = {state_names};\n\
+             /// Numbers that [`observables`] returns.\n\
+             pub const OBSERVABLES: usize = {};\n\
+             /// Names of the observables, in their order.\n\
+             pub const OBSERVABLE_NAMES: [&'static str; OBSERVABLES] = {};\n\
+             /// Switching surfaces.\n\
+             pub const GUARDS: usize = {};\n\
+             /// SHA-256 of the specification.\n\
+             pub const SPECIFICATION_SHA256: &'static str = \"{}\";\n\
+             /// Version of the generator.\n\
+             pub const GENERATOR_VERSION: &'static str = \"{}\";\n",
+            orders.len(),
+            array(&orders),
+            program.degrees_of_freedom(),
+            program.states(),
+            program.observables.len(),
+            quoted(observables.collect()),
+            self.guard_count(),
+            program.spec_hash,
+            env!("CARGO_PKG_VERSION"),
+        )
     }
 
     pub(super) fn guard_count(&self) -> usize {
@@ -211,12 +170,12 @@ impl<'p> File<'p> {
     }
 
     /// The tables that some stage reads.
-    fn tables(&self) -> Emitted<TokenStream> {
+    fn tables(&self) -> Emitted<String> {
         let program = self.program;
         let mut roots = stage_roots(program);
         roots.extend(&program.pivots);
         let reached = program.reachable(&roots);
-        let mut items = Vec::new();
+        let mut items = String::new();
         let used: BTreeSet<usize> = reached
             .iter()
             .filter_map(|id| match program.value(*id).op {
@@ -227,22 +186,18 @@ impl<'p> File<'p> {
         for place in used {
             let table = &program.tables[place];
             let name = identifier(&table.name)?;
-            let lines = [table.doc.clone()];
-            let docs = doc(&lines);
-            let values: Vec<TokenStream> = table.values.iter().map(|v| number(*v)).collect();
-            items.push(match table.extent {
+            let values: Vec<String> = table.values.iter().map(|v| number(*v)).collect();
+            let (extent, content) = match table.extent {
                 Extent::Matrix(rows, columns) => {
-                    let lines = values.chunks(columns.max(1)).map(|row| quote!([#(#row),*]));
-                    let (rows, columns) = (count(rows), count(columns));
-                    quote!(#docs static #name: [[f64; #columns]; #rows] = [#(#lines),*];)
+                    let lines: Vec<String> = values.chunks(columns.max(1)).map(array).collect();
+                    (format!("[[f64; {columns}]; {rows}]"), array(&lines))
                 }
-                other => {
-                    let length = count(other.length());
-                    quote!(#docs static #name: [f64; #length] = [#(#values),*];)
-                }
-            });
+                other => (format!("[f64; {}]", other.length()), array(&values)),
+            };
+            items.push_str(&doc(std::slice::from_ref(&table.doc)));
+            items.push_str(&format!("static {name}: {extent} = {content};\n"));
         }
-        Ok(quote!(#(#items)*))
+        Ok(items)
     }
 }
 

@@ -1,83 +1,96 @@
-//! Numbers, names and documentation as tokens. Text from a specification passes through
-//! here and nowhere else: names are parsed as identifiers, prose becomes a string literal.
-
-use proc_macro2::{Ident, Literal, TokenStream};
-use quote::quote;
+//! Numbers, names and documentation as source. Text from a specification passes through
+//! here and nowhere else: names are checked to be identifiers, prose becomes comments.
 
 use super::EmitError;
+use super::layout::{DEEPER, SHALLOWER};
 
 /// A number with all its bits, in the shorter of the two usual notations.
-pub fn number(value: f64) -> TokenStream {
+pub fn number(value: f64) -> String {
     if value.is_nan() {
-        return quote!(f64::NAN);
+        return "f64::NAN".to_owned();
     }
     if value.is_infinite() {
         return if value > 0.0 {
-            quote!(f64::INFINITY)
+            "f64::INFINITY".to_owned()
         } else {
-            quote!(f64::NEG_INFINITY)
+            "f64::NEG_INFINITY".to_owned()
         };
     }
     let magnitude = value.abs();
     let plain = magnitude == 0.0 || (1e-4..1e7).contains(&magnitude);
-    let text = if plain {
-        format!("{magnitude:?}")
+    if plain {
+        format!("{value:?}")
     } else {
-        format!("{magnitude:e}")
-    };
-    let literal: Literal = text
-        .parse()
-        .unwrap_or_else(|_| Literal::f64_unsuffixed(magnitude));
-    if value.is_sign_negative() {
-        quote!(-#literal)
-    } else {
-        quote!(#literal)
+        format!("{value:e}")
     }
 }
 
-/// An identifier, if the name is one.
-pub fn identifier(name: &str) -> Result<Ident, EmitError> {
-    syn::parse_str(name).map_err(|_| EmitError::Name(name.to_owned()))
+/// Words that are no names in some edition of Rust.
+const KEYWORDS: &[&str] = &[
+    "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
+    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "if", "impl",
+    "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub", "ref",
+    "return", "Self", "self", "static", "struct", "super", "trait", "true", "try", "type",
+    "typeof", "unsafe", "unsized", "use", "virtual", "where", "while", "yield", "gen",
+];
+
+/// The name, if it is an identifier.
+pub fn identifier(name: &str) -> Result<&str, EmitError> {
+    let mut letters = name.bytes();
+    let starts = letters
+        .next()
+        .is_some_and(|b| b.is_ascii_alphabetic() || b == b'_');
+    if starts
+        && letters.all(|b| b.is_ascii_alphanumeric() || b == b'_')
+        && !KEYWORDS.contains(&name)
+    {
+        Ok(name)
+    } else {
+        Err(EmitError::Name(name.to_owned()))
+    }
 }
 
-/// A count.
-pub fn count(value: usize) -> Literal {
-    Literal::usize_unsuffixed(value)
-}
-
-/// Documentation of the item that follows, one attribute per line.
-pub fn doc(lines: &[String]) -> TokenStream {
-    let attributes = lines.iter().map(|line| {
-        let line = single_line(line);
-        quote!(#[doc = #line])
-    });
-    quote!(#(#attributes)*)
+/// Documentation of the item that follows, a comment per line.
+pub fn doc(lines: &[String]) -> String {
+    comments("///", lines)
 }
 
 /// Documentation of the file.
-pub fn file_doc(lines: &[String]) -> TokenStream {
-    let attributes = lines.iter().map(|line| {
-        let line = single_line(line);
-        quote!(#![doc = #line])
-    });
-    quote!(#(#attributes)*)
+pub fn file_doc(lines: &[String]) -> String {
+    comments("//!", lines)
+}
+
+fn comments(opening: &str, lines: &[String]) -> String {
+    lines
+        .iter()
+        .map(|line| format!("{opening}{}\n", single_line(line)))
+        .collect()
+}
+
+/// Lines one level deeper, between a line that opens a block and one that closes it.
+pub fn block(opening: &str, lines: &str, closing: &str) -> String {
+    if lines.is_empty() {
+        return format!("{opening}{closing}\n");
+    }
+    format!("{opening}\n{DEEPER}{lines}{SHALLOWER}{closing}\n")
 }
 
 /// Without control characters and without those that turn the direction of the text, which
 /// rustc refuses, with a space in front as in a written comment, and with
 /// brackets that rustdoc would take for links or tags defused.
 fn single_line(text: &str) -> String {
-    let clean: String = text
-        .chars()
-        .map(|c| match c {
-            '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => ' ',
-            c if c.is_control() => ' ',
-            c => c,
-        })
-        .collect();
-    let clean = clean.replace('[', "\\[").replace('<', "\\<");
+    let mut clean = String::with_capacity(text.len() + 1);
+    for c in text.chars() {
+        match c {
+            '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => clean.push(' '),
+            c if c.is_control() => clean.push(' '),
+            '[' | '<' => clean.extend(['\\', c]),
+            c => clean.push(c),
+        }
+    }
+    let clean = clean.trim_end_matches(' ');
     if clean.is_empty() {
-        clean
+        String::new()
     } else {
         format!(" {clean}")
     }

@@ -11,27 +11,28 @@ mod body;
 mod expression;
 mod file;
 mod functions;
+mod layout;
 mod literals;
 mod names;
 mod stages;
 mod types;
 
-pub use file::{ITEMS_MODULE, Packaging, emit, tokens};
+pub use file::{ITEMS_MODULE, Packaging, emit};
 
 /// Why a program could not be emitted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EmitError {
     /// A name is no Rust identifier.
     Name(String),
-    /// The emitted tokens are no Rust file: a defect of the generator.
-    Syntax(String),
+    /// A value does not stand where a stage needs it: a defect of the generator.
+    Value(String),
 }
 
 impl std::fmt::Display for EmitError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Name(name) => write!(f, "`{name}` is no Rust identifier"),
-            Self::Syntax(message) => write!(f, "the emitted source does not parse: {message}"),
+            Self::Value(message) => write!(f, "the program cannot be emitted: {message}"),
         }
     }
 }

@@ -3,15 +3,13 @@
 
 use std::collections::{HashMap, HashSet};
 
-use proc_macro2::Ident;
-
 use super::EmitError;
 use super::literals::identifier;
 use crate::program::{Program, ValueId};
 
 /// Names that emitted functions use for themselves: variables, helpers, constants, fields,
 /// and what Rust's prelude gives a value of.
-const TAKEN: [&str; 33] = [
+const TAKEN: [&str; 36] = [
     "t",
     "state",
     "inputs",
@@ -26,6 +24,9 @@ const TAKEN: [&str; 33] = [
     "row",
     "column",
     "rest",
+    "sum",
+    "sum_of_few",
+    "paired",
     "pow",
     "exp_minus_one",
     "cholesky",
@@ -50,7 +51,7 @@ const TAKEN: [&str; 33] = [
 /// A supply of names, each handed out once.
 pub struct Names {
     used: HashSet<String>,
-    given: HashMap<ValueId, Ident>,
+    given: HashMap<ValueId, String>,
     next: HashMap<&'static str, usize>,
 }
 
@@ -74,7 +75,7 @@ impl Names {
         program: &Program,
         id: ValueId,
         stem: &'static str,
-    ) -> Result<Ident, EmitError> {
+    ) -> Result<String, EmitError> {
         if let Some(known) = self.given.get(&id) {
             return Ok(known.clone());
         }
@@ -84,7 +85,7 @@ impl Names {
             _ => self.numbered(stem),
         };
         self.used.insert(name.clone());
-        let name = identifier(&name)?;
+        let name = identifier(&name)?.to_owned();
         self.given.insert(id, name.clone());
         Ok(name)
     }
@@ -95,14 +96,14 @@ impl Names {
         id: ValueId,
         name: &str,
         stem: &'static str,
-    ) -> Result<Ident, EmitError> {
+    ) -> Result<String, EmitError> {
         let name = if self.used.contains(name) {
             self.numbered(stem)
         } else {
             name.to_owned()
         };
         self.used.insert(name.clone());
-        let name = identifier(&name)?;
+        let name = identifier(&name)?.to_owned();
         self.given.insert(id, name.clone());
         Ok(name)
     }

@@ -1,16 +1,15 @@
 //! The emitted functions that are called with prepared coefficients, one per stage.
 
-use proc_macro2::{Ident, TokenStream};
-use quote::{format_ident, quote};
-
-use super::body::{Access, Body};
+use super::body::{Access, Body, looped};
+use super::expression::{array, assignment, infix};
 use super::file::{Emitted, File, mass_roots, quantity_line};
 use super::functions::Needed;
-use super::literals::{count, doc, identifier};
+use super::layout::{DEEPER, SHALLOWER};
+use super::literals::{block, doc};
 use crate::program::{Extent, Op, RowValues, ValueId};
 
 impl File<'_> {
-    pub(super) fn rates(&self, needed: &mut Needed) -> Emitted<TokenStream> {
+    pub(super) fn rates(&self, needed: &mut Needed) -> Emitted<String> {
         let program = self.program;
         let rows = &program.accelerations;
         let mut body = Body::new(
@@ -19,62 +18,53 @@ impl File<'_> {
             &rows.all(),
             needed,
         )?;
-        let degrees = count(program.degrees_of_freedom());
-        body.push(quote! {
-            let mut rates = [0.0; STATES];
-            for i in 0..#degrees {
-                rates[i] = state[#degrees + i];
-            }
-        });
-        self.write_rows(
-            &mut body,
-            rows,
-            &format_ident!("rates"),
-            program.degrees_of_freedom(),
-        )?;
-        let statements = body.statements();
-        Ok(quote! {
-            #[doc = " Rates of the state."]
-            #[doc = ""]
-            #[doc = " `t` in s; `state` and the result in the order of [`STATE_NAMES`]."]
-            #[allow(unused_variables)]
-            pub fn rates(t: f64, state: &[f64; STATES], inputs: &Inputs, coefficients: &Coefficients) -> [f64; STATES] {
-                #(#statements)*
-                rates
-            }
-        })
+        let degrees = program.degrees_of_freedom();
+        body.push("let mut rates = [0.0; STATES];");
+        let rate = infix("+", degrees, "i");
+        let coordinates = program.coordinates.len();
+        if coordinates > 0 {
+            body.push_loop("i", coordinates, &format!("rates[i] = state[{rate}];"));
+        }
+        self.write_rows(&mut body, rows)?;
+        body.push("rates");
+        Ok(stage(
+            "/// Rates of the state.\n///\n\
+             /// `t` in s; `state` and the result in the order of [`STATE_NAMES`].\n\
+             #[allow(unused_variables)]\n",
+            "rates",
+            "[f64; STATES]",
+            &body.statements(),
+        ))
     }
 
-    fn write_rows(
-        &self,
-        body: &mut Body<'_>,
-        rows: &RowValues,
-        target: &Ident,
-        offset: usize,
-    ) -> Emitted<()> {
+    /// The accelerations; with those of the modes also their rates. One loop for both is
+    /// not taken for a copy, which the compiler would call a function for.
+    fn write_rows(&self, body: &mut Body<'_>, rows: &RowValues) -> Emitted<()> {
+        let degrees = self.program.degrees_of_freedom();
         for (place, id) in rows.scalars.iter().enumerate() {
-            let place = count(offset + place);
             let value = body.scalar(*id)?;
-            body.push(quote!(#target[#place] = #value;));
+            body.push(&assignment(&format!("rates[{}]", degrees + place), value));
         }
         for (field, id) in rows.modal.iter().enumerate() {
             let order = self.program.fields[field].order;
             if order == 0 {
                 continue;
             }
-            let first = count(offset + self.program.mode_offset(field));
-            let order = count(order);
+            let first = self.program.mode_offset(field);
+            let place = infix("+", first, "i");
+            let place_of_rate = infix("+", degrees + first, "i");
+            let rate = assignment(
+                &format!("rates[{place}]"),
+                format!("state[{place_of_rate}]"),
+            );
             let value = body.element(*id)?;
-            body.push(quote! {
-                for i in 0..#order {
-                    #target[#first + i] = #value;
-                }
-            });
+            let acceleration = assignment(&format!("rates[{place_of_rate}]"), value);
+            body.push_loop("i", order, &format!("{rate}\n{acceleration}"));
         }
         Ok(())
     }
 
-    pub(super) fn observables(&self, needed: &mut Needed) -> Emitted<TokenStream> {
+    pub(super) fn observables(&self, needed: &mut Needed) -> Emitted<String> {
         let program = self.program;
         let ids = &program.observable_values;
         let mut body = Body::new(
@@ -87,8 +77,8 @@ impl File<'_> {
             .iter()
             .map(|id| body.scalar(*id))
             .collect::<Emitted<Vec<_>>>()?;
-        let statements = body.statements();
-        let (mut functions, mut lines) = (Vec::new(), Vec::new());
+        body.push(&array(&values));
+        let mut lines = Vec::new();
         for observable in &program.observables {
             lines.push(format!(
                 "- `{}`: {}",
@@ -96,32 +86,31 @@ impl File<'_> {
                 quantity_line(&observable.doc, &observable.unit, "")
             ));
         }
-        let docs = doc(&lines);
+        let mut text = stage(
+            &format!(
+                "/// The observables, in the order of [`OBSERVABLE_NAMES`]:\n///\n\
+                 {}#[allow(unused_variables)]\n",
+                doc(&lines)
+            ),
+            "observables",
+            "[f64; OBSERVABLES]",
+            &body.statements(),
+        );
         for (name, id, line) in [
             (
                 "energy",
                 ids.len() - 2,
-                " Kinetic plus potential energy, in J.",
+                "Kinetic plus potential energy, in J.",
             ),
             (
                 "power",
                 ids.len() - 1,
-                " Power of all non-conservative forces, in W: the rate of the energy.",
+                "Power of all non-conservative forces, in W: the rate of the energy.",
             ),
         ] {
-            functions.push(self.scalar_function(name, line, ids[id], needed)?);
+            text.push_str(&self.scalar_function(name, line, ids[id], needed)?);
         }
-        Ok(quote! {
-            #[doc = " The observables, in the order of [`OBSERVABLE_NAMES`]:"]
-            #[doc = ""]
-            #docs
-            #[allow(unused_variables)]
-            pub fn observables(t: f64, state: &[f64; STATES], inputs: &Inputs, coefficients: &Coefficients) -> [f64; OBSERVABLES] {
-                #(#statements)*
-                [#(#values),*]
-            }
-            #(#functions)*
-        })
+        Ok(text)
     }
 
     fn scalar_function(
@@ -130,23 +119,16 @@ impl File<'_> {
         line: &str,
         id: ValueId,
         needed: &mut Needed,
-    ) -> Emitted<TokenStream> {
+    ) -> Emitted<String> {
         let access = Access::Coefficients(&self.field_names);
         let mut body = Body::new(self.program, access, &[id], needed)?;
         let value = body.scalar(id)?;
-        let statements = body.statements();
-        let name = identifier(name)?;
-        Ok(quote! {
-            #[doc = #line]
-            #[allow(unused_variables)]
-            pub fn #name(t: f64, state: &[f64; STATES], inputs: &Inputs, coefficients: &Coefficients) -> f64 {
-                #(#statements)*
-                #value
-            }
-        })
+        body.push(&value.to_string());
+        let head = format!("/// {line}\n#[allow(unused_variables)]\n");
+        Ok(stage(&head, name, "f64", &body.statements()))
     }
 
-    pub(super) fn guards(&self, needed: &mut Needed) -> Emitted<TokenStream> {
+    pub(super) fn guards(&self, needed: &mut Needed) -> Emitted<String> {
         let program = self.program;
         let ids: Vec<ValueId> = program.guards.iter().map(|g| g.value).collect();
         let mut body = Body::new(
@@ -155,45 +137,38 @@ impl File<'_> {
             &ids,
             needed,
         )?;
-        body.push(quote!(let mut values = [0.0; GUARDS];));
+        body.push("let mut values = [0.0; GUARDS];");
         let mut place = 0;
-        let mut lines = Vec::new();
+        let mut lines = vec![
+            "Switching surfaces: the equations change where one of these changes sign.".to_owned(),
+            String::new(),
+        ];
         for guard in &program.guards {
-            let at = count(place);
             match program.value(guard.value).extent {
                 Extent::Vector(length) => {
                     let value = body.element(guard.value)?;
-                    let n = count(length);
-                    body.push(quote! {
-                        for i in 0..#n {
-                            values[#at + i] = #value;
-                        }
-                    });
+                    let at = infix("+", place, "i");
+                    body.push_loop("i", length, &assignment(&format!("values[{at}]"), value));
                     place += length;
                 }
                 _ => {
                     let value = body.scalar(guard.value)?;
-                    body.push(quote!(values[#at] = #value;));
+                    body.push(&assignment(&format!("values[{place}]"), value));
                     place += 1;
                 }
             }
             lines.push(format!("- `{}`", guard.formula));
         }
-        let statements = body.statements();
-        let docs = doc(&lines);
-        Ok(quote! {
-            #[doc = " Switching surfaces: the equations change where one of these changes sign."]
-            #[doc = ""]
-            #docs
-            #[allow(unused_variables, unused_mut)]
-            pub fn guards(t: f64, state: &[f64; STATES], inputs: &Inputs, coefficients: &Coefficients) -> [f64; GUARDS] {
-                #(#statements)*
-                values
-            }
-        })
+        body.push("values");
+        Ok(stage(
+            &format!("{}#[allow(unused_variables, unused_mut)]\n", doc(&lines)),
+            "guards",
+            "[f64; GUARDS]",
+            &body.statements(),
+        ))
     }
 
-    pub(super) fn mass_matrix(&self, needed: &mut Needed) -> Emitted<TokenStream> {
+    pub(super) fn mass_matrix(&self, needed: &mut Needed) -> Emitted<String> {
         let program = self.program;
         let roots = mass_roots(program);
         let mut body = Body::new(
@@ -202,28 +177,26 @@ impl File<'_> {
             &roots,
             needed,
         )?;
-        body.push(quote!(let mut values = [[0.0; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];));
+        body.push("let mut values = [[0.0; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];");
         for (row, entries) in program.mass.scalars.iter().enumerate() {
             for (column, id) in entries.iter().enumerate() {
                 if matches!(program.value(*id).op, Op::Constant(0.0)) {
                     continue;
                 }
                 let value = body.scalar(*id)?;
-                let (row, column) = (count(row), count(column));
-                body.push(quote!(values[#row][#column] = #value;));
+                body.push(&assignment(&format!("values[{row}][{column}]"), value));
             }
         }
         self.write_coupling(&mut body)?;
         self.write_modal_blocks(&mut body)?;
-        let statements = body.statements();
-        Ok(quote! {
-            #[doc = " The mass matrix, in the order of the first half of [`STATE_NAMES`]."]
-            #[allow(unused_variables, unused_mut)]
-            pub fn mass_matrix(t: f64, state: &[f64; STATES], inputs: &Inputs, coefficients: &Coefficients) -> [[f64; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
-                #(#statements)*
-                values
-            }
-        })
+        body.push("values");
+        Ok(stage(
+            "/// The mass matrix, in the order of the first half of [`STATE_NAMES`].\n\
+             #[allow(unused_variables, unused_mut)]\n",
+            "mass_matrix",
+            "[[f64; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM]",
+            &body.statements(),
+        ))
     }
 
     fn write_coupling(&self, body: &mut Body<'_>) -> Emitted<()> {
@@ -235,14 +208,11 @@ impl File<'_> {
                     continue;
                 }
                 let value = body.element(*id)?;
-                let (row, order) = (count(row), count(order));
-                let first = count(program.mode_offset(field));
-                body.push(quote! {
-                    for i in 0..#order {
-                        values[#row][#first + i] = #value;
-                        values[#first + i][#row] = values[#row][#first + i];
-                    }
-                });
+                let place = infix("+", program.mode_offset(field), "i");
+                let entry = format!("values[{row}][{place}]");
+                let upper = assignment(&entry, value);
+                let lower = assignment(&format!("values[{place}][{row}]"), entry);
+                body.push(looped("i", order, &format!("{upper}\n{lower}\n")).trim_end());
             }
         }
         Ok(())
@@ -257,16 +227,29 @@ impl File<'_> {
                 if rows == 0 || columns == 0 {
                     continue;
                 }
-                let first_row = count(program.mode_offset(row));
-                let first_column = count(program.mode_offset(column));
-                let loops = body.block_loops(
-                    &program.value(*id).op,
-                    (&count(rows), &count(columns)),
-                    &|i, j| quote!(values[#first_row + #i][#first_column + #j]),
-                )?;
-                body.push(loops);
+                let first_row = program.mode_offset(row);
+                let first_column = program.mode_offset(column);
+                let place = |i: &str, j: &str| {
+                    let (row, column) = (infix("+", first_row, i), infix("+", first_column, j));
+                    format!("values[{row}][{column}]")
+                };
+                let loops = body.block_loops(&program.value(*id).op, (rows, columns), &place)?;
+                body.push(loops.trim_end());
             }
         }
         Ok(())
     }
+}
+
+/// A function that is called with prepared coefficients.
+fn stage(head: &str, name: &str, result: &str, statements: &str) -> String {
+    let opening = format!(
+        "{head}pub fn {name}(\n\
+         {DEEPER}t: f64,\n\
+         state: &[f64; STATES],\n\
+         inputs: &Inputs,\n\
+         coefficients: &Coefficients,\n\
+         {SHALLOWER}) -> {result} {{"
+    );
+    block(&opening, statements, "}")
 }

@@ -1,120 +1,91 @@
 //! The emitted types: parameters, inputs, and the coefficients with their preparation.
 
-use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
-
 use super::body::{Access, Body};
+use super::expression::{Expression, assignment};
 use super::file::{Emitted, File, quantity_line};
 use super::functions::Needed;
-use super::literals::{count, doc, identifier, number};
+use super::layout::{CLOSE, FLOW_EVEN, SPACE};
+use super::literals::{block, doc, identifier, number};
 use crate::describe::describe_value;
-use crate::program::{Extent, ValueId};
+use crate::program::{Extent, Quantity};
+
+/// The most characters of a struct's literal that is written on one line.
+const LITERAL_WIDTH: usize = 34;
 
 impl File<'_> {
-    pub(super) fn parameters(&self) -> Emitted<TokenStream> {
-        let mut fields = Vec::new();
+    pub(super) fn parameters(&self) -> Emitted<String> {
+        let mut fields = String::new();
         let mut defaults = Vec::new();
         for parameter in &self.program.parameters {
-            let quantity = &parameter.quantity;
-            let name = identifier(&quantity.name)?;
-            let docs = doc(&[quantity_line(
-                &quantity.doc,
-                &quantity.unit,
-                &parameter.origin,
-            )]);
+            fields.push_str(&field(&parameter.quantity, &parameter.origin)?);
             let value = number(parameter.value);
-            fields.push(quote!(#docs pub #name: f64));
-            defaults.push(quote!(#name: #value));
+            defaults.push(format!("{}: {value}", parameter.quantity.name));
         }
-        Ok(quote! {
-            #[doc = " Parameters of the model. `Default` gives the specification's values."]
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            pub struct Parameters { #(#fields),* }
-
-            impl Default for Parameters {
-                fn default() -> Self {
-                    Self { #(#defaults),* }
-                }
-            }
-        })
+        let head = "/// Parameters of the model. `Default` gives the specification's values.\n\
+                    #[derive(Clone, Copy, Debug, PartialEq)]\n\
+                    pub struct Parameters {";
+        let default = block("fn default() -> Self {", &literal("Self", &defaults), "}");
+        Ok(block(head, &fields, "}") + &block("impl Default for Parameters {", &default, "}"))
     }
 
-    pub(super) fn inputs(&self) -> Emitted<TokenStream> {
-        let mut fields = Vec::new();
+    pub(super) fn inputs(&self) -> Emitted<String> {
+        let mut fields = String::new();
         for input in &self.program.inputs {
-            let name = identifier(&input.name)?;
-            let docs = doc(&[quantity_line(&input.doc, &input.unit, "")]);
-            fields.push(quote!(#docs pub #name: f64));
+            fields.push_str(&field(input, "")?);
         }
-        Ok(quote! {
-            #[doc = " Signals supplied at run time. `Default` gives zeros."]
-            #[derive(Clone, Copy, Debug, Default, PartialEq)]
-            pub struct Inputs { #(#fields),* }
-        })
+        let head = "/// Signals supplied at run time. `Default` gives zeros.\n\
+                    #[derive(Clone, Copy, Debug, Default, PartialEq)]\n\
+                    pub struct Inputs {";
+        Ok(block(head, &fields, "}"))
     }
 
-    pub(super) fn coefficients(&self, needed: &mut Needed) -> Emitted<TokenStream> {
+    pub(super) fn coefficients(&self, needed: &mut Needed) -> Emitted<String> {
         let mut body = Body::new(
             self.program,
             Access::Prepare,
             &self.prepared_roots(),
             needed,
         )?;
-        let mut fields = Vec::new();
+        let mut fields = String::new();
         let mut values = Vec::new();
         for id in &self.fields {
             let name = &self.field_names[id];
-            let docs = doc(&[describe_value(self.program, *id)]);
-            let extent = self.program.value(*id).extent;
-            let field_type = match extent {
-                Extent::Scalar => quote!(f64),
-                Extent::Vector(n) => {
-                    let n = count(n);
-                    quote!([f64; #n])
-                }
+            fields.push_str(&doc(&[describe_value(self.program, *id)]));
+            let (field_type, value) = match self.program.value(*id).extent {
+                Extent::Scalar => ("f64".to_owned(), body.scalar(*id)?.to_string()),
+                Extent::Vector(n) => (format!("[f64; {n}]"), body.array(*id)?),
                 Extent::Matrix(rows, columns) => {
-                    let (rows, columns) = (count(rows), count(columns));
-                    quote!([[f64; #columns]; #rows])
+                    (format!("[[f64; {columns}]; {rows}]"), body.array(*id)?)
                 }
             };
-            fields.push(quote!(#docs pub #name: #field_type));
-            let value = match extent {
-                Extent::Scalar => body.scalar(*id)?,
-                _ => body.array(*id)?,
-            };
-            values.push(quote!(#name: #value));
+            fields.push_str(&format!("pub {name}: {field_type},\n"));
+            values.push(format!("{name}: {FLOW_EVEN}{value}{CLOSE}"));
         }
+        fields.push_str(
+            "/// Whether all prepared pivots of the mass matrix are positive and finite. If not, \
+             the mass matrix is not positive definite and the rates are not to be used.\n\
+             pub positive_definite: bool,\n",
+        );
         let check = self.pivot_check(&mut body)?;
-        let statements = body.statements();
-        let unused = self
-            .program
-            .parameters
-            .is_empty()
-            .then(|| quote!(#[allow(unused_variables)]));
-        Ok(quote! {
-            #[doc = " What depends on the parameters alone: prepare once, use in every call."]
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            pub struct Coefficients {
-                #(#fields,)*
-                #[doc = " Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used."]
-                pub positive_definite: bool,
-            }
-
-            impl Coefficients {
-                #[doc = " The coefficients of these parameters."]
-                #unused
-                pub fn prepare(parameters: &Parameters) -> Self {
-                    #(#statements)*
-                    Self {
-                        #(#values,)*
-                        positive_definite: #check,
-                    }
-                }
-            }
-        })
+        values.push(format!("positive_definite: {FLOW_EVEN}{check}{CLOSE}"));
+        let head = "/// What depends on the parameters alone: prepare once, use in every call.\n\
+                    #[derive(Clone, Copy, Debug, PartialEq)]\n\
+                    pub struct Coefficients {";
+        let unused = if self.program.parameters.is_empty() {
+            "#[allow(unused_variables)]\n"
+        } else {
+            ""
+        };
+        let opening = format!(
+            "/// The coefficients of these parameters.\n{unused}\
+             pub fn prepare(parameters: &Parameters) -> Self {{"
+        );
+        let statements = body.statements() + &literal("Self", &values);
+        let prepare = block(&opening, &statements, "}");
+        Ok(block(head, &fields, "}") + &block("impl Coefficients {", &prepare, "}"))
     }
 
-    fn prepared_roots(&self) -> Vec<ValueId> {
+    fn prepared_roots(&self) -> Vec<crate::program::ValueId> {
         self.fields
             .iter()
             .chain(&self.program.pivots)
@@ -122,44 +93,64 @@ impl File<'_> {
             .collect()
     }
 
-    fn pivot_check(&self, body: &mut Body<'_>) -> Emitted<TokenStream> {
-        let mut conditions = Vec::new();
+    fn pivot_check(&self, body: &mut Body<'_>) -> Emitted<Expression> {
+        let mut check: Option<Expression> = None;
         for (place, id) in self.program.pivots.iter().enumerate() {
-            match self.program.value(*id).extent {
-                Extent::Scalar => {
-                    let pivot = body.scalar(*id)?;
-                    conditions.push(quote!(#pivot > 0.0 && #pivot < f64::INFINITY));
-                }
+            let conditions = match self.program.value(*id).extent {
+                Extent::Scalar => is_positive(&body.scalar(*id)?).to_vec(),
                 extent => {
-                    let name = format_ident!("positive_{}", place + 1);
-                    let length = count(extent.length());
-                    let test = match extent {
-                        Extent::Vector(_) => {
-                            let element = body.element(*id)?;
-                            quote!(#element > 0.0 && #element < f64::INFINITY)
+                    let name = format!("positive_{}", place + 1);
+                    let (element, length) = match extent {
+                        Extent::Matrix(rows, _) => {
+                            (Expression::element(&body.array(*id)?, "i][i"), rows)
                         }
-                        _ => {
-                            let array = body.array(*id)?;
-                            quote!(#array[i][i] > 0.0 && #array[i][i] < f64::INFINITY)
-                        }
+                        other => (body.element(*id)?, other.length()),
                     };
-                    let length = match extent {
-                        Extent::Matrix(rows, _) => count(rows),
-                        _ => length,
-                    };
-                    body.push(quote! {
-                        let mut #name = true;
-                        for i in 0..#length {
-                            #name = #name && #test;
-                        }
-                    });
-                    conditions.push(quote!(#name));
+                    let [above, below] = is_positive(&element);
+                    let flag = Expression::atom(name.as_str());
+                    let all = Expression::and(&Expression::and(&flag, &above), &below);
+                    body.push(&format!("let mut {name} = true;"));
+                    body.push_loop("i", length, &assignment(&name, all));
+                    vec![flag]
                 }
+            };
+            for condition in conditions {
+                check = Some(match check {
+                    Some(check) => Expression::and(&check, &condition),
+                    None => condition,
+                });
             }
         }
-        if conditions.is_empty() {
-            return Ok(quote!(true));
-        }
-        Ok(quote!(#(#conditions)&&*))
+        Ok(check.unwrap_or_else(|| Expression::atom("true")))
     }
+}
+
+/// A documented field of a struct.
+fn field(quantity: &Quantity, origin: &str) -> Emitted<String> {
+    let name = identifier(&quantity.name)?;
+    let docs = doc(&[quantity_line(&quantity.doc, &quantity.unit, origin)]);
+    Ok(format!("{docs}pub {name}: f64,\n"))
+}
+
+/// Whether a pivot is positive and finite.
+fn is_positive(pivot: &Expression) -> [Expression; 2] {
+    [(">", "0.0"), ("<", "f64::INFINITY")]
+        .map(|(operator, bound)| Expression::compare(operator, pivot, &Expression::atom(bound)))
+}
+
+/// A struct's literal: on one line if it is short.
+fn literal(name: &str, values: &[String]) -> String {
+    let line = format!("{name} {{ {} }}\n", values.join(", "));
+    let width = line
+        .chars()
+        .filter(|c| !c.is_control() || *c == SPACE)
+        .count();
+    if values.is_empty() {
+        return format!("{name} {{}}\n");
+    }
+    if width <= LITERAL_WIDTH + 2 {
+        return line;
+    }
+    let lines: String = values.iter().map(|value| format!("{value},\n")).collect();
+    block(&format!("{name} {{"), &lines, "}")
 }

@@ -10,6 +10,7 @@
 //! basis is not orthogonal the modal block is dense and its Cholesky factor takes the
 //! place of D. Pivots must be positive: a reciprocal of one that is not is NaN.
 
+mod late;
 mod modal;
 mod small;
 
@@ -69,6 +70,7 @@ pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &Rows) -> Acceleration
         }
     }
     let (operations, order, rows, mut pivots) = best;
+    let rows = late::late_terms_last(graph, &rows);
     pivots.extend(modal.inverses.iter().flatten().map(ModalInverse::pivot));
     Accelerations {
         rows,

@@ -86,6 +86,32 @@ fn the_same_bytes_every_time() {
     }
 }
 
+/// The layout is that of a formatter that parses the source and prints it from its syntax
+/// tree; it sets no empty lines.
+#[test]
+fn the_layout_is_that_of_a_formatter() {
+    let printed = shipped("planetary_arm")
+        .source
+        .text
+        .replace("\"clamped_free\"", "\"clamped_free_printed\"");
+    let mut models: Vec<_> = names().iter().map(|name| shipped(name)).collect();
+    models.push(crate::support::model(&printed));
+    for model in models {
+        for order in [0, 1, 4, 128] {
+            if order > 4 && *model.source.text == *printed {
+                continue;
+            }
+            let source = emitted(&model, order);
+            let tree = syn::parse_file(&source).unwrap();
+            let formatted = prettyplease::unparse(&tree);
+            let lines = source.lines().filter(|line| !line.is_empty());
+            for (emitted, formatted) in lines.zip(formatted.lines()) {
+                assert_eq!(emitted, formatted, "{}, order {order}", model.name);
+            }
+        }
+    }
+}
+
 #[test]
 fn every_shipped_model_compiles_without_a_warning() {
     for name in names() {

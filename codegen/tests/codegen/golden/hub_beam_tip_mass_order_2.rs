@@ -111,35 +111,35 @@ pub struct Coefficients {
     pub c_4: f64,
     /// `c`
     pub c: f64,
-    /// `E*I/(rho*A*l*l*l*l)`
-    pub c_5: f64,
-    /// `INTEGRAL_PHI_D2_SQUARED*M_theta_q/INTEGRAL_PHI_SQUARED`
-    pub c_6: [f64; 2],
+    /// `E*I*INTEGRAL_PHI_D2_SQUARED*M_theta_q/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_5: [f64; 2],
     /// `M_t*E*I*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
-    pub c_7: f64,
+    pub c_6: f64,
     /// `PHI_AT_END*INTEGRAL_PHI_D2_SQUARED/INTEGRAL_PHI_SQUARED`
-    pub c_8: [f64; 2],
+    pub c_7: [f64; 2],
     /// `(M_t*J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))/(rho*rho*A*A*l*l*l*l) - (J_t*su...`
-    pub c_9: f64,
-    /// `PHI_D1_AT_END*INTEGRAL_PHI_D2_SQUARED/INTEGRAL_PHI_SQUARED`
-    pub c_10: [f64; 2],
+    pub c_8: f64,
+    /// `E*I*PHI_D1_AT_END*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_9: [f64; 2],
     /// `M_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
-    pub c_11: f64,
-    /// `E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_12: [f64; 2],
+    pub c_10: f64,
     /// `rho*A*l*INTEGRAL_PHI_SQUARED`
-    pub c_13: [f64; 2],
+    pub c_11: [f64; 2],
     /// `M_t*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*PHI_AT_END/(rho*A*l*INTEGRAL_PHI_SQUARED)`
-    pub c_14: [f64; 2],
+    pub c_12: [f64; 2],
     /// `J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
-    pub c_15: f64,
+    pub c_13: f64,
     /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_D1_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l) - (M_t*sum_i(...*.../INTEGR...`
-    pub c_16: f64,
+    pub c_14: f64,
     /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta`
-    pub c_17: f64,
+    pub c_15: f64,
+    /// `-(E*I/(rho*A*l*l*l*l))`
+    pub c_16: f64,
     /// `J_t*1/(1.0 + J_t*sum_i(...)/(rho*A*l*...) - (M_t*J_t*...*...*1/(... + ...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*A*l*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_18: [f64; 2],
+    pub c_17: [f64; 2],
     /// `1/pivot_theta*(l*INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*l*INTEGRAL_PHI_SQUARED))`
+    pub c_18: [f64; 2],
+    /// `-(E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))`
     pub c_19: [f64; 2],
     /// `J_h + 0.3333333333333333*rho*A*l*l*l + J_t + l*l*M_t`
     pub M_theta_theta: f64,
@@ -190,61 +190,55 @@ impl Coefficients {
         for i in 0..2 {
             M_theta_q[i] = s_6 * INTEGRAL_S1_PHI[i] + s_9[i];
         }
-        let mut s_10 = 0.0;
-        for i in 0..2 {
-            s_10 += INTEGRAL_S1_PHI[i] * M_theta_q[i] / INTEGRAL_PHI_SQUARED[i];
-        }
+        let s_10 = sum_of_few(
+            2,
+            |i| INTEGRAL_S1_PHI[i] * M_theta_q[i] / INTEGRAL_PHI_SQUARED[i],
+        );
         let s_11 = s_5 * l;
-        let mut s_12 = 0.0;
-        for i in 0..2 {
-            s_12 += s_9[i] * M_theta_q[i] / INTEGRAL_PHI_SQUARED[i];
-        }
-        let mut s_13 = 0.0;
-        for i in 0..2 {
-            s_13 += INTEGRAL_S1_PHI[i] * PHI_AT_END[i] / INTEGRAL_PHI_SQUARED[i];
-        }
-        let mut s_14 = 0.0;
-        for i in 0..2 {
-            s_14 += PHI_AT_END[i] * s_9[i] / INTEGRAL_PHI_SQUARED[i];
-        }
+        let s_12 = sum_of_few(2, |i| s_9[i] * M_theta_q[i] / INTEGRAL_PHI_SQUARED[i]);
+        let s_13 = sum_of_few(
+            2,
+            |i| INTEGRAL_S1_PHI[i] * PHI_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
+        );
+        let s_14 = sum_of_few(2, |i| PHI_AT_END[i] * s_9[i] / INTEGRAL_PHI_SQUARED[i]);
         let s_15 = l * s_13 + s_14 / s_11;
-        let mut s_16 = 0.0;
-        for i in 0..2 {
-            s_16 += PHI_AT_END[i] * M_theta_q[i] / INTEGRAL_PHI_SQUARED[i];
-        }
-        let mut s_17 = 0.0;
-        for i in 0..2 {
-            s_17 += PHI_AT_END[i] * PHI_AT_END[i] / INTEGRAL_PHI_SQUARED[i];
-        }
+        let s_16 = sum_of_few(
+            2,
+            |i| PHI_AT_END[i] * M_theta_q[i] / INTEGRAL_PHI_SQUARED[i],
+        );
+        let s_17 = sum_of_few(
+            2,
+            |i| PHI_AT_END[i] * PHI_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
+        );
         let s_18 = 1.0 + M_t * s_17 / s_11;
         let s_19 = pivot_reciprocal(s_18);
-        let mut s_20 = 0.0;
-        for i in 0..2 {
-            s_20 += INTEGRAL_S1_PHI[i] * PHI_D1_AT_END[i] / INTEGRAL_PHI_SQUARED[i];
-        }
-        let mut s_21 = 0.0;
-        for i in 0..2 {
-            s_21 += PHI_D1_AT_END[i] * s_9[i] / INTEGRAL_PHI_SQUARED[i];
-        }
-        let mut s_22 = 0.0;
-        for i in 0..2 {
-            s_22 += PHI_AT_END[i] * PHI_D1_AT_END[i] / INTEGRAL_PHI_SQUARED[i];
-        }
+        let s_20 = sum_of_few(
+            2,
+            |i| INTEGRAL_S1_PHI[i] * PHI_D1_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
+        );
+        let s_21 = sum_of_few(
+            2,
+            |i| PHI_D1_AT_END[i] * s_9[i] / INTEGRAL_PHI_SQUARED[i],
+        );
+        let s_22 = sum_of_few(
+            2,
+            |i| PHI_AT_END[i] * PHI_D1_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
+        );
         let s_23 = l * s_20 + s_21 / s_11 - M_t * s_22 * s_15 * s_19 / s_11;
         let s_24 = s_5 * s_2;
-        let mut s_25 = 0.0;
-        for i in 0..2 {
-            s_25 += PHI_D1_AT_END[i] * M_theta_q[i] / INTEGRAL_PHI_SQUARED[i];
-        }
+        let s_25 = sum_of_few(
+            2,
+            |i| PHI_D1_AT_END[i] * M_theta_q[i] / INTEGRAL_PHI_SQUARED[i],
+        );
         let s_26 = rho * rho * (A * A);
         let s_27 = s_1 * s_1;
         let s_28 = s_26 * s_27;
         let s_29 = M_t * J_t;
         let s_30 = s_29 * s_22 * s_16 * s_19 / s_28 - J_t * s_25 / s_24;
-        let mut s_31 = 0.0;
-        for i in 0..2 {
-            s_31 += PHI_D1_AT_END[i] * PHI_D1_AT_END[i] / INTEGRAL_PHI_SQUARED[i];
-        }
+        let s_31 = sum_of_few(
+            2,
+            |i| PHI_D1_AT_END[i] * PHI_D1_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
+        );
         let s_32 = 1.0 + J_t * s_31 / s_24 - s_29 * (s_22 * s_22) * s_19 / s_28;
         let s_33 = pivot_reciprocal(s_32);
         let s_34 = J_h + J_t + s_3 + s_4 + M_t * s_15 * s_16 * s_19 / s_11 - l * s_10;
@@ -257,57 +251,62 @@ impl Coefficients {
         let s_37 = E * I;
         let mut s_38 = [0.0; 2];
         for i in 0..2 {
-            s_38[i] = INTEGRAL_PHI_D2_SQUARED[i] * M_theta_q[i]
-                / INTEGRAL_PHI_SQUARED[i];
+            s_38[i] = s_36 * INTEGRAL_PHI_SQUARED[i];
         }
-        let s_39 = s_26 * (l * s_27);
-        let s_40 = M_t * E * I;
-        let mut s_41 = [0.0; 2];
+        let mut s_39 = [0.0; 2];
         for i in 0..2 {
-            s_41[i] = PHI_AT_END[i] * INTEGRAL_PHI_D2_SQUARED[i]
-                / INTEGRAL_PHI_SQUARED[i];
+            s_39[i] = s_37 * INTEGRAL_PHI_D2_SQUARED[i];
         }
-        let mut s_42 = [0.0; 2];
+        let mut s_40 = [0.0; 2];
         for i in 0..2 {
-            s_42[i] = PHI_D1_AT_END[i] * INTEGRAL_PHI_D2_SQUARED[i]
-                / INTEGRAL_PHI_SQUARED[i];
+            s_40[i] = s_39[i] * M_theta_q[i] / s_38[i];
         }
+        let s_41 = s_26 * (l * s_27);
+        let s_42 = M_t * E * I;
         let mut s_43 = [0.0; 2];
         for i in 0..2 {
-            s_43[i] = s_37 * INTEGRAL_PHI_D2_SQUARED[i]
-                / (s_36 * INTEGRAL_PHI_SQUARED[i]);
+            s_43[i] = PHI_AT_END[i] * INTEGRAL_PHI_D2_SQUARED[i]
+                / INTEGRAL_PHI_SQUARED[i];
         }
-        let s_44 = M_t * s_19;
-        let mut s_45 = [0.0; 2];
+        let mut s_44 = [0.0; 2];
         for i in 0..2 {
-            s_45[i] = s_11 * INTEGRAL_PHI_SQUARED[i];
+            s_44[i] = s_37 * PHI_D1_AT_END[i] * INTEGRAL_PHI_D2_SQUARED[i] / s_38[i];
         }
+        let s_45 = M_t * s_19;
         let mut s_46 = [0.0; 2];
         for i in 0..2 {
-            s_46[i] = s_44 * PHI_AT_END[i] / s_45[i];
+            s_46[i] = s_11 * INTEGRAL_PHI_SQUARED[i];
         }
-        let s_47 = J_t * s_33;
-        let mut s_48 = [0.0; 2];
+        let mut s_47 = [0.0; 2];
         for i in 0..2 {
-            s_48[i] = s_47 * PHI_D1_AT_END[i] / (s_24 * INTEGRAL_PHI_SQUARED[i]);
+            s_47[i] = s_45 * PHI_AT_END[i] / s_46[i];
         }
+        let s_48 = J_t * s_33;
         let mut s_49 = [0.0; 2];
         for i in 0..2 {
-            s_49[i] = s_35
-                * (l * INTEGRAL_S1_PHI[i] / INTEGRAL_PHI_SQUARED[i] + s_9[i] / s_45[i]);
+            s_49[i] = s_48 * PHI_D1_AT_END[i] / (s_24 * INTEGRAL_PHI_SQUARED[i]);
         }
-        let M_theta_theta = J_h + s_3 + (J_t + s_4);
         let mut s_50 = [0.0; 2];
         for i in 0..2 {
-            s_50[i] = M_t * PHI_AT_END[i];
+            s_50[i] = s_35
+                * (l * INTEGRAL_S1_PHI[i] / INTEGRAL_PHI_SQUARED[i] + s_9[i] / s_46[i]);
         }
         let mut s_51 = [0.0; 2];
         for i in 0..2 {
-            s_51[i] = PHI_D1_AT_END[i] / l;
+            s_51[i] = -(s_39[i] / s_38[i]);
+        }
+        let M_theta_theta = J_h + s_3 + (J_t + s_4);
+        let mut s_52 = [0.0; 2];
+        for i in 0..2 {
+            s_52[i] = M_t * PHI_AT_END[i];
+        }
+        let mut s_53 = [0.0; 2];
+        for i in 0..2 {
+            s_53[i] = PHI_D1_AT_END[i] / l;
         }
         let mut positive_4 = true;
         for i in 0..2 {
-            positive_4 = positive_4 && s_45[i] > 0.0 && s_45[i] < f64::INFINITY;
+            positive_4 = positive_4 && s_46[i] > 0.0 && s_46[i] < f64::INFINITY;
         }
         Self {
             l: l,
@@ -317,24 +316,24 @@ impl Coefficients {
             c_3: s_11,
             c_4: s_35,
             c: c,
-            c_5: s_37 / s_36,
-            c_6: s_38,
-            c_7: s_40 * s_16 * s_19 / s_39,
-            c_8: s_41,
-            c_9: s_30 * s_33,
-            c_10: s_42,
-            c_11: s_40 * s_22 * s_19 / s_39,
-            c_12: s_43,
-            c_13: s_45,
-            c_14: s_46,
-            c_15: J_t * s_22 * s_33 / s_24,
-            c_16: s_23 * s_35,
-            c_17: s_15 * s_35,
-            c_18: s_48,
-            c_19: s_49,
+            c_5: s_40,
+            c_6: s_42 * s_16 * s_19 / s_41,
+            c_7: s_43,
+            c_8: s_30 * s_33,
+            c_9: s_44,
+            c_10: s_42 * s_22 * s_19 / s_41,
+            c_11: s_46,
+            c_12: s_47,
+            c_13: J_t * s_22 * s_33 / s_24,
+            c_14: s_23 * s_35,
+            c_15: s_15 * s_35,
+            c_16: -(s_37 / s_36),
+            c_17: s_49,
+            c_18: s_50,
+            c_19: s_51,
             M_theta_theta: M_theta_theta,
-            c_20: s_50,
-            c_21: s_51,
+            c_20: s_52,
+            c_21: s_53,
             c_22: 1.0 / l,
             c_23: 0.5 * J_h,
             c_24: 2.0 * rho * A * s_1,
@@ -360,34 +359,25 @@ pub fn rates(
 ) -> [f64; STATES] {
     let theta_dot = state[3];
     let u = inputs.u;
-    let mut s_1 = 0.0;
-    for i in 0..2 {
-        s_1 += coefficients.c_6[i] * state[1 + i];
-    }
-    let mut s_2 = 0.0;
-    for i in 0..2 {
-        s_2 += coefficients.c_8[i] * state[1 + i];
-    }
-    let mut s_3 = 0.0;
-    for i in 0..2 {
-        s_3 += coefficients.c_10[i] * state[1 + i];
-    }
-    let s_4 = coefficients.c_11 * s_2 - coefficients.c_5 * s_3;
-    let s_5 = u + coefficients.c_5 * s_1 - coefficients.c * theta_dot
-        - coefficients.c_7 * s_2 - coefficients.c_9 * s_4;
+    let s_1 = sum_of_few(2, |i| coefficients.c_5[i] * state[1 + i]);
+    let s_2 = sum_of_few(2, |i| coefficients.c_7[i] * state[1 + i]);
+    let s_3 = sum_of_few(2, |i| coefficients.c_9[i] * state[1 + i]);
+    let s_4 = coefficients.c_10 * s_2 - s_3;
+    let s_5 = u + s_1 - coefficients.c * theta_dot - coefficients.c_6 * s_2
+        - coefficients.c_8 * s_4;
     let theta_ddot = coefficients.c_4 * s_5;
-    let s_6 = s_4 - coefficients.c_16 * s_5;
-    let s_7 = -(coefficients.c_5 * s_2) - coefficients.c_15 * s_6
-        - coefficients.c_17 * s_5;
+    let s_6 = s_4 - coefficients.c_14 * s_5;
+    let s_7 = coefficients.c_16 * s_2 - coefficients.c_13 * s_6
+        - coefficients.c_15 * s_5;
     let mut rates = [0.0; STATES];
-    for i in 0..3 {
+    for i in 0..1 {
         rates[i] = state[3 + i];
     }
     rates[3] = theta_ddot;
     for i in 0..2 {
-        rates[4 + i] = -(coefficients.c_12[i] * state[1 + i])
-            - coefficients.c_14[i] * s_7 - coefficients.c_18[i] * s_6
-            - coefficients.c_19[i] * s_5;
+        rates[1 + i] = state[4 + i];
+        rates[4 + i] = coefficients.c_19[i] * state[1 + i] - coefficients.c_12[i] * s_7
+            - coefficients.c_17[i] * s_6 - coefficients.c_18[i] * s_5;
     }
     rates
 }
@@ -407,43 +397,25 @@ pub fn observables(
 ) -> [f64; OBSERVABLES] {
     let theta_dot = state[3];
     let u = inputs.u;
-    let mut tip = 0.0;
-    for i in 0..2 {
-        tip += PHI_AT_END[i] * state[1 + i];
-    }
-    let mut s_1 = 0.0;
-    for i in 0..2 {
-        s_1 += PHI_D1_AT_END[i] * state[1 + i];
-    }
+    let tip = sum_of_few(2, |i| PHI_AT_END[i] * state[1 + i]);
+    let s_1 = sum_of_few(2, |i| PHI_D1_AT_END[i] * state[1 + i]);
     let tip_slope = coefficients.c_22 * s_1;
     let s_2 = theta_dot * theta_dot;
-    let mut s_3 = 0.0;
-    for i in 0..2 {
-        s_3 += INTEGRAL_S1_PHI[i] * state[4 + i];
-    }
-    let mut s_4 = 0.0;
-    for i in 0..2 {
-        s_4 += INTEGRAL_PHI_SQUARED[i] * (state[4 + i] * state[4 + i]);
-    }
-    let mut s_5 = 0.0;
-    for i in 0..2 {
-        s_5 += PHI_AT_END[i] * state[4 + i];
-    }
+    let s_3 = sum_of_few(2, |i| INTEGRAL_S1_PHI[i] * state[4 + i]);
+    let s_4 = sum_of_few(2, |i| INTEGRAL_PHI_SQUARED[i] * (state[4 + i] * state[4 + i]));
+    let s_5 = sum_of_few(2, |i| PHI_AT_END[i] * state[4 + i]);
     let s_6 = coefficients.l * theta_dot + s_5;
-    let mut s_7 = 0.0;
-    for i in 0..2 {
-        s_7 += PHI_D1_AT_END[i] * state[4 + i];
-    }
+    let s_7 = sum_of_few(2, |i| PHI_D1_AT_END[i] * state[4 + i]);
     let s_8 = theta_dot + coefficients.c_22 * s_7;
     let T_tip = coefficients.c_25 * (s_6 * s_6) + coefficients.c_26 * (s_8 * s_8);
     let s_9 = coefficients.c_23 * s_2
         + 0.5
             * (coefficients.c_1 * s_2 + coefficients.c_24 * (theta_dot * s_3)
                 + coefficients.c_3 * s_4);
-    let mut s_10 = 0.0;
-    for i in 0..2 {
-        s_10 += INTEGRAL_PHI_D2_SQUARED[i] * (state[1 + i] * state[1 + i]);
-    }
+    let s_10 = sum_of_few(
+        2,
+        |i| INTEGRAL_PHI_D2_SQUARED[i] * (state[1 + i] * state[1 + i]),
+    );
     let V_bending = coefficients.c_27 * s_10;
     [
         tip,
@@ -463,33 +435,21 @@ pub fn energy(
 ) -> f64 {
     let theta_dot = state[3];
     let s_1 = theta_dot * theta_dot;
-    let mut s_2 = 0.0;
-    for i in 0..2 {
-        s_2 += INTEGRAL_S1_PHI[i] * state[4 + i];
-    }
-    let mut s_3 = 0.0;
-    for i in 0..2 {
-        s_3 += INTEGRAL_PHI_SQUARED[i] * (state[4 + i] * state[4 + i]);
-    }
-    let mut s_4 = 0.0;
-    for i in 0..2 {
-        s_4 += PHI_AT_END[i] * state[4 + i];
-    }
+    let s_2 = sum_of_few(2, |i| INTEGRAL_S1_PHI[i] * state[4 + i]);
+    let s_3 = sum_of_few(2, |i| INTEGRAL_PHI_SQUARED[i] * (state[4 + i] * state[4 + i]));
+    let s_4 = sum_of_few(2, |i| PHI_AT_END[i] * state[4 + i]);
     let s_5 = coefficients.l * theta_dot + s_4;
-    let mut s_6 = 0.0;
-    for i in 0..2 {
-        s_6 += PHI_D1_AT_END[i] * state[4 + i];
-    }
+    let s_6 = sum_of_few(2, |i| PHI_D1_AT_END[i] * state[4 + i]);
     let s_7 = theta_dot + coefficients.c_22 * s_6;
     let T_tip = coefficients.c_25 * (s_5 * s_5) + coefficients.c_26 * (s_7 * s_7);
     let s_8 = coefficients.c_23 * s_1
         + 0.5
             * (coefficients.c_1 * s_1 + coefficients.c_24 * (theta_dot * s_2)
                 + coefficients.c_3 * s_3);
-    let mut s_9 = 0.0;
-    for i in 0..2 {
-        s_9 += INTEGRAL_PHI_D2_SQUARED[i] * (state[1 + i] * state[1 + i]);
-    }
+    let s_9 = sum_of_few(
+        2,
+        |i| INTEGRAL_PHI_D2_SQUARED[i] * (state[1 + i] * state[1 + i]),
+    );
     let V_bending = coefficients.c_27 * s_9;
     s_8 + T_tip + V_bending
 }
@@ -535,7 +495,7 @@ pub fn mass_matrix(
         values[1 + i][0] = values[0][1 + i];
     }
     for i in 0..2 {
-        values[1 + i][1 + i] += coefficients.c_13[i];
+        values[1 + i][1 + i] += coefficients.c_11[i];
         for j in 0..2 {
             values[1 + i][1 + j] += coefficients.c_20[i] * PHI_AT_END[j];
             values[1 + i][1 + j] += coefficients.c_2[i] * coefficients.c_21[j];
@@ -563,4 +523,26 @@ static INTEGRAL_PHI_D2_SQUARED: [f64; 2] = [22.940155884082465, 468.071148456210
 #[inline(always)]
 fn pivot_reciprocal(pivot: f64) -> f64 {
     if pivot > 0.0 { 1.0 / pivot } else { f64::NAN }
+}
+
+/// The sum of the first `length` of eight numbers, neighbours added in pairs.
+#[inline(always)]
+fn paired(length: usize, s: &[f64; 8]) -> f64 {
+    let a = if length > 1 { s[0] + s[1] } else { s[0] };
+    let b = if length > 3 { s[2] + s[3] } else { s[2] };
+    let c = if length > 5 { s[4] + s[5] } else { s[4] };
+    let d = if length > 7 { s[6] + s[7] } else { s[6] };
+    let left = if length > 2 { a + b } else { a };
+    let right = if length > 6 { c + d } else { c };
+    if length > 4 { left + right } else { left }
+}
+
+/// The sum of up to eight elements.
+#[inline(always)]
+fn sum_of_few<F: Fn(usize) -> f64>(length: usize, element: F) -> f64 {
+    let mut s = [0.0; 8];
+    for k in 0..length {
+        s[k] = element(k);
+    }
+    paired(length, &s)
 }

@@ -72,32 +72,37 @@ pub struct Inputs {}
 pub struct Coefficients {
     /// `m*a*a + I`
     pub M_theta_theta: f64,
-    /// `1/M_theta_theta`
+    /// `k*1/M_theta_theta`
     pub c_1: f64,
-    /// `k`
-    pub c_2: f64,
     /// `m*a*g`
+    pub c_2: f64,
+    /// `m*a*g*1/M_theta_theta`
     pub c_3: f64,
     /// `0.5*M_theta_theta`
     pub c_4: f64,
+    /// `-k`
+    pub c_5: f64,
     /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
     pub positive_definite: bool,
 }
 impl Coefficients {
     /// The coefficients of these parameters.
     pub fn prepare(parameters: &Parameters) -> Self {
+        let s_1 = parameters.k;
         let m = parameters.m;
         let a = parameters.a;
         let I = parameters.I;
         let M_theta_theta = m * (a * a) + I;
-        let s_1 = parameters.k;
+        let s_2 = pivot_reciprocal(M_theta_theta);
         let g = parameters.g;
+        let s_3 = m * a * g;
         Self {
             M_theta_theta: M_theta_theta,
-            c_1: pivot_reciprocal(M_theta_theta),
-            c_2: s_1,
-            c_3: m * a * g,
+            c_1: s_1 * s_2,
+            c_2: s_3,
+            c_3: s_3 * s_2,
             c_4: 0.5 * M_theta_theta,
+            c_5: -s_1,
             positive_definite: M_theta_theta > 0.0 && M_theta_theta < f64::INFINITY,
         }
     }
@@ -115,8 +120,7 @@ pub fn rates(
 ) -> [f64; STATES] {
     let theta_dot = state[1];
     let theta = state[0];
-    let theta_ddot = coefficients.c_1
-        * (coefficients.c_3 * sin(theta) - coefficients.c_2 * theta_dot);
+    let theta_ddot = coefficients.c_3 * sin(theta) - coefficients.c_1 * theta_dot;
     let mut rates = [0.0; STATES];
     for i in 0..1 {
         rates[i] = state[1 + i];
@@ -140,8 +144,8 @@ pub fn observables(
     let theta = state[0];
     let s_1 = theta_dot * theta_dot;
     let T_arm = coefficients.c_4 * s_1;
-    let V_gravity = coefficients.c_3 * cos(theta);
-    [T_arm + V_gravity, -(coefficients.c_2 * s_1)]
+    let V_gravity = coefficients.c_2 * cos(theta);
+    [T_arm + V_gravity, coefficients.c_5 * s_1]
 }
 
 /// Kinetic plus potential energy, in J.
@@ -155,7 +159,7 @@ pub fn energy(
     let theta_dot = state[1];
     let theta = state[0];
     let T_arm = coefficients.c_4 * (theta_dot * theta_dot);
-    let V_gravity = coefficients.c_3 * cos(theta);
+    let V_gravity = coefficients.c_2 * cos(theta);
     T_arm + V_gravity
 }
 
@@ -168,7 +172,7 @@ pub fn power(
     coefficients: &Coefficients,
 ) -> f64 {
     let theta_dot = state[1];
-    -(coefficients.c_2 * (theta_dot * theta_dot))
+    coefficients.c_5 * (theta_dot * theta_dot)
 }
 
 /// Switching surfaces: the equations change where one of these changes sign.

@@ -150,18 +150,14 @@ pub struct Inputs {}
 /// What depends on the parameters alone: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
-    /// `r_s*r_s/I_s`
+    /// `r_s/I_s`
     pub c_1: f64,
-    /// `1.0/r_s`
-    pub c_2: f64,
     /// `a_m`
     pub a_m: f64,
     /// `b_m/r_s`
+    pub c_2: f64,
+    /// `r_s*r_s/I_s`
     pub c_3: f64,
-    /// `F_w`
-    pub F_w: f64,
-    /// `omega`
-    pub omega: f64,
     /// `c_sp`
     pub c_sp: f64,
     /// `3.0*c_sp`
@@ -196,16 +192,22 @@ pub struct Coefficients {
     pub c_12: f64,
     /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)`
     pub c_13: f64,
-    /// `rho*A*l*l/(cos(alpha)*r_c)`
-    pub c_14: f64,
     /// `0.5*E*I/(l*l*l)`
+    pub c_14: f64,
+    /// `-(0.5*E*I/(l*l*l))`
     pub c_15: f64,
     /// `2.0*I_s*1/pivot_x_c/(r_s*r_s)`
     pub c_16: f64,
-    /// `0.3333333333333333*r_p*r_p/I_p`
+    /// `F_w`
+    pub F_w: f64,
+    /// `r_s*F_w/I_s`
     pub c_17: f64,
+    /// `omega`
+    pub omega: f64,
+    /// `0.3333333333333333*r_p*r_p/I_p`
+    pub c_18: f64,
     /// `1/pivot_x_c*solve(cholesky(block of the mass matrix), M_x_c_q)`
-    pub c_18: [f64; 2],
+    pub c_19: [f64; 2],
     /// `I_s/(r_s*r_s)`
     pub M_x_sp_x_sp: f64,
     /// `2.0*I_s/(r_s*r_s)`
@@ -214,34 +216,36 @@ pub struct Coefficients {
     pub M_x_pr_x_pr: f64,
     /// `M_x_sp_x_c + pivot_x_pr`
     pub M_x_pr_x_c: f64,
-    /// `4.0*I_s/(r_s*r_s) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
+    /// `4.0*I_s/(r_s*r_s) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
     pub M_x_c_x_c: f64,
-    /// `2.0/r_s`
-    pub c_19: f64,
-    /// `1.0/r_p`
+    /// `1.0/r_s`
     pub c_20: f64,
-    /// `1.0/(cos(alpha)*r_c)`
+    /// `2.0/r_s`
     pub c_21: f64,
-    /// `1.0/(r_s*i_sH)`
+    /// `1.0/r_p`
     pub c_22: f64,
-    /// `l/(r_s*i_sH)`
+    /// `1.0/(cos(alpha)*r_c)`
     pub c_23: f64,
-    /// `0.5*I_s/(r_s*r_s)`
+    /// `1.0/(r_s*i_sH)`
     pub c_24: f64,
-    /// `1.5*I_p/(r_p*r_p)`
+    /// `l/(r_s*i_sH)`
     pub c_25: f64,
-    /// `1.5*m_p/(cos(alpha)*cos(alpha))`
+    /// `0.5*I_s/(r_s*r_s)`
     pub c_26: f64,
-    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
+    /// `1.5*I_p/(r_p*r_p)`
     pub c_27: f64,
-    /// `2.0*rho*A*l*l/(cos(alpha)*r_c)`
+    /// `1.5*m_p/(cos(alpha)*cos(alpha))`
     pub c_28: f64,
-    /// `rho*A*l`
+    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
     pub c_29: f64,
-    /// `1.5*k_sp`
+    /// `2.0*rho*A*l*l/(cos(alpha)*r_c)`
     pub c_30: f64,
-    /// `1.5*k_pr`
+    /// `rho*A*l`
     pub c_31: f64,
+    /// `1.5*k_sp`
+    pub c_32: f64,
+    /// `1.5*k_pr`
+    pub c_33: f64,
     /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
     pub positive_definite: bool,
 }
@@ -254,13 +258,11 @@ impl Coefficients {
         let alpha = parameters.alpha;
         let s_2 = cos(alpha);
         let r_s = s_1 * z_s * s_2;
-        let s_3 = r_s * r_s;
         let M_s = parameters.M_s;
+        let s_3 = r_s * r_s;
         let I_s = M_s * s_3;
         let a_m = parameters.a_m;
         let b_m = parameters.b_m;
-        let F_w = parameters.F_w;
-        let omega = parameters.omega;
         let c_sp = parameters.c_sp;
         let b_sp = parameters.b_sp;
         let k_sp = parameters.k_sp;
@@ -275,20 +277,20 @@ impl Coefficients {
         let k_pr = parameters.k_pr;
         let s_6 = 3.0 * I_p;
         let s_7 = s_2 * s_2;
-        let r_c = s_1 * (z_s + z_p);
-        let s_8 = r_c * r_c;
-        let s_9 = s_7 * s_8;
-        let m_c = parameters.m_c;
-        let I_c = m_c * s_8;
-        let s_10 = I_c / s_9;
         let m_p = parameters.m_p;
-        let s_11 = 3.0 * m_p / s_7;
+        let s_8 = 3.0 * m_p / s_7;
+        let r_c = s_1 * (z_s + z_p);
+        let s_9 = r_c * r_c;
+        let s_10 = s_7 * s_9;
+        let m_c = parameters.m_c;
+        let I_c = m_c * s_9;
+        let s_11 = I_c / s_10;
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
         let s_12 = l * l;
         let s_13 = l * s_12;
-        let s_14 = 0.3333333333333333 * rho * A * s_13 / s_9;
+        let s_14 = 0.3333333333333333 * rho * A * s_13 / s_10;
         let s_15 = s_2 * r_c;
         let s_16 = rho * A;
         let s_17 = s_16 * s_12;
@@ -306,39 +308,37 @@ impl Coefficients {
             M_x_c_q[i] = s_17 * INTEGRAL_S1_PHI[i] / s_15;
         }
         let s_21 = cholesky_solve(&s_20, &M_x_c_q);
-        let mut s_22 = 0.0;
-        for i in 0..2 {
-            s_22 += INTEGRAL_S1_PHI[i] * s_21[i];
-        }
-        let pivot_x_c = s_10 + s_11 + s_14 - s_17 * s_22 / s_15;
+        let s_22 = sum_of_few(2, |i| INTEGRAL_S1_PHI[i] * s_21[i]);
+        let pivot_x_c = s_8 + s_11 + s_14 - s_17 * s_22 / s_15;
         let s_23 = pivot_reciprocal(pivot_x_c);
         let E = parameters.E;
         let I = parameters.I;
-        let s_24 = 2.0 * I_s;
-        let mut s_25 = [0.0; 2];
+        let s_24 = 0.5 * E * I / s_13;
+        let s_25 = 2.0 * I_s;
+        let F_w = parameters.F_w;
+        let omega = parameters.omega;
+        let mut s_26 = [0.0; 2];
         for i in 0..2 {
-            s_25[i] = s_23 * s_21[i];
+            s_26[i] = s_23 * s_21[i];
         }
         let M_x_sp_x_sp = I_s / s_3;
-        let M_x_sp_x_c = s_24 / s_3;
+        let M_x_sp_x_c = s_25 / s_3;
         let pivot_x_pr = s_6 / s_4;
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = 4.0 * I_s / s_3 + s_10 + (pivot_x_pr + s_11) + s_14;
+        let M_x_c_x_c = 4.0 * I_s / s_3 + (pivot_x_pr + s_8) + s_11 + s_14;
         let z_r = parameters.z_r;
         let i_sH = 1.0 + z_r / z_s;
-        let s_26 = r_s * i_sH;
+        let s_27 = r_s * i_sH;
         let mut positive_4 = true;
         for i in 0..2 {
             positive_4 = positive_4 && s_20[i][i] > 0.0 && s_20[i][i] < f64::INFINITY;
         }
         Self {
-            c_1: s_3 / I_s,
-            c_2: 1.0 / r_s,
+            c_1: r_s / I_s,
             a_m: a_m,
-            c_3: b_m / r_s,
-            F_w: F_w,
-            omega: omega,
+            c_2: b_m / r_s,
+            c_3: s_3 / I_s,
             c_sp: c_sp,
             c_4: 3.0 * c_sp,
             b_sp: b_sp,
@@ -356,29 +356,33 @@ impl Coefficients {
             M_x_c_q: M_x_c_q,
             c_12: s_23,
             c_13: s_6 * s_23 / s_4,
-            c_14: s_17 / s_15,
-            c_15: 0.5 * E * I / s_13,
-            c_16: s_24 * s_23 / s_3,
-            c_17: s_5 / I_p,
-            c_18: s_25,
+            c_14: s_24,
+            c_15: -s_24,
+            c_16: s_25 * s_23 / s_3,
+            F_w: F_w,
+            c_17: r_s * F_w / I_s,
+            omega: omega,
+            c_18: s_5 / I_p,
+            c_19: s_26,
             M_x_sp_x_sp: M_x_sp_x_sp,
             M_x_sp_x_c: M_x_sp_x_c,
             M_x_pr_x_pr: M_x_pr_x_pr,
             M_x_pr_x_c: M_x_pr_x_c,
             M_x_c_x_c: M_x_c_x_c,
-            c_19: 2.0 / r_s,
-            c_20: 1.0 / r_p,
-            c_21: 1.0 / s_15,
-            c_22: 1.0 / s_26,
-            c_23: l / s_26,
-            c_24: 0.5 * I_s / s_3,
-            c_25: 1.5 * I_p / s_4,
-            c_26: 1.5 * m_p / s_7,
-            c_27: 0.5 * I_c / s_9,
-            c_28: 2.0 * rho * A * s_12 / s_15,
-            c_29: s_16 * l,
-            c_30: 1.5 * k_sp,
-            c_31: 1.5 * k_pr,
+            c_20: 1.0 / r_s,
+            c_21: 2.0 / r_s,
+            c_22: 1.0 / r_p,
+            c_23: 1.0 / s_15,
+            c_24: 1.0 / s_27,
+            c_25: l / s_27,
+            c_26: 0.5 * I_s / s_3,
+            c_27: 1.5 * I_p / s_4,
+            c_28: 1.5 * m_p / s_7,
+            c_29: 0.5 * I_c / s_10,
+            c_30: 2.0 * rho * A * s_12 / s_15,
+            c_31: s_16 * l,
+            c_32: 1.5 * k_sp,
+            c_33: 1.5 * k_pr,
             positive_definite: M_x_sp_x_sp > 0.0 && M_x_sp_x_sp < f64::INFINITY
                 && pivot_x_pr > 0.0 && pivot_x_pr < f64::INFINITY && pivot_x_c > 0.0
                 && pivot_x_c < f64::INFINITY && positive_4,
@@ -399,52 +403,51 @@ pub fn rates(
     let x_sp_dot = state[5];
     let x_pr_dot = state[6];
     let x_c_dot = state[7];
-    let motor = coefficients.a_m
-        - coefficients.c_3 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot)
-        + coefficients.F_w * sin(coefficients.omega * t);
     let x_sp = state[0];
-    let s_1 = coefficients.c_4 * (x_sp_dot * contact(x_sp, coefficients.b_sp));
+    let s_1 = coefficients.c_4
+        * (if contact(x_sp, coefficients.b_sp) > 0.0 { x_sp_dot } else { 0.0 });
     let s_2 = coefficients.c_5 * deadzone(x_sp, coefficients.b_sp);
     let x_pr = state[1];
-    let s_3 = coefficients.c_7 * (x_pr_dot * contact(x_pr, coefficients.b_pr));
+    let s_3 = coefficients.c_7
+        * (if contact(x_pr, coefficients.b_pr) > 0.0 { x_pr_dot } else { 0.0 });
     let s_4 = coefficients.c_8 * deadzone(x_pr, coefficients.b_pr);
-    let mut s_5 = [0.0; 2];
-    for i in 0..2 {
-        for k in 0..2 {
-            s_5[i] += INTEGRAL_PHI_D2_BY_PHI_D2[i][k] * state[3 + k];
-        }
-    }
+    let s_5 = s_1 + s_2;
     let mut s_6 = [0.0; 2];
     for i in 0..2 {
         for k in 0..2 {
-            s_6[i] += INTEGRAL_PHI_D2_BY_PHI_D2[k][i] * state[3 + k];
+            s_6[i] += INTEGRAL_PHI_D2_BY_PHI_D2[i][k] * state[3 + k];
         }
     }
     let mut s_7 = [0.0; 2];
     for i in 0..2 {
-        s_7[i] = -(coefficients.c_15 * (s_5[i] + s_6[i]));
+        for k in 0..2 {
+            s_7[i] += INTEGRAL_PHI_D2_BY_PHI_D2[k][i] * state[3 + k];
+        }
     }
-    let s_8 = cholesky_solve(&coefficients.c_11, &s_7);
-    let mut s_9 = 0.0;
+    let mut s_8 = [0.0; 2];
     for i in 0..2 {
-        s_9 += INTEGRAL_S1_PHI[i] * s_8[i];
+        s_8[i] = coefficients.c_15 * (s_6[i] + s_7[i]);
     }
-    let s_10 = s_1 + s_3 + s_2 + s_4 - coefficients.c_14 * s_9;
-    let s_11 = s_1 + s_2 - s_3 - s_4 - coefficients.c_13 * s_10;
-    let x_sp_ddot = coefficients.c_1
-        * (coefficients.c_2 * motor - s_1 - s_2 - coefficients.c_6 * s_11
-            - coefficients.c_16 * s_10);
-    let x_pr_ddot = coefficients.c_17 * s_11;
-    let x_c_ddot = coefficients.c_12 * s_10;
+    let s_9 = cholesky_solve(&coefficients.c_11, &s_8);
+    let s_10 = sum_of_few(2, |i| coefficients.M_x_c_q[i] * s_9[i]);
+    let s_11 = s_1 + s_3 + s_2 + s_4 - s_10;
+    let s_12 = s_5 - s_3 - s_4 - coefficients.c_13 * s_11;
+    let s_13 = coefficients.c_1
+        * (coefficients.a_m - coefficients.c_2 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot))
+        - coefficients.c_3 * (s_5 + coefficients.c_6 * s_12 + coefficients.c_16 * s_11);
+    let x_sp_ddot = s_13 + coefficients.c_17 * sin(coefficients.omega * t);
+    let x_pr_ddot = coefficients.c_18 * s_12;
+    let x_c_ddot = coefficients.c_12 * s_11;
     let mut rates = [0.0; STATES];
-    for i in 0..5 {
+    for i in 0..3 {
         rates[i] = state[5 + i];
     }
     rates[5] = x_sp_ddot;
     rates[6] = x_pr_ddot;
     rates[7] = x_c_ddot;
     for i in 0..2 {
-        rates[8 + i] = s_8[i] - coefficients.c_18[i] * s_10;
+        rates[3 + i] = state[8 + i];
+        rates[8 + i] = s_9[i] - coefficients.c_19[i] * s_11;
     }
     rates
 }
@@ -473,66 +476,54 @@ pub fn observables(
     let x_pr_dot = state[6];
     let x_c_dot = state[7];
     let s_1 = x_sp_dot + x_pr_dot + 2.0 * x_c_dot;
-    let motor = coefficients.a_m - coefficients.c_3 * s_1
-        + coefficients.F_w * sin(coefficients.omega * t);
-    let s_2 = coefficients.c_2 * motor;
     let x_sp = state[0];
-    let s_3 = x_sp_dot * contact(x_sp, coefficients.b_sp);
-    let s_4 = deadzone(x_sp, coefficients.b_sp);
+    let s_2 = if contact(x_sp, coefficients.b_sp) > 0.0 { x_sp_dot } else { 0.0 };
+    let s_3 = deadzone(x_sp, coefficients.b_sp);
     let x_pr = state[1];
-    let s_5 = x_pr_dot * contact(x_pr, coefficients.b_pr);
-    let s_6 = deadzone(x_pr, coefficients.b_pr);
-    let mut s_7 = [0.0; 2];
+    let s_4 = if contact(x_pr, coefficients.b_pr) > 0.0 { x_pr_dot } else { 0.0 };
+    let s_5 = deadzone(x_pr, coefficients.b_pr);
+    let mut s_6 = [0.0; 2];
     for i in 0..2 {
         for k in 0..2 {
-            s_7[i] += INTEGRAL_PHI_D2_BY_PHI_D2[i][k] * state[3 + k];
+            s_6[i] += INTEGRAL_PHI_D2_BY_PHI_D2[i][k] * state[3 + k];
         }
     }
+    let motor = coefficients.a_m - coefficients.c_2 * s_1
+        + coefficients.F_w * sin(coefficients.omega * t);
+    let s_7 = coefficients.c_20 * motor;
     let s_8 = x_sp + x_pr;
     let x_c = state[2];
     let x_s = s_8 + 2.0 * x_c;
-    let theta_s = coefficients.c_2 * x_s;
+    let theta_s = coefficients.c_20 * x_s;
     let x_p = x_pr + x_c;
-    let theta_p = coefficients.c_20 * x_p;
-    let theta_c = coefficients.c_21 * x_c;
-    let mut tip = 0.0;
-    for i in 0..2 {
-        tip += PHI_AT_END[i] * state[3 + i];
-    }
-    let dtheta = coefficients.c_22 * s_8;
-    let s_9 = coefficients.c_23 * s_8;
+    let theta_p = coefficients.c_22 * x_p;
+    let theta_c = coefficients.c_23 * x_c;
+    let tip = sum_of_few(2, |i| PHI_AT_END[i] * state[3 + i]);
+    let dtheta = coefficients.c_24 * s_8;
+    let s_9 = coefficients.c_25 * s_8;
     let f_la = tip + s_9;
     let f_la_signed = tip - s_9;
-    let F_sp = coefficients.c_sp * s_3 + coefficients.k_sp * s_4;
-    let F_pr = coefficients.c_pr * s_5 + coefficients.k_pr * s_6;
+    let F_sp = coefficients.c_sp * s_2 + coefficients.k_sp * s_3;
+    let F_pr = coefficients.c_pr * s_4 + coefficients.k_pr * s_5;
     let s_10 = x_pr_dot + x_c_dot;
     let s_11 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_25 * (s_10 * s_10) + coefficients.c_26 * s_11;
-    let mut s_12 = 0.0;
-    for i in 0..2 {
-        s_12 += INTEGRAL_S1_PHI[i] * state[8 + i];
-    }
+    let T_planets = coefficients.c_27 * (s_10 * s_10) + coefficients.c_28 * s_11;
+    let s_12 = sum_of_few(2, |i| INTEGRAL_S1_PHI[i] * state[8 + i]);
     let mut s_13 = [0.0; 2];
     for i in 0..2 {
         for k in 0..2 {
             s_13[i] += INTEGRAL_PHI_BY_PHI[i][k] * state[8 + k];
         }
     }
-    let mut s_14 = 0.0;
-    for i in 0..2 {
-        s_14 += state[8 + i] * s_13[i];
-    }
-    let s_15 = coefficients.c_24 * (s_1 * s_1) + T_planets + coefficients.c_27 * s_11
+    let s_14 = sum_of_few(2, |i| state[8 + i] * s_13[i]);
+    let s_15 = coefficients.c_26 * (s_1 * s_1) + T_planets + coefficients.c_29 * s_11
         + 0.5
-            * (coefficients.c_9 * s_11 + coefficients.c_28 * (x_c_dot * s_12)
-                + coefficients.c_29 * s_14);
-    let mut s_16 = 0.0;
-    for i in 0..2 {
-        s_16 += state[3 + i] * s_7[i];
-    }
-    let s_17 = x_sp_dot * (s_2 - coefficients.c_4 * s_3)
-        + x_pr_dot * (s_2 - coefficients.c_7 * s_5)
-        + coefficients.c_19 * (x_c_dot * motor);
+            * (coefficients.c_9 * s_11 + coefficients.c_30 * (x_c_dot * s_12)
+                + coefficients.c_31 * s_14);
+    let s_16 = sum_of_few(2, |i| state[3 + i] * s_6[i]);
+    let s_17 = x_sp_dot * (s_7 - coefficients.c_4 * s_2)
+        + x_pr_dot * (s_7 - coefficients.c_7 * s_4)
+        + coefficients.c_21 * (x_c_dot * motor);
     [
         theta_s,
         theta_p,
@@ -544,8 +535,8 @@ pub fn observables(
         F_sp,
         F_pr,
         s_15
-            + (coefficients.c_30 * (s_4 * s_4) + coefficients.c_31 * (s_6 * s_6)
-                + coefficients.c_15 * s_16),
+            + (coefficients.c_32 * (s_3 * s_3) + coefficients.c_33 * (s_5 * s_5)
+                + coefficients.c_14 * s_16),
         s_17,
     ]
 }
@@ -574,32 +565,23 @@ pub fn energy(
     }
     let s_5 = x_pr_dot + x_c_dot;
     let s_6 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_25 * (s_5 * s_5) + coefficients.c_26 * s_6;
-    let mut s_7 = 0.0;
-    for i in 0..2 {
-        s_7 += INTEGRAL_S1_PHI[i] * state[8 + i];
-    }
+    let T_planets = coefficients.c_27 * (s_5 * s_5) + coefficients.c_28 * s_6;
+    let s_7 = sum_of_few(2, |i| INTEGRAL_S1_PHI[i] * state[8 + i]);
     let mut s_8 = [0.0; 2];
     for i in 0..2 {
         for k in 0..2 {
             s_8[i] += INTEGRAL_PHI_BY_PHI[i][k] * state[8 + k];
         }
     }
-    let mut s_9 = 0.0;
-    for i in 0..2 {
-        s_9 += state[8 + i] * s_8[i];
-    }
-    let s_10 = coefficients.c_24 * (s_1 * s_1) + T_planets + coefficients.c_27 * s_6
+    let s_9 = sum_of_few(2, |i| state[8 + i] * s_8[i]);
+    let s_10 = coefficients.c_26 * (s_1 * s_1) + T_planets + coefficients.c_29 * s_6
         + 0.5
-            * (coefficients.c_9 * s_6 + coefficients.c_28 * (x_c_dot * s_7)
-                + coefficients.c_29 * s_9);
-    let mut s_11 = 0.0;
-    for i in 0..2 {
-        s_11 += state[3 + i] * s_4[i];
-    }
+            * (coefficients.c_9 * s_6 + coefficients.c_30 * (x_c_dot * s_7)
+                + coefficients.c_31 * s_9);
+    let s_11 = sum_of_few(2, |i| state[3 + i] * s_4[i]);
     s_10
-        + (coefficients.c_30 * (s_2 * s_2) + coefficients.c_31 * (s_3 * s_3)
-            + coefficients.c_15 * s_11)
+        + (coefficients.c_32 * (s_2 * s_2) + coefficients.c_33 * (s_3 * s_3)
+            + coefficients.c_14 * s_11)
 }
 
 /// Power of all non-conservative forces, in W: the rate of the energy.
@@ -613,17 +595,25 @@ pub fn power(
     let x_sp_dot = state[5];
     let x_pr_dot = state[6];
     let x_c_dot = state[7];
-    let motor = coefficients.a_m
-        - coefficients.c_3 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot)
-        + coefficients.F_w * sin(coefficients.omega * t);
-    let s_1 = coefficients.c_2 * motor;
     let x_sp = state[0];
     let x_pr = state[1];
+    let motor = coefficients.a_m
+        - coefficients.c_2 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot)
+        + coefficients.F_w * sin(coefficients.omega * t);
+    let s_1 = coefficients.c_20 * motor;
     let s_2 = x_sp_dot
-        * (s_1 - coefficients.c_4 * (x_sp_dot * contact(x_sp, coefficients.b_sp)))
+        * (s_1
+            - coefficients.c_4
+                * (if contact(x_sp, coefficients.b_sp) > 0.0 { x_sp_dot } else { 0.0 }))
         + x_pr_dot
-            * (s_1 - coefficients.c_7 * (x_pr_dot * contact(x_pr, coefficients.b_pr)));
-    s_2 + coefficients.c_19 * (x_c_dot * motor)
+            * (s_1
+                - coefficients.c_7
+                    * (if contact(x_pr, coefficients.b_pr) > 0.0 {
+                        x_pr_dot
+                    } else {
+                        0.0
+                    }));
+    s_2 + coefficients.c_21 * (x_c_dot * motor)
 }
 
 /// Switching surfaces: the equations change where one of these changes sign.
@@ -735,6 +725,7 @@ fn cholesky<const N: usize>(matrix: &[[f64; N]; N]) -> [[f64; N]; N] {
     factor
 }
 
+
 /// Solution of L L^T x = right.
 fn cholesky_solve<const N: usize>(factor: &[[f64; N]; N], right: &[f64; N]) -> [f64; N] {
     let mut x = [0.0; N];
@@ -754,6 +745,28 @@ fn cholesky_solve<const N: usize>(factor: &[[f64; N]; N], right: &[f64; N]) -> [
         x[i] = rest / factor[i][i];
     }
     x
+}
+
+/// The sum of the first `length` of eight numbers, neighbours added in pairs.
+#[inline(always)]
+fn paired(length: usize, s: &[f64; 8]) -> f64 {
+    let a = if length > 1 { s[0] + s[1] } else { s[0] };
+    let b = if length > 3 { s[2] + s[3] } else { s[2] };
+    let c = if length > 5 { s[4] + s[5] } else { s[4] };
+    let d = if length > 7 { s[6] + s[7] } else { s[6] };
+    let left = if length > 2 { a + b } else { a };
+    let right = if length > 6 { c + d } else { c };
+    if length > 4 { left + right } else { left }
+}
+
+/// The sum of up to eight elements.
+#[inline(always)]
+fn sum_of_few<F: Fn(usize) -> f64>(length: usize, element: F) -> f64 {
+    let mut s = [0.0; 8];
+    for k in 0..length {
+        s[k] = element(k);
+    }
+    paired(length, &s)
 }
 
 /// Square root. Plain operations in a fixed order: the same bits on every machine.

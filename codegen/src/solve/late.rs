@@ -1,0 +1,111 @@
+//! What waits for an elementary function, moved to the end of an acceleration: in
+//! c (a + k sin(x)) with prepared c and k the result waits for three operations after the
+//! sine, in c a + (c k) sin(x) for two, and the rest is done by then. No operation is added.
+
+use std::collections::HashMap;
+
+use crate::equations::Rows;
+use crate::graph::{Graph, Id, Operation, Shape};
+
+/// The rows with the late terms of each coordinate's pulled out of its products.
+pub(super) fn late_terms_last(graph: &mut Graph, rows: &Rows) -> Rows {
+    let uses = graph.uses(&rows.nodes());
+    let scalars = rows
+        .scalars
+        .iter()
+        .map(|&row| {
+            if uses.get(&row).is_some_and(|uses| *uses > 0) || graph.waits(row) == 0 {
+                return row;
+            }
+            let one = graph.one();
+            let mut parts = Vec::new();
+            pull_out(graph, &uses, (1.0, one), row, &mut parts);
+            let waits = graph.waits(row);
+            let terms = terms_by_scale(graph, waits, parts);
+            graph.combine(&terms)
+        })
+        .collect();
+    Rows {
+        scalars,
+        modal: rows.modal.clone(),
+    }
+}
+
+/// factor scale node, the scale being prepared.
+struct Part {
+    factor: f64,
+    scale: Id,
+    node: Id,
+}
+
+/// Opens the sums of a product with the scale, down to what waits no less than all of it.
+fn pull_out(
+    graph: &mut Graph,
+    uses: &HashMap<Id, usize>,
+    (factor, scale): (f64, Id),
+    node: Id,
+    parts: &mut Vec<Part>,
+) {
+    let waits = graph.waits(node);
+    let shared = uses.get(&node).is_some_and(|uses| *uses > 1);
+    match graph.operation(node).clone() {
+        Operation::Sum(terms) if waits > 0 && !shared => {
+            for (c, term) in &terms {
+                pull_out(graph, uses, (factor * c.value(), scale), *term, parts);
+            }
+        }
+        Operation::Product(factors) if waits > 0 && !shared => {
+            let (prepared, moving): (Vec<_>, Vec<_>) = factors
+                .iter()
+                .partition(|(id, _)| graph.dependence(*id).is_prepared());
+            match moving.as_slice() {
+                [(sum, 1)] if graph.shape(*sum) == Shape::Scalar => {
+                    let prepared = graph.product(&prepared);
+                    let scale = graph.multiply(scale, prepared);
+                    pull_out(graph, uses, (factor, scale), *sum, parts);
+                }
+                _ => parts.push(Part {
+                    factor,
+                    scale,
+                    node,
+                }),
+            }
+        }
+        _ => parts.push(Part {
+            factor,
+            scale,
+            node,
+        }),
+    }
+}
+
+/// The parts as terms of a sum: late ones each by itself, those before them collected by
+/// their scale.
+fn terms_by_scale(graph: &mut Graph, waits: u32, parts: Vec<Part>) -> Vec<(f64, Id)> {
+    let mut terms = Vec::new();
+    let mut early: Vec<(Id, Vec<(f64, Id)>)> = Vec::new();
+    for part in parts {
+        if graph.waits(part.node) == waits {
+            terms.push((part.factor, graph.multiply(part.scale, part.node)));
+            continue;
+        }
+        let term = (part.factor, part.node);
+        match early.iter_mut().find(|(scale, _)| *scale == part.scale) {
+            Some((_, collected)) => collected.push(term),
+            None => early.push((part.scale, vec![term])),
+        }
+    }
+    for (scale, collected) in early {
+        terms.push(scaled_sum(graph, scale, &collected));
+    }
+    terms
+}
+
+/// The scaled sum of terms as one term, with the sign in front if all of them are negative.
+fn scaled_sum(graph: &mut Graph, scale: Id, terms: &[(f64, Id)]) -> (f64, Id) {
+    let negative = terms.iter().all(|(c, _)| *c < 0.0);
+    let sign = if negative { -1.0 } else { 1.0 };
+    let terms: Vec<(f64, Id)> = terms.iter().map(|(c, id)| (sign * c, *id)).collect();
+    let sum = graph.combine(&terms);
+    (sign, graph.multiply(scale, sum))
+}

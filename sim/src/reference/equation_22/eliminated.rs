@@ -1,0 +1,153 @@
+//! The equations behind Eq. (22) as one writes them for speed: the modes are eliminated
+//! first (their block of the mass matrix is diagonal), which leaves one division by a_30,
+//! and every row costs O(S). All coefficients are prepared once; nothing is allocated.
+//!
+//! This is what generated code is measured against. It reads the coefficients of Eq. (22)
+//! and nothing of the derivation.
+
+use super::coefficients::Coefficients;
+use crate::reference::mesh::{f_c, f_k};
+use crate::reference::parameters::PlanetaryArmParameters;
+
+/// Above this many modes their sum is a function of its own: unrolled into one piece with
+/// the rest, the compiler vectorises across both, and spills.
+const FEW: usize = 8;
+
+/// Spring, damper and backlash of one mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Mesh {
+    /// N/m
+    stiffness: f64,
+    /// N s/m
+    damping: f64,
+    /// m
+    half_width: f64,
+}
+
+/// The arm of order `S`, prepared for one set of parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Eliminated<const S: usize> {
+    sun_planet: Mesh,
+    planet_ring: Mesh,
+    /// a_m/(r_s M_s), m/s^2
+    motor: f64,
+    /// F_w/(r_s M_s), m/s^2
+    fluctuation: f64,
+    /// rad/s
+    omega: f64,
+    /// B_m/M_s, 1/s
+    motor_damping: f64,
+    /// 3/M_s, 1/kg
+    sun: f64,
+    /// 1/M_p, 1/kg
+    planet: f64,
+    /// 3 r_c cos(alpha)/a_30, 1/kg: the carrier's acceleration per force.
+    carrier: f64,
+    /// a_3i/(3 r_c cos alpha), N/m: the force of a mode at the carrier.
+    bending: [f64; S],
+    /// -k_i/m_i, 1/s^2
+    minus_square: [f64; S],
+    /// -h_i/(m_i r_c cos alpha) carrier, 1/kg
+    minus_coupling: [f64; S],
+}
+
+impl Mesh {
+    /// The mesh's force, N.
+    #[inline(always)]
+    fn force(&self, p: f64, p_dot: f64) -> f64 {
+        self.stiffness * f_k(p, self.half_width) + self.damping * f_c(p, p_dot, self.half_width)
+    }
+}
+
+impl<const S: usize> Eliminated<S> {
+    /// Prepares the equations for `parameters`.
+    pub fn new(parameters: &PlanetaryArmParameters) -> Self {
+        let a = Coefficients::new(parameters, S);
+        let lever = parameters.r_c_cos_alpha();
+        let carrier = 3.0 * lever / a.a_30;
+        let inertia = |i: usize| a.modes[i].a_0 / a.a_30;
+        Self {
+            sun_planet: Mesh {
+                stiffness: parameters.k_sp,
+                damping: parameters.c_sp,
+                half_width: a.b_sp,
+            },
+            planet_ring: Mesh {
+                stiffness: parameters.k_pr,
+                damping: parameters.c_pr,
+                half_width: a.b_pr,
+            },
+            motor: a.a_11_constant,
+            fluctuation: a.a_11_amplitude,
+            omega: a.omega,
+            motor_damping: -a.a_12,
+            sun: 3.0 * parameters.r_s().powi(2) / parameters.I_s,
+            planet: parameters.r_p().powi(2) / parameters.I_p,
+            carrier,
+            bending: std::array::from_fn(|i| a.a_3[i] / (3.0 * lever)),
+            minus_square: std::array::from_fn(|i| -a.a_3[i] / (a.a_0[i] * lever)),
+            minus_coupling: std::array::from_fn(|i| -a.a_0[i] / inertia(i) * carrier),
+        }
+    }
+
+    /// The rates of `state` (x_sp, x_pr, x_c, q_1 .. q_S in m, then their rates in m/s) at
+    /// time `t` in s. The motor's sine is waited for last. Not inlined, as emitted functions
+    /// are not into other crates: the result is written where the caller wants it.
+    #[inline(never)]
+    pub fn rates<const N: usize>(&self, t: f64, state: &[f64; N]) -> [f64; N] {
+        const { assert!(N == 2 * (3 + S)) };
+        let (position, rate) = state.split_at(3 + S);
+        let (x, q) = position.split_at(3);
+        let f_sp = self.sun_planet.force(x[0], rate[0]);
+        let f_pr = self.planet_ring.force(x[1], rate[1]);
+        let force = f_sp + f_pr + sum_of_products(&self.bending, q);
+        let x_c = self.carrier * force;
+        let x_pr = self.planet * (f_sp - f_pr) - x_c;
+        let sun = self.motor
+            - self.motor_damping * (rate[0] + rate[1] + 2.0 * rate[2])
+            - self.sun * f_sp
+            - x_pr
+            - 2.0 * x_c;
+        let x_sp = sun + self.fluctuation * elementary::sin(self.omega * t);
+
+        // Element by element, and the modes' in the loop of their accelerations: copies of
+        // slices become calls of `memcpy`, which cost as much as all the rest at S = 16.
+        let mut out = [0.0; N];
+        out[0] = rate[0];
+        out[1] = rate[1];
+        out[2] = rate[2];
+        out[3 + S] = x_sp;
+        out[4 + S] = x_pr;
+        out[5 + S] = x_c;
+        for i in 0..S {
+            out[3 + i] = rate[3 + i];
+            out[6 + S + i] = self.minus_square[i] * q[i] + self.minus_coupling[i] * force;
+        }
+        out
+    }
+}
+
+/// The sum of a_i b_i.
+#[inline(always)]
+fn sum_of_products<const S: usize>(a: &[f64; S], b: &[f64]) -> f64 {
+    if S > FEW {
+        return sum_of_many(a, b);
+    }
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The same in eight partial sums, so that it is not one chain of additions.
+#[inline(never)]
+fn sum_of_many<const S: usize>(a: &[f64; S], b: &[f64]) -> f64 {
+    let mut s = [0.0; 8];
+    let b = &b[..S];
+    for block in 0..S / 8 {
+        for k in 0..8 {
+            s[k] += a[8 * block + k] * b[8 * block + k];
+        }
+    }
+    for i in S / 8 * 8..S {
+        s[i % 8] += a[i] * b[i];
+    }
+    ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]))
+}
