@@ -55,6 +55,10 @@ pub(super) struct Flow {
 /// What a function is made of in one flow.
 #[derive(Clone, Debug, Default)]
 struct Own {
+    /// It keeps its limits until then, s after the start.
+    safe_until: f64,
+    /// Where it was last summed up, s after the start.
+    summed_up_at: f64,
     /// The value at the start.
     start: f64,
     /// The sum of its terms' magnitudes.
@@ -153,6 +157,8 @@ impl Flow {
             let sums = regime.modes.groups() + 1;
             own.partial.resize(sums, [Lane::ZERO; 4]);
             own.sizes.resize(sums, [Lane::ZERO; 3]);
+            own.safe_until = f64::NEG_INFINITY;
+            own.summed_up_at = f64::NAN;
             (own.start, own.start_size) = functional.at(state, inputs, phases);
             own.find_polynomial(regime, functional, &self.series.derivatives);
             let zeta = &self.start[modes..];
@@ -295,6 +301,7 @@ impl Flow {
     /// Sums up a function over its modes here.
     pub fn sum_up(&mut self, regime: &Regime, place: usize) {
         let own = &mut self.own[place];
+        own.summed_up_at = self.tau;
         let groups = self.size.len();
         let (now_re, now_im) = self.now.split_at(groups);
         let (moved_re, moved_im) = self.moved[..2 * groups].split_at(groups);
@@ -321,6 +328,21 @@ impl Flow {
         own.value += value.reduce_add();
         own.size += size.reduce_add();
         own.amplitudes = sums.map(Lane::reduce_add);
+    }
+
+    /// Whether a function is known to keep its limits until a time after the start, s.
+    pub fn is_safe(&self, place: usize, until: f64) -> bool {
+        self.own[place].safe_until >= until
+    }
+
+    /// Notes that a function keeps its limits until a time after the start, s.
+    pub fn note_safe(&mut self, place: usize, until: f64) {
+        self.own[place].safe_until = until;
+    }
+
+    /// Whether a function has been summed up here.
+    pub fn is_summed_up(&self, place: usize) -> bool {
+        self.own[place].summed_up_at == self.tau
     }
 
     /// Whether a function that has been summed up here is certainly between two limits.

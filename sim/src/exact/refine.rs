@@ -17,9 +17,6 @@ const ROUNDS: usize = 5;
 /// eigenvalues that nearly agree there is no telling their vectors apart, nor a need to.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// A round that leaves more than this part of what was wrong is the last one.
-const GAIN: f64 = 0.25;
-
 /// A vector turned by more than this is beyond first order, and left as it is.
 const TURN: f64 = 0.1;
 
@@ -55,7 +52,7 @@ impl Subspaces {
             self.refine_rows();
             inseparable.clear();
             let before = std::mem::replace(&mut wrong, self.refine_columns(of, &mut inseparable));
-            if !(wrong > ROUNDING && wrong < GAIN * before) {
+            if !(wrong > ROUNDING && wrong < before) {
                 break;
             }
         }

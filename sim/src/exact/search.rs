@@ -73,13 +73,6 @@ pub(super) fn search(
         while place < last && rungs[place + 1].length >= end - flow.tau {
             place += 1;
         }
-        for functional in 0..regime.functionals.len() {
-            flow.sum_up(regime, functional);
-        }
-        if let Some(found) = reached(flow, regime) {
-            *first = place;
-            return found;
-        }
         let mut halved = false;
         loop {
             match step(flow, regime, place, rungs[place].length, end, effort) {
@@ -137,6 +130,9 @@ struct Crossing {
 fn creep(flow: &mut Flow, regime: &Regime, end: f64, effort: &mut Effort) -> Outcome {
     let last = regime.ladder.rungs.len() - 1;
     let mut length = regime.ladder.rungs[last].length;
+    for functional in 0..regime.functionals.len() {
+        flow.sum_up(regime, functional);
+    }
     loop {
         length *= 0.5;
         if !flow.is_finite() {
@@ -178,11 +174,22 @@ fn step(
 ) -> Outcome {
     let rung = &regime.ladder.rungs[place];
     let (mut earliest, mut crossings): (Option<Crossing>, usize) = (None, 0);
+    let until = flow.tau + length;
     for functional in 0..regime.functionals.len() {
+        // Each function is looked at as often as it asks for.
+        if flow.is_safe(functional, until) {
+            continue;
+        }
+        if !flow.is_summed_up(functional) {
+            flow.sum_up(regime, functional);
+            if let Some(found) = reached(flow, regime, functional) {
+                return Outcome::Limit(found);
+            }
+        }
         let local = flow.local(regime, functional, rung);
         let limits = regime.functionals[functional].limits;
         match over(&local, [limits.low, limits.high], length) {
-            Verdict::Safe => {}
+            Verdict::Safe => flow.note_safe(functional, until),
             Verdict::Unknown => return Outcome::Halve,
             Verdict::Crossing { upper } => {
                 crossings += 1;
@@ -257,22 +264,17 @@ fn earliest_of_all(
     first
 }
 
-/// A limit that is reached here already.
-fn reached(flow: &Flow, regime: &Regime) -> Option<Found> {
-    let all_slow = regime.ladder.rungs.last()?;
-    for (functional, of) in regime.functionals.iter().enumerate() {
-        let Limits { low, high, .. } = of.limits;
-        if flow.is_between(functional, low, high) {
-            continue;
-        }
-        let local = flow.local(regime, functional, all_slow);
-        for upper in [false, true] {
-            if Distance::to(&local, &of.limits, upper).is_reached() {
-                return Some(Found::Limit { functional, upper });
-            }
-        }
+/// A limit that a function has reached here already.
+fn reached(flow: &Flow, regime: &Regime, functional: usize) -> Option<Found> {
+    let limits = &regime.functionals[functional].limits;
+    if flow.is_between(functional, limits.low, limits.high) {
+        return None;
     }
-    None
+    let local = flow.local(regime, functional, regime.ladder.rungs.last()?);
+    [false, true]
+        .into_iter()
+        .find(|upper| Distance::to(&local, limits, *upper).is_reached())
+        .map(|upper| Found::Limit { functional, upper })
 }
 
 /// A limit that was passed by a jump: of an input, or of the function itself when another
