@@ -460,7 +460,7 @@ impl Own {
         for (order, coefficient) in polynomial.iter().enumerate() {
             power *= window;
             let size = coefficient.abs() * power;
-            if !(size <= NEGLIGIBLE * largest) {
+            if size > NEGLIGIBLE * largest || size.is_nan() {
                 needed = order + 1;
             }
             largest = largest.max(size);
