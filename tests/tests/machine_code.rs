@@ -2,12 +2,13 @@
 //! every feature, at ordinary points and where arithmetic is at its limits. NaN is NaN: its
 //! sign and payload are left open.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use codegen::equations::derive;
 use codegen::evaluator::{Evaluator, Point};
 use codegen::lower::lower;
-use codegen::program::Program;
+use codegen::program::{Op, Program};
 use eomgen_tests::models::{project, shipped};
 use model_spec::model::Model;
 use sim::validate::random::Random;
@@ -32,6 +33,72 @@ const SPECIAL: [f64; 14] = [
     1e-200,
     1e200,
 ];
+
+/// The functions of the language.
+const FUNCTIONS: [&str; 19] = [
+    "Sin", "Cos", "Tan", "Asin", "Acos", "Atan", "Atan2", "Sinh", "Cosh", "Tanh", "Exp", "Ln",
+    "Sqrt", "Abs", "Sign", "Min", "Max", "Deadzone", "Contact",
+];
+
+/// What [`kind`] may say.
+const OPERATIONS: [&str; 25] = [
+    "Add",
+    "Apply",
+    "Assemble",
+    "Call",
+    "Cholesky",
+    "CholeskySolve",
+    "Constant",
+    "Coordinate",
+    "Divide",
+    "Gram",
+    "GramDiagonal",
+    "Input",
+    "ModeCoordinates",
+    "ModeRates",
+    "Multiply",
+    "Negate",
+    "Parameter",
+    "PivotReciprocal",
+    "Power",
+    "Rate",
+    "Select",
+    "Subtract",
+    "Table",
+    "Time",
+    "Total",
+];
+
+/// The operation's name; a new one does not compile here until it stands above too.
+fn kind(op: &Op) -> &'static str {
+    match op {
+        Op::Add(..) => "Add",
+        Op::Apply { .. } => "Apply",
+        Op::Assemble { .. } => "Assemble",
+        Op::Call(..) => "Call",
+        Op::Cholesky(_) => "Cholesky",
+        Op::CholeskySolve(..) => "CholeskySolve",
+        Op::Constant(_) => "Constant",
+        Op::Coordinate(_) => "Coordinate",
+        Op::Divide(..) => "Divide",
+        Op::Gram { .. } => "Gram",
+        Op::GramDiagonal { .. } => "GramDiagonal",
+        Op::Input(_) => "Input",
+        Op::ModeCoordinates(_) => "ModeCoordinates",
+        Op::ModeRates(_) => "ModeRates",
+        Op::Multiply(..) => "Multiply",
+        Op::Negate(_) => "Negate",
+        Op::Parameter(_) => "Parameter",
+        Op::PivotReciprocal(_) => "PivotReciprocal",
+        Op::Power(..) => "Power",
+        Op::Rate(_) => "Rate",
+        Op::Select { .. } => "Select",
+        Op::Subtract(..) => "Subtract",
+        Op::Table(_) => "Table",
+        Op::Time => "Time",
+        Op::Total(_) => "Total",
+    }
+}
 
 /// A program run both ways.
 struct Pair {
@@ -146,17 +213,22 @@ fn computed(evaluator: &mut Evaluator, point: Point<'_>) -> [(&'static str, Vec<
     ]
 }
 
-fn compare(name: &str, model: &Model, order: usize) {
+/// The program of a model with every field at one order, if there is one.
+fn program(model: &Model, order: usize) -> Option<Program> {
     let values = model
         .parameter_values()
         .expect("the parameters have values");
     let orders = vec![order; model.fields.len()];
-    let Ok(equations) = derive(model, &orders) else {
+    let equations = derive(model, &orders).ok()?;
+    Some(lower(model, &equations, &values))
+}
+
+fn compare(name: &str, model: &Model, order: usize) {
+    let Some(program) = program(model, order) else {
         // Some need a mode; that derive refuses and says so is tested elsewhere.
         assert_eq!(order, 0, "{name} cannot be derived");
         return;
     };
-    let program = lower(model, &equations, &values);
     let defaults = program.default_parameters();
     let mut pair = Pair::new(format!("{name} of order {order}"), program);
     let mut random = Random::new(0x5eed_0004 + order as u64);
@@ -205,6 +277,60 @@ fn features_give_the_same_bits() {
     assert!(!paths.is_empty(), "no feature");
     paths.sort();
     compare_all(&paths, &[1, 3, 9, 13]);
+}
+
+/// A sum over modes of an integral that needs quadrature, which no other specification has.
+fn tapered_by_sum() -> Model {
+    let path = project().join("tests/tests/features/exponential_taper.toml");
+    let text = std::fs::read_to_string(path).expect("the feature");
+    let (integral, sum) = (
+        "1/2*integral(rho*A*exp(-x/l)*(x*dot(theta) + dot(w))^2, w)",
+        "1/2*sum(i, w, integral(rho*A*exp(-x/l)*phi[i]^2, w)*dot(q[i])^2)",
+    );
+    assert!(text.contains(integral));
+    let checked = model_spec::check(model_spec::source::Source::new(
+        "tapered.toml",
+        text.replace(integral, sum),
+    ));
+    checked.expect("a specification").model
+}
+
+#[test]
+fn a_sum_of_integrals_gives_the_same_bits() {
+    for order in [1, 4, 9] {
+        compare("tapered by sum", &tapered_by_sum(), order);
+    }
+}
+
+/// What the programs of these tests are made of.
+#[test]
+fn every_operation_and_function_is_compared() {
+    let folder = project().join("tests/tests/features");
+    let mut models: Vec<Model> = [shipped(), specifications(&folder)]
+        .concat()
+        .iter()
+        .map(|path| model_spec::load(path).expect("a specification").model)
+        .collect();
+    models.push(tapered_by_sum());
+    let (mut operations, mut functions) = (BTreeSet::new(), BTreeSet::new());
+    for model in &models {
+        for value in program(model, 3).expect("a model of order 3").values {
+            if let Op::Call(function, _) = &value.op {
+                functions.insert(format!("{function:?}"));
+            }
+            operations.insert(kind(&value.op));
+        }
+    }
+    let missing: Vec<_> = OPERATIONS
+        .iter()
+        .filter(|operation| !operations.contains(*operation))
+        .collect();
+    assert!(missing.is_empty(), "{missing:?} occur nowhere");
+    let missing: Vec<_> = FUNCTIONS
+        .iter()
+        .filter(|function| !functions.contains(**function))
+        .collect();
+    assert!(missing.is_empty(), "{missing:?} occur nowhere");
 }
 
 fn specifications(folder: &Path) -> Vec<PathBuf> {

@@ -2,7 +2,7 @@
 //! element from the operands' elements of the same index.
 
 use codegen::program::{Extent, Op, ValueId};
-use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value, types};
+use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Opcode, Type, Value, types};
 
 use crate::loops::{At, Lanes, SHORT};
 use crate::stage::Writer;
@@ -132,10 +132,10 @@ impl Writer<'_, '_, '_> {
 
     fn operation(&mut self, op: &Op, operands: &[Value], lanes: Lanes) -> Value {
         match (op, operands) {
-            (Op::Negate(_), &[a]) => self.ins().fneg(a),
-            (Op::Add(..), &[a, b]) => self.ins().fadd(a, b),
+            (Op::Negate(_), &[a]) => self.negate(a, lanes),
+            (Op::Add(..), &[a, b]) => self.add(a, b),
             (Op::Subtract(..), &[a, b]) => self.ins().fsub(a, b),
-            (Op::Multiply(..), &[a, b]) => self.ins().fmul(a, b),
+            (Op::Multiply(..), &[a, b]) => self.multiply(a, b),
             (Op::Divide(..), &[a, b]) => self.ins().fdiv(a, b),
             (Op::Power(..), _) => self.power(operands, lanes),
             (Op::Call(function, _), _) => self.call(*function, operands, lanes),
@@ -143,6 +143,40 @@ impl Writer<'_, '_, '_> {
             (Op::PivotReciprocal(_), &[a]) => self.pivot_reciprocal(a, lanes),
             // What is left are leaves and matrix operations, which `stage` binds.
             _ => self.literal(f64::NAN, lanes),
+        }
+    }
+
+    /// a + b
+    pub fn add(&mut self, a: Value, b: Value) -> Value {
+        let (a, b) = self.load_last(a, b);
+        self.ins().fadd(a, b)
+    }
+
+    /// a b
+    pub fn multiply(&mut self, a: Value, b: Value) -> Value {
+        let (a, b) = self.load_last(a, b);
+        self.ins().fmul(a, b)
+    }
+
+    /// The same two, one that is read from memory last: it is then read where it is used,
+    /// and no register holds it while the other is computed.
+    fn load_last(&self, a: Value, b: Value) -> (Value, Value) {
+        let graph = &self.builder.func.dfg;
+        let is_load = |value| {
+            let definition = graph.value_def(value).inst();
+            definition.is_some_and(|inst| graph.insts[inst].opcode() == Opcode::Load)
+        };
+        if is_load(a) { (b, a) } else { (a, b) }
+    }
+
+    /// The sign bit flipped.
+    pub fn negate(&mut self, a: Value, lanes: Lanes) -> Value {
+        match lanes {
+            Lanes::One => self.ins().fneg(a),
+            Lanes::Two => {
+                let sign = self.literal(-0.0, lanes);
+                self.ins().bxor(a, sign)
+            }
         }
     }
 

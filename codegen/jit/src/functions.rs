@@ -162,14 +162,11 @@ impl Writer<'_, '_, '_> {
         match operation {
             O::Input(place) => inputs[place],
             O::Constant(value) => self.literal(value, Lanes::Two),
-            O::Add(a, b) => self.ins().fadd(values[a], values[b]),
+            O::Add(a, b) => self.add(values[a], values[b]),
             O::Sub(a, b) => self.ins().fsub(values[a], values[b]),
-            O::Mul(a, b) => self.ins().fmul(values[a], values[b]),
+            O::Mul(a, b) => self.multiply(values[a], values[b]),
             O::Div(a, b) => self.ins().fdiv(values[a], values[b]),
-            O::Neg(a) => {
-                let sign = self.bits(SIGN);
-                self.ins().bxor(values[a], sign)
-            }
+            O::Neg(a) => self.negate(values[a], Lanes::Two),
             O::Abs(a) => self.magnitude(values[a]),
             O::CopySign { magnitude, sign } => {
                 let magnitude = self.magnitude(values[magnitude]);

@@ -6,8 +6,8 @@ use cranelift_codegen::ir::{BlockArg, InstBuilder, Value, types};
 
 use crate::stage::Writer;
 
-/// Vectors up to this length are written out element by element and live in registers. 16 two-lane
-/// registers hold two of them.
+/// Vectors up to this length are written out and live in registers: four of the sixteen
+/// that there are.
 pub const SHORT: usize = 8;
 
 /// Elements per turn of a loop.

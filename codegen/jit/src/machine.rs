@@ -84,8 +84,8 @@ pub fn compile(program: &Program) -> Result<Machine, CompileError> {
         *slot = define(&mut module, Task::PerCall(stage))?;
     }
     module.finalize_definitions().map_err(CompileError::new)?;
-    let inputs = shared.inputs()..shared.first_constant();
-    let mut room = vec![0.0; inputs.len()];
+    let inputs = shared.inputs()..shared.inputs() + program.inputs.len();
+    let mut room = vec![0.0; shared.first_constant() - inputs.start];
     room.extend(shared.constants.numbers());
     Ok(Machine {
         prepare: function(&module, prepare),
@@ -104,8 +104,15 @@ fn new_module() -> Result<JITModule, CompileError> {
         ("opt_level", "speed"),
         ("is_pic", "false"),
         ("use_colocated_libcalls", "false"),
-        // The tests run with it.
-        ("enable_verifier", "false"),
+        // Tests compile with debug assertions, or compare every number.
+        (
+            "enable_verifier",
+            if cfg!(debug_assertions) {
+                "true"
+            } else {
+                "false"
+            },
+        ),
     ] {
         flags.set(name, value).map_err(CompileError::new)?;
     }

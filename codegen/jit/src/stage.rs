@@ -46,9 +46,9 @@ impl Shared<'_> {
         self.places.size()
     }
 
-    /// Where the literals begin.
+    /// Where the literals begin: at an even place, as pairs that lie in one line of a cache.
     pub fn first_constant(&self) -> usize {
-        self.inputs() + self.program.inputs.len()
+        (self.inputs() + self.program.inputs.len()).next_multiple_of(2)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Machine code of a program, as the evaluator calls it. How it is made is not known here.
 
 use super::{Places, Point};
-use crate::program::{Program, ValueId};
+use crate::program::{Extent, Program, ValueId};
 
 /// What is computed together in one call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,11 +68,15 @@ pub trait MachineCode: Send + Sync {
 }
 
 impl Places {
-    /// The places of a program's values, one after the other.
+    /// The places of a program's values, one after the other. Whatever holds several numbers
+    /// begins at an even place, so that two of its numbers lie in one line of a cache.
     pub fn of(program: &Program) -> Self {
         let mut offsets = Vec::with_capacity(program.values.len());
-        let mut size = 0;
+        let mut size = 0_usize;
         for value in &program.values {
+            if value.extent != Extent::Scalar {
+                size = size.next_multiple_of(2);
+            }
             offsets.push(size);
             size += value.extent.length();
         }

@@ -121,12 +121,18 @@ impl Evaluator {
     }
 
     /// The rates of the state; `out` has as many numbers as the state.
+    #[inline]
     pub fn rates(&mut self, point: Point<'_>, out: &mut [f64]) {
-        if let Some(code) = &self.code {
-            code.rates(&mut self.memory, &point, out);
-            return;
+        match &self.code {
+            Some(code) => code.rates(&mut self.memory, &point, out),
+            None => self.interpreted_rates(&point, out),
         }
-        self.compute(Stage::Rates, &point);
+    }
+
+    /// Apart from [`Evaluator::rates`], so that machine code is called without a detour.
+    #[inline(never)]
+    fn interpreted_rates(&mut self, point: &Point<'_>, out: &mut [f64]) {
+        self.compute(Stage::Rates, point);
         let degrees = self.program.degrees_of_freedom();
         let (velocities, accelerations) = out.split_at_mut(degrees);
         velocities.copy_from_slice(&point.state[degrees..2 * degrees]);
