@@ -1,10 +1,10 @@
 //! Elements of values: numbers from registers and memory, and the operations that give each
 //! element from the operands' elements of the same index.
 
-use codegen::program::{Extent, Op, ValueId};
+use codegen::program::{Extent, Op, PARTIAL_SUMS, ValueId};
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Opcode, Type, Value, types};
 
-use crate::loops::{At, Lanes, SHORT};
+use crate::loops::{At, Lanes, SHORT, pairs};
 use crate::stage::Writer;
 
 /// Numbers in memory.
@@ -198,22 +198,63 @@ impl Writer<'_, '_, '_> {
         self.registers.insert(id, registers);
     }
 
-    /// The sum of a vector's elements, from 0 and the first to the last.
+    /// The sum of a vector's elements, in the order that `Op::Total` defines: neighbouring
+    /// partial sums share a register.
     pub fn total(&mut self, vector: ValueId) -> Value {
         let length = self.program.value(vector).extent.length();
-        let zero = self.literal(0.0, Lanes::One);
-        let total = self.fold(length, Some(zero), |writer, total, at| {
-            let element = writer.element(vector, at);
-            let mut total = total?;
-            if at.lanes == Lanes::One {
-                return Some(writer.ins().fadd(total, element));
-            }
-            for lane in 0..2 {
-                let element = writer.ins().extractlane(element, lane);
-                total = writer.ins().fadd(total, element);
-            }
-            Some(total)
+        let first = length.min(PARTIAL_SUMS);
+        let mut partial: Vec<Value> = pairs(0, first).map(|at| self.element(vector, at)).collect();
+        let turns = length / PARTIAL_SUMS - usize::from(length >= PARTIAL_SUMS);
+        partial = self.turns(turns, PARTIAL_SUMS, partial, |writer, moving, partial| {
+            let pairs = (0..PARTIAL_SUMS).step_by(2).zip(partial);
+            pairs
+                .map(|(element, sum)| {
+                    let at = At::two(Some(moving), PARTIAL_SUMS + element);
+                    let element = writer.element(vector, at);
+                    writer.ins().fadd(*sum, element)
+                })
+                .collect()
         });
-        total.unwrap_or(zero)
+        for at in pairs((turns + 1) * PARTIAL_SUMS, length) {
+            let element = self.element(vector, at);
+            let sum = &mut partial[at.element % PARTIAL_SUMS / 2];
+            *sum = match at.lanes {
+                Lanes::Two => self.ins().fadd(*sum, element),
+                Lanes::One => {
+                    let first = self.ins().extractlane(*sum, 0);
+                    let first = self.add(first, element);
+                    self.ins().insertlane(*sum, first, 0)
+                }
+            };
+        }
+        self.sum_of_pairs(&partial, first)
+    }
+
+    /// Neighbours of the first `count` lanes added until one number is left.
+    fn sum_of_pairs(&mut self, registers: &[Value], count: usize) -> Value {
+        let mut sums: Vec<Value> = Vec::new();
+        for (register, at) in registers.iter().zip(pairs(0, count)) {
+            sums.push(match at.lanes {
+                Lanes::One => *register,
+                Lanes::Two => {
+                    let left = self.ins().extractlane(*register, 0);
+                    let right = self.ins().extractlane(*register, 1);
+                    self.ins().fadd(left, right)
+                }
+            });
+        }
+        while sums.len() > 1 {
+            sums = sums
+                .chunks(2)
+                .map(|neighbours| match *neighbours {
+                    [left, right] => self.ins().fadd(left, right),
+                    _ => neighbours[0],
+                })
+                .collect();
+        }
+        match sums.first() {
+            Some(sum) => *sum,
+            None => self.literal(0.0, Lanes::One),
+        }
     }
 }

@@ -43,7 +43,8 @@ impl At {
         }
     }
 
-    fn two(moving: Option<Value>, element: usize) -> Self {
+    /// Elements number `element` and the next.
+    pub fn two(moving: Option<Value>, element: usize) -> Self {
         Self {
             moving,
             element,
@@ -53,7 +54,7 @@ impl At {
 }
 
 /// The elements `from..to` in pairs, a single one last.
-fn pairs(from: usize, to: usize) -> impl Iterator<Item = At> {
+pub fn pairs(from: usize, to: usize) -> impl Iterator<Item = At> {
     (from..to).step_by(2).map(move |element| {
         if element + 1 < to {
             At::two(None, element)
@@ -64,57 +65,47 @@ fn pairs(from: usize, to: usize) -> impl Iterator<Item = At> {
 }
 
 impl Writer<'_, '_, '_> {
-    /// Goes through the elements `0..length` in order, carrying a value.
-    pub fn fold(
-        &mut self,
-        length: usize,
-        first: Option<Value>,
-        mut step: impl FnMut(&mut Self, Option<Value>, At) -> Option<Value>,
-    ) -> Option<Value> {
-        let turns = if length > SHORT { length / TURN } else { 0 };
-        let mut carried = first;
-        if turns > 0 {
-            let zero = self.ins().iconst(types::I64, 0);
-            let bound = (turns * TURN * 8) as i64;
-            carried = self.turns(zero, bound, carried, |writer, moving, mut carried| {
-                for element in (0..TURN).step_by(2) {
-                    carried = step(writer, carried, At::two(Some(moving), element));
-                }
-                carried
-            });
-        }
-        for at in pairs(turns * TURN, length) {
-            carried = step(self, carried, at);
-        }
-        carried
-    }
-
     /// Goes through the elements `0..length`.
     pub fn each(&mut self, length: usize, mut step: impl FnMut(&mut Self, At)) {
-        self.fold(length, None, |writer, _, at| {
-            step(writer, at);
-            None
+        let turns = if length > SHORT { length / TURN } else { 0 };
+        self.turns(turns, TURN, Vec::new(), |writer, moving, _| {
+            for element in (0..TURN).step_by(2) {
+                step(writer, At::two(Some(moving), element));
+            }
+            Vec::new()
         });
+        for at in pairs(turns * TURN, length) {
+            step(self, at);
+        }
     }
 
-    /// A loop of a byte offset from `zero` in steps of a turn up to `bound`, at least once.
-    fn turns(
+    /// A loop of `turns` turns, each of `turn` elements, carrying pairs of numbers; `body`
+    /// takes the bytes passed so far.
+    pub fn turns(
         &mut self,
-        zero: Value,
-        bound: i64,
-        first: Option<Value>,
-        body: impl FnOnce(&mut Self, Value, Option<Value>) -> Option<Value>,
-    ) -> Option<Value> {
+        turns: usize,
+        turn: usize,
+        first: Vec<Value>,
+        body: impl FnOnce(&mut Self, Value, &[Value]) -> Vec<Value>,
+    ) -> Vec<Value> {
+        if turns == 0 {
+            return first;
+        }
         let (head, exit) = (self.builder.create_block(), self.builder.create_block());
         let moving = self.builder.append_block_param(head, types::I64);
-        let carried = first.map(|_| self.builder.append_block_param(head, types::F64));
-        let enter = arguments(zero, first);
+        let kinds = first.iter().map(|_| types::F64X2);
+        let carried: Vec<Value> = kinds
+            .map(|kind| self.builder.append_block_param(head, kind))
+            .collect();
+        let zero = self.index(0);
+        let enter = arguments(zero, &first);
         self.ins().jump(head, &enter);
         self.builder.switch_to_block(head);
-        let carried = body(self, moving, carried);
-        let next = self.ins().iadd_imm_u(moving, (TURN * 8) as i64);
+        let carried = body(self, moving, &carried);
+        let next = self.ins().iadd_imm_u(moving, (turn * 8) as i64);
+        let bound = (turns * turn * 8) as i64;
         let again = self.ins().icmp_imm_u(IntCC::UnsignedLessThan, next, bound);
-        let back = arguments(next, carried);
+        let back = arguments(next, &carried);
         self.ins().brif(again, head, &back, exit, &[]);
         self.builder.switch_to_block(exit);
         carried
@@ -136,7 +127,7 @@ impl Writer<'_, '_, '_> {
                 self.builder.append_block_param(head, kind)
             })
             .collect();
-        let enter: Vec<BlockArg> = [from].iter().chain(first).map(|v| (*v).into()).collect();
+        let enter = arguments(from, first);
         self.ins().jump(head, &enter);
         self.builder.switch_to_block(head);
         let more = self.ins().icmp(IntCC::SignedLessThan, index, to);
@@ -144,7 +135,7 @@ impl Writer<'_, '_, '_> {
         self.builder.switch_to_block(inside);
         let after = body(self, index, &carried);
         let next = self.ins().iadd_imm_u(index, 1);
-        let back: Vec<BlockArg> = [next].iter().chain(&after).map(|v| (*v).into()).collect();
+        let back = arguments(next, &after);
         self.ins().jump(head, &back);
         self.builder.switch_to_block(exit);
         carried
@@ -167,7 +158,7 @@ impl Writer<'_, '_, '_> {
     }
 }
 
-fn arguments(moving: Value, carried: Option<Value>) -> Vec<BlockArg> {
-    let values = [Some(moving), carried];
-    values.into_iter().flatten().map(BlockArg::from).collect()
+fn arguments(index: Value, carried: &[Value]) -> Vec<BlockArg> {
+    let values = [index].into_iter().chain(carried.iter().copied());
+    values.map(BlockArg::from).collect()
 }
