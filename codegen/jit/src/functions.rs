@@ -4,12 +4,15 @@
 //! All of it works on two lanes, where comparisons are masks of bits; a single number
 //! stands in both. A division by 0 or a NaN in a lane leaves no trace elsewhere.
 
+use std::rc::Rc;
+
 use codegen::evaluator::elementary_function;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Value, types};
 use elementary::{Function as Elementary, Kernel, Operation};
 use model_spec::model::Function;
 
+use crate::branches::Branches;
 use crate::loops::Lanes;
 use crate::stage::Writer;
 
@@ -27,7 +30,7 @@ impl Writer<'_, '_, '_> {
     pub fn call(&mut self, function: Function, arguments: &[Value], lanes: Lanes) -> Value {
         self.in_two_lanes(arguments, lanes, |writer, arguments| {
             match (function, elementary_function(function), arguments) {
-                (_, Some(elementary), _) => writer.elementary(elementary, arguments),
+                (_, Some(elementary), _) => writer.elementary(elementary, arguments, lanes),
                 (Function::Deadzone, None, &[p, b]) => writer.deadzone(p, b),
                 (Function::Contact, None, &[p, b]) => writer.contact(p, b),
                 _ => writer.literal(f64::NAN, Lanes::Two),
@@ -38,14 +41,14 @@ impl Writer<'_, '_, '_> {
     /// a^b
     pub fn power(&mut self, arguments: &[Value], lanes: Lanes) -> Value {
         self.in_two_lanes(arguments, lanes, |writer, arguments| {
-            writer.elementary(Elementary::Pow, arguments)
+            writer.elementary(Elementary::Pow, arguments, lanes)
         })
     }
 
     /// The square root where a > 0, NaN elsewhere; one number.
     pub fn positive_root(&mut self, a: Value) -> Value {
         self.in_two_lanes(&[a], Lanes::One, |writer, arguments| {
-            let root = writer.elementary(Elementary::Sqrt, arguments);
+            let root = writer.elementary(Elementary::Sqrt, arguments, Lanes::One);
             writer.where_positive(arguments[0], root)
         })
     }
@@ -141,37 +144,53 @@ impl Writer<'_, '_, '_> {
         ]
     }
 
-    /// An elementary function, operation by operation.
-    fn elementary(&mut self, function: Elementary, arguments: &[Value]) -> Value {
-        let kernel = self.shared.kernels.entry(function);
-        let kernel = kernel.or_insert_with(|| function.kernel().into()).clone();
-        self.kernel(&kernel, arguments)
+    /// An elementary function, operation by operation, of numbers in both lanes; `lanes`
+    /// says whether they are two numbers or one.
+    fn elementary(&mut self, function: Elementary, arguments: &[Value], lanes: Lanes) -> Value {
+        let kernels = &mut self.shared.kernels;
+        let entry = kernels.entry(function).or_insert_with(|| {
+            let kernel = function.kernel();
+            let branches = Branches::of(&kernel);
+            Rc::new((kernel, branches))
+        });
+        let entry = Rc::clone(entry);
+        let (kernel, branches) = &*entry;
+        match lanes {
+            Lanes::One => self.branching_kernel(kernel, branches, arguments),
+            Lanes::Two => self.kernel(kernel, arguments),
+        }
     }
 
     fn kernel(&mut self, kernel: &Kernel, arguments: &[Value]) -> Value {
         let mut values = Vec::with_capacity(kernel.operations.len());
         for operation in &kernel.operations {
-            let value = self.primitive(*operation, &values, arguments);
+            let value = self.primitive(*operation, |place| values[place], arguments);
             values.push(value);
         }
         values[kernel.outputs[0]]
     }
 
-    fn primitive(&mut self, operation: Operation, values: &[Value], inputs: &[Value]) -> Value {
+    /// One operation of a kernel; `value` gives those before it.
+    pub fn primitive(
+        &mut self,
+        operation: Operation,
+        value: impl Fn(usize) -> Value,
+        inputs: &[Value],
+    ) -> Value {
         use Operation as O;
         match operation {
             O::Input(place) => inputs[place],
             O::Constant(value) => self.literal(value, Lanes::Two),
-            O::Add(a, b) => self.add(values[a], values[b]),
-            O::Sub(a, b) => self.ins().fsub(values[a], values[b]),
-            O::Mul(a, b) => self.multiply(values[a], values[b]),
-            O::Div(a, b) => self.ins().fdiv(values[a], values[b]),
-            O::Neg(a) => self.negate(values[a], Lanes::Two),
-            O::Abs(a) => self.magnitude(values[a]),
+            O::Add(a, b) => self.add(value(a), value(b)),
+            O::Sub(a, b) => self.ins().fsub(value(a), value(b)),
+            O::Mul(a, b) => self.multiply(value(a), value(b)),
+            O::Div(a, b) => self.ins().fdiv(value(a), value(b)),
+            O::Neg(a) => self.negate(value(a), Lanes::Two),
+            O::Abs(a) => self.magnitude(value(a)),
             O::CopySign { magnitude, sign } => {
-                let magnitude = self.magnitude(values[magnitude]);
+                let magnitude = self.magnitude(value(magnitude));
                 let mask = self.bits(SIGN);
-                let sign = self.ins().band(values[sign], mask);
+                let sign = self.ins().band(value(sign), mask);
                 self.ins().bor(magnitude, sign)
             }
             O::SelectLess {
@@ -180,8 +199,8 @@ impl Writer<'_, '_, '_> {
                 then,
                 otherwise,
             } => {
-                let mask = self.compare(FloatCC::LessThan, values[left], values[right]);
-                self.ins().bitselect(mask, values[then], values[otherwise])
+                let mask = self.compare(FloatCC::LessThan, value(left), value(right));
+                self.ins().bitselect(mask, value(then), value(otherwise))
             }
             O::SelectEqual {
                 left,
@@ -189,21 +208,21 @@ impl Writer<'_, '_, '_> {
                 then,
                 otherwise,
             } => {
-                let mask = self.compare(FloatCC::Equal, values[left], values[right]);
-                self.ins().bitselect(mask, values[then], values[otherwise])
+                let mask = self.compare(FloatCC::Equal, value(left), value(right));
+                self.ins().bitselect(mask, value(then), value(otherwise))
             }
             O::PowerOfTwo(a) => {
                 let aligner = self.literal(ALIGNER + 1023.0, Lanes::Two);
-                let sum = self.ins().fadd(values[a], aligner);
+                let sum = self.ins().fadd(value(a), aligner);
                 let bits = self.as_bits(sum);
                 let bits = self.ins().ishl_imm_u(bits, 52);
                 self.as_numbers(bits)
             }
-            O::Exponent(a) => self.exponent(values[a]),
+            O::Exponent(a) => self.exponent(value(a)),
             O::Significand(a) => {
                 let mantissa = self.bits(MANTISSA);
                 let one = self.literal(1.0, Lanes::Two);
-                let field = self.ins().band(values[a], mantissa);
+                let field = self.ins().band(value(a), mantissa);
                 self.ins().bor(field, one)
             }
         }

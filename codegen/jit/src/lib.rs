@@ -4,7 +4,8 @@
 //! The pipeline, file by file: `compile` takes a `Program`; `stage` walks the values of
 //! one stage and decides which live in registers and which in memory; `loops` writes loops
 //! over modes; `elements` writes an element of a vector, or two neighbouring ones in one
-//! register; `functions` the elementary functions from their kernels; `matrices` the
+//! register; `functions` the elementary functions from their kernels,
+//! those of one number with the branches of `branches`; `matrices` the
 //! matrix operations; `constants` collects literals; `machine` hands all of it to Cranelift
 //! and holds the code that comes back.
 //!
@@ -16,6 +17,8 @@ use std::sync::Arc;
 use codegen::evaluator::{Evaluator, MachineCode};
 use codegen::program::Program;
 
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod branches;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod constants;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]

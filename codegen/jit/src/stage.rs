@@ -15,6 +15,7 @@ use cranelift_codegen::ir::Value;
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder};
 use elementary::{Function as Elementary, Kernel};
 
+use crate::branches::Branches;
 use crate::constants::Constants;
 use crate::elements::Array;
 use crate::loops::{At, Lanes, SHORT};
@@ -36,8 +37,8 @@ pub struct Shared<'a> {
     pub places: &'a Places,
     /// Literals so far.
     pub constants: Constants,
-    /// Kernels recorded so far.
-    pub kernels: HashMap<Elementary, Rc<Kernel>>,
+    /// Kernels recorded so far, and where they branch.
+    pub kernels: HashMap<Elementary, Rc<(Kernel, Branches)>>,
 }
 
 impl Shared<'_> {
