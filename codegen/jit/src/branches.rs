@@ -118,15 +118,15 @@ impl Choice {
 }
 
 /// A kernel being written.
-pub struct Written<'k> {
+struct Written<'k> {
     /// Its operations.
-    pub kernel: &'k Kernel,
+    kernel: &'k Kernel,
     /// Where it branches.
-    pub branches: &'k Branches,
+    branches: &'k Branches,
     /// Its arguments, in both lanes.
-    pub arguments: &'k [Value],
-    /// Values by now.
-    pub values: Vec<Option<Value>>,
+    arguments: &'k [Value],
+    /// Values by now; the first argument where there is none yet.
+    values: Vec<Value>,
 }
 
 impl Writer<'_, '_, '_> {
@@ -141,7 +141,7 @@ impl Writer<'_, '_, '_> {
             kernel,
             branches,
             arguments,
-            values: vec![None; kernel.operations.len()],
+            values: vec![arguments[0]; kernel.operations.len()],
         };
         self.owned_by(&mut written, None);
         self.known(&written, kernel.outputs[0])
@@ -159,29 +159,23 @@ impl Writer<'_, '_, '_> {
             let value = match Choice::of(operation) {
                 Some(choice) if written.branches.at(place) => self.branch(written, place, &choice),
                 _ => {
-                    let mut known = |operand| self.known(written, operand);
-                    let mut operands = Vec::new();
                     operation.map_operands(|operand| {
-                        operands.push((operand, known(operand)));
+                        written.values[operand] = self.known(written, operand);
                         operand
                     });
-                    let value = |place: usize| {
-                        let found = operands.iter().find(|(operand, _)| *operand == place);
-                        found.map_or(operands[0].1, |(_, value)| *value)
-                    };
-                    self.primitive(operation, value, written.arguments)
+                    let values = &written.values;
+                    self.primitive(operation, |operand| values[operand], written.arguments)
                 }
             };
-            written.values[place] = Some(value);
+            written.values[place] = value;
         }
     }
 
     /// A value by now. Literals are read anew: one read in an arm is not known outside.
     fn known(&mut self, written: &Written<'_>, place: usize) -> Value {
-        match (written.kernel.operations[place], written.values[place]) {
-            (Operation::Constant(number), _) => self.literal(number, Lanes::Two),
-            (_, Some(value)) => value,
-            (_, None) => unreachable!("operations come after their operands"),
+        match written.kernel.operations[place] {
+            Operation::Constant(number) => self.literal(number, Lanes::Two),
+            _ => written.values[place],
         }
     }
 
