@@ -9,8 +9,11 @@ use codegen::equations::derive;
 use codegen::evaluator::{Evaluator, Point};
 use codegen::lower::lower;
 use codegen::program::{Op, Program};
-use eomgen_tests::models::{project, shipped};
+use eomgen_tests::models::{load, project, shipped};
 use model_spec::model::Model;
+use sim::derived::Driven;
+use sim::record::HeldInputs;
+use sim::solve::{Settings, simulate};
 use sim::validate::random::Random;
 
 /// Points compared for each program and set of parameters.
@@ -277,6 +280,27 @@ fn features_give_the_same_bits() {
     assert!(!paths.is_empty(), "no feature");
     paths.sort();
     compare_all(&paths, &[1, 3, 9, 13]);
+}
+
+#[test]
+fn the_general_solver_takes_the_same_steps_either_way() {
+    for name in ["double_pendulum", "furuta_pendulum", "planetary_arm"] {
+        let model = load(name);
+        let program = program(&model, 4).expect("equations of motion");
+        let orders: Vec<usize> = program.fields.iter().map(|field| field.order).collect();
+        let initial = model.initial_state(&orders).expect("an initial state");
+        let samples: Vec<f64> = (0..=20).map(|k| f64::from(k) * 1e-3).collect();
+        let inputs = HeldInputs::zero(program.inputs.len());
+        let evaluators = [Evaluator::new(program.clone()), jit::evaluator(program)];
+        let [interpreted, compiled] = evaluators.map(|evaluator| {
+            let system = Driven::new(evaluator, inputs.clone()).expect("a positive mass matrix");
+            let settings = Settings::default();
+            let span = (0.0, 0.02);
+            simulate(&system, &initial, span, &samples, &settings, &mut |_| {}).expect("a motion")
+        });
+        assert_eq!(interpreted.states, compiled.states, "{name}");
+        assert_eq!(interpreted.last, compiled.last, "{name}");
+    }
 }
 
 /// A sum over modes of an integral that needs quadrature, which no other specification has.
