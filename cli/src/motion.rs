@@ -68,7 +68,8 @@ impl Run {
             std::iter::repeat_n(guard.formula.clone(), count)
         });
         let guards = guards.collect();
-        let system = Driven::new(variant.evaluator(), inputs.clone()).map_err(Problem::input)?;
+        let system =
+            Driven::new(jit::evaluator(program.clone()), inputs.clone()).map_err(Problem::input)?;
         Ok(Self {
             system,
             inputs,

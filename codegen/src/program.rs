@@ -355,6 +355,11 @@ impl Program {
         &self.values[id.0]
     }
 
+    /// Every value, operands first.
+    pub fn ids(&self) -> impl Iterator<Item = ValueId> + use<> {
+        (0..self.values.len()).map(ValueId)
+    }
+
     /// Degrees of freedom: coordinates and modes.
     pub fn degrees_of_freedom(&self) -> usize {
         self.coordinates.len() + self.fields.iter().map(|f| f.order).sum::<usize>()

@@ -1,5 +1,5 @@
 //! The checked-in variants are what the generator emits, and compute bit for bit what the
-//! evaluator computes.
+//! evaluator computes, interpreted and as machine code.
 
 use codegen::evaluator::{Evaluator, Point};
 use codegen::lower::lower;
@@ -86,6 +86,7 @@ fn same_bits(
 ) {
     let model = load("planetary_arm");
     let mut evaluator = variant(&model, order).evaluator;
+    let mut compiled = jit::evaluator(evaluator.program().clone());
     assert_eq!(state_names, evaluator.program().state_names());
     let named = evaluator
         .program()
@@ -100,6 +101,7 @@ fn same_bits(
             inputs: &sample.inputs,
         };
         let expected = evaluated(&mut evaluator, point);
+        let compiled = evaluated(&mut compiled, point);
         let found = emitted(sample.time, &sample.state);
         assert!(
             expected.iter().all(|number| number.is_finite()),
@@ -110,6 +112,11 @@ fn same_bits(
             bits(&expected),
             bits(&found),
             "{sample:?}: {expected:?} and {found:?}"
+        );
+        assert_eq!(
+            bits(&expected),
+            bits(&compiled),
+            "{sample:?}: {expected:?} and, as machine code, {compiled:?}"
         );
     }
 }

@@ -119,7 +119,13 @@ fn family(options: &Sweep, grid: &Grid, set: &[(&str, f64)]) -> Outcome<Family> 
     warn_of_inputs(&first);
     let orders = orders(&first, options.order.as_deref())?;
     let variant = derive_variant(first, &orders)?;
-    Ok(Family::new(variant.model, variant.program))
+    let family = Family::new(variant.model, variant.program);
+    // Exact propagation calls no right-hand side.
+    let code = match family.exact() {
+        Ok(_) => None,
+        Err(_) => jit::code(family.program()),
+    };
+    Ok(family.with_code(code))
 }
 
 fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Outcome<Model> {

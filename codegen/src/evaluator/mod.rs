@@ -1,11 +1,16 @@
 //! Runs a program at once, with no compiler: every value has a place in one block of
 //! memory, every stage is a list of steps over it. Slower than emitted code, the same bits.
+//! Where somebody supplies machine code for the stages, that runs instead.
 
+mod code;
 mod functions;
 mod matrices;
 mod step;
 
+use std::sync::Arc;
+
 use crate::program::{Extent, Op, Program, ValueId};
+pub use code::{MachineCode, Stage};
 pub use functions::{call, elementary_function};
 use step::step;
 
@@ -13,13 +18,20 @@ use step::step;
 pub struct Evaluator {
     program: Program,
     memory: Vec<f64>,
-    offsets: Vec<usize>,
+    places: Places,
+    /// The values that are parameters, each with its place among these.
+    parameters: Vec<(ValueId, usize)>,
     prepare: Vec<ValueId>,
-    rates: Vec<ValueId>,
-    observables: Vec<ValueId>,
-    guards: Vec<ValueId>,
-    mass: Vec<ValueId>,
-    forces: Vec<ValueId>,
+    /// The steps of each stage, in the order of [`Stage::ALL`].
+    stages: [Vec<ValueId>; 5],
+    code: Option<Arc<dyn MachineCode>>,
+}
+
+/// Where the values of a program stand in one block of memory.
+#[derive(Clone, Debug)]
+pub struct Places {
+    offsets: Vec<usize>,
+    size: usize,
 }
 
 /// What a call is made at.
@@ -36,37 +48,37 @@ pub struct Point<'a> {
 impl Evaluator {
     /// Takes a program and prepares it with the specification's parameters.
     pub fn new(program: Program) -> Self {
-        let mut offsets = Vec::with_capacity(program.values.len());
-        let mut size = 0;
-        for value in &program.values {
-            offsets.push(size);
-            size += value.extent.length();
-        }
-        let observables = program.per_call(&program.observable_values);
-        let guard_values: Vec<ValueId> = program.guards.iter().map(|g| g.value).collect();
-        let mut mass_values: Vec<ValueId> =
-            program.mass.scalars.iter().flatten().copied().collect();
-        mass_values.extend(program.mass.coupling.iter().flatten());
-        mass_values.extend(program.mass.modal.iter().flatten().flatten());
-        let mut force_values = program.velocity_terms.all();
-        force_values.extend(program.forces.all());
-        let prepare = (0..program.values.len())
-            .map(ValueId)
+        let prepare = program
+            .ids()
             .filter(|id| program.value(*id).prepared)
             .collect();
+        let parameters = program
+            .ids()
+            .filter_map(|id| match program.value(id).op {
+                Op::Parameter(place) => Some((id, place)),
+                _ => None,
+            })
+            .collect();
+        let places = Places::of(&program);
         let mut evaluator = Self {
-            memory: vec![0.0; size],
-            offsets,
+            memory: vec![0.0; places.size()],
+            places,
+            parameters,
             prepare,
-            rates: program.per_call(&program.accelerations.all()),
-            observables,
-            guards: program.per_call(&guard_values),
-            mass: program.per_call(&mass_values),
-            forces: program.per_call(&force_values),
+            stages: Stage::ALL.map(|stage| program.per_call(&stage.roots(&program))),
+            code: None,
             program,
         };
         let defaults = evaluator.program.default_parameters();
         evaluator.prepare(&defaults);
+        evaluator
+    }
+
+    /// The same, computed by machine code made from this program.
+    pub fn with_code(program: Program, code: Arc<dyn MachineCode>) -> Self {
+        let mut evaluator = Self::new(program);
+        evaluator.memory.extend_from_slice(code.room());
+        evaluator.code = Some(code);
         evaluator
     }
 
@@ -79,14 +91,21 @@ impl Evaluator {
     ///
     /// `parameters`: the independent parameters in SI, in the order of the program.
     pub fn prepare(&mut self, parameters: &[f64]) {
-        for index in 0..self.prepare.len() {
-            let id = self.prepare[index];
-            if let Op::Parameter(place) = self.program.values[id.0].op {
-                self.memory[self.offsets[id.0]] =
-                    parameters.get(place).copied().unwrap_or(f64::NAN);
-            } else {
-                self.step(id, &NOWHERE);
-            }
+        for (id, place) in &self.parameters {
+            let value = parameters.get(*place).copied().unwrap_or(f64::NAN);
+            self.memory[self.places.offset(*id)] = value;
+        }
+        if let Some(code) = &self.code {
+            code.prepare(&mut self.memory);
+        } else {
+            let steps = &self.prepare;
+            run(
+                &mut self.memory,
+                &self.places,
+                &self.program,
+                steps,
+                &NOWHERE,
+            );
         }
     }
 
@@ -102,14 +121,18 @@ impl Evaluator {
     }
 
     /// The rates of the state; `out` has as many numbers as the state.
+    #[inline]
     pub fn rates(&mut self, point: Point<'_>, out: &mut [f64]) {
-        run(
-            &mut self.memory,
-            &self.offsets,
-            &self.program,
-            &self.rates,
-            &point,
-        );
+        match &self.code {
+            Some(code) => code.rates(&mut self.memory, &point, out),
+            None => self.interpreted_rates(&point, out),
+        }
+    }
+
+    /// Apart from [`Evaluator::rates`], so that machine code is called without a detour.
+    #[inline(never)]
+    fn interpreted_rates(&mut self, point: &Point<'_>, out: &mut [f64]) {
+        self.compute(Stage::Rates, point);
         let degrees = self.program.degrees_of_freedom();
         let (velocities, accelerations) = out.split_at_mut(degrees);
         velocities.copy_from_slice(&point.state[degrees..2 * degrees]);
@@ -122,15 +145,9 @@ impl Evaluator {
 
     /// The observables, `energy` and `power` last.
     pub fn observables(&mut self, point: Point<'_>, out: &mut [f64]) {
-        run(
-            &mut self.memory,
-            &self.offsets,
-            &self.program,
-            &self.observables,
-            &point,
-        );
+        self.compute(Stage::Observables, &point);
         for (value, id) in out.iter_mut().zip(&self.program.observable_values) {
-            *value = self.memory[self.offsets[id.0]];
+            *value = self.memory[self.places.offset(*id)];
         }
     }
 
@@ -146,13 +163,7 @@ impl Evaluator {
 
     /// The values of the switching surfaces; `out` has [`Evaluator::guard_count`] numbers.
     pub fn guards(&mut self, point: Point<'_>, out: &mut [f64]) {
-        run(
-            &mut self.memory,
-            &self.offsets,
-            &self.program,
-            &self.guards,
-            &point,
-        );
+        self.compute(Stage::Guards, &point);
         let mut place = 0;
         for guard in &self.program.guards {
             let values = self.slice(guard.value);
@@ -163,13 +174,7 @@ impl Evaluator {
 
     /// The mass matrix, row by row.
     pub fn mass_matrix(&mut self, point: Point<'_>, out: &mut [f64]) {
-        run(
-            &mut self.memory,
-            &self.offsets,
-            &self.program,
-            &self.mass,
-            &point,
-        );
+        self.compute(Stage::Mass, &point);
         let size = self.program.degrees_of_freedom();
         let scalars = self.program.coordinates.len();
         out.fill(0.0);
@@ -204,13 +209,7 @@ impl Evaluator {
 
     /// Velocity terms c and generalised forces f of M q'' + c = f.
     pub fn bias_and_forces(&mut self, point: Point<'_>, bias: &mut [f64], forces: &mut [f64]) {
-        run(
-            &mut self.memory,
-            &self.offsets,
-            &self.program,
-            &self.forces,
-            &point,
-        );
+        self.compute(Stage::Forces, &point);
         self.copy_rows(
             &self.program.velocity_terms.scalars,
             &self.program.velocity_terms.modal,
@@ -223,22 +222,23 @@ impl Evaluator {
         );
     }
 
-    /// The numbers of a value as last computed.
+    /// The numbers of a value as last computed; machine code leaves those that are
+    /// prepared and the [roots](Stage::roots) of the last stage but the rates.
     pub fn slice(&self, id: ValueId) -> &[f64] {
-        let start = self.offsets[id.0];
+        let start = self.places.offset(id);
         &self.memory[start..start + self.program.values[id.0].extent.length()]
     }
 
     fn element(&self, id: ValueId, index: usize) -> f64 {
         match self.program.values[id.0].extent {
-            Extent::Scalar => self.memory[self.offsets[id.0]],
-            _ => self.memory[self.offsets[id.0] + index],
+            Extent::Scalar => self.memory[self.places.offset(id)],
+            _ => self.memory[self.places.offset(id) + index],
         }
     }
 
     fn copy_rows(&self, scalars: &[ValueId], modal: &[ValueId], out: &mut [f64]) {
         for (place, id) in scalars.iter().enumerate() {
-            out[place] = self.memory[self.offsets[id.0]];
+            out[place] = self.memory[self.places.offset(*id)];
         }
         for (field, id) in modal.iter().enumerate() {
             let offset = self.program.mode_offset(field);
@@ -248,8 +248,13 @@ impl Evaluator {
         }
     }
 
-    fn step(&mut self, id: ValueId, point: &Point<'_>) {
-        step(&mut self.memory, &self.offsets, &self.program, id, point);
+    fn compute(&mut self, stage: Stage, point: &Point<'_>) {
+        if let Some(code) = &self.code {
+            code.compute(stage, &mut self.memory, point);
+        } else {
+            let steps = &self.stages[stage as usize];
+            run(&mut self.memory, &self.places, &self.program, steps, point);
+        }
     }
 }
 
@@ -261,12 +266,12 @@ const NOWHERE: Point<'static> = Point {
 
 fn run(
     memory: &mut [f64],
-    offsets: &[usize],
+    places: &Places,
     program: &Program,
     steps: &[ValueId],
     point: &Point<'_>,
 ) {
     for id in steps {
-        step(memory, offsets, program, *id, point);
+        step(memory, places, program, *id, point);
     }
 }

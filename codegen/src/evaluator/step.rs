@@ -2,21 +2,21 @@
 
 use elementary::Function as Elementary;
 
-use super::Point;
 use super::functions::{call, pivot_reciprocal};
 use super::matrices::matrix_step;
+use super::{Places, Point};
 use crate::program::{Extent, Op, PARTIAL_SUMS, Program, ValueId};
 
 /// Read access to operands while a value is computed: operands stand before it.
 pub(super) struct Operands<'a> {
     memory: &'a [f64],
-    offsets: &'a [usize],
+    places: &'a Places,
     program: &'a Program,
 }
 
 impl<'a> Operands<'a> {
     pub(super) fn slice(&self, id: ValueId) -> &'a [f64] {
-        let start = self.offsets[id.0];
+        let start = self.places.offset(id);
         &self.memory[start..start + self.program.values[id.0].extent.length()]
     }
 
@@ -38,17 +38,17 @@ impl<'a> Operands<'a> {
 /// Computes the value `id` into its place in `memory`.
 pub(super) fn step(
     memory: &mut [f64],
-    offsets: &[usize],
+    places: &Places,
     program: &Program,
     id: ValueId,
     point: &Point<'_>,
 ) {
     let value = &program.values[id.0];
-    let (before, after) = memory.split_at_mut(offsets[id.0]);
+    let (before, after) = memory.split_at_mut(places.offset(id));
     let out = &mut after[..value.extent.length()];
     let operands = Operands {
         memory: before,
-        offsets,
+        places,
         program,
     };
     let degrees = program.degrees_of_freedom();

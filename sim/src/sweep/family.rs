@@ -2,8 +2,9 @@
 //! The equations are derived once; parameters are numbers in their prepared stage.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
-use codegen::evaluator::Evaluator;
+use codegen::evaluator::{Evaluator, MachineCode};
 use codegen::program::Program;
 use model_spec::model::Model;
 use model_spec::unit::Unit;
@@ -19,6 +20,7 @@ use crate::solve::SolveError;
 pub struct Family {
     model: Model,
     program: Program,
+    code: Option<Arc<dyn MachineCode>>,
     orders: Vec<usize>,
     exact: Result<PiecewiseLinear, ExactError>,
 }
@@ -45,8 +47,14 @@ impl Family {
             exact: PiecewiseLinear::of(&model, &orders),
             model,
             program,
+            code: None,
             orders,
         }
+    }
+
+    /// The same, its members computed by machine code made from its program.
+    pub fn with_code(self, code: Option<Arc<dyn MachineCode>>) -> Self {
+        Self { code, ..self }
     }
 
     /// The model.
@@ -87,7 +95,11 @@ impl Family {
     /// # Errors
     /// [`Failure::Parameters`] where the mass matrix is not positive definite.
     pub fn driven(&self, member: &Member) -> Result<Driven, Failure> {
-        let mut evaluator = Evaluator::new(self.program.clone());
+        let program = self.program.clone();
+        let mut evaluator = match &self.code {
+            Some(code) => Evaluator::with_code(program, code.clone()),
+            None => Evaluator::new(program),
+        };
         evaluator.prepare(&member.parameters);
         Driven::new(evaluator, self.inputs()).map_err(|_| Failure::Parameters)
     }

@@ -1,0 +1,68 @@
+//! One right-hand side of the arm as emitted Rust, as machine code made in the process and
+//! interpreted; and the time from a program to an evaluator with machine code.
+
+use std::hint::black_box;
+use std::path::Path;
+
+use codegen::equations::derive;
+use codegen::evaluator::{Evaluator, Point};
+use codegen::lower::lower;
+use codegen::program::Program;
+use criterion::{Criterion, criterion_group, criterion_main};
+use eomgen_benches::{state, variants};
+
+fn program(order: usize) -> Program {
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm.toml");
+    let Ok(checked) = model_spec::load(&path) else {
+        panic!("the shipped specification is in order");
+    };
+    let model = checked.model;
+    let Ok(values) = model.parameter_values() else {
+        panic!("its parameters have values");
+    };
+    let equations = derive(&model, &[order]).expect("the arm has equations of motion");
+    lower(&model, &equations, &values)
+}
+
+/// Results are looked at where they lie: a copy of them would be timed with the call.
+macro_rules! compare {
+    ($criterion:ident, $($order:literal $module:ident),*) => {$({
+        use variants::$module as arm;
+        let mut group = $criterion.benchmark_group(concat!("machine_code_order_", $order));
+        let state = state::<{ arm::STATES }>();
+        let inputs = arm::Inputs::default();
+        let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
+        group.bench_function("generated", |bencher| {
+            bencher.iter(|| {
+                let out = arm::rates(black_box(0.3), black_box(&state), &inputs, black_box(&coefficients));
+                black_box(&out);
+            })
+        });
+        let program = program($order);
+        let point = Point { t: 0.3, state: &state, inputs: &[] };
+        for (name, mut evaluator) in [
+            ("machine_code", jit::evaluator(program.clone())),
+            ("interpreted", Evaluator::new(program.clone())),
+        ] {
+            group.bench_function(name, |bencher| {
+                let mut out = [0.0; arm::STATES];
+                bencher.iter(|| {
+                    evaluator.rates(black_box(point), &mut out);
+                    black_box(&out);
+                })
+            });
+        }
+        group.bench_function("start", |bencher| {
+            bencher.iter(|| jit::evaluator(black_box(program.clone())))
+        });
+        group.finish();
+    })*};
+}
+
+fn machine_code(criterion: &mut Criterion) {
+    compare!(criterion, 4 order_4, 16 order_16, 64 order_64);
+}
+
+criterion_group!(benches, machine_code);
+criterion_main!(benches);

@@ -1,0 +1,260 @@
+//! Elements of values: numbers from registers and memory, and the operations that give each
+//! element from the operands' elements of the same index.
+
+use codegen::program::{Extent, Op, PARTIAL_SUMS, ValueId};
+use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Opcode, Type, Value, types};
+
+use crate::loops::{At, Lanes, SHORT, pairs};
+use crate::stage::Writer;
+
+/// Numbers in memory.
+#[derive(Clone, Copy, Debug)]
+pub struct Array {
+    /// Where they are counted from.
+    pub base: Value,
+    /// Which number from there is the first.
+    pub start: usize,
+    /// Whether nothing in this function writes them.
+    pub constant: bool,
+}
+
+impl Lanes {
+    /// The type of a register's content.
+    pub fn kind(self) -> Type {
+        match self {
+            Self::One => types::F64,
+            Self::Two => types::F64X2,
+        }
+    }
+}
+
+/// How memory is accessed: every address lies within what the caller lends.
+fn flags(lanes: Lanes, constant: bool) -> MemFlagsData {
+    let flags = MemFlagsData::new().with_notrap();
+    // Two lanes need not begin at a multiple of their size.
+    let flags = match lanes {
+        Lanes::One => flags.with_aligned(),
+        Lanes::Two => flags,
+    };
+    if constant {
+        flags.with_readonly().with_can_move()
+    } else {
+        flags
+    }
+}
+
+impl Writer<'_, '_, '_> {
+    /// Reads numbers.
+    pub fn load(&mut self, array: Array, at: At) -> Value {
+        let address = self.moved(array.base, at);
+        let offset = self.bytes(array.start + at.element);
+        let flags = flags(at.lanes, array.constant);
+        self.ins().load(at.lanes.kind(), flags, address, offset)
+    }
+
+    /// Writes numbers.
+    pub fn store(&mut self, value: Value, array: Array, at: At) {
+        let address = self.moved(array.base, at);
+        let offset = self.bytes(array.start + at.element);
+        self.ins()
+            .store(flags(at.lanes, false), value, address, offset);
+    }
+
+    fn bytes(&self, numbers: usize) -> i32 {
+        // `compile` refuses programs whose memory would not fit.
+        (numbers * 8) as i32
+    }
+
+    fn moved(&mut self, base: Value, at: At) -> Value {
+        match at.moving {
+            Some(moving) => self.ins().iadd(base, moving),
+            None => base,
+        }
+    }
+
+    /// A literal in every lane.
+    pub fn literal(&mut self, value: f64, lanes: Lanes) -> Value {
+        if lanes == Lanes::One && value.to_bits() == 0 {
+            return self.ins().f64const(0.0);
+        }
+        let array = Array {
+            base: self.call.memory,
+            start: self.shared.first_constant() + self.shared.constants.place(value),
+            constant: true,
+        };
+        let at = At {
+            lanes,
+            ..At::one(0)
+        };
+        self.load(array, at)
+    }
+
+    /// A number known by now.
+    pub fn number(&self, id: ValueId, lanes: Lanes) -> Value {
+        let numbers = match lanes {
+            Lanes::One => &self.numbers,
+            Lanes::Two => &self.broadcast,
+        };
+        numbers[&id]
+    }
+
+    /// Makes a number known from here on, in one lane and in both.
+    pub fn bind(&mut self, id: ValueId, value: Value) {
+        let both = self.ins().splat(types::F64X2, value);
+        self.numbers.insert(id, value);
+        self.broadcast.insert(id, both);
+    }
+
+    /// An element of a value; a scalar stands for every element.
+    pub fn element(&mut self, id: ValueId, at: At) -> Value {
+        if self.program.value(id).extent == Extent::Scalar {
+            return self.number(id, at.lanes);
+        }
+        if let Some(registers) = self.registers.get(&id) {
+            return registers[at.element / 2];
+        }
+        match self.array(id) {
+            Some(array) => self.load(array, at),
+            None => self.computed(id, at),
+        }
+    }
+
+    /// An element from those of the operands.
+    pub fn computed(&mut self, id: ValueId, at: At) -> Value {
+        let op = self.program.value(id).op.clone();
+        let operands: Vec<Value> = op
+            .operands()
+            .into_iter()
+            .map(|operand| self.element(operand, at))
+            .collect();
+        self.operation(&op, &operands, at.lanes)
+    }
+
+    fn operation(&mut self, op: &Op, operands: &[Value], lanes: Lanes) -> Value {
+        match (op, operands) {
+            (Op::Negate(_), &[a]) => self.negate(a, lanes),
+            (Op::Add(..), &[a, b]) => self.add(a, b),
+            (Op::Subtract(..), &[a, b]) => self.ins().fsub(a, b),
+            (Op::Multiply(..), &[a, b]) => self.multiply(a, b),
+            (Op::Divide(..), &[a, b]) => self.ins().fdiv(a, b),
+            (Op::Power(..), _) => self.power(operands, lanes),
+            (Op::Call(function, _), _) => self.call(*function, operands, lanes),
+            (Op::Select { .. }, _) => self.select(operands, lanes),
+            (Op::PivotReciprocal(_), &[a]) => self.pivot_reciprocal(a, lanes),
+            // What is left are leaves and matrix operations, which `stage` binds.
+            _ => self.literal(f64::NAN, lanes),
+        }
+    }
+
+    /// a + b
+    pub fn add(&mut self, a: Value, b: Value) -> Value {
+        let (a, b) = self.load_last(a, b);
+        self.ins().fadd(a, b)
+    }
+
+    /// a b
+    pub fn multiply(&mut self, a: Value, b: Value) -> Value {
+        let (a, b) = self.load_last(a, b);
+        self.ins().fmul(a, b)
+    }
+
+    /// The same two, one that is read from memory last: it is then read where it is used,
+    /// and no register holds it while the other is computed.
+    fn load_last(&self, a: Value, b: Value) -> (Value, Value) {
+        let graph = &self.builder.func.dfg;
+        let is_load = |value| {
+            let definition = graph.value_def(value).inst();
+            definition.is_some_and(|inst| graph.insts[inst].opcode() == Opcode::Load)
+        };
+        if is_load(a) { (b, a) } else { (a, b) }
+    }
+
+    /// The sign bit flipped.
+    pub fn negate(&mut self, a: Value, lanes: Lanes) -> Value {
+        match lanes {
+            Lanes::One => self.ins().fneg(a),
+            Lanes::Two => {
+                let sign = self.literal(-0.0, lanes);
+                self.ins().bxor(a, sign)
+            }
+        }
+    }
+
+    /// Computes a vector into memory.
+    pub fn fill(&mut self, id: ValueId, array: Array, length: usize) {
+        self.each(length, |writer, at| {
+            let value = writer.computed(id, at);
+            writer.store(value, array, at);
+        });
+    }
+
+    /// Computes a vector of at most [`SHORT`] elements into registers.
+    pub fn keep(&mut self, id: ValueId, length: usize) {
+        debug_assert!(length <= SHORT);
+        let mut registers = Vec::new();
+        self.each(length, |writer, at| {
+            registers.push(writer.computed(id, at));
+        });
+        self.registers.insert(id, registers);
+    }
+
+    /// The sum of a vector's elements, in the order that `Op::Total` defines: neighbouring
+    /// partial sums share a register.
+    pub fn total(&mut self, vector: ValueId) -> Value {
+        let length = self.program.value(vector).extent.length();
+        let first = length.min(PARTIAL_SUMS);
+        let mut partial: Vec<Value> = pairs(0, first).map(|at| self.element(vector, at)).collect();
+        let turns = length / PARTIAL_SUMS - usize::from(length >= PARTIAL_SUMS);
+        partial = self.turns(turns, PARTIAL_SUMS, partial, |writer, moving, partial| {
+            let pairs = (0..PARTIAL_SUMS).step_by(2).zip(partial);
+            pairs
+                .map(|(element, sum)| {
+                    let at = At::two(Some(moving), PARTIAL_SUMS + element);
+                    let element = writer.element(vector, at);
+                    writer.ins().fadd(*sum, element)
+                })
+                .collect()
+        });
+        for at in pairs((turns + 1) * PARTIAL_SUMS, length) {
+            let element = self.element(vector, at);
+            let sum = &mut partial[at.element % PARTIAL_SUMS / 2];
+            *sum = match at.lanes {
+                Lanes::Two => self.ins().fadd(*sum, element),
+                Lanes::One => {
+                    let first = self.ins().extractlane(*sum, 0);
+                    let first = self.add(first, element);
+                    self.ins().insertlane(*sum, first, 0)
+                }
+            };
+        }
+        self.sum_of_pairs(&partial, first)
+    }
+
+    /// Neighbours of the first `count` lanes added until one number is left.
+    fn sum_of_pairs(&mut self, registers: &[Value], count: usize) -> Value {
+        let mut sums: Vec<Value> = Vec::new();
+        for (register, at) in registers.iter().zip(pairs(0, count)) {
+            sums.push(match at.lanes {
+                Lanes::One => *register,
+                Lanes::Two => {
+                    let left = self.ins().extractlane(*register, 0);
+                    let right = self.ins().extractlane(*register, 1);
+                    self.ins().fadd(left, right)
+                }
+            });
+        }
+        while sums.len() > 1 {
+            sums = sums
+                .chunks(2)
+                .map(|neighbours| match *neighbours {
+                    [left, right] => self.ins().fadd(left, right),
+                    _ => neighbours[0],
+                })
+                .collect();
+        }
+        match sums.first() {
+            Some(sum) => *sum,
+            None => self.literal(0.0, Lanes::One),
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! Functions of numbers: elementary functions from their kernels, the laws of meshes and
+//! selections, without a branch.
+//!
+//! All of it works on two lanes, where comparisons are masks of bits; a single number
+//! stands in both. A division by 0 or a NaN in a lane leaves no trace elsewhere.
+
+use std::rc::Rc;
+
+use codegen::evaluator::elementary_function;
+use cranelift_codegen::ir::condcodes::FloatCC;
+use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Value, types};
+use elementary::{Function as Elementary, Kernel, Operation};
+use model_spec::model::Function;
+
+use crate::branches::Branches;
+use crate::loops::Lanes;
+use crate::stage::Writer;
+
+/// The sign bit.
+const SIGN: u64 = 1 << 63;
+/// The mantissa field.
+const MANTISSA: u64 = (1 << 52) - 1;
+/// The exponent field, moved to the right.
+const EXPONENT: u64 = 0x7ff;
+/// 2^52: a whole number k below it, in its mantissa, makes 2^52 + k.
+const ALIGNER: f64 = (1_u64 << 52) as f64;
+
+impl Writer<'_, '_, '_> {
+    /// A function of the expression language.
+    pub fn call(&mut self, function: Function, arguments: &[Value], lanes: Lanes) -> Value {
+        self.in_two_lanes(arguments, lanes, |writer, arguments| {
+            match (function, elementary_function(function), arguments) {
+                (_, Some(elementary), _) => writer.elementary(elementary, arguments, lanes),
+                (Function::Deadzone, None, &[p, b]) => writer.deadzone(p, b),
+                (Function::Contact, None, &[p, b]) => writer.contact(p, b),
+                _ => writer.literal(f64::NAN, Lanes::Two),
+            }
+        })
+    }
+
+    /// a^b
+    pub fn power(&mut self, arguments: &[Value], lanes: Lanes) -> Value {
+        self.in_two_lanes(arguments, lanes, |writer, arguments| {
+            writer.elementary(Elementary::Pow, arguments, lanes)
+        })
+    }
+
+    /// The square root where a > 0, NaN elsewhere; one number.
+    pub fn positive_root(&mut self, a: Value) -> Value {
+        self.in_two_lanes(&[a], Lanes::One, |writer, arguments| {
+            let root = writer.elementary(Elementary::Sqrt, arguments, Lanes::One);
+            writer.where_positive(arguments[0], root)
+        })
+    }
+
+    /// 1/a where a > 0, NaN elsewhere.
+    pub fn pivot_reciprocal(&mut self, a: Value, lanes: Lanes) -> Value {
+        self.in_two_lanes(&[a], lanes, |writer, arguments| {
+            let one = writer.literal(1.0, Lanes::Two);
+            let reciprocal = writer.ins().fdiv(one, arguments[0]);
+            writer.where_positive(arguments[0], reciprocal)
+        })
+    }
+
+    /// `if a > b { then } else { otherwise }`
+    pub fn select(&mut self, operands: &[Value], lanes: Lanes) -> Value {
+        self.in_two_lanes(operands, lanes, |writer, operands| match *operands {
+            [a, b, then, otherwise] => {
+                let mask = writer.compare(FloatCC::GreaterThan, a, b);
+                writer.ins().bitselect(mask, then, otherwise)
+            }
+            _ => writer.literal(f64::NAN, Lanes::Two),
+        })
+    }
+
+    fn where_positive(&mut self, a: Value, value: Value) -> Value {
+        let zero = self.literal(0.0, Lanes::Two);
+        let nan = self.literal(f64::NAN, Lanes::Two);
+        let mask = self.compare(FloatCC::GreaterThan, a, zero);
+        self.ins().bitselect(mask, value, nan)
+    }
+
+    /// Runs `body` on two lanes; a single number is in both.
+    fn in_two_lanes(
+        &mut self,
+        arguments: &[Value],
+        lanes: Lanes,
+        body: impl FnOnce(&mut Self, &[Value]) -> Value,
+    ) -> Value {
+        if lanes == Lanes::Two {
+            return body(self, arguments);
+        }
+        let both: Vec<Value> = arguments
+            .iter()
+            .map(|argument| self.ins().splat(types::F64X2, *argument))
+            .collect();
+        let value = body(self, &both);
+        self.ins().extractlane(value, 0)
+    }
+
+    /// All bits of a lane set where the comparison holds.
+    fn compare(&mut self, condition: FloatCC, a: Value, b: Value) -> Value {
+        let mask = self.ins().fcmp(condition, a, b);
+        self.as_numbers(mask)
+    }
+
+    fn as_numbers(&mut self, bits: Value) -> Value {
+        let flags = MemFlagsData::new();
+        self.ins().bitcast(types::F64X2, flags, bits)
+    }
+
+    fn as_bits(&mut self, numbers: Value) -> Value {
+        let flags = MemFlagsData::new();
+        self.ins().bitcast(types::I64X2, flags, numbers)
+    }
+
+    fn bits(&mut self, bits: u64) -> Value {
+        self.literal(f64::from_bits(bits), Lanes::Two)
+    }
+
+    /// f_k of Eq. (7).
+    fn deadzone(&mut self, p: Value, b: Value) -> Value {
+        let [above, below] = self.beyond(p, b);
+        let (less, more) = (self.ins().fsub(p, b), self.ins().fadd(p, b));
+        let otherwise = self.ins().band(below, more);
+        self.ins().bitselect(above, less, otherwise)
+    }
+
+    /// 1 where |p| > b, 0 elsewhere, Eq. (8).
+    fn contact(&mut self, p: Value, b: Value) -> Value {
+        let [above, below] = self.beyond(p, b);
+        let either = self.ins().bor(above, below);
+        let one = self.literal(1.0, Lanes::Two);
+        self.ins().band(either, one)
+    }
+
+    /// Where p > b, and where p < -b.
+    fn beyond(&mut self, p: Value, b: Value) -> [Value; 2] {
+        let sign = self.bits(SIGN);
+        let minus_b = self.ins().bxor(b, sign);
+        [
+            self.compare(FloatCC::GreaterThan, p, b),
+            self.compare(FloatCC::LessThan, p, minus_b),
+        ]
+    }
+
+    /// An elementary function, operation by operation, of numbers in both lanes; `lanes`
+    /// says whether they are two numbers or one.
+    fn elementary(&mut self, function: Elementary, arguments: &[Value], lanes: Lanes) -> Value {
+        let kernels = &mut self.shared.kernels;
+        let entry = kernels.entry(function).or_insert_with(|| {
+            let kernel = function.kernel();
+            let branches = Branches::of(&kernel);
+            Rc::new((kernel, branches))
+        });
+        let entry = Rc::clone(entry);
+        let (kernel, branches) = &*entry;
+        match lanes {
+            Lanes::One => self.branching_kernel(kernel, branches, arguments),
+            Lanes::Two => self.kernel(kernel, arguments),
+        }
+    }
+
+    fn kernel(&mut self, kernel: &Kernel, arguments: &[Value]) -> Value {
+        let mut values = Vec::with_capacity(kernel.operations.len());
+        for operation in &kernel.operations {
+            let value = self.primitive(*operation, |place| values[place], arguments);
+            values.push(value);
+        }
+        values[kernel.outputs[0]]
+    }
+
+    /// One operation of a kernel; `value` gives those before it.
+    pub fn primitive(
+        &mut self,
+        operation: Operation,
+        value: impl Fn(usize) -> Value,
+        inputs: &[Value],
+    ) -> Value {
+        use Operation as O;
+        match operation {
+            O::Input(place) => inputs[place],
+            O::Constant(value) => self.literal(value, Lanes::Two),
+            O::Add(a, b) => self.add(value(a), value(b)),
+            O::Sub(a, b) => self.ins().fsub(value(a), value(b)),
+            O::Mul(a, b) => self.multiply(value(a), value(b)),
+            O::Div(a, b) => self.ins().fdiv(value(a), value(b)),
+            O::Neg(a) => self.negate(value(a), Lanes::Two),
+            O::Abs(a) => self.magnitude(value(a)),
+            O::CopySign { magnitude, sign } => {
+                let magnitude = self.magnitude(value(magnitude));
+                let mask = self.bits(SIGN);
+                let sign = self.ins().band(value(sign), mask);
+                self.ins().bor(magnitude, sign)
+            }
+            O::SelectLess {
+                left,
+                right,
+                then,
+                otherwise,
+            } => {
+                let mask = self.compare(FloatCC::LessThan, value(left), value(right));
+                self.ins().bitselect(mask, value(then), value(otherwise))
+            }
+            O::SelectEqual {
+                left,
+                right,
+                then,
+                otherwise,
+            } => {
+                let mask = self.compare(FloatCC::Equal, value(left), value(right));
+                self.ins().bitselect(mask, value(then), value(otherwise))
+            }
+            O::PowerOfTwo(a) => {
+                let aligner = self.literal(ALIGNER + 1023.0, Lanes::Two);
+                let sum = self.ins().fadd(value(a), aligner);
+                let bits = self.as_bits(sum);
+                let bits = self.ins().ishl_imm_u(bits, 52);
+                self.as_numbers(bits)
+            }
+            O::Exponent(a) => self.exponent(value(a)),
+            O::Significand(a) => {
+                let mantissa = self.bits(MANTISSA);
+                let one = self.literal(1.0, Lanes::Two);
+                let field = self.ins().band(value(a), mantissa);
+                self.ins().bor(field, one)
+            }
+        }
+    }
+
+    fn magnitude(&mut self, a: Value) -> Value {
+        let mask = self.bits(!SIGN);
+        self.ins().band(a, mask)
+    }
+
+    /// The exponent field as a number, by way of the mantissa of 2^52: exact.
+    fn exponent(&mut self, a: Value) -> Value {
+        let bits = self.as_bits(a);
+        let field = self.ins().ushr_imm_u(bits, 52);
+        let field = self.as_numbers(field);
+        let mask = self.bits(EXPONENT);
+        let field = self.ins().band(field, mask);
+        let aligner = self.literal(ALIGNER, Lanes::Two);
+        let shifted = self.ins().bor(field, aligner);
+        let number = self.ins().fsub(shifted, aligner);
+        let bias = self.literal(1023.0, Lanes::Two);
+        self.ins().fsub(number, bias)
+    }
+}

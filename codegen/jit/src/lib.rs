@@ -1,0 +1,57 @@
+//! Compiles programs of equations of motion to machine code in this process, with no
+//! compiler installed: the same bits as the interpreter and as emitted Rust.
+//!
+//! The pipeline, file by file: `compile` takes a `Program`; `stage` walks the values of
+//! one stage and decides which live in registers and which in memory; `loops` writes loops
+//! over modes; `elements` writes an element of a vector, or two neighbouring ones in one
+//! register; `functions` the elementary functions from their kernels,
+//! those of one number with the branches of `branches`; `matrices` the
+//! matrix operations; `constants` collects literals; `machine` hands all of it to Cranelift
+//! and holds the code that comes back.
+//!
+//! No operation is changed and no sum reordered. Two lanes compute two elements of a
+//! vector, each as it would be alone.
+
+use std::sync::Arc;
+
+use codegen::evaluator::{Evaluator, MachineCode};
+use codegen::program::Program;
+
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod branches;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod constants;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod elements;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod functions;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod loops;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod machine;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod matrices;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod stage;
+
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+pub use machine::{CompileError, Machine, compile};
+
+/// Machine code of a program, if this kind of machine is known.
+pub fn code(program: &Program) -> Option<Arc<dyn MachineCode>> {
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+    if let Ok(machine) = compile(program) {
+        return Some(Arc::new(machine));
+    }
+    let _ = program;
+    None
+}
+
+/// An evaluator of a program that runs machine code if this kind of machine is known, and
+/// interprets elsewhere. The numbers are the same.
+pub fn evaluator(program: Program) -> Evaluator {
+    match code(&program) {
+        Some(code) => Evaluator::with_code(program, code),
+        None => Evaluator::new(program),
+    }
+}

@@ -1,0 +1,164 @@
+//! Loops: over the elements of vectors, two lanes at a time and unrolled, and over the rows
+//! and columns of matrices.
+
+use cranelift_codegen::ir::condcodes::IntCC;
+use cranelift_codegen::ir::{BlockArg, InstBuilder, Value, types};
+
+use crate::stage::Writer;
+
+/// Vectors up to this length are written out and live in registers: four of the sixteen
+/// that there are.
+pub const SHORT: usize = 8;
+
+/// Elements per turn of a loop.
+const TURN: usize = 4;
+
+/// How many neighbouring elements one register holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lanes {
+    /// One.
+    One,
+    /// Two.
+    Two,
+}
+
+/// Which element, or two neighbouring ones.
+#[derive(Clone, Copy, Debug)]
+pub struct At {
+    /// Bytes that a loop adds.
+    pub moving: Option<Value>,
+    /// The element where the loop stands at 0.
+    pub element: usize,
+    /// How many.
+    pub lanes: Lanes,
+}
+
+impl At {
+    /// Element number `element`.
+    pub fn one(element: usize) -> Self {
+        Self {
+            moving: None,
+            element,
+            lanes: Lanes::One,
+        }
+    }
+
+    /// Elements number `element` and the next.
+    pub fn two(moving: Option<Value>, element: usize) -> Self {
+        Self {
+            moving,
+            element,
+            lanes: Lanes::Two,
+        }
+    }
+}
+
+/// The elements `from..to` in pairs, a single one last.
+pub fn pairs(from: usize, to: usize) -> impl Iterator<Item = At> {
+    (from..to).step_by(2).map(move |element| {
+        if element + 1 < to {
+            At::two(None, element)
+        } else {
+            At::one(element)
+        }
+    })
+}
+
+impl Writer<'_, '_, '_> {
+    /// Goes through the elements `0..length`.
+    pub fn each(&mut self, length: usize, mut step: impl FnMut(&mut Self, At)) {
+        let turns = if length > SHORT { length / TURN } else { 0 };
+        self.turns(turns, TURN, Vec::new(), |writer, moving, _| {
+            for element in (0..TURN).step_by(2) {
+                step(writer, At::two(Some(moving), element));
+            }
+            Vec::new()
+        });
+        for at in pairs(turns * TURN, length) {
+            step(self, at);
+        }
+    }
+
+    /// A loop of `turns` turns, each of `turn` elements, carrying pairs of numbers; `body`
+    /// takes the bytes passed so far.
+    pub fn turns(
+        &mut self,
+        turns: usize,
+        turn: usize,
+        first: Vec<Value>,
+        body: impl FnOnce(&mut Self, Value, &[Value]) -> Vec<Value>,
+    ) -> Vec<Value> {
+        if turns == 0 {
+            return first;
+        }
+        let (head, exit) = (self.builder.create_block(), self.builder.create_block());
+        let moving = self.builder.append_block_param(head, types::I64);
+        let kinds = first.iter().map(|_| types::F64X2);
+        let carried: Vec<Value> = kinds
+            .map(|kind| self.builder.append_block_param(head, kind))
+            .collect();
+        let zero = self.index(0);
+        let enter = arguments(zero, &first);
+        self.ins().jump(head, &enter);
+        self.builder.switch_to_block(head);
+        let carried = body(self, moving, &carried);
+        let next = self.ins().iadd_imm_u(moving, (turn * 8) as i64);
+        let bound = (turns * turn * 8) as i64;
+        let again = self.ins().icmp_imm_u(IntCC::UnsignedLessThan, next, bound);
+        let back = arguments(next, &carried);
+        self.ins().brif(again, head, &back, exit, &[]);
+        self.builder.switch_to_block(exit);
+        carried
+    }
+
+    /// A loop of an index over `from..to`, possibly not once, carrying numbers.
+    pub fn range(
+        &mut self,
+        (from, to): (Value, Value),
+        first: &[Value],
+        body: impl FnOnce(&mut Self, Value, &[Value]) -> Vec<Value>,
+    ) -> Vec<Value> {
+        let [head, inside, exit] = [(); 3].map(|()| self.builder.create_block());
+        let index = self.builder.append_block_param(head, types::I64);
+        let carried: Vec<Value> = first
+            .iter()
+            .map(|value| {
+                let kind = self.builder.func.dfg.value_type(*value);
+                self.builder.append_block_param(head, kind)
+            })
+            .collect();
+        let enter = arguments(from, first);
+        self.ins().jump(head, &enter);
+        self.builder.switch_to_block(head);
+        let more = self.ins().icmp(IntCC::SignedLessThan, index, to);
+        self.ins().brif(more, inside, &[], exit, &[]);
+        self.builder.switch_to_block(inside);
+        let after = body(self, index, &carried);
+        let next = self.ins().iadd_imm_u(index, 1);
+        let back = arguments(next, &after);
+        self.ins().jump(head, &back);
+        self.builder.switch_to_block(exit);
+        carried
+    }
+
+    /// A loop of an index over `0..count`, carrying numbers.
+    pub fn count(
+        &mut self,
+        count: usize,
+        first: &[Value],
+        body: impl FnOnce(&mut Self, Value, &[Value]) -> Vec<Value>,
+    ) -> Vec<Value> {
+        let bounds = (self.index(0), self.index(count));
+        self.range(bounds, first, body)
+    }
+
+    /// The index `value`.
+    pub fn index(&mut self, value: usize) -> Value {
+        self.ins().iconst(types::I64, value as i64)
+    }
+}
+
+fn arguments(index: Value, carried: &[Value]) -> Vec<BlockArg> {
+    let values = [index].into_iter().chain(carried.iter().copied());
+    values.map(BlockArg::from).collect()
+}

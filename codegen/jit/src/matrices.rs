@@ -1,0 +1,344 @@
+//! Matrix operations, in memory, in the order of summation that the program defines. A loop
+//! over elements carries the sum of one element or of two neighbouring ones.
+
+use codegen::program::{Extent, Op, ScaledValue, ValueId};
+use cranelift_codegen::ir::{InstBuilder, Value, types};
+
+use crate::elements::Array;
+use crate::loops::{At, Lanes};
+use crate::stage::Writer;
+
+/// A matrix in memory, row by row; a scalar stands for every element.
+#[derive(Clone, Copy, Debug)]
+struct Matrix {
+    array: Array,
+    rows: usize,
+    columns: usize,
+}
+
+impl Writer<'_, '_, '_> {
+    /// Computes a matrix operation into its place.
+    pub fn matrix_operation(&mut self, id: ValueId) {
+        let out = self.shaped(id, self.place(id));
+        match &self.program.value(id).op {
+            Op::Apply {
+                matrix,
+                transposed,
+                vector,
+            } => self.apply(out, *matrix, *transposed, *vector),
+            Op::Gram {
+                left,
+                weight,
+                right,
+            } => self.gram(out, [*left, *weight, *right]),
+            Op::GramDiagonal {
+                left,
+                weight,
+                right,
+            } => self.gram_diagonal(out, [*left, *weight, *right]),
+            Op::Assemble {
+                diagonal,
+                outer,
+                matrices,
+            } => self.assemble(out, *diagonal, outer, matrices),
+            Op::Cholesky(matrix) => self.cholesky(out, *matrix),
+            Op::CholeskySolve(factor, right) => self.cholesky_solve(out, *factor, *right),
+            // All others are written element by element.
+            _ => {}
+        }
+    }
+
+    fn shaped(&self, id: ValueId, array: Array) -> Matrix {
+        let (rows, columns) = match self.program.value(id).extent {
+            Extent::Matrix(rows, columns) => (rows, columns),
+            other => (other.length(), 1),
+        };
+        Matrix {
+            array,
+            rows,
+            columns,
+        }
+    }
+
+    fn matrix(&self, id: ValueId) -> Matrix {
+        let array = self.array(id).unwrap_or_else(|| self.place(id));
+        self.shaped(id, array)
+    }
+
+    /// Element (row, column), in one lane or with its right neighbour.
+    fn entry(&mut self, matrix: Matrix, row: Value, column: At) -> Value {
+        let array = self.row(matrix, row);
+        self.load(array, column)
+    }
+
+    /// A row of a matrix.
+    fn row(&mut self, matrix: Matrix, row: Value) -> Array {
+        let bytes = self.ins().imul_imm_u(row, (matrix.columns * 8) as i64);
+        let base = self.ins().iadd(matrix.array.base, bytes);
+        Array {
+            base,
+            ..matrix.array
+        }
+    }
+
+    /// Element number `index`.
+    fn indexed(&mut self, index: Value) -> At {
+        let moving = self.ins().imul_imm_u(index, 8);
+        At {
+            moving: Some(moving),
+            ..At::one(0)
+        }
+    }
+
+    /// Element `index` of a vector; a scalar stands for every element.
+    fn vector_element(&mut self, id: ValueId, index: Value, lanes: Lanes) -> Value {
+        if self.program.value(id).extent == Extent::Scalar {
+            return self.number(id, lanes);
+        }
+        let at = self.indexed(index);
+        let array = self.matrix(id).array;
+        let value = self.load(array, at);
+        match lanes {
+            Lanes::One => value,
+            Lanes::Two => self.ins().splat(types::F64X2, value),
+        }
+    }
+
+    /// The sum of `count` summands from 0, the first first.
+    fn sum(
+        &mut self,
+        count: usize,
+        lanes: Lanes,
+        summand: impl FnOnce(&mut Self, Value) -> Value,
+    ) -> Value {
+        let zero = self.literal(0.0, lanes);
+        let sums = self.count(count, &[zero], |writer, index, sums| {
+            let summand = summand(writer, index);
+            vec![writer.ins().fadd(sums[0], summand)]
+        });
+        sums[0]
+    }
+
+    fn apply(&mut self, out: Matrix, matrix: ValueId, transposed: bool, vector: ValueId) {
+        let matrix = self.matrix(matrix);
+        if transposed {
+            self.each(out.rows, |writer, at| {
+                let total = writer.sum(matrix.rows, at.lanes, |writer, g| {
+                    let entry = writer.entry(matrix, g, at);
+                    let factor = writer.vector_element(vector, g, at.lanes);
+                    writer.ins().fmul(entry, factor)
+                });
+                writer.store(total, out.array, at);
+            });
+            return;
+        }
+        self.count(out.rows, &[], |writer, i, _| {
+            let row = writer.row(matrix, i);
+            let total = writer.sum(matrix.columns, Lanes::One, |writer, c| {
+                let at = writer.indexed(c);
+                let entry = writer.load(row, at);
+                let factor = writer.vector_element(vector, c, Lanes::One);
+                writer.ins().fmul(entry, factor)
+            });
+            let at = writer.indexed(i);
+            writer.store(total, out.array, at);
+            Vec::new()
+        });
+    }
+
+    fn gram(&mut self, out: Matrix, [left, weight, right]: [ValueId; 3]) {
+        let (left, right) = (self.matrix(left), self.matrix(right));
+        self.count(out.rows, &[], |writer, r, _| {
+            let row = writer.row(out, r);
+            let place = writer.indexed(r);
+            writer.each(out.columns, |writer, at| {
+                let total = writer.sum(left.rows, at.lanes, |writer, g| {
+                    let entry = writer.entry(left, g, place);
+                    let factor = writer.vector_element(weight, g, Lanes::One);
+                    let weighted = writer.ins().fmul(entry, factor);
+                    let weighted = writer.in_lanes(weighted, at.lanes);
+                    let other = writer.entry(right, g, at);
+                    writer.ins().fmul(weighted, other)
+                });
+                writer.store(total, row, at);
+            });
+            Vec::new()
+        });
+    }
+
+    fn in_lanes(&mut self, number: Value, lanes: Lanes) -> Value {
+        match lanes {
+            Lanes::One => number,
+            Lanes::Two => self.ins().splat(types::F64X2, number),
+        }
+    }
+
+    fn gram_diagonal(&mut self, out: Matrix, [left, weight, right]: [ValueId; 3]) {
+        let (left, right) = (self.matrix(left), self.matrix(right));
+        self.each(out.rows, |writer, at| {
+            let total = writer.sum(left.rows, at.lanes, |writer, g| {
+                let entry = writer.entry(left, g, at);
+                let factor = writer.vector_element(weight, g, at.lanes);
+                let weighted = writer.ins().fmul(entry, factor);
+                let other = writer.entry(right, g, at);
+                writer.ins().fmul(weighted, other)
+            });
+            writer.store(total, out.array, at);
+        });
+    }
+
+    fn assemble(
+        &mut self,
+        out: Matrix,
+        diagonal: Option<ValueId>,
+        outer: &[(ValueId, ValueId)],
+        matrices: &[ScaledValue],
+    ) {
+        self.each(out.rows * out.columns, |writer, at| {
+            let zero = writer.literal(0.0, at.lanes);
+            writer.store(zero, out.array, at);
+        });
+        if let Some(diagonal) = diagonal {
+            self.count(out.columns, &[], |writer, r, _| {
+                let row = writer.row(out, r);
+                let at = writer.indexed(r);
+                let zero = writer.literal(0.0, Lanes::One);
+                let element = writer.vector_element(diagonal, r, Lanes::One);
+                let sum = writer.ins().fadd(zero, element);
+                writer.store(sum, row, at);
+                Vec::new()
+            });
+        }
+        if outer.is_empty() && matrices.is_empty() {
+            return;
+        }
+        self.count(out.rows, &[], |writer, r, _| {
+            let row = writer.row(out, r);
+            writer.count(out.columns, &[], |writer, c, _| {
+                let at = writer.indexed(c);
+                let mut sum = writer.load(row, at);
+                for (u, v) in outer {
+                    let u = writer.vector_element(*u, r, Lanes::One);
+                    let v = writer.vector_element(*v, c, Lanes::One);
+                    let product = writer.ins().fmul(u, v);
+                    sum = writer.ins().fadd(sum, product);
+                }
+                for scaled in matrices {
+                    let product = writer.scaled(scaled, r, c);
+                    sum = writer.ins().fadd(sum, product);
+                }
+                writer.store(sum, row, at);
+                Vec::new()
+            });
+            Vec::new()
+        });
+    }
+
+    /// (row_r * matrix_rc) * column_c
+    fn scaled(&mut self, scaled: &ScaledValue, r: Value, c: Value) -> Value {
+        let matrix = self.matrix(scaled.matrix);
+        let (row, column) = if scaled.transposed { (c, r) } else { (r, c) };
+        let at = self.indexed(column);
+        let entry = self.entry(matrix, row, at);
+        let left = self.vector_element(scaled.row, r, Lanes::One);
+        let right = self.vector_element(scaled.column, c, Lanes::One);
+        let product = self.ins().fmul(left, entry);
+        self.ins().fmul(product, right)
+    }
+
+    /// Row by row, L L^T = matrix; the upper part of its place is 0 and stays so.
+    fn cholesky(&mut self, out: Matrix, matrix: ValueId) {
+        let matrix = self.matrix(matrix);
+        self.count(out.rows, &[], |writer, r, _| {
+            let (row, given) = (writer.row(out, r), writer.row(matrix, r));
+            let diagonal = writer.indexed(r);
+            let zero = writer.index(0);
+            writer.range((zero, r), &[], |writer, c, _| {
+                let column = writer.row(out, c);
+                let at = writer.indexed(c);
+                let rest = writer.load(given, at);
+                let rest = writer.less_products(rest, (zero, c), (row, column));
+                let pivot = writer.load(column, at);
+                let entry = writer.ins().fdiv(rest, pivot);
+                writer.store(entry, row, at);
+                Vec::new()
+            });
+            let rest = writer.load(given, diagonal);
+            let rest = writer.less_products(rest, (zero, r), (row, row));
+            let root = writer.positive_root(rest);
+            writer.store(root, row, diagonal);
+            Vec::new()
+        });
+    }
+
+    /// rest - left_k right_k for every k in turn.
+    fn less_products(
+        &mut self,
+        rest: Value,
+        bounds: (Value, Value),
+        (left, right): (Array, Array),
+    ) -> Value {
+        let rests = self.range(bounds, &[rest], |writer, k, rests| {
+            let at = writer.indexed(k);
+            let (left, right) = (writer.load(left, at), writer.load(right, at));
+            let product = writer.ins().fmul(left, right);
+            vec![writer.ins().fsub(rests[0], product)]
+        });
+        rests[0]
+    }
+
+    fn cholesky_solve(&mut self, out: Matrix, factor: ValueId, right: ValueId) {
+        let given = self.program.value(right).extent != Extent::Scalar;
+        let given = given.then(|| self.matrix(right));
+        let factor = self.matrix(factor);
+        self.count(out.columns, &[], |writer, column, _| {
+            let column = writer.indexed(column);
+            let first = writer.index(0);
+            let size = writer.index(factor.rows);
+            writer.count(factor.rows, &[], |writer, r, _| {
+                let rest = match given {
+                    Some(given) => writer.entry(given, r, column),
+                    None => writer.number(right, Lanes::One),
+                };
+                let of = |_: &mut Self, k| (r, k);
+                writer.substitute(out, factor, (r, column), rest, (first, r), of);
+                Vec::new()
+            });
+            writer.count(factor.rows, &[], |writer, behind, _| {
+                let last = writer.index(factor.rows - 1);
+                let r = writer.ins().isub(last, behind);
+                let next = writer.ins().iadd_imm_u(r, 1);
+                let rest = writer.entry(out, r, column);
+                let of = |_: &mut Self, k| (k, r);
+                writer.substitute(out, factor, (r, column), rest, (next, size), of);
+                Vec::new()
+            });
+            Vec::new()
+        });
+    }
+
+    /// out_r = (rest - sum of factor entries times out_k) / factor_rr
+    fn substitute(
+        &mut self,
+        out: Matrix,
+        factor: Matrix,
+        (r, column): (Value, At),
+        rest: Value,
+        bounds: (Value, Value),
+        of: impl Fn(&mut Self, Value) -> (Value, Value),
+    ) {
+        let rests = self.range(bounds, &[rest], |writer, k, rests| {
+            let (row, place) = of(writer, k);
+            let at = writer.indexed(place);
+            let entry = writer.entry(factor, row, at);
+            let known = writer.entry(out, k, column);
+            let product = writer.ins().fmul(entry, known);
+            vec![writer.ins().fsub(rests[0], product)]
+        });
+        let at = self.indexed(r);
+        let pivot = self.entry(factor, r, at);
+        let solved = self.ins().fdiv(rests[0], pivot);
+        let row = self.row(out, r);
+        self.store(solved, row, column);
+    }
+}

@@ -1,0 +1,377 @@
+//! One stage as one function: which values it computes, in what order, and where each of
+//! them lives.
+//!
+//! Numbers live in registers. A vector that is used once is computed where it is used; a
+//! short one that is used more often lives in registers, a long one in its place in
+//! memory. Operands and results of matrix operations are in memory, and so is whatever the
+//! evaluator reads afterwards.
+
+use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
+
+use codegen::evaluator::{Places, Stage};
+use codegen::program::{Extent, Op, Program, RowValues, ValueId};
+use cranelift_codegen::ir::Value;
+use cranelift_frontend::{FuncInstBuilder, FunctionBuilder};
+use elementary::{Function as Elementary, Kernel};
+
+use crate::branches::Branches;
+use crate::constants::Constants;
+use crate::elements::Array;
+use crate::loops::{At, Lanes, SHORT};
+
+/// What a function computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Task {
+    /// The prepared values.
+    Prepare,
+    /// What is computed per call.
+    PerCall(Stage),
+}
+
+/// What the functions of a program share.
+pub struct Shared<'a> {
+    /// The program.
+    pub program: &'a Program,
+    /// Where its values are.
+    pub places: &'a Places,
+    /// Literals so far.
+    pub constants: Constants,
+    /// Kernels recorded so far, and where they branch.
+    pub kernels: HashMap<Elementary, Rc<(Kernel, Branches)>>,
+}
+
+impl Shared<'_> {
+    /// Where the inputs are: right behind the values.
+    pub fn inputs(&self) -> usize {
+        self.places.size()
+    }
+
+    /// Where the literals begin: at an even place, as pairs that lie in one line of a cache.
+    pub fn first_constant(&self) -> usize {
+        (self.inputs() + self.program.inputs.len()).next_multiple_of(2)
+    }
+}
+
+/// What a function is called with.
+#[derive(Clone, Copy, Debug)]
+pub struct Call {
+    /// The evaluator's memory.
+    pub memory: Value,
+    /// The time.
+    pub t: Value,
+    /// The state.
+    pub state: Value,
+    /// Where the rates go.
+    pub out: Value,
+}
+
+/// Writes the function of one stage.
+pub struct Writer<'a, 'p, 'f> {
+    pub(crate) builder: FunctionBuilder<'f>,
+    pub(crate) shared: &'a mut Shared<'p>,
+    pub(crate) program: &'p Program,
+    pub(crate) call: Call,
+    /// Numbers by now, in one lane.
+    pub(crate) numbers: HashMap<ValueId, Value>,
+    /// The same in both lanes.
+    pub(crate) broadcast: HashMap<ValueId, Value>,
+    /// Short vectors by now: their elements in pairs, a single one last.
+    pub(crate) registers: HashMap<ValueId, Vec<Value>>,
+    task: Task,
+    /// Values of this stage that are in memory by now.
+    stored: HashSet<ValueId>,
+    /// Values that something reads from memory.
+    wanted: HashSet<ValueId>,
+    uses: HashMap<ValueId, usize>,
+}
+
+impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
+    /// Begins a function, its entry block being current.
+    pub fn new(
+        builder: FunctionBuilder<'f>,
+        shared: &'a mut Shared<'p>,
+        call: Call,
+        task: Task,
+    ) -> Self {
+        Self {
+            builder,
+            program: shared.program,
+            shared,
+            call,
+            numbers: HashMap::new(),
+            broadcast: HashMap::new(),
+            registers: HashMap::new(),
+            task,
+            stored: HashSet::new(),
+            wanted: HashSet::new(),
+            uses: HashMap::new(),
+        }
+    }
+
+    /// The next instruction.
+    pub(crate) fn ins(&mut self) -> FuncInstBuilder<'_, 'f> {
+        self.builder.ins()
+    }
+
+    /// Writes the function's body, up to its return.
+    pub fn write(&mut self) {
+        let steps = self.steps();
+        self.plan(&steps);
+        self.bind_leaves(&steps);
+        for id in steps {
+            self.step(id);
+        }
+        if self.task == Task::PerCall(Stage::Rates) {
+            self.write_rates();
+        }
+    }
+
+    fn roots(&self) -> Vec<ValueId> {
+        match self.task {
+            Task::Prepare => Vec::new(),
+            Task::PerCall(stage) => stage.roots(self.program),
+        }
+    }
+
+    /// The values this function computes, operands first.
+    fn steps(&self) -> Vec<ValueId> {
+        match self.task {
+            Task::Prepare => self
+                .program
+                .ids()
+                .filter(|id| self.program.value(*id).prepared)
+                .collect(),
+            Task::PerCall(_) => self.program.per_call(&self.roots()),
+        }
+    }
+
+    /// Counts uses and finds what has to be in memory.
+    fn plan(&mut self, steps: &[ValueId]) {
+        let roots = self.roots();
+        for id in steps {
+            let op = &self.program.value(*id).op;
+            let operands = op.operands();
+            if !is_elementwise(op) && !matches!(op, Op::Total(_)) {
+                self.wanted.extend(&operands);
+            }
+            for operand in operands {
+                *self.uses.entry(operand).or_insert(0) += 1;
+            }
+        }
+        for root in &roots {
+            *self.uses.entry(*root).or_insert(0) += 1;
+        }
+        match self.task {
+            Task::Prepare => self.wanted.extend(steps),
+            Task::PerCall(Stage::Rates) => {}
+            Task::PerCall(_) => self.wanted.extend(&roots),
+        }
+    }
+
+    /// Binds the numbers that are not computed here, before any loop begins.
+    fn bind_leaves(&mut self, steps: &[ValueId]) {
+        let mut leaves: Vec<ValueId> = steps
+            .iter()
+            .flat_map(|id| self.program.value(*id).op.operands())
+            .chain(steps.iter().copied())
+            .chain(self.roots())
+            .collect();
+        leaves.sort_unstable();
+        leaves.dedup();
+        for id in leaves {
+            if self.program.value(id).extent == Extent::Scalar
+                && let Some(value) = self.leaf(id)
+            {
+                self.bind(id, value);
+            }
+        }
+    }
+
+    /// A number that is not computed here.
+    fn leaf(&mut self, id: ValueId) -> Option<Value> {
+        let program = self.program;
+        let value = program.value(id);
+        let (base, start) = match value.op {
+            Op::Constant(number) => return Some(self.literal(number, Lanes::One)),
+            Op::Time => return Some(self.call.t),
+            Op::Coordinate(index) => (self.call.state, index),
+            Op::Rate(index) => (self.call.state, program.degrees_of_freedom() + index),
+            Op::Input(index) => (self.call.memory, self.shared.inputs() + index),
+            Op::Parameter(_) => (self.call.memory, self.shared.places.offset(id)),
+            _ if value.prepared && self.task != Task::Prepare => {
+                (self.call.memory, self.shared.places.offset(id))
+            }
+            _ => return None,
+        };
+        let array = Array {
+            base,
+            start,
+            constant: true,
+        };
+        Some(self.load(array, At::one(0)))
+    }
+
+    /// Where a value's numbers are in memory by now, if they are.
+    pub(crate) fn array(&self, id: ValueId) -> Option<Array> {
+        let program = self.program;
+        let value = program.value(id);
+        let state = |start| Array {
+            base: self.call.state,
+            start,
+            constant: true,
+        };
+        match value.op {
+            Op::ModeCoordinates(field) => Some(state(program.mode_offset(field))),
+            Op::ModeRates(field) => Some(state(
+                program.degrees_of_freedom() + program.mode_offset(field),
+            )),
+            _ => {
+                let constant =
+                    matches!(value.op, Op::Table(_) | Op::Constant(_) | Op::Parameter(_))
+                        || value.prepared && self.task != Task::Prepare;
+                (constant || self.stored.contains(&id)).then(|| Array {
+                    constant,
+                    ..self.place(id)
+                })
+            }
+        }
+    }
+
+    /// A value's place in memory.
+    pub(crate) fn place(&self, id: ValueId) -> Array {
+        Array {
+            base: self.call.memory,
+            start: self.shared.places.offset(id),
+            constant: false,
+        }
+    }
+
+    fn step(&mut self, id: ValueId) {
+        let value = self.program.value(id);
+        let length = value.extent.length();
+        match value.op {
+            Op::Constant(_)
+            | Op::Table(_)
+            | Op::Parameter(_)
+            | Op::Coordinate(_)
+            | Op::Rate(_)
+            | Op::Input(_)
+            | Op::Time => self.store_leaf(id),
+            Op::ModeCoordinates(_) | Op::ModeRates(_) => self.copy_vector(id, length),
+            Op::Total(vector) => {
+                let total = self.total(vector);
+                self.bind_and_store(id, total);
+            }
+            _ if !is_elementwise(&value.op) => {
+                self.matrix_operation(id);
+                self.stored.insert(id);
+                if value.extent == Extent::Scalar {
+                    let number = self.load(self.place(id), At::one(0));
+                    self.bind(id, number);
+                }
+            }
+            _ if value.extent == Extent::Scalar => {
+                let number = self.computed(id, At::one(0));
+                self.bind_and_store(id, number);
+            }
+            _ => self.vector(id, length),
+        }
+    }
+
+    /// A leaf of the state that the evaluator reads from its place in memory.
+    fn store_leaf(&mut self, id: ValueId) {
+        if self.task != Task::Prepare && self.wanted.contains(&id) {
+            let number = self.number(id, Lanes::One);
+            let place = self.place(id);
+            self.store(number, place, At::one(0));
+        }
+    }
+
+    fn copy_vector(&mut self, id: ValueId, length: usize) {
+        if self.roots().contains(&id) && self.wanted.contains(&id) {
+            let place = self.place(id);
+            self.each(length, |writer, at| {
+                let value = writer.element(id, at);
+                writer.store(value, place, at);
+            });
+        }
+    }
+
+    fn bind_and_store(&mut self, id: ValueId, number: Value) {
+        self.bind(id, number);
+        if self.wanted.contains(&id) {
+            let place = self.place(id);
+            self.store(number, place, At::one(0));
+            self.stored.insert(id);
+        }
+    }
+
+    /// A vector computed element by element.
+    fn vector(&mut self, id: ValueId, length: usize) {
+        let (wanted, used_once) = (self.wanted.contains(&id), self.uses.get(&id) <= Some(&1));
+        if used_once && !wanted {
+            return;
+        }
+        let place = self.place(id);
+        if length <= SHORT && self.task != Task::Prepare {
+            self.keep(id, length);
+            if wanted {
+                self.each(length, |writer, at| {
+                    let value = writer.element(id, at);
+                    writer.store(value, place, at);
+                });
+                self.stored.insert(id);
+            }
+        } else {
+            self.fill(id, place, length);
+            self.stored.insert(id);
+        }
+    }
+
+    /// The rates: velocities from the state, then accelerations.
+    fn write_rates(&mut self) {
+        let degrees = self.program.degrees_of_freedom();
+        let velocities = Array {
+            base: self.call.state,
+            start: degrees,
+            constant: true,
+        };
+        let mut out = Array {
+            base: self.call.out,
+            start: 0,
+            constant: false,
+        };
+        self.each(degrees, |writer, at| {
+            let velocity = writer.load(velocities, at);
+            writer.store(velocity, out, at);
+        });
+        let RowValues { scalars, modal } = &self.program.accelerations;
+        for (row, id) in scalars.iter().enumerate() {
+            let number = self.number(*id, Lanes::One);
+            out.start = degrees + row;
+            self.store(number, out, At::one(0));
+        }
+        for (field, id) in modal.iter().enumerate() {
+            out.start = degrees + self.program.mode_offset(field);
+            self.each(self.program.fields[field].order, |writer, at| {
+                let value = writer.element(*id, at);
+                writer.store(value, out, at);
+            });
+        }
+    }
+}
+
+/// Whether each element depends on the operands' elements of the same index alone.
+fn is_elementwise(op: &Op) -> bool {
+    !matches!(
+        op,
+        Op::Total(_)
+            | Op::Apply { .. }
+            | Op::Gram { .. }
+            | Op::GramDiagonal { .. }
+            | Op::Assemble { .. }
+            | Op::Cholesky(_)
+            | Op::CholeskySolve(..)
+    )
+}

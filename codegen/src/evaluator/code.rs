@@ -1,0 +1,95 @@
+//! Machine code of a program, as the evaluator calls it. How it is made is not known here.
+
+use super::{Places, Point};
+use crate::program::{Extent, Program, ValueId};
+
+/// What is computed together in one call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// The accelerations.
+    Rates,
+    /// The observables, `energy` and `power` last.
+    Observables,
+    /// The switching surfaces.
+    Guards,
+    /// The blocks of the mass matrix.
+    Mass,
+    /// Velocity terms and generalised forces.
+    Forces,
+}
+
+impl Stage {
+    /// Every stage.
+    pub const ALL: [Self; 5] = [
+        Self::Rates,
+        Self::Observables,
+        Self::Guards,
+        Self::Mass,
+        Self::Forces,
+    ];
+
+    /// The values it answers with.
+    pub fn roots(self, program: &Program) -> Vec<ValueId> {
+        match self {
+            Self::Rates => program.accelerations.all(),
+            Self::Observables => program.observable_values.clone(),
+            Self::Guards => program.guards.iter().map(|guard| guard.value).collect(),
+            Self::Mass => {
+                let mass = &program.mass;
+                let mut roots: Vec<ValueId> = mass.scalars.iter().flatten().copied().collect();
+                roots.extend(mass.coupling.iter().flatten());
+                roots.extend(mass.modal.iter().flatten().flatten());
+                roots
+            }
+            Self::Forces => {
+                let mut roots = program.velocity_terms.all();
+                roots.extend(program.forces.all());
+                roots
+            }
+        }
+    }
+}
+
+/// Machine code of every stage of a program. It works in the evaluator's memory: the
+/// program's values at their [`Places`], then room of its own.
+pub trait MachineCode: Send + Sync {
+    /// What its own room holds at first.
+    fn room(&self) -> &[f64];
+
+    /// Computes what is prepared, parameters and tables being in their places.
+    fn prepare(&self, memory: &mut [f64]);
+
+    /// Computes the roots of a stage into their places.
+    fn compute(&self, stage: Stage, memory: &mut [f64], point: &Point<'_>);
+
+    /// The rates of the state into `out`, of the state's length; their places are not
+    /// written.
+    fn rates(&self, memory: &mut [f64], point: &Point<'_>, out: &mut [f64]);
+}
+
+impl Places {
+    /// The places of a program's values, one after the other. Whatever holds several numbers
+    /// begins at an even place, so that two of its numbers lie in one line of a cache.
+    pub fn of(program: &Program) -> Self {
+        let mut offsets = Vec::with_capacity(program.values.len());
+        let mut size = 0_usize;
+        for value in &program.values {
+            if value.extent != Extent::Scalar {
+                size = size.next_multiple_of(2);
+            }
+            offsets.push(size);
+            size += value.extent.length();
+        }
+        Self { offsets, size }
+    }
+
+    /// The place of a value's first number.
+    pub fn offset(&self, id: ValueId) -> usize {
+        self.offsets[id.index()]
+    }
+
+    /// How many numbers all values hold.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+}
