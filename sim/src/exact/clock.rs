@@ -3,6 +3,8 @@
 
 use nalgebra::Complex;
 
+use super::error_free::{two_product, two_sum};
+
 /// A time, s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Clock {
@@ -41,28 +43,6 @@ impl Clock {
         let (sine, cosine) = angle.sin_cos();
         Complex::new(cosine, sine) * Complex::new(1.0, rest + more)
     }
-}
-
-/// Sum and its rounding error (Knuth).
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let sum = a + b;
-    let part = sum - a;
-    (sum, (a - (sum - part)) + (b - part))
-}
-
-/// Product and its rounding error (Dekker).
-fn two_product(a: f64, b: f64) -> (f64, f64) {
-    let split = |x: f64| {
-        let scaled = 134_217_729.0 * x;
-        let high = scaled - (scaled - x);
-        (high, x - high)
-    };
-    let product = a * b;
-    let ((ah, al), (bh, bl)) = (split(a), split(b));
-    (
-        product,
-        al * bl - (((product - ah * bh) - al * bh) - ah * bl),
-    )
 }
 
 #[cfg(test)]

@@ -211,18 +211,20 @@ impl Flow {
 
     /// Advances the modes by their gains over some time.
     fn advance(&mut self, gains: &Pairs) {
-        let groups = gains.re.len();
-        let (now_re, now_im) = self.now.split_at_mut(groups);
-        let (moved_re, moved_im) = self.moved.split_at_mut(groups);
-        let (start_re, start_im) = self.start.split_at(groups);
-        for group in 0..groups {
-            let (a, b) = (now_re[group], now_im[group]);
-            let (c, d) = (gains.re[group], gains.im[group]);
-            moved_re[group] += a * c - b * d;
-            moved_im[group] += a * d + b * c;
-            now_re[group] = start_re[group] + moved_re[group];
-            now_im[group] = start_im[group] + moved_im[group];
+        for group in 0..gains.re.len() {
+            self.advance_group(group, gains.re.len(), (gains.re[group], gains.im[group]));
         }
+    }
+
+    /// Advances one of so many groups of modes by its gain.
+    #[inline(always)]
+    fn advance_group(&mut self, re: usize, groups: usize, (c, d): (Lane, Lane)) {
+        let im = groups + re;
+        let (a, b) = (self.now[re], self.now[im]);
+        self.moved[re] += a * c - b * d;
+        self.moved[im] += a * d + b * c;
+        self.now[re] = self.start[re] + self.moved[re];
+        self.now[im] = self.start[im] + self.moved[im];
     }
 
     /// Advances by a step of the ladder.
@@ -260,12 +262,7 @@ impl Flow {
         let terms = if fastest * time.abs() <= TINY { 3 } else { 7 };
         let time = Lane::splat(time);
         for group in 0..groups {
-            let (c, d) = rates.little_gain(group, time, terms);
-            let (a, b) = (self.now[group], self.now[groups + group]);
-            self.moved[group] += a * c - b * d;
-            self.moved[groups + group] += a * d + b * c;
-            self.now[group] = self.start[group] + self.moved[group];
-            self.now[groups + group] = self.start[groups + group] + self.moved[groups + group];
+            self.advance_group(group, groups, rates.little_gain(group, time, terms));
         }
     }
 

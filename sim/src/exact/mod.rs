@@ -6,7 +6,7 @@
 //! (parallel switching surfaces), `sliding` (motion held on them), `schur`, `blocks`,
 //! `refine` and `decomposition` (a regime's matrix by parts that move by themselves), `modes`, `integrals`, `regime`,
 //! `functional` and `ladder` (prepared for stepping), `lanes` (sums side by side), `forced`
-//! (forced polynomials), `flow` and `cluster_flow` (the motion in a regime), `search` (the next switch, which cannot be missed), `clock`,
+//! (forced polynomials), `flow` and `cluster_flow` (the motion in a regime), `search` (the next switch, which cannot be missed), `clock` (with `error_free`),
 //! [`propagator`] (from switch to switch), `follow` (to a time, with samples), `simulate`; for neighbouring motions
 //! `saltation`, `tangent`, [`lyapunov`] and [`sensitivity`].
 //!
@@ -17,6 +17,7 @@ mod clock;
 mod cluster_flow;
 mod decomposition;
 pub mod error;
+mod error_free;
 mod flow;
 mod follow;
 mod forced;

@@ -10,6 +10,8 @@ use std::ops::Range;
 
 use nalgebra::{Complex, DMatrix};
 
+use super::error_free::{two_product, two_sum};
+
 /// Corrections that are made at most; each squares the relative error.
 const ROUNDS: usize = 5;
 
@@ -224,10 +226,8 @@ fn add(sum: &mut [f64; 2], a: f64, b: f64) {
     if a == 0.0 || b == 0.0 {
         return;
     }
-    let product = a * b;
-    let rounding = a.mul_add(b, -product);
-    let total = sum[0] + product;
-    let back = total - sum[0];
-    sum[1] += (sum[0] - (total - back)) + (product - back) + rounding;
+    let (product, rounding) = two_product(a, b);
+    let (total, error) = two_sum(sum[0], product);
     sum[0] = total;
+    sum[1] += error + rounding;
 }
