@@ -121,6 +121,33 @@ fn periodic_motion_is_quasi_periodic_only_in_the_generous_reading() {
 }
 
 #[test]
+fn a_route_with_a_gap_that_might_lead_back_is_undecided() {
+    use Kind::{Chaotic as C, Regular as R, Unknown as U};
+    for (kinds, expected) in [
+        ([R, R, C, C], Holding::Holds),
+        // One unknown case between regular and chaotic may be either.
+        ([R, U, C, C], Holding::Holds),
+        ([R, R, U, C], Holding::Holds),
+        // Two of them may be chaotic, regular; so may one after chaos or before regularity.
+        ([R, U, U, C], Holding::Undecided),
+        ([R, C, U, C], Holding::Undecided),
+        ([R, U, R, C], Holding::Undecided),
+        ([R, C, R, C], Holding::Fails),
+        ([R, R, C, R], Holding::Fails),
+        ([C, U, C, C], Holding::Fails),
+        ([U, C, C, C], Holding::Undecided),
+    ] {
+        let mut readings = paper();
+        for (b, kind) in [10, 25, 50, 100].into_iter().zip(kinds) {
+            let key = Key::flexible(Forcing::FivePi, b);
+            readings.insert(key, reading(&key, kind));
+        }
+        let judged = judge(claim("route_5pi"), &readings);
+        assert_eq!(judged.holding, expected, "{kinds:?}");
+    }
+}
+
+#[test]
 fn a_missing_case_decides_nothing() {
     for claim in &CLAIMS {
         let judged = judge(claim, &BTreeMap::new());

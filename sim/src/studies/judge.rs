@@ -117,20 +117,34 @@ fn is_quasi_periodic(found: &[&Reading]) -> Holding {
     }
 }
 
-/// A motion may turn chaotic anywhere between the ends, but not back.
+/// A motion may turn chaotic anywhere between the ends, but not back. Undecided is what could
+/// be either with the unknown cases in between.
 fn route(found: &[&Reading]) -> Holding {
     let (Some(first), Some(last)) = (found.first(), found.last()) else {
         return Holding::Undecided;
     };
-    let kinds = found.iter().map(|reading| reading.kind);
-    let known: Vec<Kind> = kinds.filter(|kind| *kind != Kind::Unknown).collect();
-    let back = known
-        .windows(2)
-        .any(|pair| pair == [Kind::Chaotic, Kind::Regular]);
+    let kinds: Vec<Kind> = found.iter().map(|reading| reading.kind).collect();
+    // Back if chaotic comes anywhere before regular; perhaps back if it may.
+    let pairs = |before: &[Kind], after: &[Kind]| {
+        let turns = |(place, kind): (usize, &Kind)| {
+            before.contains(kind) && kinds.iter().skip(place + 1).any(|k| after.contains(k))
+        };
+        kinds.iter().enumerate().any(turns)
+    };
+    let back = if pairs(&[Kind::Chaotic], &[Kind::Regular]) {
+        Holding::Fails
+    } else if pairs(
+        &[Kind::Chaotic, Kind::Unknown],
+        &[Kind::Regular, Kind::Unknown],
+    ) {
+        Holding::Undecided
+    } else {
+        Holding::Holds
+    };
     Holding::all(&[
         is(&[first], Kind::Regular),
         is(&[last], Kind::Chaotic),
-        Holding::of(!back),
+        back,
     ])
 }
 

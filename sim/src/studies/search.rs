@@ -18,6 +18,9 @@ use super::judge::{Holding, Judgement, Readings, judge};
 use super::reading::Reading;
 use super::sets::{neighbour, set};
 
+/// The edition of the rules: what was judged by other ones is not mixed in.
+const RULES: u32 = 2;
+
 /// Sets in a chunk.
 const CHUNK: usize = 20;
 
@@ -221,7 +224,7 @@ impl Store {
         fs::create_dir_all(folder).map_err(|error| refused("make", folder, &error))?;
         let description = folder.join("request.txt");
         let claims: Vec<&str> = CLAIMS.iter().map(|claim| claim.id).collect();
-        let text = format!("{request:?}\n{}\n", claims.join(" "));
+        let text = format!("{request:?}\n{}\nrules {RULES}\n", claims.join(" "));
         match fs::read_to_string(&description) {
             Ok(found) if found == text => {}
             Ok(_) => {
