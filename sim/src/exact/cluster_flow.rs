@@ -3,10 +3,10 @@
 
 use nalgebra::{Complex, DVector};
 
-use super::flow::Local;
 use super::forced::{DERIVATIVES, integrals};
 use super::functional::{monomial, monomials};
 use super::regime::Cluster;
+use super::watched::{Local, ROUNDING};
 
 /// A cluster in one flow.
 #[derive(Clone, Debug)]
@@ -163,8 +163,8 @@ fn add_derivatives(
     let growth = (cluster.centre.re * end).exp().max(1.0);
     let fourth = (0..5).map(|j| bound[j] * rate.powi(4 - j as i32) * BINOMIALS[4][j]);
     local.fourth += fourth.sum::<f64>() * growth;
-    local.noise += bound[0] * growth;
-    local.rate_noise += (bound[1] + rate * bound[0]) * growth;
+    local.noise += ROUNDING * bound[0] * growth;
+    local.rate_noise += ROUNDING * (bound[1] + rate * bound[0]) * growth;
 }
 
 fn dot(a: &DVector<Complex<f64>>, b: &DVector<Complex<f64>>) -> Complex<f64> {

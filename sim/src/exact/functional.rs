@@ -6,7 +6,7 @@ use codegen::affine::system::AffineRows;
 use nalgebra::{Complex, DVector};
 
 use super::forced::factorial;
-use super::integrals::{Integrals, RateTerms};
+use super::integrals::{Integrals, Polynomial};
 use super::lanes::{Lane, Pairs, pack};
 use super::modes::Modes;
 use super::regime::Cluster;
@@ -59,15 +59,23 @@ pub(super) struct Limits {
     pub high: f64,
 }
 
-/// The factors of a group of modes in a function.
+/// The factors of a mode in a function, side by side.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weights {
     /// Real parts in the derivatives of order 0 to 3.
-    pub re: [Lane; 4],
+    pub re: Lane,
     /// Imaginary parts.
-    pub im: [Lane; 4],
+    pub im: Lane,
     /// Magnitudes for the orders 0, 1 and 4.
-    pub size: [Lane; 3],
+    pub size: Lane,
+}
+
+/// The factors of a group of modes in the value of a function.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ValueWeights {
+    pub re: Lane,
+    pub im: Lane,
+    pub size: Lane,
 }
 
 /// A function prepared for one regime.
@@ -75,25 +83,25 @@ pub(super) struct Weights {
 pub(super) struct Functional {
     pub linear: Linear,
     pub limits: Limits,
-    /// The factors of each group of modes.
+    /// The factors of each mode.
     pub weights: Vec<Weights>,
-    /// The factors of the integrals; none if it does not feel them.
-    pub integrals: Vec<f64>,
-    /// The terms of the rate that the integrals make up.
-    pub rate_terms: RateTerms,
+    /// The factors of each group of modes in the value.
+    pub value_weights: Vec<ValueWeights>,
+    /// What it feels of the integrals.
+    pub polynomial: Polynomial,
     /// row columns N^k of each cluster.
     pub cluster_powers: Vec<Vec<DVector<Complex<f64>>>>,
-    /// The states it reads, with their factors.
+    /// What it reads of a motion's start, with factors.
     felt: Vec<(usize, f64)>,
 }
 
 impl Functional {
-    /// Prepares a function for a regime with these parts.
+    /// Prepares a function for a regime with these parts and this window, s.
     pub fn new(
         linear: Linear,
         limits: Limits,
         modes: &Modes,
-        integrals: &Integrals,
+        (integrals, window): (&Integrals, f64),
         clusters: &[Cluster],
     ) -> Self {
         let row = linear
@@ -107,37 +115,39 @@ impl Functional {
                 *value += Complex::new(linear.cosines[*phase], -linear.sines[*phase]);
             }
         }
-        let mut of_integrals = integrals.weights(&linear.state);
-        if of_integrals.iter().all(|weight| *weight == 0.0) {
-            of_integrals.clear();
-        }
-        let felt = linear.state.iter().copied().enumerate();
+        let of_integrals = integrals.weights(&linear.state);
+        let felt_any = of_integrals.iter().any(|weight| *weight != 0.0);
+        let sinusoids = linear.sines.iter().zip(&linear.cosines);
+        let factors = linear.state.iter().copied();
+        let factors = factors
+            .chain([linear.constant])
+            .chain(linear.inputs.iter().copied())
+            .chain(sinusoids.flat_map(|(sine, cosine)| [*sine, *cosine]));
+        let felt = factors.enumerate().filter(|(_, factor)| *factor != 0.0);
         Self {
             weights: weights(&values, modes),
-            rate_terms: integrals.rate_terms(&of_integrals),
-            integrals: of_integrals,
+            value_weights: value_weights(&values),
+            polynomial: if felt_any {
+                integrals.polynomial(&of_integrals, window)
+            } else {
+                Polynomial::default()
+            },
             cluster_powers: clusters
                 .iter()
                 .map(|c| c.projections(&linear.state))
                 .collect(),
-            felt: felt.filter(|(_, factor)| *factor != 0.0).collect(),
+            felt: felt.collect(),
             linear,
             limits,
         }
     }
 
-    /// The value at a state, and the sum of its terms' magnitudes.
-    pub fn at(&self, state: &[f64], inputs: &[f64], phases: &[Complex<f64>]) -> (f64, f64) {
-        let linear = &self.linear;
-        let (mut value, mut size) = (linear.constant, linear.constant.abs());
-        let states = self
-            .felt
-            .iter()
-            .map(|(state_index, factor)| factor * state[*state_index]);
-        let inputs = linear.inputs.iter().zip(inputs).map(|(a, b)| a * b);
-        let sinusoids = phases.iter().enumerate();
-        let sinusoids = sinusoids.map(|(p, e)| linear.sines[p] * e.im + linear.cosines[p] * e.re);
-        for term in states.chain(inputs).chain(sinusoids) {
+    /// The value at the start of a motion, and the sum of its terms' magnitudes: `given` is
+    /// the state, a unit constant, the inputs, and sine and cosine of each phase.
+    pub fn at(&self, given: &[f64]) -> (f64, f64) {
+        let (mut value, mut size) = (0.0, 0.0_f64);
+        for (place, factor) in &self.felt {
+            let term = factor * given[*place];
             value += term;
             size += term.abs();
         }
@@ -147,27 +157,31 @@ impl Functional {
 
 /// The factors of all modes, given those in the value.
 fn weights(values: &[Complex<f64>], modes: &Modes) -> Vec<Weights> {
-    let factors = |order: u32| -> Pairs {
-        let pairs = values.iter().zip(&modes.rate);
-        let all: Vec<Complex<f64>> = pairs
-            .map(|(value, rate)| value * rate.powu(order))
-            .collect();
-        Pairs::of(&all)
+    let of = |((value, rate), magnitude): ((&Complex<f64>, &Complex<f64>), &f64)| {
+        let factors = [0, 1, 2, 3].map(|order| value * rate.powu(order));
+        let size = |order: i32| value.norm() * magnitude.powi(order);
+        Weights {
+            re: Lane::new(factors.map(|factor| factor.re)),
+            im: Lane::new(factors.map(|factor| factor.im)),
+            size: Lane::new([size(0), size(1), size(4), 0.0]),
+        }
     };
-    let sizes = |order: i32| -> Vec<Lane> {
-        let pairs = values.iter().zip(&modes.magnitude);
-        let all: Vec<f64> = pairs
-            .map(|(value, rate)| value.norm() * rate.powi(order))
-            .collect();
-        pack(&all)
-    };
-    let (factors, sizes) = ([0, 1, 2, 3].map(factors), [0, 1, 4].map(sizes));
-    let of = |group: usize| Weights {
-        re: [0, 1, 2, 3].map(|order: usize| factors[order].re[group]),
-        im: [0, 1, 2, 3].map(|order: usize| factors[order].im[group]),
-        size: [0, 1, 2].map(|place: usize| sizes[place][group]),
-    };
-    (0..modes.groups()).map(of).collect()
+    let rates = values.iter().zip(&modes.rate).zip(&modes.magnitude);
+    rates.map(of).collect()
+}
+
+/// The same in groups.
+fn value_weights(values: &[Complex<f64>]) -> Vec<ValueWeights> {
+    let parts = Pairs::of(values);
+    let sizes: Vec<f64> = values.iter().map(|value| value.norm()).collect();
+    let pairs = parts.re.iter().zip(&parts.im).zip(pack(&sizes));
+    pairs
+        .map(|((re, im), size)| ValueWeights {
+            re: *re,
+            im: *im,
+            size,
+        })
+        .collect()
 }
 
 /// tau^k / k! for k = 0 .. out.len() - 1.

@@ -1,14 +1,17 @@
 //! The part of a regime with eigenvalues near zero, as a Taylor series in time.
 //!
 //! Its coordinates obey z' = N z + f(t), where N is nearly nilpotent and f constant or
-//! slowly sinusoidal; the derivatives follow one from the other and soon vanish. A sinusoid
-//! that turns many times within the series' reach is answered by a sinusoid instead.
+//! slowly sinusoidal. What drives them obeys c' = G c by itself, with c made of coordinates,
+//! constants and sinusoids, so that z moves by the sum over k of tau^k / k! H G^(k-1) c. The
+//! terms soon vanish, and all but c is known before any motion. A sinusoid that turns many
+//! times within the series' reach is answered by a sinusoid instead.
 
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::decomposition;
 use super::forced::reciprocal;
-use super::lanes::{Lane, Packed, groups, numbers, pack};
+use super::kernels;
+use super::lanes::{Lane, groups, numbers, pack};
 use super::modes::Forcing;
 
 /// A sinusoid that turns by more than this within the series' reach is a fast one, rad.
@@ -17,57 +20,61 @@ const FAST: f64 = 4.0;
 /// A slow one turns by no more than this: the reach is cut accordingly, rad.
 const SLOW: f64 = 0.25;
 
-/// Terms of the series that are below this part of the first are left out.
-const REMAINDER: f64 = 1e-18;
+/// Terms of the series that are below this part of the largest are left out.
+const REMAINDER: f64 = 1e-19;
+
+/// Times up to this part of the window are near: there fewer powers of time count.
+pub(super) const NEAR: f64 = 0.125;
 
 /// More are never needed: arguments are below 1.
 const MOST_TERMS: usize = 24;
 
-/// A sinusoidal force on the integrals, which the series follows.
-#[derive(Clone, Copy, Debug)]
-struct Sinusoid {
-    phase: usize,
-    /// rad/s.
-    frequency: f64,
-}
-
-/// The magnitudes of the factors that drive a function's rate.
+/// The coefficients of a function's polynomial in time per unit of each cause.
 #[derive(Clone, Debug, Default)]
-pub(super) struct RateTerms {
-    /// Of coordinates that are felt, sines and cosines.
-    driving: Vec<f64>,
-    /// Of a unit constant and unit inputs.
-    constants: Vec<f64>,
-}
-
-/// The derivatives of a motion's integrals at its start.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Series {
-    /// Order by order, from the first on.
-    pub derivatives: Vec<Lane>,
-    /// What drives the next order: coordinates that are felt, sines and cosines.
-    driving: Vec<f64>,
+pub(super) struct Polynomial {
+    /// For each cause groups of coefficients of the powers of time, from the power 0 on,
+    /// whose is zero.
+    columns: Vec<Vec<Lane>>,
+    /// How many powers count at near times.
+    near_powers: usize,
+    /// The magnitudes of the first coefficients.
+    rates: Vec<f64>,
+    /// For each power k what the coefficients of the powers k to k + 3 are multiplied by as
+    /// those of the power k in the derivatives of order 0 to 3.
+    factors: Vec<Lane>,
+    /// For each group of coefficients what their magnitudes add to a bound of the fourth
+    /// derivative.
+    fourth: Vec<Lane>,
 }
 
 /// The integrals of a regime.
+///
+/// Their *causes* are the coordinates that others feel, a unit constant, the inputs, and sine
+/// and cosine of each slow sinusoid.
 #[derive(Clone, Debug)]
 pub(super) struct Integrals {
     /// How many coordinates there are.
     pub size: usize,
     /// How many of them no other one feels, the first ones.
     pure: usize,
-    /// What they feel of those beyond the first `pure` ones, 1/s, and of the sine and the
-    /// cosine of each slow sinusoid.
-    matrix: Packed,
+    /// The rates of all coordinates per unit of each cause, 1/s.
+    rates: DMatrix<f64>,
+    /// The rates of the causes per unit of each cause, 1/s.
+    generator: DMatrix<f64>,
     /// The order of the last derivative that counts.
     orders: usize,
+    /// For each cause how a unit of it moves the coordinates: groups of factors for each
+    /// power of time from the first on, as far as they count.
+    by_cause: Vec<Vec<Lane>>,
+    /// How many powers count at near times, and how long those are, s.
+    near_powers: Vec<usize>,
+    near: f64,
     /// size x states.
     pub rows: DMatrix<f64>,
     /// states x size.
     pub columns: DMatrix<f64>,
-    /// Constant rates, for a unit constant and unit inputs.
-    constants: Vec<Vec<Lane>>,
-    sinusoids: Vec<Sinusoid>,
+    /// The slow sinusoids, by phase.
+    sinusoids: Vec<usize>,
     /// For each phase the coordinates per sine and per cosine that it forces, if it is fast.
     pub forced: Vec<[DVector<f64>; 2]>,
 }
@@ -94,45 +101,46 @@ impl Integrals {
         for (phase, (pair, &frequency)) in forcing.sinusoids.iter().zip(frequencies).enumerate() {
             let force = [&rows * &pair[0], &rows * &pair[1]];
             let mut answer = [DVector::zeros(size), DVector::zeros(size)];
+            let acts = force.iter().flat_map(|f| f.iter()).any(|f| *f != 0.0);
             if size > 0 && frequency.abs() * longest > FAST {
                 answer = forced_coordinates(&matrix, &force, frequency);
-            } else if force
-                .iter()
-                .flat_map(|f| f.iter())
-                .any(|entry| *entry != 0.0)
-            {
+            } else if acts {
                 if frequency.abs() * window > SLOW {
                     window = SLOW / frequency.abs();
                 }
-                sinusoids.push(Sinusoid { phase, frequency });
+                sinusoids.push(phase);
                 felt.extend(force);
             }
             forced.push(answer);
         }
-        let fastest = sinusoids.iter().map(|s| s.frequency.abs());
-        let fastest = fastest.fold(radius, f64::max);
+        let slow: Vec<f64> = sinusoids.iter().map(|phase| frequencies[*phase]).collect();
+        let fastest = slow.iter().map(|f| f.abs()).fold(radius, f64::max);
         let inner = size - pure;
-        let integrals = Self {
+        let constants = forcing.constants.iter().map(|force| &rows * force);
+        let driven: Vec<DVector<f64>> = matrix
+            .columns(pure, inner)
+            .column_iter()
+            .map(|column| column.clone_owned())
+            .chain(constants)
+            .chain(felt)
+            .collect();
+        let rates = DMatrix::from_fn(size, driven.len(), |row, cause| driven[cause][row]);
+        let mut integrals = Self {
+            generator: generator(&rates, pure, &slow),
+            rates,
             size,
             pure,
-            matrix: Packed::of(size, inner + felt.len(), |i, j| {
-                match j.checked_sub(inner) {
-                    None => matrix[(i, pure + j)],
-                    Some(place) => felt[place][i],
-                }
-            }),
             // The matrix is nilpotent but for its radius.
             orders: 1 + inner + terms(fastest * window),
-            constants: forcing
-                .constants
-                .iter()
-                .map(|force| pack((&rows * force).as_slice()))
-                .collect(),
+            by_cause: Vec::new(),
+            near_powers: Vec::new(),
+            near: NEAR * window,
             columns,
             rows,
             sinusoids,
             forced,
         };
+        integrals.find_factors(window);
         (integrals, window)
     }
 
@@ -141,107 +149,216 @@ impl Integrals {
         groups(self.size)
     }
 
-    /// Writes the derivatives of order 1 to `orders` at coordinates `zeta`, order by order.
-    /// Without `forces` (inputs and exp(i theta) of the phases) those of a free motion.
-    pub fn derivatives(
+    /// Writes the causes of a motion from coordinates `zeta`, given a unit constant and the
+    /// inputs, and exp(i theta) of the phases.
+    pub fn causes(
         &self,
         zeta: &[Lane],
-        forces: Option<(&[f64], &[Complex<f64>])>,
-        series: &mut Series,
+        units: &[f64],
+        phases: &[Complex<f64>],
+        causes: &mut Vec<f64>,
     ) {
-        let width = zeta.len();
-        let inner = self.size - self.pure;
-        let Series {
-            derivatives,
-            driving,
-        } = series;
-        derivatives.clear();
-        derivatives.resize(self.orders * width, Lane::ZERO);
-        driving.clear();
-        driving.extend_from_slice(&numbers(zeta)[self.pure..self.size]);
-        for sinusoid in &self.sinusoids {
-            let e = forces.map_or(Complex::new(0.0, 0.0), |(_, phases)| phases[sinusoid.phase]);
-            driving.extend([e.im, e.re]);
-        }
-        for (order, slots) in derivatives.chunks_exact_mut(width.max(1)).enumerate() {
-            self.matrix.add_product(driving, slots);
-            if let (0, Some((inputs, _))) = (order, forces) {
-                let factors = std::iter::once(&1.0).chain(inputs);
-                for (column, factor) in self.constants.iter().zip(factors) {
-                    add_multiple(column, *factor, slots);
-                }
-            }
-            let (coordinates, waves) = driving.split_at_mut(inner);
-            let found = &numbers(slots)[self.pure..self.size];
-            for (slot, value) in coordinates.iter_mut().zip(found) {
-                *slot = *value;
-            }
-            for (pair, sinusoid) in waves.chunks_exact_mut(2).zip(&self.sinusoids) {
-                let omega = sinusoid.frequency;
-                (pair[0], pair[1]) = (omega * pair[1], -omega * pair[0]);
-            }
+        causes.clear();
+        causes.extend_from_slice(&numbers(zeta)[self.pure..self.size]);
+        causes.extend_from_slice(units);
+        for phase in &self.sinusoids {
+            let e = phases[*phase];
+            causes.extend([e.im, e.re]);
         }
     }
 
-    /// Writes how far the coordinates have moved after `tau` s, given their derivatives.
-    pub fn moved(&self, series: &Series, tau: f64, out: &mut [Lane]) {
-        out.fill(Lane::ZERO);
-        let width = out.len().max(1);
-        let orders = series.derivatives.chunks_exact(width).enumerate();
-        for (order, derivatives) in orders.rev() {
-            let factor = Lane::splat(tau * reciprocal(order + 1));
-            for (slot, derivative) in out.iter_mut().zip(derivatives) {
-                *slot = (*slot + *derivative) * factor;
-            }
-        }
+    /// How many coordinates others feel: as many causes a free motion has.
+    pub fn felt(&self) -> usize {
+        self.size - self.pure
     }
 
-    /// The terms that make up the rate of a function with these weights of the coordinates.
-    pub fn rate_terms(&self, weights: &[f64]) -> RateTerms {
-        let of = |entry: &dyn Fn(usize) -> f64| -> f64 {
-            let terms = weights.iter().enumerate();
-            terms
-                .map(|(place, weight)| weight * entry(place))
-                .sum::<f64>()
-                .abs()
+    /// The causes of a free motion from coordinates `zeta`.
+    pub fn free_causes<'z>(&self, zeta: &'z [Lane]) -> &'z [f64] {
+        &numbers(zeta)[self.pure..self.size]
+    }
+
+    /// Writes how the coordinates move, given their causes: groups of coefficients for each
+    /// power of time from the first on.
+    pub fn motion(&self, causes: &[f64], out: &mut Vec<Lane>) {
+        let longest = self.by_cause.iter().map(Vec::len).max().unwrap_or(0);
+        out.clear();
+        out.resize(longest, Lane::ZERO);
+        kernels::add_multiples(self.by_cause.iter().map(Vec::as_slice), causes, out);
+    }
+
+    /// Writes how far the coordinates have moved in `tau` s, given how they move.
+    pub fn moved_by(&self, motion: &[Lane], tau: f64, out: &mut [Lane]) {
+        let width = self.groups();
+        if width == 0 {
+            return;
+        }
+        let powers = if tau <= self.near {
+            self.near_powers.iter().copied().max().unwrap_or(0)
+        } else {
+            motion.len() / width
         };
-        RateTerms {
-            driving: (0..self.matrix.columns())
-                .map(|column| of(&|row| self.matrix.entry(row, column)))
-                .collect(),
-            constants: self
-                .constants
-                .iter()
-                .map(|constant| of(&|row| numbers(constant)[row]))
-                .collect(),
+        let column = std::iter::once(&motion[..powers * width]);
+        kernels::sum_powers(column, width, tau, out);
+    }
+
+    /// Writes, for as many of the causes as are asked for, how far a unit of each moves the
+    /// coordinates in `tau` s: a column in groups each.
+    pub fn transition(&self, tau: f64, causes: usize, out: &mut Vec<Lane>) {
+        let width = self.groups();
+        out.clear();
+        out.resize(causes * width, Lane::ZERO);
+        if width > 0 {
+            let columns = self.by_cause.iter().zip(&self.near_powers);
+            let columns = columns.map(|(factors, near)| match tau <= self.near {
+                true => &factors[..near * width],
+                false => factors,
+            });
+            kernels::sum_powers(columns, width, tau, out);
         }
     }
 
-    /// The sum of the magnitudes of such terms, which may cancel.
-    pub fn rate_size(
-        &self,
-        terms: &RateTerms,
-        zeta: &[Lane],
-        (inputs, phases): (&[f64], &[Complex<f64>]),
-    ) -> f64 {
-        let inner = numbers(zeta)[self.pure..self.size].iter().copied();
-        let waves = self.sinusoids.iter().flat_map(|sinusoid| {
-            let e = phases[sinusoid.phase];
-            [e.im, e.re]
+    /// Writes how far the coordinates have moved, given their causes and the transition.
+    pub fn moved(&self, causes: &[f64], transition: &[Lane], out: &mut [Lane]) {
+        out.fill(Lane::ZERO);
+        let columns = transition.chunks_exact(self.groups().max(1));
+        kernels::add_multiples(columns, causes, out);
+    }
+
+    /// The polynomial of a function with these weights of the coordinates, within `window` s.
+    pub fn polynomial(&self, weights: &[f64], window: f64) -> Polynomial {
+        let mut row = DVector::from_column_slice(weights).transpose() * &self.rates;
+        let rates = row.iter().map(|entry| entry.abs()).collect();
+        let mut coefficients = vec![vec![0.0]; row.len()];
+        let mut factor = 1.0;
+        for order in 1..=self.orders {
+            factor *= reciprocal(order);
+            for (cause, entry) in row.iter().enumerate() {
+                coefficients[cause].push(entry * factor);
+            }
+            row *= &self.generator;
+        }
+        let mut near_powers = 0;
+        for column in &mut coefficients {
+            let sizes: Vec<f64> = column[1..].iter().map(|c| c.abs()).collect();
+            column.truncate(1 + needed(&sizes, window));
+            near_powers = near_powers.max(1 + needed(&sizes, NEAR * window));
+        }
+        let powers = coefficients.iter().map(Vec::len).max().unwrap_or(0);
+        let factors = (0..powers).map(|k| {
+            let of = |order: usize| falling(k + order, order);
+            Lane::new([0, 1, 2, 3].map(of))
         });
-        let units = std::iter::once(1.0).chain(inputs.iter().copied());
-        let driving = terms.driving.iter().zip(inner.chain(waves));
-        let constants = terms.constants.iter().zip(units);
-        driving
-            .chain(constants)
-            .map(|(size, value)| size * value.abs())
-            .sum()
+        let fourth: Vec<f64> = (0..powers)
+            .map(|k| match k {
+                // The fourth derivative of tau^k.
+                4.. => falling(k, 4) * window.powi(k as i32 - 4),
+                _ => 0.0,
+            })
+            .collect();
+        Polynomial {
+            columns: coefficients.iter().map(|column| pack(column)).collect(),
+            near_powers,
+            rates,
+            factors: factors.collect(),
+            fourth: pack(&fourth),
+        }
     }
 
     /// The factors of the coordinates in a linear function of the state.
     pub fn weights(&self, row: &DVector<f64>) -> Vec<f64> {
         (self.columns.transpose() * row).as_slice().to_vec()
     }
+
+    fn find_factors(&mut self, window: f64) {
+        let mut by_order = Vec::new();
+        let (mut rates, mut factor) = (self.rates.clone(), 1.0);
+        for order in 1..=self.orders {
+            factor *= reciprocal(order);
+            by_order.push(&rates * factor);
+            rates *= &self.generator;
+        }
+        for cause in 0..self.rates.ncols() {
+            let sizes: Vec<f64> = by_order.iter().map(|b| b.column(cause).amax()).collect();
+            let orders = by_order[..needed(&sizes, window)].iter();
+            let factors = orders.flat_map(|b| pack(b.column(cause).clone_owned().as_slice()));
+            self.by_cause.push(factors.collect());
+            self.near_powers.push(needed(&sizes, NEAR * window));
+        }
+    }
+}
+
+impl Polynomial {
+    /// How many powers of time count, from the power 0 on: at near times and at all.
+    pub fn powers(&self) -> [usize; 2] {
+        [self.near_powers, self.factors.len()]
+    }
+
+    /// Writes for some causes what each power of time adds to the value and the derivatives of
+    /// order 1 to 3, and returns a bound of the fourth one.
+    pub fn terms(
+        &self,
+        causes: &[f64],
+        coefficients: &mut Vec<Lane>,
+        terms: &mut Vec<Lane>,
+    ) -> f64 {
+        // With zeros beyond the last ones.
+        coefficients.clear();
+        coefficients.resize(self.fourth.len() + 1, Lane::ZERO);
+        let columns = self.columns.iter().map(Vec::as_slice);
+        kernels::add_multiples(columns, causes, coefficients);
+        let fourth = coefficients.iter().zip(&self.fourth);
+        let fourth = fourth.fold(Lane::ZERO, |sum, (c, factor)| sum + c.abs() * *factor);
+        terms.clear();
+        let shifted = numbers(coefficients).windows(4).zip(&self.factors);
+        terms.extend(shifted.map(|(c, factors)| Lane::new([c[0], c[1], c[2], c[3]]) * *factors));
+        fourth.total()
+    }
+
+    /// The sum of the magnitudes of the first coefficient's terms, which may cancel.
+    pub fn rate_size(&self, causes: &[f64]) -> f64 {
+        let terms = self.rates.iter().zip(causes);
+        terms.fold(0.0, |sum, (size, cause)| sum + size * cause.abs())
+    }
+}
+
+/// The rates of the causes per unit of each: the felt coordinates' from those of all, inputs
+/// and constant none, and sine and cosine turn into each other.
+fn generator(rates: &DMatrix<f64>, pure: usize, frequencies: &[f64]) -> DMatrix<f64> {
+    let count = rates.ncols();
+    let inner = rates.nrows() - pure;
+    let mut generator = DMatrix::zeros(count, count);
+    generator
+        .rows_mut(0, inner)
+        .copy_from(&rates.rows(pure, inner));
+    let first = count - 2 * frequencies.len();
+    for (place, omega) in frequencies.iter().enumerate() {
+        let sine = first + 2 * place;
+        generator[(sine, sine + 1)] = *omega;
+        generator[(sine + 1, sine)] = -omega;
+    }
+    generator
+}
+
+/// k (k - 1) ..., so many factors.
+fn falling(k: usize, factors: usize) -> f64 {
+    (0..factors)
+        .map(|factor| k as f64 - factor as f64)
+        .product()
+}
+
+/// How many coefficients of these magnitudes count, of the powers of time from the first on,
+/// within a window.
+fn needed(sizes: &[f64], window: f64) -> usize {
+    let (mut power, mut largest, mut needed) = (1.0, 0.0_f64, 0);
+    for (order, size) in sizes.iter().enumerate() {
+        power *= window;
+        let term = size * power;
+        if term > REMAINDER * largest || term.is_nan() {
+            needed = order + 1;
+        }
+        largest = largest.max(term);
+    }
+    needed
 }
 
 /// Z of the answer Im(Z exp(i theta)) to a force beta sin + gamma cos: its real and its
@@ -271,12 +388,4 @@ fn terms(argument: f64) -> usize {
         term *= argument / terms as f64;
     }
     terms
-}
-
-/// out + factor column.
-fn add_multiple(column: &[Lane], factor: f64, out: &mut [Lane]) {
-    let factor = Lane::splat(factor);
-    for (slot, entry) in out.iter_mut().zip(column) {
-        *slot += *entry * factor;
-    }
 }

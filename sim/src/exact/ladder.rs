@@ -35,6 +35,8 @@ pub(super) struct Ladder {
     pub rungs: Vec<Rung>,
     /// No step leads further from the start of a regime, s.
     pub window: f64,
+    /// exp(rate window) - 1 of each mode.
+    pub through: Pairs,
 }
 
 impl Ladder {
@@ -56,7 +58,11 @@ impl Ladder {
             rungs.push(Rung::new(modes, length));
             length *= 0.5;
         }
-        Self { rungs, window }
+        Self {
+            rungs,
+            window,
+            through: Pairs::gains(&modes.rate, window),
+        }
     }
 }
 

@@ -1,11 +1,97 @@
 //! Numbers in groups of four, so that sums over modes run side by side: the order of the
-//! additions is fixed, and with it every bit of the result, whatever the processor.
+//! additions is fixed, and with it every bit of the result, whatever the processor. The loops
+//! over groups are in `kernels`.
 
+use std::ops::{Add, AddAssign, Mul, MulAssign, Sub, SubAssign};
+
+use bytemuck::{Pod, Zeroable};
 use nalgebra::Complex;
-use wide::f64x4;
 
-/// Four numbers.
-pub(super) type Lane = f64x4;
+use super::kernels;
+
+/// Four numbers. An array rather than a register of one instruction set: each kernel is
+/// compiled for several of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C, align(32))]
+pub(super) struct Lane([f64; 4]);
+
+impl Lane {
+    pub const ZERO: Self = Self([0.0; 4]);
+
+    #[inline(always)]
+    pub const fn new(numbers: [f64; 4]) -> Self {
+        Self(numbers)
+    }
+
+    #[inline(always)]
+    pub fn to_array(self) -> [f64; 4] {
+        self.0
+    }
+
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        let [a, b, c, d] = self.0;
+        Self([a.abs(), b.abs(), c.abs(), d.abs()])
+    }
+
+    /// The sum of the four.
+    #[inline(always)]
+    pub fn total(self) -> f64 {
+        let [a, b, c, d] = self.0;
+        (a + c) + (b + d)
+    }
+}
+
+impl Add for Lane {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+        Self([a + e, b + f, c + g, d + h])
+    }
+}
+
+impl Sub for Lane {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+        Self([a - e, b - f, c - g, d - h])
+    }
+}
+
+impl Mul for Lane {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let ([a, b, c, d], [e, f, g, h]) = (self.0, other.0);
+        Self([a * e, b * f, c * g, d * h])
+    }
+}
+
+impl AddAssign for Lane {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for Lane {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl MulAssign for Lane {
+    #[inline(always)]
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
 
 /// How many groups hold so many numbers.
 pub(super) fn groups(count: usize) -> usize {
@@ -17,7 +103,7 @@ pub(super) fn pack(values: &[f64]) -> Vec<Lane> {
     let group = |chunk: &[f64]| {
         let mut group = [0.0; 4];
         group[..chunk.len()].copy_from_slice(chunk);
-        Lane::from(group)
+        Lane::new(group)
     };
     values.chunks(4).map(group).collect()
 }
@@ -50,46 +136,17 @@ impl Packed {
                     let row = 4 * group + lane;
                     if row < rows { entry(row, column) } else { 0.0 }
                 };
-                Lane::from([0, 1, 2, 3].map(value))
+                Lane::new([0, 1, 2, 3].map(value))
             })
         });
         let entries = entries.collect();
         Self { columns, entries }
     }
 
-    /// How many columns there are.
-    pub fn columns(&self) -> usize {
-        self.columns
-    }
-
-    /// An entry.
-    pub fn entry(&self, row: usize, column: usize) -> f64 {
-        self.entries[(row / 4) * self.columns + column].as_array()[row % 4]
-    }
-
-    /// Adds the product with a vector.
+    /// Adds the product of the first columns with a vector.
     pub fn add_product(&self, vector: &[f64], out: &mut [Lane]) {
-        let columns = self.columns;
-        if columns == 0 {
-            return;
-        }
-        let vector = &vector[..columns];
-        let mut pairs = self.entries.chunks_exact(2 * columns);
-        let mut slots = out.chunks_exact_mut(2);
-        for (rows, slots) in pairs.by_ref().zip(slots.by_ref()) {
-            let (upper, lower) = rows.split_at(columns);
-            let (mut a, mut b) = (slots[0], slots[1]);
-            for ((x, y), value) in upper.iter().zip(lower).zip(vector) {
-                let value = Lane::splat(*value);
-                a += *x * value;
-                b += *y * value;
-            }
-            (slots[0], slots[1]) = (a, b);
-        }
-        if let (row, [slot, ..]) = (pairs.remainder(), slots.into_remainder()) {
-            for (x, value) in row.iter().zip(vector) {
-                *slot += *x * Lane::splat(*value);
-            }
+        if self.columns > 0 {
+            kernels::add_product(&self.entries, self.columns, vector, out);
         }
     }
 }
@@ -119,20 +176,6 @@ impl Pairs {
         let gains: Vec<Complex<f64>> = rates.iter().map(|rate| gain(rate * time)).collect();
         Self::of(&gains)
     }
-
-    /// exp(rate time) - 1 of a group of these rates by one more than so many terms of the
-    /// series.
-    #[inline(always)]
-    pub fn little_gain(&self, group: usize, time: Lane, terms: usize) -> (Lane, Lane) {
-        let (x, y) = (self.re[group] * time, self.im[group] * time);
-        let (mut c, mut d) = (Lane::ONE, Lane::ZERO);
-        for reciprocal in &RECIPROCALS[7 - terms..] {
-            let reciprocal = Lane::splat(*reciprocal);
-            let (u, v) = (x * reciprocal, y * reciprocal);
-            (c, d) = (Lane::ONE + (u * c - v * d), u * d + v * c);
-        }
-        (x * c - y * d, x * d + y * c)
-    }
 }
 
 /// exp(z) - 1, as accurate for small z as for large ones.
@@ -143,10 +186,7 @@ pub(super) fn gain(z: Complex<f64>) -> Complex<f64> {
     Complex::new(grown * cosine - 2.0 * half * half, (grown + 1.0) * sine)
 }
 
-/// Of 8 to 2.
-const RECIPROCALS: [f64; 7] = [0.125, 1.0 / 7.0, 1.0 / 6.0, 0.2, 0.25, 1.0 / 3.0, 0.5];
-
-/// The largest argument of [`Pairs::little_gain`] with seven terms: the first term left out is below 1e-19.
+/// The largest argument of [`kernels::advance_little`] with seven terms: the first term left out is below 1e-19.
 pub(super) const LITTLE: f64 = 1.0 / 64.0;
 
 /// The same with three terms.
@@ -165,9 +205,18 @@ mod tests {
         ];
         let pairs = Pairs::of(&rates);
         for time in [1e-3 * LITTLE, LITTLE / 64.0, -LITTLE / 70.0] {
-            let (re, im) = pairs.little_gain(0, Lane::splat(time), 7);
+            // A unit amplitude moves by its gain.
+            let start = [Lane::new([1.0; 4]), Lane::ZERO];
+            let (mut moved, mut now) = ([Lane::ZERO; 2], start);
+            let amplitudes = kernels::Amplitudes {
+                start: &start,
+                moved: &mut moved,
+                now: &mut now,
+            };
+            kernels::advance_little(&pairs, time, 7, amplitudes);
+            let [re, im] = moved;
             for (place, rate) in rates.iter().enumerate() {
-                let found = Complex::new(re.as_array()[place], im.as_array()[place]);
+                let found = Complex::new(re.to_array()[place], im.to_array()[place]);
                 let wanted = gain(rate * time);
                 // A few roundings of either.
                 assert!((found - wanted).norm() < 1e-15 * wanted.norm());
@@ -188,7 +237,7 @@ mod tests {
             let entry = |i: usize, j: usize| (3 * i + j * j) as f64 - 4.0;
             let packed = Packed::of(rows, columns, entry);
             let vector: Vec<f64> = (0..columns).map(|j| j as f64 + 0.5).collect();
-            let mut out = vec![Lane::ONE; groups(rows)];
+            let mut out = vec![Lane::new([1.0; 4]); groups(rows)];
             packed.add_product(&vector, &mut out);
             for row in 0..rows {
                 let wanted: f64 = (0..columns).map(|j| entry(row, j) * vector[j]).sum();

@@ -13,6 +13,7 @@
 //! What is not linear between switches belongs to [`crate::solve`].
 
 mod blocks;
+mod bounds;
 mod clock;
 mod cluster_flow;
 mod decomposition;
@@ -24,6 +25,7 @@ mod forced;
 mod functional;
 mod groups;
 mod integrals;
+mod kernels;
 mod ladder;
 mod lanes;
 pub mod lyapunov;
@@ -39,6 +41,7 @@ pub mod sensitivity;
 mod simulate;
 mod sliding;
 mod tangent;
+mod watched;
 
 pub use error::ExactError;
 pub use lyapunov::{Growth, Lyapunov};

@@ -10,7 +10,7 @@ use super::decomposition::{Decomposition, Failure, Part};
 use super::functional::{Functional, Limits, Linear};
 use super::integrals::Integrals;
 use super::ladder::Ladder;
-use super::lanes::{Lane, Packed, numbers_mut};
+use super::lanes::Packed;
 use super::modes::{Forcing, Modes, project};
 
 /// A forcing frequency closer to an eigenvalue than this part of it is resonant: the forced
@@ -53,12 +53,9 @@ pub(super) struct Regime {
     pub modes: Modes,
     pub integrals: Integrals,
     pub clusters: Vec<Cluster>,
-    /// Coordinates from a state.
+    /// Coordinates from a state, a unit constant, the inputs, and sine and cosine of each
+    /// phase; those of a free motion from a state alone.
     pub coordinates: Packed,
-    /// The coordinates that a unit constant and unit inputs hold.
-    pub rest: Vec<Vec<Lane>>,
-    /// For each phase the coordinates per sine and per cosine that it forces.
-    pub forced: Vec<[Vec<Lane>; 2]>,
     /// A state from coordinates, without what is constant.
     pub states: Packed,
     /// What is watched.
@@ -113,17 +110,14 @@ impl Regime {
             .collect();
         let functionals: Vec<Functional> = watched
             .into_iter()
-            .map(|(linear, limits)| Functional::new(linear, limits, &modes, &integrals, &clusters))
+            .map(|(linear, limits)| {
+                let integrals = (&integrals, window);
+                Functional::new(linear, limits, &modes, integrals, &clusters)
+            })
             .collect();
         let places = Places::of(&modes, &integrals);
         Ok(Self {
             coordinates: places.coordinates(&modes, &integrals),
-            rest: modes
-                .rest
-                .iter()
-                .map(|rest| places.pack(rest, None))
-                .collect(),
-            forced: places.forced(&modes, &integrals),
             states: places.states(&modes, &integrals),
             ladder: Ladder::new(&modes, window, fastest),
             system,
@@ -175,41 +169,46 @@ impl Places {
         &self,
         amplitudes: &DVector<Complex<f64>>,
         integrals: Option<&DVector<f64>>,
-    ) -> Vec<Lane> {
-        let mut packed = vec![Lane::ZERO; self.groups];
-        let slots = numbers_mut(&mut packed);
+    ) -> Vec<f64> {
+        let mut packed = vec![0.0; 4 * self.groups];
         for (mode, amplitude) in amplitudes.iter().enumerate() {
-            slots[mode] = amplitude.re;
-            slots[self.modes + mode] = amplitude.im;
+            packed[mode] = amplitude.re;
+            packed[self.modes + mode] = amplitude.im;
         }
         for (place, value) in integrals.into_iter().flat_map(|v| v.iter()).enumerate() {
-            slots[2 * self.modes + place] = *value;
+            packed[2 * self.modes + place] = *value;
         }
         packed
     }
 
-    fn forced(&self, modes: &Modes, integrals: &Integrals) -> Vec<[Vec<Lane>; 2]> {
-        let pairs = modes.forced.iter().zip(&integrals.forced);
-        pairs
-            .map(|(of_modes, of_integrals)| {
-                [0, 1].map(|kind| self.pack(&of_modes[kind], Some(&of_integrals[kind])))
-            })
-            .collect()
-    }
-
+    /// What a state, a unit constant, the inputs, and sines and cosines make up: a mode's
+    /// amplitude is what is left of the state without what is held and forced.
     fn coordinates(&self, modes: &Modes, integrals: &Integrals) -> Packed {
-        let states = modes.rows.ncols();
-        Packed::of(4 * self.groups, states, |row, state| {
-            let (kind, place) = (row / self.modes.max(1), row % self.modes.max(1));
-            match kind {
-                _ if row >= 2 * self.modes => integrals
-                    .rows
-                    .get((row - 2 * self.modes, state))
-                    .copied()
-                    .unwrap_or(0.0),
-                0 => modes.rows.get((place, state)).map_or(0.0, |z| z.re),
-                _ => modes.rows.get((place, state)).map_or(0.0, |z| z.im),
+        let column = |matrix: &DMatrix<f64>, state: usize| matrix.column(state).clone_owned();
+        let mut columns: Vec<Vec<f64>> = (0..modes.rows.ncols())
+            .map(|state| {
+                let amplitudes = modes.rows.column(state).clone_owned();
+                self.pack(&amplitudes, Some(&column(&integrals.rows, state)))
+            })
+            .collect();
+        columns.extend(modes.rest.iter().map(|rest| self.pack(&-rest, None)));
+        for (phase, (of_modes, of_integrals)) in
+            modes.forced.iter().zip(&integrals.forced).enumerate()
+        {
+            for kind in [0, 1] {
+                let mut column = self.pack(&-&of_modes[kind], Some(&-&of_integrals[kind]));
+                for (mode, of) in modes.phase.iter().enumerate() {
+                    if *of == Some(phase) {
+                        // The amplitude of a sinusoid is exp(i theta).
+                        column[mode] = if kind == 0 { 0.0 } else { 1.0 };
+                        column[self.modes + mode] = if kind == 0 { 1.0 } else { 0.0 };
+                    }
+                }
+                columns.push(column);
             }
+        }
+        Packed::of(4 * self.groups, columns.len(), |row, column| {
+            columns[column][row]
         })
     }
 

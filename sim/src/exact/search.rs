@@ -1,26 +1,24 @@
 //! The first time at which a function of a regime reaches one of its limits.
 //!
-//! Where the flow stands, each function is known with three derivatives and a bound m of the
-//! fourth: for the distance d to a limit the cubic through them minus m s^4/24 is a lower
-//! bound over a step, 0 <= s <= h, and plus m s^4/24 an upper one. If the coefficients of the
-//! lower bound in Bernstein's basis are positive, no crossing lies within the step, and it
-//! is made. If instead the distance must fall all the way and below zero, exactly one
-//! crossing lies within it, and it is polished by Newton's method. Otherwise the step is
+//! What each function does within a step is told by `bounds`: if no crossing lies within it,
+//! it is made; if exactly one does, that is polished by Newton's method; otherwise the step is
 //! halved. Nothing is sampled, nothing can be jumped.
 //!
 //! Modes too fast for a step are bounded by their amplitudes. Rounding: a function at its
 //! limit up to rounding crosses it only if its rate leads outward; otherwise two surfaces
 //! left within 1e-11 s of each other would be entered and left for ever.
 
-use super::flow::{Flow, Local};
+use super::bounds::{Verdict, over};
+use super::flow::Flow;
 use super::functional::Limits;
 use super::regime::Regime;
+use super::watched::Local;
 
 /// Newton steps towards a crossing; two or three are usual.
 const POLISHING: usize = 60;
 
-/// What Newton's next step would still correct, relative to the rounding of the function,
-/// which is a bound and mostly far from reached.
+/// What a step to the zero of a cubic may still be wrong by, relative to the rounding of the
+/// function, which is a bound and mostly far from reached.
 const REST: f64 = 1e-3;
 
 /// A function that is beyond its limit by more than this many times its rounding has jumped.
@@ -40,24 +38,19 @@ pub(super) enum Found {
     Nothing,
 }
 
-/// What a step does to a function.
-enum Verdict {
-    Safe,
-    Crossing { upper: bool },
-    Unknown,
-}
-
-/// How a search went, for those who count.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// How a search went, for those who count, and its memory.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Effort {
     /// Steps made.
     pub steps: u64,
     /// Newton steps made.
     pub newton: u64,
+    /// What is certain to be crossed within the present step.
+    crossings: Vec<Crossing>,
 }
 
 /// Searches from where the flow stands to `end` after its start, s. `first` is the rung to
-/// begin with and is left where the next search should begin.
+/// begin with and becomes the one at which the last step was made.
 pub(super) fn search(
     flow: &mut Flow,
     regime: &Regime,
@@ -74,38 +67,24 @@ pub(super) fn search(
             place += 1;
         }
         let mut halved = false;
-        loop {
+        let outcome = loop {
             match step(flow, regime, place, rungs[place].length, end, effort) {
                 Outcome::Halve if place < last => {
                     place += 1;
                     halved = true;
                 }
-                Outcome::Halve => match creep(flow, regime, end, effort) {
-                    Outcome::Limit(found) => {
-                        *first = place;
-                        return found;
-                    }
-                    Outcome::End => return Found::Nothing,
-                    _ => break,
-                },
-                Outcome::Made => {
-                    if !halved {
-                        place = place.saturating_sub(1);
-                    }
-                    break;
-                }
-                Outcome::End => {
-                    *first = place;
-                    return Found::Nothing;
-                }
-                Outcome::Limit(found) => {
-                    *first = place;
-                    return found;
-                }
+                Outcome::Halve => break creep(flow, regime, end, effort),
+                other => break other,
             }
+        };
+        *first = place;
+        match outcome {
+            Outcome::Limit(found) => return found,
+            Outcome::End => return Found::Nothing,
+            Outcome::Made | Outcome::Halve if !halved => place = place.saturating_sub(2),
+            Outcome::Made | Outcome::Halve => {}
         }
     }
-    *first = place;
     Found::Nothing
 }
 
@@ -117,11 +96,13 @@ enum Outcome {
 }
 
 /// A crossing that is certain to come.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Crossing {
     functional: usize,
     upper: bool,
-    /// How long it takes by the cubic, s.
+    /// Between these times after the start of the flow, s.
+    within: [f64; 2],
+    /// The time by the cubic, s.
     guess: f64,
 }
 
@@ -154,12 +135,13 @@ fn creep(flow: &mut Flow, regime: &Regime, end: f64, effort: &mut Effort) -> Out
 fn is_still(flow: &Flow, regime: &Regime, length: f64) -> bool {
     let rungs = &regime.ladder.rungs;
     (0..regime.functionals.len()).all(|functional| {
-        let local = flow.local(regime, functional, &rungs[rungs.len() - 1]);
-        let [_, rate, second, third] = local.derivatives.map(f64::abs);
-        let fourth = 0.25 * length * local.fourth;
-        let moved = length * (rate + 0.5 * length * (second + length * (third + fourth) / 3.0));
-        // A limit without rounding of its own still has that of the time.
-        moved <= local.noise || length <= f64::MIN_POSITIVE
+        flow.local(regime, functional, &rungs[rungs.len() - 1], |local| {
+            let [_, rate, second, third] = local.derivatives.map(f64::abs);
+            let fourth = 0.25 * length * local.fourth;
+            let moved = length * (rate + 0.5 * length * (second + length * (third + fourth) / 3.0));
+            // A limit without rounding of its own still has that of the time.
+            moved <= local.noise || length <= f64::MIN_POSITIVE
+        })
     })
 }
 
@@ -173,8 +155,9 @@ fn step(
     effort: &mut Effort,
 ) -> Outcome {
     let rung = &regime.ladder.rungs[place];
-    let (mut earliest, mut crossings): (Option<Crossing>, usize) = (None, 0);
-    let until = flow.tau + length;
+    effort.crossings.clear();
+    let origin = flow.tau;
+    let until = origin + length;
     for functional in 0..regime.functionals.len() {
         // Each function is looked at as often as it asks for.
         if flow.is_safe(functional, until) {
@@ -186,27 +169,29 @@ fn step(
                 return Outcome::Limit(found);
             }
         }
-        let local = flow.local(regime, functional, rung);
         let limits = regime.functionals[functional].limits;
-        match over(&local, [limits.low, limits.high], length) {
+        let verdict = flow.local(regime, functional, rung, |local| {
+            over(local, [limits.low, limits.high], length)
+        });
+        match verdict {
             Verdict::Safe => flow.note_safe(functional, until),
             Verdict::Unknown => return Outcome::Halve,
             Verdict::Crossing { upper } => {
-                crossings += 1;
-                let guess = Distance::to(&local, &limits, upper).first_guess(length);
-                if earliest.is_none_or(|other| guess < other.guess) {
-                    earliest = Some(Crossing {
-                        functional,
-                        upper,
-                        guess,
-                    });
-                }
+                let guess = flow.local(regime, functional, rung, |local| {
+                    Distance::to(local, &limits, upper).first_guess(length)
+                });
+                effort.crossings.push(Crossing {
+                    functional,
+                    upper,
+                    within: [origin, until],
+                    guess: origin + guess,
+                });
             }
         }
     }
     effort.steps += 1;
-    let Some(crossing) = earliest else {
-        if flow.tau + length >= end {
+    let Some(first) = first_of_all(flow, regime, effort) else {
+        if until >= end {
             return Outcome::End;
         }
         if length == rung.length {
@@ -215,13 +200,6 @@ fn step(
             flow.shift(regime, length);
         }
         return Outcome::Made;
-    };
-    let origin = flow.tau;
-    flow.shift(regime, crossing.guess);
-    polish(flow, regime, &crossing, (origin, length), effort);
-    let first = match crossings {
-        1 => crossing,
-        _ => earliest_of_all(flow, regime, crossing, origin, effort),
     };
     if flow.tau >= end {
         return Outcome::End;
@@ -232,36 +210,31 @@ fn step(
     })
 }
 
-/// Where a flow stands at one crossing, goes back to those of other functions that turn out
-/// to come before.
-fn earliest_of_all(
-    flow: &mut Flow,
-    regime: &Regime,
-    crossing: Crossing,
-    origin: f64,
-    effort: &mut Effort,
-) -> Crossing {
-    let mut first = crossing;
-    for functional in 0..regime.functionals.len() {
-        for upper in [false, true] {
-            if functional == crossing.functional {
-                continue;
-            }
-            let here = distance(flow, regime, functional, upper);
-            if here.value < -here.noise && here.rate < 0.0 {
-                let length = flow.tau - origin;
-                let guess = (length + here.newton()).clamp(0.0, length);
-                flow.shift(regime, origin + guess - flow.tau);
-                first = Crossing {
-                    functional,
-                    upper,
-                    guess,
-                };
-                polish(flow, regime, &first, (origin, length), effort);
-            }
+/// Goes to the first of the crossings that are certain: to the one that seems to be, then back
+/// to those of other functions that turn out to come before.
+fn first_of_all(flow: &mut Flow, regime: &Regime, effort: &mut Effort) -> Option<Crossing> {
+    let guesses = effort.crossings.iter().copied();
+    let mut first = guesses.reduce(|a, b| if b.guess < a.guess { b } else { a })?;
+    flow.shift(regime, first.guess - flow.tau);
+    polish(flow, regime, &first, &mut effort.newton);
+    let seeming = first.functional;
+    for crossing in &effort.crossings {
+        if crossing.functional == seeming {
+            continue;
+        }
+        let here = distance(flow, regime, crossing.functional, crossing.upper);
+        if here.value < -here.noise && crossing.within[0] < flow.tau {
+            first = Crossing {
+                within: [crossing.within[0], crossing.within[1].min(flow.tau)],
+                ..*crossing
+            };
+            let [near, far] = first.within;
+            let guess = (flow.tau + here.newton()).clamp(near, far);
+            flow.shift(regime, guess - flow.tau);
+            polish(flow, regime, &first, &mut effort.newton);
         }
     }
-    first
+    Some(first)
 }
 
 /// A limit that a function has reached here already.
@@ -270,11 +243,13 @@ fn reached(flow: &Flow, regime: &Regime, functional: usize) -> Option<Found> {
     if flow.is_between(functional, limits.low, limits.high) {
         return None;
     }
-    let local = flow.local(regime, functional, regime.ladder.rungs.last()?);
-    [false, true]
-        .into_iter()
-        .find(|upper| Distance::to(&local, limits, *upper).is_reached())
-        .map(|upper| Found::Limit { functional, upper })
+    let rung = regime.ladder.rungs.last()?;
+    let upper = flow.local(regime, functional, rung, |local| {
+        [false, true]
+            .into_iter()
+            .find(|upper| Distance::to(local, limits, *upper).is_reached())
+    })?;
+    Some(Found::Limit { functional, upper })
 }
 
 /// A limit that was passed by a jump: of an input, or of the function itself when another
@@ -299,21 +274,16 @@ fn distance(flow: &mut Flow, regime: &Regime, functional: usize, upper: bool) ->
     let rungs = &regime.ladder.rungs;
     flow.sum_up(regime, functional);
     // The shortest step has no fast modes.
-    let local = flow.local(regime, functional, &rungs[rungs.len() - 1]);
-    Distance::to(&local, &regime.functionals[functional].limits, upper)
+    flow.local(regime, functional, &rungs[rungs.len() - 1], |local| {
+        Distance::to(local, &regime.functionals[functional].limits, upper)
+    })
 }
 
-/// Goes from near a crossing to it; it lies within `length` after `origin`.
-fn polish(
-    flow: &mut Flow,
-    regime: &Regime,
-    crossing: &Crossing,
-    (origin, length): (f64, f64),
-    effort: &mut Effort,
-) {
-    let (mut near, mut far) = (origin, origin + length);
+/// Goes from near a crossing to it, and counts Newton's steps.
+fn polish(flow: &mut Flow, regime: &Regime, crossing: &Crossing, newton: &mut u64) {
+    let [mut near, mut far] = crossing.within;
     for _ in 0..POLISHING {
-        effort.newton += 1;
+        *newton += 1;
         let here = distance(flow, regime, crossing.functional, crossing.upper);
         if here.value > 0.0 {
             near = flow.tau;
@@ -331,47 +301,12 @@ fn polish(
             return;
         }
         flow.shift(regime, shift);
-        // The rest of a Newton step that small is below rounding.
-        let rest = shift
-            * shift
-            * (here.second.abs() + shift.abs() * (here.third.abs() + here.fourth * shift.abs()));
+        // What is left of the cubic, and what it leaves out, are below rounding.
+        let squared = shift * shift;
+        let rest = here.cubic(shift).abs() + here.fourth * squared * squared / 24.0;
         if settled || rest <= REST * here.noise {
             return;
         }
-    }
-}
-
-/// What can be said of a function between two limits over the next `length` s.
-fn over(local: &Local, [low, high]: [f64; 2], length: f64) -> Verdict {
-    let [value, rate, second, third] = local.derivatives;
-    let h = length;
-    let (a, b) = (rate * h, 0.5 * second * h * h);
-    let (c, m) = (third * h * h * h / 6.0, local.fourth * h * h * h * h / 24.0);
-    let (first, middle, late) = (0.25 * a, 0.5 * a + b / 6.0, 0.75 * a + 0.5 * b + 0.25 * c);
-    let end = a + b + c;
-    let lowest = first.min(middle).min(late).min(end - m).min(0.0);
-    let highest = first.max(middle).max(late).max(end + m).max(0.0);
-    // Up to rounding a limit is not reached; moving inward from it is safe.
-    let (above, below) = (value - low, high - value);
-    let noise = local.noise + local.drift_noise * h;
-    let low_margin = above.max(0.0) + noise - local.fast;
-    let high_margin = below.max(0.0) + noise - local.fast;
-    let safe_below = low_margin + lowest >= 0.0;
-    let safe_above = high_margin - highest >= 0.0;
-    if safe_below && safe_above {
-        return Verdict::Safe;
-    }
-    let slopes = [a, a + 2.0 / 3.0 * b, a + 4.0 / 3.0 * b + c];
-    let last = a + 2.0 * b + 3.0 * c;
-    let fast_rate = local.fast_rate * h;
-    let falls = slopes.iter().fold(last + 4.0 * m, |s, t| s.max(*t)) + fast_rate < 0.0;
-    let rises = slopes.iter().fold(last - 4.0 * m, |s, t| s.min(*t)) - fast_rate > 0.0;
-    if falls && safe_above && above + end + m + local.fast < 0.0 {
-        Verdict::Crossing { upper: false }
-    } else if rises && safe_below && below - end + m + local.fast < 0.0 {
-        Verdict::Crossing { upper: true }
-    } else {
-        Verdict::Unknown
     }
 }
 
@@ -419,10 +354,7 @@ impl Distance {
         let discriminant = (self.rate * self.rate - 2.0 * self.second * self.value).max(0.0);
         let mut s = 2.0 * self.value / (discriminant.sqrt() - self.rate);
         for _ in 0..2 {
-            let value =
-                self.value + s * (self.rate + s * (0.5 * self.second + s * self.third / 6.0));
-            let slope = self.rate + s * (self.second + s * 0.5 * self.third);
-            s -= value / slope;
+            s -= self.cubic(s) / self.slope(s);
         }
         if s >= 0.0 && s <= length {
             s
@@ -431,10 +363,20 @@ impl Distance {
         }
     }
 
-    /// The step to the zero, with the curvature.
+    /// The step to the zero of the cubic, from near it.
     fn newton(&self) -> f64 {
         let first = -self.value / self.rate;
-        let curvature = self.rate + 0.5 * first * self.second;
-        -self.value / curvature
+        let s = -self.value / (self.rate + 0.5 * first * self.second);
+        s - self.cubic(s) / self.slope(s)
+    }
+
+    /// The cubic after a time.
+    fn cubic(&self, s: f64) -> f64 {
+        self.value + s * (self.rate + s * (0.5 * self.second + s * self.third / 6.0))
+    }
+
+    /// Its derivative.
+    fn slope(&self, s: f64) -> f64 {
+        self.rate + s * (self.second + s * 0.5 * self.third)
     }
 }

@@ -5,7 +5,6 @@ use nalgebra::{Complex, DVector};
 
 use super::flow::Flow;
 use super::functional::monomials;
-use super::integrals::Series;
 use super::lanes::{self, Lane, Pairs, numbers, numbers_mut};
 use super::propagator::{Change, Follow, Segment};
 use super::regime::{Cluster, Regime};
@@ -23,7 +22,9 @@ pub(super) struct Tangents {
 #[derive(Clone, Debug, Default)]
 struct Neighbour {
     coordinates: Vec<Lane>,
-    series: Series,
+    /// How the integrals move.
+    transition: Vec<Lane>,
+    moved: Vec<Lane>,
     sum: Vec<Lane>,
 }
 
@@ -39,6 +40,10 @@ impl Tangents {
     /// Carries the vectors on for `tau` s.
     pub fn advance(&mut self, regime: &Regime, tau: f64) {
         let gains = Pairs::gains(&regime.modes.rate, tau);
+        let Neighbour { transition, .. } = &mut self.neighbour;
+        regime
+            .integrals
+            .transition(tau, regime.integrals.felt(), transition);
         for vector in &mut self.vectors {
             self.neighbour.carry(regime, &gains, tau, vector);
         }
@@ -106,10 +111,12 @@ impl Neighbour {
             self.coordinates[groups + group] = a * d + b * c;
         }
         let integrals = &mut self.coordinates[2 * groups..];
+        self.moved.resize(integrals.len(), Lane::ZERO);
+        let causes = regime.integrals.free_causes(integrals);
         regime
             .integrals
-            .derivatives(integrals, None, &mut self.series);
-        regime.integrals.moved(&self.series, tau, integrals);
+            .moved(causes, &self.transition, &mut self.moved);
+        integrals.copy_from_slice(&self.moved);
         self.sum.clear();
         self.sum.resize(lanes::groups(vector.len()), Lane::ZERO);
         regime

@@ -1,0 +1,292 @@
+//! The loops over groups of numbers that a motion spends its time in, each compiled for
+//! several instruction sets and chosen when they run. They do the same operations in the same
+//! order whatever the set, without fused ones, so that no bit depends on the choice.
+
+use fearless_simd::{Level, Simd, SimdBase, SimdFloat, SimdFrom, dispatch, f64x4};
+
+use super::functional::{ValueWeights, Weights};
+use super::lanes::{Lane, Pairs, numbers};
+
+/// What a function sums up to.
+pub(super) struct Summed {
+    /// How far the value has moved.
+    pub value: f64,
+    /// The magnitudes of what moved it.
+    pub size: f64,
+    /// The derivatives of order 1 to 3 at the places of their orders.
+    pub derivatives: Lane,
+    /// What the polynomial makes up of the first one.
+    pub polynomial_rate: f64,
+}
+
+/// Adds a product with a matrix whose rows stand in groups, in each the columns one after the
+/// other.
+pub(super) fn add_product(entries: &[Lane], columns: usize, vector: &[f64], out: &mut [Lane]) {
+    dispatch!(Level::new(), simd => add_product_by(simd, entries, columns, vector, out));
+}
+
+#[inline(always)]
+fn add_product_by<S: Simd>(
+    simd: S,
+    entries: &[Lane],
+    columns: usize,
+    vector: &[f64],
+    out: &mut [Lane],
+) {
+    let mut pairs = entries.chunks_exact(2 * columns);
+    let mut slots = out.chunks_exact_mut(2);
+    for (rows, slots) in pairs.by_ref().zip(slots.by_ref()) {
+        let (upper, lower) = rows.split_at(columns);
+        let (mut a, mut b) = (load(simd, slots[0]), load(simd, slots[1]));
+        for ((x, y), value) in upper.iter().zip(lower).zip(vector) {
+            let value = f64x4::splat(simd, *value);
+            a += load(simd, *x) * value;
+            b += load(simd, *y) * value;
+        }
+        (slots[0], slots[1]) = (store(a), store(b));
+    }
+    if let (row, [slot, ..]) = (pairs.remainder(), slots.into_remainder()) {
+        let mut a = load(simd, *slot);
+        for (x, value) in row.iter().zip(vector) {
+            a += load(simd, *x) * f64x4::splat(simd, *value);
+        }
+        *slot = store(a);
+    }
+}
+
+/// Adds multiples of columns, which may be shorter than the whole.
+pub(super) fn add_multiples<'a>(
+    columns: impl Iterator<Item = &'a [Lane]>,
+    factors: &[f64],
+    out: &mut [Lane],
+) {
+    dispatch!(Level::new(), simd => add_multiples_by(simd, columns, factors, out));
+}
+
+#[inline(always)]
+fn add_multiples_by<'a, S: Simd>(
+    simd: S,
+    columns: impl Iterator<Item = &'a [Lane]>,
+    factors: &[f64],
+    out: &mut [Lane],
+) {
+    for (column, factor) in columns.zip(factors) {
+        for (slot, entry) in out.iter_mut().zip(column) {
+            *slot = store(load(simd, *slot) + load(simd, *entry) * *factor);
+        }
+    }
+}
+
+/// The amplitudes of modes in groups, the real parts first: at the start, how far they have
+/// moved since, and now.
+pub(super) struct Amplitudes<'a> {
+    pub start: &'a [Lane],
+    pub moved: &'a mut [Lane],
+    pub now: &'a mut [Lane],
+}
+
+impl Amplitudes<'_> {
+    /// Advances one of so many groups by its gain.
+    #[inline(always)]
+    fn advance<S: Simd>(&mut self, re: usize, groups: usize, (c, d): (f64x4<S>, f64x4<S>)) {
+        let (im, simd) = (groups + re, c.simd);
+        let (a, b) = (load(simd, self.now[re]), load(simd, self.now[im]));
+        let moved_re = load(simd, self.moved[re]) + (a * c - b * d);
+        let moved_im = load(simd, self.moved[im]) + (a * d + b * c);
+        (self.moved[re], self.moved[im]) = (store(moved_re), store(moved_im));
+        self.now[re] = store(load(simd, self.start[re]) + moved_re);
+        self.now[im] = store(load(simd, self.start[im]) + moved_im);
+    }
+}
+
+/// Advances modes by their gains over some time.
+pub(super) fn advance(gains: &Pairs, amplitudes: Amplitudes<'_>) {
+    dispatch!(Level::new(), simd => advance_by(simd, gains, amplitudes));
+}
+
+#[inline(always)]
+fn advance_by<S: Simd>(simd: S, gains: &Pairs, mut amplitudes: Amplitudes<'_>) {
+    let groups = gains.re.len();
+    for group in 0..groups {
+        let gain = (load(simd, gains.re[group]), load(simd, gains.im[group]));
+        amplitudes.advance(group, groups, gain);
+    }
+}
+
+/// Of 8 to 2.
+const RECIPROCALS: [f64; 7] = [0.125, 1.0 / 7.0, 1.0 / 6.0, 0.2, 0.25, 1.0 / 3.0, 0.5];
+
+/// Advances modes of these rates by so little, s, that one more than so many terms of a
+/// series give the gains.
+pub(super) fn advance_little(rates: &Pairs, time: f64, terms: usize, amplitudes: Amplitudes<'_>) {
+    dispatch!(Level::new(), simd => advance_little_by(simd, rates, time, terms, amplitudes));
+}
+
+#[inline(always)]
+fn advance_little_by<S: Simd>(
+    simd: S,
+    rates: &Pairs,
+    time: f64,
+    terms: usize,
+    mut amplitudes: Amplitudes<'_>,
+) {
+    let groups = rates.re.len();
+    for group in 0..groups {
+        let (x, y) = (
+            load(simd, rates.re[group]) * time,
+            load(simd, rates.im[group]) * time,
+        );
+        let (mut c, mut d) = (f64x4::splat(simd, 1.0), f64x4::splat(simd, 0.0));
+        for reciprocal in &RECIPROCALS[7 - terms..] {
+            let (u, v) = (x * *reciprocal, y * *reciprocal);
+            (c, d) = ((u * c - v * d) + 1.0, u * d + v * c);
+        }
+        amplitudes.advance(group, groups, (x * c - y * d, x * d + y * c));
+    }
+}
+
+/// The factors of a function.
+#[derive(Clone, Copy)]
+pub(super) struct Factors<'a> {
+    /// Mode by mode.
+    pub weights: &'a [Weights],
+    /// Group by group, in the value.
+    pub value_weights: &'a [ValueWeights],
+    /// For each power of time what it adds to the value and the derivatives of order 1 to 3.
+    pub terms: &'a [Lane],
+}
+
+/// Sums up a function, given the amplitudes, how far they have moved, and the powers of time.
+/// `before` becomes the sums over the modes before each and over all: of the amplitudes, and
+/// for the derivatives of order 1 to 3.
+pub(super) fn sum_up(
+    factors: Factors<'_>,
+    amplitudes: (&[Lane], &[Lane]),
+    powers: &[f64],
+    before: &mut [Lane],
+) -> Summed {
+    dispatch!(Level::new(), simd => sum_up_by(simd, factors, amplitudes, powers, before))
+}
+
+#[inline(always)]
+fn sum_up_by<S: Simd>(
+    simd: S,
+    factors: Factors<'_>,
+    (now, moved): (&[Lane], &[Lane]),
+    powers: &[f64],
+    before: &mut [Lane],
+) -> Summed {
+    let zero = f64x4::splat(simd, 0.0);
+    let groups = factors.value_weights.len();
+    let (re, im) = numbers(now).split_at(4 * groups);
+    let mut sums = zero;
+    let modes = factors.weights.iter().zip(re).zip(im);
+    let (slots, all) = before.split_at_mut(factors.weights.len());
+    for (((weights, re), im), slot) in modes.zip(slots) {
+        *slot = store(sums);
+        sums += load(simd, weights.re) * *re - load(simd, weights.im) * *im;
+    }
+    all[0] = store(sums);
+    // Even and odd powers apart: no sum waits for the other.
+    let ([mut even, mut odd], mut sizes) = ([zero; 2], zero);
+    let count = factors.terms.len().min(powers.len());
+    let mut terms = factors.terms[..count].chunks_exact(2);
+    let mut pairs = powers[..count].chunks_exact(2);
+    for (terms, powers) in terms.by_ref().zip(pairs.by_ref()) {
+        let a = load(simd, terms[0]) * powers[0];
+        let b = load(simd, terms[1]) * powers[1];
+        even += a;
+        odd += b;
+        sizes += a.abs() + b.abs();
+    }
+    for (terms, power) in terms.remainder().iter().zip(pairs.remainder()) {
+        let a = load(simd, *terms) * *power;
+        even += a;
+        sizes += a.abs();
+    }
+    let polynomial = even + odd;
+    let (mut value, mut size) = (zero, zero);
+    let (re, im) = moved[..2 * groups].split_at(groups);
+    for ((weights, re), im) in factors.value_weights.iter().zip(re).zip(im) {
+        let (re, im) = (load(simd, *re), load(simd, *im));
+        value += load(simd, weights.re) * re - load(simd, weights.im) * im;
+        size += load(simd, weights.size) * (re.abs() + im.abs());
+    }
+    let of_polynomial = store(polynomial).to_array();
+    Summed {
+        value: store(value).total() + of_polynomial[0],
+        size: store(size).total() + store(sizes).to_array()[0],
+        derivatives: store(sums + polynomial),
+        polynomial_rate: of_polynomial[1],
+    }
+}
+
+/// Sums up the magnitudes of a function's modes, given those of their amplitudes: `before`
+/// becomes the sums over the modes before each and over all.
+pub(super) fn sum_sizes(weights: &[Weights], sizes: &[Lane], before: &mut [Lane]) {
+    dispatch!(Level::new(), simd => sum_sizes_by(simd, weights, sizes, before));
+}
+
+#[inline(always)]
+fn sum_sizes_by<S: Simd>(simd: S, weights: &[Weights], sizes: &[Lane], before: &mut [Lane]) {
+    let mut sums = f64x4::splat(simd, 0.0);
+    let (slots, all) = before.split_at_mut(weights.len());
+    for ((weights, size), slot) in weights.iter().zip(numbers(sizes)).zip(slots) {
+        *slot = store(sums);
+        sums += load(simd, weights.size) * *size;
+    }
+    all[0] = store(sums);
+}
+
+/// The magnitudes of amplitudes in groups.
+pub(super) fn magnitudes((re, im): (&[Lane], &[Lane]), out: &mut [Lane]) {
+    dispatch!(Level::new(), simd => magnitudes_by(simd, re, im, out));
+}
+
+#[inline(always)]
+fn magnitudes_by<S: Simd>(simd: S, re: &[Lane], im: &[Lane], out: &mut [Lane]) {
+    for ((re, im), slot) in re.iter().zip(im).zip(out) {
+        let (re, im) = (load(simd, *re), load(simd, *im));
+        *slot = store((re * re + im * im).sqrt());
+    }
+}
+
+/// For each of these columns, power by power in groups of a width, the sum over the powers of
+/// a time from the first on.
+pub(super) fn sum_powers<'a>(
+    columns: impl Iterator<Item = &'a [Lane]>,
+    width: usize,
+    time: f64,
+    out: &mut [Lane],
+) {
+    dispatch!(Level::new(), simd => sum_powers_by(simd, columns, width, time, out));
+}
+
+#[inline(always)]
+fn sum_powers_by<'a, S: Simd>(
+    simd: S,
+    columns: impl Iterator<Item = &'a [Lane]>,
+    width: usize,
+    time: f64,
+    out: &mut [Lane],
+) {
+    for (slots, column) in out.chunks_exact_mut(width).zip(columns) {
+        for (group, slot) in slots.iter_mut().enumerate() {
+            let mut sum = f64x4::splat(simd, 0.0);
+            for factors in column.chunks_exact(width).rev() {
+                sum = (sum + load(simd, factors[group])) * time;
+            }
+            *slot = store(sum);
+        }
+    }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, lane: Lane) -> f64x4<S> {
+    f64x4::simd_from(simd, lane.to_array())
+}
+
+#[inline(always)]
+fn store<S: Simd>(numbers: f64x4<S>) -> Lane {
+    Lane::new(numbers.into())
+}

@@ -1,0 +1,144 @@
+//! A function in one flow: what it is made of there, its value and derivatives where the
+//! flow stands, and bounds of what it can do within a step.
+
+use super::functional::Functional;
+use super::kernels::{self, Factors};
+use super::ladder::Rung;
+use super::lanes::Lane;
+
+/// The roundings of a few operations on a number of size 1.
+pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// A function in one flow.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Watched {
+    /// It keeps its limits until then, s after the start.
+    pub safe_until: f64,
+    /// Where it was last summed up, s after the start.
+    pub summed_up_at: f64,
+    /// The value at the start.
+    start: f64,
+    /// The sum of its terms' magnitudes.
+    start_size: f64,
+    /// What each power of time adds to the value and the derivatives of order 1 to 3.
+    terms: Vec<Lane>,
+    /// The sum of the magnitudes of the terms of the rate at the start, which may cancel.
+    rate_size: f64,
+    /// A bound of the polynomial's fourth derivative within the window.
+    fourth: f64,
+    /// The value, and what its terms' magnitudes add up to.
+    pub value: f64,
+    pub size: f64,
+    /// Derivatives of order 1 to 3 at the places of their orders.
+    derivatives: Lane,
+    /// The polynomial's part of the first one.
+    polynomial_rate: f64,
+    /// The parts of the modes before each, and of all: of the amplitudes in the value, and of
+    /// the derivatives of order 1 to 3.
+    before: Vec<Lane>,
+    /// Their magnitudes in the orders 0, 1 and 4, and of which measurement.
+    sizes_before: Vec<Lane>,
+    measurement: u64,
+}
+
+/// Value and derivatives of a function where a flow stands, with bounds.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Local {
+    /// The value and the derivatives of order 1 to 3, of the slow modes only.
+    pub derivatives: [f64; 4],
+    /// A bound of the magnitude of the fourth derivative of the slow modes.
+    pub fourth: f64,
+    /// A bound of the fast modes' contribution to the value.
+    pub fast: f64,
+    /// A bound of the fast modes' contribution to the first derivative.
+    pub fast_rate: f64,
+    /// What rounding may make of the value.
+    pub noise: f64,
+    /// What rounding may make of the first derivative.
+    pub rate_noise: f64,
+    /// The part of it that adds to the value in proportion to time.
+    pub drift_noise: f64,
+}
+
+impl Watched {
+    /// Prepares for a flow from a start, given what is known there and what drives the
+    /// integrals. `coefficients` is memory for them.
+    pub fn start(
+        &mut self,
+        functional: &Functional,
+        given: &[f64],
+        causes: &[f64],
+        coefficients: &mut Vec<Lane>,
+    ) {
+        let sums = functional.weights.len() + 1;
+        self.before.resize(sums, Lane::ZERO);
+        self.sizes_before.resize(sums, Lane::ZERO);
+        self.safe_until = f64::NEG_INFINITY;
+        self.summed_up_at = f64::NAN;
+        (self.start, self.start_size) = functional.at(given);
+        let polynomial = &functional.polynomial;
+        self.rate_size = polynomial.rate_size(causes);
+        self.fourth = polynomial.terms(causes, coefficients, &mut self.terms);
+    }
+
+    /// Takes the magnitudes of the modes' amplitudes, if they are new: those of this
+    /// measurement.
+    pub fn take_sizes(&mut self, functional: &Functional, sizes: &[Lane], measurement: u64) {
+        if self.measurement != measurement {
+            self.measurement = measurement;
+            kernels::sum_sizes(&functional.weights, sizes, &mut self.sizes_before);
+        }
+    }
+
+    /// Sums up, so long after the start, s, given the amplitudes, how far they have moved, and
+    /// the powers of the time.
+    pub fn sum_up(
+        &mut self,
+        functional: &Functional,
+        amplitudes: (&[Lane], &[Lane]),
+        (tau, powers): (f64, &[f64]),
+    ) {
+        self.summed_up_at = tau;
+        let factors = Factors {
+            weights: &functional.weights,
+            value_weights: &functional.value_weights,
+            terms: &self.terms,
+        };
+        let summed = kernels::sum_up(factors, amplitudes, powers, &mut self.before);
+        self.value = self.start + summed.value;
+        self.size = self.start_size + self.rate_size * tau + summed.size;
+        self.derivatives = summed.derivatives;
+        self.polynomial_rate = summed.polynomial_rate;
+    }
+
+    /// Value and derivatives without the clusters' parts, with bounds over the next step of
+    /// `rung`.
+    #[inline(always)]
+    pub fn local(&self, rung: &Rung) -> Local {
+        let modes = self.before.len() - 1;
+        let slow = rung.slow.min(modes);
+        // Without the fast modes, at whatever phase they are.
+        let left_out = self.before[modes] - self.before[slow];
+        let all = self.sizes_before[modes];
+        let sizes = (all - self.sizes_before[slow]).to_array();
+        let all = all.to_array();
+        let mut derivatives = (self.derivatives - left_out).to_array();
+        derivatives[0] = self.value - left_out.to_array()[0];
+        let (mut fast, mut fast_rate) = (0.0, 0.0);
+        if slow < modes {
+            // With the rounding of the sums.
+            fast = (sizes[0] + ROUNDING * all[0]) * rung.growth;
+            fast_rate = (sizes[1] + ROUNDING * all[1]) * rung.growth;
+        }
+        let fourth = all[2] - sizes[2];
+        Local {
+            derivatives,
+            fourth: fourth * rung.growth + self.fourth,
+            fast,
+            fast_rate,
+            noise: ROUNDING * self.size,
+            rate_noise: ROUNDING * (all[1] + self.polynomial_rate.abs() + self.rate_size),
+            drift_noise: ROUNDING * self.rate_size,
+        }
+    }
+}
