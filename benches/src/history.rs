@@ -22,6 +22,9 @@ pub struct Times {
     pub equation_22: f64,
 }
 
+/// Curves with their names.
+type Named<'a> = Vec<(String, &'a [f64])>;
+
 /// The orders whose ratios are kept.
 const KEPT: [usize; 3] = [4, 16, 64];
 
@@ -110,7 +113,7 @@ pub fn curves(times: &[Times]) -> Result<String, PlotError> {
         ("generated", of(|times| times.generated)),
         ("floor", of(|times| times.floor)),
     ];
-    let named: Vec<(String, &[f64])> = contenders
+    let named: Named<'_> = contenders
         .iter()
         .map(|(name, times)| ((*name).to_owned(), times.as_slice()))
         .collect();
@@ -142,7 +145,7 @@ pub fn development(table: &str) -> Result<String, PlotError> {
         ("time ratio", equation),
         ("instructions", counts),
     ];
-    let drawn: Vec<(&str, Vec<(String, &[f64])>)> = frames
+    let drawn: Vec<(&str, Named<'_>)> = frames
         .iter()
         .map(|(quantity, series)| {
             let series = series.iter();
