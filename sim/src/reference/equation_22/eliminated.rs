@@ -110,14 +110,18 @@ impl<const S: usize> Eliminated<S> {
         let x_sp = sun + self.fluctuation * elementary::sin(self.omega * t);
 
         let mut out = [0.0; N];
-        // One copy of memory: in the loop below it would be one vector at a time.
-        out[..3 + S].copy_from_slice(rate);
+        out[0] = rate[0];
+        out[1] = rate[1];
+        out[2] = rate[2];
         out[3 + S] = x_sp;
         out[4 + S] = x_pr;
         out[5 + S] = x_c;
         for i in 0..S {
             out[6 + S + i] = self.minus_square[i] * q[i] + self.minus_coupling[i] * force;
         }
+        // One copy of memory, after the rest: in the loop it would be one vector at a time, and
+        // before it the zeros above would all be written.
+        out[3..3 + S].copy_from_slice(&rate[3..]);
         out
     }
 }
