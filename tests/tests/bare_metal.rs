@@ -23,7 +23,8 @@ fn missing() -> Option<&'static str> {
     if !works("qemu-system-arm", &["--version"]) {
         return Some("qemu-system-arm (Debian: apt-get install qemu-system-arm)");
     }
-    let libraries = Command::new("rustc")
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let libraries = Command::new(rustc)
         .args([
             "--print",
             "target-libdir",
