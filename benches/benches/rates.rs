@@ -6,31 +6,10 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use eomgen_benches::{state, variants};
+use eomgen_benches::contenders::{equation_22, floor};
+use eomgen_benches::{at_all_orders, state, variants};
 use sim::reference::PlanetaryArmParameters;
 use sim::reference::equation_22::{Eliminated, Equation22};
-
-/// What nobody can go below: one sine, and the rates as they stand in the state.
-#[inline(never)]
-fn floor<const N: usize>(t: f64, state: &[f64; N], omega: f64) -> [f64; N] {
-    let mut out = [0.0; N];
-    for i in 0..N / 2 {
-        out[i] = state[N / 2 + i];
-    }
-    out[N / 2] = elementary::sin(omega * t);
-    out
-}
-
-#[inline(never)]
-fn equation_22<const S: usize, const N: usize>(
-    arm: &Equation22<S>,
-    t: f64,
-    state: &[f64; N],
-) -> [f64; N] {
-    let mut out = [0.0; N];
-    arm.rates(t, state, &mut out);
-    out
-}
 
 /// Results are looked at where they lie: a copy of them would be timed with the call.
 macro_rules! compare {
@@ -72,10 +51,10 @@ macro_rules! compare {
 }
 
 fn rates(criterion: &mut Criterion) {
-    compare!(
-        criterion, 0 order_0, 1 order_1, 2 order_2, 4 order_4, 8 order_8, 16 order_16,
-        32 order_32, 64 order_64, 128 order_128
-    );
+    macro_rules! compare_all {
+        ($($order:literal $module:ident),*) => { compare!(criterion, $($order $module),*) };
+    }
+    at_all_orders!(compare_all);
 }
 
 criterion_group!(benches, rates);

@@ -1,5 +1,11 @@
 //! What the criterion benches of `benches/` compare: the planetary arm as emitted for
-//! orders from 0 to 128 ([`variants`]), and a state to evaluate it at.
+//! orders from 0 to 128 ([`variants`]) beside the other [`contenders`], and a state to
+//! evaluate it at; and how [`instructions`] are counted and the [`history`] of both is kept.
+
+pub mod cases;
+pub mod contenders;
+pub mod history;
+pub mod instructions;
 
 /// One module per order, emitted when this crate is built.
 pub mod variants {

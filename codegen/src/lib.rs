@@ -6,7 +6,7 @@
 //! `differentiate` and `matrix` (derivatives that keep their structure), `lagrange`,
 //! `forces` and `equations` (the equations of motion), `solve` (the accelerations),
 //! `coefficients` (names as in Eq. (22)), `linearity` (whether a model is linear between its
-//! switches), `affine` (its matrices then), `lower` (to the `program`), `evaluator` and `rust` (backends), `print` and
+//! switches), `affine` (its matrices then), `lower` (to the `program`), `operations` (what it costs), `evaluator` and `rust` (backends), `print` and
 //! `report` (for people).
 //!
 //! The arrows are two functions: [`equations::derive`] from a model to equations and
@@ -30,6 +30,7 @@ pub mod matrix;
 pub mod modes;
 mod moments;
 mod operation;
+mod operations;
 pub mod print;
 pub mod program;
 pub mod quadrature;

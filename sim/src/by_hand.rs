@@ -14,7 +14,7 @@ const PAPER_SCALES: (f64, f64) = (3.0885e4, 25e-6);
 
 /// The specifications that were written out by hand. A model of the same name may follow
 /// other conventions; only these very texts are known to be the same machines.
-const SHIPPED: [&str; 7] = [
+const SHIPPED: [&str; 8] = [
     include_str!("../../model-spec/models/planetary_arm.toml"),
     include_str!("../../model-spec/models/double_pendulum.toml"),
     include_str!("../../model-spec/models/cart_two_arms.toml"),
@@ -22,6 +22,7 @@ const SHIPPED: [&str; 7] = [
     include_str!("../../model-spec/models/hub_beam_tip_mass.toml"),
     include_str!("../../model-spec/models/pendulum.toml"),
     include_str!("../../model-spec/models/emps.toml"),
+    include_str!("../../model-spec/models/two_link_arm.toml"),
 ];
 
 /// The references for `model` at `order` with parameter values in SI; none for a model

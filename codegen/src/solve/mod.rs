@@ -2,17 +2,23 @@
 //!
 //! Modes are eliminated first: their block is diagonal plus outer products through a few
 //! interface scalars (the deflection at a tip mass, say), so that with
-//! D a_q + Phi G (Phi^T a_q) + H^T a = f_q the modes cost O(S). The interface scalars
-//! y = Phi^T a_q stand as extra unknowns beside the coordinates in a small system, solved
-//! by elimination without pivoting in the order that counts fewest operations. Where G is
-//! not diagonal the interfaces are made orthogonal first, or a pivot could be negative
-//! although M is positive definite (see `ModalBlock::orthogonalise`). Where the
-//! basis is not orthogonal the modal block is dense and its Cholesky factor takes the
-//! place of D. Pivots must be positive: a reciprocal of one that is not is NaN.
+//! D a_q + Phi (G Phi^T a_q + C^T a - b) + H^T a = f_q the modes cost O(S). The forces that
+//! act through the interfaces, p = G Phi^T a_q + C^T a - b, stand as extra unknowns beside
+//! the coordinates in a small system, solved by elimination without pivoting in the order
+//! that counts fewest operations. Forces and not the accelerations Phi^T a_q: of many modes
+//! the end is light, its acceleration large and nearly cancelled by that of what it carries,
+//! and p would be their difference. Coupling that turns with the state goes through
+//! interfaces (C), any other does not (H): only scalars turn (see
+//! `ModalBlock::couple_through_interfaces`). Where G is not diagonal or C not zero the
+//! interfaces are made orthogonal first, or a pivot could be negative although M is positive
+//! definite (see `ModalBlock::orthogonalise`). Where the basis is not orthogonal the modal
+//! block is dense and its Cholesky factor takes the place of D. Pivots must be positive: a
+//! reciprocal of one that is not is NaN.
 
 mod late;
 mod modal;
 mod small;
+mod spread;
 
 use crate::equations::{MassMatrix, Rows};
 use crate::graph::{Graph, Id, Operation};
@@ -50,7 +56,7 @@ pub struct SolveReport {
 
 /// Solves M a = f.
 pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &Rows) -> Accelerations {
-    let modal = ModalBlock::new(graph, mass);
+    let modal = ModalBlock::new(graph, mass, right);
     let system = SmallSystem::new(graph, mass, right, &modal);
     let coordinates = right.scalars.len();
     let mut solved_in = |order: Vec<usize>| {

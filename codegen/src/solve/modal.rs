@@ -2,6 +2,7 @@
 //! through which outer products couple the modes.
 
 use super::small::{SmallSystem, inner_product, pivot_reciprocal};
+use super::spread::{Part, spread};
 use crate::equations::{MassMatrix, Rows};
 use crate::graph::{Graph, Id, Operation, Space};
 
@@ -79,10 +80,20 @@ pub(super) struct ModalBlock {
     pub(super) inverses: Vec<Option<ModalInverse>>,
     pub(super) interfaces: Vec<Interface>,
     pub(super) weights: Vec<Vec<Id>>,
+    /// C: coupling of each coordinate through the interfaces.
+    pub(super) coupling: Vec<Vec<Id>>,
+    /// Coupling of each coordinate with each field past the interfaces.
+    pub(super) direct_coupling: Vec<Vec<Id>>,
+    /// b: the part of the modes' forces that acts through the interfaces.
+    pub(super) forces: Vec<Id>,
+    /// The modes' forces past the interfaces, per field.
+    pub(super) direct_forces: Vec<Id>,
+    /// Whether a field acts on coordinates through its interfaces alone.
+    pub(super) through_interfaces: Vec<bool>,
 }
 
 impl ModalBlock {
-    pub(super) fn new(graph: &mut Graph, mass: &MassMatrix) -> Self {
+    pub(super) fn new(graph: &mut Graph, mass: &MassMatrix, right: &Rows) -> Self {
         let fields = mass.modal.len();
         let inverses = (0..fields)
             .map(|field| {
@@ -94,6 +105,11 @@ impl ModalBlock {
             inverses,
             interfaces: Vec::new(),
             weights: Vec::new(),
+            coupling: vec![Vec::new(); right.scalars.len()],
+            direct_coupling: mass.coupling.clone(),
+            forces: Vec::new(),
+            direct_forces: right.modal.clone(),
+            through_interfaces: vec![false; fields],
         };
         for row in 0..fields {
             for column in 0..fields {
@@ -108,6 +124,9 @@ impl ModalBlock {
                 }
             }
         }
+        for field in 0..fields {
+            block.couple_through_interfaces(graph, field);
+        }
         if !block.weights_are_diagonal(graph) {
             for field in 0..fields {
                 block.orthogonalise(graph, field);
@@ -116,20 +135,70 @@ impl ModalBlock {
         block
     }
 
+    /// Where a field's coupling turns with the state, as a link's does with the angle of the
+    /// next: its shapes become interfaces, so that only scalars turn. The shapes themselves
+    /// must not, or the interfaces would cost more than they spare.
+    fn couple_through_interfaces(&mut self, graph: &mut Graph, field: usize) {
+        if !matches!(
+            self.inverses[field],
+            Some(ModalInverse::Diagonal { reciprocal, .. }) if graph.dependence(reciprocal).is_prepared()
+        ) {
+            return;
+        }
+        let rows: Vec<Id> = self.direct_coupling.iter().map(|row| row[field]).collect();
+        let turning = |graph: &Graph, id: &Id| !graph.dependence(*id).is_prepared();
+        let interfaces: Vec<Id> = self.interfaces.iter().map(|i| i.shape).collect();
+        if !rows.iter().any(|row| turning(graph, row))
+            || interfaces.iter().any(|shape| turning(graph, shape))
+        {
+            return;
+        }
+        let spreads: Vec<Vec<Part>> = rows.iter().map(|row| spread(graph, *row)).collect();
+        if spreads
+            .iter()
+            .flatten()
+            .any(|part| turning(graph, &part.vector))
+        {
+            return;
+        }
+        self.through_interfaces[field] = true;
+        for (row, parts) in spreads.into_iter().enumerate() {
+            self.direct_coupling[row][field] = graph.zero();
+            for part in parts {
+                if let Some(place) = self.interface(graph, field, part.vector) {
+                    self.coupling[row][place] = part.scalar;
+                }
+            }
+        }
+        let mut direct = Vec::new();
+        for part in spread(graph, self.direct_forces[field]) {
+            let place = self
+                .interfaces
+                .iter()
+                .position(|i| i.field == field && i.shape == part.vector);
+            match place {
+                Some(place) => self.forces[place] = part.scalar,
+                None => direct.push((1.0, graph.multiply(part.scalar, part.vector))),
+            }
+        }
+        self.direct_forces[field] = graph.combine(&direct);
+    }
+
     fn weights_are_diagonal(&self, graph: &Graph) -> bool {
-        self.weights.iter().enumerate().all(|(row, weights)| {
+        let diagonal = self.weights.iter().enumerate().all(|(row, weights)| {
             let beside = |(column, weight): (usize, &Id)| row == column || graph.is_zero(*weight);
             weights.iter().enumerate().all(beside)
-        })
+        });
+        diagonal && !self.through_interfaces.contains(&true)
     }
 
     /// Makes the interfaces of a field orthogonal by D^-1 (Gram-Schmidt), each keeping its
     /// own direction: phi_k = psi_k + sum over j < k of mu_kj psi_j, G' = U G U^T with
     /// U_jk = mu_kj.
     ///
-    /// The pivots of I + C G, C = Phi^T D^-1 Phi, are ratios of its leading minors. With C
-    /// diagonal these are the minors of the symmetric I + C^1/2 G C^1/2, all positive if
-    /// the modal block is positive definite. With any other C they need not be: for a mass
+    /// The pivots of I + G K, K = Phi^T D^-1 Phi, are ratios of its leading minors. With K
+    /// diagonal these are the minors of the symmetric I + K^1/2 G K^1/2, all positive if
+    /// the modal block is positive definite. With any other K they need not be: for a mass
     /// on a lever between two points of a beam the first can be negative.
     fn orthogonalise(&mut self, graph: &mut Graph, field: usize) {
         let places: Vec<usize> = (0..self.interfaces.len())
@@ -173,18 +242,23 @@ impl ModalBlock {
             let moved = graph.multiply(share, self.weights[row][place]);
             self.weights[row][earlier] = graph.add(self.weights[row][earlier], moved);
         }
+        for row in self.coupling.iter_mut().chain([&mut self.forces]) {
+            let moved = graph.multiply(share, row[place]);
+            row[earlier] = graph.add(row[earlier], moved);
+        }
     }
 
     /// Spreads u v^T over interfaces: scalar factors go into the weights.
     fn add_outer(&mut self, graph: &mut Graph, u: (usize, Id), v: (usize, Id)) {
-        for (u_scalar, u_shape) in scaled_shapes(graph, u.1) {
-            for (v_scalar, v_shape) in scaled_shapes(graph, v.1) {
-                let row = self.interface(graph, u.0, u_shape);
-                let column = self.interface(graph, v.0, v_shape);
+        let (rows, columns) = (spread(graph, u.1), spread(graph, v.1));
+        for u_part in &rows {
+            for v_part in &columns {
+                let row = self.interface(graph, u.0, u_part.vector);
+                let column = self.interface(graph, v.0, v_part.vector);
                 let (Some(row), Some(column)) = (row, column) else {
                     continue;
                 };
-                let weight = graph.multiply(u_scalar, v_scalar);
+                let weight = graph.multiply(u_part.scalar, v_part.scalar);
                 self.weights[row][column] = graph.add(self.weights[row][column], weight);
             }
         }
@@ -207,7 +281,8 @@ impl ModalBlock {
             square,
         });
         let zero = graph.zero();
-        for row in &mut self.weights {
+        let rows = self.weights.iter_mut().chain(&mut self.coupling);
+        for row in rows.chain([&mut self.forces]) {
             row.push(zero);
         }
         self.weights.push(vec![zero; self.interfaces.len()]);
@@ -221,22 +296,21 @@ impl ModalBlock {
         }
     }
 
-    /// The accelerations of the modes once interfaces and coordinates are known.
+    /// The accelerations of the modes once interface forces and coordinates are known:
+    /// D^-1 (f_q - H^T a - Phi p).
     pub(super) fn back_substitute(
         &self,
         graph: &mut Graph,
         system: &SmallSystem,
         unknowns: &[Id],
     ) -> Rows {
-        let (interface_values, coordinates) =
-            unknowns.split_at(self.interfaces.len().min(unknowns.len()));
-        let weighted = self.weighted(graph, interface_values);
+        let (forces, coordinates) = unknowns.split_at(self.interfaces.len());
         let modal = (0..self.inverses.len())
             .map(|field| {
                 let mut terms = vec![(1.0, system.free_modes[field])];
-                for (interface, &value) in self.interfaces.iter().zip(&weighted) {
+                for (interface, &force) in self.interfaces.iter().zip(forces) {
                     if interface.field == field {
-                        terms.push((-1.0, graph.multiply(interface.solved, value)));
+                        terms.push((-1.0, graph.multiply(interface.solved, force)));
                     }
                 }
                 for (row, &value) in coordinates.iter().enumerate() {
@@ -252,40 +326,5 @@ impl ModalBlock {
             scalars: coordinates.to_vec(),
             modal,
         }
-    }
-
-    /// G y
-    fn weighted(&self, graph: &mut Graph, values: &[Id]) -> Vec<Id> {
-        self.weights
-            .iter()
-            .map(|row| {
-                let terms: Vec<(f64, Id)> = row
-                    .iter()
-                    .zip(values)
-                    .map(|(weight, value)| (1.0, graph.multiply(*weight, *value)))
-                    .collect();
-                graph.combine(&terms)
-            })
-            .collect()
-    }
-}
-
-/// A vector as a sum of scalar factors times vectors free of them.
-fn scaled_shapes(graph: &mut Graph, vector: Id) -> Vec<(Id, Id)> {
-    match graph.operation(vector).clone() {
-        Operation::Sum(terms) => terms
-            .iter()
-            .flat_map(|&(factor, term)| {
-                scaled_shapes(graph, term)
-                    .into_iter()
-                    .map(|(scalar, shape)| (graph.scale(factor.value(), scalar), shape))
-                    .collect::<Vec<_>>()
-            })
-            .collect(),
-        Operation::Product(factors) => {
-            let (scalars, vectors) = graph.scalar_factors(&factors);
-            vec![(graph.product(&scalars), graph.product(&vectors))]
-        }
-        _ => vec![(graph.one(), vector)],
     }
 }

@@ -1,11 +1,11 @@
-//! The small system of interface scalars and coordinates that is left when the modes are
+//! The small system of interface forces and coordinates that is left when the modes are
 //! eliminated, and its elimination without pivoting.
 
-use super::modal::{Interface, ModalBlock};
+use super::modal::ModalBlock;
 use crate::equations::{MassMatrix, Rows};
 use crate::graph::{Graph, Id, Operation, Space};
 
-/// The system left when the modes are eliminated: interface scalars, then coordinates.
+/// The system left when the modes are eliminated: interface forces, then coordinates.
 pub(super) struct SmallSystem {
     pub(super) interfaces: usize,
     pub(super) matrix: Vec<Vec<Id>>,
@@ -16,6 +16,16 @@ pub(super) struct SmallSystem {
     pub(super) solved_coupling: Vec<Vec<Id>>,
 }
 
+/// What the interfaces do when the modes alone move them.
+struct Response {
+    /// K = Phi^T D^-1 Phi
+    compliance: Vec<Vec<Id>>,
+    /// Phi^T D^-1 H^T, interfaces x coordinates
+    coupling: Vec<Vec<Id>>,
+    /// Phi^T D^-1 f_q
+    free: Vec<Id>,
+}
+
 impl SmallSystem {
     pub(super) fn new(
         graph: &mut Graph,
@@ -23,21 +33,17 @@ impl SmallSystem {
         right: &Rows,
         modal: &ModalBlock,
     ) -> Self {
-        let free_modes: Vec<Id> = right
-            .modal
+        let mut solved = |vectors: &[Id]| -> Vec<Id> {
+            let fields = vectors.iter().enumerate();
+            fields
+                .map(|(field, vector)| modal.solve_field(graph, field, *vector))
+                .collect()
+        };
+        let free_modes = solved(&modal.direct_forces);
+        let solved_coupling = modal
+            .direct_coupling
             .iter()
-            .enumerate()
-            .map(|(field, row)| modal.solve_field(graph, field, *row))
-            .collect();
-        let solved_coupling: Vec<Vec<Id>> = mass
-            .coupling
-            .iter()
-            .map(|row| {
-                row.iter()
-                    .enumerate()
-                    .map(|(field, h)| modal.solve_field(graph, field, *h))
-                    .collect()
-            })
+            .map(|row| solved(row))
             .collect();
         let mut system = Self {
             interfaces: modal.interfaces.len(),
@@ -46,60 +52,83 @@ impl SmallSystem {
             free_modes,
             solved_coupling,
         };
-        for interface in &modal.interfaces {
-            system.push_interface_row(graph, interface, modal);
+        let response = system.response(graph, modal);
+        for place in 0..system.interfaces {
+            system.push_interface_row(graph, place, modal, &response);
         }
         for row in 0..right.scalars.len() {
-            system.push_coordinate_row(graph, mass, row, right.scalars[row], modal);
+            system.push_coordinate_row(graph, mass, row, right.scalars[row], modal, &response);
         }
         system
     }
 
-    /// y + Phi^T D^-1 (Phi G y + H^T a) = Phi^T D^-1 f_q
-    fn push_interface_row(&mut self, graph: &mut Graph, interface: &Interface, modal: &ModalBlock) {
-        let index = self.matrix.len();
-        let compliances: Vec<Id> = modal
-            .interfaces
-            .iter()
-            .map(|other| {
-                if other.field == interface.field {
-                    inner_product(graph, interface.field, interface.shape, other.solved)
+    fn response(&self, graph: &mut Graph, modal: &ModalBlock) -> Response {
+        let mut response = Response {
+            compliance: Vec::new(),
+            coupling: Vec::new(),
+            free: Vec::new(),
+        };
+        for (place, interface) in modal.interfaces.iter().enumerate() {
+            let (field, shape) = (interface.field, interface.shape);
+            let orthogonal = modal.through_interfaces[field];
+            let others = modal.interfaces.iter().enumerate();
+            let compliance = others.map(|(column, other)| {
+                if other.field == field && (place == column || !orthogonal) {
+                    inner_product(graph, field, shape, other.solved)
                 } else {
                     graph.zero()
                 }
-            })
-            .collect();
+            });
+            response.compliance.push(compliance.collect());
+            let coupling = self.solved_coupling.iter();
+            let coupling = coupling.map(|h| inner_product(graph, field, shape, h[field]));
+            response.coupling.push(coupling.collect());
+            let free = self.free_modes[field];
+            // Many terms are summed before they are multiplied with shape after shape.
+            response.free.push(if orthogonal && !graph.is_zero(free) {
+                let product = graph.multiply(shape, free);
+                graph.total_over(Space::Modes(field), product)
+            } else {
+                inner_product(graph, field, shape, free)
+            });
+        }
+        response
+    }
+
+    /// (1 + G K) p + (G Phi^T D^-1 H^T - C^T) a = G Phi^T D^-1 f_q - b
+    fn push_interface_row(
+        &mut self,
+        graph: &mut Graph,
+        place: usize,
+        modal: &ModalBlock,
+        response: &Response,
+    ) {
+        let weights = &modal.weights[place];
         let mut row: Vec<Id> = (0..self.interfaces)
             .map(|column| {
-                let mut terms: Vec<(f64, Id)> = compliances
-                    .iter()
-                    .enumerate()
-                    .map(|(k, c)| (1.0, graph.multiply(*c, modal.weights[k][column])))
-                    .collect();
-                if column == index {
-                    terms.push((1.0, graph.one()));
-                }
-                graph.combine(&terms)
+                let one = if column == place {
+                    graph.one()
+                } else {
+                    graph.zero()
+                };
+                let compliance = response.compliance.iter().map(|row| row[column]);
+                plus_products(graph, one, 1.0, weights, compliance)
             })
             .collect();
-        for solved in &self.solved_coupling {
-            row.push(inner_product(
-                graph,
-                interface.field,
-                interface.shape,
-                solved[interface.field],
-            ));
+        for (coordinate, coupling) in modal.coupling.iter().enumerate() {
+            let own = graph.negate(coupling[place]);
+            let moved = response.coupling.iter().map(|row| row[coordinate]);
+            row.push(plus_products(graph, own, 1.0, weights, moved));
         }
-        self.right.push(inner_product(
-            graph,
-            interface.field,
-            interface.shape,
-            self.free_modes[interface.field],
-        ));
+        let force = graph.negate(modal.forces[place]);
+        let free = response.free.iter().copied();
+        let right = plus_products(graph, force, 1.0, weights, free);
+        self.right.push(right);
         self.matrix.push(row);
     }
 
-    /// (A - H D^-1 H^T) a - H D^-1 Phi G y = f - H D^-1 f_q
+    /// (A - H D^-1 H^T) a - (H D^-1 Phi + C K) p = f - H D^-1 f_q - C Phi^T D^-1 f_q; a field
+    /// couples by C or by H.
     fn push_coordinate_row(
         &mut self,
         graph: &mut Graph,
@@ -107,36 +136,33 @@ impl SmallSystem {
         row: usize,
         force: Id,
         modal: &ModalBlock,
+        response: &Response,
     ) {
-        let coupling = &mass.coupling[row];
-        let through: Vec<Id> = modal
-            .interfaces
-            .iter()
-            .map(|i| inner_product(graph, i.field, coupling[i.field], i.solved))
-            .collect();
+        let direct = &modal.direct_coupling[row];
+        let through = &modal.coupling[row];
         let mut entries: Vec<Id> = (0..self.interfaces)
             .map(|column| {
-                let terms: Vec<(f64, Id)> = through
-                    .iter()
-                    .enumerate()
-                    .map(|(k, t)| (-1.0, graph.multiply(*t, modal.weights[k][column])))
-                    .collect();
-                graph.combine(&terms)
+                let own = graph.negate(response.coupling[column][row]);
+                let compliance = response.compliance.iter().map(|row| row[column]);
+                plus_products(graph, own, -1.0, through, compliance)
             })
             .collect();
         for (column, solved) in self.solved_coupling.iter().enumerate() {
             let mut terms = vec![(1.0, mass.scalars[row][column])];
-            for (field, h) in coupling.iter().enumerate() {
+            for (field, h) in direct.iter().enumerate() {
                 terms.push((-1.0, inner_product(graph, field, *h, solved[field])));
             }
             entries.push(graph.combine(&terms));
         }
         let mut terms = vec![(1.0, force)];
-        for (field, h) in coupling.iter().enumerate() {
+        for (field, h) in direct.iter().enumerate() {
             terms.push((
                 -1.0,
                 inner_product(graph, field, *h, self.free_modes[field]),
             ));
+        }
+        for (coupling, free) in through.iter().zip(&response.free) {
+            terms.push((-1.0, graph.multiply(*coupling, *free)));
         }
         self.right.push(graph.combine_flat(&terms));
         self.matrix.push(entries);
@@ -183,6 +209,20 @@ impl SmallSystem {
         }
         (unknowns, pivots)
     }
+}
+
+/// start + sign sum of a_k b_k
+fn plus_products(
+    graph: &mut Graph,
+    start: Id,
+    sign: f64,
+    a: &[Id],
+    b: impl Iterator<Item = Id>,
+) -> Id {
+    let products = a.iter().zip(b).map(|(a, b)| (sign, graph.multiply(*a, b)));
+    let mut terms: Vec<(f64, Id)> = products.collect();
+    terms.push((1.0, start));
+    graph.combine(&terms)
 }
 
 /// The reciprocal of a pivot. One of parameters alone that is a plain product cancels

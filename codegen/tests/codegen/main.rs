@@ -7,6 +7,7 @@ mod expressions;
 mod guards;
 mod modes;
 mod names;
+mod operations;
 mod size;
 mod solved;
 mod support;

@@ -113,29 +113,29 @@ pub struct Coefficients {
     pub c: f64,
     /// `E*I*INTEGRAL_PHI_D2_SQUARED*M_theta_q/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
     pub c_5: [f64; 2],
-    /// `M_t*E*I*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    /// `M_t*E*I*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*.../INT...`
     pub c_6: f64,
     /// `PHI_AT_END*INTEGRAL_PHI_D2_SQUARED/INTEGRAL_PHI_SQUARED`
     pub c_7: [f64; 2],
-    /// `(M_t*J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))/(rho*rho*A*A*l*l*l*l) - (J_t*su...`
+    /// `(M_t*sum_i(.../...)*(l*sum_i(...) + sum_i(...)/(...*l))*1/(1.0 + M_t*.../(...*l))/(rho*A*l) - (l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (s...`
     pub c_8: f64,
-    /// `E*I*PHI_D1_AT_END*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    /// `J_t*E*I*PHI_D1_AT_END*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*l*l*INTEGRAL_PHI_SQUARED)`
     pub c_9: [f64; 2],
-    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    /// `M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l)`
     pub c_10: f64,
     /// `rho*A*l*INTEGRAL_PHI_SQUARED`
     pub c_11: [f64; 2],
-    /// `M_t*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*PHI_AT_END/(rho*A*l*INTEGRAL_PHI_SQUARED)`
+    /// `1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))*PHI_AT_END/(rho*A*l*INTEGRAL_PHI_SQUARED)`
     pub c_12: [f64; 2],
-    /// `J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
+    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
     pub c_13: f64,
-    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_D1_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l) - (M_t*sum_i(...*.../INTEGR...`
+    /// `(J_t*(l*sum_i(...*.../INTEGRAL_PHI_SQUARED) + sum_i(...*(...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))/(l*l) - (M_t*J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)*(l*sum_i(......`
     pub c_14: f64,
-    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta`
+    /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta`
     pub c_15: f64,
-    /// `-(E*I/(rho*A*l*l*l*l))`
+    /// `-(M_t*E*I/(rho*A*l*l*l*l))`
     pub c_16: f64,
-    /// `J_t*1/(1.0 + J_t*sum_i(...)/(rho*A*l*...) - (M_t*J_t*...*...*1/(... + ...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*A*l*l*l*INTEGRAL_PHI_SQUARED)`
+    /// `1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*A*l*INTEGRAL_PHI_SQUARED...`
     pub c_17: [f64; 2],
     /// `1/pivot_theta*(l*INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*l*INTEGRAL_PHI_SQUARED))`
     pub c_18: [f64; 2],
@@ -204,48 +204,42 @@ impl Coefficients {
         let s_15 = l * s_13 + s_14 / s_11;
         let s_16 = sum_of_few(
             2,
-            |i| PHI_AT_END[i] * M_theta_q[i] / INTEGRAL_PHI_SQUARED[i],
-        );
-        let s_17 = sum_of_few(
-            2,
             |i| PHI_AT_END[i] * PHI_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
         );
-        let s_18 = 1.0 + M_t * s_17 / s_11;
-        let s_19 = pivot_reciprocal(s_18);
-        let s_20 = sum_of_few(
+        let s_17 = 1.0 + M_t * s_16 / s_11;
+        let s_18 = pivot_reciprocal(s_17);
+        let s_19 = sum_of_few(
             2,
             |i| INTEGRAL_S1_PHI[i] * PHI_D1_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
         );
+        let s_20 = l * s_19;
         let s_21 = sum_of_few(
             2,
             |i| PHI_D1_AT_END[i] * s_9[i] / INTEGRAL_PHI_SQUARED[i],
         );
-        let s_22 = sum_of_few(
+        let s_22 = s_21 / s_11;
+        let s_23 = s_5 * s_2;
+        let s_24 = M_t * J_t;
+        let s_25 = sum_of_few(
             2,
             |i| PHI_AT_END[i] * PHI_D1_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
         );
-        let s_23 = l * s_20 + s_21 / s_11 - M_t * s_22 * s_15 * s_19 / s_11;
-        let s_24 = s_5 * s_2;
-        let s_25 = sum_of_few(
-            2,
-            |i| PHI_D1_AT_END[i] * M_theta_q[i] / INTEGRAL_PHI_SQUARED[i],
-        );
-        let s_26 = rho * rho * (A * A);
-        let s_27 = s_1 * s_1;
-        let s_28 = s_26 * s_27;
-        let s_29 = M_t * J_t;
-        let s_30 = s_29 * s_22 * s_16 * s_19 / s_28 - J_t * s_25 / s_24;
-        let s_31 = sum_of_few(
+        let s_26 = J_t * (s_20 + s_22) / s_1 - s_24 * s_25 * s_15 * s_18 / s_23;
+        let s_27 = M_t * s_25;
+        let s_28 = s_27 * s_15 * s_18 / s_11 - s_20 - s_22;
+        let s_29 = sum_of_few(
             2,
             |i| PHI_D1_AT_END[i] * PHI_D1_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
         );
-        let s_32 = 1.0 + J_t * s_31 / s_24 - s_29 * (s_22 * s_22) * s_19 / s_28;
+        let s_30 = rho * rho * (A * A);
+        let s_31 = s_1 * s_1;
+        let s_32 = 1.0 + J_t * s_29 / s_23 - s_24 * (s_25 * s_25) * s_18 / (s_30 * s_31);
         let s_33 = pivot_reciprocal(s_32);
-        let s_34 = J_h + J_t + s_3 + s_4 + M_t * s_15 * s_16 * s_19 / s_11 - l * s_10;
-        let pivot_theta = s_34 - s_12 / s_11 - s_23 * s_30 * s_33;
+        let s_34 = J_h + J_t + s_3 + s_4 + M_t * (s_15 * s_15) * s_18 - l * s_10;
+        let pivot_theta = s_34 - s_12 / s_11 - s_26 * s_28 * s_33;
         let s_35 = pivot_reciprocal(pivot_theta);
         let c = parameters.c;
-        let s_36 = s_5 * s_27;
+        let s_36 = s_5 * s_31;
         let E = parameters.E;
         let I = parameters.I;
         let s_37 = E * I;
@@ -261,48 +255,48 @@ impl Coefficients {
         for i in 0..2 {
             s_40[i] = s_39[i] * M_theta_q[i] / s_38[i];
         }
-        let s_41 = s_26 * (l * s_27);
-        let s_42 = M_t * E * I;
-        let mut s_43 = [0.0; 2];
+        let s_41 = M_t * E * I;
+        let mut s_42 = [0.0; 2];
         for i in 0..2 {
-            s_43[i] = PHI_AT_END[i] * INTEGRAL_PHI_D2_SQUARED[i]
+            s_42[i] = PHI_AT_END[i] * INTEGRAL_PHI_D2_SQUARED[i]
                 / INTEGRAL_PHI_SQUARED[i];
         }
-        let mut s_44 = [0.0; 2];
+        let s_43 = s_5 * (s_1 * s_31);
+        let s_44 = J_t * E * I;
+        let mut s_45 = [0.0; 2];
         for i in 0..2 {
-            s_44[i] = s_37 * PHI_D1_AT_END[i] * INTEGRAL_PHI_D2_SQUARED[i] / s_38[i];
+            s_45[i] = s_44 * PHI_D1_AT_END[i] * INTEGRAL_PHI_D2_SQUARED[i]
+                / (s_43 * INTEGRAL_PHI_SQUARED[i]);
         }
-        let s_45 = M_t * s_19;
         let mut s_46 = [0.0; 2];
         for i in 0..2 {
             s_46[i] = s_11 * INTEGRAL_PHI_SQUARED[i];
         }
         let mut s_47 = [0.0; 2];
         for i in 0..2 {
-            s_47[i] = s_45 * PHI_AT_END[i] / s_46[i];
+            s_47[i] = s_18 * PHI_AT_END[i] / s_46[i];
         }
-        let s_48 = J_t * s_33;
+        let mut s_48 = [0.0; 2];
+        for i in 0..2 {
+            s_48[i] = s_33 * PHI_D1_AT_END[i] / s_46[i];
+        }
         let mut s_49 = [0.0; 2];
         for i in 0..2 {
-            s_49[i] = s_48 * PHI_D1_AT_END[i] / (s_24 * INTEGRAL_PHI_SQUARED[i]);
+            s_49[i] = s_35
+                * (l * INTEGRAL_S1_PHI[i] / INTEGRAL_PHI_SQUARED[i] + s_9[i] / s_46[i]);
         }
         let mut s_50 = [0.0; 2];
         for i in 0..2 {
-            s_50[i] = s_35
-                * (l * INTEGRAL_S1_PHI[i] / INTEGRAL_PHI_SQUARED[i] + s_9[i] / s_46[i]);
-        }
-        let mut s_51 = [0.0; 2];
-        for i in 0..2 {
-            s_51[i] = -(s_39[i] / s_38[i]);
+            s_50[i] = -(s_39[i] / s_38[i]);
         }
         let M_theta_theta = J_h + s_3 + (J_t + s_4);
+        let mut s_51 = [0.0; 2];
+        for i in 0..2 {
+            s_51[i] = M_t * PHI_AT_END[i];
+        }
         let mut s_52 = [0.0; 2];
         for i in 0..2 {
-            s_52[i] = M_t * PHI_AT_END[i];
-        }
-        let mut s_53 = [0.0; 2];
-        for i in 0..2 {
-            s_53[i] = PHI_D1_AT_END[i] / l;
+            s_52[i] = PHI_D1_AT_END[i] / l;
         }
         let mut positive_4 = true;
         for i in 0..2 {
@@ -317,23 +311,23 @@ impl Coefficients {
             c_4: s_35,
             c: c,
             c_5: s_40,
-            c_6: s_42 * s_16 * s_19 / s_41,
-            c_7: s_43,
-            c_8: s_30 * s_33,
-            c_9: s_44,
-            c_10: s_42 * s_22 * s_19 / s_41,
+            c_6: s_41 * s_15 * s_18 / s_36,
+            c_7: s_42,
+            c_8: s_28 * s_33,
+            c_9: s_45,
+            c_10: s_24 * E * I * s_25 * s_18 / (s_30 * (s_2 * s_31)),
             c_11: s_46,
             c_12: s_47,
-            c_13: J_t * s_22 * s_33 / s_24,
-            c_14: s_23 * s_35,
-            c_15: s_15 * s_35,
-            c_16: -(s_37 / s_36),
-            c_17: s_49,
-            c_18: s_50,
-            c_19: s_51,
+            c_13: s_27 * s_33 / s_11,
+            c_14: s_26 * s_35,
+            c_15: M_t * s_15 * s_35,
+            c_16: -(s_41 / s_36),
+            c_17: s_48,
+            c_18: s_49,
+            c_19: s_50,
             M_theta_theta: M_theta_theta,
-            c_20: s_52,
-            c_21: s_53,
+            c_20: s_51,
+            c_21: s_52,
             c_22: 1.0 / l,
             c_23: 0.5 * J_h,
             c_24: 2.0 * rho * A * s_1,
@@ -341,7 +335,7 @@ impl Coefficients {
             c_26: 0.5 * J_t,
             c_27: 0.5 * E * I / s_2,
             positive_definite: pivot_theta > 0.0 && pivot_theta < f64::INFINITY
-                && s_18 > 0.0 && s_18 < f64::INFINITY && s_32 > 0.0
+                && s_17 > 0.0 && s_17 < f64::INFINITY && s_32 > 0.0
                 && s_32 < f64::INFINITY && positive_4,
         }
     }

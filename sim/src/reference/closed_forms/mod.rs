@@ -13,6 +13,7 @@ mod emps;
 mod furuta_pendulum;
 mod hub_beam_tip_mass;
 mod pendulum;
+mod two_link_arm;
 
 use std::fmt;
 
@@ -65,6 +66,7 @@ pub fn find(name: &str) -> Option<ClosedForm> {
         "furuta_pendulum" => Some(furuta_pendulum::accelerations),
         "hub_beam_tip_mass" => Some(hub_beam_tip_mass::accelerations),
         "pendulum" => Some(pendulum::accelerations),
+        "two_link_arm" => Some(two_link_arm::accelerations),
         _ => None,
     }
 }

@@ -9,8 +9,7 @@ use super::coefficients::Coefficients;
 use crate::reference::mesh::{f_c, f_k};
 use crate::reference::parameters::PlanetaryArmParameters;
 
-/// Above this many modes their sum is a function of its own: unrolled into one piece with
-/// the rest, the compiler vectorises across both, and spills.
+/// Above this many modes their sum has partial sums.
 const FEW: usize = 8;
 
 /// Spring, damper and backlash of one mesh.
@@ -110,8 +109,6 @@ impl<const S: usize> Eliminated<S> {
             - 2.0 * x_c;
         let x_sp = sun + self.fluctuation * elementary::sin(self.omega * t);
 
-        // Element by element, and the modes' in the loop of their accelerations: copies of
-        // slices become calls of `memcpy`, which cost as much as all the rest at S = 16.
         let mut out = [0.0; N];
         out[0] = rate[0];
         out[1] = rate[1];
@@ -120,9 +117,11 @@ impl<const S: usize> Eliminated<S> {
         out[4 + S] = x_pr;
         out[5 + S] = x_c;
         for i in 0..S {
-            out[3 + i] = rate[3 + i];
             out[6 + S + i] = self.minus_square[i] * q[i] + self.minus_coupling[i] * force;
         }
+        // One copy of memory, after the rest: in the loop it would be one vector at a time, and
+        // before it the zeros above would all be written.
+        out[3..3 + S].copy_from_slice(&rate[3..]);
         out
     }
 }
@@ -131,23 +130,24 @@ impl<const S: usize> Eliminated<S> {
 #[inline(always)]
 fn sum_of_products<const S: usize>(a: &[f64; S], b: &[f64]) -> f64 {
     if S > FEW {
-        return sum_of_many(a, b);
+        return sum_in_blocks(a, b);
     }
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The same in eight partial sums, so that it is not one chain of additions.
-#[inline(never)]
-fn sum_of_many<const S: usize>(a: &[f64; S], b: &[f64]) -> f64 {
+/// The same in eight partial sums, so that it is not one chain of additions. These are added
+/// half to half and not neighbour to neighbour, for which vectors need not be taken apart: by
+/// neighbours the compiler shuffles all that it multiplies.
+#[inline(always)]
+fn sum_in_blocks(a: &[f64], b: &[f64]) -> f64 {
+    let ((a_blocks, a_rest), (b_blocks, b_rest)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
     let mut s = [0.0; 8];
-    let b = &b[..S];
-    for block in 0..S / 8 {
-        for k in 0..8 {
-            s[k] += a[8 * block + k] * b[8 * block + k];
-        }
+    for (a, b) in a_blocks.iter().zip(b_blocks) {
+        s = std::array::from_fn(|k| s[k] + a[k] * b[k]);
     }
-    for i in S / 8 * 8..S {
-        s[i % 8] += a[i] * b[i];
+    for (s, (a, b)) in s.iter_mut().zip(a_rest.iter().zip(b_rest)) {
+        *s += a * b;
     }
-    ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]))
+    let quarters: [f64; 4] = std::array::from_fn(|k| s[k] + s[k + 4]);
+    (quarters[0] + quarters[2]) + (quarters[1] + quarters[3])
 }

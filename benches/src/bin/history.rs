@@ -1,0 +1,127 @@
+//! Measures the right-hand sides, counts their instructions, appends a line to
+//! `benches/history.csv` and draws `docs/rates.svg` and `docs/history.svg`:
+//!
+//!     cargo run --release -p eomgen-benches --bin history
+
+use std::error::Error;
+use std::hint::black_box;
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+use eomgen_benches::contenders::{equation_22, floor};
+use eomgen_benches::history::{Times, curves, development, heading, line, table};
+use eomgen_benches::instructions::{ARGUMENT, available, counted, names};
+use eomgen_benches::{at_all_orders, cases, state, variants};
+use sim::reference::PlanetaryArmParameters;
+use sim::reference::equation_22::{Eliminated, Equation22};
+
+/// Calls that are timed together.
+const CALLS: u32 = 100;
+/// How often each contender is timed, one after the other: the fastest counts, which other
+/// work on the machine disturbs least.
+const ROUNDS: usize = 600;
+
+/// The fastest call of each, s.
+fn fastest(contenders: &mut [&mut dyn FnMut(); 4]) -> [f64; 4] {
+    let mut best = [f64::INFINITY; 4];
+    for _ in 0..ROUNDS {
+        for (best, contender) in best.iter_mut().zip(contenders.iter_mut()) {
+            let begin = Instant::now();
+            contender();
+            *best = best.min(begin.elapsed().as_secs_f64() / f64::from(CALLS));
+        }
+    }
+    best
+}
+
+macro_rules! times {
+    ($($order:literal $module:ident),*) => {
+        vec![$({
+            use variants::$module as arm;
+            let state = state::<{ arm::STATES }>();
+            let inputs = arm::Inputs::default();
+            let parameters = PlanetaryArmParameters::default();
+            let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
+            let eliminated = Eliminated::<$order>::new(&parameters);
+            let equation = Equation22::<$order>::new(&parameters, 1.0, 1.0);
+            let [floor, generated, hand_written, equation_22] = fastest(&mut [
+                &mut || for _ in 0..CALLS {
+                    black_box(&floor(black_box(0.3), black_box(&state), black_box(31.4)));
+                },
+                &mut || for _ in 0..CALLS {
+                    black_box(&arm::rates(black_box(0.3), black_box(&state), &inputs, black_box(&coefficients)));
+                },
+                &mut || for _ in 0..CALLS {
+                    black_box(&black_box(&eliminated).rates(black_box(0.3), black_box(&state)));
+                },
+                &mut || for _ in 0..CALLS {
+                    black_box(&equation_22(black_box(&equation), black_box(0.3), black_box(&state)));
+                },
+            ]);
+            Times { order: $order, floor, generated, hand_written, equation_22 }
+        }),*]
+    };
+}
+
+/// The widest vectors that this program was compiled for.
+fn features() -> &'static str {
+    if cfg!(target_feature = "avx512f") {
+        "avx512"
+    } else if cfg!(target_feature = "avx2") {
+        "avx2"
+    } else if cfg!(target_feature = "sse2") {
+        "sse2"
+    } else {
+        std::env::consts::ARCH
+    }
+}
+
+/// What git says, empty without it.
+fn git(arguments: &[&str]) -> String {
+    let output = Command::new("git").args(arguments).output();
+    output.map_or_else(
+        |_| String::new(),
+        |output| String::from_utf8_lossy(&output.stdout).trim().to_owned(),
+    )
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    if std::env::args().nth(1).as_deref() == Some(ARGUMENT) {
+        cases::run();
+        return Ok(());
+    }
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let times: Vec<Times> = at_all_orders!(times);
+    let counts = if available() {
+        let here = std::env::current_exe()?;
+        let profile = here.with_file_name("callgrind");
+        std::fs::create_dir_all(&profile)?;
+        counted(&here, &profile, &names())?
+    } else {
+        eprintln!("SKIPPED: instructions were not counted, for want of valgrind");
+        Vec::new()
+    };
+    let run = [
+        git(&["log", "-1", "--format=%cs"]),
+        git(&["describe", "--always", "--dirty=+"]),
+        features().to_owned(),
+    ];
+    let path = folder.join("history.csv");
+    let mut history = std::fs::read_to_string(&path).unwrap_or_else(|_| heading());
+    let line = line(&run, &times, &counts);
+    history.push_str(&line);
+    let docs = folder.join("../docs");
+    let written = [
+        (path, history.clone()),
+        (docs.join("rates.svg"), curves(&times)?),
+        (docs.join("history.svg"), development(&history)?),
+    ];
+    for (path, text) in written {
+        let beside = path.with_extension("new");
+        std::fs::write(&beside, text)?;
+        std::fs::rename(&beside, &path)?;
+    }
+    print!("{}{}{line}", table(&times), heading());
+    Ok(())
+}

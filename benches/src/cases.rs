@@ -1,0 +1,114 @@
+//! The cases that [`crate::instructions`] counts, each a function of its own that callgrind
+//! can tell apart.
+
+use std::hint::black_box;
+use std::path::Path;
+
+use codegen::rust::{Packaging, emit};
+use codegen::variant::Variant;
+use model_spec::model::Model;
+use sim::reference::PlanetaryArmParameters;
+use sim::reference::equation_22::{Eliminated, Equation22};
+
+use crate::contenders::equation_22;
+use crate::instructions::CALLS;
+use crate::{state, variants};
+
+/// A function for each contender at an order, and one that prepares and calls them all: what
+/// is done once is not counted.
+macro_rules! right_hand_sides {
+    ($($order:literal $module:ident $generated:ident $hand_written:ident $equation_22:ident),* $(,)?) => {
+        $(
+            #[inline(never)]
+            fn $generated(
+                state: &[f64; variants::$module::STATES],
+                coefficients: &variants::$module::Coefficients,
+            ) {
+                let inputs = variants::$module::Inputs::default();
+                repeat(|| {
+                    black_box(&variants::$module::rates(black_box(0.3), black_box(state), &inputs, coefficients));
+                });
+            }
+
+            #[inline(never)]
+            fn $hand_written(state: &[f64; variants::$module::STATES], arm: &Eliminated<$order>) {
+                repeat(|| {
+                    black_box(&black_box(arm).rates(black_box(0.3), black_box(state)));
+                });
+            }
+
+            #[inline(never)]
+            fn $equation_22(state: &[f64; variants::$module::STATES], arm: &Equation22<$order>) {
+                repeat(|| {
+                    black_box(&equation_22(black_box(arm), black_box(0.3), black_box(state)));
+                });
+            }
+        )*
+
+        fn run_right_hand_sides() {
+            let parameters = PlanetaryArmParameters::default();
+            $({
+                use variants::$module as arm;
+                let state = state::<{ arm::STATES }>();
+                $generated(&state, &arm::Coefficients::prepare(&arm::Parameters::default()));
+                $hand_written(&state, &Eliminated::new(&parameters));
+                $equation_22(&state, &Equation22::new(&parameters, 1.0, 1.0));
+            })*
+        }
+    };
+}
+
+right_hand_sides!(
+    0 order_0 generated_0 hand_written_0 equation_22_0,
+    1 order_1 generated_1 hand_written_1 equation_22_1,
+    2 order_2 generated_2 hand_written_2 equation_22_2,
+    4 order_4 generated_4 hand_written_4 equation_22_4,
+    8 order_8 generated_8 hand_written_8 equation_22_8,
+    16 order_16 generated_16 hand_written_16 equation_22_16,
+    32 order_32 generated_32 hand_written_32 equation_22_32,
+    64 order_64 generated_64 hand_written_64 equation_22_64,
+    128 order_128 generated_128 hand_written_128 equation_22_128,
+);
+
+/// As many calls as are counted.
+#[inline(always)]
+fn repeat(mut call: impl FnMut()) {
+    for _ in 0..CALLS {
+        call();
+    }
+}
+
+/// Derivation and emission with every field at an order.
+fn emitted(model: &Model, order: usize) {
+    let variant = Variant::derive(model, &vec![order; model.fields.len()]);
+    let Ok(variant) = variant else {
+        panic!("the shipped model can be derived");
+    };
+    let source = emit(&variant.program, Packaging::Crate);
+    assert!(black_box(source).is_ok());
+}
+
+#[inline(never)]
+fn derive_and_emit_4(model: &Model) {
+    emitted(model, 4);
+}
+
+#[inline(never)]
+fn derive_and_emit_128(model: &Model) {
+    emitted(model, 128);
+}
+
+/// Runs every case.
+///
+/// # Panics
+/// If the shipped specification is not where it was when this was compiled.
+pub fn run() {
+    run_right_hand_sides();
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm.toml");
+    let Ok(checked) = model_spec::load(&path) else {
+        panic!("the shipped model can be read");
+    };
+    derive_and_emit_4(&checked.model);
+    derive_and_emit_128(&checked.model);
+}

@@ -1,0 +1,39 @@
+//! What generated code is compared with, each as one call that is not inlined: emitted
+//! functions are not inlined into other crates, so neither are the others.
+
+use sim::reference::equation_22::Equation22;
+
+/// Calls a macro with every order that is compared and the module of [`crate::variants`]
+/// that holds it.
+#[macro_export]
+macro_rules! at_all_orders {
+    ($with:ident) => {
+        $with!(
+            0 order_0, 1 order_1, 2 order_2, 4 order_4, 8 order_8, 16 order_16, 32 order_32,
+            64 order_64, 128 order_128
+        )
+    };
+}
+
+/// What nobody can go below: one sine, and the rates as they stand in the state.
+#[inline(never)]
+pub fn floor<const N: usize>(t: f64, state: &[f64; N], omega: f64) -> [f64; N] {
+    let mut out = [0.0; N];
+    for i in 0..N / 2 {
+        out[i] = state[N / 2 + i];
+    }
+    out[N / 2] = elementary::sin(omega * t);
+    out
+}
+
+/// Hand-assembled Eq. (22).
+#[inline(never)]
+pub fn equation_22<const S: usize, const N: usize>(
+    arm: &Equation22<S>,
+    t: f64,
+    state: &[f64; N],
+) -> [f64; N] {
+    let mut out = [0.0; N];
+    arm.rates(t, state, &mut out);
+    out
+}

@@ -1,0 +1,237 @@
+//! The record of how fast the generated right-hand side is beside the other contenders:
+//! what one run found, as a line of a table and as curves. Measuring is not here.
+
+use std::fmt::Write;
+
+use sim::plot::{Axes, Frame, Panel, Plate, PlotError, Series, plate};
+
+use crate::instructions::Count;
+
+/// The fastest of many calls at one order, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Times {
+    /// The order S.
+    pub order: usize,
+    /// One sine and copying the rates.
+    pub floor: f64,
+    /// Generated.
+    pub generated: f64,
+    /// Written by hand in O(S).
+    pub hand_written: f64,
+    /// Hand-assembled Eq. (22).
+    pub equation_22: f64,
+}
+
+/// Curves with their names.
+type Named<'a> = Vec<(String, &'a [f64])>;
+
+/// The orders whose ratios are kept.
+const KEPT: [usize; 3] = [4, 16, 64];
+
+/// The cases whose instructions are kept.
+const COUNTED: [&str; 5] = [
+    "generated_4",
+    "generated_16",
+    "generated_64",
+    "derive_and_emit_4",
+    "derive_and_emit_128",
+];
+
+/// The columns of the table before those of each order and of each count.
+const FIRST: &str = "date,commit,features,floor_4_ns";
+
+/// The first line of the table.
+pub fn heading() -> String {
+    let mut line = FIRST.to_owned();
+    for order in KEPT {
+        let ratios = [
+            "generated_to_hand",
+            "generated_to_equation_22",
+            "hand_to_floor",
+        ];
+        for ratio in ratios {
+            let _ = write!(line, ",{ratio}_{order}");
+        }
+    }
+    for case in COUNTED {
+        let _ = write!(line, ",instructions_{case}");
+    }
+    line + "\n"
+}
+
+/// A line of the table; `run` is date, commit and target features. What was not counted is
+/// empty. The floor is that of order 4 throughout.
+pub fn line(run: &[String; 3], times: &[Times], counts: &[Count]) -> String {
+    let at = |order: usize| times.iter().find(|times| times.order == order);
+    let floor = at(4).map_or(f64::NAN, |times| times.floor);
+    let mut line = format!("{},{:.2}", run.join(","), 1e9 * floor);
+    for order in KEPT {
+        if let Some(times) = at(order) {
+            let ratios = [
+                times.generated / times.hand_written,
+                times.generated / times.equation_22,
+                times.hand_written / floor,
+            ];
+            for ratio in ratios {
+                let _ = write!(line, ",{ratio:.3}");
+            }
+        }
+    }
+    for case in COUNTED {
+        let count = counts.iter().find(|(name, _)| name == case);
+        let _ = write!(
+            line,
+            ",{}",
+            count.map_or(String::new(), |(_, n)| n.to_string())
+        );
+    }
+    line + "\n"
+}
+
+/// The times of one run as a table, ns.
+pub fn table(times: &[Times]) -> String {
+    let line = |t: &Times| {
+        let all = [t.floor, t.generated, t.hand_written, t.equation_22].map(|time| 1e9 * time);
+        let [floor, generated, hand_written, equation_22] = all;
+        let order = t.order;
+        format!("{order},{floor:.2},{generated:.2},{hand_written:.2},{equation_22:.2}\n")
+    };
+    let lines: String = times.iter().map(line).collect();
+    format!("order,floor,generated,hand_written,equation_22\n{lines}")
+}
+
+/// The times of one run over the order, as SVG.
+///
+/// # Errors
+/// If there is nothing to draw.
+pub fn curves(times: &[Times]) -> Result<String, PlotError> {
+    let orders: Vec<f64> = times.iter().map(|times| times.order as f64).collect();
+    let of = |time: fn(&Times) -> f64| times.iter().map(time).collect::<Vec<f64>>();
+    let contenders = [
+        ("Eq. (22) by hand", of(|times| times.equation_22)),
+        ("O(S) by hand", of(|times| times.hand_written)),
+        ("generated", of(|times| times.generated)),
+        ("floor", of(|times| times.floor)),
+    ];
+    let named: Named<'_> = contenders
+        .iter()
+        .map(|(name, times)| ((*name).to_owned(), times.as_slice()))
+        .collect();
+    draw(
+        "Time of one right-hand side over the number of modes S",
+        vec![frame("time", "s", "S", &orders, &named)],
+    )
+}
+
+/// The ratios and counts of all runs of a table, as SVG.
+///
+/// # Errors
+/// If there is nothing to draw.
+pub fn development(table: &str) -> Result<String, PlotError> {
+    let runs: Vec<f64> = (1..table.lines().count()).map(|run| run as f64).collect();
+    let of = |names: &[String]| -> Vec<(String, Vec<f64>)> {
+        let columns = names.iter();
+        columns
+            .map(|name| (name.replace('_', " "), column(table, name)))
+            .collect()
+    };
+    let hand = of(&KEPT.map(|order| format!("generated_to_hand_{order}")));
+    let equation = of(&KEPT.map(|order| format!("generated_to_equation_22_{order}")));
+    let counts = of(&COUNTED
+        .map(|case| format!("instructions_{case}"))
+        .map(String::from)[..3]);
+    let frames = [
+        ("time ratio", hand),
+        ("time ratio", equation),
+        ("instructions", counts),
+    ];
+    let drawn: Vec<(&str, Named<'_>)> = frames
+        .iter()
+        .map(|(quantity, series)| {
+            let series = series.iter();
+            let series = series.map(|(name, values)| (name.clone(), values.as_slice()));
+            (*quantity, series.collect())
+        })
+        .collect();
+    let frames = drawn
+        .iter()
+        .map(|(quantity, series)| frame(quantity, "", "run", &runs, series))
+        .collect();
+    draw("Ratios of times and instructions of all runs", frames)
+}
+
+/// A column of the table by its name; what is empty is not a number.
+fn column(table: &str, name: &str) -> Vec<f64> {
+    let mut lines = table.lines();
+    let heading = lines.next().unwrap_or_default();
+    let Some(place) = heading.split(',').position(|column| column == name) else {
+        return Vec::new();
+    };
+    lines
+        .map(|line| {
+            let cell = line.split(',').nth(place);
+            cell.and_then(|cell| cell.parse().ok()).unwrap_or(f64::NAN)
+        })
+        .collect()
+}
+
+fn frame<'a>(
+    quantity: &str,
+    unit: &str,
+    over: &'static str,
+    abscissa: &'a [f64],
+    series: &[(String, &'a [f64])],
+) -> Frame<'a> {
+    let series = series.iter().map(|(label, values)| Series {
+        label: label.clone(),
+        abscissa,
+        values,
+    });
+    Frame {
+        panel: Panel {
+            quantity: quantity.to_owned(),
+            unit: unit.to_owned(),
+            series: series.collect(),
+            ..Panel::default()
+        },
+        axes: Axes::Count(over),
+        ..Frame::default()
+    }
+}
+
+fn draw(title: &str, frames: Vec<Frame<'_>>) -> Result<String, PlotError> {
+    plate(&Plate {
+        title: title.to_owned(),
+        columns: 1,
+        frames,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn times(order: usize) -> Times {
+        Times {
+            order,
+            floor: 1e-8,
+            generated: 2e-8,
+            hand_written: 4e-8,
+            equation_22: 8e-8,
+        }
+    }
+
+    #[test]
+    fn a_line_has_the_columns_of_the_heading() {
+        let all = [4, 16, 64].map(times);
+        let run = ["2026-01-02", "abc", "sse2"].map(String::from);
+        let text = heading() + &line(&run, &all, &[("generated_16".to_owned(), 321)]);
+        let count = |line: &str| line.split(',').count();
+        let mut lines = text.lines();
+        assert_eq!(lines.next().map(count), lines.next().map(count));
+        assert_eq!(column(&text, "generated_to_hand_16"), [0.5]);
+        assert_eq!(column(&text, "generated_to_equation_22_64"), [0.25]);
+        assert_eq!(column(&text, "instructions_generated_16"), [321.0]);
+        assert!(column(&text, "instructions_generated_4")[0].is_nan());
+    }
+}

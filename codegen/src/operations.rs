@@ -1,0 +1,71 @@
+//! How many operations a program takes per call: what the cost of a variant is judged by
+//! where no clock is to be asked.
+
+use crate::program::{Extent, Op, Program, ValueId};
+
+impl Program {
+    /// Additions, subtractions, multiplications, divisions, changes of sign and choices per
+    /// call that `roots` need, element by element. A function counts as one; a sum of n
+    /// elements as n - 1.
+    pub fn operations(&self, roots: &[ValueId]) -> usize {
+        self.per_call(roots)
+            .into_iter()
+            .map(|id| self.operations_of(id))
+            .sum()
+    }
+
+    fn operations_of(&self, id: ValueId) -> usize {
+        let value = self.value(id);
+        let length = |id: ValueId| self.value(id).extent.length();
+        match &value.op {
+            Op::Constant(_)
+            | Op::Table(_)
+            | Op::Parameter(_)
+            | Op::Coordinate(_)
+            | Op::Rate(_)
+            | Op::ModeCoordinates(_)
+            | Op::ModeRates(_)
+            | Op::Input(_)
+            | Op::Time => 0,
+            Op::Negate(_)
+            | Op::Add(..)
+            | Op::Subtract(..)
+            | Op::Multiply(..)
+            | Op::Divide(..)
+            | Op::Power(..)
+            | Op::Call(..)
+            | Op::Select { .. } => value.extent.length(),
+            // A choice and a division.
+            Op::PivotReciprocal(_) => 2 * value.extent.length(),
+            Op::Total(vector) => length(*vector).saturating_sub(1),
+            Op::Apply { matrix, .. } => 2 * length(*matrix),
+            Op::Gram { weight, .. } | Op::GramDiagonal { weight, .. } => {
+                3 * length(*weight) * value.extent.length()
+            }
+            Op::Assemble {
+                diagonal,
+                outer,
+                matrices,
+            } => {
+                let products = 2 * outer.len() + 3 * matrices.len();
+                value.extent.length() * products + diagonal.map_or(0, length)
+            }
+            Op::Cholesky(_) => cube_third(value.extent),
+            Op::CholeskySolve(factor, _) => {
+                let columns = match value.extent {
+                    Extent::Matrix(_, columns) => columns,
+                    _ => 1,
+                };
+                2 * length(*factor) * columns
+            }
+        }
+    }
+}
+
+/// n^3/3 for a matrix of n rows.
+fn cube_third(extent: Extent) -> usize {
+    match extent {
+        Extent::Matrix(rows, _) => rows.pow(3).div_ceil(3),
+        other => other.length(),
+    }
+}

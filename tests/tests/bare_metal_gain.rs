@@ -1,0 +1,119 @@
+//! The gain of the example controller (`examples/bare_metal/controller.rs`), computed anew
+//! as its documentation says.
+
+use codegen::evaluator::{Evaluator, Point};
+use eomgen_tests::models::{load, project, variant};
+use nalgebra::{DMatrix, DVector};
+
+/// Length of the controller's step, s.
+const STEP: f64 = 20e-6;
+
+/// What counts as large: 1 mm for deflections, the carrier's path and modes, 1 m/s for their
+/// rates. The torque counts from 1 N m.
+const LARGE: [f64; 14] = [
+    1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0,
+];
+
+/// The rates at a state and a torque.
+fn rates(evaluator: &mut Evaluator, state: &[f64], torque: f64) -> DVector<f64> {
+    let mut out = vec![0.0; state.len()];
+    let point = Point {
+        t: 0.0,
+        state,
+        inputs: &[torque],
+    };
+    evaluator.rates(point, &mut out);
+    DVector::from_vec(out)
+}
+
+/// A and B of the arm with both meshes in contact, where it is linear: differences of any
+/// size are exact but for rounding.
+fn linearised() -> (DMatrix<f64>, DVector<f64>) {
+    let mut evaluator = variant(&load("planetary_arm_rig"), 4).evaluator;
+    let mut state = vec![0.0; LARGE.len()];
+    (state[0], state[1]) = (1e-2, 1e-2);
+    let at = rates(&mut evaluator, &state, 0.0);
+    let b = rates(&mut evaluator, &state, 1.0) - &at;
+    let columns: Vec<DVector<f64>> = (0..state.len())
+        .map(|i| {
+            let mut moved = state.clone();
+            moved[i] += 1e-2;
+            (rates(&mut evaluator, &moved, 0.0) - &at) / 1e-2
+        })
+        .collect();
+    (DMatrix::from_columns(&columns), b)
+}
+
+/// The gain by the doubling algorithm (Chu, Fan, Lin and Wang, "Structure-preserving
+/// algorithms for periodic discrete-time algebraic Riccati equations", 2004), in states
+/// scaled so that their cost is the unit matrix.
+fn regulator() -> Vec<f64> {
+    let (a, b) = linearised();
+    let n = LARGE.len();
+    let mut both = DMatrix::zeros(n + 1, n + 1);
+    for row in 0..n {
+        for column in 0..n {
+            both[(row, column)] = STEP * a[(row, column)] * LARGE[column] / LARGE[row];
+        }
+        both[(row, n)] = STEP * b[row] / LARGE[row];
+    }
+    let flow = both.exp();
+    let (a, b) = (
+        flow.view((0, 0), (n, n)).into_owned(),
+        flow.view((0, n), (n, 1)).into_owned(),
+    );
+    let one = DMatrix::identity(n, n);
+    let (mut flow, mut moved, mut cost) = (a.clone(), &b * b.transpose(), one.clone());
+    for _ in 0..40 {
+        let inverse = (&one + &moved * &cost).try_inverse().expect("regular");
+        let next_cost = &cost + flow.transpose() * &cost * &inverse * &flow;
+        let next_moved = &moved + &flow * &inverse * &moved * flow.transpose();
+        flow = &flow * &inverse * &flow;
+        (cost, moved) = (next_cost, next_moved);
+    }
+    let weight = 1.0 + (b.transpose() * &cost * &b)[(0, 0)];
+    let gain = b.transpose() * &cost * &a / weight;
+    (0..n).map(|i| gain[i] / LARGE[i]).collect()
+}
+
+/// The numbers of `GAIN` in the controller's source.
+fn written() -> Vec<f64> {
+    let path = project().join("examples/bare_metal/controller.rs");
+    let source = std::fs::read_to_string(path).expect("the controller");
+    let (_, rest) = source.split_once("GAIN: State = [").expect("the gain");
+    let (numbers, _) = rest.split_once(']').expect("its end");
+    numbers
+        .split(',')
+        .map(str::trim)
+        .filter(|number| !number.is_empty())
+        .map(|number| number.parse().expect("a number"))
+        .collect()
+}
+
+/// Six digits are written. The Riccati equation loses some of sixteen.
+#[test]
+fn the_gain_is_that_of_the_regulator() {
+    let (expected, written) = (regulator(), written());
+    assert_eq!(written.len(), expected.len());
+    for (written, expected) in written.iter().zip(&expected) {
+        assert!(
+            (written - expected).abs() < 1e-5 * expected.abs(),
+            "{written:?} instead of {expected:?}"
+        );
+    }
+}
+
+/// The loop closed with it has no eigenvalue on or outside the unit circle.
+#[test]
+fn the_gain_stabilises_the_arm() {
+    let (a, b) = linearised();
+    let gain = DMatrix::from_row_slice(1, LARGE.len(), &written());
+    let scale = DMatrix::from_diagonal(&DVector::from_column_slice(&LARGE));
+    let back = scale.map(|x| if x == 0.0 { 0.0 } else { 1.0 / x });
+    let closed = back * (a - b * gain) * scale;
+    let rightmost = closed
+        .complex_eigenvalues()
+        .iter()
+        .fold(f64::MIN, |most, value| most.max(value.re));
+    assert!(rightmost < -0.1, "{rightmost}");
+}
