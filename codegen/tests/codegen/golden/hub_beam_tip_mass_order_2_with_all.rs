@@ -1,0 +1,2688 @@
+//! Hub-driven flexible beam with a tip mass: equations of motion, modal truncation order 2.
+//!
+//! Emitted by eomgen 0.1.0 from the specification `hub_beam_tip_mass` (SHA-256 5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e).
+//! Do not edit: change the specification and generate again.
+//!
+//! State: theta, q_1, q_2, theta_dot, q_1_dot, q_2_dot.
+//! All quantities are in SI units. Nothing here allocates, panics or needs the standard library.
+#![no_std]
+#![allow(non_snake_case)]
+#![allow(clippy::all)]
+#![forbid(unsafe_code)]
+
+/// Modal truncation order of each field.
+pub const ORDERS: [usize; 1] = [2];
+
+/// Degrees of freedom: coordinates and modes.
+pub const DEGREES_OF_FREEDOM: usize = 3;
+
+/// Numbers in the state: coordinates, modes, and the rates of both.
+pub const STATES: usize = 6;
+
+/// Names of the state, in its order.
+pub const STATE_NAMES: [&'static str; STATES] = [
+    "theta",
+    "q_1",
+    "q_2",
+    "theta_dot",
+    "q_1_dot",
+    "q_2_dot",
+];
+
+/// Numbers that [`observables`] returns.
+pub const OBSERVABLES: usize = 4;
+
+/// Names of the observables, in their order.
+pub const OBSERVABLE_NAMES: [&'static str; OBSERVABLES] = [
+    "tip",
+    "tip_slope",
+    "energy",
+    "power",
+];
+
+/// Switching surfaces.
+pub const GUARDS: usize = 0;
+
+/// SHA-256 of the specification.
+pub const SPECIFICATION_SHA256: &'static str = "5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e";
+
+/// Version of the generator.
+pub const GENERATOR_VERSION: &'static str = "0.1.0";
+
+/// Inputs.
+pub const INPUTS: usize = 1;
+
+/// Names of the inputs, in their order.
+pub const INPUT_NAMES: [&'static str; INPUTS] = ["u"];
+
+/// Parameters.
+pub const PARAMETERS: usize = 9;
+
+/// Names of the parameters, in their order.
+pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = [
+    "J_h",
+    "rho",
+    "A",
+    "l",
+    "E",
+    "I",
+    "M_t",
+    "J_t",
+    "c",
+];
+
+/// Parameters of the model. `Default` gives the specification's values.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters<T = f64> {
+    /// inertia of the hub \[kg m^2]
+    pub J_h: T,
+    /// density of the beam \[kg/m^3]
+    pub rho: T,
+    /// section area: 30 mm by 3 mm \[m^2]
+    pub A: T,
+    /// length of the beam \[m]
+    pub l: T,
+    /// Young's modulus \[Pa]
+    pub E: T,
+    /// second moment of area: 30 mm by 3 mm \[m^4]
+    pub I: T,
+    /// mass of the tip \[kg]
+    pub M_t: T,
+    /// inertia of the tip about its centre of mass \[kg m^2]
+    pub J_t: T,
+    /// friction of the hub's bearing \[N m s]
+    pub c: T,
+}
+impl Default for Parameters {
+    fn default() -> Self {
+        Self {
+            J_h: 0.05,
+            rho: 2700.0,
+            A: 9e-5,
+            l: 1.0,
+            E: 7e10,
+            I: 6.75e-11,
+            M_t: 0.1,
+            J_t: 0.0001,
+            c: 0.01,
+        }
+    }
+}
+impl Parameters {
+    /// The numbers of these parameters in another type, without derivatives.
+    pub fn cast<T: Scalar>(&self) -> Parameters<T> {
+        Parameters {
+            J_h: T::number(self.J_h),
+            rho: T::number(self.rho),
+            A: T::number(self.A),
+            l: T::number(self.l),
+            E: T::number(self.E),
+            I: T::number(self.I),
+            M_t: T::number(self.M_t),
+            J_t: T::number(self.J_t),
+            c: T::number(self.c),
+        }
+    }
+}
+
+/// Signals supplied at run time. `Default` gives zeros.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inputs<T = f64> {
+    /// torque on the hub \[N m]
+    pub u: T,
+}
+impl<T: Scalar> Default for Inputs<T> {
+    fn default() -> Self {
+        Self { u: T::number(0.0) }
+    }
+}
+
+/// What depends on the parameters alone: prepare once, use in every call.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficients<T = f64> {
+    /// `J_h`
+    pub J_h: T,
+    /// `J_t`
+    pub J_t: T,
+    /// `l`
+    pub l: T,
+    /// `0.3333333333333333*rho*A*l*l*l`
+    pub c_1: T,
+    /// `M_t`
+    pub M_t: T,
+    /// `rho*A`
+    pub c_2: T,
+    /// `rho*A*l*l`
+    pub c_3: T,
+    /// `l*M_t`
+    pub c_4: T,
+    /// `J_t*PHI_D1_AT_END/l`
+    pub c_5: [T; 2],
+    /// `rho*A*l*l*INTEGRAL_S1_PHI + l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l`
+    pub M_theta_q: [T; 2],
+    /// `rho*A*l`
+    pub c_6: T,
+    /// `1/pivot_theta`
+    pub c_7: T,
+    /// `c`
+    pub c: T,
+    /// `E*I*INTEGRAL_PHI_D2_SQUARED*M_theta_q/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_8: [T; 2],
+    /// `M_t*E*I*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    pub c_9: T,
+    /// `PHI_AT_END*INTEGRAL_PHI_D2_SQUARED/INTEGRAL_PHI_SQUARED`
+    pub c_10: [T; 2],
+    /// `(M_t*J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))/(rho*rho*A*A*l*l*l*l) - (J_t*su...`
+    pub c_11: T,
+    /// `E*I*PHI_D1_AT_END*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_12: [T; 2],
+    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    pub c_13: T,
+    /// `E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_14: [T; 2],
+    /// `rho*A*l*INTEGRAL_PHI_SQUARED`
+    pub c_15: [T; 2],
+    /// `M_t*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*PHI_AT_END/(rho*A*l*INTEGRAL_PHI_SQUARED)`
+    pub c_16: [T; 2],
+    /// `E*I/(rho*A*l*l*l*l)`
+    pub c_17: T,
+    /// `J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
+    pub c_18: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_D1_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l) - (M_t*sum_i(...*.../INTEGR...`
+    pub c_19: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta`
+    pub c_20: T,
+    /// `-(E*I/(rho*A*l*l*l*l))`
+    pub c_21: T,
+    /// `J_t*1/(1.0 + J_t*sum_i(...)/(rho*A*l*...) - (M_t*J_t*...*...*1/(... + ...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*A*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_22: [T; 2],
+    /// `l*INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*l*INTEGRAL_PHI_SQUARED)`
+    pub c_23: [T; 2],
+    /// `1/pivot_theta*(l*INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*l*INTEGRAL_PHI_SQUARED))`
+    pub c_24: [T; 2],
+    /// `-(E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))`
+    pub c_25: [T; 2],
+    /// `J_h + 0.3333333333333333*rho*A*l*l*l + J_t + l*l*M_t`
+    pub M_theta_theta: T,
+    /// `M_t*PHI_AT_END`
+    pub c_26: [T; 2],
+    /// `PHI_D1_AT_END/l`
+    pub c_27: [T; 2],
+    /// `E*I*INTEGRAL_PHI_D2_SQUARED/(l*l*l)`
+    pub c_28: [T; 2],
+    /// `1.0/l`
+    pub c_29: T,
+    /// `0.5*J_h`
+    pub c_30: T,
+    /// `2.0*rho*A*l*l`
+    pub c_31: T,
+    /// `0.5*M_t`
+    pub c_32: T,
+    /// `0.5*J_t`
+    pub c_33: T,
+    /// `0.5*E*I/(l*l*l)`
+    pub c_34: T,
+    /// `J_t*PHI_D1_AT_END/(l*l)`
+    pub c_35: [T; 2],
+    /// `E*I*INTEGRAL_PHI_D2_SQUARED*M_theta_q/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED) - (M_t*E*I*sum_i(.../...)*1/(1.0 + .../...)*PHI_AT_END*INTEGRAL_PHI_D2_SQUARED/(rho*r...`
+    pub c_36: [T; 2],
+    /// `1/pivot_theta*(E*I*INTEGRAL_PHI_D2_SQUARED*M_theta_q/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED) - (...*I*sum_i(...)*1/(... + ...)*PHI_AT_END*INTEGRAL_PHI_D2_SQUARED/(...`
+    pub c_37: [T; 2],
+    /// `-(c*1/pivot_theta)`
+    pub c_38: T,
+    /// `-(M_t*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*A*l*INTEGRAL_PHI_SQUARED))`
+    pub c_39: [T; 2],
+    /// `M_t*E*I*sum_i(.../...)*1/(1.0 + .../...)*PHI_AT_END*INTEGRAL_PHI_D2_SQUARED/(rho*rho*A*A*l*l*l*l*l*INTEGRAL_PHI_SQUARED) - (E*I*PHI_D1_AT_END*INTEGRAL_PHI_D2_SQ...`
+    pub c_40: [T; 2],
+    /// `-(E*I*PHI_AT_END*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)) - (J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)*1/(1.0 + .../... - (...*.../(...*...))...`
+    pub c_41: [T; 2],
+    /// `-(J_t*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*PHI_D1_AT_END/(rho*A*l*l*l*INTEGRAL_PHI_SQUARED))`
+    pub c_42: [T; 2],
+    /// `-(1/pivot_theta*(l*INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*l*INTEGRAL_PHI_SQUARED)))`
+    pub c_43: [T; 2],
+    /// `c*1/pivot_theta*(l*INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*l*INTEGRAL_PHI_SQUARED)) - (M_t*1/(1.0 + .../...)*(c*(...`
+    pub c_44: [T; 2],
+    /// `J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*(l*sum_i(.../...) + sum_i(.../...)/(rho*A*l) - (M_t*...*(... + ...)*1/(... + ...)/(rho*A*l)))*1/(1.0 + ...`
+    pub c_45: T,
+    /// `J_t*(l*sum_i(...) + sum_i(...)/(...*l) - (...*(...)*1/.../(rho*A*l)))*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/pivot_theta*PHI_D1_AT_EN...`
+    pub c_46: [T; 2],
+    /// `J_t*(... + ... - (.../...))*1/(... + ... - (.../...))*1/pivot_theta*PHI_D1_AT_END/(rho*A*l*l*l*INTEGRAL_PHI_SQUARED) - (1/pivot_theta*(l*INTEGRAL_S1_PHI/INTEGRA...`
+    pub c_47: [T; 2],
+    /// `-(1/pivot_theta*1/pivot_theta)`
+    pub c_48: T,
+    /// `E*I/(rho*rho*A*l*l*l*l)`
+    pub c_49: T,
+    /// `INTEGRAL_PHI_D2_SQUARED*M_theta_q/INTEGRAL_PHI_SQUARED`
+    pub c_50: [T; 2],
+    /// `E*I/(rho*l*l)`
+    pub c_51: T,
+    /// `INTEGRAL_S1_PHI*INTEGRAL_PHI_D2_SQUARED/INTEGRAL_PHI_SQUARED`
+    pub c_52: [T; 2],
+    /// `2.0*M_t*E*I*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*rho*A*A*l*l*l*l*l)`
+    pub c_53: T,
+    /// `M_t*E*I*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*l*l*l)`
+    pub c_54: T,
+    /// `M_t*M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/(1.0 + M...`
+    pub c_55: T,
+    /// `PHI_D1_AT_END*INTEGRAL_PHI_D2_SQUARED/INTEGRAL_PHI_SQUARED`
+    pub c_56: [T; 2],
+    /// `2.0*M_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*rho*A*A*l*l*l*l*l)`
+    pub c_57: T,
+    /// `M_t*M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/(1.0...`
+    pub c_58: T,
+    /// `rho*l`
+    pub c_59: T,
+    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(M_t*J...`
+    pub c_60: T,
+    /// `(M_t*J_t*sum_i(.../...)*sum_i(...*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l) - (J_t*sum_i(PHI_D1_AT_END*M_theta_q/INTEGRAL_...`
+    pub c_61: T,
+    /// `0.3333333333333333*A*l*l*l`
+    pub c_62: T,
+    /// `1/pivot_theta*1/pivot_theta*(0.3333333333333333*A*l*l*l + .../rho + .../... - (...*.../(...*l)) - (...*...*1/.../(...*...*l*l)) - (A*l*l*l*sum_i(INTEGRAL_S1_PHI...`
+    pub c_63: T,
+    /// `E*I/(rho*A*A*l*l*l*l)`
+    pub c_64: T,
+    /// `E*I/(A*l*l)`
+    pub c_65: T,
+    /// `2.0*M_t*E*I*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*A*l*l*l*l*l)`
+    pub c_66: T,
+    /// `M_t*E*I*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*A*A*l*l*l)`
+    pub c_67: T,
+    /// `M_t*M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/(1.0 + M...`
+    pub c_68: T,
+    /// `2.0*M_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*A*l*l*l*l*l)`
+    pub c_69: T,
+    /// `M_t*M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/(1.0...`
+    pub c_70: T,
+    /// `A*l`
+    pub c_71: T,
+    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(M_t*J...`
+    pub c_72: T,
+    /// `(M_t*J_t*sum_i(.../...)*sum_i(...*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l) - (J_t*sum_i(PHI_D1_AT_END*M_theta_q/INTEGRAL_...`
+    pub c_73: T,
+    /// `0.3333333333333333*rho*l*l*l`
+    pub c_74: T,
+    /// `1/pivot_theta*1/pivot_theta*(0.3333333333333333*rho*l*l*l + .../A + .../... - (...*.../(...*l)) - (...*...*1/.../(...*...*l*l)) - (rho*l*l*l*sum_i(INTEGRAL_S1_P...`
+    pub c_75: T,
+    /// `4.0*E*I/(rho*A*l*l*l*l*l)`
+    pub c_76: T,
+    /// `INTEGRAL_PHI_D2_SQUARED*(2.0*rho*A*l*INTEGRAL_S1_PHI + M_t*PHI_AT_END - (J_t*PHI_D1_AT_END/(l*l)))/INTEGRAL_PHI_SQUARED`
+    pub c_77: [T; 2],
+    /// `5.0*M_t*E*I*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l)`
+    pub c_78: T,
+    /// `M_t*E*I*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*sum_i(PHI_AT_END*(...*A*l*INTEGRAL_S1_PHI + M_t*PHI_AT_END - (J_t*.../(l*l)))/INTEGRAL_PHI_SQUARED)/(rho*rho*A*A*...`
+    pub c_79: T,
+    /// `M_t*M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/(1.0 + M...`
+    pub c_80: T,
+    /// `5.0*M_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l)`
+    pub c_81: T,
+    /// `M_t*M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/(1.0...`
+    pub c_82: T,
+    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(M_t*J...`
+    pub c_83: T,
+    /// `(M_t*J_t*sum_i(.../...)*sum_i(...*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l) - (J_t*sum_i(PHI_D1_AT_END*M_theta_q/INTEGRAL_...`
+    pub c_84: T,
+    /// `1/pivot_theta*1/pivot_theta*(2.0*l*M_t + rho*A*l*l + .../... + .../... + ...*.../(...*...) - (...*...*1/.../(rho*A*l*l)) - (sum_i(INTEGRAL_S1_PHI*M_theta_q/INTE...`
+    pub c_85: T,
+    /// `I/(rho*A*l*l*l*l)`
+    pub c_86: T,
+    /// `M_t*I*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    pub c_87: T,
+    /// `M_t*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    pub c_88: T,
+    /// `E/(rho*A*l*l*l*l)`
+    pub c_89: T,
+    /// `M_t*E*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    pub c_90: T,
+    /// `M_t*E*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    pub c_91: T,
+    /// `E*I/(rho*A*l*l*l)`
+    pub c_92: T,
+    /// `E*I*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    pub c_93: T,
+    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l)`
+    pub c_94: T,
+    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/(1.0 + M_t*s...`
+    pub c_95: T,
+    /// `E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    pub c_96: T,
+    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/(1.0 + M...`
+    pub c_97: T,
+    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(J_t*s...`
+    pub c_98: T,
+    /// `(M_t*J_t*sum_i(.../...)*sum_i(...*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l) - (J_t*sum_i(PHI_D1_AT_END*M_theta_q/INTEGRAL_...`
+    pub c_99: T,
+    /// `1/pivot_theta*1/pivot_theta*(l*l + .../... + .../... + ...*.../(rho*A) - (...*...*...*.../(...*...*l*l)) - (l*l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQ...`
+    pub c_100: T,
+    /// `E*I/(rho*A*l*l*l*l*l)`
+    pub c_101: T,
+    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l)`
+    pub c_102: T,
+    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(M_t*J...`
+    pub c_103: T,
+    /// `(M_t*J_t*sum_i(.../...)*sum_i(...*M_theta_q/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l) - (J_t*sum_i(PHI_D1_AT_END*M_theta_q/INTEGRAL_...`
+    pub c_104: T,
+    /// `1/pivot_theta*1/pivot_theta*(1.0 + ...*(...)*1/.../(rho*A*l*l) + ...*...*1/.../(...*...*l*...) - (sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (...`
+    pub c_105: T,
+    /// `-(1/pivot_theta)`
+    pub c_106: T,
+    /// `J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*(l*sum_i(.../...) + sum_i(.../...)/(rho*A*l) - (M_t*...*(... + ...)*1/(... + ...)/(rho*A*l)))*1/(1.0 + ...`
+    pub c_107: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/piv...`
+    pub c_108: T,
+    /// `J_t*(l*sum_i(...) + sum_i(...)/(...*l) - (...*(...)*1/.../(rho*A*l)))*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/pivot_theta*1/pivot_thet...`
+    pub c_109: [T; 2],
+    /// `1/pivot_theta*1/pivot_theta*(l*INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*l*INTEGRAL_PHI_SQUARED))`
+    pub c_110: [T; 2],
+    /// `E*I*INTEGRAL_PHI_D2_SQUARED/(rho*rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_111: [T; 2],
+    /// `M_t*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*PHI_AT_END/(rho*rho*A*l*INTEGRAL_PHI_SQUARED)`
+    pub c_112: [T; 2],
+    /// `M_t*M_t*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*rho*rho*A*A*l*l*...`
+    pub c_113: [T; 2],
+    /// `J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
+    pub c_114: T,
+    /// `J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
+    pub c_115: T,
+    /// `1/pivot_theta*(-(sum_i(PHI_D1_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*rho*A*l)) - (...*...*sum_i(...)*(l*... + .../...)*1/(... + ...)*1/(... + ...)/...`
+    pub c_116: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_D1_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l) - (M_t*sum_i(.../...)*(l*sum_i(.....`
+    pub c_117: T,
+    /// `sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/INTEGRAL_PHI_SQUARED)*1/pivot_theta/(rho*rho*A*l)`
+    pub c_118: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(0.3...`
+    pub c_119: T,
+    /// `J_t*1/(1.0 + J_t*sum_i(...)/(rho*A*l*...) - (M_t*J_t*...*...*1/(... + ...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*rho*A*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_120: [T; 2],
+    /// `J_t*1/(1.0 + .../... - (...*.../(...*...)))*1/(1.0 + .../... - (...*.../(...*...)))*(-(J_t*sum_i(.../...)/(rho*rho*A*l*l*l)) - (...*...*...*...*1/...*1/.../(......`
+    pub c_121: [T; 2],
+    /// `1/pivot_theta*(l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*rho*A*l*INTEGRAL_PHI_SQUARED)`
+    pub c_122: [T; 2],
+    /// `1/pivot_theta*1/pivot_theta*(0.3333333333333333*A*l*l*l + ... + ... - (.../...) - (...*.../(...*...)) - (A*l*l*l*sum_i(...*.../INTEGRAL_PHI_SQUARED)) - (l*sum_i...`
+    pub c_123: [T; 2],
+    /// `E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_124: [T; 2],
+    /// `M_t*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*PHI_AT_END/(rho*A*A*l*INTEGRAL_PHI_SQUARED)`
+    pub c_125: [T; 2],
+    /// `M_t*M_t*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*rho*A*A*A*l*l*IN...`
+    pub c_126: [T; 2],
+    /// `J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
+    pub c_127: T,
+    /// `J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
+    pub c_128: T,
+    /// `1/pivot_theta*(-(sum_i(PHI_D1_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*A*l)) - (...*...*sum_i(...)*(l*... + .../...)*1/(... + ...)*1/(... + ...)/(r...`
+    pub c_129: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_D1_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l) - (M_t*sum_i(.../...)*(l*sum_i(.....`
+    pub c_130: T,
+    /// `sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/INTEGRAL_PHI_SQUARED)*1/pivot_theta/(rho*A*A*l)`
+    pub c_131: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(0.3...`
+    pub c_132: T,
+    /// `J_t*1/(1.0 + J_t*sum_i(...)/(rho*A*l*...) - (M_t*J_t*...*...*1/(... + ...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*A*A*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_133: [T; 2],
+    /// `J_t*1/(1.0 + .../... - (...*.../(...*...)))*1/(1.0 + .../... - (...*.../(...*...)))*(-(J_t*sum_i(.../...)/(rho*A*A*l*l*l)) - (...*...*...*...*1/...*1/.../(rho*....`
+    pub c_134: [T; 2],
+    /// `1/pivot_theta*(l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*A*l*INTEGRAL_PHI_SQUARED)`
+    pub c_135: [T; 2],
+    /// `1/pivot_theta*1/pivot_theta*(0.3333333333333333*rho*l*l*l + ... + ... - (.../...) - (...*.../(...*...)) - (rho*l*l*l*sum_i(...*.../INTEGRAL_PHI_SQUARED)) - (l*s...`
+    pub c_136: [T; 2],
+    /// `4.0*E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_137: [T; 2],
+    /// `M_t*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*PHI_AT_END/(rho*A*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_138: [T; 2],
+    /// `M_t*M_t*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*rho*A*A*l*l*l*IN...`
+    pub c_139: [T; 2],
+    /// `3.0*J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*r...`
+    pub c_140: T,
+    /// `J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
+    pub c_141: T,
+    /// `1/pivot_theta*(sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_D1_AT_END*(... - ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l) - (sum_i(PHI_D1_AT_EN...`
+    pub c_142: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_D1_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l) - (M_t*sum_i(.../...)*(l*sum_i(.....`
+    pub c_143: T,
+    /// `1/pivot_theta*(sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(M_t*... - (.../...))/INTEGRAL_PHI_SQUARED)/(rho*A*l) - (sum_i(PHI_AT_E...`
+    pub c_144: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(2.0...`
+    pub c_145: T,
+    /// `3.0*J_t*1/(1.0 + J_t*sum_i(...)/(rho*A*l*...) - (M_t*J_t*...*...*1/(... + ...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_146: [T; 2],
+    /// `J_t*1/(1.0 + .../... - (...*.../(...*...)))*1/(1.0 + .../... - (...*.../(...*...)))*(-(3.0*J_t*sum_i(.../...)/(rho*A*l*l*l*l)) - (...*...*...*...*1/...*1/.../(r...`
+    pub c_147: [T; 2],
+    /// `1/pivot_theta*(INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (M_t*PHI_AT_END - (J_t*PHI_D1_AT_END/(l*l)))/(rho*A*l*INTEGRAL_PHI_SQUARED) - ((l*M_t*PHI_AT_END + J_t*PHI...`
+    pub c_148: [T; 2],
+    /// `1/pivot_theta*1/pivot_theta*(...*l*M_t + rho*A*l*l + ... + ... + .../... - (...*.../(...*...)) - (sum_i(...*M_theta_q/INTEGRAL_PHI_SQUARED) + l*sum_i(.../...)) ...`
+    pub c_149: [T; 2],
+    /// `-(I/(rho*A*l*l*l*l))`
+    pub c_150: T,
+    /// `-(I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))`
+    pub c_151: [T; 2],
+    /// `-(E/(rho*A*l*l*l*l))`
+    pub c_152: T,
+    /// `-(E*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))`
+    pub c_153: [T; 2],
+    /// `1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))*PHI_AT_END/(rho*A*l*INTEGRAL_PHI_SQUARED)`
+    pub c_154: [T; 2],
+    /// `M_t*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*rho*A*A*l*l*INTEGRAL...`
+    pub c_155: [T; 2],
+    /// `J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
+    pub c_156: T,
+    /// `1/pivot_theta*(sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)/(rho*A) - (sum_i(.../...)*(l*... + .../...)*1/(1.0 + .../...)/(rho*A*l) + M_t*sum_i(...)*sum...`
+    pub c_157: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_D1_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l) - (M_t*sum_i(.../...)*(l*sum_i(.....`
+    pub c_158: T,
+    /// `sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/pivot_theta/(rho*A)`
+    pub c_159: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(l*l...`
+    pub c_160: T,
+    /// `J_t*1/(1.0 + .../... - (...*.../(...*...)))*1/(1.0 + .../... - (...*.../(...*...)))*(J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l*l*l*l) - (M_t*J_...`
+    pub c_161: [T; 2],
+    /// `1/pivot_theta*PHI_AT_END/(rho*A*INTEGRAL_PHI_SQUARED)`
+    pub c_162: [T; 2],
+    /// `1/pivot_theta*1/pivot_theta*(l*l + ... + ... + .../... - (...*.../(...*...)) - (l*l*sum_i(...*.../INTEGRAL_PHI_SQUARED)) - (sum_i(...*M_theta_q/INTEGRAL_PHI_SQU...`
+    pub c_163: [T; 2],
+    /// `sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l...`
+    pub c_164: T,
+    /// `J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
+    pub c_165: T,
+    /// `1/pivot_theta*(sum_i(PHI_D1_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)/(rho*A*l*l) - (M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)*sum_i(...*.../INTEGRAL_PHI_SQUARED...`
+    pub c_166: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_D1_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l) - (M_t*sum_i(.../...)*(l*sum_i(.....`
+    pub c_167: T,
+    /// `sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/pivot_theta/(rho*A*l*l)`
+    pub c_168: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(1.0...`
+    pub c_169: T,
+    /// `1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*A*l*l*l*INTEGRAL_PHI_SQU...`
+    pub c_170: [T; 2],
+    /// `J_t*1/(1.0 + .../... - (...*.../(...*...)))*1/(1.0 + .../... - (...*.../(...*...)))*(sum_i(PHI_D1_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_...`
+    pub c_171: [T; 2],
+    /// `1/pivot_theta*PHI_D1_AT_END/(rho*A*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_172: [T; 2],
+    /// `1/pivot_theta*1/pivot_theta*(1.0 + ...*.../(...*...) + ...*.../(...*...) - (sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(...*M_theta_q/(l...`
+    pub c_173: [T; 2],
+    /// `0.6666666666666666*rho*A*l*l*l`
+    pub c_174: T,
+    /// `2.0*rho*A*l*l*INTEGRAL_S1_PHI`
+    pub c_175: [T; 2],
+    /// `2.0*rho*A*l*INTEGRAL_PHI_SQUARED`
+    pub c_176: [T; 2],
+    /// `-(1.0/(l*l))`
+    pub c_177: T,
+    /// `2.0*A*l*l`
+    pub c_178: T,
+    /// `2.0*rho*l*l`
+    pub c_179: T,
+    /// `4.0*rho*A*l`
+    pub c_180: T,
+    /// `J_t/(l*l)`
+    pub c_181: T,
+    /// `1.5*E*I/(l*l*l*l)`
+    pub c_182: T,
+    /// `0.5*I/(l*l*l)`
+    pub c_183: T,
+    /// `0.5*E/(l*l*l)`
+    pub c_184: T,
+    /// `M_t*(l*sum_i(...*.../INTEGRAL_PHI_SQUARED) + sum_i(...*(...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/pivot_theta/(rho*A*l)`
+    pub c_185: T,
+    /// `PHI_AT_END/INTEGRAL_PHI_SQUARED`
+    pub c_186: [T; 2],
+    /// `J_t*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l*l*l*l)))/(rho*A*l*l*l)`
+    pub c_187: T,
+    /// `PHI_D1_AT_END/INTEGRAL_PHI_SQUARED`
+    pub c_188: [T; 2],
+    /// `M_t*J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(....`
+    pub c_189: T,
+    /// `-c`
+    pub c_190: T,
+    /// `M_t*E*I*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    pub c_191: T,
+    /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
+    pub positive_definite: bool,
+}
+impl<T: Scalar> Coefficients<T> {
+    /// The coefficients of these parameters.
+    pub fn prepare(parameters: &Parameters<T>) -> Self {
+        let J_h = parameters.J_h;
+        let J_t = parameters.J_t;
+        let rho = parameters.rho;
+        let s_1 = T::number(0.3333333333333333) * rho;
+        let A = parameters.A;
+        let l = parameters.l;
+        let s_2 = l * l;
+        let s_3 = l * s_2;
+        let s_4 = s_1 * A * s_3;
+        let M_t = parameters.M_t;
+        let s_5 = s_2 * M_t;
+        let s_6 = rho * A;
+        let s_7 = s_6 * s_2;
+        let s_8 = l * M_t;
+        let mut s_9 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_9[i] = J_t * T::number(PHI_D1_AT_END[i]);
+        }
+        let mut s_10 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_10[i] = s_9[i] / l;
+        }
+        let mut s_11 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_11[i] = s_8 * T::number(PHI_AT_END[i]) + s_10[i];
+        }
+        let mut M_theta_q = [T::number(0.0); 2];
+        for i in 0..2 {
+            M_theta_q[i] = s_7 * T::number(INTEGRAL_S1_PHI[i]) + s_11[i];
+        }
+        let s_12 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(INTEGRAL_S1_PHI[i]) * M_theta_q[i]
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_13 = s_6 * l;
+        let s_14 = sum_of_few(
+            [(); 2],
+            |i| s_11[i] * M_theta_q[i] / T::number(INTEGRAL_PHI_SQUARED[i]),
+        );
+        let s_15 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(INTEGRAL_S1_PHI[i]) * T::number(PHI_AT_END[i])
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_16 = sum_of_few(
+            [(); 2],
+            |i| T::number(PHI_AT_END[i]) * s_11[i] / T::number(INTEGRAL_PHI_SQUARED[i]),
+        );
+        let s_17 = l * s_15 + s_16 / s_13;
+        let s_18 = M_t * s_17;
+        let s_19 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(PHI_AT_END[i]) * M_theta_q[i]
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_20 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(PHI_AT_END[i]) * T::number(PHI_AT_END[i])
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_21 = M_t * s_20;
+        let s_22 = T::number(1.0) + s_21 / s_13;
+        let s_23 = pivot_reciprocal(s_22);
+        let s_24 = s_18 * s_19 * s_23;
+        let s_25 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(INTEGRAL_S1_PHI[i]) * T::number(PHI_D1_AT_END[i])
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let mut s_26 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_26[i] = T::number(PHI_D1_AT_END[i]) * s_11[i];
+        }
+        let s_27 = sum_of_few([(); 2], |i| s_26[i] / T::number(INTEGRAL_PHI_SQUARED[i]));
+        let s_28 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(PHI_AT_END[i]) * T::number(PHI_D1_AT_END[i])
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_29 = M_t * s_28;
+        let s_30 = s_29 * s_17 * s_23;
+        let s_31 = l * s_25 + s_27 / s_13 - s_30 / s_13;
+        let s_32 = s_6 * s_3;
+        let mut s_33 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_33[i] = T::number(PHI_D1_AT_END[i]) * M_theta_q[i];
+        }
+        let s_34 = sum_of_few([(); 2], |i| s_33[i] / T::number(INTEGRAL_PHI_SQUARED[i]));
+        let s_35 = J_t * s_34;
+        let s_36 = rho * rho;
+        let s_37 = A * A;
+        let s_38 = s_36 * s_37;
+        let s_39 = s_2 * s_2;
+        let s_40 = s_38 * s_39;
+        let s_41 = M_t * J_t;
+        let s_42 = s_41 * s_28;
+        let s_43 = s_42 * s_19 * s_23 / s_40 - s_35 / s_32;
+        let s_44 = s_31 * s_43;
+        let s_45 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(PHI_D1_AT_END[i]) * T::number(PHI_D1_AT_END[i])
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_46 = J_t * s_45;
+        let s_47 = s_28 * s_28;
+        let s_48 = s_41 * s_47 * s_23;
+        let s_49 = T::number(1.0) + s_46 / s_32 - s_48 / s_40;
+        let s_50 = pivot_reciprocal(s_49);
+        let s_51 = J_h + J_t + s_4 + s_5 + s_24 / s_13 - l * s_12 - s_14 / s_13;
+        let pivot_theta = s_51 - s_44 * s_50;
+        let s_52 = pivot_reciprocal(pivot_theta);
+        let c = parameters.c;
+        let s_53 = s_6 * s_39;
+        let E = parameters.E;
+        let I = parameters.I;
+        let s_54 = E * I;
+        let mut s_55 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_55[i] = s_53 * T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let mut s_56 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_56[i] = s_54 * T::number(INTEGRAL_PHI_D2_SQUARED[i]);
+        }
+        let mut s_57 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_57[i] = s_56[i] * M_theta_q[i] / s_55[i];
+        }
+        let s_58 = l * s_39;
+        let s_59 = s_38 * s_58;
+        let s_60 = M_t * E;
+        let s_61 = s_60 * I;
+        let s_62 = s_61 * s_19 * s_23;
+        let mut s_63 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_63[i] = T::number(PHI_AT_END[i]) * T::number(INTEGRAL_PHI_D2_SQUARED[i])
+                / T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let s_64 = s_43 * s_50;
+        let mut s_65 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_65[i] = s_54 * T::number(PHI_D1_AT_END[i])
+                * T::number(INTEGRAL_PHI_D2_SQUARED[i]) / s_55[i];
+        }
+        let s_66 = s_61 * s_28 * s_23;
+        let mut s_67 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_67[i] = s_56[i] / s_55[i];
+        }
+        let s_68 = M_t * s_23;
+        let mut s_69 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_69[i] = s_13 * T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let mut s_70 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_70[i] = s_68 * T::number(PHI_AT_END[i]);
+        }
+        let mut s_71 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_71[i] = s_70[i] / s_69[i];
+        }
+        let s_72 = s_54 / s_53;
+        let s_73 = J_t * s_28;
+        let s_74 = s_73 * s_50;
+        let s_75 = s_31 * s_52;
+        let s_76 = s_17 * s_52;
+        let s_77 = J_t * s_50;
+        let mut s_78 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_78[i] = s_32 * T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let mut s_79 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_79[i] = s_77 * T::number(PHI_D1_AT_END[i]);
+        }
+        let mut s_80 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_80[i] = s_79[i] / s_78[i];
+        }
+        let mut s_81 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_81[i] = l * T::number(INTEGRAL_S1_PHI[i])
+                / T::number(INTEGRAL_PHI_SQUARED[i]) + s_11[i] / s_69[i];
+        }
+        let mut s_82 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_82[i] = s_52 * s_81[i];
+        }
+        let mut s_83 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_83[i] = -s_67[i];
+        }
+        let M_theta_theta = J_h + s_4 + (J_t + s_5);
+        let mut s_84 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_84[i] = M_t * T::number(PHI_AT_END[i]);
+        }
+        let mut s_85 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_85[i] = T::number(PHI_D1_AT_END[i]) / l;
+        }
+        let mut s_86 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_86[i] = s_56[i] / s_3;
+        }
+        let s_87 = T::number(2.0) * rho;
+        let s_88 = s_87 * A;
+        let s_89 = s_88 * s_2;
+        let s_90 = T::number(0.5) * E;
+        let mut s_91 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_91[i] = s_9[i] / s_2;
+        }
+        let mut s_92 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_92[i] = s_59 * T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let mut s_93 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_93[i] = s_66 * T::number(PHI_AT_END[i])
+                * T::number(INTEGRAL_PHI_D2_SQUARED[i]) / s_92[i] - s_65[i];
+        }
+        let mut s_94 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_94[i] = s_57[i]
+                - s_62 * T::number(PHI_AT_END[i]) * T::number(INTEGRAL_PHI_D2_SQUARED[i])
+                    / s_92[i] - s_64 * s_93[i];
+        }
+        let mut s_95 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_95[i] = s_52 * s_94[i];
+        }
+        let s_96 = c * s_52;
+        let mut s_97 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_97[i] = -s_71[i];
+        }
+        let mut s_98 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_98[i] = s_93[i] - s_75 * s_94[i];
+        }
+        let mut s_99 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_99[i] = -(s_54 * T::number(PHI_AT_END[i])
+                * T::number(INTEGRAL_PHI_D2_SQUARED[i]) / s_55[i])
+                - s_74 * s_98[i] / s_32 - s_76 * s_94[i];
+        }
+        let mut s_100 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_100[i] = -s_80[i];
+        }
+        let mut s_101 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_101[i] = -s_82[i];
+        }
+        let s_102 = J_t * c;
+        let s_103 = s_68 * (c * s_17 * s_52 - s_102 * s_28 * s_31 * s_50 * s_52 / s_32);
+        let s_104 = s_102 * s_31 * s_50 * s_52;
+        let mut s_105 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_105[i] = s_96 * s_81[i] - s_103 * T::number(PHI_AT_END[i]) / s_69[i]
+                - s_104 * T::number(PHI_D1_AT_END[i]) / s_78[i];
+        }
+        let s_106 = s_73 * s_31 * s_50;
+        let s_107 = s_106 * s_52 / s_32;
+        let s_108 = s_68 * (s_107 - s_76);
+        let s_109 = J_t * s_31 * s_50;
+        let s_110 = s_109 * s_52;
+        let mut s_111 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_111[i] = s_110 * T::number(PHI_D1_AT_END[i]) / s_78[i];
+        }
+        let mut s_112 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_112[i] = s_111[i] - s_82[i] - s_108 * T::number(PHI_AT_END[i]) / s_69[i];
+        }
+        let s_113 = s_52 * s_52;
+        let s_114 = s_36 * A;
+        let s_115 = s_114 * s_39;
+        let mut s_116 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_116[i] = T::number(INTEGRAL_PHI_D2_SQUARED[i]) * M_theta_q[i]
+                / T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let mut s_117 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_117[i] = T::number(INTEGRAL_S1_PHI[i])
+                * T::number(INTEGRAL_PHI_D2_SQUARED[i])
+                / T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let s_118 = rho * s_36;
+        let s_119 = s_118 * s_37;
+        let s_120 = s_119 * s_58;
+        let s_121 = T::number(2.0) * M_t;
+        let s_122 = s_121 * E * I;
+        let s_123 = s_122 * s_19 * s_23;
+        let s_124 = s_114 * s_3;
+        let s_125 = s_61 * s_15 * s_23;
+        let s_126 = A * s_37;
+        let s_127 = s_36 * s_36 * s_126;
+        let s_128 = s_2 * s_39;
+        let s_129 = s_127 * s_128;
+        let s_130 = M_t * M_t;
+        let s_131 = s_130 * E * I * s_20;
+        let s_132 = s_23 * s_23;
+        let s_133 = s_131 * s_19 * s_132;
+        let mut s_134 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_134[i] = T::number(PHI_D1_AT_END[i])
+                * T::number(INTEGRAL_PHI_D2_SQUARED[i])
+                / T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let s_135 = s_122 * s_28 * s_23;
+        let s_136 = s_131 * s_28 * s_132;
+        let s_137 = rho * l;
+        let s_138 = J_t * s_25;
+        let s_139 = s_119 * s_39;
+        let s_140 = s_121 * J_t;
+        let s_141 = s_140 * s_28 * s_19 * s_23;
+        let s_142 = s_42 * s_15 * s_23;
+        let s_143 = s_127 * s_58;
+        let s_144 = s_130 * J_t * s_20;
+        let s_145 = s_144 * s_28 * s_19 * s_132;
+        let s_146 = s_142 / (s_114 * s_2) + s_145 / s_143 - s_141 / s_139
+            - (s_138 / s_137 - s_35 / s_124);
+        let s_147 = s_50 * s_50;
+        let s_148 = s_43 * s_147;
+        let s_149 = s_140 * s_47 * s_23;
+        let s_150 = s_144 * s_47 * s_132;
+        let s_151 = -(s_46 / s_124) - (s_150 / s_143 - s_149 / s_139);
+        let s_152 = T::number(0.3333333333333333) * A * s_3;
+        let s_153 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(INTEGRAL_S1_PHI[i]) * T::number(INTEGRAL_S1_PHI[i])
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_154 = s_114 * l;
+        let s_155 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(INTEGRAL_S1_PHI[i]) * s_11[i]
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_156 = l * s_155;
+        let s_157 = s_119 * s_2;
+        let s_158 = M_t * s_16 * s_19 * s_23;
+        let s_159 = s_8 * s_15 * s_17 * s_23;
+        let s_160 = s_130 * s_20;
+        let s_161 = s_160 * s_17 * s_19 * s_132;
+        let s_162 = s_29 * s_16 * s_23;
+        let s_163 = s_160 * s_28 * s_17 * s_132;
+        let s_164 = -(s_27 / s_154) - (s_163 / s_157 - s_30 / s_154 - s_162 / s_157);
+        let s_165 = s_31 * s_50;
+        let s_166 = s_44 * s_147;
+        let s_167 = s_152 + (s_159 / rho + s_161 / s_157 - s_24 / s_154 - s_158 / s_157)
+            - A * s_3 * s_153;
+        let s_168 = s_167 - (s_156 / rho - s_14 / s_154)
+            - (s_64 * s_164 + s_165 * s_146 - s_166 * s_151);
+        let s_169 = s_113 * s_168;
+        let s_170 = rho * s_37;
+        let s_171 = s_170 * s_39;
+        let s_172 = s_36 * s_126;
+        let s_173 = s_172 * s_58;
+        let s_174 = s_170 * s_3;
+        let s_175 = s_118 * (s_37 * s_37);
+        let s_176 = s_175 * s_128;
+        let s_177 = A * l;
+        let s_178 = s_172 * s_39;
+        let s_179 = s_175 * s_58;
+        let s_180 = s_142 / (s_170 * s_2) + s_145 / s_179 - s_141 / s_178
+            - (s_138 / s_177 - s_35 / s_174);
+        let s_181 = -(s_46 / s_174) - (s_150 / s_179 - s_149 / s_178);
+        let s_182 = s_1 * s_3;
+        let s_183 = s_170 * l;
+        let s_184 = s_172 * s_2;
+        let s_185 = -(s_27 / s_183) - (s_163 / s_184 - s_30 / s_183 - s_162 / s_184);
+        let s_186 = s_182 + (s_159 / A + s_161 / s_184 - s_24 / s_183 - s_158 / s_184)
+            - rho * s_3 * s_153;
+        let s_187 = s_186 - (s_156 / A - s_14 / s_183)
+            - (s_64 * s_185 + s_165 * s_180 - s_166 * s_181);
+        let s_188 = s_113 * s_187;
+        let s_189 = s_6 * s_58;
+        let s_190 = T::number(4.0) * E * I;
+        let s_191 = s_88 * l;
+        let mut s_192 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_192[i] = s_84[i] - s_91[i];
+        }
+        let mut s_193 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_193[i] = s_191 * T::number(INTEGRAL_S1_PHI[i]) + s_192[i];
+        }
+        let mut s_194 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_194[i] = T::number(INTEGRAL_PHI_D2_SQUARED[i]) * s_193[i]
+                / T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let s_195 = s_38 * s_128;
+        let s_196 = T::number(5.0) * M_t * E * I;
+        let s_197 = s_61 * s_23;
+        let s_198 = sum_of_few(
+            [(); 2],
+            |i| T::number(PHI_AT_END[i]) * s_193[i] / T::number(INTEGRAL_PHI_SQUARED[i]),
+        );
+        let s_199 = s_118 * s_126;
+        let s_200 = s_199 * (s_3 * s_39);
+        let s_201 = T::number(3.0) * J_t;
+        let s_202 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(PHI_D1_AT_END[i]) * s_193[i]
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_203 = T::number(4.0) * M_t * J_t;
+        let s_204 = s_42 * s_23;
+        let s_205 = s_199 * s_128;
+        let s_206 = s_204 * s_198 / s_40 + s_145 / s_205
+            - s_203 * s_28 * s_19 * s_23 / s_59;
+        let s_207 = s_206 - (J_t * s_202 / s_32 - s_201 * s_34 / s_53);
+        let s_208 = -(s_201 * s_45 / s_53)
+            - (s_150 / s_205 - s_203 * s_47 * s_23 / s_59);
+        let s_209 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(INTEGRAL_S1_PHI[i]) * s_193[i]
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_210 = sum_of_few(
+            [(); 2],
+            |i| {
+                M_theta_q[i] * s_192[i] / T::number(INTEGRAL_PHI_SQUARED[i])
+                    + s_11[i] * s_193[i] / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_211 = sum_of_few(
+            [(); 2],
+            |i| T::number(PHI_AT_END[i]) * s_192[i] / T::number(INTEGRAL_PHI_SQUARED[i]),
+        );
+        let s_212 = s_15 + (s_211 / s_13 - s_16 / s_7);
+        let s_213 = s_18 * s_23;
+        let s_214 = s_38 * s_3;
+        let s_215 = M_t * s_19 * s_23 * s_212 / s_13 + s_213 * s_198 / s_13
+            + s_161 / s_214;
+        let s_216 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(PHI_D1_AT_END[i]) * s_192[i]
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_217 = s_30 / s_7;
+        let s_218 = s_25 + (s_216 / s_13 - s_27 / s_7)
+            - (s_29 * s_23 * s_212 / s_13 + s_163 / s_214 - s_217);
+        let s_219 = T::number(2.0) * l * M_t + s_7 + (s_215 - s_24 / s_7)
+            - (s_12 + l * s_209);
+        let s_220 = s_219 - (s_210 / s_13 - s_14 / s_7)
+            - (s_64 * s_218 + s_165 * s_207 - s_166 * s_208);
+        let s_221 = s_113 * s_220;
+        let s_222 = I / s_53;
+        let s_223 = M_t * I;
+        let s_224 = E / s_53;
+        let s_225 = s_61 * s_20;
+        let s_226 = s_41 * s_20;
+        let s_227 = s_226 * s_28;
+        let s_228 = s_199 * s_58;
+        let s_229 = s_73 * s_19 * s_23 / s_40 + s_227 * s_23 / s_214
+            - s_227 * s_19 * s_132 / s_228;
+        let s_230 = s_229 - s_73 / s_7;
+        let s_231 = J_t * s_47 * s_23 / s_40 - s_226 * s_47 * s_132 / s_228;
+        let mut s_232 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_232[i] = l * T::number(PHI_AT_END[i]);
+        }
+        let s_233 = sum_of_few(
+            [(); 2],
+            |i| {
+                s_232[i] * M_theta_q[i] / T::number(INTEGRAL_PHI_SQUARED[i])
+                    + s_232[i] * s_11[i] / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_234 = s_38 * l;
+        let s_235 = s_21 * s_17;
+        let s_236 = s_38 * s_2;
+        let s_237 = s_17 * s_19 * s_23 / s_13 + s_21 * s_19 * s_23 / s_234
+            + s_235 * s_23 / s_6;
+        let s_238 = s_21 * s_28;
+        let s_239 = s_28 * s_17 * s_23 / s_13 + s_238 * s_23 / s_234
+            - s_238 * s_17 * s_132 / s_236;
+        let s_240 = s_28 / s_6 - s_239;
+        let s_241 = s_2 + (s_237 - s_235 * s_19 * s_132 / s_236) - s_2 * s_15
+            - s_233 / s_13;
+        let s_242 = s_241 - (s_64 * s_240 + s_165 * s_230 + s_166 * s_231);
+        let s_243 = s_113 * s_242;
+        let s_244 = s_29 * s_19 * s_23;
+        let s_245 = s_48 / s_59 + s_244 / s_40 - (s_46 / s_53 + s_34 / s_32);
+        let s_246 = M_t * s_47 * s_23;
+        let s_247 = s_45 / s_32 - s_246 / s_40;
+        let mut s_248 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_248[i] = l * T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let s_249 = sum_of_few([(); 2], |i| s_33[i] / s_248[i] + s_26[i] / s_248[i]);
+        let s_250 = s_45 / s_7 - s_246 / s_214;
+        let s_251 = T::number(1.0) + (s_217 + s_244 / s_214) - s_25 - s_249 / s_13
+            - (s_64 * s_250 + s_165 * s_245 - s_166 * s_247);
+        let s_252 = s_113 * s_251;
+        let s_253 = s_17 * s_113;
+        let s_254 = s_109 * s_113;
+        let mut s_255 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_255[i] = s_254 * T::number(PHI_D1_AT_END[i]) / s_78[i];
+        }
+        let mut s_256 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_256[i] = s_113 * s_81[i];
+        }
+        let mut s_257 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_257[i] = s_56[i] / (s_115 * T::number(INTEGRAL_PHI_SQUARED[i]));
+        }
+        let mut s_258 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_258[i] = s_154 * T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let mut s_259 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_259[i] = s_70[i] / s_258[i];
+        }
+        let s_260 = s_160 * s_132;
+        let mut s_261 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_261[i] = s_260 * T::number(PHI_AT_END[i]);
+        }
+        let mut s_262 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_262[i] = s_261[i] / (s_157 * T::number(INTEGRAL_PHI_SQUARED[i]));
+        }
+        let s_263 = s_73 * s_147;
+        let s_264 = s_31 * s_113;
+        let s_265 = s_16 * s_52;
+        let mut s_266 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_266[i] = s_79[i] / (s_124 * T::number(INTEGRAL_PHI_SQUARED[i]));
+        }
+        let s_267 = J_t * s_147;
+        let s_268 = s_267 * s_151;
+        let mut s_269 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_269[i] = s_268 * T::number(PHI_D1_AT_END[i]) / s_78[i];
+        }
+        let mut s_270 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_270[i] = s_52 * s_11[i];
+        }
+        let mut s_271 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_271[i] = s_270[i] / s_258[i];
+        }
+        let mut s_272 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_272[i] = s_169 * s_81[i];
+        }
+        let mut s_273 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_273[i] = s_56[i] / (s_171 * T::number(INTEGRAL_PHI_SQUARED[i]));
+        }
+        let mut s_274 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_274[i] = s_183 * T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let mut s_275 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_275[i] = s_70[i] / s_274[i];
+        }
+        let mut s_276 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_276[i] = s_261[i] / (s_184 * T::number(INTEGRAL_PHI_SQUARED[i]));
+        }
+        let mut s_277 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_277[i] = s_79[i] / (s_174 * T::number(INTEGRAL_PHI_SQUARED[i]));
+        }
+        let s_278 = s_267 * s_181;
+        let mut s_279 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_279[i] = s_278 * T::number(PHI_D1_AT_END[i]) / s_78[i];
+        }
+        let mut s_280 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_280[i] = s_270[i] / s_274[i];
+        }
+        let mut s_281 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_281[i] = s_188 * s_81[i];
+        }
+        let mut s_282 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_282[i] = s_190 * T::number(INTEGRAL_PHI_D2_SQUARED[i])
+                / (s_189 * T::number(INTEGRAL_PHI_SQUARED[i]));
+        }
+        let mut s_283 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_283[i] = s_7 * T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let mut s_284 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_284[i] = s_70[i] / s_283[i];
+        }
+        let mut s_285 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_285[i] = s_261[i] / (s_214 * T::number(INTEGRAL_PHI_SQUARED[i]));
+        }
+        let s_286 = s_201 * s_50;
+        let mut s_287 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_287[i] = s_286 * T::number(PHI_D1_AT_END[i]) / s_55[i];
+        }
+        let s_288 = s_267 * s_208;
+        let mut s_289 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_289[i] = s_288 * T::number(PHI_D1_AT_END[i]) / s_78[i];
+        }
+        let mut s_290 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_290[i] = s_52
+                * (T::number(INTEGRAL_S1_PHI[i]) / T::number(INTEGRAL_PHI_SQUARED[i])
+                    + (s_192[i] / s_69[i] - s_11[i] / s_283[i]));
+        }
+        let mut s_291 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_291[i] = s_221 * s_81[i];
+        }
+        let mut s_292 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_292[i] = -(I * T::number(INTEGRAL_PHI_D2_SQUARED[i]) / s_55[i]);
+        }
+        let mut s_293 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_293[i] = -(E * T::number(INTEGRAL_PHI_D2_SQUARED[i]) / s_55[i]);
+        }
+        let mut s_294 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_294[i] = s_23 * T::number(PHI_AT_END[i]) / s_69[i];
+        }
+        let s_295 = s_21 * s_132;
+        let mut s_296 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_296[i] = s_295 * T::number(PHI_AT_END[i])
+                / (s_236 * T::number(INTEGRAL_PHI_SQUARED[i]));
+        }
+        let s_297 = s_267 * s_231;
+        let mut s_298 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_298[i] = s_297 * T::number(PHI_D1_AT_END[i]) / s_78[i];
+        }
+        let mut s_299 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_299[i] = s_52 * T::number(PHI_AT_END[i])
+                / (s_6 * T::number(INTEGRAL_PHI_SQUARED[i]));
+        }
+        let mut s_300 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_300[i] = s_243 * s_81[i];
+        }
+        let mut s_301 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_301[i] = s_50 * T::number(PHI_D1_AT_END[i]) / s_78[i];
+        }
+        let s_302 = s_267 * s_247;
+        let mut s_303 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_303[i] = s_302 * T::number(PHI_D1_AT_END[i]) / s_78[i];
+        }
+        let mut s_304 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_304[i] = s_52 * T::number(PHI_D1_AT_END[i]) / s_283[i];
+        }
+        let mut s_305 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_305[i] = s_252 * s_81[i];
+        }
+        let mut s_306 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_306[i] = s_89 * T::number(INTEGRAL_S1_PHI[i]);
+        }
+        let mut s_307 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_307[i] = s_191 * T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let mut s_308 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_308[i] = T::number(PHI_AT_END[i]) / T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let mut s_309 = [T::number(0.0); 2];
+        for i in 0..2 {
+            s_309[i] = T::number(PHI_D1_AT_END[i]) / T::number(INTEGRAL_PHI_SQUARED[i]);
+        }
+        let mut positive_4 = true;
+        for i in 0..2 {
+            positive_4 = positive_4 && T::all_greater(s_69[i], T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_69[i]);
+        }
+        Self {
+            J_h: J_h,
+            J_t: J_t,
+            l: l,
+            c_1: s_4,
+            M_t: M_t,
+            c_2: s_6,
+            c_3: s_7,
+            c_4: s_8,
+            c_5: s_10,
+            M_theta_q: M_theta_q,
+            c_6: s_13,
+            c_7: s_52,
+            c: c,
+            c_8: s_57,
+            c_9: s_62 / s_59,
+            c_10: s_63,
+            c_11: s_64,
+            c_12: s_65,
+            c_13: s_66 / s_59,
+            c_14: s_67,
+            c_15: s_69,
+            c_16: s_71,
+            c_17: s_72,
+            c_18: s_74 / s_32,
+            c_19: s_75,
+            c_20: s_76,
+            c_21: -s_72,
+            c_22: s_80,
+            c_23: s_81,
+            c_24: s_82,
+            c_25: s_83,
+            M_theta_theta: M_theta_theta,
+            c_26: s_84,
+            c_27: s_85,
+            c_28: s_86,
+            c_29: T::number(1.0) / l,
+            c_30: T::number(0.5) * J_h,
+            c_31: s_89,
+            c_32: T::number(0.5) * M_t,
+            c_33: T::number(0.5) * J_t,
+            c_34: s_90 * I / s_3,
+            c_35: s_91,
+            c_36: s_94,
+            c_37: s_95,
+            c_38: -s_96,
+            c_39: s_97,
+            c_40: s_98,
+            c_41: s_99,
+            c_42: s_100,
+            c_43: s_101,
+            c_44: s_105,
+            c_45: s_107,
+            c_46: s_111,
+            c_47: s_112,
+            c_48: -s_113,
+            c_49: s_54 / s_115,
+            c_50: s_116,
+            c_51: s_54 / (rho * s_2),
+            c_52: s_117,
+            c_53: s_123 / s_120,
+            c_54: s_125 / s_124,
+            c_55: s_133 / s_129,
+            c_56: s_134,
+            c_57: s_135 / s_120,
+            c_58: s_136 / s_129,
+            c_59: s_137,
+            c_60: s_50 * s_146,
+            c_61: s_148 * s_151,
+            c_62: s_152,
+            c_63: s_169,
+            c_64: s_54 / s_171,
+            c_65: s_54 / (A * s_2),
+            c_66: s_123 / s_173,
+            c_67: s_125 / s_174,
+            c_68: s_133 / s_176,
+            c_69: s_135 / s_173,
+            c_70: s_136 / s_176,
+            c_71: s_177,
+            c_72: s_50 * s_180,
+            c_73: s_148 * s_181,
+            c_74: s_182,
+            c_75: s_188,
+            c_76: s_190 / s_189,
+            c_77: s_194,
+            c_78: s_196 * s_19 * s_23 / s_195,
+            c_79: s_197 * s_198 / s_59,
+            c_80: s_133 / s_200,
+            c_81: s_196 * s_28 * s_23 / s_195,
+            c_82: s_136 / s_200,
+            c_83: s_50 * s_207,
+            c_84: s_148 * s_208,
+            c_85: s_221,
+            c_86: s_222,
+            c_87: s_223 * s_19 * s_23 / s_59,
+            c_88: s_223 * s_28 * s_23 / s_59,
+            c_89: s_224,
+            c_90: s_60 * s_19 * s_23 / s_59,
+            c_91: s_60 * s_28 * s_23 / s_59,
+            c_92: s_54 / s_32,
+            c_93: s_54 * s_19 * s_23 / s_59,
+            c_94: s_225 * s_23 / s_40,
+            c_95: s_225 * s_19 * s_132 / s_205,
+            c_96: s_54 * s_28 * s_23 / s_59,
+            c_97: s_225 * s_28 * s_132 / s_205,
+            c_98: s_50 * s_230,
+            c_99: s_148 * s_231,
+            c_100: s_243,
+            c_101: s_54 / s_189,
+            c_102: s_66 / s_195,
+            c_103: s_50 * s_245,
+            c_104: s_148 * s_247,
+            c_105: s_252,
+            c_106: -s_52,
+            c_107: s_106 * s_113 / s_32,
+            c_108: s_253,
+            c_109: s_255,
+            c_110: s_256,
+            c_111: s_257,
+            c_112: s_259,
+            c_113: s_262,
+            c_114: s_74 / s_124,
+            c_115: s_263 * s_151 / s_32,
+            c_116: s_52 * s_164,
+            c_117: s_264 * s_168,
+            c_118: s_265 / s_154,
+            c_119: s_253 * s_168,
+            c_120: s_266,
+            c_121: s_269,
+            c_122: s_271,
+            c_123: s_272,
+            c_124: s_273,
+            c_125: s_275,
+            c_126: s_276,
+            c_127: s_74 / s_174,
+            c_128: s_263 * s_181 / s_32,
+            c_129: s_52 * s_185,
+            c_130: s_264 * s_187,
+            c_131: s_265 / s_183,
+            c_132: s_253 * s_187,
+            c_133: s_277,
+            c_134: s_279,
+            c_135: s_280,
+            c_136: s_281,
+            c_137: s_282,
+            c_138: s_284,
+            c_139: s_285,
+            c_140: s_201 * s_28 * s_50 / s_53,
+            c_141: s_263 * s_208 / s_32,
+            c_142: s_52 * s_218,
+            c_143: s_264 * s_220,
+            c_144: s_52 * s_212,
+            c_145: s_253 * s_220,
+            c_146: s_287,
+            c_147: s_289,
+            c_148: s_290,
+            c_149: s_291,
+            c_150: -s_222,
+            c_151: s_292,
+            c_152: -s_224,
+            c_153: s_293,
+            c_154: s_294,
+            c_155: s_296,
+            c_156: s_263 * s_231 / s_32,
+            c_157: s_52 * s_240,
+            c_158: s_264 * s_242,
+            c_159: s_20 * s_52 / s_6,
+            c_160: s_253 * s_242,
+            c_161: s_298,
+            c_162: s_299,
+            c_163: s_300,
+            c_164: s_28 * s_50 / s_32,
+            c_165: s_263 * s_247 / s_32,
+            c_166: s_52 * s_250,
+            c_167: s_264 * s_251,
+            c_168: s_28 * s_52 / s_7,
+            c_169: s_253 * s_251,
+            c_170: s_301,
+            c_171: s_303,
+            c_172: s_304,
+            c_173: s_305,
+            c_174: T::number(0.6666666666666666) * rho * A * s_3,
+            c_175: s_306,
+            c_176: s_307,
+            c_177: -(T::number(1.0) / s_2),
+            c_178: T::number(2.0) * A * s_2,
+            c_179: s_87 * s_2,
+            c_180: T::number(4.0) * rho * A * l,
+            c_181: J_t / s_2,
+            c_182: T::number(1.5) * E * I / s_39,
+            c_183: T::number(0.5) * I / s_3,
+            c_184: s_90 / s_3,
+            c_185: s_213 * s_52 / s_13,
+            c_186: s_308,
+            c_187: s_77 / s_32,
+            c_188: s_309,
+            c_189: s_204 * s_50 / s_40,
+            c_190: -c,
+            c_191: s_197 / s_59,
+            positive_definite: T::all_greater(pivot_theta, T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), pivot_theta)
+                && T::all_greater(s_22, T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_22)
+                && T::all_greater(s_49, T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_49) && positive_4,
+        }
+    }
+}
+impl Coefficients {
+    /// The numbers of these coefficients in another type, without derivatives.
+    pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
+        Coefficients {
+            J_h: T::number(self.J_h),
+            J_t: T::number(self.J_t),
+            l: T::number(self.l),
+            c_1: T::number(self.c_1),
+            M_t: T::number(self.M_t),
+            c_2: T::number(self.c_2),
+            c_3: T::number(self.c_3),
+            c_4: T::number(self.c_4),
+            c_5: self.c_5.map(T::number),
+            M_theta_q: self.M_theta_q.map(T::number),
+            c_6: T::number(self.c_6),
+            c_7: T::number(self.c_7),
+            c: T::number(self.c),
+            c_8: self.c_8.map(T::number),
+            c_9: T::number(self.c_9),
+            c_10: self.c_10.map(T::number),
+            c_11: T::number(self.c_11),
+            c_12: self.c_12.map(T::number),
+            c_13: T::number(self.c_13),
+            c_14: self.c_14.map(T::number),
+            c_15: self.c_15.map(T::number),
+            c_16: self.c_16.map(T::number),
+            c_17: T::number(self.c_17),
+            c_18: T::number(self.c_18),
+            c_19: T::number(self.c_19),
+            c_20: T::number(self.c_20),
+            c_21: T::number(self.c_21),
+            c_22: self.c_22.map(T::number),
+            c_23: self.c_23.map(T::number),
+            c_24: self.c_24.map(T::number),
+            c_25: self.c_25.map(T::number),
+            M_theta_theta: T::number(self.M_theta_theta),
+            c_26: self.c_26.map(T::number),
+            c_27: self.c_27.map(T::number),
+            c_28: self.c_28.map(T::number),
+            c_29: T::number(self.c_29),
+            c_30: T::number(self.c_30),
+            c_31: T::number(self.c_31),
+            c_32: T::number(self.c_32),
+            c_33: T::number(self.c_33),
+            c_34: T::number(self.c_34),
+            c_35: self.c_35.map(T::number),
+            c_36: self.c_36.map(T::number),
+            c_37: self.c_37.map(T::number),
+            c_38: T::number(self.c_38),
+            c_39: self.c_39.map(T::number),
+            c_40: self.c_40.map(T::number),
+            c_41: self.c_41.map(T::number),
+            c_42: self.c_42.map(T::number),
+            c_43: self.c_43.map(T::number),
+            c_44: self.c_44.map(T::number),
+            c_45: T::number(self.c_45),
+            c_46: self.c_46.map(T::number),
+            c_47: self.c_47.map(T::number),
+            c_48: T::number(self.c_48),
+            c_49: T::number(self.c_49),
+            c_50: self.c_50.map(T::number),
+            c_51: T::number(self.c_51),
+            c_52: self.c_52.map(T::number),
+            c_53: T::number(self.c_53),
+            c_54: T::number(self.c_54),
+            c_55: T::number(self.c_55),
+            c_56: self.c_56.map(T::number),
+            c_57: T::number(self.c_57),
+            c_58: T::number(self.c_58),
+            c_59: T::number(self.c_59),
+            c_60: T::number(self.c_60),
+            c_61: T::number(self.c_61),
+            c_62: T::number(self.c_62),
+            c_63: T::number(self.c_63),
+            c_64: T::number(self.c_64),
+            c_65: T::number(self.c_65),
+            c_66: T::number(self.c_66),
+            c_67: T::number(self.c_67),
+            c_68: T::number(self.c_68),
+            c_69: T::number(self.c_69),
+            c_70: T::number(self.c_70),
+            c_71: T::number(self.c_71),
+            c_72: T::number(self.c_72),
+            c_73: T::number(self.c_73),
+            c_74: T::number(self.c_74),
+            c_75: T::number(self.c_75),
+            c_76: T::number(self.c_76),
+            c_77: self.c_77.map(T::number),
+            c_78: T::number(self.c_78),
+            c_79: T::number(self.c_79),
+            c_80: T::number(self.c_80),
+            c_81: T::number(self.c_81),
+            c_82: T::number(self.c_82),
+            c_83: T::number(self.c_83),
+            c_84: T::number(self.c_84),
+            c_85: T::number(self.c_85),
+            c_86: T::number(self.c_86),
+            c_87: T::number(self.c_87),
+            c_88: T::number(self.c_88),
+            c_89: T::number(self.c_89),
+            c_90: T::number(self.c_90),
+            c_91: T::number(self.c_91),
+            c_92: T::number(self.c_92),
+            c_93: T::number(self.c_93),
+            c_94: T::number(self.c_94),
+            c_95: T::number(self.c_95),
+            c_96: T::number(self.c_96),
+            c_97: T::number(self.c_97),
+            c_98: T::number(self.c_98),
+            c_99: T::number(self.c_99),
+            c_100: T::number(self.c_100),
+            c_101: T::number(self.c_101),
+            c_102: T::number(self.c_102),
+            c_103: T::number(self.c_103),
+            c_104: T::number(self.c_104),
+            c_105: T::number(self.c_105),
+            c_106: T::number(self.c_106),
+            c_107: T::number(self.c_107),
+            c_108: T::number(self.c_108),
+            c_109: self.c_109.map(T::number),
+            c_110: self.c_110.map(T::number),
+            c_111: self.c_111.map(T::number),
+            c_112: self.c_112.map(T::number),
+            c_113: self.c_113.map(T::number),
+            c_114: T::number(self.c_114),
+            c_115: T::number(self.c_115),
+            c_116: T::number(self.c_116),
+            c_117: T::number(self.c_117),
+            c_118: T::number(self.c_118),
+            c_119: T::number(self.c_119),
+            c_120: self.c_120.map(T::number),
+            c_121: self.c_121.map(T::number),
+            c_122: self.c_122.map(T::number),
+            c_123: self.c_123.map(T::number),
+            c_124: self.c_124.map(T::number),
+            c_125: self.c_125.map(T::number),
+            c_126: self.c_126.map(T::number),
+            c_127: T::number(self.c_127),
+            c_128: T::number(self.c_128),
+            c_129: T::number(self.c_129),
+            c_130: T::number(self.c_130),
+            c_131: T::number(self.c_131),
+            c_132: T::number(self.c_132),
+            c_133: self.c_133.map(T::number),
+            c_134: self.c_134.map(T::number),
+            c_135: self.c_135.map(T::number),
+            c_136: self.c_136.map(T::number),
+            c_137: self.c_137.map(T::number),
+            c_138: self.c_138.map(T::number),
+            c_139: self.c_139.map(T::number),
+            c_140: T::number(self.c_140),
+            c_141: T::number(self.c_141),
+            c_142: T::number(self.c_142),
+            c_143: T::number(self.c_143),
+            c_144: T::number(self.c_144),
+            c_145: T::number(self.c_145),
+            c_146: self.c_146.map(T::number),
+            c_147: self.c_147.map(T::number),
+            c_148: self.c_148.map(T::number),
+            c_149: self.c_149.map(T::number),
+            c_150: T::number(self.c_150),
+            c_151: self.c_151.map(T::number),
+            c_152: T::number(self.c_152),
+            c_153: self.c_153.map(T::number),
+            c_154: self.c_154.map(T::number),
+            c_155: self.c_155.map(T::number),
+            c_156: T::number(self.c_156),
+            c_157: T::number(self.c_157),
+            c_158: T::number(self.c_158),
+            c_159: T::number(self.c_159),
+            c_160: T::number(self.c_160),
+            c_161: self.c_161.map(T::number),
+            c_162: self.c_162.map(T::number),
+            c_163: self.c_163.map(T::number),
+            c_164: T::number(self.c_164),
+            c_165: T::number(self.c_165),
+            c_166: T::number(self.c_166),
+            c_167: T::number(self.c_167),
+            c_168: T::number(self.c_168),
+            c_169: T::number(self.c_169),
+            c_170: self.c_170.map(T::number),
+            c_171: self.c_171.map(T::number),
+            c_172: self.c_172.map(T::number),
+            c_173: self.c_173.map(T::number),
+            c_174: T::number(self.c_174),
+            c_175: self.c_175.map(T::number),
+            c_176: self.c_176.map(T::number),
+            c_177: T::number(self.c_177),
+            c_178: T::number(self.c_178),
+            c_179: T::number(self.c_179),
+            c_180: T::number(self.c_180),
+            c_181: T::number(self.c_181),
+            c_182: T::number(self.c_182),
+            c_183: T::number(self.c_183),
+            c_184: T::number(self.c_184),
+            c_185: T::number(self.c_185),
+            c_186: self.c_186.map(T::number),
+            c_187: T::number(self.c_187),
+            c_188: self.c_188.map(T::number),
+            c_189: T::number(self.c_189),
+            c_190: T::number(self.c_190),
+            c_191: T::number(self.c_191),
+            positive_definite: self.positive_definite,
+        }
+    }
+}
+
+/// Rates of the state.
+///
+/// `t` in s; `state` and the result in the order of [`STATE_NAMES`].
+#[allow(unused_variables)]
+pub fn rates<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; STATES] {
+    let theta_dot = state[3];
+    let u = inputs.u;
+    let s_1 = sum_of_few([(); 2], |i| coefficients.c_8[i] * state[1 + i]);
+    let s_2 = sum_of_few([(); 2], |i| coefficients.c_10[i] * state[1 + i]);
+    let s_3 = sum_of_few([(); 2], |i| coefficients.c_12[i] * state[1 + i]);
+    let s_4 = coefficients.c_13 * s_2 - s_3;
+    let s_5 = u + s_1 - coefficients.c * theta_dot - coefficients.c_9 * s_2
+        - coefficients.c_11 * s_4;
+    let theta_ddot = coefficients.c_7 * s_5;
+    let s_6 = s_4 - coefficients.c_19 * s_5;
+    let s_7 = coefficients.c_21 * s_2 - coefficients.c_18 * s_6
+        - coefficients.c_20 * s_5;
+    let mut rates = [T::number(0.0); STATES];
+    for i in 0..1 {
+        rates[i] = state[3 + i];
+    }
+    rates[3] = theta_ddot;
+    for i in 0..2 {
+        rates[1 + i] = state[4 + i];
+        rates[4 + i] = coefficients.c_25[i] * state[1 + i] - coefficients.c_16[i] * s_7
+            - coefficients.c_22[i] * s_6 - coefficients.c_24[i] * s_5;
+    }
+    rates
+}
+
+/// The observables, in the order of [`OBSERVABLE_NAMES`]:
+///
+/// - `tip`: deflection of the beam's end \[m]
+/// - `tip_slope`: slope of the beam's end \[rad]
+/// - `energy`: kinetic plus potential energy \[J]
+/// - `power`: power of all non-conservative forces: the rate of the energy \[W]
+#[allow(unused_variables)]
+pub fn observables<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; OBSERVABLES] {
+    let theta_dot = state[3];
+    let u = inputs.u;
+    let tip = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[1 + i]);
+    let s_1 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[1 + i]);
+    let tip_slope = coefficients.c_29 * s_1;
+    let s_2 = theta_dot * theta_dot;
+    let s_3 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
+    let s_4 = sum_of_few(
+        [(); 2],
+        |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[4 + i] * state[4 + i]),
+    );
+    let s_5 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
+    let s_6 = coefficients.l * theta_dot + s_5;
+    let s_7 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
+    let s_8 = theta_dot + coefficients.c_29 * s_7;
+    let T_tip = coefficients.c_32 * (s_6 * s_6) + coefficients.c_33 * (s_8 * s_8);
+    let s_9 = coefficients.c_30 * s_2
+        + T::number(0.5)
+            * (coefficients.c_1 * s_2 + coefficients.c_31 * (theta_dot * s_3)
+                + coefficients.c_6 * s_4);
+    let s_10 = sum_of_few(
+        [(); 2],
+        |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[1 + i] * state[1 + i]),
+    );
+    let V_bending = coefficients.c_34 * s_10;
+    [
+        tip,
+        tip_slope,
+        s_9 + T_tip + V_bending,
+        theta_dot * (u - coefficients.c * theta_dot),
+    ]
+}
+
+/// Kinetic plus potential energy, in J.
+#[allow(unused_variables)]
+pub fn energy<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> T {
+    let theta_dot = state[3];
+    let s_1 = theta_dot * theta_dot;
+    let s_2 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
+    let s_3 = sum_of_few(
+        [(); 2],
+        |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[4 + i] * state[4 + i]),
+    );
+    let s_4 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
+    let s_5 = coefficients.l * theta_dot + s_4;
+    let s_6 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
+    let s_7 = theta_dot + coefficients.c_29 * s_6;
+    let T_tip = coefficients.c_32 * (s_5 * s_5) + coefficients.c_33 * (s_7 * s_7);
+    let s_8 = coefficients.c_30 * s_1
+        + T::number(0.5)
+            * (coefficients.c_1 * s_1 + coefficients.c_31 * (theta_dot * s_2)
+                + coefficients.c_6 * s_3);
+    let s_9 = sum_of_few(
+        [(); 2],
+        |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[1 + i] * state[1 + i]),
+    );
+    let V_bending = coefficients.c_34 * s_9;
+    s_8 + T_tip + V_bending
+}
+
+/// Power of all non-conservative forces, in W: the rate of the energy.
+#[allow(unused_variables)]
+pub fn power<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> T {
+    let theta_dot = state[3];
+    let u = inputs.u;
+    theta_dot * (u - coefficients.c * theta_dot)
+}
+
+/// Switching surfaces: the equations change where one of these changes sign.
+///
+#[allow(unused_variables, unused_mut)]
+pub fn guards<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; GUARDS] {
+    let mut values = [T::number(0.0); GUARDS];
+    values
+}
+
+/// The mass matrix, in the order of the first half of [`STATE_NAMES`].
+#[allow(unused_variables, unused_mut)]
+pub fn mass_matrix<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [[T; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
+    let mut values = [[T::number(0.0); DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
+    values[0][0] = coefficients.M_theta_theta;
+    for i in 0..2 {
+        values[0][1 + i] = coefficients.M_theta_q[i];
+        values[1 + i][0] = values[0][1 + i];
+    }
+    for i in 0..2 {
+        values[1 + i][1 + i] = values[1 + i][1 + i] + coefficients.c_15[i];
+        for j in 0..2 {
+            values[1 + i][1 + j] = values[1 + i][1 + j]
+                + coefficients.c_26[i] * T::number(PHI_AT_END[j]);
+            values[1 + i][1 + j] = values[1 + i][1 + j]
+                + coefficients.c_5[i] * coefficients.c_27[j];
+        }
+    }
+    values
+}
+
+/// Bias forces c - f of M q'' + c = f, in the order of the first half of
+/// [`STATE_NAMES`]: the forces missing for no acceleration.
+#[allow(unused_variables, unused_mut)]
+pub fn bias_forces<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; DEGREES_OF_FREEDOM] {
+    let theta_dot = state[3];
+    let u = inputs.u;
+    let mut values = [T::number(0.0); DEGREES_OF_FREEDOM];
+    values[0] = -(u - coefficients.c * theta_dot);
+    for i in 0..2 {
+        values[1 + i] = coefficients.c_28[i] * state[1 + i];
+    }
+    values
+}
+
+/// Inverse dynamics M a + c - f: the generalised forces that have to act besides
+/// those of the model for the accelerations a, in the order of the first half of
+/// [`STATE_NAMES`].
+#[allow(unused_variables, unused_mut)]
+pub fn inverse_dynamics<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+    accelerations: &[T; DEGREES_OF_FREEDOM],
+) -> [T; DEGREES_OF_FREEDOM] {
+    let theta_dot = state[3];
+    let u = inputs.u;
+    let s = accelerations[0];
+    let s_1 = sum_of_few([(); 2], |i| coefficients.M_theta_q[i] * accelerations[1 + i]);
+    let s_2 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * accelerations[1 + i]);
+    let s_3 = sum_of_few(
+        [(); 2],
+        |i| T::number(PHI_D1_AT_END[i]) * accelerations[1 + i],
+    );
+    let mut s_4 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_4[i] = coefficients.c_28[i] * state[1 + i] + coefficients.M_theta_q[i] * s
+            + coefficients.c_15[i] * accelerations[1 + i] + coefficients.c_26[i] * s_2
+            + coefficients.c_35[i] * s_3;
+    }
+    let mut values = [T::number(0.0); DEGREES_OF_FREEDOM];
+    values[0] = coefficients.M_theta_theta * s + s_1 - (u - coefficients.c * theta_dot);
+    for i in 0..2 {
+        values[1 + i] = s_4[i];
+    }
+    values
+}
+
+/// Rates of the switching surfaces along the motion, the inputs held.
+///
+#[allow(unused_variables, unused_mut)]
+pub fn guard_rates<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; GUARDS] {
+    let mut values = [T::number(0.0); GUARDS];
+    values
+}
+
+/// Product of the Jacobian of the rates by state and inputs with a direction: how the
+/// rates change along it.
+#[allow(unused_variables)]
+pub fn jacobian_vector_product<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+    direction: &[T; STATES],
+    input_direction: &Inputs<T>,
+) -> [T; STATES] {
+    let s = direction[3];
+    let s_1 = input_direction.u;
+    let s_2 = sum_of_few([(); 2], |i| coefficients.c_50[i] * direction[1 + i]);
+    let s_3 = sum_of_few([(); 2], |i| coefficients.c_10[i] * direction[1 + i]);
+    let s_4 = sum_of_few([(); 2], |i| coefficients.c_56[i] * direction[1 + i]);
+    let s_5 = coefficients.c_13 * s_3 - coefficients.c_17 * s_4;
+    let s_6 = s_1 + coefficients.c_17 * s_2 - coefficients.c * s - coefficients.c_9 * s_3
+        - coefficients.c_11 * s_5;
+    let s_7 = s_5 - coefficients.c_19 * s_6;
+    let s_8 = coefficients.c_21 * s_3 - coefficients.c_18 * s_7
+        - coefficients.c_20 * s_6;
+    let mut product = [T::number(0.0); STATES];
+    for i in 0..3 {
+        product[i] = direction[3 + i];
+    }
+    product[3] = coefficients.c_7 * s_6;
+    for i in 0..2 {
+        product[4 + i] = coefficients.c_25[i] * direction[1 + i]
+            - coefficients.c_16[i] * s_8 - coefficients.c_22[i] * s_7
+            - coefficients.c_24[i] * s_6;
+    }
+    product
+}
+
+/// Product of weights with the Jacobian of the rates by state and inputs: the gradient of
+/// the weighted sum of the rates.
+#[allow(unused_variables)]
+pub fn vector_jacobian_product<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+    weights: &[T; STATES],
+) -> ([T; STATES], Inputs<T>) {
+    let s_1 = sum_of_few([(); 2], |i| coefficients.c_23[i] * weights[4 + i]);
+    let s_2 = sum_of_few([(); 2], |i| coefficients.c_186[i] * weights[4 + i]);
+    let s_3 = sum_of_few([(); 2], |i| coefficients.c_188[i] * weights[4 + i]);
+    let s_4 = coefficients.c_189 * s_2 - coefficients.c_187 * s_3;
+    let s = weights[3];
+    let s_5 = coefficients.c_185 * s_2 + coefficients.c_7 * s - coefficients.c_7 * s_1
+        - coefficients.c_19 * s_4;
+    let s_6 = s_4 - coefficients.c_11 * s_5;
+    let s_7 = coefficients.c_13 * s_6 + coefficients.c_191 * s_2
+        - coefficients.c_9 * s_5;
+    let mut product = [T::number(0.0); STATES];
+    for i in 0..3 {
+        product[3 + i] = weights[i];
+    }
+    product[3] = product[3] + coefficients.c_190 * s_5;
+    for i in 0..2 {
+        product[1 + i] = coefficients.c_8[i] * s_5 + coefficients.c_10[i] * s_7
+            - coefficients.c_12[i] * s_6 - coefficients.c_14[i] * weights[4 + i];
+    }
+    let input_product = Inputs { u: s_5 };
+    (product, input_product)
+}
+
+/// Structural nonzeros of [`rates_by_state`].
+pub const RATES_BY_STATE_NONZEROS: usize = 12;
+
+/// Where they stand in the matrix of 6 x 6.
+pub static RATES_BY_STATE: Pattern<12> = pattern(
+    &[
+        [0, 3, 3, 3, 1],
+        [3, 1, 1, 2, 0],
+        [3, 1, 3, 1, 0],
+        [4, 2, 1, 2, 0],
+        [4, 2, 3, 1, 0],
+    ],
+);
+
+/// The Jacobian of the rates by the state: its structural nonzeros, row by row, at the
+/// places of [`RATES_BY_STATE`].
+#[allow(unused_variables, unused_mut)]
+pub fn rates_by_state<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; RATES_BY_STATE_NONZEROS] {
+    let mut values = [T::number(0.0); RATES_BY_STATE_NONZEROS];
+    for i in 0..3 {
+        values[0 + i] = T::number(1.0);
+    }
+    for i in 0..2 {
+        values[3 + i] = coefficients.c_37[i];
+    }
+    values[5] = coefficients.c_38;
+    for i in 0..2 {
+        values[6 + 3 * i + i] = values[6 + 3 * i + i] + coefficients.c_25[i];
+        for j in 0..2 {
+            values[6 + 3 * i + j] = values[6 + 3 * i + j]
+                + coefficients.c_39[i] * coefficients.c_41[j];
+            values[6 + 3 * i + j] = values[6 + 3 * i + j]
+                + coefficients.c_42[i] * coefficients.c_40[j];
+            values[6 + 3 * i + j] = values[6 + 3 * i + j]
+                + coefficients.c_43[i] * coefficients.c_36[j];
+        }
+    }
+    for i in 0..2 {
+        values[8 + 3 * i] = coefficients.c_44[i];
+    }
+    values
+}
+
+/// Structural nonzeros of [`rates_by_inputs`].
+pub const RATES_BY_INPUTS_NONZEROS: usize = 3;
+
+/// Where they stand in the matrix of 6 x 1.
+pub static RATES_BY_INPUTS: Pattern<3> = pattern(&[[3, 1, 0, 1, 0], [4, 2, 0, 1, 0]]);
+
+/// The Jacobian of the rates by the inputs: its structural nonzeros, row by row, at the
+/// places of [`RATES_BY_INPUTS`].
+#[allow(unused_variables, unused_mut)]
+pub fn rates_by_inputs<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; RATES_BY_INPUTS_NONZEROS] {
+    let mut values = [T::number(0.0); RATES_BY_INPUTS_NONZEROS];
+    values[0] = coefficients.c_7;
+    for i in 0..2 {
+        values[1 + i] = coefficients.c_47[i];
+    }
+    values
+}
+
+/// Structural nonzeros of [`rates_by_parameters`].
+pub const RATES_BY_PARAMETERS_NONZEROS: usize = 27;
+
+/// Where they stand in the matrix of 6 x 9.
+pub static RATES_BY_PARAMETERS: Pattern<27> = pattern(
+    &[
+        [3, 1, 0, 1, 0],
+        [3, 1, 1, 1, 0],
+        [3, 1, 2, 1, 0],
+        [3, 1, 3, 1, 0],
+        [3, 1, 4, 1, 0],
+        [3, 1, 5, 1, 0],
+        [3, 1, 6, 1, 0],
+        [3, 1, 7, 1, 0],
+        [3, 1, 8, 1, 0],
+        [4, 2, 0, 1, 0],
+        [4, 2, 1, 1, 0],
+        [4, 2, 2, 1, 0],
+        [4, 2, 3, 1, 0],
+        [4, 2, 4, 1, 0],
+        [4, 2, 5, 1, 0],
+        [4, 2, 6, 1, 0],
+        [4, 2, 7, 1, 0],
+        [4, 2, 8, 1, 0],
+    ],
+);
+
+/// The Jacobian of the rates by the parameters: its structural nonzeros, row by row, at the
+/// places of [`RATES_BY_PARAMETERS`].
+#[allow(unused_variables, unused_mut)]
+pub fn rates_by_parameters<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; RATES_BY_PARAMETERS_NONZEROS] {
+    let theta_dot = state[3];
+    let u = inputs.u;
+    let s_1 = sum_of_few([(); 2], |i| coefficients.c_8[i] * state[1 + i]);
+    let s_2 = sum_of_few([(); 2], |i| coefficients.c_10[i] * state[1 + i]);
+    let s_3 = sum_of_few([(); 2], |i| coefficients.c_12[i] * state[1 + i]);
+    let s_4 = coefficients.c_13 * s_2 - s_3;
+    let s_5 = u + s_1 - coefficients.c * theta_dot - coefficients.c_9 * s_2
+        - coefficients.c_11 * s_4;
+    let s_6 = s_4 - coefficients.c_19 * s_5;
+    let s_7 = coefficients.c_21 * s_2 - coefficients.c_18 * s_6
+        - coefficients.c_20 * s_5;
+    let s_8 = sum_of_few([(); 2], |i| coefficients.c_50[i] * state[1 + i]);
+    let s_9 = sum_of_few([(); 2], |i| coefficients.c_52[i] * state[1 + i]);
+    let s_10 = sum_of_few([(); 2], |i| coefficients.c_56[i] * state[1 + i]);
+    let s_11 = coefficients.c_49 * s_10
+        + (coefficients.c_58 * s_2 - coefficients.c_57 * s_2);
+    let s_12 = coefficients.c_51 * s_9 - coefficients.c_49 * s_8
+        - (coefficients.c_54 * s_2 + coefficients.c_55 * s_2 - coefficients.c_53 * s_2);
+    let s_13 = s_12
+        - (coefficients.c_11 * s_11 + coefficients.c_60 * s_4 - coefficients.c_61 * s_4);
+    let s_14 = coefficients.c_64 * s_10
+        + (coefficients.c_70 * s_2 - coefficients.c_69 * s_2);
+    let s_15 = coefficients.c_65 * s_9 - coefficients.c_64 * s_8
+        - (coefficients.c_67 * s_2 + coefficients.c_68 * s_2 - coefficients.c_66 * s_2);
+    let s_16 = s_15
+        - (coefficients.c_11 * s_14 + coefficients.c_72 * s_4 - coefficients.c_73 * s_4);
+    let s_17 = sum_of_few([(); 2], |i| coefficients.c_77[i] * state[1 + i]);
+    let s_18 = coefficients.c_76 * s_10
+        + (coefficients.c_82 * s_2 - coefficients.c_81 * s_2);
+    let s_19 = coefficients.c_17 * s_17 - coefficients.c_76 * s_8
+        - (coefficients.c_79 * s_2 + coefficients.c_80 * s_2 - coefficients.c_78 * s_2);
+    let s_20 = s_19
+        - (coefficients.c_11 * s_18 + coefficients.c_83 * s_4 - coefficients.c_84 * s_4);
+    let s_21 = coefficients.c_88 * s_2 - coefficients.c_86 * s_10;
+    let s_22 = coefficients.c_86 * s_8 - coefficients.c_87 * s_2
+        - coefficients.c_11 * s_21;
+    let s_23 = coefficients.c_91 * s_2 - coefficients.c_89 * s_10;
+    let s_24 = coefficients.c_89 * s_8 - coefficients.c_90 * s_2
+        - coefficients.c_11 * s_23;
+    let s_25 = coefficients.c_96 * s_2 - coefficients.c_97 * s_2;
+    let s_26 = coefficients.c_92 * s_2
+        - (coefficients.c_93 * s_2 + coefficients.c_94 * s_2 - coefficients.c_95 * s_2)
+        - (coefficients.c_11 * s_25 + coefficients.c_98 * s_4 + coefficients.c_99 * s_4);
+    let s_27 = coefficients.c_101 * s_10 - coefficients.c_102 * s_2
+        - (coefficients.c_103 * s_4 - coefficients.c_104 * s_4);
+    let s_28 = coefficients.c_108 * s_5 - coefficients.c_107 * s_5;
+    let s_29 = s_11
+        - (coefficients.c_116 * s_5 + coefficients.c_19 * s_13
+            - coefficients.c_117 * s_5);
+    let s_30 = coefficients.c_49 * s_2
+        - (coefficients.c_18 * s_29 - coefficients.c_114 * s_6
+            - coefficients.c_115 * s_6)
+        - (coefficients.c_20 * s_13 - coefficients.c_118 * s_5
+            - coefficients.c_119 * s_5);
+    let mut s_31 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_31[i] = coefficients.c_111[i] * state[1 + i]
+            - (coefficients.c_113[i] * s_7 + coefficients.c_16[i] * s_30
+                - coefficients.c_112[i] * s_7)
+            - (coefficients.c_22[i] * s_29 - coefficients.c_120[i] * s_6
+                - coefficients.c_121[i] * s_6);
+    }
+    let s_32 = s_14
+        - (coefficients.c_129 * s_5 + coefficients.c_19 * s_16
+            - coefficients.c_130 * s_5);
+    let s_33 = coefficients.c_64 * s_2
+        - (coefficients.c_18 * s_32 - coefficients.c_127 * s_6
+            - coefficients.c_128 * s_6)
+        - (coefficients.c_20 * s_16 - coefficients.c_131 * s_5
+            - coefficients.c_132 * s_5);
+    let mut s_34 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_34[i] = coefficients.c_124[i] * state[1 + i]
+            - (coefficients.c_126[i] * s_7 + coefficients.c_16[i] * s_33
+                - coefficients.c_125[i] * s_7)
+            - (coefficients.c_22[i] * s_32 - coefficients.c_133[i] * s_6
+                - coefficients.c_134[i] * s_6);
+    }
+    let s_35 = s_18
+        - (coefficients.c_142 * s_5 + coefficients.c_19 * s_20
+            - coefficients.c_143 * s_5);
+    let s_36 = coefficients.c_76 * s_2
+        - (coefficients.c_18 * s_35 - coefficients.c_140 * s_6
+            - coefficients.c_141 * s_6)
+        - (coefficients.c_144 * s_5 + coefficients.c_20 * s_20
+            - coefficients.c_145 * s_5);
+    let mut s_37 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_37[i] = coefficients.c_137[i] * state[1 + i]
+            - (coefficients.c_139[i] * s_7 + coefficients.c_16[i] * s_36
+                - coefficients.c_138[i] * s_7)
+            - (coefficients.c_22[i] * s_35 - coefficients.c_146[i] * s_6
+                - coefficients.c_147[i] * s_6);
+    }
+    let s_38 = s_21 - coefficients.c_19 * s_22;
+    let s_39 = coefficients.c_150 * s_2 - coefficients.c_18 * s_38
+        - coefficients.c_20 * s_22;
+    let s_40 = s_23 - coefficients.c_19 * s_24;
+    let s_41 = coefficients.c_152 * s_2 - coefficients.c_18 * s_40
+        - coefficients.c_20 * s_24;
+    let s_42 = s_25
+        - (coefficients.c_157 * s_5 + coefficients.c_19 * s_26
+            - coefficients.c_158 * s_5);
+    let s_43 = -(coefficients.c_156 * s_6 + coefficients.c_18 * s_42)
+        - (coefficients.c_159 * s_5 + coefficients.c_20 * s_26
+            - coefficients.c_160 * s_5);
+    let mut s_44 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_44[i] = -(coefficients.c_154[i] * s_7 + coefficients.c_16[i] * s_43
+            - coefficients.c_155[i] * s_7)
+            - (coefficients.c_161[i] * s_6 + coefficients.c_22[i] * s_42);
+    }
+    let s_45 = coefficients.c_166 * s_5 + coefficients.c_19 * s_27
+        - coefficients.c_167 * s_5;
+    let s_46 = -(coefficients.c_164 * s_6 - coefficients.c_165 * s_6
+        - coefficients.c_18 * s_45)
+        - (coefficients.c_168 * s_5 + coefficients.c_20 * s_27
+            - coefficients.c_169 * s_5);
+    let mut s_47 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_47[i] = coefficients.c_39[i] * s_46
+            - (coefficients.c_170[i] * s_6 - coefficients.c_171[i] * s_6
+                - coefficients.c_22[i] * s_45)
+            - (coefficients.c_172[i] * s_5 + coefficients.c_24[i] * s_27
+                - coefficients.c_173[i] * s_5);
+    }
+    let s_48 = coefficients.c_20 * theta_dot - coefficients.c_45 * theta_dot;
+    let mut values = [T::number(0.0); RATES_BY_PARAMETERS_NONZEROS];
+    values[0] = coefficients.c_48 * s_5;
+    values[1] = coefficients.c_7 * s_13 - coefficients.c_63 * s_5;
+    values[2] = coefficients.c_7 * s_16 - coefficients.c_75 * s_5;
+    values[3] = coefficients.c_7 * s_20 - coefficients.c_85 * s_5;
+    values[4] = coefficients.c_7 * s_22;
+    values[5] = coefficients.c_7 * s_24;
+    values[6] = coefficients.c_7 * s_26 - coefficients.c_100 * s_5;
+    values[7] = coefficients.c_7 * s_27 - coefficients.c_105 * s_5;
+    values[8] = coefficients.c_106 * theta_dot;
+    for i in 0..2 {
+        values[9 + 9 * i] = coefficients.c_110[i] * s_5 - coefficients.c_16[i] * s_28
+            - coefficients.c_109[i] * s_5;
+    }
+    for i in 0..2 {
+        values[10 + 9 * i] = s_31[i]
+            - (coefficients.c_24[i] * s_13 - coefficients.c_122[i] * s_5
+                - coefficients.c_123[i] * s_5);
+    }
+    for i in 0..2 {
+        values[11 + 9 * i] = s_34[i]
+            - (coefficients.c_24[i] * s_16 - coefficients.c_135[i] * s_5
+                - coefficients.c_136[i] * s_5);
+    }
+    for i in 0..2 {
+        values[12 + 9 * i] = s_37[i]
+            - (coefficients.c_148[i] * s_5 + coefficients.c_24[i] * s_20
+                - coefficients.c_149[i] * s_5);
+    }
+    for i in 0..2 {
+        values[13 + 9 * i] = coefficients.c_151[i] * state[1 + i]
+            - coefficients.c_16[i] * s_39 - coefficients.c_22[i] * s_38
+            - coefficients.c_24[i] * s_22;
+    }
+    for i in 0..2 {
+        values[14 + 9 * i] = coefficients.c_153[i] * state[1 + i]
+            - coefficients.c_16[i] * s_41 - coefficients.c_22[i] * s_40
+            - coefficients.c_24[i] * s_24;
+    }
+    for i in 0..2 {
+        values[15 + 9 * i] = s_44[i]
+            - (coefficients.c_162[i] * s_5 + coefficients.c_24[i] * s_26
+                - coefficients.c_163[i] * s_5);
+    }
+    for i in 0..2 {
+        values[16 + 9 * i] = s_47[i];
+    }
+    for i in 0..2 {
+        values[17 + 9 * i] = coefficients.c_24[i] * theta_dot
+            - coefficients.c_16[i] * s_48 - coefficients.c_46[i] * theta_dot;
+    }
+    values
+}
+
+/// Structural nonzeros of [`observables_by_state`].
+pub const OBSERVABLES_BY_STATE_NONZEROS: usize = 10;
+
+/// Where they stand in the matrix of 4 x 6.
+pub static OBSERVABLES_BY_STATE: Pattern<10> = pattern(
+    &[
+        [0, 1, 1, 2, 0],
+        [1, 1, 1, 2, 0],
+        [2, 1, 1, 2, 0],
+        [2, 1, 3, 1, 0],
+        [2, 1, 4, 2, 0],
+        [3, 1, 3, 1, 0],
+    ],
+);
+
+/// The Jacobian of the observables by the state: its structural nonzeros, row by row, at the
+/// places of [`OBSERVABLES_BY_STATE`].
+#[allow(unused_variables, unused_mut)]
+pub fn observables_by_state<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; OBSERVABLES_BY_STATE_NONZEROS] {
+    let theta_dot = state[3];
+    let s_1 = coefficients.c * theta_dot;
+    let u = inputs.u;
+    let s_2 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
+    let s_3 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
+    let s_4 = coefficients.l * theta_dot + s_3;
+    let s_5 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
+    let s_6 = theta_dot + coefficients.c_29 * s_5;
+    let s_7 = coefficients.J_h * theta_dot
+        + T::number(0.5) * (coefficients.c_174 * theta_dot + coefficients.c_31 * s_2)
+        + (coefficients.c_4 * s_4 + coefficients.J_t * s_6);
+    let mut values = [T::number(0.0); OBSERVABLES_BY_STATE_NONZEROS];
+    for i in 0..2 {
+        values[0 + i] = T::number(PHI_AT_END[i]);
+    }
+    for i in 0..2 {
+        values[2 + i] = coefficients.c_27[i];
+    }
+    for i in 0..2 {
+        values[4 + i] = coefficients.c_28[i] * state[1 + i];
+    }
+    values[6] = s_7;
+    for i in 0..2 {
+        values[7 + i] = T::number(0.5)
+            * (coefficients.c_175[i] * theta_dot + coefficients.c_176[i] * state[4 + i])
+            + (coefficients.c_26[i] * s_4 + coefficients.c_5[i] * s_6);
+    }
+    values[9] = u - s_1 - s_1;
+    values
+}
+
+/// Structural nonzeros of [`observables_by_inputs`].
+pub const OBSERVABLES_BY_INPUTS_NONZEROS: usize = 1;
+
+/// Where they stand in the matrix of 4 x 1.
+pub static OBSERVABLES_BY_INPUTS: Pattern<1> = pattern(&[[3, 1, 0, 1, 0]]);
+
+/// The Jacobian of the observables by the inputs: its structural nonzeros, row by row, at the
+/// places of [`OBSERVABLES_BY_INPUTS`].
+#[allow(unused_variables, unused_mut)]
+pub fn observables_by_inputs<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; OBSERVABLES_BY_INPUTS_NONZEROS] {
+    let theta_dot = state[3];
+    let mut values = [T::number(0.0); OBSERVABLES_BY_INPUTS_NONZEROS];
+    values[0] = theta_dot;
+    values
+}
+
+/// Structural nonzeros of [`observables_by_parameters`].
+pub const OBSERVABLES_BY_PARAMETERS_NONZEROS: usize = 10;
+
+/// Where they stand in the matrix of 4 x 9.
+pub static OBSERVABLES_BY_PARAMETERS: Pattern<10> = pattern(
+    &[
+        [1, 1, 3, 1, 0],
+        [2, 1, 0, 1, 0],
+        [2, 1, 1, 1, 0],
+        [2, 1, 2, 1, 0],
+        [2, 1, 3, 1, 0],
+        [2, 1, 4, 1, 0],
+        [2, 1, 5, 1, 0],
+        [2, 1, 6, 1, 0],
+        [2, 1, 7, 1, 0],
+        [3, 1, 8, 1, 0],
+    ],
+);
+
+/// The Jacobian of the observables by the parameters: its structural nonzeros, row by row, at the
+/// places of [`OBSERVABLES_BY_PARAMETERS`].
+#[allow(unused_variables, unused_mut)]
+pub fn observables_by_parameters<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; OBSERVABLES_BY_PARAMETERS_NONZEROS] {
+    let theta_dot = state[3];
+    let s_1 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[1 + i]);
+    let s_2 = theta_dot * theta_dot;
+    let s_3 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
+    let s_4 = theta_dot * s_3;
+    let s_5 = sum_of_few(
+        [(); 2],
+        |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[4 + i] * state[4 + i]),
+    );
+    let s_6 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
+    let s_7 = coefficients.l * theta_dot + s_6;
+    let s_8 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
+    let s_9 = theta_dot + coefficients.c_29 * s_8;
+    let s_10 = sum_of_few(
+        [(); 2],
+        |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[1 + i] * state[1 + i]),
+    );
+    let s_11 = T::number(0.5)
+        * (coefficients.c_3 * s_2 + coefficients.c_180 * s_4 + coefficients.c_2 * s_5)
+        + (coefficients.M_t * (theta_dot * s_7) - coefficients.c_181 * (s_8 * s_9));
+    let mut values = [T::number(0.0); OBSERVABLES_BY_PARAMETERS_NONZEROS];
+    values[0] = coefficients.c_177 * s_1;
+    values[1] = T::number(0.5) * s_2;
+    values[2] = T::number(0.5)
+        * (coefficients.c_62 * s_2 + coefficients.c_178 * s_4 + coefficients.c_71 * s_5);
+    values[3] = T::number(0.5)
+        * (coefficients.c_74 * s_2 + coefficients.c_179 * s_4 + coefficients.c_59 * s_5);
+    values[4] = s_11 - coefficients.c_182 * s_10;
+    values[5] = coefficients.c_183 * s_10;
+    values[6] = coefficients.c_184 * s_10;
+    values[7] = T::number(0.5) * (s_7 * s_7);
+    values[8] = T::number(0.5) * (s_9 * s_9);
+    values[9] = -s_2;
+    values
+}
+
+/// The linearisation about a point: rates + A dx + B du, observables + C dx + D du.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linearisation<T = f64> {
+    /// The rates at the point.
+    pub rates: [T; STATES],
+    /// The observables at the point.
+    pub observables: [T; OBSERVABLES],
+    /// The rates by the state.
+    pub A: [[T; STATES]; STATES],
+    /// The rates by the inputs.
+    pub B: [[T; INPUTS]; STATES],
+    /// The observables by the state.
+    pub C: [[T; STATES]; OBSERVABLES],
+    /// The observables by the inputs.
+    pub D: [[T; INPUTS]; OBSERVABLES],
+}
+
+/// The linearisation about a point.
+pub fn linearise<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> Linearisation<T> {
+    Linearisation {
+        rates: rates(t, state, inputs, coefficients),
+        observables: observables(t, state, inputs, coefficients),
+        A: RATES_BY_STATE.dense(&rates_by_state(t, state, inputs, coefficients)),
+        B: RATES_BY_INPUTS.dense(&rates_by_inputs(t, state, inputs, coefficients)),
+        C: OBSERVABLES_BY_STATE
+            .dense(&observables_by_state(t, state, inputs, coefficients)),
+        D: OBSERVABLES_BY_INPUTS
+            .dense(&observables_by_inputs(t, state, inputs, coefficients)),
+    }
+}
+
+/// Where the structural nonzeros of a matrix stand, row by row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pattern<const N: usize> {
+    /// The row of each.
+    pub rows: [usize; N],
+    /// The column of each.
+    pub columns: [usize; N],
+}
+impl<const N: usize> Pattern<N> {
+    /// The matrix of `R` rows and `C` columns with these nonzeros.
+    pub fn dense<T: Scalar, const R: usize, const C: usize>(
+        &self,
+        nonzeros: &[T; N],
+    ) -> [[T; C]; R] {
+        let mut matrix = [[T::number(0.0); C]; R];
+        for k in 0..N {
+            if let Some(row) = matrix.get_mut(self.rows[k]) {
+                if let Some(entry) = row.get_mut(self.columns[k]) {
+                    *entry = nonzeros[k];
+                }
+            }
+        }
+        matrix
+    }
+}
+
+/// The places of blocks: first row, rows, first column, columns, and whether only the diagonal
+/// is filled. Blocks of the same rows stand together.
+const fn pattern<const B: usize, const N: usize>(
+    blocks: &[[usize; 5]; B],
+) -> Pattern<N> {
+    let mut pattern = Pattern {
+        rows: [0; N],
+        columns: [0; N],
+    };
+    let (mut next, mut first) = (0, 0);
+    while first < B {
+        let [row, rows, _, _, _] = blocks[first];
+        let mut last = first;
+        while last < B && blocks[last][0] == row {
+            last += 1;
+        }
+        let mut i = 0;
+        while i < rows {
+            let mut block = first;
+            while block < last {
+                let [_, _, column, columns, diagonal] = blocks[block];
+                let (column, count) = if diagonal == 1 {
+                    (column + i, 1)
+                } else {
+                    (column, columns)
+                };
+                let mut j = 0;
+                while j < count {
+                    pattern.rows[next] = row + i;
+                    pattern.columns[next] = column + j;
+                    next += 1;
+                    j += 1;
+                }
+                block += 1;
+            }
+            i += 1;
+        }
+        first = last;
+    }
+    pattern
+}
+
+/// int\[s phi_i], with s = x/l from 0 to 1 and primes for derivatives by s
+static INTEGRAL_S1_PHI: [f64; 2] = [0.774866121708409, 0.08912096167893394];
+
+/// int\[phi_i^2], with s = x/l from 0 to 1 and primes for derivatives by s
+static INTEGRAL_PHI_SQUARED: [f64; 2] = [1.8556448472351015, 0.9640638644850398];
+
+/// phi_i(1), with s = x/l from 0 to 1 and primes for derivatives by s
+static PHI_AT_END: [f64; 2] = [2.7244411149702623, -1.9637350783494598];
+
+/// phi_i'(1), with s = x/l from 0 to 1 and primes for derivatives by s
+static PHI_D1_AT_END: [f64; 2] = [3.7502081374239222, -9.38818226594835];
+
+/// int\[phi_i''^2], with s = x/l from 0 to 1 and primes for derivatives by s
+static INTEGRAL_PHI_D2_SQUARED: [f64; 2] = [22.940155884082465, 468.07114845621095];
+
+/// What the equations are computed with: `f64`, `f32`, lanes of them, or numbers that carry
+/// derivatives. Nothing branches on a value, so that lanes may differ in every condition.
+pub trait Scalar: Copy
+where
+    Self: core::ops::Add<Output = Self>,
+    Self: core::ops::Sub<Output = Self>,
+    Self: core::ops::Mul<Output = Self>,
+    Self: core::ops::Div<Output = Self>,
+    Self: core::ops::Neg<Output = Self>,
+{
+    /// A number, in every lane and without derivative.
+    fn number(value: f64) -> Self;
+    /// `then` where a > b, `otherwise` elsewhere, also where either is NaN. Whatever is not
+    /// chosen leaves no trace.
+    fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+    /// Whether a > b in every lane.
+    fn all_greater(a: Self, b: Self) -> bool;
+    /// An elementary function of this.
+    fn function<F: Function>(self) -> Self;
+    /// An elementary function of this and another.
+    fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self;
+}
+
+/// Numbers in IEEE 754 double precision, or lanes of them: what the elementary functions are
+/// written for.
+pub trait Real: Scalar {
+    /// `then` where a = b, `otherwise` elsewhere, also where either is NaN.
+    fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+    /// The sign bit cleared.
+    fn magnitude(self) -> Self;
+    /// The magnitude with the sign bit of another number.
+    fn copy_sign(self, sign: Self) -> Self;
+    /// 2^k for an integral k: 2^52 + 1023 brings it to the place of the exponent.
+    fn power_of_two(self) -> Self;
+    /// The unbiased exponent field.
+    fn exponent(self) -> Self;
+    /// The mantissa under the exponent of 1.
+    fn significand(self) -> Self;
+}
+
+/// An elementary function: plain operations in a fixed order, the same bits on every machine.
+pub trait Function {
+    /// Its value.
+    fn value<T: Real>(x: T) -> T;
+    /// Its derivative at x, where it is `value`.
+    fn slope<T: Scalar>(x: T, value: T) -> T;
+}
+
+/// An elementary function of two arguments.
+pub trait FunctionOfTwo {
+    /// Its value.
+    fn value<T: Real>(x: T, y: T) -> T;
+    /// Its derivatives by x and y, where it is `value`.
+    fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
+}
+impl Scalar for f64 {
+    #[inline(always)]
+    fn number(value: f64) -> f64 {
+        value
+    }
+    #[inline(always)]
+    fn select_greater(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
+        if a > b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn all_greater(a: f64, b: f64) -> bool {
+        a > b
+    }
+    #[inline(always)]
+    fn function<F: Function>(self) -> f64 {
+        F::value(self)
+    }
+    #[inline(always)]
+    fn function_of_two<F: FunctionOfTwo>(self, other: f64) -> f64 {
+        F::value(self, other)
+    }
+}
+impl Real for f64 {
+    #[inline(always)]
+    fn select_equal(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
+        if a == b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn magnitude(self) -> f64 {
+        f64::from_bits(self.to_bits() & !(1 << 63))
+    }
+    #[inline(always)]
+    fn copy_sign(self, sign: f64) -> f64 {
+        f64::from_bits((self.to_bits() & !(1 << 63)) | (sign.to_bits() & (1 << 63)))
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> f64 {
+        f64::from_bits((self + 4503599627371519.0).to_bits() << 52)
+    }
+    #[inline(always)]
+    fn exponent(self) -> f64 {
+        ((self.to_bits() >> 52) & 0x7ff) as f64 - 1023.0
+    }
+    #[inline(always)]
+    fn significand(self) -> f64 {
+        f64::from_bits((self.to_bits() & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000)
+    }
+}
+
+/// Elementary functions in double precision, then rounded: within 0.5001 units in the last
+/// place.
+impl Scalar for f32 {
+    #[inline(always)]
+    fn number(value: f64) -> f32 {
+        value as f32
+    }
+    #[inline(always)]
+    fn select_greater(a: f32, b: f32, then: f32, otherwise: f32) -> f32 {
+        if a > b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn all_greater(a: f32, b: f32) -> bool {
+        a > b
+    }
+    #[inline(always)]
+    fn function<F: Function>(self) -> f32 {
+        F::value(f64::from(self)) as f32
+    }
+    #[inline(always)]
+    fn function_of_two<F: FunctionOfTwo>(self, other: f32) -> f32 {
+        F::value(f64::from(self), f64::from(other)) as f32
+    }
+}
+
+/// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
+#[inline(always)]
+fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
+    let reciprocal = T::number(1.0) / pivot;
+    T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
+}
+
+/// The sum of the first `N` of eight numbers, neighbours added in pairs.
+#[inline(always)]
+fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
+    let a = if N > 1 { s[0] + s[1] } else { s[0] };
+    let b = if N > 3 { s[2] + s[3] } else { s[2] };
+    let c = if N > 5 { s[4] + s[5] } else { s[4] };
+    let d = if N > 7 { s[6] + s[7] } else { s[6] };
+    let left = if N > 2 { a + b } else { a };
+    let right = if N > 6 { c + d } else { c };
+    if N > 4 { left + right } else { left }
+}
+
+/// The sum of up to eight elements.
+#[inline(always)]
+fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
+    _: [(); N],
+    element: F,
+) -> T {
+    let mut s = [T::number(0.0); 8];
+    for k in 0..N {
+        s[k] = element(k);
+    }
+    paired::<N, T>(&s)
+}
