@@ -31,7 +31,8 @@ impl File<'_> {
         let default = block("fn default() -> Self {", &literal("Self", &defaults), "}");
         Ok(block(&head, &fields, "}")
             + &block("impl Default for Parameters {", &default, "}")
-            + &cast("Parameters", "these parameters", &casts))
+            + &cast("Parameters", "these parameters", &casts)
+            + &self.from_array("Parameters", "PARAMETERS"))
     }
 
     pub(super) fn inputs(&self) -> Emitted<String> {
@@ -53,7 +54,30 @@ impl File<'_> {
             let default = block("fn default() -> Self {", &literal("Self", &zeros), "}");
             text += &block("impl<T: Scalar> Default for Inputs<T> {", &default, "}");
         }
-        Ok(text)
+        Ok(text + &self.from_array("Inputs", "INPUTS"))
+    }
+
+    /// The conversion from an array in the order of the columns of Jacobians, if there are any.
+    fn from_array(&self, name: &str, count: &str) -> String {
+        let program = self.program;
+        if program.requested.jacobians.is_empty() {
+            return String::new();
+        }
+        let quantities: Vec<&Quantity> = match name {
+            "Parameters" => program.parameters.iter().map(|p| &p.quantity).collect(),
+            _ => program.inputs.iter().collect(),
+        };
+        let values: Vec<String> = quantities
+            .iter()
+            .enumerate()
+            .map(|(place, quantity)| format!("{}: numbers[{place}]", quantity.name))
+            .collect();
+        let argument = if values.is_empty() { "_" } else { "numbers" };
+        let opening = format!("fn from({argument}: [T; {count}]) -> Self {{");
+        let body = block(&opening, &literal("Self", &values), "}");
+        let whole = self.generic(name);
+        let head = format!("impl<T: Copy> From<[T; {count}]> for {whole} {{");
+        block(&head, &body, "}")
     }
 
     /// The type of the parameters, of the inputs or of the coefficients: generic if a number
