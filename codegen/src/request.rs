@@ -16,17 +16,21 @@ pub enum Request {
     Products,
     /// A, B, C and D about a point; brings the Jacobians with it.
     Linearisation,
+    /// Every function a second time as `inlined_...`, for lanes: to be compiled with the code
+    /// around it for registers that are known at run time.
+    Lanes,
 }
 
 impl Request {
     /// Every request.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::BiasForces,
         Self::InverseDynamics,
         Self::GuardRates,
         Self::Jacobians,
         Self::Products,
         Self::Linearisation,
+        Self::Lanes,
     ];
 
     /// Its name.
@@ -38,6 +42,7 @@ impl Request {
             Self::Jacobians => "jacobians",
             Self::Products => "products",
             Self::Linearisation => "linearisation",
+            Self::Lanes => "lanes",
         }
     }
 

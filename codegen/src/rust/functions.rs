@@ -110,6 +110,7 @@ fn cholesky<T: Scalar, const N: usize>(matrix: &[[T; N]; N]) -> [[T; N]; N] {
 }
 
 /// Solution of L L^T x = right.
+#[inline]
 fn cholesky_solve<T: Scalar, const N: usize>(
     factor: &[[T; N]; N],
     right: &[T; N],
@@ -182,26 +183,28 @@ fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
 }
 ";
 
-/// Sums of more elements. Not inlined: with the loops around it unrolled into one piece the
-/// compiler vectorises across them, and spills. Their number is a constant of the type, so
-/// that no bound is left to be checked.
+/// Sums of more elements. Not inlined for single numbers: with the loops around it unrolled into
+/// one piece the compiler vectorises across them, and spills. Their number is a constant of the
+/// type, so that no bound is left to be checked.
 const SUM: &str = "\
 /// The sum of elements in eight partial sums, number k of elements k, k + 8, k + 16, ...
-#[inline(never)]
+#[inline(always)]
 fn sum<const N: usize, T: Scalar, F: Fn(usize) -> T>(_: [(); N], element: F) -> T {
-    let mut s = [T::number(0.0); 8];
-    for k in 0..8 {
-        s[k] = element(k);
-    }
-    for block in 1..N / 8 {
+    T::long_loop(move || {
+        let mut s = [T::number(0.0); 8];
         for k in 0..8 {
-            s[k] = s[k] + element(8 * block + k);
+            s[k] = element(k);
         }
-    }
-    for i in N / 8 * 8..N {
-        s[i % 8] = s[i % 8] + element(i);
-    }
-    paired::<N, T>(&s)
+        for block in 1..N / 8 {
+            for k in 0..8 {
+                s[k] = s[k] + element(8 * block + k);
+            }
+        }
+        for i in N / 8 * 8..N {
+            s[i % 8] = s[i % 8] + element(i);
+        }
+        paired::<N, T>(&s)
+    })
 }
 ";
 
@@ -249,7 +252,7 @@ fn elementary_function(function: Elementary) -> String {
     ) + &format!("{DEEPER}{x}.{apply}::<{type_name}>({argument})\n{SHALLOWER}}}\n");
     let arguments: &[&str] = if binary { &[x, y] } else { &[x] };
     let value = block(
-        &format!("#[inline]\nfn value<T: Real>({x}: T{second}) -> T {{"),
+        &format!("#[inline(always)]\nfn value<T: Real>({x}: T{second}) -> T {{"),
         &KernelBody::new(&function.kernel(), arguments).lines(),
         "}",
     );

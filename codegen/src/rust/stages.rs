@@ -1,12 +1,12 @@
 //! The emitted functions that are called with prepared coefficients, one per stage.
 
 use super::body::{Access, Body, looped};
-use super::expression::{array, assignment, infix};
+use super::expression::{Expression, array, assignment, infix};
 use super::file::{Emitted, File, mass_roots, quantity_line};
 use super::functions::Needed;
 use super::layout::{DEEPER, SHALLOWER};
 use super::literals::{block, doc};
-use crate::program::{Extent, Op, RowValues, ValueId};
+use crate::program::{Extent, Op, Request, RowValues, ValueId};
 
 impl File<'_> {
     pub(super) fn rates(&self, needed: &mut Needed) -> Emitted<String> {
@@ -259,16 +259,36 @@ impl File<'_> {
         result: &str,
         statements: &str,
     ) -> String {
-        let opening = format!(
-            "{head}pub fn {name}<T: Scalar>(\n\
-             {DEEPER}t: T,\n\
-             state: &[T; STATES],\n\
-             inputs: &{},\n\
-             coefficients: &{},\n\
-             {arguments}{SHALLOWER}) -> {result} {{",
-            self.generic("Inputs"),
-            self.generic("Coefficients"),
+        let signature = |name: &str| {
+            format!(
+                "pub fn {name}<T: Scalar>(\n\
+                 {DEEPER}t: T,\n\
+                 state: &[T; STATES],\n\
+                 inputs: &{},\n\
+                 coefficients: &{},\n\
+                 {arguments}{SHALLOWER}) -> {result} {{",
+                self.generic("Inputs"),
+                self.generic("Coefficients"),
+            )
+        };
+        if !self.program.requested.requests.contains(&Request::Lanes) {
+            return block(&format!("{head}{}", signature(name)), statements, "}");
+        }
+        let further: Vec<&str> = arguments
+            .lines()
+            .filter_map(|line| line.split(':').next())
+            .collect();
+        let passed = [&["t", "state", "inputs", "coefficients"], further.as_slice()].concat();
+        let passed: Vec<Expression> = passed.into_iter().map(Expression::atom).collect();
+        let inlined = format!("inlined_{name}");
+        let call = format!("{}\n", Expression::call(&inlined, &passed));
+        let allowed = head.lines().filter(|line| line.starts_with("#["));
+        let allowed: String = allowed.map(|line| format!("{line}\n")).collect();
+        let inlined_head = format!(
+            "/// [`{name}`], inlined where it is called, to be compiled for the registers there.\n\
+             {allowed}#[inline(always)]\n"
         );
-        block(&opening, statements, "}")
+        block(&format!("{head}{}", signature(name)), &call, "}")
+            + &block(&format!("{inlined_head}{}", signature(&inlined)), statements, "}")
     }
 }

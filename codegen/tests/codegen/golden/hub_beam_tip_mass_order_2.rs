@@ -646,6 +646,12 @@ where
     fn function<F: Function>(self) -> Self;
     /// An elementary function of this and another.
     fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self;
+    /// A long loop. Single numbers keep it out of the code around; lanes must not, because code
+    /// of its own would not be compiled for their registers.
+    #[inline(always)]
+    fn long_loop<F: FnOnce() -> Self>(lines: F) -> Self {
+        lines()
+    }
 }
 
 /// Numbers in IEEE 754 double precision, or lanes of them: what the elementary functions are
@@ -693,13 +699,17 @@ impl Scalar for f64 {
     fn all_greater(a: f64, b: f64) -> bool {
         a > b
     }
-    #[inline(always)]
+    #[inline]
     fn function<F: Function>(self) -> f64 {
         F::value(self)
     }
-    #[inline(always)]
+    #[inline]
     fn function_of_two<F: FunctionOfTwo>(self, other: f64) -> f64 {
         F::value(self, other)
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f64>(lines: F) -> f64 {
+        lines()
     }
 }
 impl Real for f64 {
@@ -744,13 +754,17 @@ impl Scalar for f32 {
     fn all_greater(a: f32, b: f32) -> bool {
         a > b
     }
-    #[inline(always)]
+    #[inline]
     fn function<F: Function>(self) -> f32 {
         F::value(f64::from(self)) as f32
     }
-    #[inline(always)]
+    #[inline]
     fn function_of_two<F: FunctionOfTwo>(self, other: f32) -> f32 {
         F::value(f64::from(self), f64::from(other)) as f32
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f32>(lines: F) -> f32 {
+        lines()
     }
 }
 

@@ -124,6 +124,21 @@ impl Parameters {
         }
     }
 }
+impl<T: Copy> From<[T; PARAMETERS]> for Parameters<T> {
+    fn from(numbers: [T; PARAMETERS]) -> Self {
+        Self {
+            J_h: numbers[0],
+            rho: numbers[1],
+            A: numbers[2],
+            l: numbers[3],
+            E: numbers[4],
+            I: numbers[5],
+            M_t: numbers[6],
+            J_t: numbers[7],
+            c: numbers[8],
+        }
+    }
+}
 
 /// Signals supplied at run time. `Default` gives zeros.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,6 +149,11 @@ pub struct Inputs<T = f64> {
 impl<T: Scalar> Default for Inputs<T> {
     fn default() -> Self {
         Self { u: T::number(0.0) }
+    }
+}
+impl<T: Copy> From<[T; INPUTS]> for Inputs<T> {
+    fn from(numbers: [T; INPUTS]) -> Self {
+        Self { u: numbers[0] }
     }
 }
 
@@ -1690,6 +1710,18 @@ pub fn rates<T: Scalar>(
     inputs: &Inputs<T>,
     coefficients: &Coefficients<T>,
 ) -> [T; STATES] {
+    inlined_rates(t, state, inputs, coefficients)
+}
+
+/// [`rates`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables)]
+#[inline(always)]
+pub fn inlined_rates<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; STATES] {
     let theta_dot = state[3];
     let u = inputs.u;
     let s_1 = sum_of_few([(); 2], |i| coefficients.c_8[i] * state[1 + i]);
@@ -1723,6 +1755,18 @@ pub fn rates<T: Scalar>(
 /// - `power`: power of all non-conservative forces: the rate of the energy \[W]
 #[allow(unused_variables)]
 pub fn observables<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; OBSERVABLES] {
+    inlined_observables(t, state, inputs, coefficients)
+}
+
+/// [`observables`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables)]
+#[inline(always)]
+pub fn inlined_observables<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
@@ -1769,6 +1813,18 @@ pub fn energy<T: Scalar>(
     inputs: &Inputs<T>,
     coefficients: &Coefficients<T>,
 ) -> T {
+    inlined_energy(t, state, inputs, coefficients)
+}
+
+/// [`energy`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables)]
+#[inline(always)]
+pub fn inlined_energy<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> T {
     let theta_dot = state[3];
     let s_1 = theta_dot * theta_dot;
     let s_2 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
@@ -1801,6 +1857,18 @@ pub fn power<T: Scalar>(
     inputs: &Inputs<T>,
     coefficients: &Coefficients<T>,
 ) -> T {
+    inlined_power(t, state, inputs, coefficients)
+}
+
+/// [`power`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables)]
+#[inline(always)]
+pub fn inlined_power<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> T {
     let theta_dot = state[3];
     let u = inputs.u;
     theta_dot * (u - coefficients.c * theta_dot)
@@ -1815,6 +1883,18 @@ pub fn guards<T: Scalar>(
     inputs: &Inputs<T>,
     coefficients: &Coefficients<T>,
 ) -> [T; GUARDS] {
+    inlined_guards(t, state, inputs, coefficients)
+}
+
+/// [`guards`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables, unused_mut)]
+#[inline(always)]
+pub fn inlined_guards<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; GUARDS] {
     let mut values = [T::number(0.0); GUARDS];
     values
 }
@@ -1822,6 +1902,18 @@ pub fn guards<T: Scalar>(
 /// The mass matrix, in the order of the first half of [`STATE_NAMES`].
 #[allow(unused_variables, unused_mut)]
 pub fn mass_matrix<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [[T; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
+    inlined_mass_matrix(t, state, inputs, coefficients)
+}
+
+/// [`mass_matrix`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables, unused_mut)]
+#[inline(always)]
+pub fn inlined_mass_matrix<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
@@ -1854,6 +1946,18 @@ pub fn bias_forces<T: Scalar>(
     inputs: &Inputs<T>,
     coefficients: &Coefficients<T>,
 ) -> [T; DEGREES_OF_FREEDOM] {
+    inlined_bias_forces(t, state, inputs, coefficients)
+}
+
+/// [`bias_forces`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables, unused_mut)]
+#[inline(always)]
+pub fn inlined_bias_forces<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; DEGREES_OF_FREEDOM] {
     let theta_dot = state[3];
     let u = inputs.u;
     let mut values = [T::number(0.0); DEGREES_OF_FREEDOM];
@@ -1869,6 +1973,19 @@ pub fn bias_forces<T: Scalar>(
 /// [`STATE_NAMES`].
 #[allow(unused_variables, unused_mut)]
 pub fn inverse_dynamics<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+    accelerations: &[T; DEGREES_OF_FREEDOM],
+) -> [T; DEGREES_OF_FREEDOM] {
+    inlined_inverse_dynamics(t, state, inputs, coefficients, accelerations)
+}
+
+/// [`inverse_dynamics`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables, unused_mut)]
+#[inline(always)]
+pub fn inlined_inverse_dynamics<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
@@ -1907,6 +2024,18 @@ pub fn guard_rates<T: Scalar>(
     inputs: &Inputs<T>,
     coefficients: &Coefficients<T>,
 ) -> [T; GUARDS] {
+    inlined_guard_rates(t, state, inputs, coefficients)
+}
+
+/// [`guard_rates`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables, unused_mut)]
+#[inline(always)]
+pub fn inlined_guard_rates<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; GUARDS] {
     let mut values = [T::number(0.0); GUARDS];
     values
 }
@@ -1915,6 +2044,27 @@ pub fn guard_rates<T: Scalar>(
 /// rates change along it.
 #[allow(unused_variables)]
 pub fn jacobian_vector_product<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+    direction: &[T; STATES],
+    input_direction: &Inputs<T>,
+) -> [T; STATES] {
+    inlined_jacobian_vector_product(
+        t,
+        state,
+        inputs,
+        coefficients,
+        direction,
+        input_direction,
+    )
+}
+
+/// [`jacobian_vector_product`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables)]
+#[inline(always)]
+pub fn inlined_jacobian_vector_product<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
@@ -1950,6 +2100,19 @@ pub fn jacobian_vector_product<T: Scalar>(
 /// the weighted sum of the rates.
 #[allow(unused_variables)]
 pub fn vector_jacobian_product<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+    weights: &[T; STATES],
+) -> ([T; STATES], Inputs<T>) {
+    inlined_vector_jacobian_product(t, state, inputs, coefficients, weights)
+}
+
+/// [`vector_jacobian_product`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables)]
+#[inline(always)]
+pub fn inlined_vector_jacobian_product<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
@@ -2002,6 +2165,18 @@ pub fn rates_by_state<T: Scalar>(
     inputs: &Inputs<T>,
     coefficients: &Coefficients<T>,
 ) -> [T; RATES_BY_STATE_NONZEROS] {
+    inlined_rates_by_state(t, state, inputs, coefficients)
+}
+
+/// [`rates_by_state`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables, unused_mut)]
+#[inline(always)]
+pub fn inlined_rates_by_state<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; RATES_BY_STATE_NONZEROS] {
     let mut values = [T::number(0.0); RATES_BY_STATE_NONZEROS];
     for i in 0..3 {
         values[0 + i] = T::number(1.0);
@@ -2037,6 +2212,18 @@ pub static RATES_BY_INPUTS: Pattern<3> = pattern(&[[3, 1, 0, 1, 0], [4, 2, 0, 1,
 /// places of [`RATES_BY_INPUTS`].
 #[allow(unused_variables, unused_mut)]
 pub fn rates_by_inputs<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; RATES_BY_INPUTS_NONZEROS] {
+    inlined_rates_by_inputs(t, state, inputs, coefficients)
+}
+
+/// [`rates_by_inputs`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables, unused_mut)]
+#[inline(always)]
+pub fn inlined_rates_by_inputs<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
@@ -2081,6 +2268,18 @@ pub static RATES_BY_PARAMETERS: Pattern<27> = pattern(
 /// places of [`RATES_BY_PARAMETERS`].
 #[allow(unused_variables, unused_mut)]
 pub fn rates_by_parameters<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; RATES_BY_PARAMETERS_NONZEROS] {
+    inlined_rates_by_parameters(t, state, inputs, coefficients)
+}
+
+/// [`rates_by_parameters`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables, unused_mut)]
+#[inline(always)]
+pub fn inlined_rates_by_parameters<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
@@ -2291,6 +2490,18 @@ pub fn observables_by_state<T: Scalar>(
     inputs: &Inputs<T>,
     coefficients: &Coefficients<T>,
 ) -> [T; OBSERVABLES_BY_STATE_NONZEROS] {
+    inlined_observables_by_state(t, state, inputs, coefficients)
+}
+
+/// [`observables_by_state`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables, unused_mut)]
+#[inline(always)]
+pub fn inlined_observables_by_state<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; OBSERVABLES_BY_STATE_NONZEROS] {
     let theta_dot = state[3];
     let s_1 = coefficients.c * theta_dot;
     let u = inputs.u;
@@ -2337,6 +2548,18 @@ pub fn observables_by_inputs<T: Scalar>(
     inputs: &Inputs<T>,
     coefficients: &Coefficients<T>,
 ) -> [T; OBSERVABLES_BY_INPUTS_NONZEROS] {
+    inlined_observables_by_inputs(t, state, inputs, coefficients)
+}
+
+/// [`observables_by_inputs`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables, unused_mut)]
+#[inline(always)]
+pub fn inlined_observables_by_inputs<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; OBSERVABLES_BY_INPUTS_NONZEROS] {
     let theta_dot = state[3];
     let mut values = [T::number(0.0); OBSERVABLES_BY_INPUTS_NONZEROS];
     values[0] = theta_dot;
@@ -2366,6 +2589,18 @@ pub static OBSERVABLES_BY_PARAMETERS: Pattern<10> = pattern(
 /// places of [`OBSERVABLES_BY_PARAMETERS`].
 #[allow(unused_variables, unused_mut)]
 pub fn observables_by_parameters<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; OBSERVABLES_BY_PARAMETERS_NONZEROS] {
+    inlined_observables_by_parameters(t, state, inputs, coefficients)
+}
+
+/// [`observables_by_parameters`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables, unused_mut)]
+#[inline(always)]
+pub fn inlined_observables_by_parameters<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
@@ -2426,6 +2661,17 @@ pub struct Linearisation<T = f64> {
 
 /// The linearisation about a point.
 pub fn linearise<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> Linearisation<T> {
+    inlined_linearise(t, state, inputs, coefficients)
+}
+
+/// [`linearise`], inlined where it is called, to be compiled for the registers there.
+#[inline(always)]
+pub fn inlined_linearise<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
@@ -2547,6 +2793,12 @@ where
     fn function<F: Function>(self) -> Self;
     /// An elementary function of this and another.
     fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self;
+    /// A long loop. Single numbers keep it out of the code around; lanes must not, because code
+    /// of its own would not be compiled for their registers.
+    #[inline(always)]
+    fn long_loop<F: FnOnce() -> Self>(lines: F) -> Self {
+        lines()
+    }
 }
 
 /// Numbers in IEEE 754 double precision, or lanes of them: what the elementary functions are
@@ -2594,13 +2846,17 @@ impl Scalar for f64 {
     fn all_greater(a: f64, b: f64) -> bool {
         a > b
     }
-    #[inline(always)]
+    #[inline]
     fn function<F: Function>(self) -> f64 {
         F::value(self)
     }
-    #[inline(always)]
+    #[inline]
     fn function_of_two<F: FunctionOfTwo>(self, other: f64) -> f64 {
         F::value(self, other)
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f64>(lines: F) -> f64 {
+        lines()
     }
 }
 impl Real for f64 {
@@ -2645,13 +2901,17 @@ impl Scalar for f32 {
     fn all_greater(a: f32, b: f32) -> bool {
         a > b
     }
-    #[inline(always)]
+    #[inline]
     fn function<F: Function>(self) -> f32 {
         F::value(f64::from(self)) as f32
     }
-    #[inline(always)]
+    #[inline]
     fn function_of_two<F: FunctionOfTwo>(self, other: f32) -> f32 {
         F::value(f64::from(self), f64::from(other)) as f32
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f32>(lines: F) -> f32 {
+        lines()
     }
 }
 

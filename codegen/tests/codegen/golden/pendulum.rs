@@ -249,6 +249,12 @@ where
     fn function<F: Function>(self) -> Self;
     /// An elementary function of this and another.
     fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self;
+    /// A long loop. Single numbers keep it out of the code around; lanes must not, because code
+    /// of its own would not be compiled for their registers.
+    #[inline(always)]
+    fn long_loop<F: FnOnce() -> Self>(lines: F) -> Self {
+        lines()
+    }
 }
 
 /// Numbers in IEEE 754 double precision, or lanes of them: what the elementary functions are
@@ -296,13 +302,17 @@ impl Scalar for f64 {
     fn all_greater(a: f64, b: f64) -> bool {
         a > b
     }
-    #[inline(always)]
+    #[inline]
     fn function<F: Function>(self) -> f64 {
         F::value(self)
     }
-    #[inline(always)]
+    #[inline]
     fn function_of_two<F: FunctionOfTwo>(self, other: f64) -> f64 {
         F::value(self, other)
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f64>(lines: F) -> f64 {
+        lines()
     }
 }
 impl Real for f64 {
@@ -347,13 +357,17 @@ impl Scalar for f32 {
     fn all_greater(a: f32, b: f32) -> bool {
         a > b
     }
-    #[inline(always)]
+    #[inline]
     fn function<F: Function>(self) -> f32 {
         F::value(f64::from(self)) as f32
     }
-    #[inline(always)]
+    #[inline]
     fn function_of_two<F: FunctionOfTwo>(self, other: f32) -> f32 {
         F::value(f64::from(self), f64::from(other)) as f32
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f32>(lines: F) -> f32 {
+        lines()
     }
 }
 
@@ -371,7 +385,7 @@ fn sin<T: Scalar>(x: T) -> T {
 }
 enum Sin {}
 impl Function for Sin {
-    #[inline]
+    #[inline(always)]
     fn value<T: Real>(x: T) -> T {
         let v6 = x * T::number(0.6366197723675814) + T::number(6.755399441055744e15)
             - T::number(6.755399441055744e15);
@@ -421,7 +435,7 @@ impl Function for Sin {
         ) * T::select_equal(v88, T::number(1.0), v85, T::number(1.0) - v88);
         v92
     }
-    #[inline]
+    #[inline(always)]
     fn slope<T: Scalar>(x: T, _: T) -> T {
         cos(x)
     }
@@ -434,7 +448,7 @@ fn cos<T: Scalar>(x: T) -> T {
 }
 enum Cos {}
 impl Function for Cos {
-    #[inline]
+    #[inline(always)]
     fn value<T: Real>(x: T) -> T {
         let v6 = x * T::number(0.6366197723675814) + T::number(6.755399441055744e15)
             - T::number(6.755399441055744e15);
@@ -484,7 +498,7 @@ impl Function for Cos {
         ) * T::select_equal(v88, T::number(1.0), -v85, T::number(1.0) - v88);
         v93
     }
-    #[inline]
+    #[inline(always)]
     fn slope<T: Scalar>(x: T, _: T) -> T {
         -sin(x)
     }
