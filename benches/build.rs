@@ -11,11 +11,12 @@ use codegen::variant::Variant;
 /// The orders; the macro in `benches/rates.rs` goes through the same.
 const ORDERS: [usize; 9] = [0, 1, 2, 4, 8, 16, 32, 64, 128];
 
-/// The orders with functions on request; the macro in `benches/jacobian.rs` goes through them.
+/// The orders with functions on request; the macros in `benches/jacobian.rs` and `lanes.rs`
+/// go through them.
 const FULL_ORDERS: [usize; 3] = [4, 16, 64];
 
 /// What is requested there.
-const REQUESTS: &[Request] = &[Request::Jacobians, Request::Products];
+const REQUESTS: &[Request] = &[Request::Jacobians, Request::Products, Request::Lanes];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let specification =

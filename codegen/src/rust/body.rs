@@ -415,12 +415,14 @@ impl<'a> Body<'a> {
         if let Op::Table(place) = self.program.value(id).op {
             let name = identifier(&self.program.tables[place].name)?;
             let vector = matches!(self.program.value(id).extent, Extent::Vector(_));
-            let element = if vector {
-                "T::number"
+            self.needed.converted |= vector;
+            self.needed.converted_matrix |= !vector;
+            let function = if vector {
+                "converted"
             } else {
-                "|row| row.map(T::number)"
+                "converted_matrix"
             };
-            return Ok(format!("{name}.map({element})"));
+            return Ok(format!("{function}(&{name})"));
         }
         match &self.access {
             Access::Coefficients(fields) if fields.contains_key(&id) => {

@@ -24,6 +24,10 @@ pub struct Needed {
     pub cholesky: bool,
     /// Solutions for the columns of a matrix.
     pub cholesky_of_matrix: bool,
+    /// Vectors of another type.
+    pub converted: bool,
+    /// Matrices of another type.
+    pub converted_matrix: bool,
     /// Sums of more elements than there are partial sums.
     pub sum: bool,
     /// Sums of no more.
@@ -39,6 +43,8 @@ pub fn items(needed: &Needed) -> String {
         (needed.pivot_reciprocal, PIVOT_RECIPROCAL),
         (needed.cholesky || needed.cholesky_of_matrix, CHOLESKY),
         (needed.cholesky_of_matrix, CHOLESKY_OF_MATRIX),
+        (needed.converted || needed.converted_matrix, CONVERTED),
+        (needed.converted_matrix, CONVERTED_MATRIX),
         (needed.sum || needed.sum_of_few, PAIRED),
         (needed.sum_of_few, SUM_OF_FEW),
         (needed.sum, SUM),
@@ -149,6 +155,34 @@ fn cholesky_solve_matrix<T: Scalar, const N: usize, const M: usize>(
         }
     }
     x
+}
+";
+
+/// Vectors as numbers of another type.
+const CONVERTED: &str = "\
+/// These numbers in another type.
+#[inline(always)]
+fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
+    let mut converted = [T::number(0.0); N];
+    for i in 0..N {
+        converted[i] = T::number(numbers[i]);
+    }
+    converted
+}
+";
+
+/// Matrices as numbers of another type.
+const CONVERTED_MATRIX: &str = "\
+/// The same of a matrix.
+#[inline(always)]
+fn converted_matrix<T: Scalar, const N: usize, const M: usize>(
+    numbers: &[[f64; N]; M],
+) -> [[T; N]; M] {
+    let mut matrix = [[T::number(0.0); N]; M];
+    for i in 0..M {
+        matrix[i] = converted(&numbers[i]);
+    }
+    matrix
 }
 ";
 

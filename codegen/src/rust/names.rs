@@ -9,7 +9,7 @@ use crate::program::{Program, ValueId};
 
 /// Names that emitted functions use for themselves: variables, helpers, constants, fields,
 /// and what Rust's prelude gives a value of.
-const TAKEN: [&str; 48] = [
+const TAKEN: [&str; 50] = [
     "t",
     "state",
     "inputs",
@@ -32,6 +32,8 @@ const TAKEN: [&str; 48] = [
     "cholesky",
     "cholesky_solve",
     "cholesky_solve_matrix",
+    "converted",
+    "converted_matrix",
     "accelerations",
     "direction",
     "input_direction",

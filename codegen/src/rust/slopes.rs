@@ -61,7 +61,11 @@ pub fn slope(function: Elementary) -> String {
         Elementary::Sign => "fn slope<T: Scalar>(_: T, _: T) -> T {",
         _ => "fn slope<T: Scalar>(x: T, _: T) -> T {",
     };
-    block(&format!("#[inline(always)]\n{signature}"), lines(function), "}")
+    block(
+        &format!("#[inline(always)]\n{signature}"),
+        lines(function),
+        "}",
+    )
 }
 
 fn lines(function: Elementary) -> &'static str {

@@ -278,7 +278,11 @@ impl File<'_> {
             .lines()
             .filter_map(|line| line.split(':').next())
             .collect();
-        let passed = [&["t", "state", "inputs", "coefficients"], further.as_slice()].concat();
+        let passed = [
+            &["t", "state", "inputs", "coefficients"],
+            further.as_slice(),
+        ]
+        .concat();
         let passed: Vec<Expression> = passed.into_iter().map(Expression::atom).collect();
         let inlined = format!("inlined_{name}");
         let call = format!("{}\n", Expression::call(&inlined, &passed));
@@ -289,6 +293,10 @@ impl File<'_> {
              {allowed}#[inline(always)]\n"
         );
         block(&format!("{head}{}", signature(name)), &call, "}")
-            + &block(&format!("{inlined_head}{}", signature(&inlined)), statements, "}")
+            + &block(
+                &format!("{inlined_head}{}", signature(&inlined)),
+                statements,
+                "}",
+            )
     }
 }

@@ -109,11 +109,13 @@ impl File<'_> {
                     ("T".to_owned(), value, format!("T::number(self.{name})"))
                 }
                 Extent::Vector(n) => {
-                    let converted = format!("self.{name}.map(T::number)");
+                    body.needed.converted = true;
+                    let converted = format!("converted(&self.{name})");
                     (format!("[T; {n}]"), body.numbers(*id)?, converted)
                 }
                 Extent::Matrix(rows, columns) => {
-                    let converted = format!("self.{name}.map(|row| row.map(T::number))");
+                    body.needed.converted_matrix = true;
+                    let converted = format!("converted_matrix(&self.{name})");
                     let matrix = format!("[[T; {columns}]; {rows}]");
                     (matrix, body.numbers(*id)?, converted)
                 }
@@ -232,6 +234,7 @@ fn cast(name: &str, what: &str, fields: &[String]) -> String {
     }
     let opening = format!(
         "/// The numbers of {what} in another type, without derivatives.\n\
+         #[inline(always)]\n\
          pub fn cast<T: Scalar>(&self) -> {name}<T> {{"
     );
     let body = block(&opening, &literal(name, fields), "}");

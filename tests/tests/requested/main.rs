@@ -2,9 +2,11 @@
 //! numbers through the emitted functions, and the equations' own identities.
 
 mod dual;
+mod evaluators;
 mod models;
 mod tracked;
 
+use codegen::evaluator::Point as EvaluatorPoint;
 use dual::Dual;
 use proptest::prelude::*;
 use tracked::Tracked;
@@ -208,20 +210,18 @@ macro_rules! checks {
                     // The gradient in a direction is the weighted product with it.
                     let weights: [f64; STATES] = drawn.array();
                     let (by_state, by_inputs) = model::vector_jacobian_product(t, x, u, c, &weights);
-                    let (rates, inputs) = (model::rates_by_state(t, x, u, c), model::rates_by_inputs(t, x, u, c));
-                    let mut expected = [Tracked::exact(0.0); STATES];
-                    for k in 0..rates.len() {
-                        let place = model::RATES_BY_STATE.columns[k];
-                        let weight = Tracked::exact(weights[model::RATES_BY_STATE.rows[k]]);
-                        expected[place] = expected[place] + weight * Tracked::exact(rates[k]);
-                    }
+                    let weighted = |rates: &[Tracked; STATES]| {
+                        let products = rates.iter().zip(&weights);
+                        products.fold(Tracked::exact(0.0), |sum, (rate, weight)| {
+                            sum + Tracked::exact(*weight) * *rate
+                        })
+                    };
+                    let (still, held, fixed) = ([0.0; STATES], [0.0; INPUTS], [0.0; PARAMETERS]);
+                    let expected: [Tracked; STATES] =
+                        std::array::from_fn(|i| weighted(&p.along(&unit(i), &held, &fixed).0));
                     agree("weights", &by_state, &expected)?;
-                    let mut expected = [Tracked::exact(0.0); INPUTS];
-                    for k in 0..inputs.len() {
-                        let place = model::RATES_BY_INPUTS.columns[k];
-                        let weight = Tracked::exact(weights[model::RATES_BY_INPUTS.rows[k]]);
-                        expected[place] = expected[place] + weight * Tracked::exact(inputs[k]);
-                    }
+                    let expected: [Tracked; INPUTS] =
+                        std::array::from_fn(|i| weighted(&p.along(&still, &unit(i), &fixed).0));
                     agree("weights by inputs", &printed(&by_inputs, &model::INPUT_NAMES), &expected)?;
                 }
 
@@ -285,6 +285,51 @@ macro_rules! checks {
                     let coefficients = model::Coefficients::prepare(&parameters);
                     let guards = model::guards(t, &state, &moving(&p.inputs, &[0.0; INPUTS]).into(), &coefficients);
                     agree("guards", &found, &slopes(&guards))?;
+                }
+
+                /// Interpreter, machine code and emitted Rust, number by number.
+                #[test]
+                fn all_ways_give_the_same_bits(numbers in numbers()) {
+                    let mut drawn = Drawn { numbers: &numbers, next: 0 };
+                    let p = point(&mut drawn)?;
+                    let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
+                    let (dx, du): ([f64; STATES], [f64; INPUTS]) = (drawn.array(), drawn.array());
+                    let weights: [f64; STATES] = drawn.array();
+                    let a: [f64; DEGREES_OF_FREEDOM] = drawn.array();
+                    let (by_state, by_inputs) = model::vector_jacobian_product(t, x, u, c, &weights);
+                    let expected = [
+                        model::inverse_dynamics(t, x, u, c, &a).to_vec(),
+                        model::guard_rates(t, x, u, c).to_vec(),
+                        model::jacobian_vector_product(t, x, u, c, &dx, &du.into()).to_vec(),
+                        by_state.to_vec(),
+                        printed(&by_inputs, &model::INPUT_NAMES).to_vec(),
+                        model::rates_by_state(t, x, u, c).to_vec(),
+                        model::rates_by_inputs(t, x, u, c).to_vec(),
+                        model::rates_by_parameters(t, x, u, c).to_vec(),
+                        model::observables_by_state(t, x, u, c).to_vec(),
+                        model::observables_by_inputs(t, x, u, c).to_vec(),
+                        model::observables_by_parameters(t, x, u, c).to_vec(),
+                    ];
+                    evaluators::with_both(crate::models::specifications::$module, |both| {
+                    for evaluator in both {
+                        evaluator.prepare(&p.parameters);
+                        let point = EvaluatorPoint { t, state: x, inputs: &p.inputs };
+                        let mut found = expected.clone().map(|numbers| vec![f64::NAN; numbers.len()]);
+                        let [inverse, guards, forward, state, inputs, jacobians @ ..] = &mut found;
+                        prop_assert!(evaluator.inverse_dynamics(point, &a, inverse));
+                        prop_assert!(evaluator.guard_rates(point, guards));
+                        prop_assert!(evaluator.jacobian_vector_product(point, (&dx, &du), forward));
+                        prop_assert!(evaluator.vector_jacobian_product(point, &weights, (state, inputs)));
+                        for (place, nonzeros) in jacobians.iter_mut().enumerate() {
+                            prop_assert!(evaluator.jacobian(place, point, nonzeros));
+                        }
+                        for (expected, found) in expected.iter().zip(&found) {
+                            let bits = |numbers: &[f64]| -> Vec<u64> { numbers.iter().map(|x| x.to_bits()).collect() };
+                            prop_assert_eq!(bits(expected), bits(found));
+                        }
+                    }
+                    Ok(())
+                    })?;
                 }
 
                 #[test]

@@ -11,12 +11,18 @@ macro_rules! models {
                     spec = $spec,
                     order = $order,
                     with = [
-                        bias_forces, inverse_dynamics, guard_rates, jacobians, products, linearisation
+                        bias_forces, inverse_dynamics, guard_rates, jacobians, products, linearisation, lanes
                     ]
                 }
             }
         )*
         scalar_of!($($module),*);
+        /// Paths and orders under the same names.
+        #[allow(non_upper_case_globals)]
+        pub mod specifications {
+            use crate::evaluators::Specification;
+            $(pub const $module: Specification = ($spec, $order);)*
+        }
         tracked_scalar_of!($($module),*);
     };
 }

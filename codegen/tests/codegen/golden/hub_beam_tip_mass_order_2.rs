@@ -88,6 +88,7 @@ impl Default for Parameters {
 }
 impl Parameters {
     /// The numbers of these parameters in another type, without derivatives.
+    #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Parameters<T> {
         Parameters {
             J_h: T::number(self.J_h),
@@ -407,33 +408,34 @@ impl<T: Scalar> Coefficients<T> {
 }
 impl Coefficients {
     /// The numbers of these coefficients in another type, without derivatives.
+    #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
             l: T::number(self.l),
             c_1: T::number(self.c_1),
-            c_2: self.c_2.map(T::number),
-            M_theta_q: self.M_theta_q.map(T::number),
+            c_2: converted(&self.c_2),
+            M_theta_q: converted(&self.M_theta_q),
             c_3: T::number(self.c_3),
             c_4: T::number(self.c_4),
             c: T::number(self.c),
-            c_5: self.c_5.map(T::number),
+            c_5: converted(&self.c_5),
             c_6: T::number(self.c_6),
-            c_7: self.c_7.map(T::number),
+            c_7: converted(&self.c_7),
             c_8: T::number(self.c_8),
-            c_9: self.c_9.map(T::number),
+            c_9: converted(&self.c_9),
             c_10: T::number(self.c_10),
-            c_11: self.c_11.map(T::number),
-            c_12: self.c_12.map(T::number),
+            c_11: converted(&self.c_11),
+            c_12: converted(&self.c_12),
             c_13: T::number(self.c_13),
             c_14: T::number(self.c_14),
             c_15: T::number(self.c_15),
             c_16: T::number(self.c_16),
-            c_17: self.c_17.map(T::number),
-            c_18: self.c_18.map(T::number),
-            c_19: self.c_19.map(T::number),
+            c_17: converted(&self.c_17),
+            c_18: converted(&self.c_18),
+            c_19: converted(&self.c_19),
             M_theta_theta: T::number(self.M_theta_theta),
-            c_20: self.c_20.map(T::number),
-            c_21: self.c_21.map(T::number),
+            c_20: converted(&self.c_20),
+            c_21: converted(&self.c_21),
             c_22: T::number(self.c_22),
             c_23: T::number(self.c_23),
             c_24: T::number(self.c_24),
@@ -773,6 +775,16 @@ impl Scalar for f32 {
 fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
     let reciprocal = T::number(1.0) / pivot;
     T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
+}
+
+/// These numbers in another type.
+#[inline(always)]
+fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
+    let mut converted = [T::number(0.0); N];
+    for i in 0..N {
+        converted[i] = T::number(numbers[i]);
+    }
+    converted
 }
 
 /// The sum of the first `N` of eight numbers, neighbours added in pairs.

@@ -64,6 +64,7 @@ impl Default for Parameters {
 }
 impl Parameters {
     /// The numbers of these parameters in another type, without derivatives.
+    #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Parameters<T> {
         Parameters {
             m: T::number(self.m),
@@ -122,6 +123,7 @@ impl<T: Scalar> Coefficients<T> {
 }
 impl Coefficients {
     /// The numbers of these coefficients in another type, without derivatives.
+    #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
             M_theta_theta: T::number(self.M_theta_theta),

@@ -144,6 +144,7 @@ impl Default for Parameters {
 }
 impl Parameters {
     /// The numbers of these parameters in another type, without derivatives.
+    #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Parameters<T> {
         Parameters {
             z_s: T::number(self.z_s),
@@ -428,6 +429,7 @@ impl<T: Scalar> Coefficients<T> {
 }
 impl Coefficients {
     /// The numbers of these coefficients in another type, without derivatives.
+    #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
             c_1: T::number(self.c_1),
@@ -447,8 +449,8 @@ impl Coefficients {
             c_8: T::number(self.c_8),
             c_9: T::number(self.c_9),
             c_10: T::number(self.c_10),
-            c_11: self.c_11.map(|row| row.map(T::number)),
-            M_x_c_q: self.M_x_c_q.map(T::number),
+            c_11: converted_matrix(&self.c_11),
+            M_x_c_q: converted(&self.M_x_c_q),
             c_12: T::number(self.c_12),
             c_13: T::number(self.c_13),
             c_14: T::number(self.c_14),
@@ -458,7 +460,7 @@ impl Coefficients {
             c_17: T::number(self.c_17),
             omega: T::number(self.omega),
             c_18: T::number(self.c_18),
-            c_19: self.c_19.map(T::number),
+            c_19: converted(&self.c_19),
             M_x_sp_x_sp: T::number(self.M_x_sp_x_sp),
             M_x_sp_x_c: T::number(self.M_x_sp_x_c),
             M_x_pr_x_pr: T::number(self.M_x_pr_x_pr),
@@ -1020,6 +1022,28 @@ fn cholesky_solve<T: Scalar, const N: usize>(
         x[i] = rest / factor[i][i];
     }
     x
+}
+
+/// These numbers in another type.
+#[inline(always)]
+fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
+    let mut converted = [T::number(0.0); N];
+    for i in 0..N {
+        converted[i] = T::number(numbers[i]);
+    }
+    converted
+}
+
+/// The same of a matrix.
+#[inline(always)]
+fn converted_matrix<T: Scalar, const N: usize, const M: usize>(
+    numbers: &[[f64; N]; M],
+) -> [[T; N]; M] {
+    let mut matrix = [[T::number(0.0); N]; M];
+    for i in 0..M {
+        matrix[i] = converted(&numbers[i]);
+    }
+    matrix
 }
 
 /// The sum of the first `N` of eight numbers, neighbours added in pairs.
