@@ -153,6 +153,7 @@ impl Default for Parameters {
 }
 impl Parameters {
     /// The numbers of these parameters in another type, without derivatives.
+    #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Parameters<T> {
         Parameters {
             z_s: T::number(self.z_s),
@@ -451,6 +452,7 @@ impl<T: Scalar> Coefficients<T> {
 }
 impl Coefficients {
     /// The numbers of these coefficients in another type, without derivatives.
+    #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
             c_1: T::number(self.c_1),
@@ -471,22 +473,22 @@ impl Coefficients {
             c_9: T::number(self.c_9),
             c_10: T::number(self.c_10),
             c_11: T::number(self.c_11),
-            c_12: self.c_12.map(T::number),
+            c_12: converted(&self.c_12),
             c_13: T::number(self.c_13),
             F_w: T::number(self.F_w),
             c_14: T::number(self.c_14),
             omega: T::number(self.omega),
             c_15: T::number(self.c_15),
-            c_16: self.c_16.map(T::number),
-            c_17: self.c_17.map(T::number),
+            c_16: converted(&self.c_16),
+            c_17: converted(&self.c_17),
             M_x_sp_x_sp: T::number(self.M_x_sp_x_sp),
             M_x_sp_x_c: T::number(self.M_x_sp_x_c),
             M_x_pr_x_pr: T::number(self.M_x_pr_x_pr),
             M_x_pr_x_c: T::number(self.M_x_pr_x_c),
             M_x_c_x_c: T::number(self.M_x_c_x_c),
-            M_x_c_q: self.M_x_c_q.map(T::number),
+            M_x_c_q: converted(&self.M_x_c_q),
             c_18: T::number(self.c_18),
-            c_19: self.c_19.map(T::number),
+            c_19: converted(&self.c_19),
             c_20: T::number(self.c_20),
             c_21: T::number(self.c_21),
             c_22: T::number(self.c_22),
@@ -846,8 +848,13 @@ where
     fn function<F: Function>(self) -> Self;
     /// An elementary function of this and another.
     fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self;
+    /// A long loop. Single numbers keep it out of the code around; lanes must not, because code
+    /// of its own would not be compiled for their registers.
+    #[inline(always)]
+    fn long_loop<F: FnOnce() -> Self>(lines: F) -> Self {
+        lines()
+    }
 }
-
 
 /// Numbers in IEEE 754 double precision, or lanes of them: what the elementary functions are
 /// written for.
@@ -866,7 +873,6 @@ pub trait Real: Scalar {
     fn significand(self) -> Self;
 }
 
-
 /// An elementary function: plain operations in a fixed order, the same bits on every machine.
 pub trait Function {
     /// Its value.
@@ -874,7 +880,6 @@ pub trait Function {
     /// Its derivative at x, where it is `value`.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
-
 
 /// An elementary function of two arguments.
 pub trait FunctionOfTwo {
@@ -896,13 +901,17 @@ impl Scalar for f64 {
     fn all_greater(a: f64, b: f64) -> bool {
         a > b
     }
-    #[inline(always)]
+    #[inline]
     fn function<F: Function>(self) -> f64 {
         F::value(self)
     }
-    #[inline(always)]
+    #[inline]
     fn function_of_two<F: FunctionOfTwo>(self, other: f64) -> f64 {
         F::value(self, other)
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f64>(lines: F) -> f64 {
+        lines()
     }
 }
 impl Real for f64 {
@@ -947,13 +956,17 @@ impl Scalar for f32 {
     fn all_greater(a: f32, b: f32) -> bool {
         a > b
     }
-    #[inline(always)]
+    #[inline]
     fn function<F: Function>(self) -> f32 {
         F::value(f64::from(self)) as f32
     }
-    #[inline(always)]
+    #[inline]
     fn function_of_two<F: FunctionOfTwo>(self, other: f32) -> f32 {
         F::value(f64::from(self), f64::from(other)) as f32
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f32>(lines: F) -> f32 {
+        lines()
     }
 }
 
@@ -976,6 +989,16 @@ fn contact<T: Scalar>(p: T, b: T) -> T {
 fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
     let reciprocal = T::number(1.0) / pivot;
     T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
+}
+
+/// These numbers in another type.
+#[inline(always)]
+fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
+    let mut converted = [T::number(0.0); N];
+    for i in 0..N {
+        converted[i] = T::number(numbers[i]);
+    }
+    converted
 }
 
 /// The sum of the first `N` of eight numbers, neighbours added in pairs.
@@ -1010,7 +1033,7 @@ fn sin<T: Scalar>(x: T) -> T {
 }
 enum Sin {}
 impl Function for Sin {
-    #[inline]
+    #[inline(always)]
     fn value<T: Real>(x: T) -> T {
         let v6 = x * T::number(0.6366197723675814) + T::number(6.755399441055744e15)
             - T::number(6.755399441055744e15);
@@ -1060,7 +1083,7 @@ impl Function for Sin {
         ) * T::select_equal(v88, T::number(1.0), v85, T::number(1.0) - v88);
         v92
     }
-    #[inline]
+    #[inline(always)]
     fn slope<T: Scalar>(x: T, _: T) -> T {
         cos(x)
     }
@@ -1073,7 +1096,7 @@ fn cos<T: Scalar>(x: T) -> T {
 }
 enum Cos {}
 impl Function for Cos {
-    #[inline]
+    #[inline(always)]
     fn value<T: Real>(x: T) -> T {
         let v6 = x * T::number(0.6366197723675814) + T::number(6.755399441055744e15)
             - T::number(6.755399441055744e15);
@@ -1123,7 +1146,7 @@ impl Function for Cos {
         ) * T::select_equal(v88, T::number(1.0), -v85, T::number(1.0) - v88);
         v93
     }
-    #[inline]
+    #[inline(always)]
     fn slope<T: Scalar>(x: T, _: T) -> T {
         -sin(x)
     }

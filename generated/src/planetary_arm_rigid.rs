@@ -139,6 +139,7 @@ impl Default for Parameters {
 }
 impl Parameters {
     /// The numbers of these parameters in another type, without derivatives.
+    #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Parameters<T> {
         Parameters {
             z_s: T::number(self.z_s),
@@ -370,6 +371,7 @@ impl<T: Scalar> Coefficients<T> {
 }
 impl Coefficients {
     /// The numbers of these coefficients in another type, without derivatives.
+    #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
             c_1: T::number(self.c_1),
@@ -676,8 +678,13 @@ where
     fn function<F: Function>(self) -> Self;
     /// An elementary function of this and another.
     fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self;
+    /// A long loop. Single numbers keep it out of the code around; lanes must not, because code
+    /// of its own would not be compiled for their registers.
+    #[inline(always)]
+    fn long_loop<F: FnOnce() -> Self>(lines: F) -> Self {
+        lines()
+    }
 }
-
 
 /// Numbers in IEEE 754 double precision, or lanes of them: what the elementary functions are
 /// written for.
@@ -696,7 +703,6 @@ pub trait Real: Scalar {
     fn significand(self) -> Self;
 }
 
-
 /// An elementary function: plain operations in a fixed order, the same bits on every machine.
 pub trait Function {
     /// Its value.
@@ -704,7 +710,6 @@ pub trait Function {
     /// Its derivative at x, where it is `value`.
     fn slope<T: Scalar>(x: T, value: T) -> T;
 }
-
 
 /// An elementary function of two arguments.
 pub trait FunctionOfTwo {
@@ -726,13 +731,17 @@ impl Scalar for f64 {
     fn all_greater(a: f64, b: f64) -> bool {
         a > b
     }
-    #[inline(always)]
+    #[inline]
     fn function<F: Function>(self) -> f64 {
         F::value(self)
     }
-    #[inline(always)]
+    #[inline]
     fn function_of_two<F: FunctionOfTwo>(self, other: f64) -> f64 {
         F::value(self, other)
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f64>(lines: F) -> f64 {
+        lines()
     }
 }
 impl Real for f64 {
@@ -777,13 +786,17 @@ impl Scalar for f32 {
     fn all_greater(a: f32, b: f32) -> bool {
         a > b
     }
-    #[inline(always)]
+    #[inline]
     fn function<F: Function>(self) -> f32 {
         F::value(f64::from(self)) as f32
     }
-    #[inline(always)]
+    #[inline]
     fn function_of_two<F: FunctionOfTwo>(self, other: f32) -> f32 {
         F::value(f64::from(self), f64::from(other)) as f32
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f32>(lines: F) -> f32 {
+        lines()
     }
 }
 
@@ -815,7 +828,7 @@ fn sin<T: Scalar>(x: T) -> T {
 }
 enum Sin {}
 impl Function for Sin {
-    #[inline]
+    #[inline(always)]
     fn value<T: Real>(x: T) -> T {
         let v6 = x * T::number(0.6366197723675814) + T::number(6.755399441055744e15)
             - T::number(6.755399441055744e15);
@@ -865,7 +878,7 @@ impl Function for Sin {
         ) * T::select_equal(v88, T::number(1.0), v85, T::number(1.0) - v88);
         v92
     }
-    #[inline]
+    #[inline(always)]
     fn slope<T: Scalar>(x: T, _: T) -> T {
         cos(x)
     }
@@ -878,7 +891,7 @@ fn cos<T: Scalar>(x: T) -> T {
 }
 enum Cos {}
 impl Function for Cos {
-    #[inline]
+    #[inline(always)]
     fn value<T: Real>(x: T) -> T {
         let v6 = x * T::number(0.6366197723675814) + T::number(6.755399441055744e15)
             - T::number(6.755399441055744e15);
@@ -928,7 +941,7 @@ impl Function for Cos {
         ) * T::select_equal(v88, T::number(1.0), -v85, T::number(1.0) - v88);
         v93
     }
-    #[inline]
+    #[inline(always)]
     fn slope<T: Scalar>(x: T, _: T) -> T {
         -sin(x)
     }
