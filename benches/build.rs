@@ -4,12 +4,19 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use codegen::equations::derive;
-use codegen::lower::lower;
+use codegen::request::Request;
 use codegen::rust::{Packaging, emit};
+use codegen::variant::Variant;
 
 /// The orders; the macro in `benches/rates.rs` goes through the same.
 const ORDERS: [usize; 9] = [0, 1, 2, 4, 8, 16, 32, 64, 128];
+
+/// The orders with functions on request; the macros in `benches/jacobian.rs` and `lanes.rs`
+/// go through them.
+const FULL_ORDERS: [usize; 3] = [4, 16, 64];
+
+/// What is requested there.
+const REQUESTS: &[Request] = &[Request::Jacobians, Request::Products, Request::Lanes];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let specification =
@@ -19,21 +26,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let model = model_spec::load(&specification)
         .map_err(|problems| problems.render(false))?
         .model;
-    let values = model
-        .parameter_values()
-        .map_err(|error| error.to_string())?;
     let mut modules = String::new();
-    for order in ORDERS {
-        let equations = derive(&model, &[order]).map_err(|error| error.message)?;
-        let source = emit(&lower(&model, &equations, &values), Packaging::Module)?;
-        let path = out.join(format!("order_{order}.rs"));
-        std::fs::write(&path, source)?;
-        let path = path.display();
-        writeln!(
-            modules,
-            "#[path = {:?}]\npub mod order_{order};",
-            path.to_string()
-        )?;
+    let plain = ORDERS.map(|order| (format!("order_{order}"), order, [].as_slice()));
+    let full = FULL_ORDERS.map(|order| (format!("full_order_{order}"), order, REQUESTS));
+    for (name, order, requests) in plain.into_iter().chain(full) {
+        let variant = Variant::derive_with(&model, &[order], requests)
+            .map_err(|problems| problems.render(false))?;
+        let path = out.join(format!("{name}.rs"));
+        std::fs::write(&path, emit(&variant.program, Packaging::Module)?)?;
+        let path = path.display().to_string();
+        writeln!(modules, "#[path = {path:?}]\npub mod {name};")?;
     }
     std::fs::write(out.join("variants.rs"), modules)?;
     Ok(())

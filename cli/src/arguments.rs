@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use codegen::request::Request;
 
 /// From a specification of a mechanical system's energies to fast, checked equations of
 /// motion in Rust.
@@ -27,7 +28,7 @@ pub enum Command {
     Derive(Derive),
     /// Emit the equations of motion as source.
     #[command(
-        after_help = "Examples:\n  eomgen generate model-spec/models/planetary_arm.toml --order 5 --out arm5\n  eomgen generate --all --check"
+        after_help = "Examples:\n  eomgen generate model-spec/models/planetary_arm.toml --order 5 --out arm5\n  eomgen generate model-spec/models/emps.toml --with jacobians,inverse_dynamics --out emps\n  eomgen generate --all --check"
     )]
     Generate(Generate),
     /// Check derived equations against independent ones and write a certificate.
@@ -117,6 +118,11 @@ pub struct Generate {
     /// Modal truncation order of every field, instead of the specification's.
     #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
+    /// What to emit besides rates, observables, energy, power, guards and mass matrix:
+    /// bias_forces, inverse_dynamics, guard_rates, jacobians, products (of the Jacobian with
+    /// vectors), linearisation, lanes (every function inlined once more).
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub with: Vec<Request>,
     /// The language.
     #[arg(long, value_enum, default_value = "rust")]
     pub target: Target,
@@ -124,7 +130,7 @@ pub struct Generate {
     #[arg(long, required_unless_present = "all")]
     pub out: Option<PathBuf>,
     /// Regenerate the checked-in variants in `generated/src` (from the project's folder).
-    #[arg(long, conflicts_with_all = ["spec", "out", "order"])]
+    #[arg(long, conflicts_with_all = ["spec", "out", "order", "with"])]
     pub all: bool,
     /// With --all: compare instead of writing; exit status 1 on a difference.
     #[arg(long, requires = "all")]

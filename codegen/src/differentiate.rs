@@ -110,14 +110,13 @@ impl<'a> Direction<'a> {
                 matrix,
                 transposed,
                 vector,
-            } => {
-                let inner = self.derivative(graph, vector);
-                graph.apply(matrix, transposed, inner)
-            }
-            Operation::CholeskySolve(factor, vector) => {
-                let inner = self.derivative(graph, vector);
-                graph.cholesky_solve(factor, inner)
-            }
+            } => self.applied(graph, matrix, transposed, vector),
+            Operation::CholeskySolve(factor, vector) => self.solved(graph, factor, vector, id),
+            Operation::GramDiagonal {
+                left,
+                weight,
+                right,
+            } => self.gram_diagonal(graph, left, weight, right),
             _ if choice(graph, id).is_some() => {
                 choose(graph, id, |graph, branch| self.derivative(graph, branch))
             }
@@ -148,7 +147,7 @@ pub fn by_scalar(graph: &mut Graph, id: Id, variable: Id) -> Id {
 
 /// For a node that is one of two others: a and b of the condition a > b, the node where it
 /// holds, the node elsewhere.
-fn choice(graph: &Graph, id: Id) -> Option<[Id; 4]> {
+pub(crate) fn choice(graph: &Graph, id: Id) -> Option<[Id; 4]> {
     match graph.operation(id) {
         &Operation::Select {
             a,
@@ -176,9 +175,9 @@ fn choose(graph: &mut Graph, id: Id, mut derivative: impl FnMut(&mut Graph, Id) 
 }
 
 /// For an element-wise operation: each operand that moves with the partial derivative by
-/// it (for functions every operand). Matrix operations, which depend on parameters alone,
-/// have none.
-fn partial_derivatives(
+/// it (for functions every operand). Matrix operations have none here: along a direction they
+/// are in `matrix_derivatives`, and with the state they do not move.
+pub(crate) fn partial_derivatives(
     graph: &mut Graph,
     id: Id,
     mut moves: impl FnMut(&Graph, Id) -> bool,

@@ -46,6 +46,8 @@ pub struct Equations {
     pub terms: Vec<Id>,
     /// Nodes of the definitions that anything uses.
     pub definitions: Vec<Option<Id>>,
+    /// How many inputs there are.
+    pub inputs: usize,
     /// The modal blocks of the mass matrix on and above the diagonal as nodes: field of
     /// the rows, block, field of the columns.
     pub modal_blocks: Vec<(usize, Id, usize)>,
@@ -171,6 +173,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         coefficients,
         terms,
         definitions,
+        inputs: model.inputs.len(),
         modal_blocks,
     })
 }

@@ -11,7 +11,9 @@ use std::collections::{HashMap, HashSet};
 
 use model_spec::model::Function;
 
-pub use crate::operation::{Assembly, Bits, Dependence, Id, Operation, ScaledMatrix, Shape, Space};
+pub use crate::operation::{
+    Argument, Assembly, Bits, Dependence, Id, Operation, ScaledMatrix, Shape, Space, Variable,
+};
 use crate::tables::{Table, TableKind};
 
 struct Entry {
@@ -182,9 +184,13 @@ impl Graph {
             | Operation::Input(_)
             | Operation::Time
             | Operation::Total(_) => Shape::Scalar,
-            Operation::ModeCoordinates(field) | Operation::ModeRates(field) => {
-                Shape::Vector(Space::Modes(*field))
-            }
+            Operation::ModeCoordinates(field)
+            | Operation::ModeRates(field)
+            | Operation::Argument(
+                _,
+                Variable::ModeCoordinates(field) | Variable::ModeRates(field),
+            ) => Shape::Vector(Space::Modes(*field)),
+            Operation::Argument(..) => Shape::Scalar,
             Operation::Table(index) => self.tables[*index].shape(),
             Operation::Apply {
                 matrix, transposed, ..
@@ -233,6 +239,7 @@ impl Graph {
             Operation::Rate(_) | Operation::ModeRates(_) => Dependence::RATE,
             Operation::Input(_) => Dependence::INPUT,
             Operation::Time => Dependence::TIME,
+            Operation::Argument(..) => Dependence::ARGUMENT,
             _ => self
                 .operands(operation)
                 .into_iter()
@@ -266,6 +273,7 @@ impl Graph {
             | Operation::Time
             | Operation::ModeCoordinates(_)
             | Operation::ModeRates(_)
+            | Operation::Argument(..)
             | Operation::Table(_) => Vec::new(),
             Operation::Sum(terms) => terms.iter().map(|(_, id)| *id).collect(),
             Operation::Product(factors) => factors.iter().map(|(id, _)| *id).collect(),
@@ -293,6 +301,17 @@ impl Graph {
             } => vec![*left, *weight, *right],
             Operation::Assemble(assembly) => assembly.operands(),
         }
+    }
+
+    /// The leaf of a variable.
+    pub fn variable(&mut self, variable: Variable) -> Id {
+        self.intern(match variable {
+            Variable::Coordinate(index) => Operation::Coordinate(index),
+            Variable::ModeCoordinates(field) => Operation::ModeCoordinates(field),
+            Variable::Rate(index) => Operation::Rate(index),
+            Variable::ModeRates(field) => Operation::ModeRates(field),
+            Variable::Input(index) => Operation::Input(index),
+        })
     }
 
     /// How often each node is an operand of what `roots` are computed from.

@@ -5,13 +5,16 @@
 //! algebraic laws), `modes`, `tables` and `quadrature` (constants of a basis),
 //! `differentiate` and `matrix` (derivatives that keep their structure), `lagrange`,
 //! `forces` and `equations` (the equations of motion), `solve` (the accelerations),
-//! `coefficients` (names as in Eq. (22)), `linearity` (whether a model is linear between its
-//! switches), `affine` (its matrices then), `lower` (to the `program`), `operations` (what it costs), `evaluator` and `rust` (backends), `print` and
+//! `coefficients` (names as in Eq. (22)), `request` and `requested`, `jacobian`, `matrix_derivatives`
+//! and `adjoint` (what is derived on request), `linearity` (whether a model is linear between its
+//! switches), `affine` (its matrices then), `lower` (to the `program`), `operations` (what it costs),
+//! `evaluator` and `rust` (backends), `print` and
 //! `report` (for people).
 //!
 //! The arrows are two functions: [`equations::derive`] from a model to equations and
 //! [`lower::lower`] from equations to a program; [`variant`] goes both.
 
+mod adjoint;
 pub mod affine;
 pub mod coefficients;
 mod degree;
@@ -23,10 +26,12 @@ mod expand;
 mod field_function;
 mod forces;
 pub mod graph;
+mod jacobian;
 mod lagrange;
 pub mod linearity;
 pub mod lower;
 pub mod matrix;
+mod matrix_derivatives;
 pub mod modes;
 mod moments;
 mod operation;
@@ -35,6 +40,8 @@ pub mod print;
 pub mod program;
 pub mod quadrature;
 pub mod report;
+pub mod request;
+pub mod requested;
 pub mod rust;
 mod simplify;
 pub mod solve;

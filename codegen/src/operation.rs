@@ -42,6 +42,33 @@ impl Bits {
     }
 }
 
+/// What the equations move with or are driven by, one by one or by the modes of a field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Variable {
+    /// A generalised coordinate.
+    Coordinate(usize),
+    /// A field's mode coordinates.
+    ModeCoordinates(usize),
+    /// The rate of a generalised coordinate.
+    Rate(usize),
+    /// The rates of a field's mode coordinates.
+    ModeRates(usize),
+    /// An input.
+    Input(usize),
+}
+
+/// What some requested functions are called with besides state and inputs: a number for each
+/// of these variables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Argument {
+    /// Accelerations, in the order of the coordinates.
+    Accelerations,
+    /// A direction in the space of states and inputs.
+    Direction,
+    /// A weight for each rate of the state, in the order of the state.
+    Weights,
+}
+
 /// What a node computes.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
@@ -61,6 +88,8 @@ pub enum Operation {
     ModeCoordinates(usize),
     /// The rates of a field's mode coordinates, a vector.
     ModeRates(usize),
+    /// What an argument holds for a variable.
+    Argument(Argument, Variable),
     /// A table of constants: a vector or a matrix.
     Table(usize),
     /// A linear combination with numeric factors, in the order of the nodes; the
@@ -164,6 +193,7 @@ impl Dependence {
     pub(crate) const RATE: Self = Self(4);
     pub(crate) const INPUT: Self = Self(8);
     pub(crate) const TIME: Self = Self(16);
+    pub(crate) const ARGUMENT: Self = Self(32);
 
     pub(crate) fn join(self, other: Self) -> Self {
         Self(self.0 | other.0)

@@ -26,6 +26,7 @@ impl Program {
             | Op::ModeCoordinates(_)
             | Op::ModeRates(_)
             | Op::Input(_)
+            | Op::Argument(..)
             | Op::Time => 0,
             Op::Negate(_)
             | Op::Add(..)

@@ -5,7 +5,7 @@
 
 use model_spec::model::{Function, Model};
 
-use crate::graph::{Graph, Id, Operation, Shape};
+use crate::graph::{Argument, Graph, Id, Operation, Shape, Variable};
 use crate::table_text;
 use crate::tables::Table;
 
@@ -170,6 +170,21 @@ impl Printer<'_> {
             Operation::Time => "t".to_owned(),
             Operation::ModeCoordinates(field) => notation.mode(*field),
             Operation::ModeRates(field) => notation.rate(&notation.mode(*field)),
+            Operation::Argument(argument, variable) => {
+                let word = match argument {
+                    Argument::Accelerations => "acceleration",
+                    Argument::Direction => "direction",
+                    Argument::Weights => "weight",
+                };
+                let name = match *variable {
+                    Variable::Coordinate(index) => notation.coordinates[index].clone(),
+                    Variable::Rate(index) => notation.rate(&notation.coordinates[index]),
+                    Variable::ModeCoordinates(field) => notation.mode(field),
+                    Variable::ModeRates(field) => notation.rate(&notation.mode(field)),
+                    Variable::Input(index) => notation.inputs[index].clone(),
+                };
+                format!("{word}({name})")
+            }
             Operation::Table(index) => self.table(self.graph.table(*index)),
             Operation::Sum(terms) => {
                 parenthesised(self.sum(terms), level > Level::Sum, notation.latex)

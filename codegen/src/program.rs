@@ -10,6 +10,10 @@
 
 use model_spec::model::Function;
 
+pub use crate::operation::{Argument, Variable};
+pub use crate::request::Request;
+pub use crate::requested::{Entry, Jacobian, Products, Requested};
+
 /// A value of a [`Program`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ValueId(pub(crate) usize);
@@ -68,6 +72,8 @@ pub enum Op {
     Input(usize),
     /// The time.
     Time,
+    /// What an argument holds for a variable.
+    Argument(Argument, Variable),
     /// -a
     Negate(ValueId),
     /// a + b
@@ -170,7 +176,8 @@ impl Op {
             | Self::ModeCoordinates(_)
             | Self::ModeRates(_)
             | Self::Input(_)
-            | Self::Time => Vec::new(),
+            | Self::Time
+            | Self::Argument(..) => Vec::new(),
             Self::Negate(a) | Self::PivotReciprocal(a) | Self::Total(a) | Self::Cholesky(a) => {
                 vec![*a]
             }
@@ -334,6 +341,8 @@ pub struct Program {
     pub pivots: Vec<ValueId>,
     /// Values of the coefficients the specification names.
     pub coefficient_values: Vec<ValueId>,
+    /// What was requested beside all this.
+    pub requested: Requested<ValueId, RowValues>,
 }
 
 /// A table of constants.
@@ -389,6 +398,16 @@ impl Program {
     /// Place in the state of a field's first mode coordinate.
     pub fn mode_offset(&self, field: usize) -> usize {
         self.coordinates.len() + self.fields[..field].iter().map(|f| f.order).sum::<usize>()
+    }
+
+    /// Place of a variable, or of the first of a field's, in the state, or among the inputs.
+    pub fn variable_place(&self, variable: Variable) -> usize {
+        match variable {
+            Variable::Coordinate(index) | Variable::Input(index) => index,
+            Variable::ModeCoordinates(field) => self.mode_offset(field),
+            Variable::Rate(index) => self.degrees_of_freedom() + index,
+            Variable::ModeRates(field) => self.degrees_of_freedom() + self.mode_offset(field),
+        }
     }
 
     /// Every value that `roots` are computed from, in the order of the program.

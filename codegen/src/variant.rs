@@ -2,12 +2,14 @@
 //! specification and want what is emitted: what goes wrong on it is a finding on the
 //! specification. Nothing is derived here.
 
-use model_spec::diagnostic::Diagnostics;
+use model_spec::diagnostic::{Diagnostic, Diagnostics};
 use model_spec::model::Model;
 
 use crate::equations::{Equations, derive};
-use crate::lower::lower;
+use crate::lower::lower_requested;
 use crate::program::Program;
+use crate::request::Request;
+use crate::requested::requested;
 
 /// A model derived at one order for each of its fields.
 pub struct Variant {
@@ -24,12 +26,31 @@ impl Variant {
     /// Parameter values that are not admissible, and what cannot be derived, each at its
     /// place in the specification.
     pub fn derive(model: &Model, orders: &[usize]) -> Result<Self, Diagnostics> {
+        Self::derive_with(model, orders, &[])
+    }
+
+    /// The same, with what is requested beside the rates.
+    ///
+    /// # Errors
+    /// The same, and what cannot be differentiated.
+    pub fn derive_with(
+        model: &Model,
+        orders: &[usize],
+        requests: &[Request],
+    ) -> Result<Self, Diagnostics> {
         let found = |diagnostic| Diagnostics::one(model.source.clone(), diagnostic);
         let values = model
             .parameter_values()
             .map_err(|error| found(error.diagnostic()))?;
-        let equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
-        let program = lower(model, &equations, &values);
+        let mut equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
+        let requested = requested(&mut equations, requests).map_err(|error| {
+            let message = Diagnostic::error(error.to_string());
+            found(match model.kinetic.first() {
+                Some(term) => message.at(term.value.span, "in this energy or the next"),
+                None => message,
+            })
+        })?;
+        let program = lower_requested(model, &equations, &values, &requested);
         Ok(Self { equations, program })
     }
 }

@@ -27,6 +27,7 @@
 
 use std::path::{Path, PathBuf};
 
+use codegen::request::Request;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 use model_spec::Checked;
@@ -67,6 +68,24 @@ impl std::error::Error for Error {}
 /// All that is wrong with the specification, with file, line and column; an order that it
 /// cannot have; a file that cannot be written; a call outside a build script.
 pub fn generate(specification: impl AsRef<Path>, orders: &[usize]) -> Result<Vec<PathBuf>, Error> {
+    generate_with(specification, orders, &[])
+}
+
+/// The same with further functions: `bias_forces`, `inverse_dynamics`, `guard_rates`,
+/// `jacobians`, `products`, `linearisation`, `lanes`.
+///
+/// # Errors
+/// The same; a name that is not known.
+pub fn generate_with(
+    specification: impl AsRef<Path>,
+    orders: &[usize],
+    with: &[&str],
+) -> Result<Vec<PathBuf>, Error> {
+    let requests = with
+        .iter()
+        .map(|name| name.parse())
+        .collect::<Result<Vec<Request>, _>>()
+        .map_err(|error| Error(error.to_string()))?;
     let folder = std::env::var_os("OUT_DIR").map(PathBuf::from);
     let Some(folder) = folder else {
         let message = "OUT_DIR is not set: eomgen_build::generate is called from a build script";
@@ -79,15 +98,21 @@ pub fn generate(specification: impl AsRef<Path>, orders: &[usize]) -> Result<Vec
     for warning in checked.warnings.records() {
         println!("cargo::warning={}", line(&warning));
     }
-    variants(&checked, orders, &folder)
+    variants(&checked, orders, &requests, &folder)
 }
 
-fn variants(checked: &Checked, orders: &[usize], folder: &Path) -> Result<Vec<PathBuf>, Error> {
+fn variants(
+    checked: &Checked,
+    orders: &[usize],
+    requests: &[Request],
+    folder: &Path,
+) -> Result<Vec<PathBuf>, Error> {
     let name = &checked.model.name;
     if orders.is_empty() {
         return Ok(vec![variant(
             checked,
             None,
+            requests,
             &folder.join(format!("{name}.rs")),
         )?]);
     }
@@ -96,18 +121,24 @@ fn variants(checked: &Checked, orders: &[usize], folder: &Path) -> Result<Vec<Pa
             0 => format!("{name}_rigid.rs"),
             order => format!("{name}_order_{order}.rs"),
         };
-        variant(checked, Some(*order), &folder.join(file))
+        variant(checked, Some(*order), requests, &folder.join(file))
     };
     orders.iter().map(of).collect()
 }
 
-fn variant(checked: &Checked, order: Option<usize>, path: &Path) -> Result<PathBuf, Error> {
+fn variant(
+    checked: &Checked,
+    order: Option<usize>,
+    requests: &[Request],
+    path: &Path,
+) -> Result<PathBuf, Error> {
     let model = &checked.model;
     let orders = model.orders(order).map_err(|error| {
         let found = Diagnostics::one(model.source.clone(), error.diagnostic());
         refused(&found)
     })?;
-    let variant = Variant::derive(model, &orders).map_err(|found| refused(&found))?;
+    let variant =
+        Variant::derive_with(model, &orders, requests).map_err(|found| refused(&found))?;
     let text =
         emit(&variant.program, Packaging::Items).map_err(|error| Error(error.to_string()))?;
     write(path, &text)
@@ -172,7 +203,7 @@ mod tests {
     #[test]
     fn each_order_has_its_file() {
         let folder = tempfile::tempdir().expect("a folder");
-        let paths = variants(&arm(), &[0, 2], folder.path()).expect("generated");
+        let paths = variants(&arm(), &[0, 2], &[], folder.path()).expect("generated");
         assert_eq!(
             names(&paths),
             ["planetary_arm_rigid.rs", "planetary_arm_order_2.rs"]
@@ -187,9 +218,9 @@ mod tests {
     #[test]
     fn without_orders_the_specification_decides() {
         let folder = tempfile::tempdir().expect("a folder");
-        let paths = variants(&checked(PENDULUM), &[], folder.path()).expect("generated");
+        let paths = variants(&checked(PENDULUM), &[], &[], folder.path()).expect("generated");
         assert_eq!(names(&paths), ["p.rs"]);
-        let paths = variants(&arm(), &[], folder.path()).expect("generated");
+        let paths = variants(&arm(), &[], &[], folder.path()).expect("generated");
         let text = std::fs::read_to_string(&paths[0]).expect("readable");
         assert!(text.contains("ORDERS: [usize; 1] = [4]"), "{text}");
     }
@@ -197,13 +228,13 @@ mod tests {
     #[test]
     fn what_cannot_be_had_is_said() {
         let folder = tempfile::tempdir().expect("a folder");
-        let no_field = variants(&checked(PENDULUM), &[3], folder.path()).expect_err("refused");
+        let no_field = variants(&checked(PENDULUM), &[3], &[], folder.path()).expect_err("refused");
         assert!(
             format!("{no_field:?}").contains("no field, so no order 3"),
             "{no_field}"
         );
         let nowhere = folder.path().join("missing");
-        let unwritten = variants(&checked(PENDULUM), &[], &nowhere).expect_err("refused");
+        let unwritten = variants(&checked(PENDULUM), &[], &[], &nowhere).expect_err("refused");
         assert!(
             unwritten.to_string().starts_with("cannot write"),
             "{unwritten}"

@@ -60,6 +60,27 @@
 /// assert_eq!(rates, [1.0, 2.0]);
 /// ```
 ///
+/// `with = [...]` asks for more, beside `spec` or before the sections: `bias_forces`,
+/// `inverse_dynamics`, `guard_rates`, `jacobians`, `products`, `linearisation`, `lanes`.
+///
+/// ```
+/// mod slider {
+///     eomgen::model! {
+///         with = [jacobians],
+///         model { name: slider }
+///         parameters { m: { value: 2, unit: kg, doc: "moved mass", min: 0 } }
+///         coordinates { x: { unit: m } }
+///         inputs { u: { unit: N } }
+///         kinetic { slider: 1/2*m*dot(x)^2 }
+///         forces { drive: { on: x, value: u } }
+///     }
+/// }
+/// use slider::{Coefficients, Inputs, Parameters, rates_by_inputs};
+///
+/// let coefficients = Coefficients::prepare(&Parameters { m: 4.0 });
+/// assert_eq!(rates_by_inputs(0.0, &[0.0; 2], &Inputs { u: 8.0 }, &coefficients), [0.25]);
+/// ```
+///
 /// The items are those of a file that `eomgen generate` writes, among them:
 ///
 /// | item | what it is |
@@ -67,7 +88,7 @@
 /// | `Parameters` | numbers in SI; `Default` gives those of the specification |
 /// | `Coefficients` | what depends on them alone: `prepare` once, use in every call |
 /// | `Inputs` | signals at run time; `Default` gives zeros |
-/// | `rates(t, &state, &inputs, &coefficients)` | the rates of the state, `[f64; STATES]` |
+/// | `rates(t, &state, &inputs, &coefficients)` | the rates of the state, `[f64; STATES]`; in any type with the trait `Scalar` |
 /// | `observables`, `energy`, `power`, `guards`, `mass_matrix` | of the same arguments |
 /// | `STATES`, `STATE_NAMES`, `ORDERS`, `OBSERVABLE_NAMES` | constants |
 /// | `SPECIFICATION` | in place only: the specification as the text of a file |

@@ -71,55 +71,55 @@ pub const GENERATOR_VERSION: &'static str = "0.1.0";
 
 /// Parameters of the model. `Default` gives the specification's values.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameters {
+pub struct Parameters<T = f64> {
     /// teeth of the sun \[1] (Table I)
-    pub z_s: f64,
+    pub z_s: T,
     /// teeth of each planet \[1] (Table I)
-    pub z_p: f64,
+    pub z_p: T,
     /// teeth of the ring \[1] (Table I)
-    pub z_r: f64,
+    pub z_r: T,
     /// module \[m] (Table I)
-    pub m: f64,
+    pub m: T,
     /// pressure angle \[1] (Table I)
-    pub alpha: f64,
+    pub alpha: T,
     /// I_s/r_s^2 \[kg] (Table I)
-    pub M_s: f64,
+    pub M_s: T,
     /// I_p/r_p^2 \[kg] (Table I)
-    pub M_p: f64,
+    pub M_p: T,
     /// I_c/r_c^2 (not the M_c of Eq. (12)) \[kg] (Table I)
-    pub m_c: f64,
+    pub m_c: T,
     /// mass of one planet \[kg] (Table I)
-    pub m_p: f64,
+    pub m_p: T,
     /// mesh stiffness, sun-planet \[N/m] (Table I)
-    pub k_sp: f64,
+    pub k_sp: T,
     /// mesh stiffness, planet-ring \[N/m] (Table I)
-    pub k_pr: f64,
+    pub k_pr: T,
     /// mesh damping, sun-planet \[N s/m] (assumed: 10 % of critical for M_sp)
-    pub c_sp: f64,
+    pub c_sp: T,
     /// mesh damping, planet-ring \[N s/m] (assumed: 4.4 % of critical for M_pr)
-    pub c_pr: f64,
+    pub c_pr: T,
     /// half backlash, sun-planet \[m] (one of the paper's: 0, 10, 25, 50, 100 um)
-    pub b_sp: f64,
+    pub b_sp: T,
     /// half backlash, planet-ring \[m] (one of the paper's: 0, 10, 25, 50, 100 um)
-    pub b_pr: f64,
+    pub b_pr: T,
     /// density \[kg/m^3] (Table I)
-    pub rho: f64,
+    pub rho: T,
     /// section area \[m^2] (Table I)
-    pub A: f64,
+    pub A: T,
     /// length \[m] (Table I)
-    pub l: f64,
+    pub l: T,
     /// Young's modulus \[Pa] (Table I)
-    pub E: f64,
+    pub E: T,
     /// second moment of area \[m^4] (assumed: 10 mm square section)
-    pub I: f64,
+    pub I: T,
     /// constant torque \[N m] (assumed)
-    pub a_m: f64,
+    pub a_m: T,
     /// fall of the torque with speed \[N m s] (assumed)
-    pub b_m: f64,
+    pub b_m: T,
     /// amplitude of the torque ripple \[N m] (assumed)
-    pub F_w: f64,
+    pub F_w: T,
     /// frequency of the torque ripple, 10 pi \[rad/s] (one of the paper's: 5 pi, 10 pi)
-    pub omega: f64,
+    pub omega: T,
 }
 impl Default for Parameters {
     fn default() -> Self {
@@ -151,6 +151,38 @@ impl Default for Parameters {
         }
     }
 }
+impl Parameters {
+    /// The numbers of these parameters in another type, without derivatives.
+    #[inline(always)]
+    pub fn cast<T: Scalar>(&self) -> Parameters<T> {
+        Parameters {
+            z_s: T::number(self.z_s),
+            z_p: T::number(self.z_p),
+            z_r: T::number(self.z_r),
+            m: T::number(self.m),
+            alpha: T::number(self.alpha),
+            M_s: T::number(self.M_s),
+            M_p: T::number(self.M_p),
+            m_c: T::number(self.m_c),
+            m_p: T::number(self.m_p),
+            k_sp: T::number(self.k_sp),
+            k_pr: T::number(self.k_pr),
+            c_sp: T::number(self.c_sp),
+            c_pr: T::number(self.c_pr),
+            b_sp: T::number(self.b_sp),
+            b_pr: T::number(self.b_pr),
+            rho: T::number(self.rho),
+            A: T::number(self.A),
+            l: T::number(self.l),
+            E: T::number(self.E),
+            I: T::number(self.I),
+            a_m: T::number(self.a_m),
+            b_m: T::number(self.b_m),
+            F_w: T::number(self.F_w),
+            omega: T::number(self.omega),
+        }
+    }
+}
 
 /// Signals supplied at run time. `Default` gives zeros.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -158,111 +190,111 @@ pub struct Inputs {}
 
 /// What depends on the parameters alone: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coefficients {
+pub struct Coefficients<T = f64> {
     /// `r_s/I_s`
-    pub c_1: f64,
+    pub c_1: T,
     /// `a_m`
-    pub a_m: f64,
+    pub a_m: T,
     /// `b_m/r_s`
-    pub c_2: f64,
+    pub c_2: T,
     /// `r_s*r_s/I_s`
-    pub c_3: f64,
+    pub c_3: T,
     /// `c_sp`
-    pub c_sp: f64,
+    pub c_sp: T,
     /// `3.0*c_sp`
-    pub c_4: f64,
+    pub c_4: T,
     /// `b_sp`
-    pub b_sp: f64,
+    pub b_sp: T,
     /// `k_sp`
-    pub k_sp: f64,
+    pub k_sp: T,
     /// `3.0*k_sp`
-    pub c_5: f64,
+    pub c_5: T,
     /// `0.3333333333333333*r_p*r_p*I_s/(r_s*r_s*I_p)`
-    pub c_6: f64,
+    pub c_6: T,
     /// `c_pr`
-    pub c_pr: f64,
+    pub c_pr: T,
     /// `3.0*c_pr`
-    pub c_7: f64,
+    pub c_7: T,
     /// `b_pr`
-    pub b_pr: f64,
+    pub b_pr: T,
     /// `k_pr`
-    pub k_pr: f64,
+    pub k_pr: T,
     /// `3.0*k_pr`
-    pub c_8: f64,
+    pub c_8: T,
     /// `0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)`
-    pub c_9: f64,
+    pub c_9: T,
     /// `1/pivot_x_c`
-    pub c_10: f64,
+    pub c_10: T,
     /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)`
-    pub c_11: f64,
+    pub c_11: T,
     /// `E*I*INTEGRAL_S1_PHI*INTEGRAL_PHI_D2_SQUARED/(cos(alpha)*r_c*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_12: [f64; 7],
+    pub c_12: [T; 7],
     /// `2.0*I_s*1/pivot_x_c/(r_s*r_s)`
-    pub c_13: f64,
+    pub c_13: T,
     /// `F_w`
-    pub F_w: f64,
+    pub F_w: T,
     /// `r_s*F_w/I_s`
-    pub c_14: f64,
+    pub c_14: T,
     /// `omega`
-    pub omega: f64,
+    pub omega: T,
     /// `0.3333333333333333*r_p*r_p/I_p`
-    pub c_15: f64,
+    pub c_15: T,
     /// `l*1/pivot_x_c*INTEGRAL_S1_PHI/(cos(alpha)*r_c*INTEGRAL_PHI_SQUARED)`
-    pub c_16: [f64; 7],
+    pub c_16: [T; 7],
     /// `-(E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))`
-    pub c_17: [f64; 7],
+    pub c_17: [T; 7],
     /// `I_s/(r_s*r_s)`
-    pub M_x_sp_x_sp: f64,
+    pub M_x_sp_x_sp: T,
     /// `2.0*I_s/(r_s*r_s)`
-    pub M_x_sp_x_c: f64,
+    pub M_x_sp_x_c: T,
     /// `M_x_sp_x_sp + pivot_x_pr`
-    pub M_x_pr_x_pr: f64,
+    pub M_x_pr_x_pr: T,
     /// `M_x_sp_x_c + pivot_x_pr`
-    pub M_x_pr_x_c: f64,
+    pub M_x_pr_x_c: T,
     /// `4.0*I_s/(r_s*r_s) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
-    pub M_x_c_x_c: f64,
+    pub M_x_c_x_c: T,
     /// `rho*A*l*l*INTEGRAL_S1_PHI/(cos(alpha)*r_c)`
-    pub M_x_c_q: [f64; 7],
+    pub M_x_c_q: [T; 7],
     /// `rho*A*l`
-    pub c_18: f64,
+    pub c_18: T,
     /// `rho*A*l*INTEGRAL_PHI_SQUARED`
-    pub c_19: [f64; 7],
+    pub c_19: [T; 7],
     /// `1.0/r_s`
-    pub c_20: f64,
+    pub c_20: T,
     /// `2.0/r_s`
-    pub c_21: f64,
+    pub c_21: T,
     /// `1.0/r_p`
-    pub c_22: f64,
+    pub c_22: T,
     /// `1.0/(cos(alpha)*r_c)`
-    pub c_23: f64,
+    pub c_23: T,
     /// `1.0/(r_s*i_sH)`
-    pub c_24: f64,
+    pub c_24: T,
     /// `l/(r_s*i_sH)`
-    pub c_25: f64,
+    pub c_25: T,
     /// `0.5*I_s/(r_s*r_s)`
-    pub c_26: f64,
+    pub c_26: T,
     /// `1.5*I_p/(r_p*r_p)`
-    pub c_27: f64,
+    pub c_27: T,
     /// `1.5*m_p/(cos(alpha)*cos(alpha))`
-    pub c_28: f64,
+    pub c_28: T,
     /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
-    pub c_29: f64,
+    pub c_29: T,
     /// `2.0*rho*A*l*l/(cos(alpha)*r_c)`
-    pub c_30: f64,
+    pub c_30: T,
     /// `1.5*k_sp`
-    pub c_31: f64,
+    pub c_31: T,
     /// `1.5*k_pr`
-    pub c_32: f64,
+    pub c_32: T,
     /// `0.5*E*I/(l*l*l)`
-    pub c_33: f64,
+    pub c_33: T,
     /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
     pub positive_definite: bool,
 }
-impl Coefficients {
+impl<T: Scalar> Coefficients<T> {
     /// The coefficients of these parameters.
-    pub fn prepare(parameters: &Parameters) -> Self {
+    pub fn prepare(parameters: &Parameters<T>) -> Self {
         let m = parameters.m;
-        let s_1 = 0.5 * m;
+        let s_1 = T::number(0.5) * m;
         let z_s = parameters.z_s;
         let alpha = parameters.alpha;
         let s_2 = cos(alpha);
@@ -278,16 +310,16 @@ impl Coefficients {
         let z_p = parameters.z_p;
         let r_p = s_1 * s_2 * z_p;
         let s_4 = r_p * r_p;
-        let s_5 = 0.3333333333333333 * s_4;
+        let s_5 = T::number(0.3333333333333333) * s_4;
         let M_p = parameters.M_p;
         let I_p = M_p * s_4;
         let c_pr = parameters.c_pr;
         let b_pr = parameters.b_pr;
         let k_pr = parameters.k_pr;
-        let s_6 = 3.0 * I_p;
+        let s_6 = T::number(3.0) * I_p;
         let s_7 = s_2 * s_2;
         let m_p = parameters.m_p;
-        let s_8 = 3.0 * m_p / s_7;
+        let s_8 = T::number(3.0) * m_p / s_7;
         let r_c = s_1 * (z_s + z_p);
         let s_9 = r_c * r_c;
         let s_10 = s_7 * s_9;
@@ -299,11 +331,14 @@ impl Coefficients {
         let l = parameters.l;
         let s_12 = l * l;
         let s_13 = l * s_12;
-        let s_14 = 0.3333333333333333 * rho * A * s_13 / s_10;
+        let s_14 = T::number(0.3333333333333333) * rho * A * s_13 / s_10;
         let s_15 = rho * A;
         let s_16 = sum_of_few(
-            7,
-            |i| INTEGRAL_S1_PHI[i] * INTEGRAL_S1_PHI[i] / INTEGRAL_PHI_SQUARED[i],
+            [(); 7],
+            |i| {
+                T::number(INTEGRAL_S1_PHI[i]) * T::number(INTEGRAL_S1_PHI[i])
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
         );
         let pivot_x_c = s_8 + s_11 + s_14 - s_15 * s_13 * s_16 / s_10;
         let s_17 = pivot_reciprocal(pivot_x_c);
@@ -312,47 +347,50 @@ impl Coefficients {
         let E = parameters.E;
         let I = parameters.I;
         let s_20 = E * I;
-        let mut s_21 = [0.0; 7];
+        let mut s_21 = [T::number(0.0); 7];
         for i in 0..7 {
-            s_21[i] = s_20 * INTEGRAL_S1_PHI[i] * INTEGRAL_PHI_D2_SQUARED[i]
-                / (s_19 * INTEGRAL_PHI_SQUARED[i]);
+            s_21[i] = s_20 * T::number(INTEGRAL_S1_PHI[i])
+                * T::number(INTEGRAL_PHI_D2_SQUARED[i])
+                / (s_19 * T::number(INTEGRAL_PHI_SQUARED[i]));
         }
-        let s_22 = 2.0 * I_s;
+        let s_22 = T::number(2.0) * I_s;
         let F_w = parameters.F_w;
         let omega = parameters.omega;
         let s_23 = s_15 * (s_12 * s_12);
         let s_24 = l * s_17;
-        let mut s_25 = [0.0; 7];
+        let mut s_25 = [T::number(0.0); 7];
         for i in 0..7 {
-            s_25[i] = s_24 * INTEGRAL_S1_PHI[i] / (s_18 * INTEGRAL_PHI_SQUARED[i]);
+            s_25[i] = s_24 * T::number(INTEGRAL_S1_PHI[i])
+                / (s_18 * T::number(INTEGRAL_PHI_SQUARED[i]));
         }
-        let mut s_26 = [0.0; 7];
+        let mut s_26 = [T::number(0.0); 7];
         for i in 0..7 {
-            s_26[i] = -(s_20 * INTEGRAL_PHI_D2_SQUARED[i]
-                / (s_23 * INTEGRAL_PHI_SQUARED[i]));
+            s_26[i] = -(s_20 * T::number(INTEGRAL_PHI_D2_SQUARED[i])
+                / (s_23 * T::number(INTEGRAL_PHI_SQUARED[i])));
         }
         let M_x_sp_x_sp = I_s / s_3;
         let M_x_sp_x_c = s_22 / s_3;
         let pivot_x_pr = s_6 / s_4;
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = 4.0 * I_s / s_3 + (pivot_x_pr + s_8) + s_11 + s_14;
+        let M_x_c_x_c = T::number(4.0) * I_s / s_3 + (pivot_x_pr + s_8) + s_11 + s_14;
         let s_27 = s_15 * s_12;
-        let mut M_x_c_q = [0.0; 7];
+        let mut M_x_c_q = [T::number(0.0); 7];
         for i in 0..7 {
-            M_x_c_q[i] = s_27 * INTEGRAL_S1_PHI[i] / s_18;
+            M_x_c_q[i] = s_27 * T::number(INTEGRAL_S1_PHI[i]) / s_18;
         }
         let s_28 = s_15 * l;
-        let mut s_29 = [0.0; 7];
+        let mut s_29 = [T::number(0.0); 7];
         for i in 0..7 {
-            s_29[i] = s_28 * INTEGRAL_PHI_SQUARED[i];
+            s_29[i] = s_28 * T::number(INTEGRAL_PHI_SQUARED[i]);
         }
         let z_r = parameters.z_r;
-        let i_sH = 1.0 + z_r / z_s;
+        let i_sH = T::number(1.0) + z_r / z_s;
         let s_30 = r_s * i_sH;
         let mut positive_4 = true;
         for i in 0..7 {
-            positive_4 = positive_4 && s_29[i] > 0.0 && s_29[i] < f64::INFINITY;
+            positive_4 = positive_4 && T::all_greater(s_29[i], T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_29[i]);
         }
         Self {
             c_1: r_s / I_s,
@@ -360,16 +398,16 @@ impl Coefficients {
             c_2: b_m / r_s,
             c_3: s_3 / I_s,
             c_sp: c_sp,
-            c_4: 3.0 * c_sp,
+            c_4: T::number(3.0) * c_sp,
             b_sp: b_sp,
             k_sp: k_sp,
-            c_5: 3.0 * k_sp,
+            c_5: T::number(3.0) * k_sp,
             c_6: s_5 * I_s / (s_3 * I_p),
             c_pr: c_pr,
-            c_7: 3.0 * c_pr,
+            c_7: T::number(3.0) * c_pr,
             b_pr: b_pr,
             k_pr: k_pr,
-            c_8: 3.0 * k_pr,
+            c_8: T::number(3.0) * k_pr,
             c_9: s_14,
             c_10: s_17,
             c_11: s_6 * s_17 / s_4,
@@ -389,23 +427,83 @@ impl Coefficients {
             M_x_c_q: M_x_c_q,
             c_18: s_28,
             c_19: s_29,
-            c_20: 1.0 / r_s,
-            c_21: 2.0 / r_s,
-            c_22: 1.0 / r_p,
-            c_23: 1.0 / s_18,
-            c_24: 1.0 / s_30,
+            c_20: T::number(1.0) / r_s,
+            c_21: T::number(2.0) / r_s,
+            c_22: T::number(1.0) / r_p,
+            c_23: T::number(1.0) / s_18,
+            c_24: T::number(1.0) / s_30,
             c_25: l / s_30,
-            c_26: 0.5 * I_s / s_3,
-            c_27: 1.5 * I_p / s_4,
-            c_28: 1.5 * m_p / s_7,
-            c_29: 0.5 * I_c / s_10,
-            c_30: 2.0 * rho * A * s_12 / s_18,
-            c_31: 1.5 * k_sp,
-            c_32: 1.5 * k_pr,
-            c_33: 0.5 * E * I / s_13,
-            positive_definite: M_x_sp_x_sp > 0.0 && M_x_sp_x_sp < f64::INFINITY
-                && pivot_x_pr > 0.0 && pivot_x_pr < f64::INFINITY && pivot_x_c > 0.0
-                && pivot_x_c < f64::INFINITY && positive_4,
+            c_26: T::number(0.5) * I_s / s_3,
+            c_27: T::number(1.5) * I_p / s_4,
+            c_28: T::number(1.5) * m_p / s_7,
+            c_29: T::number(0.5) * I_c / s_10,
+            c_30: T::number(2.0) * rho * A * s_12 / s_18,
+            c_31: T::number(1.5) * k_sp,
+            c_32: T::number(1.5) * k_pr,
+            c_33: T::number(0.5) * E * I / s_13,
+            positive_definite: T::all_greater(M_x_sp_x_sp, T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), M_x_sp_x_sp)
+                && T::all_greater(pivot_x_pr, T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), pivot_x_pr)
+                && T::all_greater(pivot_x_c, T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), pivot_x_c) && positive_4,
+        }
+    }
+}
+impl Coefficients {
+    /// The numbers of these coefficients in another type, without derivatives.
+    #[inline(always)]
+    pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
+        Coefficients {
+            c_1: T::number(self.c_1),
+            a_m: T::number(self.a_m),
+            c_2: T::number(self.c_2),
+            c_3: T::number(self.c_3),
+            c_sp: T::number(self.c_sp),
+            c_4: T::number(self.c_4),
+            b_sp: T::number(self.b_sp),
+            k_sp: T::number(self.k_sp),
+            c_5: T::number(self.c_5),
+            c_6: T::number(self.c_6),
+            c_pr: T::number(self.c_pr),
+            c_7: T::number(self.c_7),
+            b_pr: T::number(self.b_pr),
+            k_pr: T::number(self.k_pr),
+            c_8: T::number(self.c_8),
+            c_9: T::number(self.c_9),
+            c_10: T::number(self.c_10),
+            c_11: T::number(self.c_11),
+            c_12: converted(&self.c_12),
+            c_13: T::number(self.c_13),
+            F_w: T::number(self.F_w),
+            c_14: T::number(self.c_14),
+            omega: T::number(self.omega),
+            c_15: T::number(self.c_15),
+            c_16: converted(&self.c_16),
+            c_17: converted(&self.c_17),
+            M_x_sp_x_sp: T::number(self.M_x_sp_x_sp),
+            M_x_sp_x_c: T::number(self.M_x_sp_x_c),
+            M_x_pr_x_pr: T::number(self.M_x_pr_x_pr),
+            M_x_pr_x_c: T::number(self.M_x_pr_x_c),
+            M_x_c_x_c: T::number(self.M_x_c_x_c),
+            M_x_c_q: converted(&self.M_x_c_q),
+            c_18: T::number(self.c_18),
+            c_19: converted(&self.c_19),
+            c_20: T::number(self.c_20),
+            c_21: T::number(self.c_21),
+            c_22: T::number(self.c_22),
+            c_23: T::number(self.c_23),
+            c_24: T::number(self.c_24),
+            c_25: T::number(self.c_25),
+            c_26: T::number(self.c_26),
+            c_27: T::number(self.c_27),
+            c_28: T::number(self.c_28),
+            c_29: T::number(self.c_29),
+            c_30: T::number(self.c_30),
+            c_31: T::number(self.c_31),
+            c_32: T::number(self.c_32),
+            c_33: T::number(self.c_33),
+            positive_definite: self.positive_definite,
         }
     }
 }
@@ -414,34 +512,45 @@ impl Coefficients {
 ///
 /// `t` in s; `state` and the result in the order of [`STATE_NAMES`].
 #[allow(unused_variables)]
-pub fn rates(
-    t: f64,
-    state: &[f64; STATES],
+pub fn rates<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
     inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> [f64; STATES] {
+    coefficients: &Coefficients<T>,
+) -> [T; STATES] {
     let x_sp_dot = state[10];
     let x_pr_dot = state[11];
     let x_c_dot = state[12];
     let x_sp = state[0];
     let s_1 = coefficients.c_4
-        * (if contact(x_sp, coefficients.b_sp) > 0.0 { x_sp_dot } else { 0.0 });
+        * T::select_greater(
+            contact(x_sp, coefficients.b_sp),
+            T::number(0.0),
+            x_sp_dot,
+            T::number(0.0),
+        );
     let s_2 = coefficients.c_5 * deadzone(x_sp, coefficients.b_sp);
     let x_pr = state[1];
     let s_3 = coefficients.c_7
-        * (if contact(x_pr, coefficients.b_pr) > 0.0 { x_pr_dot } else { 0.0 });
+        * T::select_greater(
+            contact(x_pr, coefficients.b_pr),
+            T::number(0.0),
+            x_pr_dot,
+            T::number(0.0),
+        );
     let s_4 = coefficients.c_8 * deadzone(x_pr, coefficients.b_pr);
     let s_5 = s_1 + s_2;
-    let s_6 = sum_of_few(7, |i| coefficients.c_12[i] * state[3 + i]);
+    let s_6 = sum_of_few([(); 7], |i| coefficients.c_12[i] * state[3 + i]);
     let s_7 = s_1 + s_3 + s_2 + s_4 + s_6;
     let s_8 = s_5 - s_3 - s_4 - coefficients.c_11 * s_7;
     let s_9 = coefficients.c_1
-        * (coefficients.a_m - coefficients.c_2 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot))
+        * (coefficients.a_m
+            - coefficients.c_2 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot))
         - coefficients.c_3 * (s_5 + coefficients.c_6 * s_8 + coefficients.c_13 * s_7);
     let x_sp_ddot = s_9 + coefficients.c_14 * sin(coefficients.omega * t);
     let x_pr_ddot = coefficients.c_15 * s_8;
     let x_c_ddot = coefficients.c_10 * s_7;
-    let mut rates = [0.0; STATES];
+    let mut rates = [T::number(0.0); STATES];
     for i in 0..3 {
         rates[i] = state[10 + i];
     }
@@ -469,33 +578,43 @@ pub fn rates(
 /// - `energy`: kinetic plus potential energy \[J]
 /// - `power`: power of all non-conservative forces: the rate of the energy \[W]
 #[allow(unused_variables)]
-pub fn observables(
-    t: f64,
-    state: &[f64; STATES],
+pub fn observables<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
     inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> [f64; OBSERVABLES] {
+    coefficients: &Coefficients<T>,
+) -> [T; OBSERVABLES] {
     let x_sp_dot = state[10];
     let x_pr_dot = state[11];
     let x_c_dot = state[12];
-    let s_1 = x_sp_dot + x_pr_dot + 2.0 * x_c_dot;
+    let s_1 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
     let x_sp = state[0];
-    let s_2 = if contact(x_sp, coefficients.b_sp) > 0.0 { x_sp_dot } else { 0.0 };
+    let s_2 = T::select_greater(
+        contact(x_sp, coefficients.b_sp),
+        T::number(0.0),
+        x_sp_dot,
+        T::number(0.0),
+    );
     let s_3 = deadzone(x_sp, coefficients.b_sp);
     let x_pr = state[1];
-    let s_4 = if contact(x_pr, coefficients.b_pr) > 0.0 { x_pr_dot } else { 0.0 };
+    let s_4 = T::select_greater(
+        contact(x_pr, coefficients.b_pr),
+        T::number(0.0),
+        x_pr_dot,
+        T::number(0.0),
+    );
     let s_5 = deadzone(x_pr, coefficients.b_pr);
     let motor = coefficients.a_m - coefficients.c_2 * s_1
         + coefficients.F_w * sin(coefficients.omega * t);
     let s_6 = coefficients.c_20 * motor;
     let s_7 = x_sp + x_pr;
     let x_c = state[2];
-    let x_s = s_7 + 2.0 * x_c;
+    let x_s = s_7 + T::number(2.0) * x_c;
     let theta_s = coefficients.c_20 * x_s;
     let x_p = x_pr + x_c;
     let theta_p = coefficients.c_22 * x_p;
     let theta_c = coefficients.c_23 * x_c;
-    let tip = sum_of_few(7, |i| PHI_AT_END[i] * state[3 + i]);
+    let tip = sum_of_few([(); 7], |i| T::number(PHI_AT_END[i]) * state[3 + i]);
     let dtheta = coefficients.c_24 * s_7;
     let s_8 = coefficients.c_25 * s_7;
     let f_la = tip + s_8;
@@ -505,18 +624,18 @@ pub fn observables(
     let s_9 = x_pr_dot + x_c_dot;
     let s_10 = x_c_dot * x_c_dot;
     let T_planets = coefficients.c_27 * (s_9 * s_9) + coefficients.c_28 * s_10;
-    let s_11 = sum_of_few(7, |i| INTEGRAL_S1_PHI[i] * state[13 + i]);
+    let s_11 = sum_of_few([(); 7], |i| T::number(INTEGRAL_S1_PHI[i]) * state[13 + i]);
     let s_12 = sum_of_few(
-        7,
-        |i| INTEGRAL_PHI_SQUARED[i] * (state[13 + i] * state[13 + i]),
+        [(); 7],
+        |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[13 + i] * state[13 + i]),
     );
     let s_13 = coefficients.c_26 * (s_1 * s_1) + T_planets + coefficients.c_29 * s_10
-        + 0.5
+        + T::number(0.5)
             * (coefficients.c_9 * s_10 + coefficients.c_30 * (x_c_dot * s_11)
                 + coefficients.c_18 * s_12);
     let s_14 = sum_of_few(
-        7,
-        |i| INTEGRAL_PHI_D2_SQUARED[i] * (state[3 + i] * state[3 + i]),
+        [(); 7],
+        |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[3 + i] * state[3 + i]),
     );
     let s_15 = x_sp_dot * (s_6 - coefficients.c_4 * s_2)
         + x_pr_dot * (s_6 - coefficients.c_7 * s_4)
@@ -540,16 +659,16 @@ pub fn observables(
 
 /// Kinetic plus potential energy, in J.
 #[allow(unused_variables)]
-pub fn energy(
-    t: f64,
-    state: &[f64; STATES],
+pub fn energy<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
     inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> f64 {
+    coefficients: &Coefficients<T>,
+) -> T {
     let x_sp_dot = state[10];
     let x_pr_dot = state[11];
     let x_c_dot = state[12];
-    let s_1 = x_sp_dot + x_pr_dot + 2.0 * x_c_dot;
+    let s_1 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
     let x_sp = state[0];
     let s_2 = deadzone(x_sp, coefficients.b_sp);
     let x_pr = state[1];
@@ -557,18 +676,18 @@ pub fn energy(
     let s_4 = x_pr_dot + x_c_dot;
     let s_5 = x_c_dot * x_c_dot;
     let T_planets = coefficients.c_27 * (s_4 * s_4) + coefficients.c_28 * s_5;
-    let s_6 = sum_of_few(7, |i| INTEGRAL_S1_PHI[i] * state[13 + i]);
+    let s_6 = sum_of_few([(); 7], |i| T::number(INTEGRAL_S1_PHI[i]) * state[13 + i]);
     let s_7 = sum_of_few(
-        7,
-        |i| INTEGRAL_PHI_SQUARED[i] * (state[13 + i] * state[13 + i]),
+        [(); 7],
+        |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[13 + i] * state[13 + i]),
     );
     let s_8 = coefficients.c_26 * (s_1 * s_1) + T_planets + coefficients.c_29 * s_5
-        + 0.5
+        + T::number(0.5)
             * (coefficients.c_9 * s_5 + coefficients.c_30 * (x_c_dot * s_6)
                 + coefficients.c_18 * s_7);
     let s_9 = sum_of_few(
-        7,
-        |i| INTEGRAL_PHI_D2_SQUARED[i] * (state[3 + i] * state[3 + i]),
+        [(); 7],
+        |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[3 + i] * state[3 + i]),
     );
     s_8
         + (coefficients.c_31 * (s_2 * s_2) + coefficients.c_32 * (s_3 * s_3)
@@ -577,33 +696,39 @@ pub fn energy(
 
 /// Power of all non-conservative forces, in W: the rate of the energy.
 #[allow(unused_variables)]
-pub fn power(
-    t: f64,
-    state: &[f64; STATES],
+pub fn power<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
     inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> f64 {
+    coefficients: &Coefficients<T>,
+) -> T {
     let x_sp_dot = state[10];
     let x_pr_dot = state[11];
     let x_c_dot = state[12];
     let x_sp = state[0];
     let x_pr = state[1];
     let motor = coefficients.a_m
-        - coefficients.c_2 * (x_sp_dot + x_pr_dot + 2.0 * x_c_dot)
+        - coefficients.c_2 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
         + coefficients.F_w * sin(coefficients.omega * t);
     let s_1 = coefficients.c_20 * motor;
     let s_2 = x_sp_dot
         * (s_1
             - coefficients.c_4
-                * (if contact(x_sp, coefficients.b_sp) > 0.0 { x_sp_dot } else { 0.0 }))
+                * T::select_greater(
+                    contact(x_sp, coefficients.b_sp),
+                    T::number(0.0),
+                    x_sp_dot,
+                    T::number(0.0),
+                ))
         + x_pr_dot
             * (s_1
                 - coefficients.c_7
-                    * (if contact(x_pr, coefficients.b_pr) > 0.0 {
-                        x_pr_dot
-                    } else {
-                        0.0
-                    }));
+                    * T::select_greater(
+                        contact(x_pr, coefficients.b_pr),
+                        T::number(0.0),
+                        x_pr_dot,
+                        T::number(0.0),
+                    ));
     s_2 + coefficients.c_21 * (x_c_dot * motor)
 }
 
@@ -614,15 +739,15 @@ pub fn power(
 /// - `x_pr - b_pr`
 /// - `x_pr + b_pr`
 #[allow(unused_variables, unused_mut)]
-pub fn guards(
-    t: f64,
-    state: &[f64; STATES],
+pub fn guards<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
     inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> [f64; GUARDS] {
+    coefficients: &Coefficients<T>,
+) -> [T; GUARDS] {
     let x_sp = state[0];
     let x_pr = state[1];
-    let mut values = [0.0; GUARDS];
+    let mut values = [T::number(0.0); GUARDS];
     values[0] = x_sp - coefficients.b_sp;
     values[1] = coefficients.b_sp + x_sp;
     values[2] = x_pr - coefficients.b_pr;
@@ -632,13 +757,13 @@ pub fn guards(
 
 /// The mass matrix, in the order of the first half of [`STATE_NAMES`].
 #[allow(unused_variables, unused_mut)]
-pub fn mass_matrix(
-    t: f64,
-    state: &[f64; STATES],
+pub fn mass_matrix<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
     inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> [[f64; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
-    let mut values = [[0.0; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
+    coefficients: &Coefficients<T>,
+) -> [[T; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
+    let mut values = [[T::number(0.0); DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
     values[0][0] = coefficients.M_x_sp_x_sp;
     values[0][1] = coefficients.M_x_sp_x_sp;
     values[0][2] = coefficients.M_x_sp_x_c;
@@ -653,7 +778,7 @@ pub fn mass_matrix(
         values[3 + i][2] = values[2][3 + i];
     }
     for i in 0..7 {
-        values[3 + i][3 + i] += coefficients.c_19[i];
+        values[3 + i][3 + i] = values[3 + i][3 + i] + coefficients.c_19[i];
     }
     values
 }
@@ -702,114 +827,327 @@ static PHI_AT_END: [f64; 7] = [
     2.00000000541519,
 ];
 
+/// What the equations are computed with: `f64`, `f32`, lanes of them, or numbers that carry
+/// derivatives. Nothing branches on a value, so that lanes may differ in every condition.
+pub trait Scalar: Copy
+where
+    Self: core::ops::Add<Output = Self>,
+    Self: core::ops::Sub<Output = Self>,
+    Self: core::ops::Mul<Output = Self>,
+    Self: core::ops::Div<Output = Self>,
+    Self: core::ops::Neg<Output = Self>,
+{
+    /// A number, in every lane and without derivative.
+    fn number(value: f64) -> Self;
+    /// `then` where a > b, `otherwise` elsewhere, also where either is NaN. Whatever is not
+    /// chosen leaves no trace.
+    fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+    /// Whether a > b in every lane.
+    fn all_greater(a: Self, b: Self) -> bool;
+    /// An elementary function of this.
+    fn function<F: Function>(self) -> Self;
+    /// An elementary function of this and another.
+    fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self;
+    /// A long loop. Single numbers keep it out of the code around; lanes must not, because code
+    /// of its own would not be compiled for their registers.
+    #[inline(always)]
+    fn long_loop<F: FnOnce() -> Self>(lines: F) -> Self {
+        lines()
+    }
+}
+
+/// Numbers in IEEE 754 double precision, or lanes of them: what the elementary functions are
+/// written for.
+pub trait Real: Scalar {
+    /// `then` where a = b, `otherwise` elsewhere, also where either is NaN.
+    fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+    /// The sign bit cleared.
+    fn magnitude(self) -> Self;
+    /// The magnitude with the sign bit of another number.
+    fn copy_sign(self, sign: Self) -> Self;
+    /// 2^k for an integral k: 2^52 + 1023 brings it to the place of the exponent.
+    fn power_of_two(self) -> Self;
+    /// The unbiased exponent field.
+    fn exponent(self) -> Self;
+    /// The mantissa under the exponent of 1.
+    fn significand(self) -> Self;
+}
+
+/// An elementary function: plain operations in a fixed order, the same bits on every machine.
+pub trait Function {
+    /// Its value.
+    fn value<T: Real>(x: T) -> T;
+    /// Its derivative at x, where it is `value`.
+    fn slope<T: Scalar>(x: T, value: T) -> T;
+}
+
+/// An elementary function of two arguments.
+pub trait FunctionOfTwo {
+    /// Its value.
+    fn value<T: Real>(x: T, y: T) -> T;
+    /// Its derivatives by x and y, where it is `value`.
+    fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
+}
+impl Scalar for f64 {
+    #[inline(always)]
+    fn number(value: f64) -> f64 {
+        value
+    }
+    #[inline(always)]
+    fn select_greater(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
+        if a > b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn all_greater(a: f64, b: f64) -> bool {
+        a > b
+    }
+    #[inline]
+    fn function<F: Function>(self) -> f64 {
+        F::value(self)
+    }
+    #[inline]
+    fn function_of_two<F: FunctionOfTwo>(self, other: f64) -> f64 {
+        F::value(self, other)
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f64>(lines: F) -> f64 {
+        lines()
+    }
+}
+impl Real for f64 {
+    #[inline(always)]
+    fn select_equal(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
+        if a == b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn magnitude(self) -> f64 {
+        f64::from_bits(self.to_bits() & !(1 << 63))
+    }
+    #[inline(always)]
+    fn copy_sign(self, sign: f64) -> f64 {
+        f64::from_bits((self.to_bits() & !(1 << 63)) | (sign.to_bits() & (1 << 63)))
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> f64 {
+        f64::from_bits((self + 4503599627371519.0).to_bits() << 52)
+    }
+    #[inline(always)]
+    fn exponent(self) -> f64 {
+        ((self.to_bits() >> 52) & 0x7ff) as f64 - 1023.0
+    }
+    #[inline(always)]
+    fn significand(self) -> f64 {
+        f64::from_bits((self.to_bits() & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000)
+    }
+}
+
+/// Elementary functions in double precision, then rounded: within 0.5001 units in the last
+/// place.
+impl Scalar for f32 {
+    #[inline(always)]
+    fn number(value: f64) -> f32 {
+        value as f32
+    }
+    #[inline(always)]
+    fn select_greater(a: f32, b: f32, then: f32, otherwise: f32) -> f32 {
+        if a > b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn all_greater(a: f32, b: f32) -> bool {
+        a > b
+    }
+    #[inline]
+    fn function<F: Function>(self) -> f32 {
+        F::value(f64::from(self)) as f32
+    }
+    #[inline]
+    fn function_of_two<F: FunctionOfTwo>(self, other: f32) -> f32 {
+        F::value(f64::from(self), f64::from(other)) as f32
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f32>(lines: F) -> f32 {
+        lines()
+    }
+}
+
 /// Deflection beyond the backlash: f_k of Eq. (7).
 #[inline(always)]
-fn deadzone(p: f64, b: f64) -> f64 {
-    if p > b { p - b } else if p < -b { p + b } else { 0.0 }
+fn deadzone<T: Scalar>(p: T, b: T) -> T {
+    let beyond = T::select_greater(-b, p, p + b, T::number(0.0));
+    T::select_greater(p, b, p - b, beyond)
 }
 
 /// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).
 #[inline(always)]
-fn contact(p: f64, b: f64) -> f64 {
-    if p > b || p < -b { 1.0 } else { 0.0 }
+fn contact<T: Scalar>(p: T, b: T) -> T {
+    let beyond = T::select_greater(-b, p, T::number(1.0), T::number(0.0));
+    T::select_greater(p, b, T::number(1.0), beyond)
 }
 
 /// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
 #[inline(always)]
-fn pivot_reciprocal(pivot: f64) -> f64 {
-    if pivot > 0.0 { 1.0 / pivot } else { f64::NAN }
+fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
+    let reciprocal = T::number(1.0) / pivot;
+    T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
 }
 
-/// The sum of the first `length` of eight numbers, neighbours added in pairs.
+/// These numbers in another type.
 #[inline(always)]
-fn paired(length: usize, s: &[f64; 8]) -> f64 {
-    let a = if length > 1 { s[0] + s[1] } else { s[0] };
-    let b = if length > 3 { s[2] + s[3] } else { s[2] };
-    let c = if length > 5 { s[4] + s[5] } else { s[4] };
-    let d = if length > 7 { s[6] + s[7] } else { s[6] };
-    let left = if length > 2 { a + b } else { a };
-    let right = if length > 6 { c + d } else { c };
-    if length > 4 { left + right } else { left }
+fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
+    let mut converted = [T::number(0.0); N];
+    for i in 0..N {
+        converted[i] = T::number(numbers[i]);
+    }
+    converted
+}
+
+/// The sum of the first `N` of eight numbers, neighbours added in pairs.
+#[inline(always)]
+fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
+    let a = if N > 1 { s[0] + s[1] } else { s[0] };
+    let b = if N > 3 { s[2] + s[3] } else { s[2] };
+    let c = if N > 5 { s[4] + s[5] } else { s[4] };
+    let d = if N > 7 { s[6] + s[7] } else { s[6] };
+    let left = if N > 2 { a + b } else { a };
+    let right = if N > 6 { c + d } else { c };
+    if N > 4 { left + right } else { left }
 }
 
 /// The sum of up to eight elements.
 #[inline(always)]
-fn sum_of_few<F: Fn(usize) -> f64>(length: usize, element: F) -> f64 {
-    let mut s = [0.0; 8];
-    for k in 0..length {
+fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
+    _: [(); N],
+    element: F,
+) -> T {
+    let mut s = [T::number(0.0); 8];
+    for k in 0..N {
         s[k] = element(k);
     }
-    paired(length, &s)
+    paired::<N, T>(&s)
 }
 
-/// Sine for |x| up to 1e9, NaN beyond. Plain operations in a fixed order: the same bits on every machine.
-#[inline]
-fn sin(x: f64) -> f64 {
-    let v6 = x * 0.6366197723675814 + 6.755399441055744e15 - 6.755399441055744e15;
-    let v15 = x - v6 * 1.570796251296997 - v6 * 7.549789415861596e-8;
-    let v16 = v6 * 5.390304224023659e-15;
-    let v17 = v6 * -1.3658654267100645e-21;
-    let v18 = v16 + v17;
-    let v23 = v15 - v18;
-    let v26 = v16 - v18 + v17 + v6 * -1.1351118607522202e-28 - (v15 - v23 - v18);
-    let v27 = v23 * v23;
-    let v29 = v27 * -0.5;
-    let v30 = 1.0 + v29;
-    let v46 = v27 * v27;
-    let v49 = v46 * v46;
-    let v51 = 0.1666666666666663 + v27 * -0.008333333333321917
-        + v46 * (0.00019841269829458453 + v27 * -2.755731358278338e-6)
-        + v49 * (2.5050742477852252e-8 + v27 * -1.5895956565664054e-10);
-    let v70 = 0.041666666666666595 + v27 * -0.0013888888888873342
-        + v46 * (2.4801587289001978e-5 + v27 * -2.755731421694031e-7)
-        + v49 * (2.0875705319424642e-9 + v27 * -1.1358738323480003e-11);
-    let v85 = if 1e9 < magnitude_of(x) {
-        f64::NAN
-    } else {
-        v6 - (v6 * 0.25 + 6.755399441055744e15 - 6.755399441055744e15) * 4.0
-    };
-    let v87 = v30 + (1.0 - v30 + v29 + (v46 * v70 + v23 * v26));
-    let v88 = magnitude_of(v85);
-    let v92 = (if v88 == 1.0 { v87 } else { v23 - (v23 * v27 * v51 + v26 * v30) })
-        * (if v88 == 1.0 { v85 } else { 1.0 - v88 });
-    v92
-}
-
-/// Cosine for |x| up to 1e9, NaN beyond. Plain operations in a fixed order: the same bits on every machine.
-#[inline]
-fn cos(x: f64) -> f64 {
-    let v6 = x * 0.6366197723675814 + 6.755399441055744e15 - 6.755399441055744e15;
-    let v15 = x - v6 * 1.570796251296997 - v6 * 7.549789415861596e-8;
-    let v16 = v6 * 5.390304224023659e-15;
-    let v17 = v6 * -1.3658654267100645e-21;
-    let v18 = v16 + v17;
-    let v23 = v15 - v18;
-    let v26 = v16 - v18 + v17 + v6 * -1.1351118607522202e-28 - (v15 - v23 - v18);
-    let v27 = v23 * v23;
-    let v29 = v27 * -0.5;
-    let v30 = 1.0 + v29;
-    let v46 = v27 * v27;
-    let v49 = v46 * v46;
-    let v51 = 0.1666666666666663 + v27 * -0.008333333333321917
-        + v46 * (0.00019841269829458453 + v27 * -2.755731358278338e-6)
-        + v49 * (2.5050742477852252e-8 + v27 * -1.5895956565664054e-10);
-    let v70 = 0.041666666666666595 + v27 * -0.0013888888888873342
-        + v46 * (2.4801587289001978e-5 + v27 * -2.755731421694031e-7)
-        + v49 * (2.0875705319424642e-9 + v27 * -1.1358738323480003e-11);
-    let v85 = if 1e9 < magnitude_of(x) {
-        f64::NAN
-    } else {
-        v6 - (v6 * 0.25 + 6.755399441055744e15 - 6.755399441055744e15) * 4.0
-    };
-    let v87 = v30 + (1.0 - v30 + v29 + (v46 * v70 + v23 * v26));
-    let v88 = magnitude_of(v85);
-    let v93 = (if v88 == 1.0 { v23 - (v23 * v27 * v51 + v26 * v30) } else { v87 })
-        * (if v88 == 1.0 { -v85 } else { 1.0 - v88 });
-    v93
-}
-
-/// The sign bit cleared.
+/// Sine for |x| up to 1e9, NaN beyond.
 #[inline(always)]
-fn magnitude_of(x: f64) -> f64 {
-    f64::from_bits(x.to_bits() & !(1 << 63))
+fn sin<T: Scalar>(x: T) -> T {
+    x.function::<Sin>()
+}
+enum Sin {}
+impl Function for Sin {
+    #[inline(always)]
+    fn value<T: Real>(x: T) -> T {
+        let v6 = x * T::number(0.6366197723675814) + T::number(6.755399441055744e15)
+            - T::number(6.755399441055744e15);
+        let v15 = x - v6 * T::number(1.570796251296997)
+            - v6 * T::number(7.549789415861596e-8);
+        let v16 = v6 * T::number(5.390304224023659e-15);
+        let v17 = v6 * T::number(-1.3658654267100645e-21);
+        let v18 = v16 + v17;
+        let v23 = v15 - v18;
+        let v26 = v16 - v18 + v17 + v6 * T::number(-1.1351118607522202e-28)
+            - (v15 - v23 - v18);
+        let v27 = v23 * v23;
+        let v29 = v27 * T::number(-0.5);
+        let v30 = T::number(1.0) + v29;
+        let v46 = v27 * v27;
+        let v49 = v46 * v46;
+        let v51 = T::number(0.1666666666666663) + v27 * T::number(-0.008333333333321917)
+            + v46
+                * (T::number(0.00019841269829458453)
+                    + v27 * T::number(-2.755731358278338e-6))
+            + v49
+                * (T::number(2.5050742477852252e-8)
+                    + v27 * T::number(-1.5895956565664054e-10));
+        let v70 = T::number(0.041666666666666595)
+            + v27 * T::number(-0.0013888888888873342)
+            + v46
+                * (T::number(2.4801587289001978e-5)
+                    + v27 * T::number(-2.755731421694031e-7))
+            + v49
+                * (T::number(2.0875705319424642e-9)
+                    + v27 * T::number(-1.1358738323480003e-11));
+        let v85 = T::select_greater(
+            T::magnitude(x),
+            T::number(1e9),
+            T::number(f64::NAN),
+            v6
+                - (v6 * T::number(0.25) + T::number(6.755399441055744e15)
+                    - T::number(6.755399441055744e15)) * T::number(4.0),
+        );
+        let v87 = v30 + (T::number(1.0) - v30 + v29 + (v46 * v70 + v23 * v26));
+        let v88 = T::magnitude(v85);
+        let v92 = T::select_equal(
+            v88,
+            T::number(1.0),
+            v87,
+            v23 - (v23 * v27 * v51 + v26 * v30),
+        ) * T::select_equal(v88, T::number(1.0), v85, T::number(1.0) - v88);
+        v92
+    }
+    #[inline(always)]
+    fn slope<T: Scalar>(x: T, _: T) -> T {
+        cos(x)
+    }
+}
+
+/// Cosine for |x| up to 1e9, NaN beyond.
+#[inline(always)]
+fn cos<T: Scalar>(x: T) -> T {
+    x.function::<Cos>()
+}
+enum Cos {}
+impl Function for Cos {
+    #[inline(always)]
+    fn value<T: Real>(x: T) -> T {
+        let v6 = x * T::number(0.6366197723675814) + T::number(6.755399441055744e15)
+            - T::number(6.755399441055744e15);
+        let v15 = x - v6 * T::number(1.570796251296997)
+            - v6 * T::number(7.549789415861596e-8);
+        let v16 = v6 * T::number(5.390304224023659e-15);
+        let v17 = v6 * T::number(-1.3658654267100645e-21);
+        let v18 = v16 + v17;
+        let v23 = v15 - v18;
+        let v26 = v16 - v18 + v17 + v6 * T::number(-1.1351118607522202e-28)
+            - (v15 - v23 - v18);
+        let v27 = v23 * v23;
+        let v29 = v27 * T::number(-0.5);
+        let v30 = T::number(1.0) + v29;
+        let v46 = v27 * v27;
+        let v49 = v46 * v46;
+        let v51 = T::number(0.1666666666666663) + v27 * T::number(-0.008333333333321917)
+            + v46
+                * (T::number(0.00019841269829458453)
+                    + v27 * T::number(-2.755731358278338e-6))
+            + v49
+                * (T::number(2.5050742477852252e-8)
+                    + v27 * T::number(-1.5895956565664054e-10));
+        let v70 = T::number(0.041666666666666595)
+            + v27 * T::number(-0.0013888888888873342)
+            + v46
+                * (T::number(2.4801587289001978e-5)
+                    + v27 * T::number(-2.755731421694031e-7))
+            + v49
+                * (T::number(2.0875705319424642e-9)
+                    + v27 * T::number(-1.1358738323480003e-11));
+        let v85 = T::select_greater(
+            T::magnitude(x),
+            T::number(1e9),
+            T::number(f64::NAN),
+            v6
+                - (v6 * T::number(0.25) + T::number(6.755399441055744e15)
+                    - T::number(6.755399441055744e15)) * T::number(4.0),
+        );
+        let v87 = v30 + (T::number(1.0) - v30 + v29 + (v46 * v70 + v23 * v26));
+        let v88 = T::magnitude(v85);
+        let v93 = T::select_equal(
+            v88,
+            T::number(1.0),
+            v23 - (v23 * v27 * v51 + v26 * v30),
+            v87,
+        ) * T::select_equal(v88, T::number(1.0), -v85, T::number(1.0) - v88);
+        v93
+    }
+    #[inline(always)]
+    fn slope<T: Scalar>(x: T, _: T) -> T {
+        -sin(x)
+    }
 }

@@ -140,7 +140,7 @@ fn a_certificate_of_the_wrong_source_fails() {
         let program = lower(&model, &variant(&model, order).equations, &values);
         emit(&program, Packaging::Crate).expect("the program can be emitted")
     };
-    let falsified = source(1).replacen("2.0 * x_c_dot", "3.0 * x_c_dot", 1);
+    let falsified = source(1).replacen("(2.0) * x_c_dot", "(3.0) * x_c_dot", 1);
     assert_ne!(falsified, source(1));
     let found = certificate(&model, 1, falsified).expect("the parameters have values");
     let failed: Vec<&str> = found.failures().map(|check| check.name.as_str()).collect();

@@ -77,6 +77,7 @@ fn kind(op: &Op) -> &'static str {
     match op {
         Op::Add(..) => "Add",
         Op::Apply { .. } => "Apply",
+        Op::Argument(..) => "Argument",
         Op::Assemble { .. } => "Assemble",
         Op::Call(..) => "Call",
         Op::Cholesky(_) => "Cholesky",

@@ -9,7 +9,7 @@ use serde_json::json;
 use crate::arguments::{Generate, Target};
 use crate::output::write_file;
 use crate::problem::{Outcome, Problem, say, warn};
-use crate::variant::{Variant, derive_variant, load};
+use crate::variant::{derive_variant, load, orders};
 
 /// The specification whose variants are checked in.
 const SPECIFICATION: &str = "model-spec/models/planetary_arm.toml";
@@ -30,7 +30,10 @@ pub fn run(options: &Generate) -> Outcome {
 
 fn one(options: &Generate, spec: &Path, out: &Path) -> Outcome {
     let Target::Rust = options.target;
-    let variant = Variant::load(spec, options.order.as_deref())?;
+    let checked = load(spec)?;
+    let orders = orders(&checked.model, options.order.as_deref())?;
+    let variant = codegen::variant::Variant::derive_with(&checked.model, &orders, &options.with)
+        .map_err(Problem::Specification)?;
     let text = source(&variant.program, Packaging::Crate)?;
     let path = out.join("lib.rs");
     write_file(&path, text.as_bytes())?;

@@ -46,7 +46,7 @@ type Function = unsafe extern "C" fn(*mut f64, f64, *const f64, *mut f64);
 pub struct Machine {
     prepare: Function,
     /// In the order of [`Stage::ALL`].
-    stages: [Function; 5],
+    stages: [Function; Stage::ALL.len()],
     /// Room for the inputs, then literals.
     room: Vec<f64>,
     /// Numbers that the functions reach from `memory` on.
@@ -79,9 +79,12 @@ pub fn compile(program: &Program) -> Result<Machine, CompileError> {
     let mut define =
         |module: &mut JITModule, task| define(module, &mut contexts, &mut shared, task);
     let prepare = define(&mut module, Task::Prepare)?;
-    let mut stages = [prepare; 5];
+    // Most programs lack the stages on request: what has no roots costs no function.
+    let mut stages = [prepare; Stage::ALL.len()];
     for (slot, stage) in stages.iter_mut().zip(Stage::ALL) {
-        *slot = define(&mut module, Task::PerCall(stage))?;
+        if stage == Stage::Rates || !stage.roots(program).is_empty() {
+            *slot = define(&mut module, Task::PerCall(stage))?;
+        }
     }
     module.finalize_definitions().map_err(CompileError::new)?;
     let inputs = shared.inputs()..shared.inputs() + program.inputs.len();

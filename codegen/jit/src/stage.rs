@@ -198,7 +198,9 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             Op::Coordinate(index) => (self.call.state, index),
             Op::Rate(index) => (self.call.state, program.degrees_of_freedom() + index),
             Op::Input(index) => (self.call.memory, self.shared.inputs() + index),
-            Op::Parameter(_) => (self.call.memory, self.shared.places.offset(id)),
+            Op::Parameter(_) | Op::Argument(..) => {
+                (self.call.memory, self.shared.places.offset(id))
+            }
             _ if value.prepared && self.task != Task::Prepare => {
                 (self.call.memory, self.shared.places.offset(id))
             }
@@ -227,9 +229,10 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
                 program.degrees_of_freedom() + program.mode_offset(field),
             )),
             _ => {
-                let constant =
-                    matches!(value.op, Op::Table(_) | Op::Constant(_) | Op::Parameter(_))
-                        || value.prepared && self.task != Task::Prepare;
+                let constant = matches!(
+                    value.op,
+                    Op::Table(_) | Op::Constant(_) | Op::Parameter(_) | Op::Argument(..)
+                ) || value.prepared && self.task != Task::Prepare;
                 (constant || self.stored.contains(&id)).then(|| Array {
                     constant,
                     ..self.place(id)
@@ -258,6 +261,8 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             | Op::Rate(_)
             | Op::Input(_)
             | Op::Time => self.store_leaf(id),
+            // In its place by the evaluator.
+            Op::Argument(..) => {}
             Op::ModeCoordinates(_) | Op::ModeRates(_) => self.copy_vector(id, length),
             Op::Total(vector) => {
                 let total = self.total(vector);

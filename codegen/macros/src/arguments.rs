@@ -1,16 +1,18 @@
 //! What stands in the brackets of the macro: a file and an order, or sections. What the
 //! sections hold is the business of `tables`.
 
+use codegen::request::Request;
 use proc_macro2::{Span, TokenStream};
 use syn::parse::{Parse, ParseStream};
-use syn::{Error, Ident, LitInt, LitStr, Token};
+use syn::token::Brace;
+use syn::{Error, Ident, LitInt, LitStr, Token, bracketed};
 
 /// The arguments of the macro.
 pub enum Arguments {
-    /// `spec = "..."`, and `order = ...` if it is given.
-    File(LitStr, Option<Order>),
-    /// `section { ... } ...`, not looked at yet.
-    Sections(TokenStream),
+    /// `spec = "..."`, and `order = ...` and `with = [...]` if they are given.
+    File(LitStr, Option<Order>, Vec<Request>),
+    /// `section { ... } ...`, not looked at yet, after `with = [...]` if it is given.
+    Sections(TokenStream, Vec<Request>),
 }
 
 /// A modal truncation order.
@@ -39,16 +41,20 @@ impl Parse for Arguments {
             let message = format!("expected `spec = ` before the path\nhelp: {FORMS}");
             Err(input.error(message))
         } else {
-            input.parse().map(Self::Sections)
+            Ok(Self::Sections(input.parse()?, Vec::new()))
         }
     }
 }
 
-/// `spec = "...", order = ...` in any order.
+/// `spec = "...", order = ..., with = [...]` in any order; sections may follow the last.
 fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
     let begin = input.span();
-    let (mut path, mut order) = (None, None);
+    let (mut path, mut order, mut with) = (None, None, None);
     while !input.is_empty() {
+        if let (None, None, Some(requests), true) = (&path, &order, &with, input.peek2(Brace)) {
+            let requests = Vec::clone(requests);
+            return Ok(Arguments::Sections(input.parse()?, requests));
+        }
         let key: Ident = input
             .parse()
             .map_err(|error| Error::new(error.span(), "expected `spec = ...` or `order = ...`"))?;
@@ -65,8 +71,10 @@ fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
         let repeated = match key.to_string().as_str() {
             "spec" => path.replace(path_after(&key, input)?).is_some(),
             "order" => order.replace(order_after(&key, input)?).is_some(),
+            "with" => with.replace(requests(input)?).is_some(),
             _ => {
-                let message = format!("unknown argument `{key}`\nhelp: known are spec and order");
+                let message =
+                    format!("unknown argument `{key}`\nhelp: known are spec, order and with");
                 return Err(Error::new(key.span(), message));
             }
         };
@@ -80,13 +88,25 @@ fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
         }
     }
     match path {
-        Some(path) => Ok(Arguments::File(path, order)),
+        Some(path) => Ok(Arguments::File(path, order, with.unwrap_or_default())),
         None => Err(Error::new(
             begin,
             "an order without a file\nhelp: give spec = \"models/arm.toml\"; in sections, the \
              order stands with the field: fields { w: { order: 4, ... } }",
         )),
     }
+}
+
+/// `[jacobians, products]`
+fn requests(input: ParseStream<'_>) -> syn::Result<Vec<Request>> {
+    let list;
+    bracketed!(list in input);
+    let names = list.parse_terminated(Ident::parse, Token![,])?;
+    let request = |name: &Ident| {
+        let known: Result<Request, _> = name.to_string().parse();
+        known.map_err(|error| Error::new(name.span(), error.to_string()))
+    };
+    names.iter().map(request).collect()
 }
 
 fn path_after(key: &Ident, input: ParseStream<'_>) -> syn::Result<LitStr> {

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use codegen::request::Request;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 use model_spec::diagnostic::Diagnostics;
@@ -26,12 +27,17 @@ pub fn model(input: TokenStream, root: Option<&Path>) -> TokenStream {
 
 fn items(input: TokenStream, root: Option<&Path>) -> syn::Result<TokenStream> {
     match syn::parse2(input)? {
-        Arguments::File(path, order) => file(&path, order, root),
-        Arguments::Sections(stream) => in_place(stream),
+        Arguments::File(path, order, requests) => file(&path, order, &requests, root),
+        Arguments::Sections(stream, requests) => in_place(stream, &requests),
     }
 }
 
-fn file(path: &LitStr, order: Option<Order>, root: Option<&Path>) -> syn::Result<TokenStream> {
+fn file(
+    path: &LitStr,
+    order: Option<Order>,
+    requests: &[Request],
+    root: Option<&Path>,
+) -> syn::Result<TokenStream> {
     let place = path.span();
     let root = root.ok_or_else(|| {
         let message = "CARGO_MANIFEST_DIR is not set, so the path leads nowhere\n\
@@ -47,7 +53,8 @@ fn file(path: &LitStr, order: Option<Order>, root: Option<&Path>) -> syn::Result
         let place = order.as_ref().map_or(place, |order| order.span);
         Error::new(place, described(&error))
     })?;
-    let variant = Variant::derive(&model, &orders).map_err(|found| in_file(&found, place))?;
+    let variant =
+        Variant::derive_with(&model, &orders, requests).map_err(|found| in_file(&found, place))?;
     let items = emitted(&variant)?;
     let warnings = warnings_in_file(&checked.warnings, place);
     let Some(path) = root.join(&written).to_str().map(str::to_owned) else {
@@ -74,7 +81,7 @@ fn refused(found: &Diagnostics, path: &Path, place: Span) -> Error {
     }
 }
 
-fn in_place(stream: TokenStream) -> syn::Result<TokenStream> {
+fn in_place(stream: TokenStream, requests: &[Request]) -> syn::Result<TokenStream> {
     let placed = specification(&sections(stream)?)?;
     let source = Source::new(IN_PLACE, placed.text.as_str());
     let checked = model_spec::check(source).map_err(|found| at_tokens(&found, &placed))?;
@@ -82,7 +89,8 @@ fn in_place(stream: TokenStream) -> syn::Result<TokenStream> {
     let orders = model
         .orders(None)
         .map_err(|error| Error::new(Span::call_site(), described(&error)))?;
-    let variant = Variant::derive(&model, &orders).map_err(|found| at_tokens(&found, &placed))?;
+    let variant = Variant::derive_with(&model, &orders, requests)
+        .map_err(|found| at_tokens(&found, &placed))?;
     let items = emitted(&variant)?;
     let warnings = warnings_at_tokens(&checked.warnings, &placed);
     let text = &placed.text;

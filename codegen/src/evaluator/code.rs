@@ -1,7 +1,7 @@
 //! Machine code of a program, as the evaluator calls it. How it is made is not known here.
 
 use super::{Places, Point};
-use crate::program::{Extent, Program, ValueId};
+use crate::program::{Extent, Program, RowValues, ValueId};
 
 /// What is computed together in one call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,16 +16,31 @@ pub enum Stage {
     Mass,
     /// Velocity terms and generalised forces.
     Forces,
+    /// M a + c - f, if it was requested; so for those that follow.
+    InverseDynamics,
+    /// The rates of the guards.
+    GuardRates,
+    /// All Jacobians.
+    Jacobians,
+    /// The Jacobian of the rates times a direction.
+    ForwardProduct,
+    /// Weights times the Jacobian of the rates.
+    ReverseProduct,
 }
 
 impl Stage {
     /// Every stage.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 10] = [
         Self::Rates,
         Self::Observables,
         Self::Guards,
         Self::Mass,
         Self::Forces,
+        Self::InverseDynamics,
+        Self::GuardRates,
+        Self::Jacobians,
+        Self::ForwardProduct,
+        Self::ReverseProduct,
     ];
 
     /// The values it answers with.
@@ -45,6 +60,35 @@ impl Stage {
                 let mut roots = program.velocity_terms.all();
                 roots.extend(program.forces.all());
                 roots
+            }
+            Self::InverseDynamics
+            | Self::GuardRates
+            | Self::Jacobians
+            | Self::ForwardProduct
+            | Self::ReverseProduct => self.requested_roots(program),
+        }
+    }
+}
+
+impl Stage {
+    fn requested_roots(self, program: &Program) -> Vec<ValueId> {
+        let requested = &program.requested;
+        let products = requested.products.iter();
+        match self {
+            Self::InverseDynamics => {
+                let rows = requested.inverse_dynamics.iter();
+                rows.flat_map(RowValues::all).collect()
+            }
+            Self::GuardRates => requested.guard_rates.iter().flatten().copied().collect(),
+            Self::ForwardProduct => products.flat_map(|p| p.forward.all()).collect(),
+            Self::ReverseProduct => products
+                .flat_map(|p| p.reverse.iter().map(|(_, id)| *id))
+                .collect(),
+            _ => {
+                let jacobians = requested.jacobians.iter();
+                jacobians
+                    .flat_map(|jacobian| jacobian.entries.iter().map(|entry| entry.value))
+                    .collect()
             }
         }
     }

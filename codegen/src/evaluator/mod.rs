@@ -5,6 +5,7 @@
 mod code;
 mod functions;
 mod matrices;
+mod requested;
 mod step;
 
 use std::sync::Arc;
@@ -23,7 +24,7 @@ pub struct Evaluator {
     parameters: Vec<(ValueId, usize)>,
     prepare: Vec<ValueId>,
     /// The steps of each stage, in the order of [`Stage::ALL`].
-    stages: [Vec<ValueId>; 5],
+    stages: [Vec<ValueId>; Stage::ALL.len()],
     code: Option<Arc<dyn MachineCode>>,
 }
 

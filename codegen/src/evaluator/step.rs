@@ -55,7 +55,7 @@ pub(super) fn step(
     match &value.op {
         Op::Constant(number) => out[0] = *number,
         Op::Table(place) => out.copy_from_slice(&program.tables[*place].values),
-        Op::Parameter(_) => {}
+        Op::Parameter(_) | Op::Argument(..) => {}
         Op::Coordinate(index) => out[0] = point.state[*index],
         Op::Rate(index) => out[0] = point.state[degrees + index],
         Op::ModeCoordinates(field) => {

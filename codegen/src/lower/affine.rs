@@ -7,7 +7,8 @@ use super::values::Lowering;
 use crate::affine::system::{AffineLayout, AffineProgram, RowValues};
 use crate::affine::{AffineEquations, AffineRow};
 use crate::program::{
-    MassBlocks, Program, ProgramField, ProgramParameter, Quantity, RowValues as Rows, ValueId,
+    MassBlocks, Program, ProgramField, ProgramParameter, Quantity, Requested, RowValues as Rows,
+    ValueId,
 };
 
 /// The program of the coefficients of `equations`, which belong to `model`.
@@ -78,6 +79,7 @@ pub fn lower_affine(
             guards: Vec::new(),
             pivots,
             coefficient_values: Vec::new(),
+            requested: Requested::default(),
         },
     }
 }

@@ -6,21 +6,34 @@
 
 mod affine;
 mod arithmetic;
+mod requested;
 mod values;
 
 use model_spec::model::{Model, ParameterValue};
 use model_spec::unit::Unit;
 
-use crate::equations::Equations;
+use crate::equations::{Equations, Rows};
+use crate::graph::Id;
 use crate::print::{Notation, formula};
 use crate::program::{
     Extent, Op, Program, ProgramField, ProgramGuard, ProgramParameter, Quantity, ValueId,
 };
+use crate::requested::Requested;
 pub use affine::lower_affine;
 use values::Lowering;
 
 /// The program of one variant.
 pub fn lower(model: &Model, equations: &Equations, parameter_values: &[f64]) -> Program {
+    lower_requested(model, equations, parameter_values, &Requested::default())
+}
+
+/// The program of one variant with what was requested, which leaves the rest as it is.
+pub fn lower_requested(
+    model: &Model,
+    equations: &Equations,
+    parameter_values: &[f64],
+    requested: &Requested<Id, Rows>,
+) -> Program {
     let mut lowering = Lowering::new(
         &equations.graph,
         &equations.derived_parameters,
@@ -63,6 +76,7 @@ pub fn lower(model: &Model, equations: &Equations, parameter_values: &[f64]) -> 
         .iter()
         .map(|coefficient| lowering.value(coefficient.value))
         .collect();
+    let requested = lowering.requested(requested);
     Program {
         name: model.name.clone(),
         title: model.title.clone(),
@@ -99,6 +113,7 @@ pub fn lower(model: &Model, equations: &Equations, parameter_values: &[f64]) -> 
         guards,
         pivots,
         coefficient_values,
+        requested,
     }
 }
 

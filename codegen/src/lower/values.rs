@@ -39,6 +39,7 @@ impl Hash for Computation {
             | Op::ModeCoordinates(place)
             | Op::ModeRates(place)
             | Op::Input(place) => place.hash(state),
+            Op::Argument(argument, variable) => (argument, variable).hash(state),
             op => op.operands().hash(state),
         }
     }
@@ -142,7 +143,8 @@ impl<'g> Lowering<'g> {
             | Op::ModeCoordinates(_)
             | Op::ModeRates(_)
             | Op::Input(_)
-            | Op::Time => false,
+            | Op::Time
+            | Op::Argument(..) => false,
             _ => op.operands().iter().all(|id| self.values[id.0].prepared),
         };
         let id = ValueId(self.values.len());
@@ -202,6 +204,9 @@ impl<'g> Lowering<'g> {
             Operation::Rate(index) => self.emit(Op::Rate(*index), extent),
             Operation::Input(index) => self.emit(Op::Input(*index), extent),
             Operation::Time => self.emit(Op::Time, extent),
+            Operation::Argument(argument, variable) => {
+                self.emit(Op::Argument(*argument, *variable), extent)
+            }
             Operation::ModeCoordinates(field) => self.emit(Op::ModeCoordinates(*field), extent),
             Operation::ModeRates(field) => self.emit(Op::ModeRates(*field), extent),
             Operation::Table(index) => self.table(*index),

@@ -1,9 +1,8 @@
 //! Statements for matrices: products, Gram matrices, assembled blocks and Cholesky factors,
 //! as loops in the order that the program defines.
 
-use super::EmitError;
 use super::body::{Body, Emitted, looped, reference};
-use super::expression::{Expression, assignment, infix};
+use super::expression::{Expression, assignment};
 use crate::program::{Extent, Op, ValueId};
 
 impl Body<'_> {
@@ -18,14 +17,13 @@ impl Body<'_> {
                 vector,
             } => {
                 let (rows, columns) = self.matrix_size(matrix);
-                let entry = self.array(matrix)?;
-                let vector = self.element_at(vector, "k")?;
-                let (entry, length) = if transposed {
-                    (format!("{entry}[k][i]"), rows)
+                let (index, length) = if transposed {
+                    ("k][i", rows)
                 } else {
-                    (format!("{entry}[i][k]"), columns)
+                    ("i][k", columns)
                 };
-                let entry = Expression::atom(entry);
+                let entry = self.entry(matrix, index)?;
+                let vector = self.element_at(vector, "k")?;
                 (Expression::multiply(&entry, &vector), length)
             }
             Op::GramDiagonal {
@@ -34,17 +32,15 @@ impl Body<'_> {
                 right,
             } => {
                 let (nodes, _) = self.matrix_size(left);
-                let (left, right) = (self.array(left)?, self.array(right)?);
+                let (left, right) = (self.entry(left, "k][i")?, self.entry(right, "k][i")?);
                 let weight = self.element_at(weight, "k")?;
-                let left = Expression::atom(format!("{left}[k][i]"));
-                let right = Expression::atom(format!("{right}[k][i]"));
                 let weighted = Expression::multiply(&left, &weight);
                 (Expression::multiply(&weighted, &right), nodes)
             }
             _ => (Expression::number(f64::NAN), 1),
         };
-        let added = infix("+=", format!("{name}[i]"), summand);
-        Ok((looped("k", length, &format!("{added};\n")), name))
+        let added = add_to(&format!("{name}[i]"), &summand);
+        Ok((looped("k", length, &format!("{added}\n")), name))
     }
 
     pub(super) fn matrix_size(&self, id: ValueId) -> (usize, usize) {
@@ -59,7 +55,7 @@ impl Body<'_> {
         match self.program.value(id).op.clone() {
             Op::Cholesky(matrix) => {
                 self.needed.cholesky = true;
-                let matrix = reference(self.array(matrix)?);
+                let matrix = reference(self.numbers(matrix)?);
                 let factor = Expression::call("cholesky", &[matrix]);
                 self.push(&assignment(&format!("let {name}"), factor));
             }
@@ -69,24 +65,28 @@ impl Body<'_> {
                 right,
             } => {
                 let nodes = self.matrix_size(left).0;
-                let (left, right) = (self.array(left)?, self.array(right)?);
+                let (left, right) = (self.entry(left, "k][i")?, self.entry(right, "k][j")?);
                 let weight = self.element_at(weight, "k")?;
-                let left = Expression::atom(format!("{left}[k][i]"));
-                let right = Expression::atom(format!("{right}[k][j]"));
                 let weighted = Expression::multiply(&left, &weight);
                 let summand = Expression::multiply(&weighted, &right);
-                let added = infix("+=", format!("{name}[i][j]"), summand);
-                let inner = looped("k", nodes, &format!("{added};\n"));
-                self.push(&format!("let mut {name} = [[0.0; {columns}]; {rows}];"));
+                let added = add_to(&format!("{name}[i][j]"), &summand);
+                let inner = looped("k", nodes, &format!("{added}\n"));
+                self.push(&format!(
+                    "let mut {name} = [[T::number(0.0); {columns}]; {rows}];"
+                ));
                 self.push(looped("i", rows, &looped("j", columns, &inner)).trim_end());
             }
-            Op::CholeskySolve(..) => {
-                return Err(EmitError::Value(
-                    "a solved matrix stands in no emitted stage".to_owned(),
-                ));
+            Op::CholeskySolve(factor, right) => {
+                self.needed.cholesky_of_matrix = true;
+                let factor = reference(self.numbers(factor)?);
+                let right = reference(self.numbers(right)?);
+                let solution = Expression::call("cholesky_solve_matrix", &[factor, right]);
+                self.push(&assignment(&format!("let {name}"), solution));
             }
             block => {
-                self.push(&format!("let mut {name} = [[0.0; {columns}]; {rows}];"));
+                self.push(&format!(
+                    "let mut {name} = [[T::number(0.0); {columns}]; {rows}];"
+                ));
                 let place = |i: &str, j: &str| format!("{name}[{i}][{j}]");
                 let loops = self.block_loops(&block, (rows, columns), &place)?;
                 self.push(loops.trim_end());
@@ -114,35 +114,36 @@ impl Body<'_> {
         let mut statements = String::new();
         if let Some(diagonal) = diagonal {
             let element = self.element(*diagonal)?;
-            statements.push_str(&infix("+=", place("i", "i"), element));
-            statements.push_str(";\n");
+            statements.push_str(&add_to(&place("i", "i"), &element));
+            statements.push('\n');
         }
         let mut entries = String::new();
         for (u, v) in outer {
             let (u, v) = (self.element_at(*u, "i")?, self.element_at(*v, "j")?);
             let product = Expression::multiply(&u, &v);
-            entries.push_str(&infix("+=", place("i", "j"), product));
-            entries.push_str(";\n");
+            entries.push_str(&add_to(&place("i", "j"), &product));
+            entries.push('\n');
         }
         for scaled in matrices {
-            let matrix = self.array(scaled.matrix)?;
+            let index = if scaled.transposed { "j][i" } else { "i][j" };
+            let element = self.entry(scaled.matrix, index)?;
             let (row, column) = (
                 self.element_at(scaled.row, "i")?,
                 self.element_at(scaled.column, "j")?,
             );
-            let element = if scaled.transposed {
-                format!("{matrix}[j][i]")
-            } else {
-                format!("{matrix}[i][j]")
-            };
-            let scaled_row = Expression::multiply(&row, &Expression::atom(element));
+            let scaled_row = Expression::multiply(&row, &element);
             let product = Expression::multiply(&scaled_row, &column);
-            entries.push_str(&infix("+=", place("i", "j"), product));
-            entries.push_str(";\n");
+            entries.push_str(&add_to(&place("i", "j"), &product));
+            entries.push('\n');
         }
         if !entries.is_empty() {
             statements.push_str(&looped("j", columns, &entries));
         }
         Ok(looped("i", rows, &statements))
     }
+}
+
+/// An addition to what stands at `place`.
+pub(super) fn add_to(place: &str, summand: &Expression) -> String {
+    assignment(place, Expression::add(&Expression::atom(place), summand))
 }

@@ -12,7 +12,7 @@ use super::functions::Needed;
 use super::literals::{block, identifier};
 use super::names::Names;
 use crate::evaluator::elementary_function;
-use crate::program::{Extent, Op, PARTIAL_SUMS, Program, ValueId};
+use crate::program::{Argument, Extent, Op, PARTIAL_SUMS, Program, ValueId, Variable};
 use elementary::Function as Elementary;
 use model_spec::model::Function;
 
@@ -116,7 +116,7 @@ impl<'a> Body<'a> {
 
     /// Adds a vector filled element by element.
     fn push_filled(&mut self, name: &str, length: usize, statement: &str) {
-        self.push(&format!("let mut {name} = [0.0; {length}];"));
+        self.push(&format!("let mut {name} = [T::number(0.0); {length}];"));
         self.push_loop("i", length, statement);
     }
 
@@ -140,7 +140,15 @@ impl<'a> Body<'a> {
                 | Op::Time,
                 _,
             ) => Ok(()),
-            (Op::Coordinate(_) | Op::Rate(_) | Op::Input(_) | Op::Parameter(_), _) => {
+            (Op::Argument(..), Extent::Vector(_)) => Ok(()),
+            (
+                Op::Coordinate(_)
+                | Op::Rate(_)
+                | Op::Input(_)
+                | Op::Parameter(_)
+                | Op::Argument(..),
+                _,
+            ) => {
                 let expression = self.leaf(id)?;
                 let name = self.leaf_name(id);
                 let name = self.names.assign(id, &name, "s")?;
@@ -208,7 +216,7 @@ impl<'a> Body<'a> {
         if let Op::CholeskySolve(factor, vector) = self.program.value(id).op {
             self.needed.cholesky = true;
             let name = self.names.of(self.program, id, "s")?;
-            let factor = reference(self.array(factor)?);
+            let factor = reference(self.numbers(factor)?);
             let vector = reference(self.vector_array(vector, length)?);
             let solution = Expression::call("cholesky_solve", &[factor, vector]);
             self.push(&assignment(&format!("let {name}"), solution));
@@ -295,9 +303,7 @@ impl<'a> Body<'a> {
                 self.needed.pivot_reciprocal = true;
                 Expression::call("pivot_reciprocal", operands)
             }
-            (Op::Select { .. }, [a, b, then, otherwise]) => {
-                Expression::choice(">", [a, b, then, otherwise])
-            }
+            (Op::Select { .. }, _) => Expression::call("T::select_greater", operands),
             (Op::Call(function, _), _) => self.call(*function, operands),
             _ => Expression::number(f64::NAN),
         }
@@ -334,11 +340,19 @@ impl<'a> Body<'a> {
             Op::Time => Expression::atom("t"),
             Op::Table(table) => {
                 let name = identifier(&program.tables[table].name)?;
-                Expression::element(name, index.unwrap_or_default())
+                Expression::converted(format!("{name}[{}]", index.unwrap_or_default()))
             }
             Op::ModeCoordinates(field) => place(program.mode_offset(field)),
             Op::ModeRates(field) => {
                 place(program.degrees_of_freedom() + program.mode_offset(field))
+            }
+            Op::Argument(argument, variable) if value.extent != Extent::Scalar => {
+                let place = infix(
+                    "+",
+                    program.variable_place(variable),
+                    index.unwrap_or_default(),
+                );
+                Expression::element(argument_name(argument), &place)
             }
             _ => match &self.access {
                 Access::Coefficients(fields) if value.prepared => {
@@ -373,17 +387,42 @@ impl<'a> Body<'a> {
                 let name = identifier(&program.parameters[place].quantity.name)?;
                 Expression::field("parameters", name)
             }
+            Op::Argument(_, Variable::Input(index)) => {
+                Expression::field("input_direction", identifier(&program.inputs[index].name)?)
+            }
+            Op::Argument(argument, variable) => {
+                let place = program.variable_place(variable);
+                Expression::atom(format!("{}[{place}]", argument_name(argument)))
+            }
             _ => Expression::number(f64::NAN),
         })
     }
 
+    /// An entry of a matrix or of a vector, `index` being all that stands in the brackets.
+    pub(super) fn entry(&mut self, id: ValueId, index: &str) -> Emitted<Expression> {
+        if let Op::Table(place) = self.program.value(id).op {
+            let name = identifier(&self.program.tables[place].name)?;
+            return Ok(Expression::converted(format!("{name}[{index}]")));
+        }
+        Ok(Expression::element(&self.numbers(id)?, index))
+    }
+
     /// A vector or matrix as a whole.
-    pub fn array(&mut self, id: ValueId) -> Emitted<String> {
+    pub fn numbers(&mut self, id: ValueId) -> Emitted<String> {
         if let Some(name) = self.bound.get(&id) {
             return Ok(name.clone());
         }
         if let Op::Table(place) = self.program.value(id).op {
-            return Ok(identifier(&self.program.tables[place].name)?.to_owned());
+            let name = identifier(&self.program.tables[place].name)?;
+            let vector = matches!(self.program.value(id).extent, Extent::Vector(_));
+            self.needed.converted |= vector;
+            self.needed.converted_matrix |= !vector;
+            let function = if vector {
+                "converted"
+            } else {
+                "converted_matrix"
+            };
+            return Ok(format!("{function}(&{name})"));
         }
         match &self.access {
             Access::Coefficients(fields) if fields.contains_key(&id) => {
@@ -402,13 +441,22 @@ impl<'a> Body<'a> {
             let value = self.scalar(id)?;
             return Ok(format!("[{value}; {length}]"));
         }
-        if let Ok(array) = self.array(id) {
+        if let Ok(array) = self.numbers(id) {
             return Ok(array);
         }
         let element = self.element(id)?;
         let name = self.names.of(self.program, id, "s")?;
         self.push_filled(&name, length, &assignment(&format!("{name}[i]"), element));
         Ok(name)
+    }
+}
+
+/// The name under which a stage is given an argument.
+fn argument_name(argument: Argument) -> &'static str {
+    match argument {
+        Argument::Accelerations => "accelerations",
+        Argument::Direction => "direction",
+        Argument::Weights => "weights",
     }
 }
 

@@ -2,16 +2,14 @@
 //! order of evaluation needs them, marked for their layout.
 
 use super::layout::{
-    BLOCK, BLOCK_EVEN, BLOCK_OUT, BRACE, BRACE_OUT, CLOSE, COMMA_OUT, FIRM, FLOW, FLOW_EVEN,
-    FLOW_OUT, SPACE, SPACE_OUT, ZERO,
+    BLOCK, BLOCK_OUT, BRACE, BRACE_OUT, CLOSE, COMMA_OUT, FIRM, FLOW, FLOW_EVEN, FLOW_OUT, SPACE,
+    SPACE_OUT, ZERO,
 };
 
 /// How tightly an expression holds together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
-    Choice,
     And,
-    Comparison,
     Sum,
     Product,
     Negation,
@@ -58,17 +56,16 @@ impl Expression {
         }
     }
 
-    /// A number.
+    /// A number of the scalar type.
     pub fn number(value: f64) -> Self {
-        let level = if value.is_sign_negative() {
-            Level::Negation
-        } else {
-            Level::Atom
-        };
+        Self::converted(super::literals::number(value))
+    }
+
+    /// An `f64`, a literal or the entry of a table, as a number of the scalar type.
+    pub fn converted(number: impl Into<String>) -> Self {
         Self {
-            text: super::literals::number(value),
-            level,
             size: 0,
+            ..Self::call("T::number", &[Self::atom(number)])
         }
     }
 
@@ -132,17 +129,7 @@ impl Expression {
 
     /// `a && b`
     pub fn and(a: &Self, b: &Self) -> Self {
-        Self::binary("&&", Level::And, (a, Level::And), (b, Level::Comparison))
-    }
-
-    /// `a OPERATOR b`, a comparison
-    pub fn compare(operator: &str, a: &Self, b: &Self) -> Self {
-        Self::binary(
-            operator,
-            Level::Comparison,
-            (a, Level::Sum),
-            (b, Level::Sum),
-        )
+        Self::binary("&&", Level::And, (a, Level::And), (b, Level::Atom))
     }
 
     /// -a
@@ -160,26 +147,21 @@ impl Expression {
         Self::new(text, Level::Atom, &parts)
     }
 
-    /// The call of a function that sums this many elements i.
+    /// The call of a function that sums this many elements i. The number goes in the type of
+    /// an array, where the function knows it as a constant.
     pub fn sum(function: &str, length: usize, element: &Self) -> Self {
-        let closure = format!(
-            "{FLOW_EVEN}{BLOCK}|{ZERO}i|{SPACE_OUT}{CLOSE}{FIRM}\
-             {BLOCK}{BRACE}{element}{BRACE_OUT}{CLOSE}{CLOSE}"
-        );
-        let length = Self::atom(length.to_string());
-        Self::call(function, &[length, Self::atom(closure)])
+        let body = if element.is_call() {
+            element.text.clone()
+        } else {
+            format!("{BLOCK}{BRACE}{element}{BRACE_OUT}{CLOSE}")
+        };
+        let closure = format!("{FLOW_EVEN}{BLOCK}|{ZERO}i|{SPACE_OUT}{CLOSE}{FIRM}{body}{CLOSE}");
+        let count = Self::atom(format!("[(); {length}]"));
+        Self::call(function, &[count, Self::atom(closure)])
     }
 
-    /// `if a OPERATOR b { then } else { otherwise }`
-    pub fn choice(operator: &str, [a, b, then, otherwise]: [&Self; 4]) -> Self {
-        let condition = Self::compare(operator, a, b);
-        let branch = |value: &Self| format!("{{{SPACE}{FLOW_EVEN}{value}{CLOSE}{SPACE_OUT}}}");
-        let text = format!(
-            "{BLOCK}if {BLOCK_OUT}{BLOCK_EVEN}{condition}{SPACE}{CLOSE}{CLOSE}{} else {}{CLOSE}",
-            branch(then),
-            branch(otherwise)
-        );
-        Self::new(text, Level::Choice, &[a, b, then, otherwise])
+    fn is_call(&self) -> bool {
+        self.level == Level::Atom && self.text.ends_with(')')
     }
 }
 

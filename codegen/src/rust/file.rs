@@ -9,6 +9,8 @@ use super::functions::{Needed, items};
 use super::layout;
 use super::literals::{block, doc, file_doc, identifier, number};
 use super::names::Names;
+use super::requested::requested_roots;
+use super::scalar::SCALAR;
 use crate::program::{Extent, Op, Program, ValueId};
 
 /// What the emitted file is.
@@ -66,6 +68,7 @@ impl<'p> File<'p> {
         let mut needed = Needed::default();
         let items = [
             self.constants(),
+            self.jacobian_constants(),
             self.parameters()?,
             self.inputs()?,
             self.coefficients(&mut needed)?,
@@ -73,7 +76,9 @@ impl<'p> File<'p> {
             self.observables(&mut needed)?,
             self.guards(&mut needed)?,
             self.mass_matrix(&mut needed)?,
+            self.requested(&mut needed)?,
             self.tables()?,
+            SCALAR.to_owned(),
             items(&needed),
         ]
         .concat();
@@ -233,6 +238,7 @@ fn stage_roots(program: &Program) -> Vec<ValueId> {
     roots.extend(&program.observable_values);
     roots.extend(program.guards.iter().map(|g| g.value));
     roots.extend(mass_roots(program));
+    roots.extend(requested_roots(program));
     roots
 }
 

@@ -1,10 +1,12 @@
 //! The elementary functions as emitted Rust: their kernels, printed operation by
-//! operation, and the small functions they and the stages call.
+//! operation, and the small functions that the stages call. Their derivatives are in `slopes`.
 
 use std::collections::BTreeSet;
 
 use super::expression::{Expression, assignment};
+use super::layout::{DEEPER, SHALLOWER};
 use super::literals::block;
+use super::slopes;
 use elementary::{Function as Elementary, Kernel, Operation};
 
 /// What a file needs besides the operators.
@@ -20,6 +22,12 @@ pub struct Needed {
     pub pivot_reciprocal: bool,
     /// Cholesky factors and their solutions.
     pub cholesky: bool,
+    /// Solutions for the columns of a matrix.
+    pub cholesky_of_matrix: bool,
+    /// Vectors of another type.
+    pub converted: bool,
+    /// Matrices of another type.
+    pub converted_matrix: bool,
     /// Sums of more elements than there are partial sums.
     pub sum: bool,
     /// Sums of no more.
@@ -28,17 +36,15 @@ pub struct Needed {
 
 /// The items of every function needed.
 pub fn items(needed: &Needed) -> String {
-    let mut elementary = needed.elementary.clone();
-    if needed.cholesky {
-        elementary.insert(Elementary::Sqrt);
-    }
-    let kernels: Vec<(Elementary, Kernel)> = elementary.iter().map(|f| (*f, f.kernel())).collect();
     let mut text = String::new();
     for (needed, item) in [
         (needed.deadzone, DEADZONE),
         (needed.contact, CONTACT),
         (needed.pivot_reciprocal, PIVOT_RECIPROCAL),
-        (needed.cholesky, CHOLESKY),
+        (needed.cholesky || needed.cholesky_of_matrix, CHOLESKY),
+        (needed.cholesky_of_matrix, CHOLESKY_OF_MATRIX),
+        (needed.converted || needed.converted_matrix, CONVERTED),
+        (needed.converted_matrix, CONVERTED_MATRIX),
         (needed.sum || needed.sum_of_few, PAIRED),
         (needed.sum_of_few, SUM_OF_FEW),
         (needed.sum, SUM),
@@ -47,18 +53,23 @@ pub fn items(needed: &Needed) -> String {
             text.push_str(item);
         }
     }
-    for (function, kernel) in &kernels {
-        text.push_str(&elementary_function(*function, kernel));
+    let mut elementary = needed.elementary.clone();
+    if needed.cholesky || needed.cholesky_of_matrix {
+        elementary.insert(Elementary::Sqrt);
     }
-    text + &primitives(&kernels)
+    text + &slopes::with_slopes(&elementary)
+        .into_iter()
+        .map(elementary_function)
+        .collect::<String>()
 }
 
 /// f_k of Eq. (7).
 const DEADZONE: &str = "\
 /// Deflection beyond the backlash: f_k of Eq. (7).
 #[inline(always)]
-fn deadzone(p: f64, b: f64) -> f64 {
-    if p > b { p - b } else if p < -b { p + b } else { 0.0 }
+fn deadzone<T: Scalar>(p: T, b: T) -> T {
+    let beyond = T::select_greater(-b, p, p + b, T::number(0.0));
+    T::select_greater(p, b, p - b, beyond)
 }
 ";
 
@@ -66,8 +77,9 @@ fn deadzone(p: f64, b: f64) -> f64 {
 const CONTACT: &str = "\
 /// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).
 #[inline(always)]
-fn contact(p: f64, b: f64) -> f64 {
-    if p > b || p < -b { 1.0 } else { 0.0 }
+fn contact<T: Scalar>(p: T, b: T) -> T {
+    let beyond = T::select_greater(-b, p, T::number(1.0), T::number(0.0));
+    T::select_greater(p, b, T::number(1.0), beyond)
 }
 ";
 
@@ -75,24 +87,26 @@ fn contact(p: f64, b: f64) -> f64 {
 const PIVOT_RECIPROCAL: &str = "\
 /// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
 #[inline(always)]
-fn pivot_reciprocal(pivot: f64) -> f64 {
-    if pivot > 0.0 { 1.0 / pivot } else { f64::NAN }
+fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
+    let reciprocal = T::number(1.0) / pivot;
+    T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
 }
 ";
 
 /// Cholesky factors and their solutions.
 const CHOLESKY: &str = "\
 /// Lower factor L of a symmetric matrix L L^T; NaN where it is not positive definite.
-fn cholesky<const N: usize>(matrix: &[[f64; N]; N]) -> [[f64; N]; N] {
-    let mut factor = [[0.0; N]; N];
+fn cholesky<T: Scalar, const N: usize>(matrix: &[[T; N]; N]) -> [[T; N]; N] {
+    let mut factor = [[T::number(0.0); N]; N];
     for i in 0..N {
         for j in 0..i + 1 {
             let mut rest = matrix[i][j];
             for k in 0..j {
-                rest -= factor[i][k] * factor[j][k];
+                rest = rest - factor[i][k] * factor[j][k];
             }
             factor[i][j] = if i == j {
-                if rest > 0.0 { sqrt(rest) } else { f64::NAN }
+                let root = sqrt(rest);
+                T::select_greater(rest, T::number(0.0), root, T::number(f64::NAN))
             } else {
                 rest / factor[j][j]
             };
@@ -102,12 +116,16 @@ fn cholesky<const N: usize>(matrix: &[[f64; N]; N]) -> [[f64; N]; N] {
 }
 
 /// Solution of L L^T x = right.
-fn cholesky_solve<const N: usize>(factor: &[[f64; N]; N], right: &[f64; N]) -> [f64; N] {
-    let mut x = [0.0; N];
+#[inline]
+fn cholesky_solve<T: Scalar, const N: usize>(
+    factor: &[[T; N]; N],
+    right: &[T; N],
+) -> [T; N] {
+    let mut x = [T::number(0.0); N];
     for i in 0..N {
         let mut rest = right[i];
         for k in 0..i {
-            rest -= factor[i][k] * x[k];
+            rest = rest - factor[i][k] * x[k];
         }
         x[i] = rest / factor[i][i];
     }
@@ -115,25 +133,71 @@ fn cholesky_solve<const N: usize>(factor: &[[f64; N]; N], right: &[f64; N]) -> [
         let i = N - 1 - j;
         let mut rest = x[i];
         for k in i + 1..N {
-            rest -= factor[k][i] * x[k];
+            rest = rest - factor[k][i] * x[k];
         }
         x[i] = rest / factor[i][i];
     }
     x
 }
 ";
+/// Solutions column by column.
+const CHOLESKY_OF_MATRIX: &str = "\
+/// Solution of L L^T X = right, column by column.
+fn cholesky_solve_matrix<T: Scalar, const N: usize, const M: usize>(
+    factor: &[[T; N]; N],
+    right: &[[T; M]; N],
+) -> [[T; M]; N] {
+    let mut x = *right;
+    for j in 0..M {
+        let column = cholesky_solve(factor, &right.map(|row| row[j]));
+        for i in 0..N {
+            x[i][j] = column[i];
+        }
+    }
+    x
+}
+";
+
+/// Vectors as numbers of another type.
+const CONVERTED: &str = "\
+/// These numbers in another type.
+#[inline(always)]
+fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
+    let mut converted = [T::number(0.0); N];
+    for i in 0..N {
+        converted[i] = T::number(numbers[i]);
+    }
+    converted
+}
+";
+
+/// Matrices as numbers of another type.
+const CONVERTED_MATRIX: &str = "\
+/// The same of a matrix.
+#[inline(always)]
+fn converted_matrix<T: Scalar, const N: usize, const M: usize>(
+    numbers: &[[f64; N]; M],
+) -> [[T; N]; M] {
+    let mut matrix = [[T::number(0.0); N]; M];
+    for i in 0..M {
+        matrix[i] = converted(&numbers[i]);
+    }
+    matrix
+}
+";
+
 /// How the partial sums of any sum are added.
 const PAIRED: &str = "\
-/// The sum of the first `length` of eight numbers, neighbours added in pairs.
+/// The sum of the first `N` of eight numbers, neighbours added in pairs.
 #[inline(always)]
-fn paired(length: usize, s: &[f64; 8]) -> f64 {
-    let a = if length > 1 { s[0] + s[1] } else { s[0] };
-    let b = if length > 3 { s[2] + s[3] } else { s[2] };
-    let c = if length > 5 { s[4] + s[5] } else { s[4] };
-    let d = if length > 7 { s[6] + s[7] } else { s[6] };
-    let left = if length > 2 { a + b } else { a };
-    let right = if length > 6 { c + d } else { c };
-    if length > 4 { left + right } else { left }
+fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
+    let a = if N > 1 { s[0] + s[1] } else { s[0] };
+    let b = if N > 3 { s[2] + s[3] } else { s[2] };
+    let c = if N > 5 { s[4] + s[5] } else { s[4] };
+    let d = if N > 7 { s[6] + s[7] } else { s[6] };
+    let left = if N > 2 { a + b } else { a };
+    let right = if N > 6 { c + d } else { c };
+    if N > 4 { left + right } else { left }
 }
 ";
 
@@ -141,34 +205,40 @@ fn paired(length: usize, s: &[f64; 8]) -> f64 {
 const SUM_OF_FEW: &str = "\
 /// The sum of up to eight elements.
 #[inline(always)]
-fn sum_of_few<F: Fn(usize) -> f64>(length: usize, element: F) -> f64 {
-    let mut s = [0.0; 8];
-    for k in 0..length {
+fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
+    _: [(); N],
+    element: F,
+) -> T {
+    let mut s = [T::number(0.0); 8];
+    for k in 0..N {
         s[k] = element(k);
     }
-    paired(length, &s)
+    paired::<N, T>(&s)
 }
 ";
 
-/// Sums of more elements. Not inlined: with the loops around it unrolled into one piece the
-/// compiler vectorises across them, and spills.
+/// Sums of more elements. Not inlined for single numbers: with the loops around it unrolled into
+/// one piece the compiler vectorises across them, and spills. Their number is a constant of the
+/// type, so that no bound is left to be checked.
 const SUM: &str = "\
 /// The sum of elements in eight partial sums, number k of elements k, k + 8, k + 16, ...
-#[inline(never)]
-fn sum<F: Fn(usize) -> f64>(length: usize, element: F) -> f64 {
-    let mut s = [0.0; 8];
-    for k in 0..8 {
-        s[k] = element(k);
-    }
-    for block in 1..length / 8 {
+#[inline(always)]
+fn sum<const N: usize, T: Scalar, F: Fn(usize) -> T>(_: [(); N], element: F) -> T {
+    T::long_loop(move || {
+        let mut s = [T::number(0.0); 8];
         for k in 0..8 {
-            s[k] += element(8 * block + k);
+            s[k] = element(k);
         }
-    }
-    for i in length / 8 * 8..length {
-        s[i % 8] += element(i);
-    }
-    paired(length, &s)
+        for block in 1..N / 8 {
+            for k in 0..8 {
+                s[k] = s[k] + element(8 * block + k);
+            }
+        }
+        for i in N / 8 * 8..N {
+            s[i % 8] = s[i % 8] + element(i);
+        }
+        paired::<N, T>(&s)
+    })
 }
 ";
 
@@ -196,21 +266,36 @@ fn describe(function: Elementary) -> &'static str {
     }
 }
 
-fn elementary_function(function: Elementary, kernel: &Kernel) -> String {
-    let name = function.name();
-    let arguments: &[&str] = match (function, function.arity()) {
-        (Elementary::Atan2, _) => &["y", "x"],
-        (_, 1) => &["x"],
-        _ => &["x", "y"],
+/// The function that stages call and the type that names it.
+fn elementary_function(function: Elementary) -> String {
+    let (name, type_name) = (function.name(), slopes::type_name(function));
+    let description = describe(function);
+    let binary = function.arity() == 2;
+    let (family, apply, [x, y]) = match (function, binary) {
+        (Elementary::Atan2, _) => ("FunctionOfTwo", "function_of_two", ["y", "x"]),
+        (_, true) => ("FunctionOfTwo", "function_of_two", ["x", "y"]),
+        (_, false) => ("Function", "function", ["x", ""]),
     };
-    let typed: Vec<String> = arguments.iter().map(|a| format!("{a}: f64")).collect();
-    let opening = format!(
-        "/// {} Plain operations in a fixed order: the same bits on every machine.\n\
-         #[inline]\nfn {name}({}) -> f64 {{",
-        describe(function),
-        typed.join(", ")
+    let (second, argument) = if binary {
+        (format!(", {y}: T"), y)
+    } else {
+        (String::new(), "")
+    };
+    let call = format!(
+        "/// {description}\n#[inline(always)]\nfn {name}<T: Scalar>({x}: T{second}) -> T {{\n"
+    ) + &format!("{DEEPER}{x}.{apply}::<{type_name}>({argument})\n{SHALLOWER}}}\n");
+    let arguments: &[&str] = if binary { &[x, y] } else { &[x] };
+    let value = block(
+        &format!("#[inline(always)]\nfn value<T: Real>({x}: T{second}) -> T {{"),
+        &KernelBody::new(&function.kernel(), arguments).lines(),
+        "}",
     );
-    block(&opening, &KernelBody::new(kernel, arguments).lines(), "}")
+    call + &format!("enum {type_name} {{}}\n")
+        + &block(
+            &format!("impl {family} for {type_name} {{"),
+            &(value + &slopes::slope(function)),
+            "}",
+        )
 }
 
 /// The statements of a kernel: operations used once stand inside the expression that uses
@@ -269,7 +354,7 @@ impl<'k> KernelBody<'k> {
         let o = |index: usize| &self.expressions[index];
         let call = |name: &str, arguments: &[usize]| {
             let arguments: Vec<Expression> = arguments.iter().map(|a| o(*a).clone()).collect();
-            Expression::call(name, &arguments)
+            Expression::call(&format!("T::{name}"), &arguments)
         };
         match operation {
             Operation::Input(index) => {
@@ -281,96 +366,23 @@ impl<'k> KernelBody<'k> {
             Operation::Mul(a, b) => Expression::multiply(o(a), o(b)),
             Operation::Div(a, b) => Expression::divide(o(a), o(b)),
             Operation::Neg(a) => Expression::negate(o(a)),
-            Operation::Abs(a) => call("magnitude_of", &[a]),
+            Operation::Abs(a) => call("magnitude", &[a]),
             Operation::CopySign { magnitude, sign } => call("copy_sign", &[magnitude, sign]),
             Operation::SelectLess {
                 left,
                 right,
                 then,
                 otherwise,
-            } => Expression::choice("<", [o(left), o(right), o(then), o(otherwise)]),
+            } => call("select_greater", &[right, left, then, otherwise]),
             Operation::SelectEqual {
                 left,
                 right,
                 then,
                 otherwise,
-            } => Expression::choice("==", [o(left), o(right), o(then), o(otherwise)]),
+            } => call("select_equal", &[left, right, then, otherwise]),
             Operation::PowerOfTwo(a) => call("power_of_two", &[a]),
-            Operation::Exponent(a) => call("exponent_of", &[a]),
-            Operation::Significand(a) => call("significand_of", &[a]),
+            Operation::Exponent(a) => call("exponent", &[a]),
+            Operation::Significand(a) => call("significand", &[a]),
         }
     }
 }
-
-/// The bit operations that the kernels need.
-fn primitives(kernels: &[(Elementary, Kernel)]) -> String {
-    let uses = |wanted: fn(&Operation) -> bool| {
-        kernels
-            .iter()
-            .any(|(_, kernel)| kernel.operations.iter().any(wanted))
-    };
-    let mut text = String::new();
-    for (used, item) in [
-        (uses(|o| matches!(o, Operation::Abs(_))), MAGNITUDE_OF),
-        (uses(|o| matches!(o, Operation::CopySign { .. })), COPY_SIGN),
-        (
-            uses(|o| matches!(o, Operation::PowerOfTwo(_))),
-            POWER_OF_TWO,
-        ),
-        (uses(|o| matches!(o, Operation::Exponent(_))), EXPONENT_OF),
-        (
-            uses(|o| matches!(o, Operation::Significand(_))),
-            SIGNIFICAND_OF,
-        ),
-    ] {
-        if used {
-            text.push_str(item);
-        }
-    }
-    text
-}
-
-/// |x| by its bits.
-const MAGNITUDE_OF: &str = "\
-/// The sign bit cleared.
-#[inline(always)]
-fn magnitude_of(x: f64) -> f64 {
-    f64::from_bits(x.to_bits() & !(1 << 63))
-}
-";
-
-/// A magnitude with another number's sign.
-const COPY_SIGN: &str = "\
-/// A magnitude with the sign bit of another number.
-#[inline(always)]
-fn copy_sign(magnitude: f64, sign: f64) -> f64 {
-    f64::from_bits((magnitude.to_bits() & !(1 << 63)) | (sign.to_bits() & (1 << 63)))
-}
-";
-
-/// 2^k.
-const POWER_OF_TWO: &str = "\
-/// 2^k for an integral k: 2^52 + 1023 brings it to the place of the exponent.
-#[inline(always)]
-fn power_of_two(k: f64) -> f64 {
-    f64::from_bits((k + 4503599627371519.0).to_bits() << 52)
-}
-";
-
-/// The exponent field.
-const EXPONENT_OF: &str = "\
-/// The unbiased exponent field.
-#[inline(always)]
-fn exponent_of(x: f64) -> f64 {
-    ((x.to_bits() >> 52) & 0x7ff) as f64 - 1023.0
-}
-";
-
-/// The mantissa.
-const SIGNIFICAND_OF: &str = "\
-/// The mantissa under the exponent of 1.
-#[inline(always)]
-fn significand_of(x: f64) -> f64 {
-    f64::from_bits((x.to_bits() & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000)
-}
-";

@@ -2,18 +2,22 @@
 //! allocation or panic, that compiles on its own with any edition.
 //!
 //! `file` lays the items out, `types` writes parameters and coefficients, `stages` the
-//! functions, `body` (with `blocks` for matrices) writes the statements of a stage out of
-//! `expression`s, `functions` the elementary functions, `literals` numbers and names. All
-//! of it reads the program alone.
+//! functions (`requested` and `jacobians` those on request), `body` (with `blocks` for matrices) writes the statements of a stage out of
+//! `expression`s, `scalar` the trait of the numbers, `functions` (with `slopes`) the
+//! elementary functions, `literals` numbers and names. All of it reads the program alone.
 
 mod blocks;
 mod body;
 mod expression;
 mod file;
 mod functions;
+mod jacobians;
 mod layout;
 mod literals;
 mod names;
+mod requested;
+mod scalar;
+mod slopes;
 mod stages;
 mod types;
 

@@ -9,7 +9,7 @@ use crate::program::{Program, ValueId};
 
 /// Names that emitted functions use for themselves: variables, helpers, constants, fields,
 /// and what Rust's prelude gives a value of.
-const TAKEN: [&str; 36] = [
+const TAKEN: [&str; 50] = [
     "t",
     "state",
     "inputs",
@@ -31,6 +31,20 @@ const TAKEN: [&str; 36] = [
     "exp_minus_one",
     "cholesky",
     "cholesky_solve",
+    "cholesky_solve_matrix",
+    "converted",
+    "converted_matrix",
+    "accelerations",
+    "direction",
+    "input_direction",
+    "weights",
+    "product",
+    "input_product",
+    "pattern",
+    "INPUTS",
+    "INPUT_NAMES",
+    "PARAMETERS",
+    "PARAMETER_NAMES",
     "pivot_reciprocal",
     "positive_definite",
     "ORDERS",
@@ -61,9 +75,13 @@ impl Names {
     pub fn new(program: &Program) -> Self {
         let tables = program.tables.iter().map(|table| table.name.clone());
         let flags = (1..=program.pivots.len()).map(|number| format!("positive_{number}"));
+        let patterns = program.requested.jacobians.iter().flat_map(|jacobian| {
+            let name = jacobian.name.to_uppercase();
+            [format!("{name}_NONZEROS"), name]
+        });
         let taken = TAKEN.iter().map(|name| (*name).to_owned());
         Self {
-            used: taken.chain(tables).chain(flags).collect(),
+            used: taken.chain(tables).chain(flags).chain(patterns).collect(),
             given: HashMap::new(),
             next: HashMap::new(),
         }

@@ -1,12 +1,12 @@
 //! The emitted functions that are called with prepared coefficients, one per stage.
 
 use super::body::{Access, Body, looped};
-use super::expression::{array, assignment, infix};
+use super::expression::{Expression, array, assignment, infix};
 use super::file::{Emitted, File, mass_roots, quantity_line};
 use super::functions::Needed;
 use super::layout::{DEEPER, SHALLOWER};
 use super::literals::{block, doc};
-use crate::program::{Extent, Op, RowValues, ValueId};
+use crate::program::{Extent, Op, Request, RowValues, ValueId};
 
 impl File<'_> {
     pub(super) fn rates(&self, needed: &mut Needed) -> Emitted<String> {
@@ -19,7 +19,7 @@ impl File<'_> {
             needed,
         )?;
         let degrees = program.degrees_of_freedom();
-        body.push("let mut rates = [0.0; STATES];");
+        body.push("let mut rates = [T::number(0.0); STATES];");
         let rate = infix("+", degrees, "i");
         let coordinates = program.coordinates.len();
         if coordinates > 0 {
@@ -27,12 +27,12 @@ impl File<'_> {
         }
         self.write_rows(&mut body, rows)?;
         body.push("rates");
-        Ok(stage(
+        Ok(self.stage(
             "/// Rates of the state.\n///\n\
              /// `t` in s; `state` and the result in the order of [`STATE_NAMES`].\n\
              #[allow(unused_variables)]\n",
             "rates",
-            "[f64; STATES]",
+            "[T; STATES]",
             &body.statements(),
         ))
     }
@@ -86,14 +86,14 @@ impl File<'_> {
                 quantity_line(&observable.doc, &observable.unit, "")
             ));
         }
-        let mut text = stage(
+        let mut text = self.stage(
             &format!(
                 "/// The observables, in the order of [`OBSERVABLE_NAMES`]:\n///\n\
                  {}#[allow(unused_variables)]\n",
                 doc(&lines)
             ),
             "observables",
-            "[f64; OBSERVABLES]",
+            "[T; OBSERVABLES]",
             &body.statements(),
         );
         for (name, id, line) in [
@@ -125,34 +125,39 @@ impl File<'_> {
         let value = body.scalar(id)?;
         body.push(&value.to_string());
         let head = format!("/// {line}\n#[allow(unused_variables)]\n");
-        Ok(stage(&head, name, "f64", &body.statements()))
+        Ok(self.stage(&head, name, "T", &body.statements()))
     }
 
     pub(super) fn guards(&self, needed: &mut Needed) -> Emitted<String> {
+        let ids: Vec<ValueId> = self.program.guards.iter().map(|g| g.value).collect();
+        let line = "Switching surfaces: the equations change where one of these changes sign.";
+        self.guard_values("guards", line, &ids, needed)
+    }
+
+    /// A function that returns a value for each guard.
+    pub(super) fn guard_values(
+        &self,
+        name: &str,
+        line: &str,
+        ids: &[ValueId],
+        needed: &mut Needed,
+    ) -> Emitted<String> {
         let program = self.program;
-        let ids: Vec<ValueId> = program.guards.iter().map(|g| g.value).collect();
-        let mut body = Body::new(
-            program,
-            Access::Coefficients(&self.field_names),
-            &ids,
-            needed,
-        )?;
-        body.push("let mut values = [0.0; GUARDS];");
+        let access = Access::Coefficients(&self.field_names);
+        let mut body = Body::new(program, access, ids, needed)?;
+        body.push("let mut values = [T::number(0.0); GUARDS];");
         let mut place = 0;
-        let mut lines = vec![
-            "Switching surfaces: the equations change where one of these changes sign.".to_owned(),
-            String::new(),
-        ];
-        for guard in &program.guards {
+        let mut lines = vec![line.to_owned(), String::new()];
+        for (guard, id) in program.guards.iter().zip(ids) {
             match program.value(guard.value).extent {
                 Extent::Vector(length) => {
-                    let value = body.element(guard.value)?;
+                    let value = body.element(*id)?;
                     let at = infix("+", place, "i");
                     body.push_loop("i", length, &assignment(&format!("values[{at}]"), value));
                     place += length;
                 }
                 _ => {
-                    let value = body.scalar(guard.value)?;
+                    let value = body.scalar(*id)?;
                     body.push(&assignment(&format!("values[{place}]"), value));
                     place += 1;
                 }
@@ -160,10 +165,10 @@ impl File<'_> {
             lines.push(format!("- `{}`", guard.formula));
         }
         body.push("values");
-        Ok(stage(
+        Ok(self.stage(
             &format!("{}#[allow(unused_variables, unused_mut)]\n", doc(&lines)),
-            "guards",
-            "[f64; GUARDS]",
+            name,
+            "[T; GUARDS]",
             &body.statements(),
         ))
     }
@@ -177,7 +182,7 @@ impl File<'_> {
             &roots,
             needed,
         )?;
-        body.push("let mut values = [[0.0; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];");
+        body.push("let mut values = [[T::number(0.0); DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];");
         for (row, entries) in program.mass.scalars.iter().enumerate() {
             for (column, id) in entries.iter().enumerate() {
                 if matches!(program.value(*id).op, Op::Constant(0.0)) {
@@ -190,11 +195,11 @@ impl File<'_> {
         self.write_coupling(&mut body)?;
         self.write_modal_blocks(&mut body)?;
         body.push("values");
-        Ok(stage(
+        Ok(self.stage(
             "/// The mass matrix, in the order of the first half of [`STATE_NAMES`].\n\
              #[allow(unused_variables, unused_mut)]\n",
             "mass_matrix",
-            "[[f64; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM]",
+            "[[T; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM]",
             &body.statements(),
         ))
     }
@@ -239,17 +244,59 @@ impl File<'_> {
         }
         Ok(())
     }
-}
 
-/// A function that is called with prepared coefficients.
-fn stage(head: &str, name: &str, result: &str, statements: &str) -> String {
-    let opening = format!(
-        "{head}pub fn {name}(\n\
-         {DEEPER}t: f64,\n\
-         state: &[f64; STATES],\n\
-         inputs: &Inputs,\n\
-         coefficients: &Coefficients,\n\
-         {SHALLOWER}) -> {result} {{"
-    );
-    block(&opening, statements, "}")
+    /// A function that is called with prepared coefficients.
+    pub(super) fn stage(&self, head: &str, name: &str, result: &str, statements: &str) -> String {
+        self.stage_with(head, name, "", result, statements)
+    }
+
+    /// The same with further arguments, a line each.
+    pub(super) fn stage_with(
+        &self,
+        head: &str,
+        name: &str,
+        arguments: &str,
+        result: &str,
+        statements: &str,
+    ) -> String {
+        let signature = |name: &str| {
+            format!(
+                "pub fn {name}<T: Scalar>(\n\
+                 {DEEPER}t: T,\n\
+                 state: &[T; STATES],\n\
+                 inputs: &{},\n\
+                 coefficients: &{},\n\
+                 {arguments}{SHALLOWER}) -> {result} {{",
+                self.generic("Inputs"),
+                self.generic("Coefficients"),
+            )
+        };
+        if !self.program.requested.requests.contains(&Request::Lanes) {
+            return block(&format!("{head}{}", signature(name)), statements, "}");
+        }
+        let further: Vec<&str> = arguments
+            .lines()
+            .filter_map(|line| line.split(':').next())
+            .collect();
+        let passed = [
+            &["t", "state", "inputs", "coefficients"],
+            further.as_slice(),
+        ]
+        .concat();
+        let passed: Vec<Expression> = passed.into_iter().map(Expression::atom).collect();
+        let inlined = format!("inlined_{name}");
+        let call = format!("{}\n", Expression::call(&inlined, &passed));
+        let allowed = head.lines().filter(|line| line.starts_with("#["));
+        let allowed: String = allowed.map(|line| format!("{line}\n")).collect();
+        let inlined_head = format!(
+            "/// [`{name}`], inlined where it is called, to be compiled for the registers there.\n\
+             {allowed}#[inline(always)]\n"
+        );
+        block(&format!("{head}{}", signature(name)), &call, "}")
+            + &block(
+                &format!("{inlined_head}{}", signature(&inlined)),
+                statements,
+                "}",
+            )
+    }
 }

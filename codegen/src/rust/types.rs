@@ -15,28 +15,80 @@ const LITERAL_WIDTH: usize = 34;
 impl File<'_> {
     pub(super) fn parameters(&self) -> Emitted<String> {
         let mut fields = String::new();
-        let mut defaults = Vec::new();
+        let (mut defaults, mut casts) = (Vec::new(), Vec::new());
         for parameter in &self.program.parameters {
             fields.push_str(&field(&parameter.quantity, &parameter.origin)?);
-            let value = number(parameter.value);
-            defaults.push(format!("{}: {value}", parameter.quantity.name));
+            let name = &parameter.quantity.name;
+            defaults.push(format!("{name}: {}", number(parameter.value)));
+            casts.push(format!("{name}: T::number(self.{name})"));
         }
-        let head = "/// Parameters of the model. `Default` gives the specification's values.\n\
-                    #[derive(Clone, Copy, Debug, PartialEq)]\n\
-                    pub struct Parameters {";
+        let head = format!(
+            "/// Parameters of the model. `Default` gives the specification's values.\n\
+             #[derive(Clone, Copy, Debug, PartialEq)]\n\
+             pub struct Parameters{} {{",
+            declared(!casts.is_empty())
+        );
         let default = block("fn default() -> Self {", &literal("Self", &defaults), "}");
-        Ok(block(head, &fields, "}") + &block("impl Default for Parameters {", &default, "}"))
+        Ok(block(&head, &fields, "}")
+            + &block("impl Default for Parameters {", &default, "}")
+            + &cast("Parameters", "these parameters", &casts)
+            + &self.from_array("Parameters", "PARAMETERS"))
     }
 
     pub(super) fn inputs(&self) -> Emitted<String> {
         let mut fields = String::new();
+        let mut zeros = Vec::new();
         for input in &self.program.inputs {
             fields.push_str(&field(input, "")?);
+            zeros.push(format!("{}: T::number(0.0)", input.name));
         }
-        let head = "/// Signals supplied at run time. `Default` gives zeros.\n\
-                    #[derive(Clone, Copy, Debug, Default, PartialEq)]\n\
-                    pub struct Inputs {";
-        Ok(block(head, &fields, "}"))
+        let derived = if zeros.is_empty() { "Default, " } else { "" };
+        let head = format!(
+            "/// Signals supplied at run time. `Default` gives zeros.\n\
+             #[derive(Clone, Copy, Debug, {derived}PartialEq)]\n\
+             pub struct Inputs{} {{",
+            declared(!zeros.is_empty())
+        );
+        let mut text = block(&head, &fields, "}");
+        if !zeros.is_empty() {
+            let default = block("fn default() -> Self {", &literal("Self", &zeros), "}");
+            text += &block("impl<T: Scalar> Default for Inputs<T> {", &default, "}");
+        }
+        Ok(text + &self.from_array("Inputs", "INPUTS"))
+    }
+
+    /// The conversion from an array in the order of the columns of Jacobians, if there are any.
+    fn from_array(&self, name: &str, count: &str) -> String {
+        let program = self.program;
+        if program.requested.jacobians.is_empty() {
+            return String::new();
+        }
+        let quantities: Vec<&Quantity> = match name {
+            "Parameters" => program.parameters.iter().map(|p| &p.quantity).collect(),
+            _ => program.inputs.iter().collect(),
+        };
+        let values: Vec<String> = quantities
+            .iter()
+            .enumerate()
+            .map(|(place, quantity)| format!("{}: numbers[{place}]", quantity.name))
+            .collect();
+        let argument = if values.is_empty() { "_" } else { "numbers" };
+        let opening = format!("fn from({argument}: [T; {count}]) -> Self {{");
+        let body = block(&opening, &literal("Self", &values), "}");
+        let whole = self.generic(name);
+        let head = format!("impl<T: Copy> From<[T; {count}]> for {whole} {{");
+        block(&head, &body, "}")
+    }
+
+    /// The type of the parameters, of the inputs or of the coefficients: generic if a number
+    /// stands in it.
+    pub(super) fn generic(&self, name: &str) -> String {
+        let numbers = match name {
+            "Parameters" => self.program.parameters.len(),
+            "Inputs" => self.program.inputs.len(),
+            _ => self.fields.len(),
+        };
+        format!("{name}{}", if numbers > 0 { "<T>" } else { "" })
     }
 
     pub(super) fn coefficients(&self, needed: &mut Needed) -> Emitted<String> {
@@ -47,17 +99,28 @@ impl File<'_> {
             needed,
         )?;
         let mut fields = String::new();
-        let mut values = Vec::new();
+        let (mut values, mut casts) = (Vec::new(), Vec::new());
         for id in &self.fields {
             let name = &self.field_names[id];
             fields.push_str(&doc(&[describe_value(self.program, *id)]));
-            let (field_type, value) = match self.program.value(*id).extent {
-                Extent::Scalar => ("f64".to_owned(), body.scalar(*id)?.to_string()),
-                Extent::Vector(n) => (format!("[f64; {n}]"), body.array(*id)?),
+            let (field_type, value, converted) = match self.program.value(*id).extent {
+                Extent::Scalar => {
+                    let value = body.scalar(*id)?.to_string();
+                    ("T".to_owned(), value, format!("T::number(self.{name})"))
+                }
+                Extent::Vector(n) => {
+                    body.needed.converted = true;
+                    let converted = format!("converted(&self.{name})");
+                    (format!("[T; {n}]"), body.numbers(*id)?, converted)
+                }
                 Extent::Matrix(rows, columns) => {
-                    (format!("[[f64; {columns}]; {rows}]"), body.array(*id)?)
+                    body.needed.converted_matrix = true;
+                    let converted = format!("converted_matrix(&self.{name})");
+                    let matrix = format!("[[T; {columns}]; {rows}]");
+                    (matrix, body.numbers(*id)?, converted)
                 }
             };
+            casts.push(format!("{name}: {converted}"));
             fields.push_str(&format!("pub {name}: {field_type},\n"));
             values.push(format!("{name}: {FLOW_EVEN}{value}{CLOSE}"));
         }
@@ -68,21 +131,37 @@ impl File<'_> {
         );
         let check = self.pivot_check(&mut body)?;
         values.push(format!("positive_definite: {FLOW_EVEN}{check}{CLOSE}"));
-        let head = "/// What depends on the parameters alone: prepare once, use in every call.\n\
-                    #[derive(Clone, Copy, Debug, PartialEq)]\n\
-                    pub struct Coefficients {";
+        let numbers = !casts.is_empty();
+        let head = format!(
+            "/// What depends on the parameters alone: prepare once, use in every call.\n\
+             #[derive(Clone, Copy, Debug, PartialEq)]\n\
+             pub struct Coefficients{} {{",
+            declared(numbers)
+        );
+        casts.push("positive_definite: self.positive_definite".to_owned());
         let unused = if self.program.parameters.is_empty() {
             "#[allow(unused_variables)]\n"
         } else {
             ""
         };
+        let parameters = self.generic("Parameters");
         let opening = format!(
             "/// The coefficients of these parameters.\n{unused}\
-             pub fn prepare(parameters: &Parameters) -> Self {{"
+             pub fn prepare(parameters: &{parameters}) -> Self {{"
         );
         let statements = body.statements() + &literal("Self", &values);
         let prepare = block(&opening, &statements, "}");
-        Ok(block(head, &fields, "}") + &block("impl Coefficients {", &prepare, "}"))
+        let generic = if numbers {
+            "impl<T: Scalar> Coefficients<T> {"
+        } else {
+            "impl Coefficients {"
+        };
+        let cast = if numbers {
+            cast("Coefficients", "these coefficients", &casts)
+        } else {
+            String::new()
+        };
+        Ok(block(&head, &fields, "}") + &block(generic, &prepare, "}") + &cast)
     }
 
     fn prepared_roots(&self) -> Vec<crate::program::ValueId> {
@@ -102,7 +181,7 @@ impl File<'_> {
                     let name = format!("positive_{}", place + 1);
                     let (element, length) = match extent {
                         Extent::Matrix(rows, _) => {
-                            (Expression::element(&body.array(*id)?, "i][i"), rows)
+                            (Expression::element(&body.numbers(*id)?, "i][i"), rows)
                         }
                         other => (body.element(*id)?, other.length()),
                     };
@@ -129,17 +208,41 @@ impl File<'_> {
 fn field(quantity: &Quantity, origin: &str) -> Emitted<String> {
     let name = identifier(&quantity.name)?;
     let docs = doc(&[quantity_line(&quantity.doc, &quantity.unit, origin)]);
-    Ok(format!("{docs}pub {name}: f64,\n"))
+    Ok(format!("{docs}pub {name}: T,\n"))
 }
 
 /// Whether a pivot is positive and finite.
 fn is_positive(pivot: &Expression) -> [Expression; 2] {
-    [(">", "0.0"), ("<", "f64::INFINITY")]
-        .map(|(operator, bound)| Expression::compare(operator, pivot, &Expression::atom(bound)))
+    let greater = |a: &Expression, b: &Expression| {
+        Expression::call("T::all_greater", &[a.clone(), b.clone()])
+    };
+    [
+        greater(pivot, &Expression::number(0.0)),
+        greater(&Expression::number(f64::INFINITY), pivot),
+    ]
+}
+
+/// The type parameter of a struct that holds numbers.
+fn declared(numbers: bool) -> &'static str {
+    if numbers { "<T = f64>" } else { "" }
+}
+
+/// The conversion of a struct of `f64` to one of another scalar type, field by field.
+fn cast(name: &str, what: &str, fields: &[String]) -> String {
+    if fields.is_empty() {
+        return String::new();
+    }
+    let opening = format!(
+        "/// The numbers of {what} in another type, without derivatives.\n\
+         #[inline(always)]\n\
+         pub fn cast<T: Scalar>(&self) -> {name}<T> {{"
+    );
+    let body = block(&opening, &literal(name, fields), "}");
+    block(&format!("impl {name} {{"), &body, "}")
 }
 
 /// A struct's literal: on one line if it is short.
-fn literal(name: &str, values: &[String]) -> String {
+pub(super) fn literal(name: &str, values: &[String]) -> String {
     let line = format!("{name} {{ {} }}\n", values.join(", "));
     let width = line
         .chars()

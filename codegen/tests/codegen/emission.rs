@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use crate::support::{compile, emitted, models, shipped};
+use crate::support::{compile, emitted, emitted_with_all, models, shipped};
 
 /// Compares with a file in `golden/`; with EOMGEN_REFRESH set, writes it instead.
 fn compare(name: &str, source: &str) {
@@ -38,6 +38,15 @@ fn the_beam_with_a_tip_mass_is_emitted_as_kept() {
     compare(
         "hub_beam_tip_mass_order_2.rs",
         &emitted(&shipped("hub_beam_tip_mass"), 2),
+    );
+}
+
+/// Everything that can be requested, of a model with an input.
+#[test]
+fn the_beam_with_everything_requested_is_emitted_as_kept() {
+    compare(
+        "hub_beam_tip_mass_order_2_with_all.rs",
+        &emitted_with_all(&shipped("hub_beam_tip_mass"), 2),
     );
 }
 
@@ -101,12 +110,13 @@ fn the_layout_is_that_of_a_formatter() {
             if order > 4 && *model.source.text == *printed {
                 continue;
             }
-            let source = emitted(&model, order);
-            let tree = syn::parse_file(&source).unwrap();
-            let formatted = prettyplease::unparse(&tree);
-            let lines = source.lines().filter(|line| !line.is_empty());
-            for (emitted, formatted) in lines.zip(formatted.lines()) {
-                assert_eq!(emitted, formatted, "{}, order {order}", model.name);
+            for source in [emitted(&model, order), emitted_with_all(&model, order)] {
+                let tree = syn::parse_file(&source).unwrap();
+                let formatted = prettyplease::unparse(&tree);
+                let lines = source.lines().filter(|line| !line.is_empty());
+                for (emitted, formatted) in lines.zip(formatted.lines()) {
+                    assert_eq!(emitted, formatted, "{}, order {order}", model.name);
+                }
             }
         }
     }
@@ -122,20 +132,34 @@ fn every_shipped_model_compiles_without_a_warning() {
             &[0, 1, 3]
         };
         for order in orders {
-            let source = emitted(&model, *order);
-            compile(
-                &format!("{name}_{order}"),
-                &source,
-                &["--edition", "2015", "--emit=metadata"],
-            );
-            for word in [
-                "panic!", "unwrap(", "expect(", "unsafe {", "std::", "alloc::",
+            for (what, source) in [
+                ("", emitted(&model, *order)),
+                ("with_all", emitted_with_all(&model, *order)),
             ] {
-                assert!(!source.contains(word), "{name}, order {order}: {word}");
+                compile(
+                    &format!("{name}_{order}{what}"),
+                    &source,
+                    &["--edition", "2015", "--emit=metadata"],
+                );
+                for word in [
+                    "panic!", "unwrap(", "expect(", "unsafe {", "std::", "alloc::",
+                ] {
+                    assert!(!source.contains(word), "{name}, order {order}: {word}");
+                }
             }
         }
     }
 }
+
+/// The rates as code: what is generic is compiled where it is called.
+const INSTANCE: &str = "
+pub fn rates_of_numbers(state: &[f64; STATES], c: &Coefficients) -> [f64; STATES] {
+    rates(0.0, state, &Inputs::default(), c)
+}
+pub fn prepared_numbers(parameters: &Parameters) -> Coefficients {
+    Coefficients::prepare(parameters)
+}
+";
 
 /// Bounds are checked by the compiler, once and for all: no call into the panic machinery
 /// is left, whatever the order.
@@ -150,10 +174,11 @@ fn optimised_code_cannot_panic() {
     ] {
         let folder = format!("assembly_{name}_{order}");
         let options = ["-O", "--emit=asm", "-C", "symbol-mangling-version=v0"];
-        let written = compile(&folder, &emitted(&shipped(name), order), &options);
+        let source = emitted(&shipped(name), order) + INSTANCE;
+        let written = compile(&folder, &source, &options);
         let assembly = std::fs::read_to_string(written.join("emitted.s")).unwrap();
         assert!(
-            assembly.contains("5rates"),
+            assembly.contains("16rates_of_numbers"),
             "{folder}: `rates` was not compiled"
         );
         assert!(!assembly.contains("panic"), "{folder}: a panic is left");

@@ -138,7 +138,9 @@ fn deep_products_stay_small() {
         "{:?}",
         start.elapsed()
     );
-    assert!(source.len() < 200_000, "{}", source.len());
+    // A number is written with the type it is converted to.
+    let length = source.replace("T::number(", "(").len();
+    assert!(length < 200_000, "{length}");
     let (x, rate) = (0.3, 0.7);
     // x'' = -1/2 (ln p)' x'^2
     let slope: f64 = (1..150).map(|i| 1.0 / (f64::from(i) * 100.0 + x)).sum();

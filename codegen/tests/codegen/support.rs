@@ -7,7 +7,9 @@ use codegen::equations::{Equations, derive};
 use codegen::evaluator::{Evaluator, Point};
 use codegen::lower::lower;
 use codegen::program::Program;
+use codegen::request::Request;
 use codegen::rust::{Packaging, emit};
+use codegen::variant::Variant;
 use model_spec::model::Model;
 use model_spec::source::Source;
 
@@ -52,6 +54,20 @@ pub fn evaluator(model: &Model, order: usize) -> Evaluator {
 /// The emitted crate of a model with every field at one order.
 pub fn emitted(model: &Model, order: usize) -> String {
     emit(&program(model, order), Packaging::Crate).unwrap()
+}
+
+/// The program of a model with every field at one order and everything that can be requested.
+pub fn program_with_all(model: &Model, order: usize) -> Program {
+    let orders = vec![order; model.fields.len()];
+    match Variant::derive_with(model, &orders, &Request::ALL) {
+        Ok(variant) => variant.program,
+        Err(found) => panic!("{}", found.render(false)),
+    }
+}
+
+/// The emitted crate with everything that can be requested.
+pub fn emitted_with_all(model: &Model, order: usize) -> String {
+    emit(&program_with_all(model, order), Packaging::Crate).unwrap()
 }
 
 /// All observables at a state, `energy` and `power` last.

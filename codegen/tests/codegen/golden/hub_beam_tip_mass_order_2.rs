@@ -51,25 +51,25 @@ pub const GENERATOR_VERSION: &'static str = "0.1.0";
 
 /// Parameters of the model. `Default` gives the specification's values.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameters {
+pub struct Parameters<T = f64> {
     /// inertia of the hub \[kg m^2]
-    pub J_h: f64,
+    pub J_h: T,
     /// density of the beam \[kg/m^3]
-    pub rho: f64,
+    pub rho: T,
     /// section area: 30 mm by 3 mm \[m^2]
-    pub A: f64,
+    pub A: T,
     /// length of the beam \[m]
-    pub l: f64,
+    pub l: T,
     /// Young's modulus \[Pa]
-    pub E: f64,
+    pub E: T,
     /// second moment of area: 30 mm by 3 mm \[m^4]
-    pub I: f64,
+    pub I: T,
     /// mass of the tip \[kg]
-    pub M_t: f64,
+    pub M_t: T,
     /// inertia of the tip about its centre of mass \[kg m^2]
-    pub J_t: f64,
+    pub J_t: T,
     /// friction of the hub's bearing \[N m s]
-    pub c: f64,
+    pub c: T,
 }
 impl Default for Parameters {
     fn default() -> Self {
@@ -86,85 +86,107 @@ impl Default for Parameters {
         }
     }
 }
+impl Parameters {
+    /// The numbers of these parameters in another type, without derivatives.
+    #[inline(always)]
+    pub fn cast<T: Scalar>(&self) -> Parameters<T> {
+        Parameters {
+            J_h: T::number(self.J_h),
+            rho: T::number(self.rho),
+            A: T::number(self.A),
+            l: T::number(self.l),
+            E: T::number(self.E),
+            I: T::number(self.I),
+            M_t: T::number(self.M_t),
+            J_t: T::number(self.J_t),
+            c: T::number(self.c),
+        }
+    }
+}
 
 /// Signals supplied at run time. `Default` gives zeros.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Inputs {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inputs<T = f64> {
     /// torque on the hub \[N m]
-    pub u: f64,
+    pub u: T,
+}
+impl<T: Scalar> Default for Inputs<T> {
+    fn default() -> Self {
+        Self { u: T::number(0.0) }
+    }
 }
 
 /// What depends on the parameters alone: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coefficients {
+pub struct Coefficients<T = f64> {
     /// `l`
-    pub l: f64,
+    pub l: T,
     /// `0.3333333333333333*rho*A*l*l*l`
-    pub c_1: f64,
+    pub c_1: T,
     /// `J_t*PHI_D1_AT_END/l`
-    pub c_2: [f64; 2],
+    pub c_2: [T; 2],
     /// `rho*A*l*l*INTEGRAL_S1_PHI + l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l`
-    pub M_theta_q: [f64; 2],
+    pub M_theta_q: [T; 2],
     /// `rho*A*l`
-    pub c_3: f64,
+    pub c_3: T,
     /// `1/pivot_theta`
-    pub c_4: f64,
+    pub c_4: T,
     /// `c`
-    pub c: f64,
+    pub c: T,
     /// `E*I*INTEGRAL_PHI_D2_SQUARED*M_theta_q/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_5: [f64; 2],
+    pub c_5: [T; 2],
     /// `M_t*E*I*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*.../INT...`
-    pub c_6: f64,
+    pub c_6: T,
     /// `PHI_AT_END*INTEGRAL_PHI_D2_SQUARED/INTEGRAL_PHI_SQUARED`
-    pub c_7: [f64; 2],
+    pub c_7: [T; 2],
     /// `(M_t*sum_i(.../...)*(l*sum_i(...) + sum_i(...)/(...*l))*1/(1.0 + M_t*.../(...*l))/(rho*A*l) - (l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (s...`
-    pub c_8: f64,
+    pub c_8: T,
     /// `J_t*E*I*PHI_D1_AT_END*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_9: [f64; 2],
+    pub c_9: [T; 2],
     /// `M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l)`
-    pub c_10: f64,
+    pub c_10: T,
     /// `rho*A*l*INTEGRAL_PHI_SQUARED`
-    pub c_11: [f64; 2],
+    pub c_11: [T; 2],
     /// `1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))*PHI_AT_END/(rho*A*l*INTEGRAL_PHI_SQUARED)`
-    pub c_12: [f64; 2],
+    pub c_12: [T; 2],
     /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
-    pub c_13: f64,
+    pub c_13: T,
     /// `(J_t*(l*sum_i(...*.../INTEGRAL_PHI_SQUARED) + sum_i(...*(...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))/(l*l) - (M_t*J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)*(l*sum_i(......`
-    pub c_14: f64,
+    pub c_14: T,
     /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta`
-    pub c_15: f64,
+    pub c_15: T,
     /// `-(M_t*E*I/(rho*A*l*l*l*l))`
-    pub c_16: f64,
+    pub c_16: T,
     /// `1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*A*l*INTEGRAL_PHI_SQUARED...`
-    pub c_17: [f64; 2],
+    pub c_17: [T; 2],
     /// `1/pivot_theta*(l*INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*l*INTEGRAL_PHI_SQUARED))`
-    pub c_18: [f64; 2],
+    pub c_18: [T; 2],
     /// `-(E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))`
-    pub c_19: [f64; 2],
+    pub c_19: [T; 2],
     /// `J_h + 0.3333333333333333*rho*A*l*l*l + J_t + l*l*M_t`
-    pub M_theta_theta: f64,
+    pub M_theta_theta: T,
     /// `M_t*PHI_AT_END`
-    pub c_20: [f64; 2],
+    pub c_20: [T; 2],
     /// `PHI_D1_AT_END/l`
-    pub c_21: [f64; 2],
+    pub c_21: [T; 2],
     /// `1.0/l`
-    pub c_22: f64,
+    pub c_22: T,
     /// `0.5*J_h`
-    pub c_23: f64,
+    pub c_23: T,
     /// `2.0*rho*A*l*l`
-    pub c_24: f64,
+    pub c_24: T,
     /// `0.5*M_t`
-    pub c_25: f64,
+    pub c_25: T,
     /// `0.5*J_t`
-    pub c_26: f64,
+    pub c_26: T,
     /// `0.5*E*I/(l*l*l)`
-    pub c_27: f64,
+    pub c_27: T,
     /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
     pub positive_definite: bool,
 }
-impl Coefficients {
+impl<T: Scalar> Coefficients<T> {
     /// The coefficients of these parameters.
-    pub fn prepare(parameters: &Parameters) -> Self {
+    pub fn prepare(parameters: &Parameters<T>) -> Self {
         let J_h = parameters.J_h;
         let J_t = parameters.J_t;
         let rho = parameters.rho;
@@ -172,68 +194,93 @@ impl Coefficients {
         let l = parameters.l;
         let s_1 = l * l;
         let s_2 = l * s_1;
-        let s_3 = 0.3333333333333333 * rho * A * s_2;
+        let s_3 = T::number(0.3333333333333333) * rho * A * s_2;
         let M_t = parameters.M_t;
         let s_4 = s_1 * M_t;
         let s_5 = rho * A;
         let s_6 = s_5 * s_1;
         let s_7 = l * M_t;
-        let mut s_8 = [0.0; 2];
+        let mut s_8 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_8[i] = J_t * PHI_D1_AT_END[i] / l;
+            s_8[i] = J_t * T::number(PHI_D1_AT_END[i]) / l;
         }
-        let mut s_9 = [0.0; 2];
+        let mut s_9 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_9[i] = s_7 * PHI_AT_END[i] + s_8[i];
+            s_9[i] = s_7 * T::number(PHI_AT_END[i]) + s_8[i];
         }
-        let mut M_theta_q = [0.0; 2];
+        let mut M_theta_q = [T::number(0.0); 2];
         for i in 0..2 {
-            M_theta_q[i] = s_6 * INTEGRAL_S1_PHI[i] + s_9[i];
+            M_theta_q[i] = s_6 * T::number(INTEGRAL_S1_PHI[i]) + s_9[i];
         }
         let s_10 = sum_of_few(
-            2,
-            |i| INTEGRAL_S1_PHI[i] * M_theta_q[i] / INTEGRAL_PHI_SQUARED[i],
+            [(); 2],
+            |i| {
+                T::number(INTEGRAL_S1_PHI[i]) * M_theta_q[i]
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
         );
         let s_11 = s_5 * l;
-        let s_12 = sum_of_few(2, |i| s_9[i] * M_theta_q[i] / INTEGRAL_PHI_SQUARED[i]);
-        let s_13 = sum_of_few(
-            2,
-            |i| INTEGRAL_S1_PHI[i] * PHI_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
+        let s_12 = sum_of_few(
+            [(); 2],
+            |i| s_9[i] * M_theta_q[i] / T::number(INTEGRAL_PHI_SQUARED[i]),
         );
-        let s_14 = sum_of_few(2, |i| PHI_AT_END[i] * s_9[i] / INTEGRAL_PHI_SQUARED[i]);
+        let s_13 = sum_of_few(
+            [(); 2],
+            |i| {
+                T::number(INTEGRAL_S1_PHI[i]) * T::number(PHI_AT_END[i])
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
+        );
+        let s_14 = sum_of_few(
+            [(); 2],
+            |i| T::number(PHI_AT_END[i]) * s_9[i] / T::number(INTEGRAL_PHI_SQUARED[i]),
+        );
         let s_15 = l * s_13 + s_14 / s_11;
         let s_16 = sum_of_few(
-            2,
-            |i| PHI_AT_END[i] * PHI_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
+            [(); 2],
+            |i| {
+                T::number(PHI_AT_END[i]) * T::number(PHI_AT_END[i])
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
         );
-        let s_17 = 1.0 + M_t * s_16 / s_11;
+        let s_17 = T::number(1.0) + M_t * s_16 / s_11;
         let s_18 = pivot_reciprocal(s_17);
         let s_19 = sum_of_few(
-            2,
-            |i| INTEGRAL_S1_PHI[i] * PHI_D1_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
+            [(); 2],
+            |i| {
+                T::number(INTEGRAL_S1_PHI[i]) * T::number(PHI_D1_AT_END[i])
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
         );
         let s_20 = l * s_19;
         let s_21 = sum_of_few(
-            2,
-            |i| PHI_D1_AT_END[i] * s_9[i] / INTEGRAL_PHI_SQUARED[i],
+            [(); 2],
+            |i| T::number(PHI_D1_AT_END[i]) * s_9[i] / T::number(INTEGRAL_PHI_SQUARED[i]),
         );
         let s_22 = s_21 / s_11;
         let s_23 = s_5 * s_2;
         let s_24 = M_t * J_t;
         let s_25 = sum_of_few(
-            2,
-            |i| PHI_AT_END[i] * PHI_D1_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
+            [(); 2],
+            |i| {
+                T::number(PHI_AT_END[i]) * T::number(PHI_D1_AT_END[i])
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
         );
         let s_26 = J_t * (s_20 + s_22) / s_1 - s_24 * s_25 * s_15 * s_18 / s_23;
         let s_27 = M_t * s_25;
         let s_28 = s_27 * s_15 * s_18 / s_11 - s_20 - s_22;
         let s_29 = sum_of_few(
-            2,
-            |i| PHI_D1_AT_END[i] * PHI_D1_AT_END[i] / INTEGRAL_PHI_SQUARED[i],
+            [(); 2],
+            |i| {
+                T::number(PHI_D1_AT_END[i]) * T::number(PHI_D1_AT_END[i])
+                    / T::number(INTEGRAL_PHI_SQUARED[i])
+            },
         );
         let s_30 = rho * rho * (A * A);
         let s_31 = s_1 * s_1;
-        let s_32 = 1.0 + J_t * s_29 / s_23 - s_24 * (s_25 * s_25) * s_18 / (s_30 * s_31);
+        let s_32 = T::number(1.0) + J_t * s_29 / s_23
+            - s_24 * (s_25 * s_25) * s_18 / (s_30 * s_31);
         let s_33 = pivot_reciprocal(s_32);
         let s_34 = J_h + J_t + s_3 + s_4 + M_t * (s_15 * s_15) * s_18 - l * s_10;
         let pivot_theta = s_34 - s_12 / s_11 - s_26 * s_28 * s_33;
@@ -243,64 +290,67 @@ impl Coefficients {
         let E = parameters.E;
         let I = parameters.I;
         let s_37 = E * I;
-        let mut s_38 = [0.0; 2];
+        let mut s_38 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_38[i] = s_36 * INTEGRAL_PHI_SQUARED[i];
+            s_38[i] = s_36 * T::number(INTEGRAL_PHI_SQUARED[i]);
         }
-        let mut s_39 = [0.0; 2];
+        let mut s_39 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_39[i] = s_37 * INTEGRAL_PHI_D2_SQUARED[i];
+            s_39[i] = s_37 * T::number(INTEGRAL_PHI_D2_SQUARED[i]);
         }
-        let mut s_40 = [0.0; 2];
+        let mut s_40 = [T::number(0.0); 2];
         for i in 0..2 {
             s_40[i] = s_39[i] * M_theta_q[i] / s_38[i];
         }
         let s_41 = M_t * E * I;
-        let mut s_42 = [0.0; 2];
+        let mut s_42 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_42[i] = PHI_AT_END[i] * INTEGRAL_PHI_D2_SQUARED[i]
-                / INTEGRAL_PHI_SQUARED[i];
+            s_42[i] = T::number(PHI_AT_END[i]) * T::number(INTEGRAL_PHI_D2_SQUARED[i])
+                / T::number(INTEGRAL_PHI_SQUARED[i]);
         }
         let s_43 = s_5 * (s_1 * s_31);
         let s_44 = J_t * E * I;
-        let mut s_45 = [0.0; 2];
+        let mut s_45 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_45[i] = s_44 * PHI_D1_AT_END[i] * INTEGRAL_PHI_D2_SQUARED[i]
-                / (s_43 * INTEGRAL_PHI_SQUARED[i]);
+            s_45[i] = s_44 * T::number(PHI_D1_AT_END[i])
+                * T::number(INTEGRAL_PHI_D2_SQUARED[i])
+                / (s_43 * T::number(INTEGRAL_PHI_SQUARED[i]));
         }
-        let mut s_46 = [0.0; 2];
+        let mut s_46 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_46[i] = s_11 * INTEGRAL_PHI_SQUARED[i];
+            s_46[i] = s_11 * T::number(INTEGRAL_PHI_SQUARED[i]);
         }
-        let mut s_47 = [0.0; 2];
+        let mut s_47 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_47[i] = s_18 * PHI_AT_END[i] / s_46[i];
+            s_47[i] = s_18 * T::number(PHI_AT_END[i]) / s_46[i];
         }
-        let mut s_48 = [0.0; 2];
+        let mut s_48 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_48[i] = s_33 * PHI_D1_AT_END[i] / s_46[i];
+            s_48[i] = s_33 * T::number(PHI_D1_AT_END[i]) / s_46[i];
         }
-        let mut s_49 = [0.0; 2];
+        let mut s_49 = [T::number(0.0); 2];
         for i in 0..2 {
             s_49[i] = s_35
-                * (l * INTEGRAL_S1_PHI[i] / INTEGRAL_PHI_SQUARED[i] + s_9[i] / s_46[i]);
+                * (l * T::number(INTEGRAL_S1_PHI[i]) / T::number(INTEGRAL_PHI_SQUARED[i])
+                    + s_9[i] / s_46[i]);
         }
-        let mut s_50 = [0.0; 2];
+        let mut s_50 = [T::number(0.0); 2];
         for i in 0..2 {
             s_50[i] = -(s_39[i] / s_38[i]);
         }
         let M_theta_theta = J_h + s_3 + (J_t + s_4);
-        let mut s_51 = [0.0; 2];
+        let mut s_51 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_51[i] = M_t * PHI_AT_END[i];
+            s_51[i] = M_t * T::number(PHI_AT_END[i]);
         }
-        let mut s_52 = [0.0; 2];
+        let mut s_52 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_52[i] = PHI_D1_AT_END[i] / l;
+            s_52[i] = T::number(PHI_D1_AT_END[i]) / l;
         }
         let mut positive_4 = true;
         for i in 0..2 {
-            positive_4 = positive_4 && s_46[i] > 0.0 && s_46[i] < f64::INFINITY;
+            positive_4 = positive_4 && T::all_greater(s_46[i], T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_46[i]);
         }
         Self {
             l: l,
@@ -328,15 +378,58 @@ impl Coefficients {
             M_theta_theta: M_theta_theta,
             c_20: s_51,
             c_21: s_52,
-            c_22: 1.0 / l,
-            c_23: 0.5 * J_h,
-            c_24: 2.0 * rho * A * s_1,
-            c_25: 0.5 * M_t,
-            c_26: 0.5 * J_t,
-            c_27: 0.5 * E * I / s_2,
-            positive_definite: pivot_theta > 0.0 && pivot_theta < f64::INFINITY
-                && s_17 > 0.0 && s_17 < f64::INFINITY && s_32 > 0.0
-                && s_32 < f64::INFINITY && positive_4,
+            c_22: T::number(1.0) / l,
+            c_23: T::number(0.5) * J_h,
+            c_24: T::number(2.0) * rho * A * s_1,
+            c_25: T::number(0.5) * M_t,
+            c_26: T::number(0.5) * J_t,
+            c_27: T::number(0.5) * E * I / s_2,
+            positive_definite: T::all_greater(pivot_theta, T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), pivot_theta)
+                && T::all_greater(s_17, T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_17)
+                && T::all_greater(s_32, T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_32) && positive_4,
+        }
+    }
+}
+impl Coefficients {
+    /// The numbers of these coefficients in another type, without derivatives.
+    #[inline(always)]
+    pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
+        Coefficients {
+            l: T::number(self.l),
+            c_1: T::number(self.c_1),
+            c_2: converted(&self.c_2),
+            M_theta_q: converted(&self.M_theta_q),
+            c_3: T::number(self.c_3),
+            c_4: T::number(self.c_4),
+            c: T::number(self.c),
+            c_5: converted(&self.c_5),
+            c_6: T::number(self.c_6),
+            c_7: converted(&self.c_7),
+            c_8: T::number(self.c_8),
+            c_9: converted(&self.c_9),
+            c_10: T::number(self.c_10),
+            c_11: converted(&self.c_11),
+            c_12: converted(&self.c_12),
+            c_13: T::number(self.c_13),
+            c_14: T::number(self.c_14),
+            c_15: T::number(self.c_15),
+            c_16: T::number(self.c_16),
+            c_17: converted(&self.c_17),
+            c_18: converted(&self.c_18),
+            c_19: converted(&self.c_19),
+            M_theta_theta: T::number(self.M_theta_theta),
+            c_20: converted(&self.c_20),
+            c_21: converted(&self.c_21),
+            c_22: T::number(self.c_22),
+            c_23: T::number(self.c_23),
+            c_24: T::number(self.c_24),
+            c_25: T::number(self.c_25),
+            c_26: T::number(self.c_26),
+            c_27: T::number(self.c_27),
+            positive_definite: self.positive_definite,
         }
     }
 }
@@ -345,17 +438,17 @@ impl Coefficients {
 ///
 /// `t` in s; `state` and the result in the order of [`STATE_NAMES`].
 #[allow(unused_variables)]
-pub fn rates(
-    t: f64,
-    state: &[f64; STATES],
-    inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> [f64; STATES] {
+pub fn rates<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; STATES] {
     let theta_dot = state[3];
     let u = inputs.u;
-    let s_1 = sum_of_few(2, |i| coefficients.c_5[i] * state[1 + i]);
-    let s_2 = sum_of_few(2, |i| coefficients.c_7[i] * state[1 + i]);
-    let s_3 = sum_of_few(2, |i| coefficients.c_9[i] * state[1 + i]);
+    let s_1 = sum_of_few([(); 2], |i| coefficients.c_5[i] * state[1 + i]);
+    let s_2 = sum_of_few([(); 2], |i| coefficients.c_7[i] * state[1 + i]);
+    let s_3 = sum_of_few([(); 2], |i| coefficients.c_9[i] * state[1 + i]);
     let s_4 = coefficients.c_10 * s_2 - s_3;
     let s_5 = u + s_1 - coefficients.c * theta_dot - coefficients.c_6 * s_2
         - coefficients.c_8 * s_4;
@@ -363,7 +456,7 @@ pub fn rates(
     let s_6 = s_4 - coefficients.c_14 * s_5;
     let s_7 = coefficients.c_16 * s_2 - coefficients.c_13 * s_6
         - coefficients.c_15 * s_5;
-    let mut rates = [0.0; STATES];
+    let mut rates = [T::number(0.0); STATES];
     for i in 0..1 {
         rates[i] = state[3 + i];
     }
@@ -383,32 +476,35 @@ pub fn rates(
 /// - `energy`: kinetic plus potential energy \[J]
 /// - `power`: power of all non-conservative forces: the rate of the energy \[W]
 #[allow(unused_variables)]
-pub fn observables(
-    t: f64,
-    state: &[f64; STATES],
-    inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> [f64; OBSERVABLES] {
+pub fn observables<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; OBSERVABLES] {
     let theta_dot = state[3];
     let u = inputs.u;
-    let tip = sum_of_few(2, |i| PHI_AT_END[i] * state[1 + i]);
-    let s_1 = sum_of_few(2, |i| PHI_D1_AT_END[i] * state[1 + i]);
+    let tip = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[1 + i]);
+    let s_1 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[1 + i]);
     let tip_slope = coefficients.c_22 * s_1;
     let s_2 = theta_dot * theta_dot;
-    let s_3 = sum_of_few(2, |i| INTEGRAL_S1_PHI[i] * state[4 + i]);
-    let s_4 = sum_of_few(2, |i| INTEGRAL_PHI_SQUARED[i] * (state[4 + i] * state[4 + i]));
-    let s_5 = sum_of_few(2, |i| PHI_AT_END[i] * state[4 + i]);
+    let s_3 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
+    let s_4 = sum_of_few(
+        [(); 2],
+        |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[4 + i] * state[4 + i]),
+    );
+    let s_5 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
     let s_6 = coefficients.l * theta_dot + s_5;
-    let s_7 = sum_of_few(2, |i| PHI_D1_AT_END[i] * state[4 + i]);
+    let s_7 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
     let s_8 = theta_dot + coefficients.c_22 * s_7;
     let T_tip = coefficients.c_25 * (s_6 * s_6) + coefficients.c_26 * (s_8 * s_8);
     let s_9 = coefficients.c_23 * s_2
-        + 0.5
+        + T::number(0.5)
             * (coefficients.c_1 * s_2 + coefficients.c_24 * (theta_dot * s_3)
                 + coefficients.c_3 * s_4);
     let s_10 = sum_of_few(
-        2,
-        |i| INTEGRAL_PHI_D2_SQUARED[i] * (state[1 + i] * state[1 + i]),
+        [(); 2],
+        |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[1 + i] * state[1 + i]),
     );
     let V_bending = coefficients.c_27 * s_10;
     [
@@ -421,28 +517,31 @@ pub fn observables(
 
 /// Kinetic plus potential energy, in J.
 #[allow(unused_variables)]
-pub fn energy(
-    t: f64,
-    state: &[f64; STATES],
-    inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> f64 {
+pub fn energy<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> T {
     let theta_dot = state[3];
     let s_1 = theta_dot * theta_dot;
-    let s_2 = sum_of_few(2, |i| INTEGRAL_S1_PHI[i] * state[4 + i]);
-    let s_3 = sum_of_few(2, |i| INTEGRAL_PHI_SQUARED[i] * (state[4 + i] * state[4 + i]));
-    let s_4 = sum_of_few(2, |i| PHI_AT_END[i] * state[4 + i]);
+    let s_2 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
+    let s_3 = sum_of_few(
+        [(); 2],
+        |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[4 + i] * state[4 + i]),
+    );
+    let s_4 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
     let s_5 = coefficients.l * theta_dot + s_4;
-    let s_6 = sum_of_few(2, |i| PHI_D1_AT_END[i] * state[4 + i]);
+    let s_6 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
     let s_7 = theta_dot + coefficients.c_22 * s_6;
     let T_tip = coefficients.c_25 * (s_5 * s_5) + coefficients.c_26 * (s_7 * s_7);
     let s_8 = coefficients.c_23 * s_1
-        + 0.5
+        + T::number(0.5)
             * (coefficients.c_1 * s_1 + coefficients.c_24 * (theta_dot * s_2)
                 + coefficients.c_3 * s_3);
     let s_9 = sum_of_few(
-        2,
-        |i| INTEGRAL_PHI_D2_SQUARED[i] * (state[1 + i] * state[1 + i]),
+        [(); 2],
+        |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[1 + i] * state[1 + i]),
     );
     let V_bending = coefficients.c_27 * s_9;
     s_8 + T_tip + V_bending
@@ -450,12 +549,12 @@ pub fn energy(
 
 /// Power of all non-conservative forces, in W: the rate of the energy.
 #[allow(unused_variables)]
-pub fn power(
-    t: f64,
-    state: &[f64; STATES],
-    inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> f64 {
+pub fn power<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> T {
     let theta_dot = state[3];
     let u = inputs.u;
     theta_dot * (u - coefficients.c * theta_dot)
@@ -464,35 +563,37 @@ pub fn power(
 /// Switching surfaces: the equations change where one of these changes sign.
 ///
 #[allow(unused_variables, unused_mut)]
-pub fn guards(
-    t: f64,
-    state: &[f64; STATES],
-    inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> [f64; GUARDS] {
-    let mut values = [0.0; GUARDS];
+pub fn guards<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; GUARDS] {
+    let mut values = [T::number(0.0); GUARDS];
     values
 }
 
 /// The mass matrix, in the order of the first half of [`STATE_NAMES`].
 #[allow(unused_variables, unused_mut)]
-pub fn mass_matrix(
-    t: f64,
-    state: &[f64; STATES],
-    inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> [[f64; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
-    let mut values = [[0.0; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
+pub fn mass_matrix<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [[T; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
+    let mut values = [[T::number(0.0); DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
     values[0][0] = coefficients.M_theta_theta;
     for i in 0..2 {
         values[0][1 + i] = coefficients.M_theta_q[i];
         values[1 + i][0] = values[0][1 + i];
     }
     for i in 0..2 {
-        values[1 + i][1 + i] += coefficients.c_11[i];
+        values[1 + i][1 + i] = values[1 + i][1 + i] + coefficients.c_11[i];
         for j in 0..2 {
-            values[1 + i][1 + j] += coefficients.c_20[i] * PHI_AT_END[j];
-            values[1 + i][1 + j] += coefficients.c_2[i] * coefficients.c_21[j];
+            values[1 + i][1 + j] = values[1 + i][1 + j]
+                + coefficients.c_20[i] * T::number(PHI_AT_END[j]);
+            values[1 + i][1 + j] = values[1 + i][1 + j]
+                + coefficients.c_2[i] * coefficients.c_21[j];
         }
     }
     values
@@ -513,30 +614,187 @@ static PHI_D1_AT_END: [f64; 2] = [3.7502081374239222, -9.38818226594835];
 /// int\[phi_i''^2], with s = x/l from 0 to 1 and primes for derivatives by s
 static INTEGRAL_PHI_D2_SQUARED: [f64; 2] = [22.940155884082465, 468.07114845621095];
 
-/// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
-#[inline(always)]
-fn pivot_reciprocal(pivot: f64) -> f64 {
-    if pivot > 0.0 { 1.0 / pivot } else { f64::NAN }
+/// What the equations are computed with: `f64`, `f32`, lanes of them, or numbers that carry
+/// derivatives. Nothing branches on a value, so that lanes may differ in every condition.
+pub trait Scalar: Copy
+where
+    Self: core::ops::Add<Output = Self>,
+    Self: core::ops::Sub<Output = Self>,
+    Self: core::ops::Mul<Output = Self>,
+    Self: core::ops::Div<Output = Self>,
+    Self: core::ops::Neg<Output = Self>,
+{
+    /// A number, in every lane and without derivative.
+    fn number(value: f64) -> Self;
+    /// `then` where a > b, `otherwise` elsewhere, also where either is NaN. Whatever is not
+    /// chosen leaves no trace.
+    fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+    /// Whether a > b in every lane.
+    fn all_greater(a: Self, b: Self) -> bool;
+    /// An elementary function of this.
+    fn function<F: Function>(self) -> Self;
+    /// An elementary function of this and another.
+    fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self;
+    /// A long loop. Single numbers keep it out of the code around; lanes must not, because code
+    /// of its own would not be compiled for their registers.
+    #[inline(always)]
+    fn long_loop<F: FnOnce() -> Self>(lines: F) -> Self {
+        lines()
+    }
 }
 
-/// The sum of the first `length` of eight numbers, neighbours added in pairs.
+/// Numbers in IEEE 754 double precision, or lanes of them: what the elementary functions are
+/// written for.
+pub trait Real: Scalar {
+    /// `then` where a = b, `otherwise` elsewhere, also where either is NaN.
+    fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+    /// The sign bit cleared.
+    fn magnitude(self) -> Self;
+    /// The magnitude with the sign bit of another number.
+    fn copy_sign(self, sign: Self) -> Self;
+    /// 2^k for an integral k: 2^52 + 1023 brings it to the place of the exponent.
+    fn power_of_two(self) -> Self;
+    /// The unbiased exponent field.
+    fn exponent(self) -> Self;
+    /// The mantissa under the exponent of 1.
+    fn significand(self) -> Self;
+}
+
+/// An elementary function: plain operations in a fixed order, the same bits on every machine.
+pub trait Function {
+    /// Its value.
+    fn value<T: Real>(x: T) -> T;
+    /// Its derivative at x, where it is `value`.
+    fn slope<T: Scalar>(x: T, value: T) -> T;
+}
+
+/// An elementary function of two arguments.
+pub trait FunctionOfTwo {
+    /// Its value.
+    fn value<T: Real>(x: T, y: T) -> T;
+    /// Its derivatives by x and y, where it is `value`.
+    fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
+}
+impl Scalar for f64 {
+    #[inline(always)]
+    fn number(value: f64) -> f64 {
+        value
+    }
+    #[inline(always)]
+    fn select_greater(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
+        if a > b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn all_greater(a: f64, b: f64) -> bool {
+        a > b
+    }
+    #[inline]
+    fn function<F: Function>(self) -> f64 {
+        F::value(self)
+    }
+    #[inline]
+    fn function_of_two<F: FunctionOfTwo>(self, other: f64) -> f64 {
+        F::value(self, other)
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f64>(lines: F) -> f64 {
+        lines()
+    }
+}
+impl Real for f64 {
+    #[inline(always)]
+    fn select_equal(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
+        if a == b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn magnitude(self) -> f64 {
+        f64::from_bits(self.to_bits() & !(1 << 63))
+    }
+    #[inline(always)]
+    fn copy_sign(self, sign: f64) -> f64 {
+        f64::from_bits((self.to_bits() & !(1 << 63)) | (sign.to_bits() & (1 << 63)))
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> f64 {
+        f64::from_bits((self + 4503599627371519.0).to_bits() << 52)
+    }
+    #[inline(always)]
+    fn exponent(self) -> f64 {
+        ((self.to_bits() >> 52) & 0x7ff) as f64 - 1023.0
+    }
+    #[inline(always)]
+    fn significand(self) -> f64 {
+        f64::from_bits((self.to_bits() & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000)
+    }
+}
+
+/// Elementary functions in double precision, then rounded: within 0.5001 units in the last
+/// place.
+impl Scalar for f32 {
+    #[inline(always)]
+    fn number(value: f64) -> f32 {
+        value as f32
+    }
+    #[inline(always)]
+    fn select_greater(a: f32, b: f32, then: f32, otherwise: f32) -> f32 {
+        if a > b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn all_greater(a: f32, b: f32) -> bool {
+        a > b
+    }
+    #[inline]
+    fn function<F: Function>(self) -> f32 {
+        F::value(f64::from(self)) as f32
+    }
+    #[inline]
+    fn function_of_two<F: FunctionOfTwo>(self, other: f32) -> f32 {
+        F::value(f64::from(self), f64::from(other)) as f32
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f32>(lines: F) -> f32 {
+        lines()
+    }
+}
+
+/// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
 #[inline(always)]
-fn paired(length: usize, s: &[f64; 8]) -> f64 {
-    let a = if length > 1 { s[0] + s[1] } else { s[0] };
-    let b = if length > 3 { s[2] + s[3] } else { s[2] };
-    let c = if length > 5 { s[4] + s[5] } else { s[4] };
-    let d = if length > 7 { s[6] + s[7] } else { s[6] };
-    let left = if length > 2 { a + b } else { a };
-    let right = if length > 6 { c + d } else { c };
-    if length > 4 { left + right } else { left }
+fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
+    let reciprocal = T::number(1.0) / pivot;
+    T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
+}
+
+/// These numbers in another type.
+#[inline(always)]
+fn converted<T: Scalar, const N: usize>(numbers: &[f64; N]) -> [T; N] {
+    let mut converted = [T::number(0.0); N];
+    for i in 0..N {
+        converted[i] = T::number(numbers[i]);
+    }
+    converted
+}
+
+/// The sum of the first `N` of eight numbers, neighbours added in pairs.
+#[inline(always)]
+fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
+    let a = if N > 1 { s[0] + s[1] } else { s[0] };
+    let b = if N > 3 { s[2] + s[3] } else { s[2] };
+    let c = if N > 5 { s[4] + s[5] } else { s[4] };
+    let d = if N > 7 { s[6] + s[7] } else { s[6] };
+    let left = if N > 2 { a + b } else { a };
+    let right = if N > 6 { c + d } else { c };
+    if N > 4 { left + right } else { left }
 }
 
 /// The sum of up to eight elements.
 #[inline(always)]
-fn sum_of_few<F: Fn(usize) -> f64>(length: usize, element: F) -> f64 {
-    let mut s = [0.0; 8];
-    for k in 0..length {
+fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
+    _: [(); N],
+    element: F,
+) -> T {
+    let mut s = [T::number(0.0); 8];
+    for k in 0..N {
         s[k] = element(k);
     }
-    paired(length, &s)
+    paired::<N, T>(&s)
 }

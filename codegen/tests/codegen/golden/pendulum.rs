@@ -39,17 +39,17 @@ pub const GENERATOR_VERSION: &'static str = "0.1.0";
 
 /// Parameters of the model. `Default` gives the specification's values.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameters {
+pub struct Parameters<T = f64> {
     /// mass of the arm \[kg] (arXiv 2205.06231)
-    pub m: f64,
+    pub m: T,
     /// distance from pivot to centre of mass \[m] (arXiv 2205.06231)
-    pub a: f64,
+    pub a: T,
     /// inertia about the centre of mass \[kg m^2] (arXiv 2205.06231)
-    pub I: f64,
+    pub I: T,
     /// viscous friction in the pivot \[N m s] (arXiv 2205.06231)
-    pub k: f64,
+    pub k: T,
     /// gravity \[m/s^2]
-    pub g: f64,
+    pub g: T,
 }
 impl Default for Parameters {
     fn default() -> Self {
@@ -62,6 +62,19 @@ impl Default for Parameters {
         }
     }
 }
+impl Parameters {
+    /// The numbers of these parameters in another type, without derivatives.
+    #[inline(always)]
+    pub fn cast<T: Scalar>(&self) -> Parameters<T> {
+        Parameters {
+            m: T::number(self.m),
+            a: T::number(self.a),
+            I: T::number(self.I),
+            k: T::number(self.k),
+            g: T::number(self.g),
+        }
+    }
+}
 
 /// Signals supplied at run time. `Default` gives zeros.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -69,25 +82,25 @@ pub struct Inputs {}
 
 /// What depends on the parameters alone: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coefficients {
+pub struct Coefficients<T = f64> {
     /// `m*a*a + I`
-    pub M_theta_theta: f64,
+    pub M_theta_theta: T,
     /// `k*1/M_theta_theta`
-    pub c_1: f64,
+    pub c_1: T,
     /// `m*a*g`
-    pub c_2: f64,
+    pub c_2: T,
     /// `m*a*g*1/M_theta_theta`
-    pub c_3: f64,
+    pub c_3: T,
     /// `0.5*M_theta_theta`
-    pub c_4: f64,
+    pub c_4: T,
     /// `-k`
-    pub c_5: f64,
+    pub c_5: T,
     /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
     pub positive_definite: bool,
 }
-impl Coefficients {
+impl<T: Scalar> Coefficients<T> {
     /// The coefficients of these parameters.
-    pub fn prepare(parameters: &Parameters) -> Self {
+    pub fn prepare(parameters: &Parameters<T>) -> Self {
         let s_1 = parameters.k;
         let m = parameters.m;
         let a = parameters.a;
@@ -101,9 +114,25 @@ impl Coefficients {
             c_1: s_1 * s_2,
             c_2: s_3,
             c_3: s_3 * s_2,
-            c_4: 0.5 * M_theta_theta,
+            c_4: T::number(0.5) * M_theta_theta,
             c_5: -s_1,
-            positive_definite: M_theta_theta > 0.0 && M_theta_theta < f64::INFINITY,
+            positive_definite: T::all_greater(M_theta_theta, T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), M_theta_theta),
+        }
+    }
+}
+impl Coefficients {
+    /// The numbers of these coefficients in another type, without derivatives.
+    #[inline(always)]
+    pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
+        Coefficients {
+            M_theta_theta: T::number(self.M_theta_theta),
+            c_1: T::number(self.c_1),
+            c_2: T::number(self.c_2),
+            c_3: T::number(self.c_3),
+            c_4: T::number(self.c_4),
+            c_5: T::number(self.c_5),
+            positive_definite: self.positive_definite,
         }
     }
 }
@@ -112,16 +141,16 @@ impl Coefficients {
 ///
 /// `t` in s; `state` and the result in the order of [`STATE_NAMES`].
 #[allow(unused_variables)]
-pub fn rates(
-    t: f64,
-    state: &[f64; STATES],
+pub fn rates<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
     inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> [f64; STATES] {
+    coefficients: &Coefficients<T>,
+) -> [T; STATES] {
     let theta_dot = state[1];
     let theta = state[0];
     let theta_ddot = coefficients.c_3 * sin(theta) - coefficients.c_1 * theta_dot;
-    let mut rates = [0.0; STATES];
+    let mut rates = [T::number(0.0); STATES];
     for i in 0..1 {
         rates[i] = state[1 + i];
     }
@@ -134,12 +163,12 @@ pub fn rates(
 /// - `energy`: kinetic plus potential energy \[J]
 /// - `power`: power of all non-conservative forces: the rate of the energy \[W]
 #[allow(unused_variables)]
-pub fn observables(
-    t: f64,
-    state: &[f64; STATES],
+pub fn observables<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
     inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> [f64; OBSERVABLES] {
+    coefficients: &Coefficients<T>,
+) -> [T; OBSERVABLES] {
     let theta_dot = state[1];
     let theta = state[0];
     let s_1 = theta_dot * theta_dot;
@@ -150,12 +179,12 @@ pub fn observables(
 
 /// Kinetic plus potential energy, in J.
 #[allow(unused_variables)]
-pub fn energy(
-    t: f64,
-    state: &[f64; STATES],
+pub fn energy<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
     inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> f64 {
+    coefficients: &Coefficients<T>,
+) -> T {
     let theta_dot = state[1];
     let theta = state[0];
     let T_arm = coefficients.c_4 * (theta_dot * theta_dot);
@@ -165,12 +194,12 @@ pub fn energy(
 
 /// Power of all non-conservative forces, in W: the rate of the energy.
 #[allow(unused_variables)]
-pub fn power(
-    t: f64,
-    state: &[f64; STATES],
+pub fn power<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
     inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> f64 {
+    coefficients: &Coefficients<T>,
+) -> T {
     let theta_dot = state[1];
     coefficients.c_5 * (theta_dot * theta_dot)
 }
@@ -178,103 +207,301 @@ pub fn power(
 /// Switching surfaces: the equations change where one of these changes sign.
 ///
 #[allow(unused_variables, unused_mut)]
-pub fn guards(
-    t: f64,
-    state: &[f64; STATES],
+pub fn guards<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
     inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> [f64; GUARDS] {
-    let mut values = [0.0; GUARDS];
+    coefficients: &Coefficients<T>,
+) -> [T; GUARDS] {
+    let mut values = [T::number(0.0); GUARDS];
     values
 }
 
 /// The mass matrix, in the order of the first half of [`STATE_NAMES`].
 #[allow(unused_variables, unused_mut)]
-pub fn mass_matrix(
-    t: f64,
-    state: &[f64; STATES],
+pub fn mass_matrix<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
     inputs: &Inputs,
-    coefficients: &Coefficients,
-) -> [[f64; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
-    let mut values = [[0.0; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
+    coefficients: &Coefficients<T>,
+) -> [[T; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
+    let mut values = [[T::number(0.0); DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
     values[0][0] = coefficients.M_theta_theta;
     values
 }
 
+/// What the equations are computed with: `f64`, `f32`, lanes of them, or numbers that carry
+/// derivatives. Nothing branches on a value, so that lanes may differ in every condition.
+pub trait Scalar: Copy
+where
+    Self: core::ops::Add<Output = Self>,
+    Self: core::ops::Sub<Output = Self>,
+    Self: core::ops::Mul<Output = Self>,
+    Self: core::ops::Div<Output = Self>,
+    Self: core::ops::Neg<Output = Self>,
+{
+    /// A number, in every lane and without derivative.
+    fn number(value: f64) -> Self;
+    /// `then` where a > b, `otherwise` elsewhere, also where either is NaN. Whatever is not
+    /// chosen leaves no trace.
+    fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+    /// Whether a > b in every lane.
+    fn all_greater(a: Self, b: Self) -> bool;
+    /// An elementary function of this.
+    fn function<F: Function>(self) -> Self;
+    /// An elementary function of this and another.
+    fn function_of_two<F: FunctionOfTwo>(self, other: Self) -> Self;
+    /// A long loop. Single numbers keep it out of the code around; lanes must not, because code
+    /// of its own would not be compiled for their registers.
+    #[inline(always)]
+    fn long_loop<F: FnOnce() -> Self>(lines: F) -> Self {
+        lines()
+    }
+}
+
+/// Numbers in IEEE 754 double precision, or lanes of them: what the elementary functions are
+/// written for.
+pub trait Real: Scalar {
+    /// `then` where a = b, `otherwise` elsewhere, also where either is NaN.
+    fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self;
+    /// The sign bit cleared.
+    fn magnitude(self) -> Self;
+    /// The magnitude with the sign bit of another number.
+    fn copy_sign(self, sign: Self) -> Self;
+    /// 2^k for an integral k: 2^52 + 1023 brings it to the place of the exponent.
+    fn power_of_two(self) -> Self;
+    /// The unbiased exponent field.
+    fn exponent(self) -> Self;
+    /// The mantissa under the exponent of 1.
+    fn significand(self) -> Self;
+}
+
+/// An elementary function: plain operations in a fixed order, the same bits on every machine.
+pub trait Function {
+    /// Its value.
+    fn value<T: Real>(x: T) -> T;
+    /// Its derivative at x, where it is `value`.
+    fn slope<T: Scalar>(x: T, value: T) -> T;
+}
+
+/// An elementary function of two arguments.
+pub trait FunctionOfTwo {
+    /// Its value.
+    fn value<T: Real>(x: T, y: T) -> T;
+    /// Its derivatives by x and y, where it is `value`.
+    fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2];
+}
+impl Scalar for f64 {
+    #[inline(always)]
+    fn number(value: f64) -> f64 {
+        value
+    }
+    #[inline(always)]
+    fn select_greater(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
+        if a > b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn all_greater(a: f64, b: f64) -> bool {
+        a > b
+    }
+    #[inline]
+    fn function<F: Function>(self) -> f64 {
+        F::value(self)
+    }
+    #[inline]
+    fn function_of_two<F: FunctionOfTwo>(self, other: f64) -> f64 {
+        F::value(self, other)
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f64>(lines: F) -> f64 {
+        lines()
+    }
+}
+impl Real for f64 {
+    #[inline(always)]
+    fn select_equal(a: f64, b: f64, then: f64, otherwise: f64) -> f64 {
+        if a == b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn magnitude(self) -> f64 {
+        f64::from_bits(self.to_bits() & !(1 << 63))
+    }
+    #[inline(always)]
+    fn copy_sign(self, sign: f64) -> f64 {
+        f64::from_bits((self.to_bits() & !(1 << 63)) | (sign.to_bits() & (1 << 63)))
+    }
+    #[inline(always)]
+    fn power_of_two(self) -> f64 {
+        f64::from_bits((self + 4503599627371519.0).to_bits() << 52)
+    }
+    #[inline(always)]
+    fn exponent(self) -> f64 {
+        ((self.to_bits() >> 52) & 0x7ff) as f64 - 1023.0
+    }
+    #[inline(always)]
+    fn significand(self) -> f64 {
+        f64::from_bits((self.to_bits() & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000)
+    }
+}
+
+/// Elementary functions in double precision, then rounded: within 0.5001 units in the last
+/// place.
+impl Scalar for f32 {
+    #[inline(always)]
+    fn number(value: f64) -> f32 {
+        value as f32
+    }
+    #[inline(always)]
+    fn select_greater(a: f32, b: f32, then: f32, otherwise: f32) -> f32 {
+        if a > b { then } else { otherwise }
+    }
+    #[inline(always)]
+    fn all_greater(a: f32, b: f32) -> bool {
+        a > b
+    }
+    #[inline]
+    fn function<F: Function>(self) -> f32 {
+        F::value(f64::from(self)) as f32
+    }
+    #[inline]
+    fn function_of_two<F: FunctionOfTwo>(self, other: f32) -> f32 {
+        F::value(f64::from(self), f64::from(other)) as f32
+    }
+    #[inline(never)]
+    fn long_loop<F: FnOnce() -> f32>(lines: F) -> f32 {
+        lines()
+    }
+}
+
 /// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
 #[inline(always)]
-fn pivot_reciprocal(pivot: f64) -> f64 {
-    if pivot > 0.0 { 1.0 / pivot } else { f64::NAN }
+fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
+    let reciprocal = T::number(1.0) / pivot;
+    T::select_greater(pivot, T::number(0.0), reciprocal, T::number(f64::NAN))
 }
 
-/// Sine for |x| up to 1e9, NaN beyond. Plain operations in a fixed order: the same bits on every machine.
-#[inline]
-fn sin(x: f64) -> f64 {
-    let v6 = x * 0.6366197723675814 + 6.755399441055744e15 - 6.755399441055744e15;
-    let v15 = x - v6 * 1.570796251296997 - v6 * 7.549789415861596e-8;
-    let v16 = v6 * 5.390304224023659e-15;
-    let v17 = v6 * -1.3658654267100645e-21;
-    let v18 = v16 + v17;
-    let v23 = v15 - v18;
-    let v26 = v16 - v18 + v17 + v6 * -1.1351118607522202e-28 - (v15 - v23 - v18);
-    let v27 = v23 * v23;
-    let v29 = v27 * -0.5;
-    let v30 = 1.0 + v29;
-    let v46 = v27 * v27;
-    let v49 = v46 * v46;
-    let v51 = 0.1666666666666663 + v27 * -0.008333333333321917
-        + v46 * (0.00019841269829458453 + v27 * -2.755731358278338e-6)
-        + v49 * (2.5050742477852252e-8 + v27 * -1.5895956565664054e-10);
-    let v70 = 0.041666666666666595 + v27 * -0.0013888888888873342
-        + v46 * (2.4801587289001978e-5 + v27 * -2.755731421694031e-7)
-        + v49 * (2.0875705319424642e-9 + v27 * -1.1358738323480003e-11);
-    let v85 = if 1e9 < magnitude_of(x) {
-        f64::NAN
-    } else {
-        v6 - (v6 * 0.25 + 6.755399441055744e15 - 6.755399441055744e15) * 4.0
-    };
-    let v87 = v30 + (1.0 - v30 + v29 + (v46 * v70 + v23 * v26));
-    let v88 = magnitude_of(v85);
-    let v92 = (if v88 == 1.0 { v87 } else { v23 - (v23 * v27 * v51 + v26 * v30) })
-        * (if v88 == 1.0 { v85 } else { 1.0 - v88 });
-    v92
-}
-
-/// Cosine for |x| up to 1e9, NaN beyond. Plain operations in a fixed order: the same bits on every machine.
-#[inline]
-fn cos(x: f64) -> f64 {
-    let v6 = x * 0.6366197723675814 + 6.755399441055744e15 - 6.755399441055744e15;
-    let v15 = x - v6 * 1.570796251296997 - v6 * 7.549789415861596e-8;
-    let v16 = v6 * 5.390304224023659e-15;
-    let v17 = v6 * -1.3658654267100645e-21;
-    let v18 = v16 + v17;
-    let v23 = v15 - v18;
-    let v26 = v16 - v18 + v17 + v6 * -1.1351118607522202e-28 - (v15 - v23 - v18);
-    let v27 = v23 * v23;
-    let v29 = v27 * -0.5;
-    let v30 = 1.0 + v29;
-    let v46 = v27 * v27;
-    let v49 = v46 * v46;
-    let v51 = 0.1666666666666663 + v27 * -0.008333333333321917
-        + v46 * (0.00019841269829458453 + v27 * -2.755731358278338e-6)
-        + v49 * (2.5050742477852252e-8 + v27 * -1.5895956565664054e-10);
-    let v70 = 0.041666666666666595 + v27 * -0.0013888888888873342
-        + v46 * (2.4801587289001978e-5 + v27 * -2.755731421694031e-7)
-        + v49 * (2.0875705319424642e-9 + v27 * -1.1358738323480003e-11);
-    let v85 = if 1e9 < magnitude_of(x) {
-        f64::NAN
-    } else {
-        v6 - (v6 * 0.25 + 6.755399441055744e15 - 6.755399441055744e15) * 4.0
-    };
-    let v87 = v30 + (1.0 - v30 + v29 + (v46 * v70 + v23 * v26));
-    let v88 = magnitude_of(v85);
-    let v93 = (if v88 == 1.0 { v23 - (v23 * v27 * v51 + v26 * v30) } else { v87 })
-        * (if v88 == 1.0 { -v85 } else { 1.0 - v88 });
-    v93
-}
-
-/// The sign bit cleared.
+/// Sine for |x| up to 1e9, NaN beyond.
 #[inline(always)]
-fn magnitude_of(x: f64) -> f64 {
-    f64::from_bits(x.to_bits() & !(1 << 63))
+fn sin<T: Scalar>(x: T) -> T {
+    x.function::<Sin>()
+}
+enum Sin {}
+impl Function for Sin {
+    #[inline(always)]
+    fn value<T: Real>(x: T) -> T {
+        let v6 = x * T::number(0.6366197723675814) + T::number(6.755399441055744e15)
+            - T::number(6.755399441055744e15);
+        let v15 = x - v6 * T::number(1.570796251296997)
+            - v6 * T::number(7.549789415861596e-8);
+        let v16 = v6 * T::number(5.390304224023659e-15);
+        let v17 = v6 * T::number(-1.3658654267100645e-21);
+        let v18 = v16 + v17;
+        let v23 = v15 - v18;
+        let v26 = v16 - v18 + v17 + v6 * T::number(-1.1351118607522202e-28)
+            - (v15 - v23 - v18);
+        let v27 = v23 * v23;
+        let v29 = v27 * T::number(-0.5);
+        let v30 = T::number(1.0) + v29;
+        let v46 = v27 * v27;
+        let v49 = v46 * v46;
+        let v51 = T::number(0.1666666666666663) + v27 * T::number(-0.008333333333321917)
+            + v46
+                * (T::number(0.00019841269829458453)
+                    + v27 * T::number(-2.755731358278338e-6))
+            + v49
+                * (T::number(2.5050742477852252e-8)
+                    + v27 * T::number(-1.5895956565664054e-10));
+        let v70 = T::number(0.041666666666666595)
+            + v27 * T::number(-0.0013888888888873342)
+            + v46
+                * (T::number(2.4801587289001978e-5)
+                    + v27 * T::number(-2.755731421694031e-7))
+            + v49
+                * (T::number(2.0875705319424642e-9)
+                    + v27 * T::number(-1.1358738323480003e-11));
+        let v85 = T::select_greater(
+            T::magnitude(x),
+            T::number(1e9),
+            T::number(f64::NAN),
+            v6
+                - (v6 * T::number(0.25) + T::number(6.755399441055744e15)
+                    - T::number(6.755399441055744e15)) * T::number(4.0),
+        );
+        let v87 = v30 + (T::number(1.0) - v30 + v29 + (v46 * v70 + v23 * v26));
+        let v88 = T::magnitude(v85);
+        let v92 = T::select_equal(
+            v88,
+            T::number(1.0),
+            v87,
+            v23 - (v23 * v27 * v51 + v26 * v30),
+        ) * T::select_equal(v88, T::number(1.0), v85, T::number(1.0) - v88);
+        v92
+    }
+    #[inline(always)]
+    fn slope<T: Scalar>(x: T, _: T) -> T {
+        cos(x)
+    }
+}
+
+/// Cosine for |x| up to 1e9, NaN beyond.
+#[inline(always)]
+fn cos<T: Scalar>(x: T) -> T {
+    x.function::<Cos>()
+}
+enum Cos {}
+impl Function for Cos {
+    #[inline(always)]
+    fn value<T: Real>(x: T) -> T {
+        let v6 = x * T::number(0.6366197723675814) + T::number(6.755399441055744e15)
+            - T::number(6.755399441055744e15);
+        let v15 = x - v6 * T::number(1.570796251296997)
+            - v6 * T::number(7.549789415861596e-8);
+        let v16 = v6 * T::number(5.390304224023659e-15);
+        let v17 = v6 * T::number(-1.3658654267100645e-21);
+        let v18 = v16 + v17;
+        let v23 = v15 - v18;
+        let v26 = v16 - v18 + v17 + v6 * T::number(-1.1351118607522202e-28)
+            - (v15 - v23 - v18);
+        let v27 = v23 * v23;
+        let v29 = v27 * T::number(-0.5);
+        let v30 = T::number(1.0) + v29;
+        let v46 = v27 * v27;
+        let v49 = v46 * v46;
+        let v51 = T::number(0.1666666666666663) + v27 * T::number(-0.008333333333321917)
+            + v46
+                * (T::number(0.00019841269829458453)
+                    + v27 * T::number(-2.755731358278338e-6))
+            + v49
+                * (T::number(2.5050742477852252e-8)
+                    + v27 * T::number(-1.5895956565664054e-10));
+        let v70 = T::number(0.041666666666666595)
+            + v27 * T::number(-0.0013888888888873342)
+            + v46
+                * (T::number(2.4801587289001978e-5)
+                    + v27 * T::number(-2.755731421694031e-7))
+            + v49
+                * (T::number(2.0875705319424642e-9)
+                    + v27 * T::number(-1.1358738323480003e-11));
+        let v85 = T::select_greater(
+            T::magnitude(x),
+            T::number(1e9),
+            T::number(f64::NAN),
+            v6
+                - (v6 * T::number(0.25) + T::number(6.755399441055744e15)
+                    - T::number(6.755399441055744e15)) * T::number(4.0),
+        );
+        let v87 = v30 + (T::number(1.0) - v30 + v29 + (v46 * v70 + v23 * v26));
+        let v88 = T::magnitude(v85);
+        let v93 = T::select_equal(
+            v88,
+            T::number(1.0),
+            v23 - (v23 * v27 * v51 + v26 * v30),
+            v87,
+        ) * T::select_equal(v88, T::number(1.0), -v85, T::number(1.0) - v88);
+        v93
+    }
+    #[inline(always)]
+    fn slope<T: Scalar>(x: T, _: T) -> T {
+        -sin(x)
+    }
 }

@@ -1,0 +1,70 @@
+//! The arm's Jacobian of the rates by the state, and its products with one vector, beside one
+//! right-hand side: what they cost in right-hand sides, and a structural nonzero in nanoseconds.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use eomgen_benches::{state, variants};
+
+/// Results are looked at where they lie: a copy of them would be timed with the call.
+macro_rules! compare {
+    ($criterion:ident, $($order:literal $module:ident),*) => {$({
+        use variants::$module as arm;
+        type State = [f64; arm::STATES];
+        #[inline(never)]
+        fn rates(t: f64, state: &State, c: &arm::Coefficients) -> State {
+            arm::rates(t, state, &arm::Inputs::default(), c)
+        }
+        #[inline(never)]
+        fn forward(t: f64, state: &State, c: &arm::Coefficients, direction: &State) -> State {
+            let inputs = arm::Inputs::default();
+            arm::jacobian_vector_product(t, state, &inputs, c, direction, &inputs)
+        }
+        #[inline(never)]
+        fn reverse(t: f64, state: &State, c: &arm::Coefficients, weights: &State) -> State {
+            arm::vector_jacobian_product(t, state, &arm::Inputs::default(), c, weights).0
+        }
+        #[inline(never)]
+        fn jacobian(
+            t: f64,
+            state: &State,
+            c: &arm::Coefficients,
+        ) -> [f64; arm::RATES_BY_STATE_NONZEROS] {
+            arm::rates_by_state(t, state, &arm::Inputs::default(), c)
+        }
+        let mut group = $criterion.benchmark_group(concat!("jacobian_order_", $order));
+        let state = state::<{ arm::STATES }>();
+        let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
+        group.bench_function("rates", |bencher| {
+            bencher.iter(|| {
+                black_box(&rates(black_box(0.3), black_box(&state), black_box(&coefficients)));
+            })
+        });
+        group.bench_function("jacobian_vector_product", |bencher| {
+            bencher.iter(|| {
+                let direction = black_box(&state);
+                black_box(&forward(black_box(0.3), black_box(&state), black_box(&coefficients), direction));
+            })
+        });
+        group.bench_function("vector_jacobian_product", |bencher| {
+            bencher.iter(|| {
+                let weights = black_box(&state);
+                black_box(&reverse(black_box(0.3), black_box(&state), black_box(&coefficients), weights));
+            })
+        });
+        group.throughput(Throughput::Elements(arm::RATES_BY_STATE_NONZEROS as u64));
+        group.bench_function("jacobian", |bencher| {
+            bencher.iter(|| {
+                black_box(&jacobian(black_box(0.3), black_box(&state), black_box(&coefficients)));
+            })
+        });
+        group.finish();
+    })*};
+}
+
+fn jacobian(criterion: &mut Criterion) {
+    compare!(criterion, 4 full_order_4, 16 full_order_16, 64 full_order_64);
+}
+
+criterion_group!(benches, jacobian);
+criterion_main!(benches);

@@ -1,0 +1,119 @@
+//! The arm at many states: one by one, and eight at once in every kind of registers that this
+//! machine has. Prints nanoseconds for a state and how many times the throughput of one by one
+//! they are. The best of many rounds counts: whatever else runs makes a round longer only.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use eomgen_benches::state;
+use lanes::{LANES, Lanes, Registers, Task, Vector};
+
+/// Of this crate, because a scalar is made of its own or of the traits of its own.
+#[allow(dead_code)]
+mod variants {
+    include!(concat!(env!("OUT_DIR"), "/variants.rs"));
+}
+
+::lanes::scalar!(variants::full_order_4);
+::lanes::scalar!(variants::full_order_16);
+::lanes::scalar!(variants::full_order_64);
+
+/// States in a pass: they and their rates stay in the nearest cache.
+const STATES: usize = 16;
+
+/// Passes over the same states in a round.
+const PASSES: usize = 32;
+
+/// Rounds of which the best counts.
+const ROUNDS: usize = 2000;
+
+fn best(mut round: impl FnMut()) -> f64 {
+    let seconds = |_| {
+        let start = Instant::now();
+        round();
+        start.elapsed().as_secs_f64()
+    };
+    (0..ROUNDS).map(seconds).fold(f64::INFINITY, f64::min) / (PASSES * STATES) as f64 * 1e9
+}
+
+/// A frequency a little different in every lane, so that no two lanes are alike.
+fn times(place: usize) -> [f64; LANES] {
+    std::array::from_fn(|k| 0.3 + 1e-3 * (LANES * place + k) as f64)
+}
+
+macro_rules! compare {
+    ($($order:literal $module:ident),*) => {$({
+        use variants::$module as arm;
+        type OfEight = [[f64; LANES]; arm::STATES];
+
+        struct All<'a> {
+            states: &'a [OfEight],
+            rates: &'a mut [OfEight],
+            coefficients: &'a arm::Coefficients,
+        }
+
+        impl Task for All<'_> {
+            type Output = ();
+            #[inline(always)]
+            fn run<V: Vector>(self) {
+                let coefficients = self.coefficients.cast();
+                let places = (0..PASSES).flat_map(|_| 0..STATES / LANES);
+                for place in places {
+                    let (numbers, out) = (&black_box(self.states)[place], &mut self.rates[place]);
+                    let mut state = [Lanes::<V>::splat(0.0); arm::STATES];
+                    for i in 0..arm::STATES {
+                        state[i] = Lanes::from_array(numbers[i]);
+                    }
+                    let t = Lanes::from_array(times(place));
+                    let rates = arm::inlined_rates(t, &state, &arm::Inputs::default(), &coefficients);
+                    for i in 0..arm::STATES {
+                        out[i] = rates[i].to_array();
+                    }
+                }
+            }
+        }
+
+        #[inline(never)]
+        fn rates(
+            t: f64,
+            state: &[f64; arm::STATES],
+            coefficients: &arm::Coefficients,
+        ) -> [f64; arm::STATES] {
+            arm::rates(t, state, &arm::Inputs::default(), coefficients)
+        }
+
+        let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
+        let single = [state::<{ arm::STATES }>(); STATES];
+        let mut single_rates = single;
+        let alone = best(|| {
+            for place in (0..PASSES).flat_map(|_| 0..STATES) {
+                let (t, state) = (times(place / LANES)[place % LANES], &black_box(&single)[place]);
+                single_rates[place] = rates(t, state, black_box(&coefficients));
+            }
+            black_box(&single_rates);
+        });
+        let states = [state::<{ arm::STATES }>().map(|number| [number; LANES]); STATES / LANES];
+        let mut lane_rates = states;
+        print!("order {:>2}: one by one {alone:6.1} ns", $order);
+        for registers in Registers::ALL.into_iter().filter(|kind| kind.are_there()) {
+            let time = best(|| {
+                lanes::run_with(registers, All {
+                    states: black_box(&states),
+                    rates: &mut lane_rates,
+                    coefficients: black_box(&coefficients),
+                });
+                black_box(&lane_rates);
+            });
+            print!(", {registers:?} {time:6.1} ns ({:.2} times)", alone / time);
+            for (place, rates) in single_rates.iter().enumerate() {
+                let found = lane_rates[place / LANES].map(|numbers| numbers[place % LANES]);
+                assert_eq!(rates, &found, "lanes and single numbers differ");
+            }
+        }
+        println!();
+    })*};
+}
+
+fn main() {
+    compare!(4 full_order_4, 16 full_order_16, 64 full_order_64);
+}

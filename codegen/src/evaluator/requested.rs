@@ -1,0 +1,150 @@
+//! What was requested of a program, computed by its evaluator. Each function says whether the
+//! program has it.
+
+use super::{Evaluator, Point, Stage};
+use crate::program::{Argument, Entry, Extent, Jacobian, Op, RowValues, ValueId, Variable};
+
+impl Evaluator {
+    /// M a + c - f for these accelerations; a number per degree of freedom.
+    pub fn inverse_dynamics(
+        &mut self,
+        point: Point<'_>,
+        accelerations: &[f64],
+        out: &mut [f64],
+    ) -> bool {
+        let Some(rows) = self.program.requested.inverse_dynamics.clone() else {
+            return false;
+        };
+        self.set_argument(Argument::Accelerations, accelerations, &[]);
+        self.compute(Stage::InverseDynamics, &point);
+        self.copy_rows(&rows.scalars, &rows.modal, out);
+        true
+    }
+
+    /// The rates of the guards; as many numbers as [`Evaluator::guard_count`].
+    pub fn guard_rates(&mut self, point: Point<'_>, out: &mut [f64]) -> bool {
+        let Some(rates) = self.program.requested.guard_rates.clone() else {
+            return false;
+        };
+        self.compute(Stage::GuardRates, &point);
+        let mut place = 0;
+        for (rate, guard) in rates.iter().zip(&self.program.guards) {
+            let length = self.program.value(guard.value).extent.length();
+            for (i, slot) in out[place..place + length].iter_mut().enumerate() {
+                *slot = self.element(*rate, i);
+            }
+            place += length;
+        }
+        true
+    }
+
+    /// The structural nonzeros of a Jacobian of the program, by its place among them.
+    pub fn jacobian(&mut self, place: usize, point: Point<'_>, out: &mut [f64]) -> bool {
+        let Some(jacobian) = self.program.requested.jacobians.get(place).cloned() else {
+            return false;
+        };
+        self.compute(Stage::Jacobians, &point);
+        self.copy_entries(&jacobian, out);
+        true
+    }
+
+    /// The product of the Jacobian of the rates with a direction of the state and of the inputs;
+    /// as many numbers as the state.
+    pub fn jacobian_vector_product(
+        &mut self,
+        point: Point<'_>,
+        (state, inputs): (&[f64], &[f64]),
+        out: &mut [f64],
+    ) -> bool {
+        let Some(products) = self.program.requested.products.clone() else {
+            return false;
+        };
+        self.set_argument(Argument::Direction, state, inputs);
+        self.compute(Stage::ForwardProduct, &point);
+        let degrees = self.program.degrees_of_freedom();
+        let (velocities, accelerations) = out.split_at_mut(degrees);
+        velocities.copy_from_slice(&state[degrees..2 * degrees]);
+        let RowValues { scalars, modal } = products.forward;
+        self.copy_rows(&scalars, &modal, accelerations);
+        true
+    }
+
+    /// The product of weights with the Jacobian of the rates by state and inputs.
+    pub fn vector_jacobian_product(
+        &mut self,
+        point: Point<'_>,
+        weights: &[f64],
+        (state, inputs): (&mut [f64], &mut [f64]),
+    ) -> bool {
+        let Some(products) = self.program.requested.products.clone() else {
+            return false;
+        };
+        self.set_argument(Argument::Weights, weights, &[]);
+        self.compute(Stage::ReverseProduct, &point);
+        let degrees = self.program.degrees_of_freedom();
+        state.fill(0.0);
+        inputs.fill(0.0);
+        state[degrees..2 * degrees].copy_from_slice(&weights[..degrees]);
+        for (variable, id) in products.reverse {
+            let place = self.program.variable_place(variable);
+            for i in 0..self.count(variable) {
+                let value = self.element(id, i);
+                match variable {
+                    Variable::Input(_) => inputs[place] = value,
+                    Variable::Rate(_) | Variable::ModeRates(_) => state[place + i] += value,
+                    _ => state[place + i] = value,
+                }
+            }
+        }
+        true
+    }
+
+    fn count(&self, variable: Variable) -> usize {
+        match variable {
+            Variable::ModeCoordinates(field) | Variable::ModeRates(field) => {
+                self.program.fields[field].order
+            }
+            _ => 1,
+        }
+    }
+
+    /// Puts an argument's numbers where the values that stand for them are.
+    fn set_argument(&mut self, argument: Argument, numbers: &[f64], inputs: &[f64]) {
+        for id in self.program.ids() {
+            let Op::Argument(of, variable) = self.program.value(id).op else {
+                continue;
+            };
+            if of != argument {
+                continue;
+            }
+            let from = match variable {
+                Variable::Input(_) => inputs,
+                _ => numbers,
+            };
+            let (place, start) = (
+                self.program.variable_place(variable),
+                self.places.offset(id),
+            );
+            let count = self.count(variable);
+            self.memory[start..start + count].copy_from_slice(&from[place..place + count]);
+        }
+    }
+
+    fn copy_entries(&self, jacobian: &Jacobian<ValueId>, out: &mut [f64]) {
+        for (entry, (start, width)) in jacobian.entries.iter().zip(jacobian.places()) {
+            for row in 0..entry.rows {
+                for column in 0..entry.width() {
+                    out[start + width * row + column] = self.nonzero(entry, row, column);
+                }
+            }
+        }
+    }
+
+    fn nonzero(&self, entry: &Entry<ValueId>, row: usize, column: usize) -> f64 {
+        match self.program.value(entry.value).extent {
+            Extent::Matrix(_, columns) => self.slice(entry.value)[row * columns + column],
+            _ if entry.columns > 1 && !entry.diagonal => self.element(entry.value, column),
+            _ => self.element(entry.value, row),
+        }
+    }
+}

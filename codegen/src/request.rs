@@ -1,0 +1,80 @@
+//! What can be asked for beside rates, observables, energy, power, guards and mass matrix,
+//! which are always there. How it is derived is in `requested`.
+
+/// Functions that are derived and emitted on request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Request {
+    /// c - f of M q'' + c = f.
+    BiasForces,
+    /// M a + c - f for any accelerations a: the forces that are missing for them.
+    InverseDynamics,
+    /// Time derivatives of the guards.
+    GuardRates,
+    /// Jacobians of rates and observables by state, inputs and parameters.
+    Jacobians,
+    /// Products of the rates' Jacobian with a direction, and of weights with the Jacobian.
+    Products,
+    /// A, B, C and D about a point; brings the Jacobians with it.
+    Linearisation,
+    /// Every function a second time as `inlined_...`, for lanes: to be compiled with the code
+    /// around it for registers that are known at run time.
+    Lanes,
+}
+
+impl Request {
+    /// Every request.
+    pub const ALL: [Self; 7] = [
+        Self::BiasForces,
+        Self::InverseDynamics,
+        Self::GuardRates,
+        Self::Jacobians,
+        Self::Products,
+        Self::Linearisation,
+        Self::Lanes,
+    ];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::BiasForces => "bias_forces",
+            Self::InverseDynamics => "inverse_dynamics",
+            Self::GuardRates => "guard_rates",
+            Self::Jacobians => "jacobians",
+            Self::Products => "products",
+            Self::Linearisation => "linearisation",
+            Self::Lanes => "lanes",
+        }
+    }
+
+    /// The names of all, for messages.
+    pub fn names() -> String {
+        Self::ALL.map(Self::name).join(", ")
+    }
+}
+
+/// A name that is no request.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownRequest {
+    /// The name.
+    pub name: String,
+}
+
+impl std::fmt::Display for UnknownRequest {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let names = Request::names();
+        write!(f, "`{}` is not known; known are {names}", self.name)
+    }
+}
+
+impl std::error::Error for UnknownRequest {}
+
+impl std::str::FromStr for Request {
+    type Err = UnknownRequest;
+
+    fn from_str(name: &str) -> Result<Self, UnknownRequest> {
+        let known = Self::ALL.into_iter().find(|request| request.name() == name);
+        known.ok_or_else(|| UnknownRequest {
+            name: name.to_owned(),
+        })
+    }
+}

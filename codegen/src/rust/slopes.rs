@@ -1,0 +1,108 @@
+//! The derivatives of the elementary functions as emitted Rust, for numbers that carry
+//! derivatives. Written by hand from the calculus, apart from `differentiate`, so that one
+//! can be checked against the other.
+
+use std::collections::BTreeSet;
+
+use super::literals::block;
+use elementary::Function as Elementary;
+
+/// The emitted type that stands for a function.
+pub fn type_name(function: Elementary) -> &'static str {
+    match function {
+        Elementary::Abs => "Abs",
+        Elementary::Sign => "Sign",
+        Elementary::Min => "Min",
+        Elementary::Max => "Max",
+        Elementary::Sqrt => "Sqrt",
+        Elementary::Exp => "Exp",
+        Elementary::ExpMinusOne => "ExpMinusOne",
+        Elementary::Ln => "Ln",
+        Elementary::Sinh => "Sinh",
+        Elementary::Cosh => "Cosh",
+        Elementary::Tanh => "Tanh",
+        Elementary::Sin => "Sin",
+        Elementary::Cos => "Cos",
+        Elementary::Tan => "Tan",
+        Elementary::Asin => "Asin",
+        Elementary::Acos => "Acos",
+        Elementary::Atan => "Atan",
+        Elementary::Atan2 => "Atan2",
+        Elementary::Pow => "Pow",
+    }
+}
+
+/// These functions and those that their slopes call.
+pub fn with_slopes(functions: &BTreeSet<Elementary>) -> BTreeSet<Elementary> {
+    let mut all = functions.clone();
+    for function in functions {
+        all.extend(match function {
+            Elementary::Sin | Elementary::Cos => vec![Elementary::Sin, Elementary::Cos],
+            Elementary::Sinh | Elementary::Cosh => vec![Elementary::Sinh, Elementary::Cosh],
+            Elementary::Asin | Elementary::Acos => vec![Elementary::Sqrt],
+            Elementary::Pow => vec![Elementary::Ln],
+            _ => Vec::new(),
+        });
+    }
+    all
+}
+
+/// The function `slope`, or `slopes` by both arguments.
+pub fn slope(function: Elementary) -> String {
+    let signature = match function {
+        Elementary::Atan2 => "fn slopes<T: Scalar>(y: T, x: T, _: T) -> [T; 2] {",
+        Elementary::Min | Elementary::Max => "fn slopes<T: Scalar>(x: T, y: T, _: T) -> [T; 2] {",
+        Elementary::Pow => "fn slopes<T: Scalar>(x: T, y: T, value: T) -> [T; 2] {",
+        Elementary::Exp
+        | Elementary::ExpMinusOne
+        | Elementary::Sqrt
+        | Elementary::Tan
+        | Elementary::Tanh => "fn slope<T: Scalar>(_: T, value: T) -> T {",
+        Elementary::Sign => "fn slope<T: Scalar>(_: T, _: T) -> T {",
+        _ => "fn slope<T: Scalar>(x: T, _: T) -> T {",
+    };
+    block(
+        &format!("#[inline(always)]\n{signature}"),
+        lines(function),
+        "}",
+    )
+}
+
+fn lines(function: Elementary) -> &'static str {
+    match function {
+        Elementary::Abs => {
+            "let (one, zero) = (T::number(1.0), T::number(0.0));\n\
+             T::select_greater(x, zero, one, T::select_greater(zero, x, -one, zero))\n"
+        }
+        Elementary::Sign => "T::number(0.0)\n",
+        Elementary::Min => {
+            "let (one, zero) = (T::number(1.0), T::number(0.0));\n\
+             [T::select_greater(x, y, zero, one), T::select_greater(x, y, one, zero)]\n"
+        }
+        Elementary::Max => {
+            "let (one, zero) = (T::number(1.0), T::number(0.0));\n\
+             [T::select_greater(y, x, zero, one), T::select_greater(y, x, one, zero)]\n"
+        }
+        Elementary::Sqrt => "T::number(0.5) / value\n",
+        Elementary::Exp => "value\n",
+        Elementary::ExpMinusOne => "value + T::number(1.0)\n",
+        Elementary::Ln => "T::number(1.0) / x\n",
+        Elementary::Sinh => "cosh(x)\n",
+        Elementary::Cosh => "sinh(x)\n",
+        Elementary::Tanh => "T::number(1.0) - value * value\n",
+        Elementary::Sin => "cos(x)\n",
+        Elementary::Cos => "-sin(x)\n",
+        Elementary::Tan => "T::number(1.0) + value * value\n",
+        Elementary::Asin => "T::number(1.0) / sqrt(T::number(1.0) - x * x)\n",
+        Elementary::Acos => "-(T::number(1.0) / sqrt(T::number(1.0) - x * x))\n",
+        Elementary::Atan => "T::number(1.0) / (T::number(1.0) + x * x)\n",
+        Elementary::Atan2 => {
+            "let square = x * x + y * y;\n\
+             [x / square, -(y / square)]\n"
+        }
+        Elementary::Pow => {
+            "let by_base = y * pow(x, y - T::number(1.0));\n\
+             [by_base, value * ln(x)]\n"
+        }
+    }
+}

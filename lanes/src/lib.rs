@@ -1,0 +1,68 @@
+//! Eight numbers at once in emitted equations of motion, in the widest registers that the
+//! machine turns out to have: one of 512 bits, two of 256, or what the compiler makes of eight
+//! numbers. Each lane has the bits that its numbers would give alone.
+//!
+//! A model is emitted with `lanes`, [`scalar!`] makes [`Lanes`] a scalar of it, and a [`Task`]
+//! holds the loop over many states. It is written once, compiled for each kind of register,
+//! and [`run`] picks.
+//!
+//! ```
+//! mod pendulum {
+//!     eomgen::model! {
+//!         with = [lanes],
+//!         model { name: pendulum }
+//!         parameters {
+//!             m: { value: 0.15, unit: kg },
+//!             l: { value: 300, unit: mm },
+//!             g: { value: 9.81, unit: m/s^2 },
+//!         }
+//!         coordinates { theta: { unit: rad } }
+//!         kinetic { bob: 1/2*m*(l*dot(theta))^2 }
+//!         potential { gravity: -m*g*l*cos(theta) }
+//!     }
+//! }
+//! lanes::scalar!(pendulum);
+//!
+//! use lanes::{Lanes, Vector};
+//!
+//! /// One step of Euler's method for eight pendulums in each entry of `states`.
+//! struct Step<'a> {
+//!     states: &'a mut [[[f64; 8]; pendulum::STATES]],
+//!     coefficients: pendulum::Coefficients,
+//! }
+//!
+//! impl lanes::Task for Step<'_> {
+//!     type Output = ();
+//!     #[inline(always)]
+//!     fn run<V: Vector>(self) {
+//!         let coefficients = self.coefficients.cast();
+//!         let (t, h) = (Lanes::<V>::splat(0.0), Lanes::splat(1e-3));
+//!         for numbers in self.states {
+//!             let state = numbers.map(Lanes::from_array);
+//!             let inputs = pendulum::Inputs::default();
+//!             let rates = pendulum::inlined_rates(t, &state, &inputs, &coefficients);
+//!             for i in 0..pendulum::STATES {
+//!                 numbers[i] = (state[i] + h * rates[i]).to_array();
+//!             }
+//!         }
+//!     }
+//! }
+//!
+//! let mut states = [[[0.5; 8], [0.0; 8]]; 100];
+//! let coefficients = pendulum::Coefficients::prepare(&pendulum::Parameters::default());
+//! lanes::run(Step { states: &mut states, coefficients });
+//! assert!(states[99][1][7] < 0.0);
+//! ```
+//!
+//! The pipeline: `vector` (what registers do, and eight plain numbers), `x86` (registers of
+//! x86-64), `task` (which are there), `scalar` (the traits of emitted code).
+
+mod scalar;
+mod task;
+mod vector;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub use scalar::Lanes;
+pub use task::{Registers, Task, run, run_with};
+pub use vector::{LANES, Vector};

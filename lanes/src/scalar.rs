@@ -1,0 +1,184 @@
+//! Lanes as what emitted equations are computed with.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use crate::vector::{LANES, Vector};
+
+/// Eight numbers in registers `V`.
+#[derive(Clone, Copy)]
+pub struct Lanes<V>(V);
+
+const SIGN: u64 = 1 << 63;
+const ONE: u64 = 0x3ff0_0000_0000_0000;
+const MANTISSA: u64 = 0x000f_ffff_ffff_ffff;
+
+/// 2^52: the bits of an integer below it are the last bits of the sum.
+const INTEGER_ALIGNER: f64 = (1_u64 << 52) as f64;
+
+impl<V: Vector> Lanes<V> {
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn splat(value: f64) -> Self {
+        Self(V::splat(value))
+    }
+
+    /// These numbers.
+    #[inline(always)]
+    pub fn from_array(numbers: [f64; LANES]) -> Self {
+        Self(V::from_array(numbers))
+    }
+
+    /// The numbers.
+    #[inline(always)]
+    pub fn to_array(self) -> [f64; LANES] {
+        self.0.to_array()
+    }
+
+    /// `then` where a > b, `otherwise` elsewhere, also where either is NaN.
+    #[inline(always)]
+    pub fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        Self(V::select_greater(a.0, b.0, then.0, otherwise.0))
+    }
+
+    /// `then` where a = b, `otherwise` elsewhere, also where either is NaN.
+    #[inline(always)]
+    pub fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+        Self(V::select_equal(a.0, b.0, then.0, otherwise.0))
+    }
+
+    /// Whether a > b in every lane.
+    #[inline(always)]
+    pub fn all_greater(a: Self, b: Self) -> bool {
+        let (a, b) = (a.to_array(), b.to_array());
+        a.iter().zip(b).all(|(a, b)| *a > b)
+    }
+
+    /// The sign bits cleared.
+    #[inline(always)]
+    pub fn magnitude(self) -> Self {
+        Self(self.0.and(!SIGN))
+    }
+
+    /// The magnitudes with the sign bits of others.
+    #[inline(always)]
+    pub fn copy_sign(self, sign: Self) -> Self {
+        Self(self.0.and(!SIGN).or(sign.0.and(SIGN)))
+    }
+
+    /// 2^k for integral k from -1022 to 1024, by its place in the exponent.
+    #[inline(always)]
+    pub fn power_of_two(self) -> Self {
+        let aligned = self.0.add(V::splat(INTEGER_ALIGNER + 1023.0));
+        Self(aligned.mantissa_to_exponent())
+    }
+
+    /// The unbiased exponent fields, as numbers.
+    #[inline(always)]
+    pub fn exponent(self) -> Self {
+        let field = self.0.and(!SIGN).exponent_to_mantissa();
+        let aligned = field.or(V::splat(INTEGER_ALIGNER));
+        let number = aligned.sub(V::splat(INTEGER_ALIGNER));
+        Self(number.sub(V::splat(1023.0)))
+    }
+
+    /// The mantissas under the exponent of 1.
+    #[inline(always)]
+    pub fn significand(self) -> Self {
+        Self(self.0.and(MANTISSA).or(V::splat(f64::from_bits(ONE))))
+    }
+}
+
+impl<V: Vector> Add for Lanes<V> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0.add(other.0))
+    }
+}
+
+impl<V: Vector> Sub for Lanes<V> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0.sub(other.0))
+    }
+}
+
+impl<V: Vector> Mul for Lanes<V> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0.mul(other.0))
+    }
+}
+
+impl<V: Vector> Div for Lanes<V> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self(self.0.div(other.0))
+    }
+}
+
+impl<V: Vector> Neg for Lanes<V> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(self.0.flip(SIGN))
+    }
+}
+
+/// Makes [`Lanes`] a scalar of an emitted module of this crate.
+#[macro_export]
+macro_rules! scalar {
+    ($($module:ident)::+) => {
+        impl<V: $crate::Vector> $($module)::+::Scalar for $crate::Lanes<V> {
+            #[inline(always)]
+            fn number(value: f64) -> Self {
+                Self::splat(value)
+            }
+            #[inline(always)]
+            fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+                Self::select_greater(a, b, then, otherwise)
+            }
+            #[inline(always)]
+            fn all_greater(a: Self, b: Self) -> bool {
+                Self::all_greater(a, b)
+            }
+            #[inline(always)]
+            fn function<F: $($module)::+::Function>(self) -> Self {
+                F::value(self)
+            }
+            #[inline(always)]
+            fn function_of_two<F: $($module)::+::FunctionOfTwo>(self, other: Self) -> Self {
+                F::value(self, other)
+            }
+        }
+        impl<V: $crate::Vector> $($module)::+::Real for $crate::Lanes<V> {
+            #[inline(always)]
+            fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
+                Self::select_equal(a, b, then, otherwise)
+            }
+            #[inline(always)]
+            fn magnitude(self) -> Self {
+                self.magnitude()
+            }
+            #[inline(always)]
+            fn copy_sign(self, sign: Self) -> Self {
+                self.copy_sign(sign)
+            }
+            #[inline(always)]
+            fn power_of_two(self) -> Self {
+                self.power_of_two()
+            }
+            #[inline(always)]
+            fn exponent(self) -> Self {
+                self.exponent()
+            }
+            #[inline(always)]
+            fn significand(self) -> Self {
+                self.significand()
+            }
+        }
+    };
+}

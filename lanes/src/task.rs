@@ -1,0 +1,73 @@
+//! Which registers a machine has, and tasks compiled for each kind.
+
+use crate::vector::{Plain, Vector};
+
+/// Work on lanes, compiled once for each kind of registers. `run` and what it calls with lanes
+/// must be inlined into one piece: a function of its own is compiled for the plainest machine.
+pub trait Task {
+    /// What it returns.
+    type Output;
+    /// The work. Write `#[inline(always)]` above it.
+    fn run<V: Vector>(self) -> Self::Output;
+}
+
+/// Kinds of registers, widest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Registers {
+    /// One of 512 bits (AVX-512 F and DQ).
+    Wide,
+    /// Two of 256 bits (AVX2).
+    Pair,
+    /// Whatever the compiler makes of eight numbers.
+    Plain,
+}
+
+impl Registers {
+    /// Every kind, widest first.
+    pub const ALL: [Self; 3] = [Self::Wide, Self::Pair, Self::Plain];
+
+    /// Whether this machine has them.
+    pub fn are_there(self) -> bool {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Wide => {
+                is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq")
+            }
+            #[cfg(target_arch = "x86_64")]
+            Self::Pair => is_x86_feature_detected!("avx2"),
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Wide | Self::Pair => false,
+            Self::Plain => true,
+        }
+    }
+}
+
+/// Runs a task with the widest registers of this machine.
+#[inline]
+pub fn run<T: Task>(task: T) -> T::Output {
+    for registers in Registers::ALL {
+        if registers.are_there() {
+            return run_with(registers, task);
+        }
+    }
+    task.run::<Plain>()
+}
+
+/// Runs a task with these registers, or with plain numbers if the machine lacks them.
+#[inline]
+#[allow(unsafe_code)]
+pub fn run_with<T: Task>(registers: Registers, task: T) -> T::Output {
+    match registers {
+        #[cfg(target_arch = "x86_64")]
+        Registers::Wide if registers.are_there() => {
+            // SAFETY: the machine has the instructions, as was just asked.
+            unsafe { crate::x86::with_wide(task) }
+        }
+        #[cfg(target_arch = "x86_64")]
+        Registers::Pair if registers.are_there() => {
+            // SAFETY: as above.
+            unsafe { crate::x86::with_pairs(task) }
+        }
+        _ => task.run::<Plain>(),
+    }
+}

@@ -1,0 +1,376 @@
+//! What is emitted on request, compared with what shares nothing with its derivation: dual
+//! numbers through the emitted functions, and the equations' own identities.
+
+mod dual;
+mod evaluators;
+mod models;
+mod tracked;
+
+use codegen::evaluator::Point as EvaluatorPoint;
+use dual::Dual;
+use proptest::prelude::*;
+use tracked::Tracked;
+
+/// Numbers of any size between 1e-5 and 1, in turn.
+struct Drawn<'a> {
+    numbers: &'a [f64],
+    next: usize,
+}
+
+impl Drawn<'_> {
+    /// The next number from -1 to 1.
+    fn even(&mut self) -> f64 {
+        self.next += 1;
+        self.numbers[(self.next - 1) % self.numbers.len()]
+    }
+
+    /// The next number, of any size.
+    fn number(&mut self) -> f64 {
+        let exponent = 2.5 * (self.even() - 1.0);
+        self.even() * 10_f64.powf(exponent)
+    }
+
+    fn array<const N: usize>(&mut self) -> [f64; N] {
+        std::array::from_fn(|_| self.number())
+    }
+}
+
+/// More numbers than any model here needs.
+fn numbers() -> impl Strategy<Value = Vec<f64>> {
+    prop::collection::vec(-1.0..1.0_f64, 331)
+}
+
+/// A dual number whose parts bound their rounding.
+type Moving = Dual<Tracked>;
+
+/// A number that moves with this rate.
+fn dual(value: f64, slope: f64) -> Moving {
+    Dual {
+        value: Tracked::exact(value),
+        slope: Tracked::exact(slope),
+    }
+}
+
+/// Numbers that move along a direction.
+fn moving<const N: usize>(numbers: &[f64; N], direction: &[f64; N]) -> [Moving; N] {
+    std::array::from_fn(|i| dual(numbers[i], direction[i]))
+}
+
+/// The unit vector of this index.
+fn unit<const N: usize>(index: usize) -> [f64; N] {
+    std::array::from_fn(|i| f64::from(u8::from(i == index)))
+}
+
+fn slopes<const N: usize>(duals: &[Moving; N]) -> [Tracked; N] {
+    duals.map(|dual| dual.slope)
+}
+
+/// What is compared agrees to this.
+const RELATIVE: f64 = 1e-12;
+
+/// Where terms cancel, rounding counts: that of the expected number is bounded, that of the
+/// other, which comes from other operations on the same quantities, is taken for no more than
+/// eight times as large.
+const ROUNDING: f64 = 9.0;
+
+fn agree(what: &str, found: &[f64], expected: &[Tracked]) -> Result<(), TestCaseError> {
+    prop_assert_eq!(found.len(), expected.len());
+    for (i, (found, expected)) in found.iter().zip(expected).enumerate() {
+        let error = (found - expected.number).abs();
+        prop_assert!(
+            error <= RELATIVE * expected.number.abs() + ROUNDING * expected.error,
+            "{what}, {i}: {found:e} and {expected:?}"
+        );
+    }
+    Ok(())
+}
+
+/// A column of a dense matrix.
+fn column<const R: usize, const C: usize>(matrix: &[[f64; C]; R], index: usize) -> [f64; R] {
+    matrix.map(|row| row[index])
+}
+
+/// The numbers of a struct in the order of these names, from how it is printed.
+fn printed<const N: usize>(fields: &impl std::fmt::Debug, names: &[&str; N]) -> [f64; N] {
+    let printed = format!("{fields:?}");
+    std::array::from_fn(|i| {
+        let field = format!(" {}: ", names[i]);
+        let start = printed.find(&field).expect("a field") + field.len();
+        let end = printed[start..].find([',', ' ']).expect("an end") + start;
+        printed[start..end].parse().expect("a number")
+    })
+}
+
+macro_rules! checks {
+    ($($module:ident),*) => {$(
+        mod $module {
+            use super::*;
+            use crate::models::$module as model;
+            use model::{DEGREES_OF_FREEDOM, INPUTS, PARAMETERS, STATES};
+
+            struct Point {
+                t: f64,
+                state: [f64; STATES],
+                inputs: [f64; INPUTS],
+                parameters: [f64; PARAMETERS],
+                coefficients: model::Coefficients,
+            }
+
+            /// A point at which the mass matrix is positive definite.
+            fn point(drawn: &mut Drawn<'_>) -> Result<Point, TestCaseError> {
+                let defaults = defaults();
+                let parameters: [f64; PARAMETERS] =
+                    std::array::from_fn(|i| defaults[i] * (1.0 + 0.1 * drawn.even()));
+                let point = Point {
+                    t: drawn.number(),
+                    state: drawn.array(),
+                    inputs: drawn.array(),
+                    coefficients: model::Coefficients::prepare(&parameters.into()),
+                    parameters,
+                };
+                prop_assume!(point.rates().iter().all(|rate| rate.is_finite()));
+                Ok(point)
+            }
+
+            fn defaults() -> [f64; PARAMETERS] {
+                printed(&model::Parameters::default(), &model::PARAMETER_NAMES)
+            }
+
+            impl Point {
+                fn rates(&self) -> [f64; STATES] {
+                    model::rates(self.t, &self.state, &self.inputs.into(), &self.coefficients)
+                }
+
+                /// The derivatives of rates and observables along a direction of states, inputs
+                /// and parameters.
+                fn along(
+                    &self,
+                    state: &[f64; STATES],
+                    inputs: &[f64; INPUTS],
+                    parameters: &[f64; PARAMETERS],
+                ) -> ([Tracked; STATES], [Tracked; model::OBSERVABLES]) {
+                    let t = dual(self.t, 0.0);
+                    let state = moving(&self.state, state);
+                    let inputs = moving(&self.inputs, inputs).into();
+                    let parameters = moving(&self.parameters, parameters).into();
+                    let coefficients = model::Coefficients::prepare(&parameters);
+                    let rates = model::rates(t, &state, &inputs, &coefficients);
+                    let observables = model::observables(t, &state, &inputs, &coefficients);
+                    (slopes(&rates), slopes(&observables))
+                }
+            }
+
+            proptest! {
+                #![proptest_config(ProptestConfig::with_cases(24))]
+
+                #[test]
+                fn jacobians_are_those_of_dual_numbers(numbers in numbers()) {
+                    let p = point(&mut Drawn { numbers: &numbers, next: 0 })?;
+                    let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
+                    let (still, held, fixed) = ([0.0; STATES], [0.0; INPUTS], [0.0; PARAMETERS]);
+                    let rates: [[f64; STATES]; STATES] =
+                        model::RATES_BY_STATE.dense(&model::rates_by_state(t, x, u, c));
+                    let observables: [[f64; STATES]; model::OBSERVABLES] =
+                        model::OBSERVABLES_BY_STATE.dense(&model::observables_by_state(t, x, u, c));
+                    for i in 0..STATES {
+                        let (by_rates, by_observables) = p.along(&unit(i), &held, &fixed);
+                        agree("rates by state", &column(&rates, i), &by_rates)?;
+                        agree("observables by state", &column(&observables, i), &by_observables)?;
+                    }
+                    let rates: [[f64; INPUTS]; STATES] =
+                        model::RATES_BY_INPUTS.dense(&model::rates_by_inputs(t, x, u, c));
+                    let observables: [[f64; INPUTS]; model::OBSERVABLES] =
+                        model::OBSERVABLES_BY_INPUTS.dense(&model::observables_by_inputs(t, x, u, c));
+                    for i in 0..INPUTS {
+                        let (by_rates, by_observables) = p.along(&still, &unit(i), &fixed);
+                        agree("rates by inputs", &column(&rates, i), &by_rates)?;
+                        agree("observables by inputs", &column(&observables, i), &by_observables)?;
+                    }
+                    let rates: [[f64; PARAMETERS]; STATES] =
+                        model::RATES_BY_PARAMETERS.dense(&model::rates_by_parameters(t, x, u, c));
+                    let observables: [[f64; PARAMETERS]; model::OBSERVABLES] =
+                        model::OBSERVABLES_BY_PARAMETERS.dense(&model::observables_by_parameters(t, x, u, c));
+                    for i in 0..PARAMETERS {
+                        let (by_rates, by_observables) = p.along(&still, &held, &unit(i));
+                        let name = model::PARAMETER_NAMES[i];
+                        agree(&format!("rates by {name}"), &column(&rates, i), &by_rates)?;
+                        agree(&format!("observables by {name}"), &column(&observables, i), &by_observables)?;
+                    }
+                }
+
+                #[test]
+                fn products_are_those_of_the_jacobian(numbers in numbers()) {
+                    let mut drawn = Drawn { numbers: &numbers, next: 0 };
+                    let p = point(&mut drawn)?;
+                    let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
+                    let (dx, du): ([f64; STATES], [f64; INPUTS]) = (drawn.array(), drawn.array());
+                    let product = model::jacobian_vector_product(t, x, u, c, &dx, &du.into());
+                    let (expected, _) = p.along(&dx, &du, &[0.0; PARAMETERS]);
+                    agree("direction", &product, &expected)?;
+                    // The gradient in a direction is the weighted product with it.
+                    let weights: [f64; STATES] = drawn.array();
+                    let (by_state, by_inputs) = model::vector_jacobian_product(t, x, u, c, &weights);
+                    let weighted = |rates: &[Tracked; STATES]| {
+                        let products = rates.iter().zip(&weights);
+                        products.fold(Tracked::exact(0.0), |sum, (rate, weight)| {
+                            sum + Tracked::exact(*weight) * *rate
+                        })
+                    };
+                    let (still, held, fixed) = ([0.0; STATES], [0.0; INPUTS], [0.0; PARAMETERS]);
+                    let expected: [Tracked; STATES] =
+                        std::array::from_fn(|i| weighted(&p.along(&unit(i), &held, &fixed).0));
+                    agree("weights", &by_state, &expected)?;
+                    let expected: [Tracked; INPUTS] =
+                        std::array::from_fn(|i| weighted(&p.along(&still, &unit(i), &fixed).0));
+                    agree("weights by inputs", &printed(&by_inputs, &model::INPUT_NAMES), &expected)?;
+                }
+
+                #[test]
+                fn inverse_dynamics_undoes_forward_dynamics(numbers in numbers()) {
+                    let mut drawn = Drawn { numbers: &numbers, next: 0 };
+                    let p = point(&mut drawn)?;
+                    let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
+                    let rates = p.rates();
+                    let a: [f64; DEGREES_OF_FREEDOM] =
+                        std::array::from_fn(|i| rates[DEGREES_OF_FREEDOM + i]);
+                    let mass = model::mass_matrix(t, x, u, c);
+                    let missing = model::inverse_dynamics(t, x, u, c, &a);
+                    let bias = model::bias_forces(t, x, u, c);
+                    prop_assert_eq!(bias, model::inverse_dynamics(t, x, u, c, &[0.0; DEGREES_OF_FREEDOM]));
+                    for i in 0..DEGREES_OF_FREEDOM {
+                        let inertia: f64 = (0..DEGREES_OF_FREEDOM).map(|j| (mass[i][j] * a[j]).abs()).sum();
+                        prop_assert!(
+                            missing[i].abs() <= 1e-9 * (inertia + bias[i].abs()),
+                            "{i}: {:e} of {inertia:e} and {:e}", missing[i], bias[i]
+                        );
+                    }
+                    // Other accelerations need M times the difference.
+                    let b: [f64; DEGREES_OF_FREEDOM] = drawn.array();
+                    let forces = model::inverse_dynamics(t, x, u, c, &b);
+                    for i in 0..DEGREES_OF_FREEDOM {
+                        let inertia: Vec<f64> = (0..DEGREES_OF_FREEDOM).map(|j| mass[i][j] * b[j]).collect();
+                        let scale: f64 = inertia.iter().map(|x| x.abs()).sum::<f64>() + bias[i].abs();
+                        let expected = inertia.iter().sum::<f64>() + bias[i];
+                        prop_assert!((forces[i] - expected).abs() <= 1e-13 * scale);
+                    }
+                }
+
+                #[test]
+                fn the_mass_matrix_is_the_hessian_of_the_energy(numbers in numbers()) {
+                    let p = point(&mut Drawn { numbers: &numbers, next: 0 })?;
+                    let mass = model::mass_matrix(p.t, &p.state, &p.inputs.into(), &p.coefficients);
+                    let number = |x: f64| Dual { value: dual(x, 0.0), slope: dual(0.0, 0.0) };
+                    let parameters = p.parameters.map(number).into();
+                    let (inputs, c) = (p.inputs.map(number).into(), model::Coefficients::prepare(&parameters));
+                    for i in 0..DEGREES_OF_FREEDOM {
+                        let row: [Tracked; DEGREES_OF_FREEDOM] = std::array::from_fn(|j| {
+                            let mut state = p.state.map(number);
+                            state[DEGREES_OF_FREEDOM + i].value.slope = Tracked::exact(1.0);
+                            state[DEGREES_OF_FREEDOM + j].slope = dual(1.0, 0.0);
+                            model::energy(number(p.t), &state, &inputs, &c).slope.slope
+                        });
+                        agree("mass matrix", &mass[i], &row)?;
+                        let column = column(&mass, i);
+                        agree("its transpose", &column, &row)?;
+                    }
+                }
+
+                #[test]
+                fn guard_rates_are_those_along_the_motion(numbers in numbers()) {
+                    let p = point(&mut Drawn { numbers: &numbers, next: 0 })?;
+                    let found = model::guard_rates(p.t, &p.state, &p.inputs.into(), &p.coefficients);
+                    let t = dual(p.t, 1.0);
+                    let state = moving(&p.state, &p.rates());
+                    let parameters = moving(&p.parameters, &[0.0; PARAMETERS]).into();
+                    let coefficients = model::Coefficients::prepare(&parameters);
+                    let guards = model::guards(t, &state, &moving(&p.inputs, &[0.0; INPUTS]).into(), &coefficients);
+                    agree("guards", &found, &slopes(&guards))?;
+                }
+
+                /// Interpreter, machine code and emitted Rust, number by number.
+                #[test]
+                fn all_ways_give_the_same_bits(numbers in numbers()) {
+                    let mut drawn = Drawn { numbers: &numbers, next: 0 };
+                    let p = point(&mut drawn)?;
+                    let (t, x, u, c) = (p.t, &p.state, &p.inputs.into(), &p.coefficients);
+                    let (dx, du): ([f64; STATES], [f64; INPUTS]) = (drawn.array(), drawn.array());
+                    let weights: [f64; STATES] = drawn.array();
+                    let a: [f64; DEGREES_OF_FREEDOM] = drawn.array();
+                    let (by_state, by_inputs) = model::vector_jacobian_product(t, x, u, c, &weights);
+                    let expected = [
+                        model::inverse_dynamics(t, x, u, c, &a).to_vec(),
+                        model::guard_rates(t, x, u, c).to_vec(),
+                        model::jacobian_vector_product(t, x, u, c, &dx, &du.into()).to_vec(),
+                        by_state.to_vec(),
+                        printed(&by_inputs, &model::INPUT_NAMES).to_vec(),
+                        model::rates_by_state(t, x, u, c).to_vec(),
+                        model::rates_by_inputs(t, x, u, c).to_vec(),
+                        model::rates_by_parameters(t, x, u, c).to_vec(),
+                        model::observables_by_state(t, x, u, c).to_vec(),
+                        model::observables_by_inputs(t, x, u, c).to_vec(),
+                        model::observables_by_parameters(t, x, u, c).to_vec(),
+                    ];
+                    evaluators::with_both(crate::models::specifications::$module, |both| {
+                    for evaluator in both {
+                        evaluator.prepare(&p.parameters);
+                        let point = EvaluatorPoint { t, state: x, inputs: &p.inputs };
+                        let mut found = expected.clone().map(|numbers| vec![f64::NAN; numbers.len()]);
+                        let [inverse, guards, forward, state, inputs, jacobians @ ..] = &mut found;
+                        prop_assert!(evaluator.inverse_dynamics(point, &a, inverse));
+                        prop_assert!(evaluator.guard_rates(point, guards));
+                        prop_assert!(evaluator.jacobian_vector_product(point, (&dx, &du), forward));
+                        prop_assert!(evaluator.vector_jacobian_product(point, &weights, (state, inputs)));
+                        for (place, nonzeros) in jacobians.iter_mut().enumerate() {
+                            prop_assert!(evaluator.jacobian(place, point, nonzeros));
+                        }
+                        for (expected, found) in expected.iter().zip(&found) {
+                            let bits = |numbers: &[f64]| -> Vec<u64> { numbers.iter().map(|x| x.to_bits()).collect() };
+                            prop_assert_eq!(bits(expected), bits(found));
+                        }
+                    }
+                    Ok(())
+                    })?;
+                }
+
+                #[test]
+                fn the_linearisation_predicts_small_changes(numbers in numbers()) {
+                    let mut drawn = Drawn { numbers: &numbers, next: 0 };
+                    let p = point(&mut drawn)?;
+                    let found = model::linearise(p.t, &p.state, &p.inputs.into(), &p.coefficients);
+                    prop_assert_eq!(found.rates, p.rates());
+                    let (dx, du): ([f64; STATES], [f64; INPUTS]) = (drawn.array(), drawn.array());
+                    let (rates, observables) = p.along(&dx, &du, &[0.0; PARAMETERS]);
+                    let product = |by_state: &[f64; STATES], by_inputs: &[f64; INPUTS]| -> f64 {
+                        let state: f64 = by_state.iter().zip(&dx).map(|(a, b)| a * b).sum();
+                        state + by_inputs.iter().zip(&du).map(|(a, b)| a * b).sum::<f64>()
+                    };
+                    let predicted: Vec<f64> = found.A.iter().zip(&found.B).map(|(a, b)| product(a, b)).collect();
+                    agree("rates", &predicted, &rates)?;
+                    let predicted: Vec<f64> = found.C.iter().zip(&found.D).map(|(c, d)| product(c, d)).collect();
+                    agree("observables", &predicted, &observables)?;
+                }
+            }
+        }
+    )*};
+}
+
+checks!(
+    arm_rigid,
+    arm,
+    arm_of_nine_modes,
+    rig,
+    beam,
+    double_pendulum,
+    cart,
+    furuta,
+    pendulum,
+    emps,
+    exponential_taper,
+    printed_basis,
+    two_fields,
+    functions,
+    nonquadratic_kinetic,
+    rheonomic,
+    lever_mass_turning,
+    centrifugal_stiffening
+);
