@@ -6,7 +6,8 @@ fn main() {
     let model = model_spec::load(a[1].as_ref()).unwrap().model;
     let d = dataset::read(a[2].as_ref(), &model).unwrap();
     let plant = plant::Plant::of(&text, &a[1], None, &d.channels).unwrap();
-    let noise: Vec<f64> = d.channels.iter().map(|c| c.noise).collect();
+    let mut plant = plant; let noise: Vec<f64> = d.channels.iter().map(|c| c.noise).collect();
+    let f = starts::first_state(&plant, &d.train[0], &d.channels, &d.initial); plant.choose_steps(&d.train[0], &f, &noise); println!("steps {:?}", plant.steps);
     let values: Vec<(String, f64)> = plant.parameters.iter().cloned().zip(plant.values.clone()).collect();
     let unknowns = unknowns::of_null_model(&d, &plant.model, &values);
     let t = Instant::now();

@@ -14,7 +14,7 @@ use sim::exact::{PiecewiseLinear, Propagator};
 use sim::record::HeldInputs;
 use sim::solve::{Settings, System, simulate};
 
-use crate::dataset::{Channel, Quantity};
+use crate::dataset::{Channel, Quantity, Record};
 
 /// Relative error of one step of the general solver: far below any sensor's noise.
 const TOLERANCE: f64 = 1e-7;
@@ -24,6 +24,15 @@ const MOST_STEPS: u64 = 400_000;
 
 /// Switches per simulated second beyond which a trial motion is given up, 1/s.
 const FASTEST_SWITCHING: f64 = 1e5;
+
+/// Samples on which the number of marching steps is tried.
+const TRIED_SAMPLES: usize = 400;
+
+/// Marching steps from sample to sample are tried up to two to this power.
+const MOST_DOUBLINGS: u32 = 8;
+
+/// The error of marching, in noises: what is marched is compared with noise.
+const MARCHING_ERROR: f64 = 0.05;
 
 /// A derived model with its measured outputs.
 pub struct Plant {
@@ -42,6 +51,8 @@ pub struct Plant {
     exact: Option<PiecewiseLinear>,
     outputs: Vec<Output>,
     channels: Vec<String>,
+    /// Steps from sample to sample, where the motion is marched; none where a solver decides.
+    pub steps: Option<usize>,
 }
 
 /// Where a channel's quantity is found.
@@ -77,6 +88,7 @@ impl Plant {
             values: program.default_parameters(),
             states: model.state_names(&orders),
             code: jit::code(&program),
+            steps: None,
             model,
             orders,
             program,
@@ -112,6 +124,39 @@ impl Plant {
     pub fn initial(&self) -> Vec<f64> {
         let given = self.model.initial_state(&self.orders);
         given.unwrap_or_else(|_| vec![0.0; self.state_count()])
+    }
+
+    /// Decides in how many steps a motion that is not exact is marched from sample to sample:
+    /// as many as change its outputs by less than a part of the noise, tried on the beginning
+    /// of a record. Where there are none, a solver with error control goes on deciding.
+    pub fn choose_steps(&mut self, record: &Record, initial: &[f64], noise: &[f64]) {
+        if self.exact.is_some() {
+            return;
+        }
+        let times = &record.times[..record.times.len().min(TRIED_SAMPLES)];
+        let run = |steps: usize| {
+            let mut runner = self.at(&self.values).ok()?;
+            let states = runner.march(initial, times, &record.inputs, steps)?;
+            Some(runner.shown(times, &states, &record.inputs))
+        };
+        let mut coarse = run(1);
+        let mut found = None;
+        for doubling in 1..MOST_DOUBLINGS {
+            let steps = 1 << doubling;
+            let fine = run(steps);
+            let near = |(coarse, fine): (&Vec<f64>, &Vec<f64>)| {
+                let pairs = coarse.iter().zip(fine).enumerate();
+                pairs.into_iter().all(|(place, (a, b))| {
+                    (a - b).abs() < MARCHING_ERROR * noise[place % noise.len()]
+                })
+            };
+            if coarse.as_ref().zip(fine.as_ref()).is_some_and(near) {
+                found = Some(steps);
+                break;
+            }
+            coarse = fine;
+        }
+        self.steps = found;
     }
 
     /// The model at these values of the independent parameters, ready to run.
@@ -184,6 +229,10 @@ impl Runner<'_> {
                 return Ok(trajectory.states);
             }
         }
+        if let Some(steps) = self.plant.steps {
+            let states = self.march(initial, samples, inputs, steps);
+            return states.ok_or_else(|| "the motion grows beyond all bounds".to_owned());
+        }
         let settings = Settings {
             max_steps: MOST_STEPS,
             max_switch_rate: FASTEST_SWITCHING,
@@ -199,6 +248,63 @@ impl Runner<'_> {
             .map_err(|error| error.to_string())
     }
 
+    /// The states at the samples by classical Runge-Kutta steps, so many from sample to
+    /// sample; none if they do not stay finite.
+    fn march(
+        &mut self,
+        initial: &[f64],
+        samples: &[f64],
+        inputs: &HeldInputs,
+        steps: usize,
+    ) -> Option<Vec<Vec<f64>>> {
+        let mut state = initial.to_vec();
+        let mut states = Vec::with_capacity(samples.len());
+        states.push(state.clone());
+        let mut slopes = [const { Vec::new() }; 4];
+        slopes.iter_mut().for_each(|slope| slope.resize(state.len(), 0.0));
+        let mut trial = state.clone();
+        let evaluator = self.evaluator.get_mut();
+        for pair in samples.windows(2) {
+            let h = (pair[1] - pair[0]) / steps as f64;
+            for step in 0..steps {
+                let begin = pair[0] + step as f64 * h;
+                // Half a step on, so that rounding of a sample's time does not decide.
+                let inputs = inputs.at(begin + 0.5 * h);
+                for (stage, at) in [0.0, 0.5, 0.5, 1.0].into_iter().enumerate() {
+                    trial.copy_from_slice(&state);
+                    if stage > 0 {
+                        let slope = &slopes[stage - 1];
+                        trial.iter_mut().zip(slope).for_each(|(x, k)| *x += at * h * k);
+                    }
+                    let point = Point {
+                        t: begin + at * h,
+                        state: &trial,
+                        inputs,
+                    };
+                    evaluator.rates(point, &mut slopes[stage]);
+                }
+                for (place, x) in state.iter_mut().enumerate() {
+                    let [a, b, c, d] = [0, 1, 2, 3].map(|stage: usize| slopes[stage][place]);
+                    *x += h / 6.0 * (a + 2.0 * (b + c) + d);
+                }
+            }
+            if state.iter().any(|x| !x.is_finite()) {
+                return None;
+            }
+            states.push(state.clone());
+        }
+        Some(states)
+    }
+
+    /// The channels' quantities at states: a row per sample.
+    fn shown(&mut self, times: &[f64], states: &[Vec<f64>], inputs: &HeldInputs) -> Vec<f64> {
+        let mut values = Vec::with_capacity(times.len() * self.plant.outputs.len());
+        for (t, state) in times.iter().zip(states) {
+            self.show(*t, state, inputs, &mut values);
+        }
+        values
+    }
+
     /// The channels' quantities at the samples of a motion that starts at the first of them.
     ///
     /// # Errors
@@ -210,10 +316,7 @@ impl Runner<'_> {
         inputs: &HeldInputs,
     ) -> Result<Outputs, String> {
         let states = self.states(initial, samples, inputs)?;
-        let mut values = Vec::with_capacity(samples.len() * self.plant.outputs.len());
-        for (t, state) in samples.iter().zip(&states) {
-            self.show(*t, state, inputs, &mut values);
-        }
+        let values = self.shown(samples, &states, inputs);
         Ok(Outputs {
             values,
             last: states.into_iter().next_back().unwrap_or_default(),

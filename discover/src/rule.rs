@@ -15,4 +15,4 @@ pub const LONGEST_DELAY: f64 = 2.0;
 /// Standard deviation of a window's initial state around where the window before ended, in
 /// ranges of the state's own motion: next to nothing is known, yet a state that the window
 /// does not show stays where it may be.
-pub const START_PRIOR: f64 = 0.002;
+pub const START_PRIOR: f64 = 0.02;
