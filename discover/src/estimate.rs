@@ -104,7 +104,7 @@ fn prior_of_unknowns(shooting: &Shooting<'_>, theta: &[f64]) -> f64 {
         let (mean, sd) = unknown.prior.unwrap_or((*value, 1.0));
         ((value - mean) / sd).powi(2)
     });
-    terms.sum()
+    shooting.prior_weight * terms.sum::<f64>()
 }
 
 /// What a window's prior adds to the cost.
@@ -210,7 +210,6 @@ pub fn approach(
         let linear = shooting.linear(&present.theta, &present.starts, level);
         let windows = eliminated(&prior, &present, &linear);
         let change = change_of_unknowns(shooting, &present, &windows, 0.0);
-        eprintln!("change {:?} from {:?} cost {}", change.as_slice(), present.theta, present.cost);
         let better = PARTS.iter().find_map(|part| {
             let (prior, next) = at(moved_unknowns(shooting, &present, &change, *part));
             (next.cost < present.cost).then_some((prior, next))
@@ -287,8 +286,9 @@ fn change_of_unknowns(
     let mut rows = DMatrix::zeros(2 * count, count + 1);
     for (place, unknown) in shooting.unknowns.iter().enumerate() {
         if let Some((mean, sd)) = unknown.prior {
-            rows[(place, place)] = 1.0 / sd;
-            rows[(place, count)] = (present.theta[place] - mean) / sd;
+            let weight = shooting.prior_weight.sqrt() / sd;
+            rows[(place, place)] = weight;
+            rows[(place, count)] = (present.theta[place] - mean) * weight;
         }
         rows[(count + place, place)] = damping * factor.column(place).norm();
     }
@@ -447,4 +447,55 @@ fn settle_seen(
         }
     }
     Some(present)
+}
+
+/// A window's derivatives with the means to take its initial state out of any column.
+pub struct Eliminator {
+    /// The residual.
+    pub residual: DVector<f64>,
+    /// By the unknowns.
+    pub by_unknown: DMatrix<f64>,
+    /// By the initial state, with the priors' rows below.
+    by_state: DMatrix<f64>,
+    /// What the priors' rows hold of the residual.
+    prior_residual: DVector<f64>,
+}
+
+impl Eliminator {
+    /// Takes a window's derivatives.
+    pub fn new(linear: &Linear, prior: &StartPrior, place: usize, start: &[f64]) -> Self {
+        let (rows, states) = linear.by_state.shape();
+        let mut by_state = DMatrix::zeros(rows + states, states);
+        by_state.view_mut((0, 0), (rows, states)).copy_from(&linear.by_state);
+        let mut prior_residual = DVector::zeros(states);
+        if let Some(mean) = prior.mean.get(place) {
+            for state in 0..states {
+                by_state[(rows + state, state)] = 1.0 / prior.sd[state];
+                prior_residual[state] = (start[state] - mean[state]) / prior.sd[state];
+            }
+        }
+        Self {
+            residual: linear.residual.clone(),
+            by_unknown: linear.by_unknown.clone(),
+            by_state,
+            prior_residual,
+        }
+    }
+
+    /// Products of columns, the residual last, with the initial state free.
+    pub fn products(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
+        let (rows, count) = columns.shape();
+        let states = self.by_state.ncols();
+        let mut whole = columns.transpose() * columns;
+        whole[(count - 1, count - 1)] += self.prior_residual.norm_squared();
+        if states == 0 {
+            return whole;
+        }
+        let q = self.by_state.clone().qr().q();
+        let mut along = q.rows(0, rows).transpose() * columns;
+        let of_prior = q.rows(rows, states).transpose() * &self.prior_residual;
+        let mut last = along.column_mut(count - 1);
+        last += of_prior;
+        whole - along.transpose() * along
+    }
 }

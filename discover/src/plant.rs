@@ -52,7 +52,7 @@ pub struct Plant {
     outputs: Vec<Output>,
     channels: Vec<String>,
     /// Steps from sample to sample, where the motion is marched; none where a solver decides.
-    pub steps: Option<usize>,
+    steps: Option<usize>,
 }
 
 /// Where a channel's quantity is found.
@@ -99,6 +99,13 @@ impl Plant {
     /// The place of an independent parameter among the values.
     pub fn place(&self, parameter: &str) -> Option<usize> {
         self.parameters.iter().position(|name| name == parameter)
+    }
+
+    /// Sets an independent parameter among the values, SI.
+    pub fn set(&self, values: &mut [f64], parameter: &str, value: f64) {
+        if let Some(place) = self.place(parameter) {
+            values[place] = value;
+        }
     }
 
     /// The place of a measured channel.

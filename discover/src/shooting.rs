@@ -44,6 +44,10 @@ pub struct Shooting<'a> {
     pub ranges: Option<&'a [f64]>,
     /// The part of each window that is looked at, from its beginning.
     pub part: f64,
+    /// How much the unknowns' priors count beside the residuals: the square of the misfit that
+    /// noise does not explain, times the samples over which it is correlated. A misfit says
+    /// nothing of a sensor beyond its own size.
+    pub prior_weight: f64,
 }
 
 /// A window's residuals and derivatives.
@@ -84,10 +88,10 @@ impl<'a> Shooting<'a> {
     pub fn values(&self, theta: &[f64]) -> Vec<f64> {
         let mut values = self.plant.values.clone();
         for (unknown, value) in self.unknowns.iter().zip(theta) {
-            if let What::Parameter(name) = &unknown.what
-                && let Some(place) = self.plant.place(name)
-            {
-                values[place] = *value;
+            match &unknown.what {
+                What::Parameter(name) => self.plant.set(&mut values, name, *value),
+                What::Inverse(name) => self.plant.set(&mut values, name, 1.0 / value),
+                What::Gain(_) | What::Bias(_) | What::Delay(_) => {}
             }
         }
         values
@@ -111,7 +115,7 @@ impl<'a> Shooting<'a> {
         }
         for (unknown, value) in self.unknowns.iter().zip(theta) {
             match unknown.what {
-                What::Parameter(_) => {}
+                What::Parameter(_) | What::Inverse(_) => {}
                 What::Gain(place) => sensors.gain[place] = *value,
                 What::Bias(place) => sensors.bias[place] = *value,
                 What::Delay(place) => sensors.delay[place] = *value,
@@ -249,7 +253,7 @@ impl<'a> Crew<'a> {
         let values = shooting.values(theta);
         let mut neighbours = Vec::with_capacity(theta.len());
         for (place, unknown) in shooting.unknowns.iter().enumerate() {
-            if !matches!(unknown.what, What::Parameter(_)) {
+            if !matches!(unknown.what, What::Parameter(_) | What::Inverse(_)) {
                 neighbours.push(None);
                 continue;
             }
@@ -444,7 +448,7 @@ fn moved_sensors(sensors: &Sensors, unknown: &Unknown) -> (Sensors, f64) {
         What::Gain(place) => moved.gain[place] += step,
         What::Bias(place) => moved.bias[place] += step,
         What::Delay(place) => moved.delay[place] += step,
-        What::Parameter(_) => {}
+        What::Parameter(_) | What::Inverse(_) => {}
     }
     (moved, step)
 }

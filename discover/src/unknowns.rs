@@ -12,6 +12,8 @@ use crate::rule;
 pub enum What {
     /// A parameter, by name.
     Parameter(String),
+    /// One over a parameter, by name: an effect that is absent where it is infinite.
+    Inverse(String),
     /// The gain of a channel, by its place.
     Gain(usize),
     /// The bias of a channel, SI.
@@ -102,4 +104,14 @@ pub fn sign_bounds(parameter: &Parameter, value: f64) -> (f64, f64) {
         parameter.min.map_or(low, |min| min.max(low)),
         parameter.max.map_or(high, |max| max.min(high)),
     )
+}
+
+/// What an unknown is called in messages.
+pub fn name(what: &What) -> String {
+    match what {
+        What::Parameter(name) | What::Inverse(name) => name.clone(),
+        What::Gain(place) => format!("gain of channel {place}"),
+        What::Bias(place) => format!("bias of channel {place}"),
+        What::Delay(place) => format!("delay of channel {place}"),
+    }
 }
