@@ -9,7 +9,7 @@ use crate::bounded::least_squares;
 use crate::shooting::{Crew, Linear, Residual, Shooting};
 
 /// A step that lowers the sum of squares by less than this part is the last.
-const SETTLED: f64 = 2e-4;
+const SETTLED: f64 = 1e-3;
 
 /// Parts of a step that are tried.
 const PARTS: [f64; 5] = [1.0, 0.5, 0.2, 0.05, 0.01];

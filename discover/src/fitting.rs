@@ -104,7 +104,8 @@ impl<'d> Setting<'d> {
         Ok(plant)
     }
 
-    fn first_state(&self, plant: &Plant, record: &crate::dataset::Record) -> Vec<f64> {
+    /// The first state of a record, as far as it is known.
+    pub fn first_state(&self, plant: &Plant, record: &crate::dataset::Record) -> Vec<f64> {
         starts::first_state(plant, record, &self.dataset.channels, &self.dataset.initial)
     }
 
@@ -153,6 +154,19 @@ impl<'d> Setting<'d> {
         let records = shooting.windows.records.iter();
         let firsts: Vec<Vec<f64>> = records.map(|r| self.first_state(shooting.plant, r)).collect();
         Ok(starts::followed(shooting, theta, &firsts, ranges, horizons))
+    }
+
+    /// Initial states of all windows at these unknowns, found as they are in a fit.
+    ///
+    /// # Errors
+    /// If they are to be read from the record and no channel shows a coordinate.
+    pub fn all_starts(
+        &self,
+        shooting: &Shooting<'_>,
+        theta: &[f64],
+        ranges: &[f64],
+    ) -> Result<Vec<Vec<f64>>, String> {
+        Ok(self.starts(shooting, theta, ranges, &HORIZONS)?.1)
     }
 
     /// Fits a specification: its unknowns from `theta`, then what is left.

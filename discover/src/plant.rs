@@ -26,13 +26,13 @@ const MOST_STEPS: u64 = 400_000;
 const FASTEST_SWITCHING: f64 = 1e5;
 
 /// Samples on which the number of marching steps is tried.
-const TRIED_SAMPLES: usize = 400;
+const TRIED_SAMPLES: usize = 100;
 
 /// Marching steps from sample to sample are tried up to two to this power.
-const MOST_DOUBLINGS: u32 = 8;
+const MOST_DOUBLINGS: u32 = 7;
 
 /// The error of marching, in noises: what is marched is compared with noise.
-const MARCHING_ERROR: f64 = 0.05;
+const MARCHING_ERROR: f64 = 0.2;
 
 /// A derived model with its measured outputs.
 pub struct Plant {

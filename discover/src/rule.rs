@@ -55,7 +55,11 @@ pub const OWN_PART: f64 = 0.01;
 pub const MOST_EFFECTS: usize = 4;
 
 /// The most candidates that are fitted in earnest in one round.
-pub const MOST_FITS: usize = 5;
+pub const MOST_FITS: usize = 4;
 
 /// A pair is fitted if screening promises this many times what the best single one does.
-pub const PAIR_PROMISE: f64 = 1.3;
+pub const PAIR_PROMISE: f64 = 1.2;
+
+/// Effects that repeat with an angle, a dozen for every angle, are screened only where no
+/// other promises this part of the gap.
+pub const ENOUGH: f64 = 0.5;

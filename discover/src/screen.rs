@@ -74,10 +74,7 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate]) -> Scr
     let places: Vec<usize> = (0..count).map(|k| k * all / count).collect();
     let level = estimate::level(&shooting, estimate);
     let base = base(&shooting, fit, &places, level);
-    let found: Vec<Result<(Vec<Trial>, Vec<DMatrix<f64>>), String>> = candidates
-        .par_iter()
-        .map(|candidate| response(setting, fit, candidate, &places, &base, level))
-        .collect();
+    let found = found(setting, fit, candidates, &places, &base, level);
     let nuisances = fit.unknowns.len();
     let mut responses = Vec::new();
     let mut silent = Vec::new();
@@ -130,6 +127,41 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate]) -> Scr
     screen
 }
 
+/// The responses of all candidates. Those of one effect at one place that differ in the order
+/// alone are of one size: it is searched for once.
+fn found(
+    setting: &Setting<'_>,
+    fit: &Fit,
+    candidates: &[Candidate],
+    places: &[usize],
+    base: &Base,
+    level: f64,
+) -> Vec<Result<Columns, String>> {
+    let alike = |a: &Candidate, b: &Candidate| {
+        let angle = |c: &Candidate| c.order.as_ref().map(|(angle, _)| angle.clone());
+        a.effect == b.effect && a.on == b.on && angle(a) == angle(b)
+    };
+    let groups: Vec<&[Candidate]> = candidates.chunk_by(alike).collect();
+    let found: Vec<Vec<Result<Columns, String>>> = groups
+        .par_iter()
+        .map(|group| {
+            let mut sizes: Vec<f64> = Vec::new();
+            let of_group = group.iter().map(|candidate| {
+                let found = response(setting, fit, candidate, places, base, (level, &sizes));
+                if let Ok((trials, _)) = &found {
+                    sizes = trials.iter().map(|trial| trial.unknown.scale).collect();
+                }
+                found
+            });
+            of_group.collect()
+        })
+        .collect();
+    found.into_iter().flatten().collect()
+}
+
+/// A candidate's parameters, and for each window a column per parameter that scales it.
+type Columns = (Vec<Trial>, Vec<DMatrix<f64>>);
+
 /// A window at the fit: residual, derivatives by state and by unknowns.
 type Base = Vec<Option<estimate::Eliminator>>;
 
@@ -152,12 +184,15 @@ fn response(
     candidate: &Candidate,
     places: &[usize],
     base: &Base,
-    level: f64,
-) -> Result<(Vec<Trial>, Vec<DMatrix<f64>>), String> {
+    (level, sizes): (f64, &[f64]),
+) -> Result<Columns, String> {
     let start: Vec<f64> = candidate.parameters.iter().map(|p| absent(p.inverse, p.shape)).collect();
     let text = candidate.written(&fit.text, &setting.path, &start, "").map_err(|e| e.to_string())?;
     let plant = setting.plant(&text)?;
     let mut trials: Vec<Trial> = candidate.parameters.iter().map(trial).collect();
+    for (trial, size) in trials.iter_mut().zip(sizes) {
+        trial.unknown.scale = *size;
+    }
     let extended: Vec<Unknown> =
         fit.unknowns.iter().cloned().chain(trials.iter().map(|t| t.unknown.clone())).collect();
     let ranges = mapped(fit, &plant, &fit.ranges);

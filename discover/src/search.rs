@@ -10,7 +10,7 @@ use crate::judge::{Evidence, evidence, judge};
 use crate::rule;
 use crate::screen::{Response, Screen, screen};
 use crate::sites::sites;
-use crate::unknowns::{Unknown, What, of_null_model};
+use crate::unknowns::{What, of_null_model};
 
 /// The most candidates of which pairs are made.
 const MOST_IN_PAIRS: usize = 30;
@@ -100,14 +100,11 @@ pub fn search(
     };
     while found.accepted.len() < rule::MOST_EFFECTS {
         let fit = found.best();
-        if fit.train.pooled.max(fit.test.pooled) < rule::AT_FLOOR * floor {
+        if at_floor(fit, floor) {
             break;
         }
-        let model = &fit.plant.model;
-        let candidates = candidates(model, effects, &sites(model), &usual_rates(setting));
-        said(&format!("screening {} candidates", candidates.len()));
-        let screen = screen(setting, fit, &candidates);
-        let trials = trials(setting, fit, &candidates, &screen, said);
+        let (candidates, screen) = screened(setting, fit, effects, floor, said);
+        let trials = trials(setting, fit, &candidates, &screen, floor, said);
         note_rejected(&mut found.rejected, &candidates, &screen, &trials);
         let best = trials
             .into_iter()
@@ -117,6 +114,36 @@ pub fn search(
         accept(&mut found, &candidates, &screen, best);
     }
     Ok(found)
+}
+
+/// Whether a fit leaves no more than a right model would.
+pub fn at_floor(fit: &Fit, floor: f64) -> bool {
+    fit.train.pooled.max(fit.test.pooled) < rule::AT_FLOOR * floor
+}
+
+/// The candidates and their responses: those that repeat with an angle, which are many, only
+/// if the others leave much of the gap.
+fn screened(
+    setting: &Setting<'_>,
+    fit: &Fit,
+    effects: &[Effect],
+    floor: f64,
+    said: &dyn Fn(&str),
+) -> (Vec<Candidate>, Screen) {
+    let model = &fit.plant.model;
+    let all = candidates(model, effects, &sites(model), &usual_rates(setting));
+    let plain: Vec<Candidate> = all.iter().filter(|c| c.order.is_none()).cloned().collect();
+    said(&format!("screening {} candidates", plain.len()));
+    let found = screen(setting, fit, &plain);
+    let best = found.responses.iter().map(|r| r.gain).fold(0.0, f64::max);
+    let square: f64 = fit.train.blocks.iter().sum();
+    let above = square * (1.0 - (floor / fit.train.pooled).powi(2));
+    if plain.len() == all.len() || best > rule::ENOUGH * above {
+        return (plain, found);
+    }
+    said(&format!("screening {} candidates that repeat with an angle", all.len() - plain.len()));
+    let found = screen(setting, fit, &all);
+    (all, found)
 }
 
 /// The usual rate of every channel that is measured, by name: the root mean square of its
@@ -141,6 +168,7 @@ fn trials(
     fit: &Fit,
     candidates: &[Candidate],
     screen: &Screen,
+    floor: f64,
     said: &dyn Fn(&str),
 ) -> Vec<Trial> {
     let mut ranked: Vec<usize> = (0..screen.responses.len())
@@ -163,8 +191,14 @@ fn trials(
             sets.push(vec![*response]);
         }
     }
-    let mut trials: Vec<Trial> =
-        sets.into_iter().filter_map(|set| trial(setting, fit, candidates, screen, set, said)).collect();
+    let mut trials: Vec<Trial> = Vec::new();
+    for set in sets {
+        let there = trials.iter().find(|trial| trial.verdict.is_ok() && at_floor(&trial.fit, floor));
+        // Where nothing is left, only what looks like the answer may be another one.
+        if there.is_none_or(|trial| screen.similarity(trial.responses[0], set[0]) > rule::ALIKE) {
+            trials.extend(trial(setting, fit, candidates, screen, set, said));
+        }
+    }
     if trials.iter().all(|trial| trial.verdict.is_err()) {
         let pair = best_pair(screen, candidates, &ranked);
         trials.extend(pair.and_then(|pair| trial(setting, fit, candidates, screen, pair, said)));
@@ -208,11 +242,12 @@ fn trial(
     }
 }
 
-/// The pair that promises clearly more than the best single candidate.
+/// The pair that promises clearly more than the best single candidate; one that repeats with
+/// no angle before one that does, since of those there are many to be lucky.
 fn best_pair(screen: &Screen, candidates: &[Candidate], ranked: &[usize]) -> Option<Vec<usize>> {
     let best = screen.responses[*ranked.first()?].gain;
     let alone = screen.left(&[]).0;
-    let mut found: Option<(f64, Vec<usize>)> = None;
+    let mut found: Option<(bool, f64, Vec<usize>)> = None;
     let mut few: Vec<usize> = ranked.iter().copied().take(MOST_IN_PAIRS).collect();
     // What is nothing alone may be half of a pair: friction of two kinds in place of a third.
     few.extend((0..screen.responses.len()).filter(|r| {
@@ -226,12 +261,14 @@ fn best_pair(screen: &Screen, candidates: &[Candidate], ranked: &[usize]) -> Opt
             let (left, values) = screen.left(&set);
             let gain = (alone - left) / screen.share;
             let both = values.iter().all(|v| *v != 0.0);
-            if both && gain > rule::PAIR_PROMISE * best && found.as_ref().is_none_or(|(g, _)| gain > *g) {
-                found = Some((gain, set));
+            let plain = set.iter().all(|r| candidates[screen.responses[*r].candidate].order.is_none());
+            let better = found.as_ref().is_none_or(|(p, g, _)| (plain, gain) > (*p, *g));
+            if both && gain > rule::PAIR_PROMISE * best && better {
+                found = Some((plain, gain, set));
             }
         }
     }
-    found.map(|(_, set)| set)
+    found.map(|(_, _, set)| set)
 }
 
 /// A fit with some candidates more.
@@ -244,7 +281,10 @@ fn fit_with(
 ) -> Result<Fit, String> {
     let mut text = fit.text.clone();
     let mut unknowns = fit.unknowns.clone();
-    let mut theta = fit.train.estimate.theta.clone();
+    // Parameters and sensors that took up what the effect does begin anew.
+    let known = unknowns.iter().zip(&fit.train.estimate.theta);
+    let mut theta: Vec<f64> =
+        known.map(|(unknown, value)| unknown.prior.map_or(*value, |(mean, _)| mean)).collect();
     let mut sizes = sizes.iter();
     for response in responses {
         let candidate = &candidates[response.candidate];
