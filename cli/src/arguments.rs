@@ -41,10 +41,14 @@ pub enum Command {
     )]
     Simulate(Simulate),
     /// Say where a model and its measurements disagree.
-    #[command(after_help = "Example:\n  eomgen compare my_machine.toml dataset.toml --out compared")]
+    #[command(
+        after_help = "Example:\n  eomgen compare my_machine.toml dataset.toml --out compared"
+    )]
     Compare(Compare),
     /// Find what a model lacks, name it, add it, and show the gap shrink.
-    #[command(after_help = "Example:\n  eomgen discover my_machine.toml dataset.toml --out found --seed 1")]
+    #[command(
+        after_help = "Example:\n  eomgen discover my_machine.toml dataset.toml --out found --seed 1"
+    )]
     Discover(Discover),
     /// Measure the motion over a grid of parameters.
     #[command(

@@ -14,7 +14,10 @@ const FLAT: f64 = 1e-10;
 pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[(f64, f64)]) -> DVector<f64> {
     let columns = a.ncols();
     let mut x = DVector::zeros(columns);
-    let scale: Vec<f64> = a.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
+    let scale: Vec<f64> = a
+        .column_iter()
+        .map(|c| c.norm().max(f64::MIN_POSITIVE))
+        .collect();
     let mut free = vec![true; columns];
     for (place, (low, high)) in bounds.iter().enumerate() {
         free[place] = low < high;
@@ -42,7 +45,9 @@ pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[(f64, f64)]) 
             continue;
         }
         let slope = a.transpose() * (b - a * &x);
-        let largest = (0..columns).map(|p| (slope[p] / scale[p]).abs()).fold(0.0, f64::max);
+        let largest = (0..columns)
+            .map(|p| (slope[p] / scale[p]).abs())
+            .fold(0.0, f64::max);
         let wants_in = |place: &usize| {
             let (low, high) = bounds[*place];
             let along = slope[*place] / scale[*place];
@@ -52,7 +57,9 @@ pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[(f64, f64)]) 
                 && ((x[*place] <= low && along > 0.0) || (x[*place] >= high && along < 0.0))
         };
         let steepest = (0..columns).filter(wants_in).max_by(|p, q| {
-            (slope[*p] / scale[*p]).abs().total_cmp(&(slope[*q] / scale[*q]).abs())
+            (slope[*p] / scale[*p])
+                .abs()
+                .total_cmp(&(slope[*q] / scale[*q]).abs())
         });
         match steepest {
             Some(place) => free[place] = true,
@@ -75,11 +82,15 @@ fn free_solution(
     if places.is_empty() {
         return target;
     }
-    let held = b - (0..free.len()).filter(|p| !free[*p]).fold(
-        DVector::zeros(b.len()),
-        |sum: DVector<f64>, p| sum + a.column(p) * x[p],
-    );
-    let matrix = DMatrix::from_fn(a.nrows(), places.len(), |r, c| a[(r, places[c])] / scale[places[c]]);
+    let held = b
+        - (0..free.len())
+            .filter(|p| !free[*p])
+            .fold(DVector::zeros(b.len()), |sum: DVector<f64>, p| {
+                sum + a.column(p) * x[p]
+            });
+    let matrix = DMatrix::from_fn(a.nrows(), places.len(), |r, c| {
+        a[(r, places[c])] / scale[places[c]]
+    });
     let decomposition = matrix.svd(true, true);
     if let Ok(solution) = decomposition.solve(&held, 1e-12) {
         for (value, place) in solution.iter().zip(&places) {

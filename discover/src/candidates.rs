@@ -3,7 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use model_spec::edit::{self, Edit, EditError, NewCoordinate, NewForce, NewParameter, NewTerm, NewValue, Section, Substitution};
+use model_spec::edit::{
+    self, Edit, EditError, NewCoordinate, NewForce, NewParameter, NewTerm, NewValue, Section,
+    Substitution,
+};
 use model_spec::model::{Model, ParameterValue};
 use model_spec::source::Source;
 
@@ -53,7 +56,10 @@ impl Candidate {
     /// Its effect and place, and its order where there are several.
     pub fn label(&self) -> String {
         match &self.order {
-            Some((angle, order)) => format!("{} on {} ({order} per turn of {angle})", self.effect, self.on),
+            Some((angle, order)) => format!(
+                "{} on {} ({order} per turn of {angle})",
+                self.effect, self.on
+            ),
             None => format!("{} on {}", self.effect, self.on),
         }
     }
@@ -62,7 +68,13 @@ impl Candidate {
     ///
     /// # Errors
     /// A place of the edits that the text lacks.
-    pub fn written(&self, text: &str, name: &str, values: &[f64], source: &str) -> Result<String, EditError> {
+    pub fn written(
+        &self,
+        text: &str,
+        name: &str,
+        values: &[f64],
+        source: &str,
+    ) -> Result<String, EditError> {
         let mut edits: Vec<Edit> = (self.parameters.iter().zip(values))
             .map(|(parameter, value)| {
                 Edit::AddParameter(NewParameter {
@@ -81,8 +93,16 @@ impl Candidate {
 
 /// All candidates for a model. `rates`: the usual rate of an axis by its name, where it is
 /// known.
-pub fn candidates(model: &Model, effects: &[Effect], sites: &[Site], rates: &BTreeMap<String, f64>) -> Vec<Candidate> {
-    let angles: Vec<&Site> = sites.iter().filter(|site| site.kind == SiteKind::Angle).collect();
+pub fn candidates(
+    model: &Model,
+    effects: &[Effect],
+    sites: &[Site],
+    rates: &BTreeMap<String, f64>,
+) -> Vec<Candidate> {
+    let angles: Vec<&Site> = sites
+        .iter()
+        .filter(|site| site.kind == SiteKind::Angle)
+        .collect();
     let mut found = Vec::new();
     for effect in effects {
         for site in sites.iter().filter(|site| fits(effect.site, site.kind)) {
@@ -133,8 +153,11 @@ fn candidate(
     order: Option<(&Site, u32)>,
     rates: &BTreeMap<String, f64>,
 ) -> Option<Candidate> {
-    let mut words: BTreeMap<String, String> =
-        site.words.iter().map(|(key, word)| ((*key).to_owned(), word.clone())).collect();
+    let mut words: BTreeMap<String, String> = site
+        .words
+        .iter()
+        .map(|(key, word)| ((*key).to_owned(), word.clone()))
+        .collect();
     if let Some((angle, order)) = order {
         words.insert("n".to_owned(), order.to_string());
         words.insert("angle".to_owned(), angle.words["on"].clone());
@@ -184,11 +207,19 @@ fn candidate(
 /// Names that a new one must not have.
 fn names(model: &Model) -> Vec<String> {
     let lists = [
-        model.parameters.iter().map(|p| p.name.clone()).collect::<Vec<_>>(),
+        model
+            .parameters
+            .iter()
+            .map(|p| p.name.clone())
+            .collect::<Vec<_>>(),
         model.coordinates.iter().map(|c| c.name.clone()).collect(),
         model.inputs.iter().map(|i| i.name.clone()).collect(),
         model.definitions.iter().map(|d| d.name.clone()).collect(),
-        model.fields.iter().flat_map(|f| [f.name.clone(), f.along.clone(), f.coordinates.clone()]).collect(),
+        model
+            .fields
+            .iter()
+            .flat_map(|f| [f.name.clone(), f.along.clone(), f.coordinates.clone()])
+            .collect(),
         model.coefficients.iter().map(|c| c.name.clone()).collect(),
         terms(model),
     ];
@@ -196,9 +227,15 @@ fn names(model: &Model) -> Vec<String> {
 }
 
 fn terms(model: &Model) -> Vec<String> {
-    let energies = model.kinetic.iter().chain(&model.potential).chain(&model.dissipation);
+    let energies = model
+        .kinetic
+        .iter()
+        .chain(&model.potential)
+        .chain(&model.dissipation);
     let names = energies.map(|term| term.name.clone());
-    names.chain(model.forces.iter().map(|force| force.name.clone())).collect()
+    names
+        .chain(model.forces.iter().map(|force| force.name.clone()))
+        .collect()
 }
 
 fn free_name(wanted: &str, site: &str, taken: &mut Vec<String>) -> String {
@@ -234,14 +271,23 @@ fn plain_unit(unit: &str) -> String {
     unit.replace("/rad^2", "").replace("/rad", "")
 }
 
-fn edits(model: &Model, change: &Change, site: &Site, words: &BTreeMap<String, String>) -> Option<Vec<Edit>> {
+fn edits(
+    model: &Model,
+    change: &Change,
+    site: &Site,
+    words: &BTreeMap<String, String>,
+) -> Option<Vec<Edit>> {
     let fill = |text: &str| filled(text, words);
-    let named = words.get(&change.name).cloned().unwrap_or_else(|| change.name.clone());
+    let named = words
+        .get(&change.name)
+        .cloned()
+        .unwrap_or_else(|| change.name.clone());
     if !change.substitute.is_empty() {
         let (find, replace) = (fill(&change.find)?, fill(&change.replace)?);
         let places: Vec<(Section, Vec<String>)> = match change.substitute.as_str() {
             "kinetic" => {
-                let terms: Option<Vec<String>> = change.terms.iter().map(|term| fill(term)).collect();
+                let terms: Option<Vec<String>> =
+                    change.terms.iter().map(|term| fill(term)).collect();
                 vec![(Section::Kinetic, terms?)]
             }
             "mesh" => holding(model, site, &find),
@@ -302,22 +348,42 @@ fn edits(model: &Model, change: &Change, site: &Site, words: &BTreeMap<String, S
 fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)> {
     let text = |section: Section, term: &str| {
         let span = match section {
-            Section::Definitions => model.definitions.iter().find(|d| d.name == term)?.value.span,
+            Section::Definitions => {
+                model
+                    .definitions
+                    .iter()
+                    .find(|d| d.name == term)?
+                    .value
+                    .span
+            }
             Section::Forces => model.forces.iter().find(|f| f.name == term)?.value.span,
             Section::Potential => model.potential.iter().find(|t| t.name == term)?.value.span,
-            Section::Dissipation => model.dissipation.iter().find(|t| t.name == term)?.value.span,
+            Section::Dissipation => {
+                model
+                    .dissipation
+                    .iter()
+                    .find(|t| t.name == term)?
+                    .value
+                    .span
+            }
             Section::Kinetic | Section::Observables => return None,
         };
         model.source.text.get(span.start..span.end)
     };
     let holds = |section: Section, term: &str| {
         let words = text(section, term).unwrap_or_default();
-        words.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == name)
+        words
+            .split(|c: char| !c.is_alphanumeric() && c != '_')
+            .any(|word| word == name)
     };
     let places = site.terms.iter();
     places
         .map(|(section, terms)| {
-            let terms = terms.iter().filter(|term| holds(*section, term)).cloned().collect();
+            let terms = terms
+                .iter()
+                .filter(|term| holds(*section, term))
+                .cloned()
+                .collect();
             (*section, terms)
         })
         .collect()

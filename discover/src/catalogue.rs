@@ -126,9 +126,13 @@ pub fn effects(own: Option<&Path>) -> Result<Vec<Effect>, String> {
     let mut effects = parse(BUILT_IN)?.effect;
     if let Some(path) = own {
         let failed = |error: String| format!("{}: {error}", path.display());
-        let size = std::fs::metadata(path).map_err(|e| failed(e.to_string()))?.len();
+        let size = std::fs::metadata(path)
+            .map_err(|e| failed(e.to_string()))?
+            .len();
         if size > LARGEST {
-            return Err(failed(format!("has {size} bytes; at most {LARGEST} are read")));
+            return Err(failed(format!(
+                "has {size} bytes; at most {LARGEST} are read"
+            )));
         }
         let text = std::fs::read_to_string(path).map_err(|e| failed(e.to_string()))?;
         for effect in parse(&text).map_err(failed)?.effect {

@@ -8,8 +8,18 @@ use crate::search::{Accepted, Found, Rejected};
 use crate::unknowns::What;
 
 /// The verdict of a comparison.
-pub fn compared(setting: &Setting<'_>, fit: &Fit, floor: &Floor, at_floor: bool, place: &str) -> Value {
-    let verdict = if at_floor { "no_significant_gap" } else { "gap_found" };
+pub fn compared(
+    setting: &Setting<'_>,
+    fit: &Fit,
+    floor: &Floor,
+    at_floor: bool,
+    place: &str,
+) -> Value {
+    let verdict = if at_floor {
+        "no_significant_gap"
+    } else {
+        "gap_found"
+    };
     let gap: Map<String, Value> = setting
         .dataset
         .channels
@@ -37,7 +47,13 @@ pub fn compared(setting: &Setting<'_>, fit: &Fit, floor: &Floor, at_floor: bool,
 }
 
 /// The result of a search.
-pub fn discovered(setting: &Setting<'_>, found: &Found, floor: &Floor, at_floor: bool, place: &str) -> Value {
+pub fn discovered(
+    setting: &Setting<'_>,
+    found: &Found,
+    floor: &Floor,
+    at_floor: bool,
+    place: &str,
+) -> Value {
     let (before, after) = (&found.null, found.best());
     let verdict = match (found.accepted.is_empty(), at_floor) {
         (false, _) => "effects_found",
@@ -64,8 +80,10 @@ pub fn discovered(setting: &Setting<'_>, found: &Found, floor: &Floor, at_floor:
         let closed = |effect: &Accepted| effect.test_gap.0 - effect.test_gap.1;
         closed(b).total_cmp(&closed(a))
     });
-    let (not_testable, rejected): (Vec<&Rejected>, Vec<&Rejected>) =
-        found.rejected.iter().partition(|rejected| rejected.not_testable);
+    let (not_testable, rejected): (Vec<&Rejected>, Vec<&Rejected>) = found
+        .rejected
+        .iter()
+        .partition(|rejected| rejected.not_testable);
     json!({
         "schema": 1,
         "verdict": verdict,
@@ -119,7 +137,10 @@ fn effect_entry(fit: &Fit, effect: &Accepted) -> Value {
                 }
                 _ => (fit.train.estimate.theta[place], fit.sd[place]),
             };
-            (parameter.name.clone(), json!({"value": value, "sd": sd, "unit": parameter.unit}))
+            (
+                parameter.name.clone(),
+                json!({"value": value, "sd": sd, "unit": parameter.unit}),
+            )
         })
         .collect();
     let equivalent: Vec<Value> = effect
@@ -154,8 +175,13 @@ fn effect_entry(fit: &Fit, effect: &Accepted) -> Value {
 fn refitted(fit: &Fit, accepted: &[Accepted]) -> Value {
     let mut found = Map::new();
     for (place, unknown) in fit.unknowns.iter().enumerate() {
-        let What::Parameter(name) = &unknown.what else { continue };
-        if accepted.iter().any(|effect| effect.unknowns.contains(&place)) {
+        let What::Parameter(name) = &unknown.what else {
+            continue;
+        };
+        if accepted
+            .iter()
+            .any(|effect| effect.unknowns.contains(&place))
+        {
             continue;
         }
         if let Some(parameter) = fit.plant.model.parameters.iter().find(|p| p.name == *name) {

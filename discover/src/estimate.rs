@@ -123,8 +123,12 @@ fn totalled(
     starts: Vec<Vec<f64>>,
     squares: Vec<f64>,
 ) -> Estimate {
-    let of_starts = starts.iter().enumerate().map(|(p, s)| prior_of_start(prior, p, s));
-    let cost = squares.iter().sum::<f64>() + of_starts.sum::<f64>() + prior_of_unknowns(shooting, &theta);
+    let of_starts = starts
+        .iter()
+        .enumerate()
+        .map(|(p, s)| prior_of_start(prior, p, s));
+    let cost =
+        squares.iter().sum::<f64>() + of_starts.sum::<f64>() + prior_of_unknowns(shooting, &theta);
     Estimate {
         theta,
         starts,
@@ -145,14 +149,24 @@ pub fn reduced(linear: &Linear, prior: &StartPrior, place: usize, start: &[f64])
     let states = linear.by_state.ncols();
     let unknowns = linear.by_unknown.ncols();
     let rows = linear.residual.len();
-    let mut matrix = DMatrix::zeros((rows + states).max(states + unknowns + 1), states + unknowns + 1);
-    matrix.view_mut((0, 0), (rows, states)).copy_from(&linear.by_state);
-    matrix.view_mut((0, states), (rows, unknowns)).copy_from(&linear.by_unknown);
-    matrix.view_mut((0, states + unknowns), (rows, 1)).copy_from(&linear.residual);
+    let mut matrix = DMatrix::zeros(
+        (rows + states).max(states + unknowns + 1),
+        states + unknowns + 1,
+    );
+    matrix
+        .view_mut((0, 0), (rows, states))
+        .copy_from(&linear.by_state);
+    matrix
+        .view_mut((0, states), (rows, unknowns))
+        .copy_from(&linear.by_unknown);
+    matrix
+        .view_mut((0, states + unknowns), (rows, 1))
+        .copy_from(&linear.residual);
     if let Some(mean) = prior.mean.get(place) {
         for state in 0..states {
             matrix[(rows + state, state)] = 1.0 / prior.sd[state];
-            matrix[(rows + state, states + unknowns)] = (start[state] - mean[state]) / prior.sd[state];
+            matrix[(rows + state, states + unknowns)] =
+                (start[state] - mean[state]) / prior.sd[state];
         }
     }
     Reduced {
@@ -165,7 +179,9 @@ impl Reduced {
     /// What the unknowns and the residual look like once the initial state is free.
     pub fn unknowns(&self) -> DMatrix<f64> {
         let rest = self.factor.ncols() - self.states;
-        self.factor.view((self.states, self.states), (rest, rest)).into_owned()
+        self.factor
+            .view((self.states, self.states), (rest, rest))
+            .into_owned()
     }
 
     /// The initial state's step for a step of the unknowns, damped in every state by so many
@@ -178,8 +194,10 @@ impl Reduced {
     ) -> Option<DVector<f64>> {
         let (n, p) = (self.states, unknowns.len());
         let mut rows = DMatrix::zeros(2 * n.max(1), n + 1);
-        rows.view_mut((0, 0), (n, n)).copy_from(&self.factor.view((0, 0), (n, n)));
-        let right = -(self.factor.view((0, n), (n, p)) * unknowns + self.factor.column(n + p).rows(0, n));
+        rows.view_mut((0, 0), (n, n))
+            .copy_from(&self.factor.view((0, 0), (n, n)));
+        let right =
+            -(self.factor.view((0, n), (n, p)) * unknowns + self.factor.column(n + p).rows(0, n));
         rows.view_mut((0, n), (n, 1)).copy_from(&right);
         for (state, sd) in prior.sd.iter().enumerate() {
             rows[(n + state, state)] = damping.sqrt() / sd;
@@ -232,8 +250,14 @@ fn moved_unknowns(
     change: &DVector<f64>,
     part: f64,
 ) -> Vec<f64> {
-    let pairs = present.theta.iter().zip(change.iter()).zip(shooting.unknowns);
-    pairs.map(|((value, change), unknown)| unknown.admissible(value + part * change)).collect()
+    let pairs = present
+        .theta
+        .iter()
+        .zip(change.iter())
+        .zip(shooting.unknowns);
+    pairs
+        .map(|((value, change), unknown)| unknown.admissible(value + part * change))
+        .collect()
 }
 
 fn eliminated(
@@ -243,7 +267,14 @@ fn eliminated(
 ) -> Vec<Option<Reduced>> {
     let windows = linear.iter().enumerate();
     windows
-        .map(|(place, linear)| Some(reduced(linear.as_ref()?, prior, place, &present.starts[place])))
+        .map(|(place, linear)| {
+            Some(reduced(
+                linear.as_ref()?,
+                prior,
+                place,
+                &present.starts[place],
+            ))
+        })
         .collect()
 }
 
@@ -331,7 +362,9 @@ fn followed(
         let pairs = present.starts.iter().zip(windows);
         pairs
             .map(|(start, window)| {
-                let step = window.as_ref().and_then(|w| w.start_step(&change, damping, prior));
+                let step = window
+                    .as_ref()
+                    .and_then(|w| w.start_step(&change, damping, prior));
                 match step {
                     Some(step) if shooting.ranges.is_some() => {
                         start.iter().zip(step.iter()).map(|(x, d)| x + d).collect()
@@ -363,7 +396,9 @@ fn followed(
             }
         }
     }
-    let Estimate { starts, squares, .. } = best;
+    let Estimate {
+        starts, squares, ..
+    } = best;
     totalled(shooting, prior, theta, starts, squares)
 }
 
@@ -380,7 +415,10 @@ fn some_squares(
 ) -> Vec<f64> {
     use rayon::prelude::*;
     let (values, sensors) = (shooting.values(theta), shooting.sensors(theta));
-    let size = places.len().div_ceil(rayon::current_num_threads().max(1)).max(1);
+    let size = places
+        .len()
+        .div_ceil(rayon::current_num_threads().max(1))
+        .max(1);
     let parts: Vec<Vec<f64>> = places
         .par_chunks(size)
         .map(|part| {
@@ -433,7 +471,11 @@ fn settle_seen(
         let held = DVector::zeros(linear.by_unknown.ncols());
         let better = START_DAMPING.iter().find_map(|damping| {
             let step = window.start_step(&held, *damping, prior)?;
-            let moved: Vec<f64> = present.iter().zip(step.iter()).map(|(x, d)| x + d).collect();
+            let moved: Vec<f64> = present
+                .iter()
+                .zip(step.iter())
+                .map(|(x, d)| x + d)
+                .collect();
             let total = total(&crew.residual(place, &moved)?, &moved);
             (total < cost).then_some((moved, total))
         });
@@ -466,7 +508,9 @@ impl Eliminator {
     pub fn new(linear: &Linear, prior: &StartPrior, place: usize, start: &[f64]) -> Self {
         let (rows, states) = linear.by_state.shape();
         let mut by_state = DMatrix::zeros(rows + states, states);
-        by_state.view_mut((0, 0), (rows, states)).copy_from(&linear.by_state);
+        by_state
+            .view_mut((0, 0), (rows, states))
+            .copy_from(&linear.by_state);
         let mut prior_residual = DVector::zeros(states);
         if let Some(mean) = prior.mean.get(place) {
             for state in 0..states {

@@ -15,7 +15,12 @@ const MOVED: f64 = 0.5;
 ///
 /// # Errors
 /// An edit that cannot be made, in words.
-pub fn extended(setting: &Setting<'_>, text: &str, fit: &Fit, accepted: &[Accepted]) -> Result<String, String> {
+pub fn extended(
+    setting: &Setting<'_>,
+    text: &str,
+    fit: &Fit,
+    accepted: &[Accepted],
+) -> Result<String, String> {
     let source = provenance(setting);
     let theta = &fit.train.estimate.theta;
     let mut text = text.to_owned();
@@ -28,10 +33,15 @@ pub fn extended(setting: &Setting<'_>, text: &str, fit: &Fit, accepted: &[Accept
                 _ => theta[place],
             })
             .collect();
-        let written = effect.candidate.written(&text, &setting.path, &values, &source);
+        let written = effect
+            .candidate
+            .written(&text, &setting.path, &values, &source);
         text = written.map_err(|error| error.to_string())?;
     }
-    let added: Vec<usize> = accepted.iter().flat_map(|effect| effect.unknowns.clone()).collect();
+    let added: Vec<usize> = accepted
+        .iter()
+        .flat_map(|effect| effect.unknowns.clone())
+        .collect();
     let mut edits = Vec::new();
     for (place, unknown) in fit.unknowns.iter().enumerate() {
         let moved = (theta[place] - unknown.start).abs() > MOVED * fit.sd[place];
@@ -48,14 +58,21 @@ pub fn extended(setting: &Setting<'_>, text: &str, fit: &Fit, accepted: &[Accept
         }
     }
     edits.extend(sensors(setting, fit));
-    edit::apply(&Source::new(setting.path.as_str(), text.as_str()), &edits).map_err(|error| error.to_string())
+    edit::apply(&Source::new(setting.path.as_str(), text.as_str()), &edits)
+        .map_err(|error| error.to_string())
 }
 
 /// Where numbers come from.
 fn provenance(setting: &Setting<'_>) -> String {
     let title = &setting.dataset.title;
-    let files = setting.dataset.train.iter().filter_map(|record| record.path.file_name());
-    let files: Vec<String> = files.map(|name| name.to_string_lossy().into_owned()).collect();
+    let files = setting
+        .dataset
+        .train
+        .iter()
+        .filter_map(|record| record.path.file_name());
+    let files: Vec<String> = files
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect();
     match title.is_empty() {
         true => format!("fitted to {}", files.join(", ")),
         false => format!("fitted to {title}, {}", files.join(", ")),

@@ -84,7 +84,11 @@ impl<'d> Setting<'d> {
     pub fn new(dataset: &'d Dataset, order: Option<usize>, path: &str) -> Self {
         Self {
             dataset,
-            noise: dataset.channels.iter().map(|channel| channel.noise).collect(),
+            noise: dataset
+                .channels
+                .iter()
+                .map(|channel| channel.noise)
+                .collect(),
             train: Windows::cut(&dataset.train, dataset.window),
             test: Windows::cut(&dataset.test, dataset.window),
             order,
@@ -148,11 +152,14 @@ impl<'d> Setting<'d> {
         horizons: &[f64],
     ) -> Result<(StartPrior, Vec<Vec<f64>>), String> {
         if !self.fits_starts() {
-            let read = starts::read_smoothed(shooting.plant, shooting.windows, &self.dataset.channels);
+            let read =
+                starts::read_smoothed(shooting.plant, shooting.windows, &self.dataset.channels);
             return Ok((StartPrior::default(), read.map_err(not_shown)?));
         }
         let records = shooting.windows.records.iter();
-        let firsts: Vec<Vec<f64>> = records.map(|r| self.first_state(shooting.plant, r)).collect();
+        let firsts: Vec<Vec<f64>> = records
+            .map(|r| self.first_state(shooting.plant, r))
+            .collect();
         Ok(starts::followed(shooting, theta, &firsts, ranges, horizons))
     }
 
@@ -176,8 +183,13 @@ impl<'d> Setting<'d> {
     pub fn fit(&self, text: String, unknowns: Vec<Unknown>, theta: &[f64]) -> Result<Fit, String> {
         let plant = self.plant(&text)?;
         let ranges = self.ranges(&plant);
-        let places: Vec<usize> = (0..unknowns.len()).filter(|p| is_physical(&unknowns[*p])).collect();
-        let physical: Vec<Unknown> = places.iter().map(|place| unknowns[*place].clone()).collect();
+        let places: Vec<usize> = (0..unknowns.len())
+            .filter(|p| is_physical(&unknowns[*p]))
+            .collect();
+        let physical: Vec<Unknown> = places
+            .iter()
+            .map(|place| unknowns[*place].clone())
+            .collect();
         let mut theta = theta.to_vec();
         let begin: Vec<f64> = places.iter().map(|place| theta[*place]).collect();
         let (prior, starts, near) = self.approached(&plant, &ranges, &physical, begin)?;
@@ -187,7 +199,13 @@ impl<'d> Setting<'d> {
             theta[*place] = *value;
         }
         let mut all = self.shooting(&plant, &self.train, &unknowns, &ranges);
-        let rest = self.rest(&all, Estimate { theta: theta.clone(), ..near });
+        let rest = self.rest(
+            &all,
+            Estimate {
+                theta: theta.clone(),
+                ..near
+            },
+        );
         let prior_weight = (rest.pooled * rest.pooled).max(1.0) * rest.correlation;
         all.prior_weight = prior_weight;
         let found = estimate::estimate(&all, &prior, &theta, &rest.estimate.starts, STEPS.1);
@@ -195,7 +213,12 @@ impl<'d> Setting<'d> {
         let train = self.rest(&all, found);
         let held_out = self.shooting(&plant, &self.test, &unknowns, &ranges);
         let (_, starts) = self.starts(&held_out, &train.estimate.theta, &ranges, &HORIZONS)?;
-        let test = estimate::evaluated(&held_out, &StartPrior::default(), train.estimate.theta.clone(), starts);
+        let test = estimate::evaluated(
+            &held_out,
+            &StartPrior::default(),
+            train.estimate.theta.clone(),
+            starts,
+        );
         let test = self.rest(&held_out, test);
         // A fit worse than noise does not know its unknowns better than its own misfit allows.
         let inflation = (train.pooled * train.pooled).max(1.0) * train.correlation;
@@ -229,7 +252,8 @@ impl<'d> Setting<'d> {
         for (part, horizons) in [FIRST_PART, (1.0, HORIZONS.len())] {
             let shooting = Shooting { part, ..shooting };
             let follow = |theta: &[f64]| {
-                self.starts(&shooting, theta, ranges, &HORIZONS[..horizons]).unwrap_or_default()
+                self.starts(&shooting, theta, ranges, &HORIZONS[..horizons])
+                    .unwrap_or_default()
             };
             let (prior, near) = estimate::approach(&shooting, &theta, &follow, STEPS.0);
             theta = near.theta;
@@ -245,7 +269,12 @@ impl<'d> Setting<'d> {
     }
 
     /// One standard deviation of each unknown, were the residuals white noise.
-    fn uncertainty(&self, shooting: &Shooting<'_>, prior: &StartPrior, found: &Estimate) -> Vec<f64> {
+    fn uncertainty(
+        &self,
+        shooting: &Shooting<'_>,
+        prior: &StartPrior,
+        found: &Estimate,
+    ) -> Vec<f64> {
         let count = shooting.unknowns.len();
         let level = estimate::level(shooting, found);
         let linear = shooting.linear(&found.theta, &found.starts, level);
@@ -276,8 +305,10 @@ impl<'d> Setting<'d> {
     pub fn rest(&self, shooting: &Shooting<'_>, estimate: Estimate) -> Rest {
         let channels = shooting.channels();
         let residuals = shooting.residuals(&estimate.theta, &estimate.starts);
-        let residuals: Vec<Vec<f64>> =
-            residuals.into_iter().map(|r| r.map(|r| r.values).unwrap_or_default()).collect();
+        let residuals: Vec<Vec<f64>> = residuals
+            .into_iter()
+            .map(|r| r.map(|r| r.values).unwrap_or_default())
+            .collect();
         let mut sums = vec![(0.0, 0.0); channels];
         for (window, residual) in shooting.windows.list.iter().zip(&residuals) {
             for (place, value) in residual.iter().enumerate() {
@@ -292,7 +323,11 @@ impl<'d> Setting<'d> {
         let pooled = (squares.iter().sum::<f64>() / channels.max(1) as f64).sqrt();
         Rest {
             blocks: blocks(&residuals),
-            channels: squares.iter().zip(&self.noise).map(|(s, noise)| s.sqrt() * noise).collect(),
+            channels: squares
+                .iter()
+                .zip(&self.noise)
+                .map(|(s, noise)| s.sqrt() * noise)
+                .collect(),
             pooled,
             correlation: correlation(&residuals, channels),
             residuals,
@@ -318,7 +353,9 @@ fn blocks(residuals: &[Vec<f64>]) -> Vec<f64> {
     let parts = BLOCKS.div_ceil(residuals.len().max(1));
     let of_window = |residual: &Vec<f64>| {
         let size = residual.len().div_ceil(parts).max(1);
-        let sums = residual.chunks(size).map(|part| part.iter().map(|r| r * r).sum::<f64>());
+        let sums = residual
+            .chunks(size)
+            .map(|part| part.iter().map(|r| r * r).sum::<f64>());
         sums.collect::<Vec<f64>>()
     };
     residuals.iter().flat_map(of_window).collect()
@@ -334,7 +371,12 @@ fn correlation(residuals: &[Vec<f64>], channels: usize) -> f64 {
             .collect();
         let longest = columns.iter().map(Vec::len).max().unwrap_or(0);
         let at = |lag: usize| -> f64 {
-            let products = columns.iter().map(|c| c.iter().zip(c.iter().skip(lag)).map(|(a, b)| a * b).sum::<f64>());
+            let products = columns.iter().map(|c| {
+                c.iter()
+                    .zip(c.iter().skip(lag))
+                    .map(|(a, b)| a * b)
+                    .sum::<f64>()
+            });
             products.sum()
         };
         let whole = at(0);

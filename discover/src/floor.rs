@@ -32,7 +32,10 @@ pub fn floor(setting: &Setting<'_>, fit: &Fit, seed: u64) -> Floor {
     let Ok(starts) = setting.all_starts(&shooting, &theta, &fit.ranges) else {
         return noise_alone;
     };
-    let rest = setting.rest(&shooting, estimate::evaluated(&shooting, &StartPrior::default(), theta, starts));
+    let rest = setting.rest(
+        &shooting,
+        estimate::evaluated(&shooting, &StartPrior::default(), theta, starts),
+    );
     if !rest.pooled.is_finite() {
         return noise_alone;
     }

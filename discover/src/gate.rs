@@ -9,7 +9,11 @@ pub fn check_times(path: &Path, times: &[f64]) -> Result<(), Refusal> {
     // The first line holds the names.
     let line = |sample: usize| sample as u64 + 2;
     if let Some(sample) = times.iter().position(|t| !t.is_finite()) {
-        return Err(Refusal::line(path, line(sample), "the time is missing; expected a number"));
+        return Err(Refusal::line(
+            path,
+            line(sample),
+            "the time is missing; expected a number",
+        ));
     }
     if let Some(sample) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
         return Err(Refusal::line(

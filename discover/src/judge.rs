@@ -28,7 +28,9 @@ pub fn judge(before: &Fit, after: &Fit, first: usize, shapes: &[bool]) -> Result
     let evidence = evidence(before, after, first, shapes);
     let at_bound = at_bound(after, first, shapes);
     if let Some(name) = at_bound {
-        return Err(format!("`{name}` has the wrong sign: held to it, the effect vanishes"));
+        return Err(format!(
+            "`{name}` has the wrong sign: held to it, the effect vanishes"
+        ));
     }
     if evidence.held_out < rule::HELD_OUT {
         return Err(format!(
@@ -71,7 +73,12 @@ pub fn judge(before: &Fit, after: &Fit, first: usize, shapes: &[bool]) -> Result
 /// What speaks for the unknowns from `first` on.
 pub fn evidence(before: &Fit, after: &Fit, first: usize, shapes: &[bool]) -> Evidence {
     let (old, new) = (&before.test, &after.test);
-    let falls: Vec<f64> = old.blocks.iter().zip(&new.blocks).map(|(a, b)| a - b).collect();
+    let falls: Vec<f64> = old
+        .blocks
+        .iter()
+        .zip(&new.blocks)
+        .map(|(a, b)| a - b)
+        .collect();
     let count = falls.len() as f64;
     let mean = falls.iter().sum::<f64>() / count;
     let variance = falls.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
@@ -82,13 +89,16 @@ pub fn evidence(before: &Fit, after: &Fit, first: usize, shapes: &[bool]) -> Evi
         held_out_errors: mean / (variance / count).sqrt(),
         information: fall / (2.0 * whitening),
         t: significance(after, first, shapes),
-        size: (before.train.pooled.powi(2) - after.train.pooled.powi(2)).max(0.0).sqrt(),
+        size: (before.train.pooled.powi(2) - after.train.pooled.powi(2))
+            .max(0.0)
+            .sqrt(),
     }
 }
 
 /// The size of the new effect in standard deviations. The two parts of a wave count together.
 fn significance(fit: &Fit, first: usize, shapes: &[bool]) -> f64 {
-    let scaling = (first..fit.unknowns.len()).filter(|place| !shapes.get(place - first).copied().unwrap_or(false));
+    let scaling = (first..fit.unknowns.len())
+        .filter(|place| !shapes.get(place - first).copied().unwrap_or(false));
     let ratios = scaling.map(|place| fit.train.estimate.theta[place] / fit.sd[place]);
     ratios.map(|t| t * t).sum::<f64>().sqrt()
 }

@@ -67,15 +67,25 @@ impl Plant {
     ///
     /// # Errors
     /// What is wrong with the text, in words.
-    pub fn of(text: &str, name: &str, order: Option<usize>, channels: &[Channel]) -> Result<Self, String> {
+    pub fn of(
+        text: &str,
+        name: &str,
+        order: Option<usize>,
+        channels: &[Channel],
+    ) -> Result<Self, String> {
         let checked = model_spec::check(Source::new(name, text)).map_err(|d| d.render(false))?;
         let model = checked.model;
         let orders = model.orders(order).map_err(|error| error.to_string())?;
         let variant = Variant::derive(&model, &orders).map_err(|d| d.render(false))?;
         let exact = PiecewiseLinear::of(&model, &orders).ok();
         let program = variant.program;
-        let independent = |p: &&model_spec::model::Parameter| matches!(p.value, ParameterValue::Number(_));
-        let parameters = model.parameters.iter().filter(independent).map(|p| p.name.clone());
+        let independent =
+            |p: &&model_spec::model::Parameter| matches!(p.value, ParameterValue::Number(_));
+        let parameters = model
+            .parameters
+            .iter()
+            .filter(independent)
+            .map(|p| p.name.clone());
         let outputs = channels.iter().map(|channel| match channel.quantity {
             Quantity::Observable(place) => Output::Observable(place),
             Quantity::Coordinate(place) => Output::State(place),
@@ -83,7 +93,10 @@ impl Plant {
         });
         Ok(Self {
             outputs: outputs.collect(),
-            channels: channels.iter().map(|channel| channel.name.clone()).collect(),
+            channels: channels
+                .iter()
+                .map(|channel| channel.name.clone())
+                .collect(),
             parameters: parameters.collect(),
             values: program.default_parameters(),
             states: model.state_names(&orders),
@@ -114,7 +127,9 @@ impl Plant {
     }
 
     fn shows_states_only(&self) -> bool {
-        self.outputs.iter().all(|output| matches!(output, Output::State(_)))
+        self.outputs
+            .iter()
+            .all(|output| matches!(output, Output::State(_)))
     }
 
     /// How many states there are.
@@ -268,7 +283,9 @@ impl Runner<'_> {
         let mut states = Vec::with_capacity(samples.len());
         states.push(state.clone());
         let mut slopes = [const { Vec::new() }; 4];
-        slopes.iter_mut().for_each(|slope| slope.resize(state.len(), 0.0));
+        slopes
+            .iter_mut()
+            .for_each(|slope| slope.resize(state.len(), 0.0));
         let mut trial = state.clone();
         let evaluator = self.evaluator.get_mut();
         for pair in samples.windows(2) {
@@ -281,7 +298,10 @@ impl Runner<'_> {
                     trial.copy_from_slice(&state);
                     if stage > 0 {
                         let slope = &slopes[stage - 1];
-                        trial.iter_mut().zip(slope).for_each(|(x, k)| *x += at * h * k);
+                        trial
+                            .iter_mut()
+                            .zip(slope)
+                            .for_each(|(x, k)| *x += at * h * k);
                     }
                     let point = Point {
                         t: begin + at * h,
@@ -343,10 +363,16 @@ impl Runner<'_> {
     ) -> Option<(Outputs, Vec<f64>)> {
         let span = (*samples.first()?, *samples.last()?);
         let count = initial.len();
-        let unit = |place: usize| (0..count).map(|k| f64::from(u8::from(k == place))).collect();
+        let unit = |place: usize| {
+            (0..count)
+                .map(|k| f64::from(u8::from(k == place)))
+                .collect()
+        };
         let directions: Vec<Vec<f64>> = (0..count).map(unit).collect();
         let propagator = self.propagator.as_mut()?;
-        let found = propagator.neighbours(initial, span, samples, inputs, directions).ok()?;
+        let found = propagator
+            .neighbours(initial, span, samples, inputs, directions)
+            .ok()?;
         let channels = self.plant.outputs.len();
         let mut outputs = Outputs::default();
         let mut derivatives = Vec::with_capacity(samples.len() * count * channels);

@@ -39,8 +39,9 @@ pub const INFORMATION: f64 = 10.0;
 /// And if its parameters are this many standard deviations, correlated residuals allowed for.
 pub const SIGNIFICANCE: f64 = 5.0;
 
-/// And if what it does to the outputs reaches the noise: what is smaller may be anything.
-pub const SIZE: f64 = 1.0;
+/// And if what it does to the outputs is this many times the noise: what is smaller may be
+/// anything that repeats by chance.
+pub const SIZE: f64 = 2.0;
 
 /// Nothing is left to be found where the gap is within this factor of the floor.
 pub const AT_FLOOR: f64 = 1.1;
@@ -63,3 +64,11 @@ pub const PAIR_PROMISE: f64 = 1.2;
 /// Effects that repeat with an angle, a dozen for every angle, are screened only where no
 /// other promises this part of the gap.
 pub const ENOUGH: f64 = 0.5;
+
+/// Once a candidate is believed, others are fitted only if screening promises this part of
+/// what it promises of that one.
+pub const RIVAL: f64 = 0.6;
+
+/// A term of the model may be deleted if its parameter is this many standard deviations of its
+/// prior from 0 at most.
+pub const PRIOR_REACH: f64 = 3.0;

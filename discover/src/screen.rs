@@ -52,6 +52,7 @@ pub struct Response {
 }
 
 /// All responses.
+#[derive(Clone)]
 pub struct Screen {
     /// Products of all columns: nuisances, candidates, the residual last.
     products: DMatrix<f64>,
@@ -172,7 +173,12 @@ fn base(shooting: &Shooting<'_>, fit: &Fit, places: &[usize], level: f64) -> Bas
         .iter()
         .map(|place| {
             let linear = crew.as_mut()?.linear(*place, &estimate.starts[*place])?;
-            Some(estimate::Eliminator::new(&linear, &fit.prior, *place, &estimate.starts[*place]))
+            Some(estimate::Eliminator::new(
+                &linear,
+                &fit.prior,
+                *place,
+                &estimate.starts[*place],
+            ))
         })
         .collect()
 }
@@ -186,15 +192,25 @@ fn response(
     base: &Base,
     (level, sizes): (f64, &[f64]),
 ) -> Result<Columns, String> {
-    let start: Vec<f64> = candidate.parameters.iter().map(|p| absent(p.inverse, p.shape)).collect();
-    let text = candidate.written(&fit.text, &setting.path, &start, "").map_err(|e| e.to_string())?;
+    let start: Vec<f64> = candidate
+        .parameters
+        .iter()
+        .map(|p| absent(p.inverse, p.shape))
+        .collect();
+    let text = candidate
+        .written(&fit.text, &setting.path, &start, "")
+        .map_err(|e| e.to_string())?;
     let plant = setting.plant(&text)?;
     let mut trials: Vec<Trial> = candidate.parameters.iter().map(trial).collect();
     for (trial, size) in trials.iter_mut().zip(sizes) {
         trial.unknown.scale = *size;
     }
-    let extended: Vec<Unknown> =
-        fit.unknowns.iter().cloned().chain(trials.iter().map(|t| t.unknown.clone())).collect();
+    let extended: Vec<Unknown> = fit
+        .unknowns
+        .iter()
+        .cloned()
+        .chain(trials.iter().map(|t| t.unknown.clone()))
+        .collect();
     let ranges = mapped(fit, &plant, &fit.ranges);
     let shooting = setting.shooting(&plant, &setting.train, &extended, &ranges);
     let nuisances = fit.unknowns.len();
@@ -212,13 +228,20 @@ fn response(
         // The size is found on the first, the middle and the last of the windows.
         let few = [0, places.len() / 2, places.len() - 1];
         let size = trial_size(trials[place].unknown.scale, level, |size| {
-            let changes = changes(&shooting, fit, &theta(size), few.iter().map(|k| (places[*k], &base[*k])))?;
+            let changes = changes(
+                &shooting,
+                fit,
+                &theta(size),
+                few.iter().map(|k| (places[*k], &base[*k])),
+            )?;
             let numbers: f64 = changes.iter().map(|c| c.len() as f64).sum();
             let square: f64 = changes.iter().map(DVector::norm_squared).sum();
             Some((square / numbers).sqrt())
         });
         let Some(size) = size else {
-            return Err("nothing in the record would show it: it does not change the outputs".to_owned());
+            return Err(
+                "nothing in the record would show it: it does not change the outputs".to_owned(),
+            );
         };
         let pairs = places.iter().copied().zip(base.iter());
         let changes = changes(&shooting, fit, &theta(size), pairs)
@@ -252,14 +275,20 @@ fn trial(parameter: &crate::candidates::CandidateParameter) -> Trial {
     };
     let name = parameter.name.clone();
     let unknown = Unknown {
-        what: if parameter.inverse { What::Inverse(name) } else { What::Parameter(name) },
+        what: if parameter.inverse {
+            What::Inverse(name)
+        } else {
+            What::Parameter(name)
+        },
         start: parameter.shape.unwrap_or(low.max(0.0)),
         prior: None,
         bounds: match parameter.shape {
             Some(shape) => (rule::SHAPE_RANGE.0 * shape, rule::SHAPE_RANGE.1 * shape),
             None => (low, f64::INFINITY),
         },
-        scale: parameter.shape.unwrap_or(if parameter.inverse { 1e-4 } else { 1.0 }),
+        scale: parameter
+            .shape
+            .unwrap_or(if parameter.inverse { 1e-4 } else { 1.0 }),
     };
     Trial {
         unknown,
@@ -367,18 +396,55 @@ impl Screen {
         }
         let last = self.products.ncols() - 1;
         let (a, b) = self.system(&places, last);
-        let bounds: Vec<(f64, f64)> =
-            places.iter().map(|place| (self.bounds[*place].0.min(0.0), self.bounds[*place].1.max(0.0))).collect();
+        let bounds: Vec<(f64, f64)> = places
+            .iter()
+            .map(|place| {
+                (
+                    self.bounds[*place].0.min(0.0),
+                    self.bounds[*place].1.max(0.0),
+                )
+            })
+            .collect();
         let x = least_squares(&a, &b, &bounds);
         let left = (&a * &x - &b).norm_squared() - b.norm_squared() + self.products[(last, last)];
         (left, x.iter().skip(self.nuisances).copied().collect())
+    }
+
+    /// The same with a parameter of the model set to 0, its term deleted; none where that is
+    /// not admissible.
+    pub fn without(&self, nuisance: usize, value: f64) -> Option<Self> {
+        let (low, high) = self.bounds[nuisance];
+        if value == 0.0 || !(low..=high).contains(&-value) {
+            return None;
+        }
+        let last = self.products.ncols() - 1;
+        let mut products = self.products.clone();
+        let column = products.column(nuisance) * -value;
+        let mut residual = products.column_mut(last);
+        residual += column;
+        let row = products.row(nuisance) * -value;
+        let mut residual = products.row_mut(last);
+        residual += row;
+        let mut bounds = self.bounds.clone();
+        bounds[nuisance] = (0.0, 0.0);
+        Some(Self {
+            products,
+            bounds,
+            nuisances: self.nuisances,
+            responses: self.responses.clone(),
+            silent: Vec::new(),
+            share: self.share,
+        })
     }
 
     /// A and b whose least squares are those of some columns against the residual, to be
     /// lowered to its negative.
     fn system(&self, places: &[usize], last: usize) -> (DMatrix<f64>, DVector<f64>) {
         let count = places.len();
-        let scale: Vec<f64> = places.iter().map(|p| self.products[(*p, *p)].sqrt().max(f64::MIN_POSITIVE)).collect();
+        let scale: Vec<f64> = places
+            .iter()
+            .map(|p| self.products[(*p, *p)].sqrt().max(f64::MIN_POSITIVE))
+            .collect();
         let gram = DMatrix::from_fn(count, count, |r, c| {
             let ridge = if r == c { rule::RIDGE } else { 0.0 };
             self.products[(places[r], places[c])] / (scale[r] * scale[c]) + ridge
@@ -388,7 +454,9 @@ impl Screen {
             return (DMatrix::zeros(count, count), DVector::zeros(count));
         };
         let lower = factor.l();
-        let b = lower.solve_lower_triangular(&right).unwrap_or_else(|| DVector::zeros(count));
+        let b = lower
+            .solve_lower_triangular(&right)
+            .unwrap_or_else(|| DVector::zeros(count));
         let a = DMatrix::from_fn(count, count, |r, c| lower[(c, r)] * scale[c]);
         (a, b)
     }
@@ -398,7 +466,11 @@ impl Screen {
         let direction = self.direction(place);
         let own = self.product(&direction, &direction);
         let rest = self.without_nuisances(&direction, &direction);
-        if own > 0.0 { (rest / own).max(0.0) } else { 0.0 }
+        if own > 0.0 {
+            (rest / own).max(0.0)
+        } else {
+            0.0
+        }
     }
 
     /// A response at its best size as a combination of columns.
@@ -408,7 +480,9 @@ impl Screen {
         let all_zero = response.values.iter().all(|v| *v == 0.0);
         for (number, column) in response.columns.clone().enumerate() {
             direction[column] = if all_zero || response.values.is_empty() {
-                1.0 / self.products[(column, column)].sqrt().max(f64::MIN_POSITIVE)
+                1.0 / self.products[(column, column)]
+                    .sqrt()
+                    .max(f64::MIN_POSITIVE)
             } else {
                 response.values[number]
             };

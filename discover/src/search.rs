@@ -12,9 +12,6 @@ use crate::screen::{Response, Screen, screen};
 use crate::sites::sites;
 use crate::unknowns::{What, of_null_model};
 
-/// The most candidates of which pairs are made.
-const MOST_IN_PAIRS: usize = 30;
-
 /// An effect that was believed.
 #[derive(Clone, Debug)]
 pub struct Accepted {
@@ -73,8 +70,12 @@ struct Trial {
 /// Why no motion can be followed.
 pub fn null_fit(setting: &Setting<'_>, text: &str) -> Result<Fit, String> {
     let plant = setting.plant(text)?;
-    let values: Vec<(String, f64)> =
-        plant.parameters.iter().cloned().zip(plant.values.iter().copied()).collect();
+    let values: Vec<(String, f64)> = plant
+        .parameters
+        .iter()
+        .cloned()
+        .zip(plant.values.iter().copied())
+        .collect();
     let unknowns = of_null_model(setting.dataset, &plant.model, &values);
     let theta: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
     setting.fit(text.to_owned(), unknowns, &theta)
@@ -141,7 +142,10 @@ fn screened(
     if plain.len() == all.len() || best > rule::ENOUGH * above {
         return (plain, found);
     }
-    said(&format!("screening {} candidates that repeat with an angle", all.len() - plain.len()));
+    said(&format!(
+        "screening {} candidates that repeat with an angle",
+        all.len() - plain.len()
+    ));
     let found = screen(setting, fit, &all);
     (all, found)
 }
@@ -172,12 +176,23 @@ fn trials(
     said: &dyn Fn(&str),
 ) -> Vec<Trial> {
     let mut ranked: Vec<usize> = (0..screen.responses.len())
-        .filter(|r| screen.responses[*r].visible > rule::OWN_PART && screen.responses[*r].gain > 0.0)
+        .filter(|r| {
+            screen.responses[*r].visible > rule::OWN_PART && screen.responses[*r].gain > 0.0
+        })
         .collect();
-    ranked.sort_by(|a, b| screen.responses[*b].gain.total_cmp(&screen.responses[*a].gain));
+    ranked.sort_by(|a, b| {
+        screen.responses[*b]
+            .gain
+            .total_cmp(&screen.responses[*a].gain)
+    });
     for response in ranked.iter().take(8) {
         let r = &screen.responses[*response];
-        said(&format!("  {:.3e} {} {:?}", r.gain, candidates[r.candidate].label(), r.values));
+        said(&format!(
+            "  {:.3e} {} {:?}",
+            r.gain,
+            candidates[r.candidate].label(),
+            r.values
+        ));
     }
     let mut sets: Vec<Vec<usize>> = Vec::new();
     for response in &ranked {
@@ -193,15 +208,29 @@ fn trials(
     }
     let mut trials: Vec<Trial> = Vec::new();
     for set in sets {
-        let there = trials.iter().find(|trial| trial.verdict.is_ok() && at_floor(&trial.fit, floor));
-        // Where nothing is left, only what looks like the answer may be another one.
-        if there.is_none_or(|trial| screen.similarity(trial.responses[0], set[0]) > rule::ALIKE) {
+        // Once one is believed, only what promises nearly as much or looks like it may be
+        // another answer.
+        let believed = trials.iter().find(|trial| trial.verdict.is_ok());
+        let is_rival = |trial: &Trial| {
+            let gain = |place: usize| screen.responses[place].gain;
+            let near = gain(set[0]) > rule::RIVAL * gain(trial.responses[0]);
+            let alike = screen.similarity(trial.responses[0], set[0]) > rule::ALIKE;
+            alike || (near && !at_floor(&trial.fit, floor))
+        };
+        if believed.is_none_or(is_rival) {
+            let sizes = screen.left(&set).1;
+            let set = Set {
+                responses: set,
+                deleted: None,
+                sizes,
+            };
             trials.extend(trial(setting, fit, candidates, screen, set, said));
         }
     }
     if trials.iter().all(|trial| trial.verdict.is_err()) {
-        let pair = best_pair(screen, candidates, &ranked);
-        trials.extend(pair.and_then(|pair| trial(setting, fit, candidates, screen, pair, said)));
+        for pair in best_pairs(screen, fit, candidates, &ranked) {
+            trials.extend(trial(setting, fit, candidates, screen, pair, said));
+        }
     }
     trials
 }
@@ -212,25 +241,34 @@ fn trial(
     fit: &Fit,
     candidates: &[Candidate],
     screen: &Screen,
-    set: Vec<usize>,
+    set: Set,
     said: &dyn Fn(&str),
 ) -> Option<Trial> {
-    let labels: Vec<String> =
-        set.iter().map(|r| candidates[screen.responses[*r].candidate].label()).collect();
+    let labels: Vec<String> = set
+        .responses
+        .iter()
+        .map(|r| candidates[screen.responses[*r].candidate].label())
+        .collect();
     said(&format!("fitting {}", labels.join(" and ")));
-    let chosen: Vec<&Response> = set.iter().map(|r| &screen.responses[*r]).collect();
-    match fit_with(setting, fit, candidates, &chosen, &screen.left(&set).1) {
+    let chosen: Vec<&Response> = set
+        .responses
+        .iter()
+        .map(|r| &screen.responses[*r])
+        .collect();
+    match fit_with(setting, fit, candidates, &chosen, &set) {
         Ok(new) => {
             let first = fit.unknowns.len();
-            let shapes: Vec<bool> =
-                chosen.iter().flat_map(|r| r.trials.iter().map(|t| t.is_shape)).collect();
+            let shapes: Vec<bool> = chosen
+                .iter()
+                .flat_map(|r| r.trials.iter().map(|t| t.is_shape))
+                .collect();
             let verdict = judge(fit, &new, first, &shapes);
             said(&format!(
                 "  train {:.3} test {:.3} {:?} {:?}",
                 new.train.pooled, new.test.pooled, verdict, &new.train.estimate.theta
             ));
             Some(Trial {
-                responses: set,
+                responses: set.responses,
                 fit: new,
                 verdict,
             })
@@ -242,33 +280,68 @@ fn trial(
     }
 }
 
-/// The pair that promises clearly more than the best single candidate; one that repeats with
-/// no angle before one that does, since of those there are many to be lucky.
-fn best_pair(screen: &Screen, candidates: &[Candidate], ranked: &[usize]) -> Option<Vec<usize>> {
-    let best = screen.responses[*ranked.first()?].gain;
+/// Candidates to be fitted together, and a parameter whose term they replace.
+struct Set {
+    responses: Vec<usize>,
+    deleted: Option<usize>,
+    sizes: Vec<f64>,
+}
+
+/// The pair that promises clearly more than the best single candidate, and for each term of
+/// the model that may go the pair that takes its place best. What repeats with an angle is not
+/// paired: of that there is so much that two of it are lucky.
+fn best_pairs(screen: &Screen, fit: &Fit, candidates: &[Candidate], ranked: &[usize]) -> Vec<Set> {
+    let best = ranked.first().map_or(0.0, |r| screen.responses[*r].gain);
     let alone = screen.left(&[]).0;
-    let mut found: Option<(bool, f64, Vec<usize>)> = None;
-    let mut few: Vec<usize> = ranked.iter().copied().take(MOST_IN_PAIRS).collect();
     // What is nothing alone may be half of a pair: friction of two kinds in place of a third.
-    few.extend((0..screen.responses.len()).filter(|r| {
-        let response = &screen.responses[*r];
-        let plain = candidates[response.candidate].order.is_none();
-        plain && response.visible > rule::OWN_PART && !ranked.iter().take(MOST_IN_PAIRS).any(|known| known == r)
-    }));
-    for (number, a) in few.iter().enumerate() {
-        for b in &few[number + 1..] {
-            let set = vec![*a, *b];
-            let (left, values) = screen.left(&set);
-            let gain = (alone - left) / screen.share;
-            let both = values.iter().all(|v| *v != 0.0);
-            let plain = set.iter().all(|r| candidates[screen.responses[*r].candidate].order.is_none());
-            let better = found.as_ref().is_none_or(|(p, g, _)| (plain, gain) > (*p, *g));
-            if both && gain > rule::PAIR_PROMISE * best && better {
-                found = Some((plain, gain, set));
-            }
+    let few: Vec<usize> = (0..screen.responses.len())
+        .filter(|r| {
+            let response = &screen.responses[*r];
+            candidates[response.candidate].order.is_none() && response.visible > rule::OWN_PART
+        })
+        .collect();
+    let mut screens = vec![(None, screen.clone())];
+    for (place, unknown) in fit.unknowns.iter().enumerate() {
+        let value = fit.train.estimate.theta[place];
+        let near = unknown
+            .prior
+            .is_some_and(|(mean, sd)| mean.abs() < rule::PRIOR_REACH * sd);
+        if matches!(unknown.what, What::Parameter(_)) && near {
+            screens.extend(
+                screen
+                    .without(place, value)
+                    .map(|screen| (Some(place), screen)),
+            );
         }
     }
-    found.map(|(_, _, set)| set)
+    let best_of = |deleted: Option<usize>, screen: &Screen| {
+        let mut found: Option<(f64, Set)> = None;
+        for (number, a) in few.iter().enumerate() {
+            for b in &few[number + 1..] {
+                let responses = vec![*a, *b];
+                let (left, sizes) = screen.left(&responses);
+                let gain = (alone - left) / screen.share;
+                let better = found.as_ref().is_none_or(|(g, _)| gain > *g);
+                if sizes.iter().all(|v| *v != 0.0) && better {
+                    let set = Set {
+                        responses,
+                        deleted,
+                        sizes,
+                    };
+                    found = Some((gain, set));
+                }
+            }
+        }
+        // What replaces a term is far from where it was linearised: it is not held to a promise.
+        let promising = |gain: f64| deleted.is_some() || gain > rule::PAIR_PROMISE * best;
+        found
+            .filter(|(gain, _)| promising(*gain))
+            .map(|(_, set)| set)
+    };
+    screens
+        .iter()
+        .filter_map(|(deleted, screen)| best_of(*deleted, screen))
+        .collect()
 }
 
 /// A fit with some candidates more.
@@ -277,34 +350,58 @@ fn fit_with(
     fit: &Fit,
     candidates: &[Candidate],
     responses: &[&Response],
-    sizes: &[f64],
+    set: &Set,
 ) -> Result<Fit, String> {
     let mut text = fit.text.clone();
     let mut unknowns = fit.unknowns.clone();
     // Parameters and sensors that took up what the effect does begin anew.
     let known = unknowns.iter().zip(&fit.train.estimate.theta);
-    let mut theta: Vec<f64> =
-        known.map(|(unknown, value)| unknown.prior.map_or(*value, |(mean, _)| mean)).collect();
-    let mut sizes = sizes.iter();
+    let mut theta: Vec<f64> = known
+        .map(|(unknown, value)| unknown.prior.map_or(*value, |(mean, _)| mean))
+        .collect();
+    if let Some(place) = set.deleted {
+        unknowns[place].bounds = (0.0, 0.0);
+        theta[place] = 0.0;
+    }
+    let mut sizes = set.sizes.iter();
     for response in responses {
         let candidate = &candidates[response.candidate];
         let mut values = Vec::new();
         for trial in &response.trials {
-            let size = if trial.is_shape { trial.unknown.start } else { sizes.next().copied().unwrap_or(0.0) };
-            let size = if size == 0.0 { trial.unknown.scale } else { size };
+            let size = if trial.is_shape {
+                trial.unknown.start
+            } else {
+                sizes.next().copied().unwrap_or(0.0)
+            };
+            let size = if size == 0.0 {
+                trial.unknown.scale
+            } else {
+                size
+            };
             let size = trial.unknown.admissible(size);
-            values.push(if matches!(trial.unknown.what, What::Inverse(_)) { 1.0 / size } else { size });
+            values.push(if matches!(trial.unknown.what, What::Inverse(_)) {
+                1.0 / size
+            } else {
+                size
+            });
             let mut unknown = trial.unknown.clone();
             unknown.scale = size.abs().max(1e-3 * unknown.scale);
             unknowns.push(unknown);
             theta.push(size);
         }
-        text = candidate.written(&text, &setting.path, &values, "").map_err(|e| e.to_string())?;
+        text = candidate
+            .written(&text, &setting.path, &values, "")
+            .map_err(|e| e.to_string())?;
     }
     setting.fit(text, unknowns, &theta)
 }
 
-fn note_rejected(rejected: &mut Vec<Rejected>, candidates: &[Candidate], screen: &Screen, trials: &[Trial]) {
+fn note_rejected(
+    rejected: &mut Vec<Rejected>,
+    candidates: &[Candidate],
+    screen: &Screen,
+    trials: &[Trial],
+) {
     let mut note = |candidate: &Candidate, reason: String, not_testable: bool| {
         rejected.retain(|known: &Rejected| known.candidate.label() != candidate.label());
         rejected.push(Rejected {
@@ -330,7 +427,11 @@ fn note_rejected(rejected: &mut Vec<Rejected>, candidates: &[Candidate], screen:
                 ),
                 true,
             ),
-            None => note(candidate, "others explain the difference better".to_owned(), false),
+            None => note(
+                candidate,
+                "others explain the difference better".to_owned(),
+                false,
+            ),
         }
     }
 }
@@ -342,13 +443,18 @@ fn accept(found: &mut Found, candidates: &[Candidate], screen: &Screen, best: Tr
     let before_gap = before.test.pooled;
     let gap = (before_gap, best.fit.test.pooled);
     let shapes = vec![false; best.fit.unknowns.len() - first];
-    let evidence = best.verdict.clone().unwrap_or_else(|_| evidence(before, &best.fit, first, &shapes));
+    let evidence = best
+        .verdict
+        .clone()
+        .unwrap_or_else(|_| evidence(before, &best.fit, first, &shapes));
     for response in &best.responses {
         let response = &screen.responses[*response];
         let unknowns = first..first + response.trials.len();
         first = unknowns.end;
         let candidate = candidates[response.candidate].clone();
-        found.rejected.retain(|known| known.candidate.label() != candidate.label());
+        found
+            .rejected
+            .retain(|known| known.candidate.label() != candidate.label());
         found.accepted.push(Accepted {
             candidate,
             unknowns,

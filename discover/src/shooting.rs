@@ -185,12 +185,7 @@ impl<'a> Shooting<'a> {
     }
 
     /// A function of what is seen and measured, in noises; 0 where nothing counts.
-    fn differences(
-        &self,
-        window: &Window,
-        seen: &[f64],
-        of: impl Fn(f64, f64) -> f64,
-    ) -> Vec<f64> {
+    fn differences(&self, window: &Window, seen: &[f64], of: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         let channels = self.channels();
         let samples = seen.len() / channels;
         let margin = self.margin.min(samples / 4);
@@ -260,7 +255,10 @@ impl<'a> Crew<'a> {
             let step = quotient_step(unknown, theta[place]);
             let mut moved = theta.to_vec();
             moved[place] += step;
-            neighbours.push(Some((shooting.plant.at(&shooting.values(&moved)).ok()?, step)));
+            neighbours.push(Some((
+                shooting.plant.at(&shooting.values(&moved)).ok()?,
+                step,
+            )));
         }
         Some(Self {
             base: shooting.plant.at(&values).ok()?,
@@ -291,7 +289,10 @@ impl<'a> Crew<'a> {
     pub fn carried(&mut self, place: usize, start: &[f64], until: f64) -> Option<Vec<f64>> {
         let window = &self.shooting.windows.list[place];
         let inputs = self.shooting.windows.inputs(window);
-        let states = self.base.states(start, &[window.times[0], until], inputs).ok()?;
+        let states = self
+            .base
+            .states(start, &[window.times[0], until], inputs)
+            .ok()?;
         states.into_iter().next_back()
     }
 

@@ -42,7 +42,11 @@ fn parts(model: &Model, expr: &Expr, into: &mut Parts) {
     expr.visit(&mut |part| match part.kind {
         ExprKind::Coordinate(place) => into.coordinates.push(place),
         ExprKind::Definition(place) => parts(model, &model.definitions[place].value, into),
-        ExprKind::Dot(_) | ExprKind::Field(_) | ExprKind::ModeCoordinate(_) | ExprKind::Time | ExprKind::Input(_) => {
+        ExprKind::Dot(_)
+        | ExprKind::Field(_)
+        | ExprKind::ModeCoordinate(_)
+        | ExprKind::Time
+        | ExprKind::Input(_) => {
             into.other = true;
         }
         _ => {}
@@ -75,7 +79,11 @@ fn axes(model: &Model, meshes: &[usize]) -> Vec<Site> {
     }
     for (place, coordinate) in model.coordinates.iter().enumerate() {
         if !meshes.contains(&place) && !shown.contains(&place) {
-            found.extend(axis(&coordinate.name, &coordinate.name, &coordinate.unit.text));
+            found.extend(axis(
+                &coordinate.name,
+                &coordinate.name,
+                &coordinate.unit.text,
+            ));
         }
     }
     found
@@ -115,11 +123,27 @@ fn mesh_coordinates(model: &Model) -> Vec<usize> {
 
 /// Every value in which an expression may be replaced.
 fn values(model: &Model) -> Vec<(Section, &str, &Expr)> {
-    let definitions = model.definitions.iter().map(|d| (Section::Definitions, d.name.as_str(), &d.value));
-    let potential = model.potential.iter().map(|t| (Section::Potential, t.name.as_str(), &t.value));
-    let dissipation = model.dissipation.iter().map(|t| (Section::Dissipation, t.name.as_str(), &t.value));
-    let forces = model.forces.iter().map(|f| (Section::Forces, f.name.as_str(), &f.value));
-    definitions.chain(potential).chain(dissipation).chain(forces).collect()
+    let definitions = model
+        .definitions
+        .iter()
+        .map(|d| (Section::Definitions, d.name.as_str(), &d.value));
+    let potential = model
+        .potential
+        .iter()
+        .map(|t| (Section::Potential, t.name.as_str(), &t.value));
+    let dissipation = model
+        .dissipation
+        .iter()
+        .map(|t| (Section::Dissipation, t.name.as_str(), &t.value));
+    let forces = model
+        .forces
+        .iter()
+        .map(|f| (Section::Forces, f.name.as_str(), &f.value));
+    definitions
+        .chain(potential)
+        .chain(dissipation)
+        .chain(forces)
+        .collect()
 }
 
 /// Whether an expression holds a function with play of a coordinate.
@@ -165,21 +189,29 @@ fn mesh(model: &Model, coordinate: usize) -> Option<Site> {
 
 fn arms(model: &Model) -> Vec<Site> {
     let arm = |term: &Term| {
-        let velocity = squared(&term.value, &|part| matches!(&part.kind, ExprKind::Dot(of) if matches!(of.kind, ExprKind::Field(_))))?;
+        let velocity = squared(
+            &term.value,
+            &|part| matches!(&part.kind, ExprKind::Dot(of) if matches!(of.kind, ExprKind::Field(_))),
+        )?;
         let mut field = None;
         let mut root = None;
         velocity.visit(&mut |part| {
             if let ExprKind::Dot(of) = &part.kind {
                 match of.kind {
                     ExprKind::Field(place) => field = Some(place),
-                    ExprKind::Definition(_) | ExprKind::Coordinate(_) => root = Some(text(model, of)),
+                    ExprKind::Definition(_) | ExprKind::Coordinate(_) => {
+                        root = Some(text(model, of))
+                    }
                     _ => {}
                 }
             }
         });
         let field = field?;
         let bent = |part: &Expr| matches!(&part.kind, ExprKind::Diff(of, 2) if of.kind == ExprKind::Field(field));
-        let stiffness = model.potential.iter().find_map(|term| factor_of_square(&term.value, &bent));
+        let stiffness = model
+            .potential
+            .iter()
+            .find_map(|term| factor_of_square(&term.value, &bent));
         let declared = &model.fields[field];
         let mut words: BTreeMap<&'static str, String> = [
             ("term", term.name.clone()),
@@ -210,7 +242,9 @@ fn squared<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Exp
     };
     match &expr.kind {
         ExprKind::Binary(BinaryOperator::Power, base, _) => holds(base).then_some(base),
-        ExprKind::Binary(_, left, right) => squared(left, wanted).or_else(|| squared(right, wanted)),
+        ExprKind::Binary(_, left, right) => {
+            squared(left, wanted).or_else(|| squared(right, wanted))
+        }
         ExprKind::Integral { integrand, .. } => squared(integrand, wanted),
         ExprKind::Negate(inner) => squared(inner, wanted),
         _ => None,
@@ -220,12 +254,12 @@ fn squared<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Exp
 /// What a square that holds something wanted is multiplied with, inside an integral.
 fn factor_of_square<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Expr> {
     match &expr.kind {
-        ExprKind::Binary(BinaryOperator::Multiply, left, right) => {
-            match squared(right, wanted) {
-                Some(_) if matches!(right.kind, ExprKind::Binary(BinaryOperator::Power, ..)) => Some(left),
-                _ => factor_of_square(left, wanted).or_else(|| factor_of_square(right, wanted)),
+        ExprKind::Binary(BinaryOperator::Multiply, left, right) => match squared(right, wanted) {
+            Some(_) if matches!(right.kind, ExprKind::Binary(BinaryOperator::Power, ..)) => {
+                Some(left)
             }
-        }
+            _ => factor_of_square(left, wanted).or_else(|| factor_of_square(right, wanted)),
+        },
         ExprKind::Binary(_, left, right) => {
             factor_of_square(left, wanted).or_else(|| factor_of_square(right, wanted))
         }
@@ -237,6 +271,10 @@ fn factor_of_square<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Optio
 /// An expression as the specification writes it.
 fn text(model: &Model, expr: &Expr) -> String {
     let span = expr.span;
-    let written = model.source.text.get(span.start..span.end).unwrap_or_default();
+    let written = model
+        .source
+        .text
+        .get(span.start..span.end)
+        .unwrap_or_default();
     written.trim().to_owned()
 }

@@ -3,7 +3,6 @@
 
 use std::f64::consts::PI;
 
-
 /// The cut-off, as a part of the sampling frequency. A record is sampled for what it is to
 /// show; what moves faster than a fiftieth of that is noise or quantisation to a start value.
 const CUT_OFF: f64 = 0.02;
@@ -36,7 +35,9 @@ pub fn sloped(times: &[f64], values: &[f64]) -> Vec<f64> {
 /// Missing samples replaced by the line between their neighbours.
 pub fn bridged(times: &[f64], column: &[f64]) -> Vec<f64> {
     let mut values = column.to_vec();
-    let known: Vec<usize> = (0..values.len()).filter(|i| values[*i].is_finite()).collect();
+    let known: Vec<usize> = (0..values.len())
+        .filter(|i| values[*i].is_finite())
+        .collect();
     let (Some(first), Some(last)) = (known.first(), known.last()) else {
         return vec![0.0; values.len()];
     };
@@ -66,7 +67,11 @@ fn reflected(values: &[f64], padding: usize) -> Vec<f64> {
 fn low_pass(values: &mut [f64]) {
     let c = 1.0 / (PI * CUT_OFF).tan();
     let a0 = 1.0 + 2f64.sqrt() * c + c * c;
-    let (b0, a1, a2) = (1.0 / a0, 2.0 * (1.0 - c * c) / a0, (1.0 - 2f64.sqrt() * c + c * c) / a0);
+    let (b0, a1, a2) = (
+        1.0 / a0,
+        2.0 * (1.0 - c * c) / a0,
+        (1.0 - 2f64.sqrt() * c + c * c) / a0,
+    );
     let first = values[0];
     let (mut x1, mut x2, mut y1, mut y2) = (first, first, first, first);
     for value in values {
@@ -77,10 +82,9 @@ fn low_pass(values: &mut [f64]) {
     }
 }
 
-
 #[cfg(test)]
 mod tests {
-    use super::{smoothed, sloped};
+    use super::{sloped, smoothed};
 
     #[test]
     fn a_slow_motion_passes_without_delay() {

@@ -6,9 +6,8 @@ use crate::estimate::{StartPrior, settle};
 use crate::plant::Plant;
 use crate::rule;
 use crate::shooting::{Crew, Shooting};
-use crate::smooth::{smoothed, sloped};
+use crate::smooth::{sloped, smoothed};
 use crate::windows::Windows;
-
 
 /// Samples from which a first value and a first slope are read.
 const FIRST_SAMPLES: usize = 12;
@@ -40,14 +39,26 @@ pub fn ranges(plant: &Plant, records: &[Record], initial: &[f64]) -> Vec<f64> {
         (squares / count - mean * mean).max(0.0).sqrt()
     };
     let found: Vec<f64> = sums.into_iter().map(range).collect();
-    let largest = found.iter().copied().filter(|r| r.is_finite()).fold(0.0, f64::max);
+    let largest = found
+        .iter()
+        .copied()
+        .filter(|r| r.is_finite())
+        .fold(0.0, f64::max);
     // A state that nothing moves may still not be known exactly.
     let least = if largest > 0.0 { 1e-9 * largest } else { 1.0 };
-    found.into_iter().map(|r| if r.is_finite() { r.max(least) } else { 1.0 }).collect()
+    found
+        .into_iter()
+        .map(|r| if r.is_finite() { r.max(least) } else { 1.0 })
+        .collect()
 }
 
 /// The first state of a record, as far as it is known.
-pub fn first_state(plant: &Plant, record: &Record, channels: &[Channel], initial: &Initial) -> Vec<f64> {
+pub fn first_state(
+    plant: &Plant,
+    record: &Record,
+    channels: &[Channel],
+    initial: &Initial,
+) -> Vec<f64> {
     let mut state = plant.initial();
     match initial {
         Initial::Rest => {}
@@ -78,14 +89,22 @@ pub fn first_state(plant: &Plant, record: &Record, channels: &[Channel], initial
 
 /// The line through a column's first samples at the first time: value and slope.
 fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
-    let points = times.iter().zip(column).filter(|(_, v)| v.is_finite()).take(FIRST_SAMPLES);
+    let points = times
+        .iter()
+        .zip(column)
+        .filter(|(_, v)| v.is_finite())
+        .take(FIRST_SAMPLES);
     let points: Vec<(f64, f64)> = points.map(|(t, v)| (t - times[0], *v)).collect();
     let n = points.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
     let (t, v) = (mean(|p| p.0), mean(|p| p.1));
     let spread: f64 = points.iter().map(|p| (p.0 - t).powi(2)).sum();
     let slope = points.iter().map(|p| (p.0 - t) * (p.1 - v)).sum::<f64>() / spread;
-    if slope.is_finite() { (v - slope * t, slope) } else { (0.0, 0.0) }
+    if slope.is_finite() {
+        (v - slope * t, slope)
+    } else {
+        (0.0, 0.0)
+    }
 }
 
 /// Initial states followed from window to window: each begins where the one before ended and
@@ -97,7 +116,10 @@ pub fn followed(
     ranges: &[f64],
     horizons: &[f64],
 ) -> (StartPrior, Vec<Vec<f64>>) {
-    let sd: Vec<f64> = ranges.iter().map(|range| rule::START_PRIOR * range).collect();
+    let sd: Vec<f64> = ranges
+        .iter()
+        .map(|range| rule::START_PRIOR * range)
+        .collect();
     let count = shooting.windows.list.len();
     let mut prior = StartPrior {
         mean: vec![Vec::new(); count],

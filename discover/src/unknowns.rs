@@ -63,7 +63,10 @@ pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)])
             scale: sd,
         });
     }
-    let step = dataset.train.first().map_or(0.0, |record: &Record| typical_step(&record.times));
+    let step = dataset
+        .train
+        .first()
+        .map_or(0.0, |record: &Record| typical_step(&record.times));
     for (place, channel) in dataset.channels.iter().enumerate() {
         unknowns.extend(of_sensor(place, channel, step));
     }

@@ -41,16 +41,24 @@ pub fn discover(options: &arguments::Discover) -> Outcome {
     let setting = Setting::new(&dataset, order, &options.spec.display().to_string());
     let (fit, floor_before) = null(&setting, &text, options.seed)?;
     let place = locate::located(&setting, &fit);
-    let found = search(&setting, fit, &effects, floor_before.pooled, &progress).map_err(Problem::input)?;
+    let found =
+        search(&setting, fit, &effects, floor_before.pooled, &progress).map_err(Problem::input)?;
     let floor = match found.accepted.is_empty() {
         true => floor_before,
         false => floor(&setting, found.best(), options.seed),
     };
     let done = at_floor(found.best(), floor.pooled);
-    let extended = extend::extended(&setting, &text, found.best(), &found.accepted).map_err(Problem::input)?;
+    let extended =
+        extend::extended(&setting, &text, found.best(), &found.accepted).map_err(Problem::input)?;
     let mut result = document::discovered(&setting, &found, &floor, done, &place);
     result["seconds"] = json!(begin.elapsed().as_secs_f64());
-    let page = report::page(&setting, &found.null, found.last.as_ref(), &result, (&text, &extended));
+    let page = report::page(
+        &setting,
+        &found.null,
+        found.last.as_ref(),
+        &result,
+        (&text, &extended),
+    );
     write_file(&options.out.join("extended.toml"), extended.as_bytes())?;
     write_file(&options.out.join("report.html"), page.as_bytes())?;
     write_json(&options.out.join("discovery.json"), &result)?;
@@ -58,7 +66,11 @@ pub fn discover(options: &arguments::Discover) -> Outcome {
 }
 
 /// The specification's text, the order asked for, and the dataset.
-fn inputs(spec: &Path, dataset: &Path, order: Option<&str>) -> Outcome<(String, Option<usize>, Dataset)> {
+fn inputs(
+    spec: &Path,
+    dataset: &Path,
+    order: Option<&str>,
+) -> Outcome<(String, Option<usize>, Dataset)> {
     let model = load(spec)?.model;
     let text = model.source.text.to_string();
     orders(&model, order)?;
@@ -93,18 +105,36 @@ fn tell(as_json: bool, result: &Value, out: &Path) -> Outcome {
     if as_json {
         return say(&format!("{result:#}\n"));
     }
-    let mut text = format!("{}: {}\n", out.display(), result["verdict"].as_str().unwrap_or(""));
+    let mut text = format!(
+        "{}: {}\n",
+        out.display(),
+        result["verdict"].as_str().unwrap_or("")
+    );
     for effect in result["effects"].as_array().into_iter().flatten() {
         let word = |key: &str| effect[key].as_str().unwrap_or("").to_owned();
         text += &format!("  {} on {}\n", word("effect"), word("on"));
     }
     for (name, gap) in result["gap"].as_object().into_iter().flatten() {
-        let number = |value: &Value| value.as_f64().map_or_else(|| "-".to_owned(), |v| format!("{v:.3e}"));
+        let number = |value: &Value| {
+            value
+                .as_f64()
+                .map_or_else(|| "-".to_owned(), |v| format!("{v:.3e}"))
+        };
         let test = gap.get("after").map_or_else(
             || format!("test {}", number(&gap["test"])),
-            |after| format!("test {} -> {}", number(&gap["before"]["test"]), number(&after["test"])),
+            |after| {
+                format!(
+                    "test {} -> {}",
+                    number(&gap["before"]["test"]),
+                    number(&after["test"])
+                )
+            },
         );
-        text += &format!("  {name}: {test} {}, floor {}\n", gap["unit"].as_str().unwrap_or(""), number(&gap["floor"]));
+        text += &format!(
+            "  {name}: {test} {}, floor {}\n",
+            gap["unit"].as_str().unwrap_or(""),
+            number(&gap["floor"])
+        );
     }
     say(&text)
 }

@@ -21,7 +21,10 @@ pub fn read(path: &Path, wanted: &[&str]) -> Result<Vec<Vec<f64>>, Refusal> {
     let metadata = std::fs::metadata(path)
         .map_err(|error| Refusal::file(path, format!("cannot be read: {error}")))?;
     if !metadata.is_file() {
-        return Err(Refusal::file(path, "is not a file; expected CSV or Parquet"));
+        return Err(Refusal::file(
+            path,
+            "is not a file; expected CSV or Parquet",
+        ));
     }
     if metadata.len() > LARGEST_RECORD {
         return Err(Refusal::file(
@@ -96,7 +99,12 @@ fn read_csv(path: &Path, bytes: &[u8], wanted: &[&str]) -> Result<Vec<Vec<f64>>,
             ));
         }
         for (column, place) in columns.iter_mut().zip(&places) {
-            column.push(number(path, line, record.get(*place).unwrap_or_default(), *place)?);
+            column.push(number(
+                path,
+                line,
+                record.get(*place).unwrap_or_default(),
+                *place,
+            )?);
         }
     }
     Ok(columns)
@@ -127,19 +135,26 @@ fn read_parquet(path: &Path, bytes: Vec<u8>, wanted: &[&str]) -> Result<Vec<Vec<
     };
     let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).map_err(broken)?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
-    let there: Vec<&str> = schema.columns().iter().map(|column| column.name()).collect();
+    let there: Vec<&str> = schema
+        .columns()
+        .iter()
+        .map(|column| column.name())
+        .collect();
     let places = places(path, &there, wanted)?;
     let mut columns = vec![Vec::new(); wanted.len()];
     for row in reader.get_row_iter(None).map_err(broken)? {
         let row = row.map_err(broken)?;
         for (column, place) in columns.iter_mut().zip(&places) {
-            let value = row.get_column_iter().nth(*place).map(|(_, field)| match field {
-                Field::Double(_) => row.get_double(*place).unwrap_or(f64::NAN),
-                Field::Float(_) => f64::from(row.get_float(*place).unwrap_or(f32::NAN)),
-                Field::Int(number) => f64::from(*number),
-                Field::Long(number) => *number as f64,
-                _ => f64::NAN,
-            });
+            let value = row
+                .get_column_iter()
+                .nth(*place)
+                .map(|(_, field)| match field {
+                    Field::Double(_) => row.get_double(*place).unwrap_or(f64::NAN),
+                    Field::Float(_) => f64::from(row.get_float(*place).unwrap_or(f32::NAN)),
+                    Field::Int(number) => f64::from(*number),
+                    Field::Long(number) => *number as f64,
+                    _ => f64::NAN,
+                });
             column.push(value.filter(|v| v.is_finite()).unwrap_or(f64::NAN));
         }
     }

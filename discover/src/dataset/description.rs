@@ -100,12 +100,18 @@ impl Description {
             |error: std::io::Error| Refusal::file(path, format!("cannot be read: {error}"));
         let metadata = std::fs::metadata(path).map_err(unreadable)?;
         if !metadata.is_file() {
-            return Err(Refusal::file(path, "is not a file; expected a dataset file"));
+            return Err(Refusal::file(
+                path,
+                "is not a file; expected a dataset file",
+            ));
         }
         if metadata.len() > LARGEST_DATASET {
             return Err(Refusal::file(
                 path,
-                format!("has {} bytes; expected a dataset file, TOML", metadata.len()),
+                format!(
+                    "has {} bytes; expected a dataset file, TOML",
+                    metadata.len()
+                ),
             ));
         }
         let text = std::fs::read_to_string(path).map_err(unreadable)?;
@@ -133,7 +139,10 @@ impl Description {
 
     /// Where a window's initial state comes from.
     pub fn start(&self, path: &Path) -> Result<Start, Refusal> {
-        let start = self.windows.as_ref().and_then(|windows| windows.start.as_deref());
+        let start = self
+            .windows
+            .as_ref()
+            .and_then(|windows| windows.start.as_deref());
         match start {
             None | Some("fitted") => Ok(Start::Fitted),
             Some("smoothed") => Ok(Start::Smoothed),

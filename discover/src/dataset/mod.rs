@@ -24,7 +24,11 @@ impl Refusal {
     }
 
     pub(crate) fn line(path: &Path, line: u64, message: impl Into<String>) -> Self {
-        Self(format!("{}, line {line}: {}", path.display(), message.into()))
+        Self(format!(
+            "{}, line {line}: {}",
+            path.display(),
+            message.into()
+        ))
     }
 }
 
@@ -299,7 +303,9 @@ fn record(
     }
     let mut columns = columns::read(&place, &wanted)?;
     for (column, unit) in columns.iter_mut().zip(&units) {
-        column.iter_mut().for_each(|value| *value = unit.to_si(*value));
+        column
+            .iter_mut()
+            .for_each(|value| *value = unit.to_si(*value));
     }
     let channels = columns.split_off(first_channel);
     let times = columns[0].clone();

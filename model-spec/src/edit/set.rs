@@ -7,7 +7,9 @@ use super::{EditError, SetParameter, SetSensor};
 
 /// Sets a parameter's number, whatever stood there.
 pub fn parameter(document: &mut DocumentMut, edit: &SetParameter) -> Result<(), EditError> {
-    let entry = document.get_mut("parameters").and_then(|item| item.get_mut(&edit.name));
+    let entry = document
+        .get_mut("parameters")
+        .and_then(|item| item.get_mut(&edit.name));
     let Some(table) = entry.and_then(Item::as_table_like_mut) else {
         return Err(EditError::MissingTerm {
             section: "parameters".to_owned(),
@@ -35,14 +37,21 @@ pub fn sensor(document: &mut DocumentMut, edit: &SetSensor) -> Result<(), EditEr
         sensors.set_implicit(true);
         document.insert("sensors", Item::Table(sensors));
     }
-    let Some(sensors) = document.get_mut("sensors").and_then(Item::as_table_like_mut) else {
+    let Some(sensors) = document
+        .get_mut("sensors")
+        .and_then(Item::as_table_like_mut)
+    else {
         return Err(EditError::Taken {
             section: "sensors".to_owned(),
             name: edit.channel.clone(),
         });
     };
     let mut table = Table::new();
-    for (key, value) in [("gain", edit.gain), ("bias", edit.bias), ("delay", edit.delay)] {
+    for (key, value) in [
+        ("gain", edit.gain),
+        ("bias", edit.bias),
+        ("delay", edit.delay),
+    ] {
         table.insert(key, Item::Value(number(&edit.channel, value)?));
     }
     sensors.insert(&edit.channel, Item::Table(table));
