@@ -208,13 +208,16 @@ impl Reduced {
     }
 }
 
+/// How initial states are found at given unknowns: what is known before, and the states.
+pub type Follow<'f> = dyn Fn(&[f64]) -> (StartPrior, Vec<Vec<f64>>) + 'f;
+
 /// Estimates the unknowns from far away: for every trial of them the initial states are
 /// followed anew through the records, because those that were fitted at wrong unknowns hold
 /// on to what impacts folded.
 pub fn approach(
     shooting: &Shooting<'_>,
     theta: &[f64],
-    follow: &dyn Fn(&[f64]) -> (StartPrior, Vec<Vec<f64>>),
+    follow: &Follow<'_>,
     steps: usize,
 ) -> (StartPrior, Estimate) {
     let at = |theta: Vec<f64>| {

@@ -51,6 +51,8 @@ pub struct Rest {
     pub blocks: Vec<f64>,
     /// The root mean square of each channel, SI.
     pub channels: Vec<f64>,
+    /// The same in noises.
+    pub in_noises: Vec<f64>,
     /// The root mean square of all, in noises.
     pub pooled: f64,
     /// How many samples a residual is correlated over.
@@ -78,6 +80,9 @@ pub struct Fit {
     /// What is left on the test records.
     pub test: Rest,
 }
+
+/// What is known before of initial states, the states, and the unknowns they belong to.
+type Approached = (StartPrior, Vec<Vec<f64>>, Vec<f64>);
 
 impl<'d> Setting<'d> {
     /// The setting of a dataset.
@@ -242,7 +247,7 @@ impl<'d> Setting<'d> {
         ranges: &[f64],
         physical: &[Unknown],
         mut theta: Vec<f64>,
-    ) -> Result<(StartPrior, Vec<Vec<f64>>, Vec<f64>), String> {
+    ) -> Result<Approached, String> {
         let shooting = self.shooting(plant, &self.train, physical, ranges);
         if !self.fits_starts() {
             let (prior, starts) = self.starts(&shooting, &theta, ranges, &HORIZONS)?;
@@ -328,6 +333,7 @@ impl<'d> Setting<'d> {
                 .zip(&self.noise)
                 .map(|(s, noise)| s.sqrt() * noise)
                 .collect(),
+            in_noises: squares.iter().map(|s| s.sqrt()).collect(),
             pooled,
             correlation: correlation(&residuals, channels),
             residuals,

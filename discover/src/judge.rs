@@ -15,7 +15,7 @@ pub struct Evidence {
     pub information: f64,
     /// The smallest ratio of a scaling parameter (or pair) to its standard deviation.
     pub t: f64,
-    /// What the effect does to the outputs, in floors.
+    /// What the effect does to the channel that shows it best, in noises.
     pub size: f64,
 }
 
@@ -89,10 +89,16 @@ pub fn evidence(before: &Fit, after: &Fit, first: usize, shapes: &[bool]) -> Evi
         held_out_errors: mean / (variance / count).sqrt(),
         information: fall / (2.0 * whitening),
         t: significance(after, first, shapes),
-        size: (before.train.pooled.powi(2) - after.train.pooled.powi(2))
-            .max(0.0)
-            .sqrt(),
+        size: size(before, after),
     }
+}
+
+/// What the effect does to the channel that shows it best, in noises: of the root mean square
+/// that is left the part that goes.
+fn size(before: &Fit, after: &Fit) -> f64 {
+    let pairs = before.train.in_noises.iter().zip(&after.train.in_noises);
+    let sizes = pairs.map(|(old, new)| (old * old - new * new).max(0.0).sqrt());
+    sizes.fold(0.0, f64::max)
 }
 
 /// The size of the new effect in standard deviations. The two parts of a wave count together.

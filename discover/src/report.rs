@@ -259,7 +259,7 @@ fn figures(setting: &Setting<'_>, before: &Fit, after: Option<&Fit>) -> String {
     };
     let mut out = time_history(&history).unwrap_or_default();
     let step = crate::gate::typical_step(&times);
-    let spectra: Vec<Vec<(&str, (Vec<f64>, Vec<f64>))>> = columns
+    let spectra: Vec<Vec<(&str, Density)>> = columns
         .iter()
         .map(|series| {
             series
@@ -294,8 +294,11 @@ fn figures(setting: &Setting<'_>, before: &Fit, after: Option<&Fit>) -> String {
     out
 }
 
+/// Frequencies in Hz, and the density at each.
+type Density = (Vec<f64>, Vec<f64>);
+
 /// The power spectral density of a residual, missing samples as 0; frequencies in Hz.
-fn density(values: &[f64], step: f64) -> (Vec<f64>, Vec<f64>) {
+fn density(values: &[f64], step: f64) -> Density {
     let mut signal: Vec<f64> = values
         .iter()
         .map(|v| if v.is_finite() { *v } else { 0.0 })

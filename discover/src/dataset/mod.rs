@@ -186,6 +186,8 @@ pub fn read(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
             }
         }
     }
+    let notes = crate::gate::examine(&dataset)?;
+    dataset.notes.extend(notes);
     Ok(dataset)
 }
 
