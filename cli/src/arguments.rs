@@ -41,6 +41,16 @@ pub enum Command {
         after_help = "Example:\n  eomgen simulate model-spec/models/planetary_arm.toml --order 4 --until 2 --sample 0.001 --set b_sp=50e-6 --out arm.csv"
     )]
     Simulate(Simulate),
+    /// Say where a model and its measurements disagree.
+    #[command(
+        after_help = "Example:\n  eomgen compare my_machine.toml dataset.toml --out compared"
+    )]
+    Compare(Compare),
+    /// Find what a model lacks, name it, add it, and show the gap shrink.
+    #[command(
+        after_help = "Example:\n  eomgen discover my_machine.toml dataset.toml --out found --seed 1"
+    )]
+    Discover(Discover),
     /// Measure the motion over a grid of parameters.
     #[command(
         after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
@@ -84,6 +94,51 @@ pub enum Format {
     Latex,
     /// One JSON document.
     Json,
+}
+
+/// Options of `compare`.
+#[derive(Args)]
+pub struct Compare {
+    /// The specification.
+    pub spec: PathBuf,
+    /// The dataset's description.
+    pub dataset: PathBuf,
+    /// Modal truncation order of every field, instead of the specification's.
+    #[arg(long, allow_negative_numbers = true)]
+    pub order: Option<String>,
+    /// The folder for `comparison.json` and `report.html`.
+    #[arg(long)]
+    pub out: PathBuf,
+    /// Draws the noise of the twin that gives the floor.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Print one JSON document.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `discover`.
+#[derive(Args)]
+pub struct Discover {
+    /// The specification.
+    pub spec: PathBuf,
+    /// The dataset's description.
+    pub dataset: PathBuf,
+    /// Modal truncation order of every field, instead of the specification's.
+    #[arg(long, allow_negative_numbers = true)]
+    pub order: Option<String>,
+    /// The folder for `discovery.json`, `extended.toml` and `report.html`.
+    #[arg(long)]
+    pub out: PathBuf,
+    /// Draws the noise of the twin that gives the floor.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Effects of your own, beside those of the catalogue.
+    #[arg(long)]
+    pub effects: Option<PathBuf>,
+    /// Print one JSON document.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Options of `derive`.

@@ -33,6 +33,8 @@ fn main() -> ExitCode {
         Command::Generate(options) => commands::generate::run(&options),
         Command::Validate(options) => commands::validate::run(&options),
         Command::Simulate(options) => commands::simulate::run(&options),
+        Command::Compare(options) => commands::discover::compare(&options),
+        Command::Discover(options) => commands::discover::discover(&options),
         Command::Sweep(options) => commands::sweep::run(&options),
         Command::Merge(options) => commands::merge::run(&options),
         Command::StudySearch(options) => {

@@ -34,6 +34,17 @@ impl HeldInputs {
         }
     }
 
+    /// Inputs from rows of `count` numbers, one row for each of the ascending times (s), each
+    /// held until the next; none if there is no row, or not as many numbers as rows hold.
+    pub fn new(times: Vec<f64>, values: Vec<f64>, count: usize) -> Option<Self> {
+        let whole = !times.is_empty() && values.len() == times.len() * count;
+        whole.then_some(Self {
+            times,
+            values,
+            count,
+        })
+    }
+
     /// The inputs at a time, in the order of the model.
     pub fn at(&self, t: f64) -> &[f64] {
         let after = self.times.partition_point(|time| *time <= t);

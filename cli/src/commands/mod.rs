@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod derive;
+pub mod discover;
 pub mod generate;
 pub mod merge;
 pub mod simulate;

@@ -1,8 +1,9 @@
 //! Changes of a specification made by program: terms, parameters and coordinates added,
-//! expressions replaced inside terms. Comments, order and layout of everything else stay as
+//! expressions replaced inside terms, numbers set. Comments, order and layout of everything else stay as
 //! they are. What to change is decided elsewhere; the result is checked here.
 
 mod insert;
+mod set;
 mod substitute;
 
 use toml_edit::DocumentMut;
@@ -64,6 +65,34 @@ pub enum Edit {
     AddForce(NewForce),
     /// Replaces an expression inside terms.
     Substitute(Substitution),
+    /// Sets the number of a parameter that is there.
+    SetParameter(SetParameter),
+    /// Says what a sensor does to its channel.
+    SetSensor(SetSensor),
+}
+
+/// A parameter's new number, in its declared unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetParameter {
+    /// Its name.
+    pub name: String,
+    /// A finite number in the declared unit; it takes the place of an expression too.
+    pub value: f64,
+    /// Where the number comes from; if empty, what is said of that stays.
+    pub source: String,
+}
+
+/// What a sensor does: measured(t) = gain * quantity(t - delay) + bias.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetSensor {
+    /// Its channel.
+    pub channel: String,
+    /// Dimensionless.
+    pub gain: f64,
+    /// In the channel's SI unit.
+    pub bias: f64,
+    /// In s, not negative.
+    pub delay: f64,
 }
 
 /// A term to be added.
@@ -253,5 +282,7 @@ fn make(document: &mut DocumentMut, edit: &Edit) -> Result<(), EditError> {
         Edit::AddCoordinate(coordinate) => insert::coordinate(document, coordinate),
         Edit::AddForce(force) => insert::force(document, force),
         Edit::Substitute(substitution) => substitute::substitute(document, substitution),
+        Edit::SetParameter(parameter) => set::parameter(document, parameter),
+        Edit::SetSensor(sensor) => set::sensor(document, sensor),
     }
 }

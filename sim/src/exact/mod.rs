@@ -8,7 +8,7 @@
 //! `functional` and `ladder` (prepared for stepping), `lanes` (sums side by side), `forced`
 //! (forced polynomials), `flow` and `cluster_flow` (the motion in a regime), `search` (the next switch, which cannot be missed), `clock` (with `error_free`),
 //! [`propagator`] (from switch to switch), `follow` (to a time, with samples), `simulate`; for neighbouring motions
-//! `saltation`, `tangent`, [`lyapunov`] and [`sensitivity`].
+//! `saltation`, `tangent`, `neighbours`, [`lyapunov`] and [`sensitivity`].
 //!
 //! What is not linear between switches belongs to [`crate::solve`].
 
@@ -31,6 +31,7 @@ mod lanes;
 pub mod lyapunov;
 pub mod model;
 mod modes;
+mod neighbours;
 pub mod propagator;
 mod refine;
 mod regime;

@@ -1,0 +1,140 @@
+//! `eomgen compare` and `eomgen discover`: a model and its measurements. What is compared and
+//! what is found is the library's.
+
+use std::io::IsTerminal;
+use std::path::Path;
+use std::time::Instant;
+
+use discover::dataset::{Dataset, read};
+use discover::fitting::{Fit, Setting};
+use discover::floor::{Floor, floor};
+use discover::search::{at_floor, null_fit, search};
+use discover::{catalogue, document, extend, locate, report};
+use serde_json::{Value, json};
+
+use crate::arguments;
+use crate::output::write_file;
+use crate::problem::{Outcome, Problem, say, warn};
+use crate::variant::{load, orders};
+
+/// Runs `compare`.
+pub fn compare(options: &arguments::Compare) -> Outcome {
+    let begin = Instant::now();
+    let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
+    let setting = Setting::new(&dataset, order, &options.spec.display().to_string());
+    let (fit, floor) = null(&setting, &text, options.seed)?;
+    let done = at_floor(&fit, floor.pooled);
+    let place = locate::located(&setting, &fit);
+    let mut result = document::compared(&setting, &fit, &floor, done, &place);
+    result["seconds"] = json!(begin.elapsed().as_secs_f64());
+    let page = report::page(&setting, &fit, None, &result, (&text, &text));
+    write_json(&options.out.join("comparison.json"), &result)?;
+    write_file(&options.out.join("report.html"), page.as_bytes())?;
+    tell(options.json, &result, &options.out)
+}
+
+/// Runs `discover`.
+pub fn discover(options: &arguments::Discover) -> Outcome {
+    let begin = Instant::now();
+    let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
+    let effects = catalogue::effects(options.effects.as_deref()).map_err(Problem::input)?;
+    let setting = Setting::new(&dataset, order, &options.spec.display().to_string());
+    let (fit, floor_before) = null(&setting, &text, options.seed)?;
+    let place = locate::located(&setting, &fit);
+    let found =
+        search(&setting, fit, &effects, floor_before.pooled, &progress).map_err(Problem::input)?;
+    let floor = match found.accepted.is_empty() {
+        true => floor_before,
+        false => floor(&setting, found.best(), options.seed),
+    };
+    let done = at_floor(found.best(), floor.pooled);
+    let extended =
+        extend::extended(&setting, &text, found.best(), &found.accepted).map_err(Problem::input)?;
+    let mut result = document::discovered(&setting, &found, &floor, done, &place);
+    result["seconds"] = json!(begin.elapsed().as_secs_f64());
+    let page = report::page(
+        &setting,
+        &found.null,
+        found.last.as_ref(),
+        &result,
+        (&text, &extended),
+    );
+    write_file(&options.out.join("extended.toml"), extended.as_bytes())?;
+    write_file(&options.out.join("report.html"), page.as_bytes())?;
+    write_json(&options.out.join("discovery.json"), &result)?;
+    tell(options.json, &result, &options.out)
+}
+
+/// The specification's text, the order asked for, and the dataset.
+fn inputs(
+    spec: &Path,
+    dataset: &Path,
+    order: Option<&str>,
+) -> Outcome<(String, Option<usize>, Dataset)> {
+    let model = load(spec)?.model;
+    let text = model.source.text.to_string();
+    orders(&model, order)?;
+    let order = order.and_then(|order| order.trim().parse().ok());
+    let dataset = read(dataset, &model).map_err(|refusal| Problem::input(refusal.to_string()))?;
+    for note in &dataset.notes {
+        warn(&format!("note: {note}"));
+    }
+    Ok((text, order, dataset))
+}
+
+/// The null model's fit and the floor there.
+fn null(setting: &Setting<'_>, text: &str, seed: u64) -> Outcome<(Fit, Floor)> {
+    progress("fitting the model as it is");
+    let fit = null_fit(setting, text).map_err(Problem::input)?;
+    let floor = floor(setting, &fit, seed);
+    Ok((fit, floor))
+}
+
+/// What is being done, on a terminal.
+fn progress(text: &str) {
+    if std::io::stderr().is_terminal() {
+        warn(text);
+    }
+}
+
+fn write_json(path: &Path, document: &Value) -> Outcome {
+    write_file(path, format!("{document:#}\n").as_bytes())
+}
+
+fn tell(as_json: bool, result: &Value, out: &Path) -> Outcome {
+    if as_json {
+        return say(&format!("{result:#}\n"));
+    }
+    let mut text = format!(
+        "{}: {}\n",
+        out.display(),
+        result["verdict"].as_str().unwrap_or("")
+    );
+    for effect in result["effects"].as_array().into_iter().flatten() {
+        let word = |key: &str| effect[key].as_str().unwrap_or("").to_owned();
+        text += &format!("  {} on {}\n", word("effect"), word("on"));
+    }
+    for (name, gap) in result["gap"].as_object().into_iter().flatten() {
+        let number = |value: &Value| {
+            value
+                .as_f64()
+                .map_or_else(|| "-".to_owned(), |v| format!("{v:.3e}"))
+        };
+        let test = gap.get("after").map_or_else(
+            || format!("test {}", number(&gap["test"])),
+            |after| {
+                format!(
+                    "test {} -> {}",
+                    number(&gap["before"]["test"]),
+                    number(&after["test"])
+                )
+            },
+        );
+        text += &format!(
+            "  {name}: {test} {}, floor {}\n",
+            gap["unit"].as_str().unwrap_or(""),
+            number(&gap["floor"])
+        );
+    }
+    say(&text)
+}

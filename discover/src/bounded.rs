@@ -1,0 +1,134 @@
+//! Linear least squares with bounds, by active sets: small, dense and deterministic.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Changes of the active set before the present one is taken; each lowers the sum of
+/// squares, so that more only happens to rounding.
+const MOST_CHANGES: usize = 200;
+
+/// A slope that is this part of the largest one is none.
+const FLAT: f64 = 1e-10;
+
+/// The x within `bounds` (which hold 0) for which |A x - b| is smallest. Unbounded
+/// directions that change nothing stay 0.
+pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[(f64, f64)]) -> DVector<f64> {
+    let columns = a.ncols();
+    let mut x = DVector::zeros(columns);
+    let scale: Vec<f64> = a
+        .column_iter()
+        .map(|c| c.norm().max(f64::MIN_POSITIVE))
+        .collect();
+    let mut free = vec![true; columns];
+    for (place, (low, high)) in bounds.iter().enumerate() {
+        free[place] = low < high;
+    }
+    for _ in 0..MOST_CHANGES {
+        let target = free_solution(a, b, &x, &free, &scale);
+        // How far the way is free.
+        let mut reach = 1.0;
+        let mut stop = None;
+        for place in (0..columns).filter(|place| free[*place]) {
+            let move_by = target[place] - x[place];
+            let (low, high) = bounds[place];
+            let limit = if move_by > 0.0 { high } else { low };
+            if move_by != 0.0 && (limit - x[place]) / move_by < reach {
+                reach = ((limit - x[place]) / move_by).max(0.0);
+                stop = Some((place, limit));
+            }
+        }
+        for place in (0..columns).filter(|place| free[*place]) {
+            x[place] += reach * (target[place] - x[place]);
+        }
+        if let Some((place, limit)) = stop {
+            x[place] = limit;
+            free[place] = false;
+            continue;
+        }
+        let slope = a.transpose() * (b - a * &x);
+        let largest = (0..columns)
+            .map(|p| (slope[p] / scale[p]).abs())
+            .fold(0.0, f64::max);
+        let wants_in = |place: &usize| {
+            let (low, high) = bounds[*place];
+            let along = slope[*place] / scale[*place];
+            !free[*place]
+                && low < high
+                && along.abs() > FLAT * b.norm().max(largest)
+                && ((x[*place] <= low && along > 0.0) || (x[*place] >= high && along < 0.0))
+        };
+        let steepest = (0..columns).filter(wants_in).max_by(|p, q| {
+            (slope[*p] / scale[*p])
+                .abs()
+                .total_cmp(&(slope[*q] / scale[*q]).abs())
+        });
+        match steepest {
+            Some(place) => free[place] = true,
+            None => break,
+        }
+    }
+    x
+}
+
+/// The solution in the free unknowns, the others held.
+fn free_solution(
+    a: &DMatrix<f64>,
+    b: &DVector<f64>,
+    x: &DVector<f64>,
+    free: &[bool],
+    scale: &[f64],
+) -> DVector<f64> {
+    let places: Vec<usize> = (0..free.len()).filter(|place| free[*place]).collect();
+    let mut target = x.clone();
+    if places.is_empty() {
+        return target;
+    }
+    let held = b
+        - (0..free.len())
+            .filter(|p| !free[*p])
+            .fold(DVector::zeros(b.len()), |sum: DVector<f64>, p| {
+                sum + a.column(p) * x[p]
+            });
+    let matrix = DMatrix::from_fn(a.nrows(), places.len(), |r, c| {
+        a[(r, places[c])] / scale[places[c]]
+    });
+    let decomposition = matrix.svd(true, true);
+    if let Ok(solution) = decomposition.solve(&held, 1e-12) {
+        for (value, place) in solution.iter().zip(&places) {
+            target[*place] = value / scale[*place];
+        }
+    }
+    target
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::least_squares;
+
+    #[test]
+    fn without_bounds_it_is_least_squares() {
+        let a = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 1.0, 1.0, 1.0, 2.0]);
+        let b = DVector::from_vec(vec![1.0, 3.0, 5.0]);
+        let x = least_squares(&a, &b, &[(-9.0, 9.0), (-9.0, 9.0)]);
+        assert!((x - DVector::from_vec(vec![1.0, 2.0])).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_bound_that_holds_one_moves_the_other() {
+        // Minimise (x + y - 1)^2 + (x - y - 3)^2: free at (2, -1); with y >= 0 at (2, 0).
+        let a = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, -1.0]);
+        let b = DVector::from_vec(vec![1.0, 3.0]);
+        let x = least_squares(&a, &b, &[(-9.0, 9.0), (0.0, 9.0)]);
+        assert!((x - DVector::from_vec(vec![2.0, 0.0])).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_bound_met_on_the_way_is_left_again() {
+        // The steepest way from 0 first meets x <= 0.5; the minimum lies at (-1, 2).
+        let a = DMatrix::from_row_slice(2, 2, &[3.0, 1.0, 0.0, 1.0]);
+        let b = DVector::from_vec(vec![-1.0, 2.0]);
+        let x = least_squares(&a, &b, &[(-5.0, 0.5), (0.0, 5.0)]);
+        assert!((x - DVector::from_vec(vec![-1.0, 2.0])).norm() < 1e-12);
+    }
+}

@@ -1,0 +1,390 @@
+//! Candidates: an effect of the catalogue at a place of a model, with its blanks filled. A
+//! candidate can write itself into a specification.
+
+use std::collections::BTreeMap;
+
+use model_spec::edit::{
+    self, Edit, EditError, NewCoordinate, NewForce, NewParameter, NewTerm, NewValue, Section,
+    Substitution,
+};
+use model_spec::model::{Model, ParameterValue};
+use model_spec::source::Source;
+
+use crate::catalogue::{Change, Effect, SiteKind};
+use crate::sites::Site;
+
+/// Shaft orders at which effects that repeat with an angle are tried, beside numbers of teeth.
+const ORDERS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, 24];
+
+/// An effect at a place.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// The effect's name.
+    pub effect: String,
+    /// The place's name.
+    pub on: String,
+    /// The angle and the order with which it repeats.
+    pub order: Option<(String, u32)>,
+    /// Its parameters.
+    pub parameters: Vec<CandidateParameter>,
+    /// What the effect is.
+    pub says: String,
+    /// What would show it best.
+    pub experiment: String,
+    changes: Vec<Edit>,
+    /// The line that says most of the change.
+    pub term: String,
+}
+
+/// A parameter of a candidate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CandidateParameter {
+    /// Its name in the specification.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Whether it must not be negative.
+    pub positive: bool,
+    /// Whether the effect is absent where it is infinite.
+    pub inverse: bool,
+    /// The size it must have for the effect to be itself, if it does not scale the effect.
+    pub shape: Option<f64>,
+    doc: String,
+}
+
+impl Candidate {
+    /// Its effect and place, and its order where there are several.
+    pub fn label(&self) -> String {
+        match &self.order {
+            Some((angle, order)) => format!(
+                "{} on {} ({order} per turn of {angle})",
+                self.effect, self.on
+            ),
+            None => format!("{} on {}", self.effect, self.on),
+        }
+    }
+
+    /// A specification's text with this effect, at these values of its parameters.
+    ///
+    /// # Errors
+    /// A place of the edits that the text lacks.
+    pub fn written(
+        &self,
+        text: &str,
+        name: &str,
+        values: &[f64],
+        source: &str,
+    ) -> Result<String, EditError> {
+        let mut edits: Vec<Edit> = (self.parameters.iter().zip(values))
+            .map(|(parameter, value)| {
+                Edit::AddParameter(NewParameter {
+                    name: parameter.name.clone(),
+                    value: NewValue::Number(*value),
+                    unit: parameter.unit.clone(),
+                    doc: parameter.doc.clone(),
+                    source: source.to_owned(),
+                })
+            })
+            .collect();
+        edits.extend(self.changes.iter().cloned());
+        edit::apply(&Source::new(name, text), &edits)
+    }
+}
+
+/// All candidates for a model. `rates`: the usual rate of an axis by its name, where it is
+/// known.
+pub fn candidates(
+    model: &Model,
+    effects: &[Effect],
+    sites: &[Site],
+    rates: &BTreeMap<String, f64>,
+) -> Vec<Candidate> {
+    let angles: Vec<&Site> = sites
+        .iter()
+        .filter(|site| site.kind == SiteKind::Angle)
+        .collect();
+    let mut found = Vec::new();
+    for effect in effects {
+        for site in sites.iter().filter(|site| fits(effect.site, site.kind)) {
+            let own = [site];
+            let turning: &[&Site] = match effect.orders {
+                true if site.kind == SiteKind::Mesh => &angles,
+                true => &own,
+                false => &[],
+            };
+            if !effect.orders {
+                found.extend(candidate(model, effect, site, None, rates));
+            }
+            for angle in turning {
+                for order in orders(model) {
+                    found.extend(candidate(model, effect, site, Some((*angle, order)), rates));
+                }
+            }
+        }
+    }
+    found
+}
+
+fn fits(wanted: SiteKind, there: SiteKind) -> bool {
+    wanted == there || (wanted == SiteKind::Axis && there == SiteKind::Angle)
+}
+
+/// The usual shaft orders and the model's own numbers of teeth: whole numbers without a unit.
+fn orders(model: &Model) -> Vec<u32> {
+    let mut orders = ORDERS.to_vec();
+    for parameter in &model.parameters {
+        if let ParameterValue::Number(value) = parameter.value
+            && parameter.unit.text == "1"
+            && value.fract() == 0.0
+            && (2.0..1000.0).contains(&value)
+        {
+            orders.push(value as u32);
+        }
+    }
+    orders.sort_unstable();
+    orders.dedup();
+    orders
+}
+
+fn candidate(
+    model: &Model,
+    effect: &Effect,
+    site: &Site,
+    order: Option<(&Site, u32)>,
+    rates: &BTreeMap<String, f64>,
+) -> Option<Candidate> {
+    let mut words: BTreeMap<String, String> = site
+        .words
+        .iter()
+        .map(|(key, word)| ((*key).to_owned(), word.clone()))
+        .collect();
+    if let Some((angle, order)) = order {
+        words.insert("n".to_owned(), order.to_string());
+        words.insert("angle".to_owned(), angle.words["on"].clone());
+    }
+    let mut taken = names(model);
+    let mut parameters = Vec::new();
+    for parameter in &effect.parameters {
+        let name = free_name(&parameter.name, &site.name, &mut taken);
+        words.insert(parameter.name.clone(), name.clone());
+        let rate = rates.get(&site.name).copied().unwrap_or(1.0);
+        parameters.push(CandidateParameter {
+            name,
+            unit: plain_unit(&filled(&parameter.unit, &words)?),
+            positive: parameter.sign == "+",
+            inverse: parameter.inverse,
+            shape: (parameter.scale == "rate").then_some(parameter.share * rate),
+            doc: parameter.doc.clone(),
+        });
+    }
+    for change in &effect.edits {
+        if matches!(change.add.as_str(), "coordinate" | "definition") {
+            let name = free_name(&change.name, &site.name, &mut taken);
+            words.insert(change.name.clone(), name);
+        }
+    }
+    let mut changes = Vec::new();
+    let mut term = String::new();
+    for change in &effect.edits {
+        changes.extend(edits(model, change, site, &words)?);
+        let said = filled(&change.value, &words)?;
+        if !said.is_empty() {
+            term = said;
+        }
+    }
+    Some(Candidate {
+        effect: effect.name.clone(),
+        on: site.name.clone(),
+        order: order.map(|(angle, order)| (angle.name.clone(), order)),
+        parameters,
+        says: effect.says.clone(),
+        experiment: effect.experiment.clone(),
+        changes,
+        term,
+    })
+}
+
+/// Names that a new one must not have.
+fn names(model: &Model) -> Vec<String> {
+    let lists = [
+        model
+            .parameters
+            .iter()
+            .map(|p| p.name.clone())
+            .collect::<Vec<_>>(),
+        model.coordinates.iter().map(|c| c.name.clone()).collect(),
+        model.inputs.iter().map(|i| i.name.clone()).collect(),
+        model.definitions.iter().map(|d| d.name.clone()).collect(),
+        model
+            .fields
+            .iter()
+            .flat_map(|f| [f.name.clone(), f.along.clone(), f.coordinates.clone()])
+            .collect(),
+        model.coefficients.iter().map(|c| c.name.clone()).collect(),
+        terms(model),
+    ];
+    lists.concat()
+}
+
+fn terms(model: &Model) -> Vec<String> {
+    let energies = model
+        .kinetic
+        .iter()
+        .chain(&model.potential)
+        .chain(&model.dissipation);
+    let names = energies.map(|term| term.name.clone());
+    names
+        .chain(model.forces.iter().map(|force| force.name.clone()))
+        .collect()
+}
+
+fn free_name(wanted: &str, site: &str, taken: &mut Vec<String>) -> String {
+    let mut name = wanted.to_owned();
+    if taken.contains(&name) {
+        name = format!("{wanted}_{site}");
+    }
+    let mut number = 2;
+    while taken.contains(&name) {
+        name = format!("{wanted}_{site}_{number}");
+        number += 1;
+    }
+    taken.push(name.clone());
+    name
+}
+
+/// A text with its blanks filled; none if a word is missing.
+fn filled(text: &str, words: &BTreeMap<String, String>) -> Option<String> {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('{') {
+        let (key, behind) = after.split_once('}')?;
+        out.push_str(before);
+        out.push_str(words.get(key)?);
+        rest = behind;
+    }
+    out.push_str(rest);
+    Some(out)
+}
+
+/// `N m s` for `N m s/rad`: an angle counts as a number.
+fn plain_unit(unit: &str) -> String {
+    unit.replace("/rad^2", "").replace("/rad", "")
+}
+
+fn edits(
+    model: &Model,
+    change: &Change,
+    site: &Site,
+    words: &BTreeMap<String, String>,
+) -> Option<Vec<Edit>> {
+    let fill = |text: &str| filled(text, words);
+    let named = words
+        .get(&change.name)
+        .cloned()
+        .unwrap_or_else(|| change.name.clone());
+    if !change.substitute.is_empty() {
+        let (find, replace) = (fill(&change.find)?, fill(&change.replace)?);
+        let places: Vec<(Section, Vec<String>)> = match change.substitute.as_str() {
+            "kinetic" => {
+                let terms: Option<Vec<String>> =
+                    change.terms.iter().map(|term| fill(term)).collect();
+                vec![(Section::Kinetic, terms?)]
+            }
+            "mesh" => holding(model, site, &find),
+            _ => return None,
+        };
+        let substitutions = places.into_iter().filter(|(_, terms)| !terms.is_empty());
+        return Some(
+            substitutions
+                .map(|(section, terms)| {
+                    Edit::Substitute(Substitution {
+                        section,
+                        terms,
+                        find: find.clone(),
+                        replace: replace.clone(),
+                    })
+                })
+                .collect(),
+        );
+    }
+    let value = fill(&change.value)?;
+    let term = |section: Section| {
+        let mut taken = terms(model);
+        let name = match section {
+            Section::Definitions => named.clone(),
+            _ => free_name(&named, &site.name, &mut taken),
+        };
+        Edit::AddTerm(NewTerm {
+            section,
+            name,
+            value: value.clone(),
+            doc: String::new(),
+            source: String::new(),
+        })
+    };
+    Some(vec![match change.add.as_str() {
+        "kinetic" => term(Section::Kinetic),
+        "potential" => term(Section::Potential),
+        "dissipation" => term(Section::Dissipation),
+        "definition" => term(Section::Definitions),
+        "force" => Edit::AddForce(NewForce {
+            name: free_name(&named, &site.name, &mut terms(model)),
+            on: fill(&change.on)?,
+            value,
+            doc: String::new(),
+            source: String::new(),
+        }),
+        "coordinate" => Edit::AddCoordinate(NewCoordinate {
+            name: named,
+            unit: change.unit.clone(),
+            doc: change.doc.clone(),
+            initial: None,
+        }),
+        _ => return None,
+    }])
+}
+
+/// The mesh's terms that hold a name.
+fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)> {
+    let text = |section: Section, term: &str| {
+        let span = match section {
+            Section::Definitions => {
+                model
+                    .definitions
+                    .iter()
+                    .find(|d| d.name == term)?
+                    .value
+                    .span
+            }
+            Section::Forces => model.forces.iter().find(|f| f.name == term)?.value.span,
+            Section::Potential => model.potential.iter().find(|t| t.name == term)?.value.span,
+            Section::Dissipation => {
+                model
+                    .dissipation
+                    .iter()
+                    .find(|t| t.name == term)?
+                    .value
+                    .span
+            }
+            Section::Kinetic | Section::Observables => return None,
+        };
+        model.source.text.get(span.start..span.end)
+    };
+    let holds = |section: Section, term: &str| {
+        let words = text(section, term).unwrap_or_default();
+        words
+            .split(|c: char| !c.is_alphanumeric() && c != '_')
+            .any(|word| word == name)
+    };
+    let places = site.terms.iter();
+    places
+        .map(|(section, terms)| {
+            let terms = terms
+                .iter()
+                .filter(|term| holds(*section, term))
+                .cloned()
+                .collect();
+            (*section, terms)
+        })
+        .collect()
+}

@@ -1,0 +1,213 @@
+//! What was found as JSON documents: `comparison.json` and `discovery.json`.
+
+use serde_json::{Map, Value, json};
+
+use crate::fitting::{Fit, Setting};
+use crate::floor::Floor;
+use crate::search::{Accepted, Found, Rejected};
+use crate::unknowns::What;
+
+/// The verdict of a comparison.
+pub fn compared(
+    setting: &Setting<'_>,
+    fit: &Fit,
+    floor: &Floor,
+    at_floor: bool,
+    place: &str,
+) -> Value {
+    let verdict = if at_floor {
+        "no_significant_gap"
+    } else {
+        "gap_found"
+    };
+    let gap: Map<String, Value> = setting
+        .dataset
+        .channels
+        .iter()
+        .enumerate()
+        .map(|(channel, entry)| {
+            let gap = json!({
+                "unit": entry.unit,
+                "floor": floor.channels[channel],
+                "train": fit.train.channels[channel],
+                "test": fit.test.channels[channel],
+            });
+            (entry.name.clone(), gap)
+        })
+        .collect();
+    json!({
+        "schema": 1,
+        "verdict": verdict,
+        "gap": gap,
+        "refitted": refitted(fit, &[]),
+        "sensors": sensors(setting, fit),
+        "where": place,
+        "notes": setting.dataset.notes,
+    })
+}
+
+/// The result of a search.
+pub fn discovered(
+    setting: &Setting<'_>,
+    found: &Found,
+    floor: &Floor,
+    at_floor: bool,
+    place: &str,
+) -> Value {
+    let (before, after) = (&found.null, found.best());
+    let verdict = match (found.accepted.is_empty(), at_floor) {
+        (false, _) => "effects_found",
+        (true, true) => "no_significant_gap",
+        (true, false) => "unexplained",
+    };
+    let gap: Map<String, Value> = setting
+        .dataset
+        .channels
+        .iter()
+        .enumerate()
+        .map(|(channel, entry)| {
+            let gap = json!({
+                "unit": entry.unit,
+                "floor": floor.channels[channel],
+                "before": {"train": before.train.channels[channel], "test": before.test.channels[channel]},
+                "after": {"train": after.train.channels[channel], "test": after.test.channels[channel]},
+            });
+            (entry.name.clone(), gap)
+        })
+        .collect();
+    let mut order: Vec<&Accepted> = found.accepted.iter().collect();
+    order.sort_by(|a, b| {
+        let closed = |effect: &Accepted| effect.test_gap.0 - effect.test_gap.1;
+        closed(b).total_cmp(&closed(a))
+    });
+    let (not_testable, rejected): (Vec<&Rejected>, Vec<&Rejected>) = found
+        .rejected
+        .iter()
+        .partition(|rejected| rejected.not_testable);
+    json!({
+        "schema": 1,
+        "verdict": verdict,
+        "effects": order.iter().map(|effect| effect_entry(after, effect)).collect::<Vec<_>>(),
+        "rejected": rejected.iter().map(|r| json!({
+            "effect": r.candidate.effect, "on": r.candidate.on, "reason": reason(r),
+        })).collect::<Vec<_>>(),
+        "not_testable": not_testable.iter().map(|r| json!({
+            "effect": r.candidate.effect, "on": r.candidate.on, "reason": reason(r),
+            "experiment": r.candidate.experiment,
+        })).collect::<Vec<_>>(),
+        "refitted": refitted(after, &found.accepted),
+        "sensors": sensors(setting, after),
+        "gap": gap,
+        "closure": {
+            "train": closure(before.train.pooled, after.train.pooled, floor.pooled),
+            "test": closure(before.test.pooled, after.test.pooled, floor.pooled),
+        },
+        "where": place,
+        "notes": setting.dataset.notes,
+    })
+}
+
+/// Why a candidate was rejected; with the order where it has one.
+fn reason(rejected: &Rejected) -> String {
+    match &rejected.candidate.order {
+        Some((angle, order)) => format!("{order} per turn of {angle}: {}", rejected.reason),
+        None => rejected.reason.clone(),
+    }
+}
+
+/// The part of the gap that was closed; none where there was none.
+fn closure(before: f64, after: f64, floor: f64) -> Value {
+    if before < 2.0 * floor {
+        return Value::Null;
+    }
+    json!((before - after) / (before - floor))
+}
+
+fn effect_entry(fit: &Fit, effect: &Accepted) -> Value {
+    let parameters: Map<String, Value> = effect
+        .candidate
+        .parameters
+        .iter()
+        .zip(effect.unknowns.clone())
+        .map(|(parameter, place)| {
+            let (value, sd) = match fit.unknowns[place].what {
+                What::Inverse(_) => {
+                    let inverse = fit.train.estimate.theta[place];
+                    (1.0 / inverse, fit.sd[place] / (inverse * inverse))
+                }
+                _ => (fit.train.estimate.theta[place], fit.sd[place]),
+            };
+            (
+                parameter.name.clone(),
+                json!({"value": value, "sd": sd, "unit": parameter.unit}),
+            )
+        })
+        .collect();
+    let equivalent: Vec<Value> = effect
+        .equivalent
+        .iter()
+        .map(|other| json!({"effect": other.effect, "on": other.on}))
+        .collect();
+    let mut entry = json!({
+        "effect": effect.candidate.effect,
+        "on": effect.candidate.on,
+        "status": if equivalent.is_empty() { "named" } else { "class" },
+        "equivalent": equivalent,
+        "parameters": parameters,
+        "term": effect.candidate.term,
+        "evidence": {
+            "held_out_gap_falls_by": effect.evidence.held_out,
+            "standard_errors": effect.evidence.held_out_errors,
+            "information": effect.evidence.information,
+            "t": effect.evidence.t,
+        },
+    });
+    if let Some((angle, order)) = &effect.candidate.order {
+        entry["order"] = json!({"per_turn_of": angle, "order": order});
+    }
+    if !effect.equivalent.is_empty() {
+        entry["experiment"] = json!(effect.candidate.experiment);
+    }
+    entry
+}
+
+/// Parameters of the null model.
+fn refitted(fit: &Fit, accepted: &[Accepted]) -> Value {
+    let mut found = Map::new();
+    for (place, unknown) in fit.unknowns.iter().enumerate() {
+        let What::Parameter(name) = &unknown.what else {
+            continue;
+        };
+        if accepted
+            .iter()
+            .any(|effect| effect.unknowns.contains(&place))
+        {
+            continue;
+        }
+        if let Some(parameter) = fit.plant.model.parameters.iter().find(|p| p.name == *name) {
+            let of = |si: f64| parameter.unit.from_si(si);
+            let entry = json!({
+                "value": of(fit.train.estimate.theta[place]),
+                "sd": of(fit.sd[place]),
+                "unit": parameter.unit.text,
+            });
+            found.insert(name.clone(), entry);
+        }
+    }
+    Value::Object(found)
+}
+
+fn sensors(setting: &Setting<'_>, fit: &Fit) -> Value {
+    let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+    let sensors = shooting.sensors(&fit.train.estimate.theta);
+    let channels = setting.dataset.channels.iter().enumerate();
+    let entries = channels.map(|(place, channel)| {
+        let entry = json!({
+            "bias": sensors.bias[place],
+            "gain": sensors.gain[place],
+            "delay": sensors.delay[place],
+        });
+        (channel.name.clone(), entry)
+    });
+    Value::Object(entries.collect())
+}

@@ -1,0 +1,548 @@
+//! Estimation by separable Gauss-Newton steps: each window's initial state is eliminated from
+//! its own residuals by a QR factorisation, what is left depends on the unknowns alone. Steps
+//! are shortened until they help; every window may decide for itself how far its initial
+//! state follows, because impacts fold the outputs.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::bounded::least_squares;
+use crate::shooting::{Crew, Linear, Residual, Shooting};
+
+/// A step that lowers the sum of squares by less than this part is the last.
+const SETTLED: f64 = 1e-3;
+
+/// Parts of a step that are tried.
+const PARTS: [f64; 5] = [1.0, 0.5, 0.2, 0.05, 0.01];
+
+/// How the damping of a step grows where it does not help, and shrinks where it does.
+const DAMPING: [f64; 4] = [0.0, 0.03, 1.0, 30.0];
+
+/// Damping of an initial state's step, in weights of its prior: where a state's impacts fold
+/// the outputs, only shorter steps along what is well determined help.
+const START_DAMPING: [f64; 5] = [0.0, 1e2, 1e4, 1e6, 1e9];
+
+/// The most steps over one part of a window.
+const SETTLING_STEPS: usize = 6;
+
+/// What is known before of each window's initial state: mean and standard deviation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StartPrior {
+    /// One state per window.
+    pub mean: Vec<Vec<f64>>,
+    /// One standard deviation per state.
+    pub sd: Vec<f64>,
+}
+
+/// An estimate.
+#[derive(Clone, Debug, Default)]
+pub struct Estimate {
+    /// The unknowns.
+    pub theta: Vec<f64>,
+    /// The initial state of each window.
+    pub starts: Vec<Vec<f64>>,
+    /// The sum of squares of the residuals of each window, in noises; not finite where there
+    /// is no motion.
+    pub squares: Vec<f64>,
+    /// The sum of all, with what the priors add.
+    pub cost: f64,
+}
+
+/// Estimates the unknowns and the windows' initial states from given ones.
+pub fn estimate(
+    shooting: &Shooting<'_>,
+    prior: &StartPrior,
+    theta: &[f64],
+    starts: &[Vec<f64>],
+    steps: usize,
+) -> Estimate {
+    let mut present = evaluated(shooting, prior, theta.to_vec(), starts.to_vec());
+    for _ in 0..steps {
+        let level = level(shooting, &present);
+        let linear = shooting.linear(&present.theta, &present.starts, level);
+        let Some(next) = step(shooting, prior, &present, &linear) else {
+            break;
+        };
+        let gain = present.cost - next.cost;
+        let settled = gain < SETTLED * present.cost;
+        present = next;
+        if settled {
+            break;
+        }
+    }
+    present
+}
+
+/// The size of the residuals, in noises, at least one.
+pub fn level(shooting: &Shooting<'_>, estimate: &Estimate) -> f64 {
+    let finite = estimate.squares.iter().filter(|s| s.is_finite());
+    let (sum, count) = finite.fold((0.0, 0), |(sum, n), s| (sum + s, n + 1));
+    let samples: usize = shooting.windows.list.iter().map(|w| w.times.len()).sum();
+    let per_window = samples as f64 / shooting.windows.list.len().max(1) as f64;
+    let numbers = per_window * shooting.channels() as f64 * f64::from(count.max(1));
+    (sum / numbers).sqrt().max(1.0)
+}
+
+/// The cost at these unknowns and initial states.
+pub fn evaluated(
+    shooting: &Shooting<'_>,
+    prior: &StartPrior,
+    theta: Vec<f64>,
+    starts: Vec<Vec<f64>>,
+) -> Estimate {
+    let residuals = shooting.residuals(&theta, &starts);
+    let squares: Vec<f64> = residuals.iter().map(square).collect();
+    totalled(shooting, prior, theta, starts, squares)
+}
+
+fn square(residual: &Option<Residual>) -> f64 {
+    residual.as_ref().map_or(f64::INFINITY, Residual::square)
+}
+
+/// What the unknowns' priors add to the cost.
+fn prior_of_unknowns(shooting: &Shooting<'_>, theta: &[f64]) -> f64 {
+    let terms = shooting.unknowns.iter().zip(theta).map(|(unknown, value)| {
+        let (mean, sd) = unknown.prior.unwrap_or((*value, 1.0));
+        ((value - mean) / sd).powi(2)
+    });
+    shooting.prior_weight * terms.sum::<f64>()
+}
+
+/// What a window's prior adds to the cost.
+fn prior_of_start(prior: &StartPrior, place: usize, start: &[f64]) -> f64 {
+    let Some(mean) = prior.mean.get(place) else {
+        return 0.0;
+    };
+    let terms = start.iter().zip(mean).zip(&prior.sd);
+    terms.map(|((x, m), sd)| ((x - m) / sd).powi(2)).sum()
+}
+
+fn totalled(
+    shooting: &Shooting<'_>,
+    prior: &StartPrior,
+    theta: Vec<f64>,
+    starts: Vec<Vec<f64>>,
+    squares: Vec<f64>,
+) -> Estimate {
+    let of_starts = starts
+        .iter()
+        .enumerate()
+        .map(|(p, s)| prior_of_start(prior, p, s));
+    let cost =
+        squares.iter().sum::<f64>() + of_starts.sum::<f64>() + prior_of_unknowns(shooting, &theta);
+    Estimate {
+        theta,
+        starts,
+        squares,
+        cost,
+    }
+}
+
+/// A window with its initial state eliminated.
+pub struct Reduced {
+    /// R of the QR factorisation of [by state | by unknowns | residual], priors included.
+    pub factor: DMatrix<f64>,
+    states: usize,
+}
+
+/// Eliminates a window's initial state.
+pub fn reduced(linear: &Linear, prior: &StartPrior, place: usize, start: &[f64]) -> Reduced {
+    let states = linear.by_state.ncols();
+    let unknowns = linear.by_unknown.ncols();
+    let rows = linear.residual.len();
+    let mut matrix = DMatrix::zeros(
+        (rows + states).max(states + unknowns + 1),
+        states + unknowns + 1,
+    );
+    matrix
+        .view_mut((0, 0), (rows, states))
+        .copy_from(&linear.by_state);
+    matrix
+        .view_mut((0, states), (rows, unknowns))
+        .copy_from(&linear.by_unknown);
+    matrix
+        .view_mut((0, states + unknowns), (rows, 1))
+        .copy_from(&linear.residual);
+    if let Some(mean) = prior.mean.get(place) {
+        for state in 0..states {
+            matrix[(rows + state, state)] = 1.0 / prior.sd[state];
+            matrix[(rows + state, states + unknowns)] =
+                (start[state] - mean[state]) / prior.sd[state];
+        }
+    }
+    Reduced {
+        factor: matrix.qr().r(),
+        states,
+    }
+}
+
+impl Reduced {
+    /// What the unknowns and the residual look like once the initial state is free.
+    pub fn unknowns(&self) -> DMatrix<f64> {
+        let rest = self.factor.ncols() - self.states;
+        self.factor
+            .view((self.states, self.states), (rest, rest))
+            .into_owned()
+    }
+
+    /// The initial state's step for a step of the unknowns, damped in every state by so many
+    /// of its prior's weights.
+    pub fn start_step(
+        &self,
+        unknowns: &DVector<f64>,
+        damping: f64,
+        prior: &StartPrior,
+    ) -> Option<DVector<f64>> {
+        let (n, p) = (self.states, unknowns.len());
+        let mut rows = DMatrix::zeros(2 * n.max(1), n + 1);
+        rows.view_mut((0, 0), (n, n))
+            .copy_from(&self.factor.view((0, 0), (n, n)));
+        let right =
+            -(self.factor.view((0, n), (n, p)) * unknowns + self.factor.column(n + p).rows(0, n));
+        rows.view_mut((0, n), (n, 1)).copy_from(&right);
+        for (state, sd) in prior.sd.iter().enumerate() {
+            rows[(n + state, state)] = damping.sqrt() / sd;
+        }
+        let factor = rows.qr().r();
+        let right = factor.column(n).rows(0, n).into_owned();
+        factor.view((0, 0), (n, n)).solve_upper_triangular(&right)
+    }
+}
+
+/// How initial states are found at given unknowns: what is known before, and the states.
+pub type Follow<'f> = dyn Fn(&[f64]) -> (StartPrior, Vec<Vec<f64>>) + 'f;
+
+/// Estimates the unknowns from far away: for every trial of them the initial states are
+/// followed anew through the records, because those that were fitted at wrong unknowns hold
+/// on to what impacts folded.
+pub fn approach(
+    shooting: &Shooting<'_>,
+    theta: &[f64],
+    follow: &Follow<'_>,
+    steps: usize,
+) -> (StartPrior, Estimate) {
+    let at = |theta: Vec<f64>| {
+        let (prior, starts) = follow(&theta);
+        let estimate = evaluated(shooting, &prior, theta, starts);
+        (prior, estimate)
+    };
+    let (mut prior, mut present) = at(theta.to_vec());
+    for _ in 0..steps {
+        let level = level(shooting, &present);
+        let linear = shooting.linear(&present.theta, &present.starts, level);
+        let windows = eliminated(&prior, &present, &linear);
+        let change = change_of_unknowns(shooting, &present, &windows, 0.0);
+        let better = PARTS.iter().find_map(|part| {
+            let (prior, next) = at(moved_unknowns(shooting, &present, &change, *part));
+            (next.cost < present.cost).then_some((prior, next))
+        });
+        let Some((new_prior, next)) = better else {
+            break;
+        };
+        let settled = present.cost - next.cost < 0.02 * present.cost;
+        (prior, present) = (new_prior, next);
+        if settled {
+            break;
+        }
+    }
+    (prior, present)
+}
+
+fn moved_unknowns(
+    shooting: &Shooting<'_>,
+    present: &Estimate,
+    change: &DVector<f64>,
+    part: f64,
+) -> Vec<f64> {
+    let pairs = present
+        .theta
+        .iter()
+        .zip(change.iter())
+        .zip(shooting.unknowns);
+    pairs
+        .map(|((value, change), unknown)| unknown.admissible(value + part * change))
+        .collect()
+}
+
+fn eliminated(
+    prior: &StartPrior,
+    present: &Estimate,
+    linear: &[Option<Linear>],
+) -> Vec<Option<Reduced>> {
+    let windows = linear.iter().enumerate();
+    windows
+        .map(|(place, linear)| {
+            Some(reduced(
+                linear.as_ref()?,
+                prior,
+                place,
+                &present.starts[place],
+            ))
+        })
+        .collect()
+}
+
+/// The next estimate, if there is one that is better.
+fn step(
+    shooting: &Shooting<'_>,
+    prior: &StartPrior,
+    present: &Estimate,
+    linear: &[Option<Linear>],
+) -> Option<Estimate> {
+    let windows = eliminated(prior, present, linear);
+    for damping in DAMPING {
+        let change = change_of_unknowns(shooting, present, &windows, damping);
+        for part in PARTS {
+            let theta = moved_unknowns(shooting, present, &change, part);
+            let next = followed(shooting, prior, present, &windows, theta);
+            if next.cost < present.cost {
+                return Some(next);
+            }
+            if change.norm() == 0.0 {
+                return None;
+            }
+        }
+    }
+    None
+}
+
+/// The bounded least-squares step of the unknowns.
+fn change_of_unknowns(
+    shooting: &Shooting<'_>,
+    present: &Estimate,
+    windows: &[Option<Reduced>],
+    damping: f64,
+) -> DVector<f64> {
+    let count = shooting.unknowns.len();
+    let mut factor = DMatrix::zeros(count + 1, count + 1);
+    for window in windows.iter().flatten() {
+        factor = stacked(&factor, &window.unknowns());
+    }
+    let mut rows = DMatrix::zeros(2 * count, count + 1);
+    for (place, unknown) in shooting.unknowns.iter().enumerate() {
+        if let Some((mean, sd)) = unknown.prior {
+            let weight = shooting.prior_weight.sqrt() / sd;
+            rows[(place, place)] = weight;
+            rows[(place, count)] = (present.theta[place] - mean) * weight;
+        }
+        rows[(count + place, place)] = damping * factor.column(place).norm();
+    }
+    let factor = stacked(&factor, &rows);
+    let a = factor.columns(0, count).into_owned();
+    let b = -factor.column(count).into_owned();
+    let bounds: Vec<(f64, f64)> = (shooting.unknowns.iter().zip(&present.theta))
+        .map(|(unknown, value)| {
+            (
+                (unknown.bounds.0 - value).min(0.0),
+                (unknown.bounds.1 - value).max(0.0),
+            )
+        })
+        .collect();
+    least_squares(&a, &b, &bounds)
+}
+
+/// The triangular factor of two blocks of rows.
+pub fn stacked(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    let columns = a.ncols();
+    let mut both = DMatrix::zeros((a.nrows() + b.nrows()).max(columns), columns);
+    both.view_mut((0, 0), a.shape()).copy_from(a);
+    both.view_mut((a.nrows(), 0), b.shape()).copy_from(b);
+    both.qr().r()
+}
+
+/// The estimate at new unknowns: each window's initial state follows as far as it helps.
+fn followed(
+    shooting: &Shooting<'_>,
+    prior: &StartPrior,
+    present: &Estimate,
+    windows: &[Option<Reduced>],
+    theta: Vec<f64>,
+) -> Estimate {
+    let change = DVector::from_iterator(
+        theta.len(),
+        theta.iter().zip(&present.theta).map(|(new, old)| new - old),
+    );
+    let moved = |damping: f64| -> Vec<Vec<f64>> {
+        let pairs = present.starts.iter().zip(windows);
+        pairs
+            .map(|(start, window)| {
+                let step = window
+                    .as_ref()
+                    .and_then(|w| w.start_step(&change, damping, prior));
+                match step {
+                    Some(step) if shooting.ranges.is_some() => {
+                        start.iter().zip(step.iter()).map(|(x, d)| x + d).collect()
+                    }
+                    _ => start.clone(),
+                }
+            })
+            .collect()
+    };
+    let mut best = evaluated(shooting, prior, theta.clone(), moved(START_DAMPING[0]));
+    if shooting.ranges.is_none() {
+        return best;
+    }
+    // Most windows follow the whole step; the others are tried again, all at once.
+    for damping in &START_DAMPING[1..] {
+        let stuck: Vec<usize> = (0..best.squares.len())
+            .filter(|w| total(&best, prior, *w) > total(present, prior, *w))
+            .collect();
+        if stuck.is_empty() {
+            break;
+        }
+        let tried = moved(*damping);
+        let squares = some_squares(shooting, &theta, &tried, &stuck);
+        for (window, square) in stuck.iter().zip(squares) {
+            let with_prior = square + prior_of_start(prior, *window, &tried[*window]);
+            if with_prior < total(&best, prior, *window) {
+                best.squares[*window] = square;
+                best.starts[*window].clone_from(&tried[*window]);
+            }
+        }
+    }
+    let Estimate {
+        starts, squares, ..
+    } = best;
+    totalled(shooting, prior, theta, starts, squares)
+}
+
+fn total(estimate: &Estimate, prior: &StartPrior, window: usize) -> f64 {
+    estimate.squares[window] + prior_of_start(prior, window, &estimate.starts[window])
+}
+
+/// The sums of squares of some windows.
+fn some_squares(
+    shooting: &Shooting<'_>,
+    theta: &[f64],
+    starts: &[Vec<f64>],
+    places: &[usize],
+) -> Vec<f64> {
+    use rayon::prelude::*;
+    let (values, sensors) = (shooting.values(theta), shooting.sensors(theta));
+    let size = places
+        .len()
+        .div_ceil(rayon::current_num_threads().max(1))
+        .max(1);
+    let parts: Vec<Vec<f64>> = places
+        .par_chunks(size)
+        .map(|part| {
+            let mut runner = shooting.plant.at(&values).ok();
+            part.iter()
+                .map(|place| {
+                    let residual = runner.as_mut().and_then(|runner| {
+                        shooting.residual(runner, &sensors, *place, &starts[*place])
+                    });
+                    square(&residual)
+                })
+                .collect()
+        })
+        .collect();
+    parts.into_iter().flatten().collect()
+}
+
+/// One window's initial state, the unknowns held, by damped steps over a growing part of the
+/// window: a short motion is nearly linear in its initial state, a long one is folded by
+/// impacts.
+pub fn settle(
+    crew: &mut Crew<'_>,
+    prior: &StartPrior,
+    place: usize,
+    start: Vec<f64>,
+    horizons: &[f64],
+) -> Option<Vec<f64>> {
+    let mut present = start;
+    for horizon in horizons {
+        crew.see(*horizon);
+        present = settle_seen(crew, prior, place, present)?;
+    }
+    Some(present)
+}
+
+fn settle_seen(
+    crew: &mut Crew<'_>,
+    prior: &StartPrior,
+    place: usize,
+    start: Vec<f64>,
+) -> Option<Vec<f64>> {
+    let total = |residual: &Residual, start: &[f64]| {
+        residual.square() + prior_of_start(prior, place, start)
+    };
+    let mut cost = total(&crew.residual(place, &start)?, &start);
+    let mut present = start;
+    for _ in 0..SETTLING_STEPS {
+        let linear = crew.linear(place, &present)?;
+        let window = reduced(&linear, prior, place, &present);
+        let held = DVector::zeros(linear.by_unknown.ncols());
+        let better = START_DAMPING.iter().find_map(|damping| {
+            let step = window.start_step(&held, *damping, prior)?;
+            let moved: Vec<f64> = present
+                .iter()
+                .zip(step.iter())
+                .map(|(x, d)| x + d)
+                .collect();
+            let total = total(&crew.residual(place, &moved)?, &moved);
+            (total < cost).then_some((moved, total))
+        });
+        let Some((moved, total)) = better else {
+            break;
+        };
+        let settled = cost - total < 1e-2 * total;
+        (present, cost) = (moved, total);
+        if settled {
+            break;
+        }
+    }
+    Some(present)
+}
+
+/// A window's derivatives with the means to take its initial state out of any column.
+pub struct Eliminator {
+    /// The residual.
+    pub residual: DVector<f64>,
+    /// By the unknowns.
+    pub by_unknown: DMatrix<f64>,
+    /// By the initial state, with the priors' rows below.
+    by_state: DMatrix<f64>,
+    /// What the priors' rows hold of the residual.
+    prior_residual: DVector<f64>,
+}
+
+impl Eliminator {
+    /// Takes a window's derivatives.
+    pub fn new(linear: &Linear, prior: &StartPrior, place: usize, start: &[f64]) -> Self {
+        let (rows, states) = linear.by_state.shape();
+        let mut by_state = DMatrix::zeros(rows + states, states);
+        by_state
+            .view_mut((0, 0), (rows, states))
+            .copy_from(&linear.by_state);
+        let mut prior_residual = DVector::zeros(states);
+        if let Some(mean) = prior.mean.get(place) {
+            for state in 0..states {
+                by_state[(rows + state, state)] = 1.0 / prior.sd[state];
+                prior_residual[state] = (start[state] - mean[state]) / prior.sd[state];
+            }
+        }
+        Self {
+            residual: linear.residual.clone(),
+            by_unknown: linear.by_unknown.clone(),
+            by_state,
+            prior_residual,
+        }
+    }
+
+    /// Products of columns, the residual last, with the initial state free.
+    pub fn products(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
+        let (rows, count) = columns.shape();
+        let states = self.by_state.ncols();
+        let mut whole = columns.transpose() * columns;
+        whole[(count - 1, count - 1)] += self.prior_residual.norm_squared();
+        if states == 0 {
+            return whole;
+        }
+        let q = self.by_state.clone().qr().q();
+        let mut along = q.rows(0, rows).transpose() * columns;
+        let of_prior = q.rows(rows, states).transpose() * &self.prior_residual;
+        let mut last = along.column_mut(count - 1);
+        last += of_prior;
+        whole - along.transpose() * along
+    }
+}

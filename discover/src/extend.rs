@@ -1,0 +1,105 @@
+//! The specification with what was found: effects added, refitted numbers set, sensors
+//! described, every comment kept.
+
+use model_spec::edit::{self, Edit, SetParameter, SetSensor};
+use model_spec::source::Source;
+
+use crate::fitting::{Fit, Setting};
+use crate::search::Accepted;
+use crate::unknowns::What;
+
+/// A parameter or a sensor is set where its estimate moved by this part of its uncertainty.
+const MOVED: f64 = 0.5;
+
+/// The text with effects and numbers of a fit.
+///
+/// # Errors
+/// An edit that cannot be made, in words.
+pub fn extended(
+    setting: &Setting<'_>,
+    text: &str,
+    fit: &Fit,
+    accepted: &[Accepted],
+) -> Result<String, String> {
+    let source = provenance(setting);
+    let theta = &fit.train.estimate.theta;
+    let mut text = text.to_owned();
+    for effect in accepted {
+        let values: Vec<f64> = effect
+            .unknowns
+            .clone()
+            .map(|place| match fit.unknowns[place].what {
+                What::Inverse(_) => 1.0 / theta[place],
+                _ => theta[place],
+            })
+            .collect();
+        let written = effect
+            .candidate
+            .written(&text, &setting.path, &values, &source);
+        text = written.map_err(|error| error.to_string())?;
+    }
+    let added: Vec<usize> = accepted
+        .iter()
+        .flat_map(|effect| effect.unknowns.clone())
+        .collect();
+    let mut edits = Vec::new();
+    for (place, unknown) in fit.unknowns.iter().enumerate() {
+        let moved = (theta[place] - unknown.start).abs() > MOVED * fit.sd[place];
+        if let What::Parameter(name) = &unknown.what
+            && moved
+            && !added.contains(&place)
+            && let Some(parameter) = fit.plant.model.parameters.iter().find(|p| p.name == *name)
+        {
+            edits.push(Edit::SetParameter(SetParameter {
+                name: name.clone(),
+                value: parameter.unit.from_si(theta[place]),
+                source: source.clone(),
+            }));
+        }
+    }
+    edits.extend(sensors(setting, fit));
+    edit::apply(&Source::new(setting.path.as_str(), text.as_str()), &edits)
+        .map_err(|error| error.to_string())
+}
+
+/// Where numbers come from.
+fn provenance(setting: &Setting<'_>) -> String {
+    let title = &setting.dataset.title;
+    let files = setting
+        .dataset
+        .train
+        .iter()
+        .filter_map(|record| record.path.file_name());
+    let files: Vec<String> = files
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect();
+    match title.is_empty() {
+        true => format!("fitted to {}", files.join(", ")),
+        false => format!("fitted to {title}, {}", files.join(", ")),
+    }
+}
+
+/// The sensors that differ from true ones by more than their uncertainty.
+fn sensors(setting: &Setting<'_>, fit: &Fit) -> Vec<Edit> {
+    let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+    let sensors = shooting.sensors(&fit.train.estimate.theta);
+    let moved = |channel: usize| {
+        fit.unknowns.iter().enumerate().any(|(place, unknown)| {
+            let own = matches!(unknown.what, What::Gain(c) | What::Bias(c) | What::Delay(c) if c == channel);
+            own && (fit.train.estimate.theta[place] - unknown.start).abs() > MOVED * fit.sd[place]
+        })
+    };
+    let channels = setting.dataset.channels.iter().enumerate();
+    channels
+        .filter(|(place, _)| moved(*place))
+        .map(|(place, channel)| {
+            Edit::SetSensor(SetSensor {
+                channel: channel.name.clone(),
+                gain: sensors.gain[place],
+                bias: sensors.bias[place],
+                // A specification knows no sensor that sees ahead.
+                delay: sensors.delay[place].max(0.0),
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,401 @@
+//! A specification fitted to the records: from its text to unknowns with their uncertainty
+//! and to what is left on the records it was fitted to and on the others. What the results
+//! mean is judged in [`crate::judge`].
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::dataset::{Dataset, Start};
+use crate::estimate::{self, Estimate, StartPrior, stacked};
+use crate::plant::Plant;
+use crate::shooting::Shooting;
+use crate::starts;
+use crate::unknowns::{Unknown, What};
+use crate::windows::Windows;
+
+/// The parts of a window over which initial states are fitted, one after the other.
+const HORIZONS: [f64; 5] = [0.05, 0.12, 0.25, 0.5, 1.0];
+
+/// The part of a window on which unknowns are first approached, and the horizons up to it.
+const FIRST_PART: (f64, usize) = (0.25, 3);
+
+/// The most steps while unknowns are far away, and close by.
+const STEPS: (usize, usize) = (8, 8);
+
+/// Into so many blocks a set of windows is parted to judge what differs by chance.
+const BLOCKS: usize = 40;
+
+/// What all fits to one dataset share.
+pub struct Setting<'d> {
+    /// The dataset.
+    pub dataset: &'d Dataset,
+    /// The noise of each channel, SI.
+    pub noise: Vec<f64>,
+    /// The windows to fit to.
+    pub train: Windows<'d>,
+    /// The windows held out.
+    pub test: Windows<'d>,
+    /// The order of the model's fields, if not their own.
+    pub order: Option<usize>,
+    /// The specification's path, for messages.
+    pub path: String,
+}
+
+/// What is left on one set of records.
+#[derive(Clone, Debug, Default)]
+pub struct Rest {
+    /// Initial states, unknowns and sums of squares.
+    pub estimate: Estimate,
+    /// Residuals of each window, in noises.
+    pub residuals: Vec<Vec<f64>>,
+    /// For each block of time the sum of squares.
+    pub blocks: Vec<f64>,
+    /// The root mean square of each channel, SI.
+    pub channels: Vec<f64>,
+    /// The same in noises.
+    pub in_noises: Vec<f64>,
+    /// The root mean square of all, in noises.
+    pub pooled: f64,
+    /// How many samples a residual is correlated over.
+    pub correlation: f64,
+}
+
+/// A fitted specification.
+pub struct Fit {
+    /// The text.
+    pub text: String,
+    /// Its model, ready to run.
+    pub plant: Plant,
+    /// What was estimated.
+    pub unknowns: Vec<Unknown>,
+    /// One standard deviation of each, with correlated residuals allowed for.
+    pub sd: Vec<f64>,
+    /// The range of each state.
+    pub ranges: Vec<f64>,
+    /// What was known of the training windows' initial states.
+    pub prior: StartPrior,
+    /// How much priors count.
+    pub prior_weight: f64,
+    /// What is left on the training records.
+    pub train: Rest,
+    /// What is left on the test records.
+    pub test: Rest,
+}
+
+/// What is known before of initial states, the states, and the unknowns they belong to.
+type Approached = (StartPrior, Vec<Vec<f64>>, Vec<f64>);
+
+impl<'d> Setting<'d> {
+    /// The setting of a dataset.
+    pub fn new(dataset: &'d Dataset, order: Option<usize>, path: &str) -> Self {
+        Self {
+            dataset,
+            noise: dataset
+                .channels
+                .iter()
+                .map(|channel| channel.noise)
+                .collect(),
+            train: Windows::cut(&dataset.train, dataset.window),
+            test: Windows::cut(&dataset.test, dataset.window),
+            order,
+            path: path.to_owned(),
+        }
+    }
+
+    /// The model of a text, ready to run on these records.
+    ///
+    /// # Errors
+    /// What is wrong with the text.
+    pub fn plant(&self, text: &str) -> Result<Plant, String> {
+        let mut plant = Plant::of(text, &self.path, self.order, &self.dataset.channels)?;
+        let record = &self.dataset.train[0];
+        let first = self.first_state(&plant, record);
+        plant.choose_steps(record, &first, &self.noise);
+        Ok(plant)
+    }
+
+    /// The first state of a record, as far as it is known.
+    pub fn first_state(&self, plant: &Plant, record: &crate::dataset::Record) -> Vec<f64> {
+        starts::first_state(plant, record, &self.dataset.channels, &self.dataset.initial)
+    }
+
+    /// Samples at a window's ends that delayed sensors may see from outside.
+    fn margin(&self) -> usize {
+        crate::rule::LONGEST_DELAY.ceil() as usize
+    }
+
+    /// Whether initial states are fitted.
+    pub fn fits_starts(&self) -> bool {
+        self.dataset.start == Start::Fitted
+    }
+
+    /// Windows to be explained by a plant.
+    pub fn shooting<'a>(
+        &'a self,
+        plant: &'a Plant,
+        windows: &'a Windows<'a>,
+        unknowns: &'a [Unknown],
+        ranges: &'a [f64],
+    ) -> Shooting<'a> {
+        Shooting {
+            plant,
+            windows,
+            noise: &self.noise,
+            unknowns,
+            margin: self.margin(),
+            ranges: self.fits_starts().then_some(ranges),
+            part: 1.0,
+            prior_weight: 1.0,
+        }
+    }
+
+    /// Initial states of all windows at these unknowns.
+    fn starts(
+        &self,
+        shooting: &Shooting<'_>,
+        theta: &[f64],
+        ranges: &[f64],
+        horizons: &[f64],
+    ) -> Result<(StartPrior, Vec<Vec<f64>>), String> {
+        if !self.fits_starts() {
+            let read =
+                starts::read_smoothed(shooting.plant, shooting.windows, &self.dataset.channels);
+            return Ok((StartPrior::default(), read.map_err(not_shown)?));
+        }
+        let records = shooting.windows.records.iter();
+        let firsts: Vec<Vec<f64>> = records
+            .map(|r| self.first_state(shooting.plant, r))
+            .collect();
+        Ok(starts::followed(shooting, theta, &firsts, ranges, horizons))
+    }
+
+    /// Initial states of all windows at these unknowns, found as they are in a fit.
+    ///
+    /// # Errors
+    /// If they are to be read from the record and no channel shows a coordinate.
+    pub fn all_starts(
+        &self,
+        shooting: &Shooting<'_>,
+        theta: &[f64],
+        ranges: &[f64],
+    ) -> Result<Vec<Vec<f64>>, String> {
+        Ok(self.starts(shooting, theta, ranges, &HORIZONS)?.1)
+    }
+
+    /// Fits a specification: its unknowns from `theta`, then what is left.
+    ///
+    /// # Errors
+    /// What is wrong with the text, or why no motion can be followed.
+    pub fn fit(&self, text: String, unknowns: Vec<Unknown>, theta: &[f64]) -> Result<Fit, String> {
+        let plant = self.plant(&text)?;
+        let ranges = self.ranges(&plant);
+        let places: Vec<usize> = (0..unknowns.len())
+            .filter(|p| is_physical(&unknowns[*p]))
+            .collect();
+        let physical: Vec<Unknown> = places
+            .iter()
+            .map(|place| unknowns[*place].clone())
+            .collect();
+        let mut theta = theta.to_vec();
+        let begin: Vec<f64> = places.iter().map(|place| theta[*place]).collect();
+        let (prior, starts, near) = self.approached(&plant, &ranges, &physical, begin)?;
+        let shooting = self.shooting(&plant, &self.train, &physical, &ranges);
+        let near = estimate::estimate(&shooting, &prior, &near, &starts, STEPS.1);
+        for (place, value) in places.iter().zip(&near.theta) {
+            theta[*place] = *value;
+        }
+        let mut all = self.shooting(&plant, &self.train, &unknowns, &ranges);
+        let rest = self.rest(
+            &all,
+            Estimate {
+                theta: theta.clone(),
+                ..near
+            },
+        );
+        let prior_weight = (rest.pooled * rest.pooled).max(1.0) * rest.correlation;
+        all.prior_weight = prior_weight;
+        let found = estimate::estimate(&all, &prior, &theta, &rest.estimate.starts, STEPS.1);
+        let sd = self.uncertainty(&all, &prior, &found);
+        let train = self.rest(&all, found);
+        let held_out = self.shooting(&plant, &self.test, &unknowns, &ranges);
+        let (_, starts) = self.starts(&held_out, &train.estimate.theta, &ranges, &HORIZONS)?;
+        let test = estimate::evaluated(
+            &held_out,
+            &StartPrior::default(),
+            train.estimate.theta.clone(),
+            starts,
+        );
+        let test = self.rest(&held_out, test);
+        // A fit worse than noise does not know its unknowns better than its own misfit allows.
+        let inflation = (train.pooled * train.pooled).max(1.0) * train.correlation;
+        Ok(Fit {
+            sd: sd.iter().map(|sd| sd * inflation.sqrt()).collect(),
+            text,
+            unknowns,
+            ranges,
+            prior,
+            prior_weight,
+            train,
+            test,
+            plant,
+        })
+    }
+
+    /// The physical unknowns brought near, with initial states there.
+    fn approached(
+        &self,
+        plant: &Plant,
+        ranges: &[f64],
+        physical: &[Unknown],
+        mut theta: Vec<f64>,
+    ) -> Result<Approached, String> {
+        let shooting = self.shooting(plant, &self.train, physical, ranges);
+        if !self.fits_starts() {
+            let (prior, starts) = self.starts(&shooting, &theta, ranges, &HORIZONS)?;
+            return Ok((prior, starts, theta));
+        }
+        let mut found = (StartPrior::default(), Vec::new());
+        for (part, horizons) in [FIRST_PART, (1.0, HORIZONS.len())] {
+            let shooting = Shooting { part, ..shooting };
+            let follow = |theta: &[f64]| {
+                self.starts(&shooting, theta, ranges, &HORIZONS[..horizons])
+                    .unwrap_or_default()
+            };
+            let (prior, near) = estimate::approach(&shooting, &theta, &follow, STEPS.0);
+            theta = near.theta;
+            found = (prior, near.starts);
+        }
+        Ok((found.0, found.1, theta))
+    }
+
+    /// The range of each state in the training records.
+    pub fn ranges(&self, plant: &Plant) -> Vec<f64> {
+        let first = self.first_state(plant, &self.dataset.train[0]);
+        starts::ranges(plant, &self.dataset.train, &first)
+    }
+
+    /// One standard deviation of each unknown, were the residuals white noise.
+    fn uncertainty(
+        &self,
+        shooting: &Shooting<'_>,
+        prior: &StartPrior,
+        found: &Estimate,
+    ) -> Vec<f64> {
+        let count = shooting.unknowns.len();
+        let level = estimate::level(shooting, found);
+        let linear = shooting.linear(&found.theta, &found.starts, level);
+        let mut factor = DMatrix::zeros(count + 1, count + 1);
+        for (place, linear) in linear.iter().enumerate() {
+            if let Some(linear) = linear {
+                let window = estimate::reduced(linear, prior, place, &found.starts[place]);
+                factor = stacked(&factor, &window.unknowns());
+            }
+        }
+        let mut rows = DMatrix::zeros(count, count + 1);
+        for (place, unknown) in shooting.unknowns.iter().enumerate() {
+            let sd = unknown.prior.map_or(f64::INFINITY, |(_, sd)| sd);
+            rows[(place, place)] = shooting.prior_weight.sqrt() / sd;
+        }
+        let factor = stacked(&factor, &rows);
+        let square = factor.view((0, 0), (count, count)).into_owned();
+        (0..count)
+            .map(|place| {
+                let unit = DVector::from_fn(count, |row, _| f64::from(u8::from(row == place)));
+                let solved = square.transpose().solve_lower_triangular(&unit);
+                solved.map_or(f64::INFINITY, |v| v.norm())
+            })
+            .collect()
+    }
+
+    /// What an estimate leaves.
+    pub fn rest(&self, shooting: &Shooting<'_>, estimate: Estimate) -> Rest {
+        let channels = shooting.channels();
+        let residuals = shooting.residuals(&estimate.theta, &estimate.starts);
+        let residuals: Vec<Vec<f64>> = residuals
+            .into_iter()
+            .map(|r| r.map(|r| r.values).unwrap_or_default())
+            .collect();
+        let mut sums = vec![(0.0, 0.0); channels];
+        for (window, residual) in shooting.windows.list.iter().zip(&residuals) {
+            for (place, value) in residual.iter().enumerate() {
+                if window.measured[place].is_finite() {
+                    let sum = &mut sums[place % channels];
+                    *sum = (sum.0 + value * value, sum.1 + 1.0);
+                }
+            }
+        }
+        let mean_square = |(sum, count): (f64, f64)| if count > 0.0 { sum / count } else { 0.0 };
+        let squares: Vec<f64> = sums.iter().map(|sum| mean_square(*sum)).collect();
+        let pooled = (squares.iter().sum::<f64>() / channels.max(1) as f64).sqrt();
+        Rest {
+            blocks: blocks(&residuals),
+            channels: squares
+                .iter()
+                .zip(&self.noise)
+                .map(|(s, noise)| s.sqrt() * noise)
+                .collect(),
+            in_noises: squares.iter().map(|s| s.sqrt()).collect(),
+            pooled,
+            correlation: correlation(&residuals, channels),
+            residuals,
+            estimate,
+        }
+    }
+}
+
+/// Whether an unknown is one of the model's, not of a sensor.
+fn is_physical(unknown: &Unknown) -> bool {
+    matches!(unknown.what, What::Parameter(_) | What::Inverse(_))
+}
+
+fn not_shown(state: String) -> String {
+    format!(
+        "windows.start = \"smoothed\" needs a channel for every coordinate, and none shows \
+         `{state}`; expected start = \"fitted\""
+    )
+}
+
+/// Sums of squares of blocks of time: windows parted, or put together, into about so many.
+fn blocks(residuals: &[Vec<f64>]) -> Vec<f64> {
+    let parts = BLOCKS.div_ceil(residuals.len().max(1));
+    let of_window = |residual: &Vec<f64>| {
+        let size = residual.len().div_ceil(parts).max(1);
+        let sums = residual
+            .chunks(size)
+            .map(|part| part.iter().map(|r| r * r).sum::<f64>());
+        sums.collect::<Vec<f64>>()
+    };
+    residuals.iter().flat_map(of_window).collect()
+}
+
+/// The samples over which a residual is correlated: one plus twice the sum of its positive
+/// autocorrelations, up to the first that is not, for the channel where it is longest.
+fn correlation(residuals: &[Vec<f64>], channels: usize) -> f64 {
+    let of_channel = |channel: usize| {
+        let columns: Vec<Vec<f64>> = residuals
+            .iter()
+            .map(|r| r.iter().skip(channel).step_by(channels).copied().collect())
+            .collect();
+        let longest = columns.iter().map(Vec::len).max().unwrap_or(0);
+        let at = |lag: usize| -> f64 {
+            let products = columns.iter().map(|c| {
+                c.iter()
+                    .zip(c.iter().skip(lag))
+                    .map(|(a, b)| a * b)
+                    .sum::<f64>()
+            });
+            products.sum()
+        };
+        let whole = at(0);
+        let mut time = 1.0;
+        for lag in 1..longest / 2 {
+            let part = at(lag) / whole;
+            // What white noise shows by chance is none.
+            if part.is_nan() || part < 0.05 {
+                break;
+            }
+            time += 2.0 * part;
+        }
+        time
+    };
+    (0..channels).map(of_channel).fold(1.0, f64::max)
+}

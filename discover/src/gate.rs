@@ -1,0 +1,238 @@
+//! Whether a record can be believed: what makes an answer impossible is refused, what only
+//! weakens it is noted. Units are checked where they are read, in [`crate::dataset`].
+
+use std::path::Path;
+
+use crate::dataset::{Dataset, Record, Refusal};
+
+/// A record with fewer samples says nothing.
+const FEWEST_SAMPLES: usize = 50;
+
+/// A channel of which more than this part is missing is refused.
+const MOST_MISSING: f64 = 0.5;
+
+/// Steps that differ from the usual one by more than this part of it are jitter.
+const JITTER: f64 = 0.1;
+
+/// A channel that stands at its largest or smallest value for this part of the samples, more
+/// than once in a row, is clipped.
+const CLIPPED: f64 = 0.02;
+
+/// Records that differ by less than this many noises (root mean square) are one record: two
+/// measurements of the same motion differ by the square root of two.
+const SAME: f64 = 0.3;
+
+/// Samples that are compared first when records are laid on each other.
+const PROBES: usize = 16;
+
+/// Times are finite and ascend.
+///
+/// # Errors
+/// The first line where they do not.
+pub fn check_times(path: &Path, times: &[f64]) -> Result<(), Refusal> {
+    // The first line holds the names.
+    let line = |sample: usize| sample as u64 + 2;
+    if let Some(sample) = times.iter().position(|t| !t.is_finite()) {
+        return Err(Refusal::line(
+            path,
+            line(sample),
+            "the time is missing; expected a number",
+        ));
+    }
+    if let Some(sample) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
+        return Err(Refusal::line(
+            path,
+            line(sample + 1),
+            "the time does not increase; expected samples in order, each once",
+        ));
+    }
+    if times.len() < FEWEST_SAMPLES {
+        return Err(Refusal::file(
+            path,
+            format!(
+                "holds {} samples; expected {FEWEST_SAMPLES} or more",
+                times.len()
+            ),
+        ));
+    }
+    Ok(())
+}
+
+/// The median of the steps between samples, s.
+pub fn typical_step(times: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// Looks at all records; returns what is worth a remark.
+///
+/// # Errors
+/// The first thing that makes an answer impossible.
+pub fn examine(dataset: &Dataset) -> Result<Vec<String>, Refusal> {
+    let mut notes = Vec::new();
+    for record in dataset.train.iter().chain(&dataset.test) {
+        notes.extend(timing(record));
+        for (channel, column) in dataset.channels.iter().zip(&record.channels) {
+            notes.extend(values(record, &channel.name, channel.noise, column)?);
+        }
+        different_channels(dataset, record)?;
+    }
+    for test in &dataset.test {
+        for train in &dataset.train {
+            different_records(dataset, train, test)?;
+        }
+    }
+    Ok(notes)
+}
+
+/// Remarks on the times of a record.
+fn timing(record: &Record) -> Option<String> {
+    let step = typical_step(&record.times);
+    let steps = record.times.windows(2).map(|pair| pair[1] - pair[0]);
+    let uneven = steps.filter(|s| (s - step).abs() > JITTER * step).count();
+    (uneven > 0).then(|| {
+        format!(
+            "{}: {uneven} of {} steps differ from {step:.6} s by more than {:.0} %",
+            record.name,
+            record.times.len() - 1,
+            100.0 * JITTER
+        )
+    })
+}
+
+/// A channel of one record.
+fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec<String>, Refusal> {
+    let mut notes = Vec::new();
+    let known: Vec<f64> = column.iter().copied().filter(|v| v.is_finite()).collect();
+    let missing = column.len() - known.len();
+    let refuse = |message: String| Err(Refusal::file(&record.path, message));
+    if missing as f64 > MOST_MISSING * column.len() as f64 {
+        return refuse(format!(
+            "channel `{name}`: {missing} of {} samples are missing; expected most of them",
+            column.len()
+        ));
+    }
+    if missing > 0 {
+        notes.push(format!(
+            "{}: {missing} samples of `{name}` are missing and left out",
+            record.name
+        ));
+    }
+    let low = known.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = known.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if low == high {
+        return refuse(format!(
+            "channel `{name}` is {low} throughout: the sensor is dead or the column another; \
+             expected one that moves, or a dataset without it"
+        ));
+    }
+    if high - low < 2.0 * noise {
+        notes.push(format!(
+            "{}: `{name}` moves by less than two noises",
+            record.name
+        ));
+    }
+    for limit in [low, high] {
+        let at = known
+            .windows(2)
+            .filter(|p| p[0] == limit && p[1] == limit)
+            .count();
+        if at as f64 > CLIPPED * known.len() as f64 {
+            notes.push(format!(
+                "{}: `{name}` stands at {limit} for {at} samples: it may be clipped",
+                record.name
+            ));
+        }
+    }
+    Ok(notes)
+}
+
+/// No channel is another one, of either sign.
+fn different_channels(dataset: &Dataset, record: &Record) -> Result<(), Refusal> {
+    for (a, first) in record.channels.iter().enumerate() {
+        for (b, second) in record.channels.iter().enumerate().skip(a + 1) {
+            for sign in [1.0, -1.0] {
+                let mut pairs = first.iter().zip(second).filter(|(x, _)| x.is_finite());
+                if pairs.all(|(x, y)| *x == sign * y) {
+                    return Err(Refusal::file(
+                        &record.path,
+                        format!(
+                            "the channels `{}` and `{}` are one column; expected one each",
+                            dataset.channels[a].name, dataset.channels[b].name
+                        ),
+                    ));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A test record is not a training record again, later or earlier, of either sign.
+fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result<(), Refusal> {
+    let (a, b) = (&train.channels[0], &test.channels[0]);
+    let noise = dataset.channels[0].noise;
+    let shortest = a.len().min(b.len()) / 2;
+    let range = (b.len() - shortest) as isize;
+    for lag in -((a.len() - shortest) as isize)..=range {
+        for sign in [1.0, -1.0] {
+            if is_same(a, b, lag, sign, noise) {
+                return Err(Refusal::file(
+                    &test.path,
+                    format!(
+                        "{} is {} again{}{}; expected another measurement",
+                        test.name,
+                        train.name,
+                        if lag == 0 {
+                            String::new()
+                        } else {
+                            format!(", {lag} samples later")
+                        },
+                        if sign < 0.0 {
+                            ", with the other sign"
+                        } else {
+                            ""
+                        }
+                    ),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether one column laid on another with a lag is the same to less than noise.
+fn is_same(a: &[f64], b: &[f64], lag: isize, sign: f64, noise: f64) -> bool {
+    let begin = (-lag).max(0) as usize;
+    let end = a.len().min((b.len() as isize - lag).max(0) as usize);
+    if end <= begin + PROBES {
+        return false;
+    }
+    let difference = |place: usize| a[place] - sign * b[(place as isize + lag) as usize];
+    let probe = |k: usize| difference(begin + k * (end - begin) / PROBES);
+    if (0..PROBES).any(|k| probe(k).abs() > 2.0 * noise) {
+        return false;
+    }
+    let squares = (begin..end)
+        .map(difference)
+        .filter(|d| d.is_finite())
+        .map(|d| d * d);
+    let (sum, count) = squares.fold((0.0, 0.0), |(s, n), d| (s + d, n + 1.0));
+    let moves = (begin..end).any(|place| (a[place] - a[begin]).abs() > 20.0 * noise);
+    moves && count > 0.0 && (sum / count) < (SAME * noise).powi(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_same;
+
+    #[test]
+    fn a_record_laid_on_itself_is_found_at_its_lag_and_sign() {
+        let motion: Vec<f64> = (0..500).map(|i| (0.01 * f64::from(i * i)).sin()).collect();
+        let later: Vec<f64> = motion[100..].iter().map(|v| -v).collect();
+        assert!(is_same(&motion, &later, -100, -1.0, 1e-3));
+        assert!(!is_same(&motion, &later, -99, -1.0, 1e-3));
+        assert!(!is_same(&motion, &later, -100, 1.0, 1e-3));
+    }
+}

@@ -1,0 +1,35 @@
+//! Compares a model with measurements, finds what it lacks, names it and adds it.
+//!
+//! The pipeline, one file each: [`dataset`] (records with their description) and [`gate`]
+//! (whether they can be believed); [`plant`] (a model that can be run), [`windows`] (records
+//! in parts), [`smooth`] and [`starts`] (each part's initial state), [`unknowns`],
+//! [`shooting`] (residuals and derivatives), [`estimate`] (with [`bounded`]: least squares),
+//! [`fitting`] (a specification fitted), [`mod@floor`] (what a right model would leave),
+//! [`locate`] (where the rest is); [`catalogue`], [`sites`] and [`candidates`] (what may be
+//! missing), [`mod@screen`] (what each candidate promises), [`mod@judge`] by [`rule`] (what is
+//! believed), [`mod@search`] (all of it in turn); [`extend`] (the specification changed),
+//! [`document`] and [`report`] (for programs and for people).
+
+pub mod bounded;
+pub mod candidates;
+pub mod catalogue;
+pub mod dataset;
+pub mod document;
+pub mod estimate;
+pub mod extend;
+pub mod fitting;
+pub mod floor;
+pub mod gate;
+pub mod judge;
+pub mod locate;
+pub mod plant;
+pub mod report;
+pub mod rule;
+pub mod screen;
+pub mod search;
+pub mod shooting;
+pub mod sites;
+pub mod smooth;
+pub mod starts;
+pub mod unknowns;
+pub mod windows;

@@ -1,0 +1,74 @@
+//! Every constant that decides something, in one place, with its reason.
+
+/// Standard deviation of a sensor's gain before it is estimated: a calibrated sensor.
+pub const GAIN_PRIOR: f64 = 0.01;
+
+/// Standard deviation of a sensor's bias, in noises.
+pub const BIAS_PRIOR: f64 = 10.0;
+
+/// Standard deviation of a sensor's delay, in samples: held somewhere between two of them.
+pub const DELAY_PRIOR: f64 = 0.5;
+
+/// The longest delay that a fit may take, in samples: four standard deviations.
+pub const LONGEST_DELAY: f64 = 2.0;
+
+/// Standard deviation of a window's initial state around where the window before ended, in
+/// ranges of the state's own motion: next to nothing is known, yet a state that the window
+/// does not show stays where it may be.
+pub const START_PRIOR: f64 = 0.02;
+
+/// A shape, such as the speed at which friction has fallen, is searched within these factors
+/// of its usual size.
+pub const SHAPE_RANGE: (f64, f64) = (0.02, 10.0);
+
+/// Columns that agree to this part of their square are one: products of doubles know no
+/// better.
+pub const RIDGE: f64 = 1e-11;
+
+/// An effect is believed if the gap on held-out records falls by this part: less matters to
+/// nobody, and luck reaches it.
+pub const HELD_OUT: f64 = 0.05;
+
+/// And if that fall is this many standard errors over blocks of time.
+pub const STANDARD_ERRORS: f64 = 2.0;
+
+/// And if half the fall of the whitened squares is this large: some hundred candidates are
+/// looked at, of which the luckiest reaches ln 100 = 5.
+pub const INFORMATION: f64 = 10.0;
+
+/// And if its parameters are this many standard deviations, correlated residuals allowed for.
+pub const SIGNIFICANCE: f64 = 5.0;
+
+/// And if what it does to the channel that shows it best is this many noises: what is
+/// smaller may be anything that repeats by chance.
+pub const SIZE: f64 = 2.0;
+
+/// Nothing is left to be found where the gap is within this factor of the floor.
+pub const AT_FLOOR: f64 = 1.1;
+
+/// Candidates whose responses agree by more than this are both fitted.
+pub const ALIKE: f64 = 0.95;
+
+/// A response of which less than this part is its own cannot be told from the nuisances.
+pub const OWN_PART: f64 = 0.01;
+
+/// The most effects that are added.
+pub const MOST_EFFECTS: usize = 4;
+
+/// The most candidates that are fitted in earnest in one round.
+pub const MOST_FITS: usize = 4;
+
+/// A pair is fitted if screening promises this many times what the best single one does.
+pub const PAIR_PROMISE: f64 = 1.2;
+
+/// Effects that repeat with an angle, a dozen for every angle, are screened only where no
+/// other promises this part of the gap.
+pub const ENOUGH: f64 = 0.5;
+
+/// Once a candidate is believed, others are fitted only if screening promises this part of
+/// what it promises of that one.
+pub const RIVAL: f64 = 0.6;
+
+/// A term of the model may be deleted if its parameter is this many standard deviations of its
+/// prior from 0 at most.
+pub const PRIOR_REACH: f64 = 3.0;

@@ -1,0 +1,280 @@
+//! Where effects may sit in a model: axes, angles, meshes with play and flexible bodies, with
+//! the words that fill the blanks of an effect there.
+
+use std::collections::BTreeMap;
+
+use model_spec::ast::BinaryOperator;
+use model_spec::edit::Section;
+use model_spec::model::{Expr, ExprKind, Function, Model, Term};
+
+use crate::catalogue::SiteKind;
+
+/// A place for effects.
+#[derive(Clone, Debug)]
+pub struct Site {
+    /// What kind of place it is.
+    pub kind: SiteKind,
+    /// Its name in results.
+    pub name: String,
+    /// What fills the blanks.
+    pub words: BTreeMap<&'static str, String>,
+    /// The terms that make up a mesh.
+    pub terms: Vec<(Section, Vec<String>)>,
+}
+
+/// All places of a model.
+pub fn sites(model: &Model) -> Vec<Site> {
+    let meshes = mesh_coordinates(model);
+    let mut found = axes(model, &meshes);
+    found.extend(meshes.iter().filter_map(|place| mesh(model, *place)));
+    found.extend(arms(model));
+    found
+}
+
+/// What an expression is made of, definitions written out.
+#[derive(Default)]
+struct Parts {
+    coordinates: Vec<usize>,
+    other: bool,
+}
+
+fn parts(model: &Model, expr: &Expr, into: &mut Parts) {
+    expr.visit(&mut |part| match part.kind {
+        ExprKind::Coordinate(place) => into.coordinates.push(place),
+        ExprKind::Definition(place) => parts(model, &model.definitions[place].value, into),
+        ExprKind::Dot(_)
+        | ExprKind::Field(_)
+        | ExprKind::ModeCoordinate(_)
+        | ExprKind::Time
+        | ExprKind::Input(_) => {
+            into.other = true;
+        }
+        _ => {}
+    });
+}
+
+fn axes(model: &Model, meshes: &[usize]) -> Vec<Site> {
+    let mut found = Vec::new();
+    let mut shown = Vec::new();
+    for observable in &model.observables {
+        let on = match observable.value.kind {
+            ExprKind::Definition(place) => &model.definitions[place].name,
+            ExprKind::Coordinate(place) => &model.coordinates[place].name,
+            _ => continue,
+        };
+        let mut of = Parts::default();
+        parts(model, &observable.value, &mut of);
+        of.coordinates.sort_unstable();
+        of.coordinates.dedup();
+        let only_meshes = of.coordinates.iter().all(|place| meshes.contains(place));
+        if of.other || only_meshes {
+            continue;
+        }
+        if let Some(site) = axis(&observable.name, on, &observable.unit.text) {
+            if let [place] = of.coordinates[..] {
+                shown.push(place);
+            }
+            found.push(site);
+        }
+    }
+    for (place, coordinate) in model.coordinates.iter().enumerate() {
+        if !meshes.contains(&place) && !shown.contains(&place) {
+            found.extend(axis(
+                &coordinate.name,
+                &coordinate.name,
+                &coordinate.unit.text,
+            ));
+        }
+    }
+    found
+}
+
+fn axis(name: &str, on: &str, unit: &str) -> Option<Site> {
+    let (kind, force) = match unit {
+        "rad" => (SiteKind::Angle, "N m"),
+        "m" => (SiteKind::Axis, "N"),
+        _ => return None,
+    };
+    let words = [("on", on), ("unit", unit), ("force", force)];
+    Some(Site {
+        kind,
+        name: name.to_owned(),
+        words: words.map(|(key, word)| (key, word.to_owned())).into(),
+        terms: Vec::new(),
+    })
+}
+
+/// The coordinates that are deflections with play.
+fn mesh_coordinates(model: &Model) -> Vec<usize> {
+    let mut found = Vec::new();
+    for (_, _, value) in values(model) {
+        value.visit(&mut |part| {
+            if let ExprKind::Call(Function::Deadzone, arguments) = &part.kind
+                && let ExprKind::Coordinate(place) = arguments[0].kind
+                && !found.contains(&place)
+            {
+                found.push(place);
+            }
+        });
+    }
+    found.sort_unstable();
+    found
+}
+
+/// Every value in which an expression may be replaced.
+fn values(model: &Model) -> Vec<(Section, &str, &Expr)> {
+    let definitions = model
+        .definitions
+        .iter()
+        .map(|d| (Section::Definitions, d.name.as_str(), &d.value));
+    let potential = model
+        .potential
+        .iter()
+        .map(|t| (Section::Potential, t.name.as_str(), &t.value));
+    let dissipation = model
+        .dissipation
+        .iter()
+        .map(|t| (Section::Dissipation, t.name.as_str(), &t.value));
+    let forces = model
+        .forces
+        .iter()
+        .map(|f| (Section::Forces, f.name.as_str(), &f.value));
+    definitions
+        .chain(potential)
+        .chain(dissipation)
+        .chain(forces)
+        .collect()
+}
+
+/// Whether an expression holds a function with play of a coordinate.
+fn has_play(expr: &Expr, coordinate: usize) -> bool {
+    let mut found = false;
+    expr.visit(&mut |part| {
+        if let ExprKind::Call(Function::Deadzone | Function::Contact, arguments) = &part.kind {
+            found |= arguments[0].kind == ExprKind::Coordinate(coordinate);
+        }
+    });
+    found
+}
+
+fn mesh(model: &Model, coordinate: usize) -> Option<Site> {
+    let mut terms: Vec<(Section, Vec<String>)> = Vec::new();
+    let mut stiffness = None;
+    for (section, name, value) in values(model) {
+        if !has_play(value, coordinate) {
+            continue;
+        }
+        if section == Section::Potential {
+            value.visit(&mut |part| {
+                if let ExprKind::Parameter(place) = part.kind
+                    && stiffness.is_none()
+                {
+                    stiffness = Some(model.parameters[place].name.clone());
+                }
+            });
+        }
+        match terms.iter_mut().find(|(known, _)| *known == section) {
+            Some((_, names)) => names.push(name.to_owned()),
+            None => terms.push((section, vec![name.to_owned()])),
+        }
+    }
+    let name = model.coordinates[coordinate].name.clone();
+    Some(Site {
+        kind: SiteKind::Mesh,
+        words: [("p", name.clone()), ("k", stiffness?), ("on", name.clone())].into(),
+        name,
+        terms,
+    })
+}
+
+fn arms(model: &Model) -> Vec<Site> {
+    let arm = |term: &Term| {
+        let velocity = squared(
+            &term.value,
+            &|part| matches!(&part.kind, ExprKind::Dot(of) if matches!(of.kind, ExprKind::Field(_))),
+        )?;
+        let mut field = None;
+        let mut root = None;
+        velocity.visit(&mut |part| {
+            if let ExprKind::Dot(of) = &part.kind {
+                match of.kind {
+                    ExprKind::Field(place) => field = Some(place),
+                    ExprKind::Definition(_) | ExprKind::Coordinate(_) => {
+                        root = Some(text(model, of))
+                    }
+                    _ => {}
+                }
+            }
+        });
+        let field = field?;
+        let bent = |part: &Expr| matches!(&part.kind, ExprKind::Diff(of, 2) if of.kind == ExprKind::Field(field));
+        let stiffness = model
+            .potential
+            .iter()
+            .find_map(|term| factor_of_square(&term.value, &bent));
+        let declared = &model.fields[field];
+        let mut words: BTreeMap<&'static str, String> = [
+            ("term", term.name.clone()),
+            ("velocity", text(model, velocity)),
+            ("field", declared.name.clone()),
+            ("x", declared.along.clone()),
+            ("end", text(model, &declared.to)),
+        ]
+        .into();
+        words.extend(root.map(|root| ("root", root)));
+        words.extend(stiffness.map(|factor| ("stiffness", text(model, factor))));
+        Some(Site {
+            kind: SiteKind::Arm,
+            name: term.name.clone(),
+            words,
+            terms: Vec::new(),
+        })
+    };
+    model.kinetic.iter().filter_map(arm).collect()
+}
+
+/// The base of a square that holds something wanted.
+fn squared<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Expr> {
+    let holds = |expr: &Expr| {
+        let mut found = false;
+        expr.visit(&mut |part| found |= wanted(part));
+        found
+    };
+    match &expr.kind {
+        ExprKind::Binary(BinaryOperator::Power, base, _) => holds(base).then_some(base),
+        ExprKind::Binary(_, left, right) => {
+            squared(left, wanted).or_else(|| squared(right, wanted))
+        }
+        ExprKind::Integral { integrand, .. } => squared(integrand, wanted),
+        ExprKind::Negate(inner) => squared(inner, wanted),
+        _ => None,
+    }
+}
+
+/// What a square that holds something wanted is multiplied with, inside an integral.
+fn factor_of_square<'m>(expr: &'m Expr, wanted: &dyn Fn(&Expr) -> bool) -> Option<&'m Expr> {
+    match &expr.kind {
+        ExprKind::Binary(BinaryOperator::Multiply, left, right) => match squared(right, wanted) {
+            Some(_) if matches!(right.kind, ExprKind::Binary(BinaryOperator::Power, ..)) => {
+                Some(left)
+            }
+            _ => factor_of_square(left, wanted).or_else(|| factor_of_square(right, wanted)),
+        },
+        ExprKind::Binary(_, left, right) => {
+            factor_of_square(left, wanted).or_else(|| factor_of_square(right, wanted))
+        }
+        ExprKind::Integral { integrand, .. } => factor_of_square(integrand, wanted),
+        _ => None,
+    }
+}
+
+/// An expression as the specification writes it.
+fn text(model: &Model, expr: &Expr) -> String {
+    let span = expr.span;
+    let written = model
+        .source
+        .text
+        .get(span.start..span.end)
+        .unwrap_or_default();
+    written.trim().to_owned()
+}

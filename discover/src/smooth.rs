@@ -1,0 +1,109 @@
+//! Smoothing without delay: a Butterworth low-pass run forwards and backwards. Which records
+//! are smoothed, and what for, is decided elsewhere.
+
+use std::f64::consts::PI;
+
+/// The cut-off, as a part of the sampling frequency. A record is sampled for what it is to
+/// show; what moves faster than a fiftieth of that is noise or quantisation to a start value.
+const CUT_OFF: f64 = 0.02;
+
+/// A column smoothed by a second-order Butterworth filter, forwards and backwards; missing
+/// samples are bridged by lines first.
+pub fn smoothed(times: &[f64], column: &[f64]) -> Vec<f64> {
+    let mut values = bridged(times, column);
+    let padding = values.len().saturating_sub(1).min((3.0 / CUT_OFF) as usize);
+    let mut padded = reflected(&values, padding);
+    low_pass(&mut padded);
+    padded.reverse();
+    low_pass(&mut padded);
+    padded.reverse();
+    values.copy_from_slice(&padded[padding..padded.len() - padding]);
+    values
+}
+
+/// The slope of a smooth column, by central differences.
+pub fn sloped(times: &[f64], values: &[f64]) -> Vec<f64> {
+    let last = values.len() - 1;
+    (0..values.len())
+        .map(|place| {
+            let (a, b) = (place.saturating_sub(1), (place + 1).min(last));
+            (values[b] - values[a]) / (times[b] - times[a])
+        })
+        .collect()
+}
+
+/// Missing samples replaced by the line between their neighbours.
+pub fn bridged(times: &[f64], column: &[f64]) -> Vec<f64> {
+    let mut values = column.to_vec();
+    let known: Vec<usize> = (0..values.len())
+        .filter(|i| values[*i].is_finite())
+        .collect();
+    let (Some(first), Some(last)) = (known.first(), known.last()) else {
+        return vec![0.0; values.len()];
+    };
+    let ends = (values[*first], values[*last]);
+    values[..*first].fill(ends.0);
+    values[last + 1..].fill(ends.1);
+    for pair in known.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        for place in a + 1..b {
+            let part = (times[place] - times[a]) / (times[b] - times[a]);
+            values[place] = column[a] + part * (column[b] - column[a]);
+        }
+    }
+    values
+}
+
+/// The column with both ends reflected through their end points, so that a filter starts on
+/// what goes on.
+fn reflected(values: &[f64], padding: usize) -> Vec<f64> {
+    let last = values.len() - 1;
+    let before = (1..=padding).rev().map(|k| 2.0 * values[0] - values[k]);
+    let after = (1..=padding).map(|k| 2.0 * values[last] - values[last - k]);
+    before.chain(values.iter().copied()).chain(after).collect()
+}
+
+/// A second-order Butterworth low-pass by the bilinear transform, begun in equilibrium.
+fn low_pass(values: &mut [f64]) {
+    let c = 1.0 / (PI * CUT_OFF).tan();
+    let a0 = 1.0 + 2f64.sqrt() * c + c * c;
+    let (b0, a1, a2) = (
+        1.0 / a0,
+        2.0 * (1.0 - c * c) / a0,
+        (1.0 - 2f64.sqrt() * c + c * c) / a0,
+    );
+    let first = values[0];
+    let (mut x1, mut x2, mut y1, mut y2) = (first, first, first, first);
+    for value in values {
+        let x = *value;
+        let y = b0 * (x + 2.0 * x1 + x2) - a1 * y1 - a2 * y2;
+        (x2, x1, y2, y1) = (x1, x, y1, y);
+        *value = y;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{sloped, smoothed};
+
+    #[test]
+    fn a_slow_motion_passes_without_delay() {
+        let times: Vec<f64> = (0..4000).map(|i| f64::from(i) * 1e-3).collect();
+        let motion: Vec<f64> = times.iter().map(|t| (3.0 * t).sin()).collect();
+        let smooth = smoothed(&times, &motion);
+        let slope = sloped(&times, &smooth);
+        for place in 0..times.len() {
+            assert!((smooth[place] - motion[place]).abs() < 1e-4);
+        }
+        for place in 200..3800 {
+            assert!((slope[place] - 3.0 * (3.0 * times[place]).cos()).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn a_missing_sample_is_bridged() {
+        let times = [0.0, 1.0, 2.0, 3.0];
+        let values = super::bridged(&times, &[1.0, f64::NAN, f64::NAN, 4.0]);
+        assert_eq!(values, [1.0, 2.0, 3.0, 4.0]);
+    }
+}

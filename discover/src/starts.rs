@@ -1,0 +1,186 @@
+//! Where the windows' initial states come from: followed through the record from window to
+//! window, or read from a record smoothed without delay.
+
+use crate::dataset::{Channel, Initial, Quantity, Record};
+use crate::estimate::{StartPrior, settle};
+use crate::plant::Plant;
+use crate::rule;
+use crate::shooting::{Crew, Shooting};
+use crate::smooth::{sloped, smoothed};
+use crate::windows::Windows;
+
+/// Samples from which a first value and a first slope are read.
+const FIRST_SAMPLES: usize = 12;
+
+/// How far each state ranges in the motion that the records' inputs cause, SI: the root mean
+/// square around its mean.
+pub fn ranges(plant: &Plant, records: &[Record], initial: &[f64]) -> Vec<f64> {
+    let states = plant.state_count();
+    let mut sums = vec![(0.0, 0.0); states];
+    let mut count = 0.0;
+    if let Ok(mut runner) = plant.at(&plant.values) {
+        for record in records {
+            // Every tenth sample shows how far a state goes.
+            let times: Vec<f64> = record.times.iter().step_by(10).copied().collect();
+            let Ok(motion) = runner.states(initial, &times, &record.inputs) else {
+                continue;
+            };
+            for state in &motion {
+                count += 1.0;
+                for (sum, value) in sums.iter_mut().zip(state) {
+                    sum.0 += value;
+                    sum.1 += value * value;
+                }
+            }
+        }
+    }
+    let range = |(sum, squares): (f64, f64)| {
+        let mean: f64 = sum / count;
+        (squares / count - mean * mean).max(0.0).sqrt()
+    };
+    let found: Vec<f64> = sums.into_iter().map(range).collect();
+    let largest = found
+        .iter()
+        .copied()
+        .filter(|r| r.is_finite())
+        .fold(0.0, f64::max);
+    // A state that nothing moves may still not be known exactly.
+    let least = if largest > 0.0 { 1e-9 * largest } else { 1.0 };
+    found
+        .into_iter()
+        .map(|r| if r.is_finite() { r.max(least) } else { 1.0 })
+        .collect()
+}
+
+/// The first state of a record, as far as it is known.
+pub fn first_state(
+    plant: &Plant,
+    record: &Record,
+    channels: &[Channel],
+    initial: &Initial,
+) -> Vec<f64> {
+    let mut state = plant.initial();
+    match initial {
+        Initial::Rest => {}
+        Initial::Given(values) => {
+            for (name, value) in values {
+                if let Some(place) = plant.states.iter().position(|state| state == name) {
+                    state[place] = *value;
+                }
+            }
+        }
+        Initial::Estimate => {
+            let half = plant.state_count() / 2;
+            for (channel, column) in channels.iter().zip(&record.channels) {
+                let (value, slope) = begin(&record.times, column);
+                match channel.quantity {
+                    Quantity::Coordinate(place) => {
+                        state[place] = value;
+                        state[half + place] = slope;
+                    }
+                    Quantity::Rate(place) => state[half + place] = value,
+                    Quantity::Observable(_) => {}
+                }
+            }
+        }
+    }
+    state
+}
+
+/// The line through a column's first samples at the first time: value and slope.
+fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
+    let points = times
+        .iter()
+        .zip(column)
+        .filter(|(_, v)| v.is_finite())
+        .take(FIRST_SAMPLES);
+    let points: Vec<(f64, f64)> = points.map(|(t, v)| (t - times[0], *v)).collect();
+    let n = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
+    let (t, v) = (mean(|p| p.0), mean(|p| p.1));
+    let spread: f64 = points.iter().map(|p| (p.0 - t).powi(2)).sum();
+    let slope = points.iter().map(|p| (p.0 - t) * (p.1 - v)).sum::<f64>() / spread;
+    if slope.is_finite() {
+        (v - slope * t, slope)
+    } else {
+        (0.0, 0.0)
+    }
+}
+
+/// Initial states followed from window to window: each begins where the one before ended and
+/// is then fitted to its own samples.
+pub fn followed(
+    shooting: &Shooting<'_>,
+    theta: &[f64],
+    firsts: &[Vec<f64>],
+    ranges: &[f64],
+    horizons: &[f64],
+) -> (StartPrior, Vec<Vec<f64>>) {
+    let sd: Vec<f64> = ranges
+        .iter()
+        .map(|range| rule::START_PRIOR * range)
+        .collect();
+    let count = shooting.windows.list.len();
+    let mut prior = StartPrior {
+        mean: vec![Vec::new(); count],
+        sd,
+    };
+    let mut starts: Vec<Vec<f64>> = Vec::with_capacity(count);
+    let Some(mut crew) = Crew::frozen(shooting, theta, 1.0) else {
+        let states = shooting.plant.state_count();
+        prior.mean = vec![vec![0.0; states]; count];
+        return (prior.clone(), prior.mean);
+    };
+    let mut carried: Option<Vec<f64>> = None;
+    for (place, window) in shooting.windows.list.iter().enumerate() {
+        let begin = match (window.follows, carried.take()) {
+            (Some(_), Some(state)) => state,
+            _ => firsts[window.record].clone(),
+        };
+        prior.mean[place].clone_from(&begin);
+        let settled = settle(&mut crew, &prior, place, begin.clone(), horizons);
+        let start = settled.unwrap_or(begin);
+        if let Some(next) = shooting.windows.list.get(place + 1) {
+            carried = crew.carried(place, &start, next.times[0]);
+        }
+        starts.push(start);
+    }
+    (prior, starts)
+}
+
+/// Initial states read from smoothed records, where the channels show all coordinates.
+///
+/// # Errors
+/// The coordinate that no channel shows.
+pub fn read_smoothed(
+    plant: &Plant,
+    windows: &Windows<'_>,
+    channels: &[Channel],
+) -> Result<Vec<Vec<f64>>, String> {
+    let half = plant.state_count() / 2;
+    let mut sources = Vec::with_capacity(half);
+    for coordinate in 0..half {
+        let shown = (channels.iter())
+            .position(|channel| channel.quantity == Quantity::Coordinate(coordinate));
+        sources.push(shown.ok_or_else(|| plant.states[coordinate].clone())?);
+    }
+    let mut starts = vec![Vec::new(); windows.list.len()];
+    for (place, record) in windows.records.iter().enumerate() {
+        let smooth: Vec<(Vec<f64>, Vec<f64>)> = sources
+            .iter()
+            .map(|source| {
+                let values = smoothed(&record.times, &record.channels[*source]);
+                let slopes = sloped(&record.times, &values);
+                (values, slopes)
+            })
+            .collect();
+        for (window, start) in windows.list.iter().zip(&mut starts) {
+            if window.record == place {
+                let values = smooth.iter().map(|(values, _)| values[window.first]);
+                let slopes = smooth.iter().map(|(_, slopes)| slopes[window.first]);
+                *start = values.chain(slopes).collect();
+            }
+        }
+    }
+    Ok(starts)
+}
