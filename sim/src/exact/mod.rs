@@ -4,11 +4,13 @@
 //! constant and sinusoidal forces; it is stepped from switch to switch with no error but
 //! rounding. The pipeline, one file each: [`model`] (what can be propagated), `groups`
 //! (parallel switching surfaces), `sliding` (motion held on them), `schur`, `blocks`,
-//! `refine` and `decomposition` (a regime's matrix by parts that move by themselves), `modes`, `integrals`, `regime`,
-//! `functional` and `ladder` (prepared for stepping), `lanes` (sums side by side), `forced`
-//! (forced polynomials), `flow` and `cluster_flow` (the motion in a regime), `search` (the next switch, which cannot be missed), `clock` (with `error_free`),
-//! [`propagator`] (from switch to switch), `follow` (to a time, with samples), `simulate`; for neighbouring motions
-//! `saltation`, `tangent`, `neighbours`, [`lyapunov`] and [`sensitivity`].
+//! `refine` and `decomposition` (a regime's matrix by parts that move by themselves),
+//! `modes`, `integrals`, `regime`, `functional` and `ladder` (prepared for stepping), `lanes`
+//! and `kernels` (numbers side by side), `forced` (forced polynomials), `flow`, `watched` and
+//! `cluster_flow` (the motion in a regime), `bounds` and `search` (the next switch, which
+//! cannot be missed), `clock` (with `error_free`), [`propagator`] (from switch to switch),
+//! `follow` (to a time, with samples), `simulate`; for neighbouring motions `saltation`,
+//! `tangent`, `neighbours`, [`lyapunov`] and [`sensitivity`].
 //!
 //! What is not linear between switches belongs to [`crate::solve`].
 
