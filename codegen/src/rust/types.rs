@@ -32,7 +32,7 @@ impl File<'_> {
         Ok(block(&head, &fields, "}")
             + &block("impl Default for Parameters {", &default, "}")
             + &cast("Parameters", "these parameters", &casts)
-            + &self.from_array("Parameters", "PARAMETERS"))
+            + &self.array_conversion("Parameters", "PARAMETERS"))
     }
 
     pub(super) fn inputs(&self) -> Emitted<String> {
@@ -54,11 +54,11 @@ impl File<'_> {
             let default = block("fn default() -> Self {", &literal("Self", &zeros), "}");
             text += &block("impl<T: Scalar> Default for Inputs<T> {", &default, "}");
         }
-        Ok(text + &self.from_array("Inputs", "INPUTS"))
+        Ok(text + &self.array_conversion("Inputs", "INPUTS"))
     }
 
     /// The conversion from an array in the order of the columns of Jacobians, if there are any.
-    fn from_array(&self, name: &str, count: &str) -> String {
+    fn array_conversion(&self, name: &str, count: &str) -> String {
         let program = self.program;
         if program.requested.jacobians.is_empty() {
             return String::new();
