@@ -9,7 +9,6 @@
 use nalgebra::Complex;
 
 use super::cluster_flow::ClusterFlow;
-use super::integrals::NEAR;
 use super::kernels::{self, Amplitudes};
 use super::ladder::Rung;
 use super::lanes::{LITTLE, Lane, Pairs, TINY, groups, numbers, numbers_mut};
@@ -178,7 +177,7 @@ impl Flow {
 
     /// Prepares for sums at a new tau.
     fn arrive(&mut self, regime: &Regime) {
-        let near = self.tau <= NEAR * regime.ladder.window;
+        let near = regime.integrals.is_near(self.tau);
         let count = self.power_counts[usize::from(!near)];
         self.powers.clear();
         let (squared, mut even, mut odd) = (self.tau * self.tau, 1.0, self.tau);

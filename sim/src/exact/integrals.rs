@@ -24,7 +24,7 @@ const SLOW: f64 = 0.25;
 const REMAINDER: f64 = 1e-19;
 
 /// Times up to this part of the window are near: there fewer powers of time count.
-pub(super) const NEAR: f64 = 0.125;
+const NEAR: f64 = 0.125;
 
 /// More are never needed: arguments are below 1.
 const MOST_TERMS: usize = 24;
@@ -149,6 +149,11 @@ impl Integrals {
         groups(self.size)
     }
 
+    /// Whether a time after the start, s, is near: fewer powers of it count.
+    pub fn is_near(&self, tau: f64) -> bool {
+        tau <= self.near
+    }
+
     /// Writes the causes of a motion from coordinates `zeta`, given a unit constant and the
     /// inputs, and exp(i theta) of the phases.
     pub fn causes(
@@ -192,7 +197,7 @@ impl Integrals {
         if width == 0 {
             return;
         }
-        let powers = if tau <= self.near {
+        let powers = if self.is_near(tau) {
             self.near_powers.iter().copied().max().unwrap_or(0)
         } else {
             motion.len() / width
@@ -209,7 +214,7 @@ impl Integrals {
         out.resize(causes * width, Lane::ZERO);
         if width > 0 {
             let columns = self.by_cause.iter().zip(&self.near_powers);
-            let columns = columns.map(|(factors, near)| match tau <= self.near {
+            let columns = columns.map(|(factors, near)| match self.is_near(tau) {
                 true => &factors[..near * width],
                 false => factors,
             });
