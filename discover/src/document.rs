@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
+use crate::dataset::Channel;
 use crate::fitting::{Fit, Setting};
 use crate::floor::Floor;
 use crate::search::{Accepted, Found, Rejected};
@@ -20,21 +21,14 @@ pub fn compared(
     } else {
         "gap_found"
     };
-    let gap: Map<String, Value> = setting
-        .dataset
-        .channels
-        .iter()
-        .enumerate()
-        .map(|(channel, entry)| {
-            let gap = json!({
-                "unit": entry.unit,
-                "floor": floor.channels[channel],
-                "train": fit.train.channels[channel],
-                "test": fit.test.channels[channel],
-            });
-            (entry.name.clone(), gap)
+    let gap = by_channel(setting, |channel, entry| {
+        json!({
+            "unit": entry.unit,
+            "floor": floor.channels[channel],
+            "train": fit.train.channels[channel],
+            "test": fit.test.channels[channel],
         })
-        .collect();
+    });
     json!({
         "schema": 1,
         "verdict": verdict,
@@ -60,21 +54,14 @@ pub fn discovered(
         (true, true) => "no_significant_gap",
         (true, false) => "unexplained",
     };
-    let gap: Map<String, Value> = setting
-        .dataset
-        .channels
-        .iter()
-        .enumerate()
-        .map(|(channel, entry)| {
-            let gap = json!({
-                "unit": entry.unit,
-                "floor": floor.channels[channel],
-                "before": {"train": before.train.channels[channel], "test": before.test.channels[channel]},
-                "after": {"train": after.train.channels[channel], "test": after.test.channels[channel]},
-            });
-            (entry.name.clone(), gap)
+    let gap = by_channel(setting, |channel, entry| {
+        json!({
+            "unit": entry.unit,
+            "floor": floor.channels[channel],
+            "before": {"train": before.train.channels[channel], "test": before.test.channels[channel]},
+            "after": {"train": after.train.channels[channel], "test": after.test.channels[channel]},
         })
-        .collect();
+    });
     let mut order: Vec<&Accepted> = found.accepted.iter().collect();
     order.sort_by(|a, b| {
         let closed = |effect: &Accepted| effect.test_gap.0 - effect.test_gap.1;
@@ -200,14 +187,18 @@ fn refitted(fit: &Fit, accepted: &[Accepted]) -> Value {
 fn sensors(setting: &Setting<'_>, fit: &Fit) -> Value {
     let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
     let sensors = shooting.sensors(&fit.train.estimate.theta);
+    by_channel(setting, |channel, _| {
+        json!({
+            "bias": sensors.bias[channel],
+            "gain": sensors.gain[channel],
+            "delay": sensors.delay[channel],
+        })
+    })
+}
+
+/// An entry for each channel, under its name.
+fn by_channel(setting: &Setting<'_>, of: impl Fn(usize, &Channel) -> Value) -> Value {
     let channels = setting.dataset.channels.iter().enumerate();
-    let entries = channels.map(|(place, channel)| {
-        let entry = json!({
-            "bias": sensors.bias[place],
-            "gain": sensors.gain[place],
-            "delay": sensors.delay[place],
-        });
-        (channel.name.clone(), entry)
-    });
+    let entries = channels.map(|(place, channel)| (channel.name.clone(), of(place, channel)));
     Value::Object(entries.collect())
 }
