@@ -5,9 +5,12 @@
 //! and plus m s^4/24 an upper one; their derivatives bound its rate. In Bernstein's basis the
 //! coefficients of a bound enclose it. If those of the lower one stay above the lower limit,
 //! and those of the upper one below the upper limit, no crossing lies within the step. If
-//! instead a function must fall all the way and below its limit, exactly one does.
+//! instead a function ends below its limit for certain, exactly one does when it must fall
+//! all the way, or when it bends downwards all the way.
 //!
-//! Modes too fast for a step are bounded by their amplitudes.
+//! Modes too fast for a step are bounded by their amplitudes, or, where a limit has just been
+//! left, by their rates: from where the function stands they move it by no more than their
+//! rate in proportion to time.
 
 use super::watched::Local;
 
@@ -32,14 +35,20 @@ pub(super) fn over(local: &Local, [low, high]: [f64; 2], length: f64) -> Verdict
     let end = a + b + c;
     let (above, below) = (value - low, high - value);
     let noise = local.noise + local.drift_noise * h;
+    // Up to rounding a limit is not reached; moving inward from it is safe.
+    let margin = |distance: f64| distance.max(0.0) + noise;
     let room = Room {
-        above,
-        below,
-        // Up to rounding a limit is not reached; moving inward from it is safe.
-        margin: [above.max(0.0), below.max(0.0)].map(|d| d + noise - local.fast),
-        fast: local.fast,
-        // The coefficients of the rate are four times the differences of the value's.
+        ends: [above + end + m + local.fast, below - end + m + local.fast],
+        margins: [above, below].map(|distance| margin(distance) - local.fast),
+        margins_here: [
+            margin(above + local.fast_here),
+            margin(below - local.fast_here),
+        ],
+        // The coefficients of the rate are four times the differences of the value's, those
+        // of the second derivative twelve times the second ones.
         fast_difference: 0.25 * local.fast_rate * h,
+        fast_bend: local.fast_second * h * h / 12.0,
+        leaves: (rate.abs() - local.fast_rate) * h > 8.0 * noise,
     };
     let bounds = Bounds {
         lower: [0.0, first, middle, late, end - m],
@@ -48,15 +57,20 @@ pub(super) fn over(local: &Local, [low, high]: [f64; 2], length: f64) -> Verdict
     bounds.judge(&room)
 }
 
-/// The distances that a function has to its limits.
+/// The distances that a function has to its limits, the lower one first.
 struct Room {
-    above: f64,
-    below: f64,
-    /// What is left of them below and above for certain, or rounding.
-    margin: [f64; 2],
-    /// A bound of the fast modes' contribution, and to differences of coefficients.
-    fast: f64,
+    /// The most that can be left at the end of the step.
+    ends: [f64; 2],
+    /// What is left here for certain, whatever the fast modes do, or rounding.
+    margins: [f64; 2],
+    /// What is left here with the fast modes as they are, or rounding.
+    margins_here: [f64; 2],
+    /// A bound of the fast modes' contribution to differences of coefficients.
     fast_difference: f64,
+    /// The same for second differences.
+    fast_bend: f64,
+    /// Whether the function moves by more than rounding at first.
+    leaves: bool,
 }
 
 /// Coefficients of the bounds in Bernstein's basis, relative to the value at the start.
@@ -69,46 +83,51 @@ impl Bounds {
     #[inline(always)]
     fn judge(&self, room: &Room) -> Verdict {
         let Self { lower, upper } = self;
-        let [lowest, highest] = self.range();
-        let [low_margin, high_margin] = room.margin;
-        let safe_below = low_margin + lowest >= 0.0;
-        let safe_above = high_margin - highest >= 0.0;
+        let [down, up] = [lower.map(|c| -c), *upper];
+        let (safe_below, safe_above) = (room.is_kept(0, &down), room.is_kept(1, &up));
         if safe_below && safe_above {
             return Verdict::Safe;
         }
-        let difference = |place: usize| upper[place + 1] - upper[place] + room.fast_difference;
-        if safe_above
-            && room.above + upper[4] + room.fast < 0.0
-            && (0..4).all(|place| difference(place) < 0.0)
-        {
+        if safe_above && room.is_crossed(0, upper) {
             return Verdict::Crossing { upper: false };
         }
-        let difference = |place: usize| lower[place + 1] - lower[place] - room.fast_difference;
-        if safe_below
-            && room.below - lower[4] + room.fast < 0.0
-            && (0..4).all(|place| difference(place) > 0.0)
-        {
+        if safe_below && room.is_crossed(1, &lower.map(|c| -c)) {
             return Verdict::Crossing { upper: true };
         }
         Verdict::Unknown
     }
+}
 
-    /// What the function stays between.
-    fn range(&self) -> [f64; 2] {
-        let lowest = self.lower.iter().fold(0.0, |least, c| lesser(*c, least));
-        let highest = self.upper.iter().fold(0.0, |most, c| greater(*c, most));
-        [lowest, highest]
+impl Room {
+    /// Whether a limit is kept by a function whose way towards it has these bounds.
+    #[inline(always)]
+    fn is_kept(&self, limit: usize, towards: &[f64; 5]) -> bool {
+        let most = towards.iter().fold(0.0, |most, c| greater(*c, most));
+        if self.margins[limit] >= most {
+            return true;
+        }
+        let fast = [0.0, 1.0, 2.0, 3.0, 4.0].map(|place| place * self.fast_difference);
+        let with_fast = towards.iter().zip(fast);
+        let most = with_fast.fold(0.0, |most, (c, fast)| greater(c + fast, most));
+        self.margins_here[limit] >= most
+    }
+
+    /// Whether a limit is crossed, and that once, by a function whose way from it has these
+    /// bounds.
+    #[inline(always)]
+    fn is_crossed(&self, limit: usize, from: &[f64; 5]) -> bool {
+        let difference = |place: usize| from[place + 1] - from[place];
+        let falls = || (0..4).all(|place| difference(place) + self.fast_difference < 0.0);
+        let bends = || {
+            let bend = |place: usize| difference(place + 1) - difference(place);
+            self.leaves && (0..3).all(|place| bend(place) + self.fast_bend < 0.0)
+        };
+        self.ends[limit] < 0.0 && (falls() || bends())
     }
 }
 
-/// The smaller of two numbers, in one instruction: which of them if one is no number is of no
+/// The greater of two numbers, in one instruction: which of them if one is no number is of no
 /// concern, as nothing is certain then.
-#[inline(always)]
-fn lesser(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
-}
-
-/// The greater of two numbers, likewise.
 #[inline(always)]
 fn greater(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }

@@ -11,7 +11,7 @@ use nalgebra::Complex;
 use super::cluster_flow::ClusterFlow;
 use super::kernels::{self, Amplitudes};
 use super::ladder::Rung;
-use super::lanes::{LITTLE, Lane, Pairs, TINY, groups, numbers, numbers_mut};
+use super::lanes::{LITTLE, Lane, Pairs, groups, numbers, numbers_mut, terms_of_gains};
 use super::regime::Regime;
 use super::watched::{Local, Watched};
 
@@ -41,8 +41,10 @@ pub(super) struct Flow {
     motion: Vec<Lane>,
     /// Of the last polynomial.
     coefficients: Vec<Lane>,
-    /// Powers of tau from the power 0 on, and how many count at near times and at all.
+    /// Powers of a time from the power 0 on, that time, and how many count at near times and
+    /// at all.
     powers: Vec<f64>,
+    powers_of: f64,
     power_counts: [usize; 2],
     watched: Vec<Watched>,
     clusters: Vec<ClusterFlow>,
@@ -87,6 +89,7 @@ impl Flow {
         self.watched
             .resize_with(regime.functionals.len(), Watched::default);
         self.power_counts = [0; 2];
+        self.powers_of = f64::NAN;
         for (watched, functional) in self.watched.iter_mut().zip(&regime.functionals) {
             watched.start(
                 functional,
@@ -99,7 +102,7 @@ impl Flow {
                 *slot = count.max(*slot);
             }
         }
-        self.arrive(regime);
+        self.measure(regime);
     }
 
     /// Goes back to the start.
@@ -120,13 +123,13 @@ impl Flow {
     pub fn step(&mut self, regime: &Regime, rung: &Rung) {
         self.tau += rung.length;
         self.advance(&rung.gains);
-        self.arrive(regime);
+        self.measure(regime);
     }
 
     /// Advances by any time, which may be negative.
     pub fn shift(&mut self, regime: &Regime, time: f64) {
         self.advance_by(regime, time);
-        self.arrive(regime);
+        self.measure(regime);
     }
 
     fn advance_by(&mut self, regime: &Regime, time: f64) {
@@ -151,7 +154,7 @@ impl Flow {
 
     /// Advances by so little that a short series gives the gains.
     fn advance_little(&mut self, rates: &Pairs, time: f64, fastest: f64) {
-        let terms = if fastest * time.abs() <= TINY { 3 } else { 7 };
+        let terms = terms_of_gains(fastest * time.abs());
         kernels::advance_little(rates, time, terms, self.amplitudes());
     }
 
@@ -175,19 +178,6 @@ impl Flow {
         }
     }
 
-    /// Prepares for sums at a new tau.
-    fn arrive(&mut self, regime: &Regime) {
-        let near = regime.integrals.is_near(self.tau);
-        let count = self.power_counts[usize::from(!near)];
-        self.powers.clear();
-        let (squared, mut even, mut odd) = (self.tau * self.tau, 1.0, self.tau);
-        for _ in 0..count.div_ceil(2) {
-            self.powers.extend([even, odd]);
-            (even, odd) = (even * squared, odd * squared);
-        }
-        self.measure(regime);
-    }
-
     /// Whether no amplitude has overflowed.
     pub fn is_finite(&self) -> bool {
         let watched = self.watched.iter();
@@ -209,8 +199,26 @@ impl Flow {
         kernels::magnitudes((re, im), &mut self.size);
     }
 
+    /// Finds the powers of tau that count, an even number of them.
+    #[inline(always)]
+    fn find_powers(&mut self, regime: &Regime) {
+        if self.powers_of == self.tau {
+            return;
+        }
+        self.powers_of = self.tau;
+        let near = regime.integrals.is_near(self.tau);
+        let pairs = self.power_counts[usize::from(!near)].div_ceil(2);
+        self.powers.resize(2 * pairs, 0.0);
+        let (squared, mut even, mut odd) = (self.tau * self.tau, 1.0, self.tau);
+        for pair in self.powers.chunks_exact_mut(2) {
+            pair.copy_from_slice(&[even, odd]);
+            (even, odd) = (even * squared, odd * squared);
+        }
+    }
+
     /// Sums up a function over its modes here.
     pub fn sum_up(&mut self, regime: &Regime, place: usize) {
+        self.find_powers(regime);
         let watched = &mut self.watched[place];
         let functional = &regime.functionals[place];
         watched.take_sizes(functional, &self.size, self.measurements);

@@ -66,7 +66,7 @@ pub(super) struct Weights {
     pub re: Lane,
     /// Imaginary parts.
     pub im: Lane,
-    /// Magnitudes for the orders 0, 1 and 4.
+    /// Magnitudes for the orders 0, 1, 4 and 2.
     pub size: Lane,
 }
 
@@ -163,7 +163,7 @@ fn weights(values: &[Complex<f64>], modes: &Modes) -> Vec<Weights> {
         Weights {
             re: Lane::new(factors.map(|factor| factor.re)),
             im: Lane::new(factors.map(|factor| factor.im)),
-            size: Lane::new([size(0), size(1), size(4), 0.0]),
+            size: Lane::new([size(0), size(1), size(4), size(2)]),
         }
     };
     let rates = values.iter().zip(&modes.rate).zip(&modes.magnitude);

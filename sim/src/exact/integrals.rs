@@ -18,13 +18,13 @@ use super::modes::Forcing;
 const FAST: f64 = 4.0;
 
 /// A slow one turns by no more than this: the reach is cut accordingly, rad.
-const SLOW: f64 = 0.25;
+const SLOW: f64 = 1.0;
 
 /// Terms of the series that are below this part of the largest are left out.
 const REMAINDER: f64 = 1e-19;
 
 /// Times up to this part of the window are near: there fewer powers of time count.
-const NEAR: f64 = 0.125;
+const NEAR: f64 = 1.0 / 32.0;
 
 /// More are never needed: arguments are below 1.
 const MOST_TERMS: usize = 24;

@@ -113,8 +113,15 @@ fn advance_by<S: Simd>(simd: S, gains: &Pairs, mut amplitudes: Amplitudes<'_>) {
     }
 }
 
-/// Of 8 to 2.
-const RECIPROCALS: [f64; 7] = [0.125, 1.0 / 7.0, 1.0 / 6.0, 0.2, 0.25, 1.0 / 3.0, 0.5];
+/// Of 20 to 2.
+const RECIPROCALS: [f64; 19] = {
+    let (mut reciprocals, mut place) = ([0.0; 19], 0);
+    while place < 19 {
+        reciprocals[place] = 1.0 / (20 - place) as f64;
+        place += 1;
+    }
+    reciprocals
+};
 
 /// Advances modes of these rates by so little, s, that one more than so many terms of a
 /// series give the gains.
@@ -137,7 +144,7 @@ fn advance_little_by<S: Simd>(
             load(simd, rates.im[group]) * time,
         );
         let (mut c, mut d) = (f64x4::splat(simd, 1.0), f64x4::splat(simd, 0.0));
-        for reciprocal in &RECIPROCALS[7 - terms..] {
+        for reciprocal in &RECIPROCALS[RECIPROCALS.len() - terms..] {
             let (u, v) = (x * *reciprocal, y * *reciprocal);
             (c, d) = ((u * c - v * d) + 1.0, u * d + v * c);
         }

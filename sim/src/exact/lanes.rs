@@ -186,11 +186,19 @@ pub(super) fn gain(z: Complex<f64>) -> Complex<f64> {
     Complex::new(grown * cosine - 2.0 * half * half, (grown + 1.0) * sine)
 }
 
-/// The largest argument of [`kernels::advance_little`] with seven terms: the first term left out is below 1e-19.
-pub(super) const LITTLE: f64 = 1.0 / 64.0;
+/// The largest argument of [`kernels::advance_little`].
+pub(super) const LITTLE: f64 = 1.0;
 
-/// The same with three terms.
-pub(super) const TINY: f64 = 1e-4;
+/// How many terms it needs for arguments up to this: the first term left out is below 5e-19
+/// of the sum.
+pub(super) fn terms_of_gains(argument: f64) -> usize {
+    match argument {
+        _ if argument <= 1e-4 => 3,
+        _ if argument <= 1.0 / 64.0 => 7,
+        _ if argument <= 0.25 => 12,
+        _ => 19,
+    }
+}
 
 #[cfg(test)]
 mod tests {
@@ -204,7 +212,8 @@ mod tests {
             Complex::new(-9.0, 0.0),
         ];
         let pairs = Pairs::of(&rates);
-        for time in [1e-3 * LITTLE, LITTLE / 64.0, -LITTLE / 70.0] {
+        for argument in [1e-5, 1e-4, -1e-3, 1.0 / 64.0, -0.1, 0.25, -LITTLE] {
+            let time = argument / 63.0;
             // A unit amplitude moves by its gain.
             let start = [Lane::new([1.0; 4]), Lane::ZERO];
             let (mut moved, mut now) = ([Lane::ZERO; 2], start);
@@ -213,7 +222,8 @@ mod tests {
                 moved: &mut moved,
                 now: &mut now,
             };
-            kernels::advance_little(&pairs, time, 7, amplitudes);
+            let terms = terms_of_gains(argument.abs());
+            kernels::advance_little(&pairs, time, terms, amplitudes);
             let [re, im] = moved;
             for (place, rate) in rates.iter().enumerate() {
                 let found = Complex::new(re.to_array()[place], im.to_array()[place]);

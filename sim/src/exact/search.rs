@@ -285,7 +285,8 @@ fn polish(flow: &mut Flow, regime: &Regime, crossing: &Crossing, newton: &mut u6
     for _ in 0..POLISHING {
         *newton += 1;
         let here = distance(flow, regime, crossing.functional, crossing.upper);
-        if here.value > 0.0 {
+        // A motion that comes nearer no more has not turned back yet.
+        if here.value > 0.0 || here.rate > 0.0 {
             near = flow.tau;
         } else {
             far = flow.tau;
@@ -350,9 +351,14 @@ impl Distance {
 
     /// Where the cubic through value and derivatives crosses zero, for a certain crossing.
     fn first_guess(&self, length: f64) -> f64 {
-        // The zero of the parabola, also where the motion starts from rest.
+        // The zero of the parabola, also where the motion starts from rest, and the later one
+        // where it turns back.
         let discriminant = (self.rate * self.rate - 2.0 * self.second * self.value).max(0.0);
-        let mut s = 2.0 * self.value / (discriminant.sqrt() - self.rate);
+        let mut s = if self.rate > 0.0 {
+            -(discriminant.sqrt() + self.rate) / self.second
+        } else {
+            2.0 * self.value / (discriminant.sqrt() - self.rate)
+        };
         for _ in 0..2 {
             s -= self.cubic(s) / self.slope(s);
         }

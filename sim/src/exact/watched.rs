@@ -36,7 +36,7 @@ pub(super) struct Watched {
     /// The parts of the modes before each, and of all: of the amplitudes in the value, and of
     /// the derivatives of order 1 to 3.
     before: Vec<Lane>,
-    /// Their magnitudes in the orders 0, 1 and 4, and of which measurement.
+    /// Their magnitudes in the orders 0, 1, 4 and 2, and of which measurement.
     sizes_before: Vec<Lane>,
     measurement: u64,
 }
@@ -52,6 +52,10 @@ pub(super) struct Local {
     pub fast: f64,
     /// A bound of the fast modes' contribution to the first derivative.
     pub fast_rate: f64,
+    /// A bound of the fast modes' contribution to the second derivative.
+    pub fast_second: f64,
+    /// The fast modes' contribution to the value here.
+    pub fast_here: f64,
     /// What rounding may make of the value.
     pub noise: f64,
     /// What rounding may make of the first derivative.
@@ -123,12 +127,14 @@ impl Watched {
         let sizes = (all - self.sizes_before[slow]).to_array();
         let all = all.to_array();
         let mut derivatives = (self.derivatives - left_out).to_array();
-        derivatives[0] = self.value - left_out.to_array()[0];
-        let (mut fast, mut fast_rate) = (0.0, 0.0);
+        let left_out = left_out.to_array();
+        derivatives[0] = self.value - left_out[0];
+        let (mut fast, mut fast_rate, mut fast_second) = (0.0, 0.0, 0.0);
         if slow < modes {
             // With the rounding of the sums.
             fast = (sizes[0] + ROUNDING * all[0]) * rung.growth;
             fast_rate = (sizes[1] + ROUNDING * all[1]) * rung.growth;
+            fast_second = (sizes[3] + ROUNDING * all[3]) * rung.growth;
         }
         let fourth = all[2] - sizes[2];
         Local {
@@ -136,6 +142,8 @@ impl Watched {
             fourth: fourth * rung.growth + self.fourth,
             fast,
             fast_rate,
+            fast_second,
+            fast_here: left_out[0],
             noise: ROUNDING * self.size,
             rate_noise: ROUNDING * (all[1] + self.polynomial_rate.abs() + self.rate_size),
             drift_noise: ROUNDING * self.rate_size,
