@@ -6,6 +6,7 @@
 //! gives the values and derivatives of the regime's functions where it stands, and the state
 //! there.
 
+use fearless_simd::{Level, Simd, dispatch};
 use nalgebra::Complex;
 
 use super::cluster_flow::ClusterFlow;
@@ -54,8 +55,10 @@ pub(super) struct Flow {
 
 impl Flow {
     /// Starts at a state, with exp(i theta) of the phases there.
-    pub fn start(
+    #[inline(always)]
+    pub fn start<S: Simd>(
         &mut self,
+        simd: S,
         regime: &Regime,
         state: &[f64],
         inputs: &[f64],
@@ -74,7 +77,9 @@ impl Flow {
         let modes = 2 * regime.modes.groups();
         self.start
             .resize(modes + regime.integrals.groups(), Lane::ZERO);
-        regime.coordinates.add_product(&self.given, &mut self.start);
+        regime
+            .coordinates
+            .add_product(simd, &self.given, &mut self.start);
         self.rewind(regime);
         let units = &self.given[state.len()..state.len() + units];
         regime
@@ -92,6 +97,7 @@ impl Flow {
         self.powers_of = f64::NAN;
         for (watched, functional) in self.watched.iter_mut().zip(&regime.functionals) {
             watched.start(
+                simd,
                 functional,
                 &self.given,
                 &self.causes,
@@ -102,7 +108,7 @@ impl Flow {
                 *slot = count.max(*slot);
             }
         }
-        self.measure(regime);
+        self.measure(simd, regime);
     }
 
     /// Goes back to the start.
@@ -115,24 +121,28 @@ impl Flow {
     }
 
     /// Advances the modes by their gains over some time.
-    fn advance(&mut self, gains: &Pairs) {
-        kernels::advance(gains, self.amplitudes());
+    #[inline(always)]
+    fn advance<S: Simd>(&mut self, simd: S, gains: &Pairs) {
+        kernels::advance(simd, gains, self.amplitudes());
     }
 
     /// Advances by a step of the ladder.
-    pub fn step(&mut self, regime: &Regime, rung: &Rung) {
+    #[inline(always)]
+    pub fn step<S: Simd>(&mut self, simd: S, regime: &Regime, rung: &Rung) {
         self.tau += rung.length;
-        self.advance(&rung.gains);
-        self.measure(regime);
+        self.advance(simd, &rung.gains);
+        self.measure(simd, regime);
     }
 
     /// Advances by any time, which may be negative.
-    pub fn shift(&mut self, regime: &Regime, time: f64) {
-        self.advance_by(regime, time);
-        self.measure(regime);
+    #[inline(always)]
+    pub fn shift<S: Simd>(&mut self, simd: S, regime: &Regime, time: f64) {
+        self.advance_by(simd, regime, time);
+        self.measure(simd, regime);
     }
 
-    fn advance_by(&mut self, regime: &Regime, time: f64) {
+    #[inline(always)]
+    fn advance_by<S: Simd>(&mut self, simd: S, regime: &Regime, time: f64) {
         self.tau += time;
         let fastest = regime.modes.magnitude.last().copied().unwrap_or(0.0);
         let mut rest = time;
@@ -141,21 +151,22 @@ impl Flow {
                 break;
             }
             if rung.length <= rest {
-                self.advance(&rung.gains);
+                self.advance(simd, &rung.gains);
                 rest -= rung.length;
             }
         }
         if fastest * rest.abs() <= LITTLE {
-            self.advance_little(&regime.modes.rates, rest, fastest);
+            self.advance_little(simd, &regime.modes.rates, rest, fastest);
         } else {
-            self.advance(&Pairs::gains(&regime.modes.rate, rest));
+            self.advance(simd, &Pairs::gains(&regime.modes.rate, rest));
         }
     }
 
     /// Advances by so little that a short series gives the gains.
-    fn advance_little(&mut self, rates: &Pairs, time: f64, fastest: f64) {
+    #[inline(always)]
+    fn advance_little<S: Simd>(&mut self, simd: S, rates: &Pairs, time: f64, fastest: f64) {
         let terms = terms_of_gains(fastest * time.abs());
-        kernels::advance_little(rates, time, terms, self.amplitudes());
+        kernels::advance_little(simd, rates, time, terms, self.amplitudes());
     }
 
     fn amplitudes(&mut self) -> Amplitudes<'_> {
@@ -166,15 +177,24 @@ impl Flow {
         }
     }
 
+    /// The state a time after the start, s.
+    pub fn state_at(&mut self, regime: &Regime, tau: f64, out: &mut [f64]) {
+        dispatch!(Level::new(), simd => {
+            self.go_to(simd, regime, tau);
+            self.state(simd, regime, out);
+        });
+    }
+
     /// Goes to a time after the start, where nothing but the state will be asked for.
-    pub fn go_to(&mut self, regime: &Regime, tau: f64) {
+    #[inline(always)]
+    pub fn go_to<S: Simd>(&mut self, simd: S, regime: &Regime, tau: f64) {
         self.rewind(regime);
         self.tau = 0.0;
         if tau == regime.ladder.window {
             self.tau = tau;
-            self.advance(&regime.ladder.through);
+            self.advance(simd, &regime.ladder.through);
         } else {
-            self.advance_by(regime, tau);
+            self.advance_by(simd, regime, tau);
         }
     }
 
@@ -187,7 +207,8 @@ impl Flow {
     }
 
     /// Finds the amplitudes' magnitudes anew, if they may have shrunk by much.
-    fn measure(&mut self, regime: &Regime) {
+    #[inline(always)]
+    fn measure<S: Simd>(&mut self, simd: S, regime: &Regime) {
         let decayed = (self.tau - self.measured_at) * regime.modes.damping;
         if (0.0..DECAYED).contains(&decayed) {
             return;
@@ -196,7 +217,7 @@ impl Flow {
         let (re, im) = self.now.split_at(self.now.len() / 2);
         self.measurements += 1;
         self.size.resize(re.len(), Lane::ZERO);
-        kernels::magnitudes((re, im), &mut self.size);
+        kernels::magnitudes(simd, re, im, &mut self.size);
     }
 
     /// Finds the powers of tau that count, an even number of them.
@@ -217,12 +238,14 @@ impl Flow {
     }
 
     /// Sums up a function over its modes here.
-    pub fn sum_up(&mut self, regime: &Regime, place: usize) {
+    #[inline(always)]
+    pub fn sum_up<S: Simd>(&mut self, simd: S, regime: &Regime, place: usize) {
         self.find_powers(regime);
         let watched = &mut self.watched[place];
         let functional = &regime.functionals[place];
-        watched.take_sizes(functional, &self.size, self.measurements);
+        watched.take_sizes(simd, functional, &self.size, self.measurements);
         watched.sum_up(
+            simd,
             functional,
             (&self.now, &self.moved),
             (self.tau, &self.powers),
@@ -280,20 +303,21 @@ impl Flow {
     }
 
     /// The state here.
-    pub fn state(&mut self, regime: &Regime, out: &mut [f64]) {
+    #[inline(always)]
+    pub fn state<S: Simd>(&mut self, simd: S, regime: &Regime, out: &mut [f64]) {
         let modes = self.now.len();
         let integrals = &regime.integrals;
         if self.motion.is_empty() {
-            integrals.motion(&self.causes, &mut self.motion);
+            integrals.motion(simd, &self.causes, &mut self.motion);
         }
-        integrals.moved_by(&self.motion, self.tau, &mut self.moved[modes..]);
+        integrals.moved_by(simd, &self.motion, self.tau, &mut self.moved[modes..]);
         let states = out.len();
         self.sum.clear();
         self.sum.resize(groups(states), Lane::ZERO);
         numbers_mut(&mut self.sum)[..states].copy_from_slice(&self.given[..states]);
         regime
             .states
-            .add_product(numbers(&self.moved), &mut self.sum);
+            .add_product(simd, numbers(&self.moved), &mut self.sum);
         out.copy_from_slice(&numbers(&self.sum)[..states]);
         for (flow, cluster) in self.clusters.iter().zip(&regime.clusters) {
             flow.add_state(cluster, &regime.system.phases, self.tau, out);

@@ -66,8 +66,7 @@ impl<'s> Samples<'s> {
     pub fn take_in(&mut self, segment: &Segment<'_>, after: f64, flow: &mut Flow) {
         let Some(sample) = self.next() else { return };
         let mut state = vec![0.0; segment.state.len()];
-        flow.go_to(segment.regime, after);
-        flow.state(segment.regime, &mut state);
+        flow.state_at(segment.regime, after, &mut state);
         self.times.push(sample);
         self.states.push(state);
     }

@@ -6,6 +6,7 @@
 //! terms soon vanish, and all but c is known before any motion. A sinusoid that turns many
 //! times within the series' reach is answered by a sinusoid instead.
 
+use fearless_simd::Simd;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::decomposition;
@@ -184,15 +185,17 @@ impl Integrals {
 
     /// Writes how the coordinates move, given their causes: groups of coefficients for each
     /// power of time from the first on.
-    pub fn motion(&self, causes: &[f64], out: &mut Vec<Lane>) {
+    #[inline(always)]
+    pub fn motion<S: Simd>(&self, simd: S, causes: &[f64], out: &mut Vec<Lane>) {
         let longest = self.by_cause.iter().map(Vec::len).max().unwrap_or(0);
         out.clear();
         out.resize(longest, Lane::ZERO);
-        kernels::add_multiples(self.by_cause.iter().map(Vec::as_slice), causes, out);
+        kernels::add_multiples(simd, self.by_cause.iter().map(Vec::as_slice), causes, out);
     }
 
     /// Writes how far the coordinates have moved in `tau` s, given how they move.
-    pub fn moved_by(&self, motion: &[Lane], tau: f64, out: &mut [Lane]) {
+    #[inline(always)]
+    pub fn moved_by<S: Simd>(&self, simd: S, motion: &[Lane], tau: f64, out: &mut [Lane]) {
         let width = self.groups();
         if width == 0 {
             return;
@@ -203,12 +206,13 @@ impl Integrals {
             motion.len() / width
         };
         let column = std::iter::once(&motion[..powers * width]);
-        kernels::sum_powers(column, width, tau, out);
+        kernels::sum_powers(simd, column, width, tau, out);
     }
 
     /// Writes, for as many of the causes as are asked for, how far a unit of each moves the
     /// coordinates in `tau` s: a column in groups each.
-    pub fn transition(&self, tau: f64, causes: usize, out: &mut Vec<Lane>) {
+    #[inline(always)]
+    pub fn transition<S: Simd>(&self, simd: S, tau: f64, causes: usize, out: &mut Vec<Lane>) {
         let width = self.groups();
         out.clear();
         out.resize(causes * width, Lane::ZERO);
@@ -218,15 +222,16 @@ impl Integrals {
                 true => &factors[..near * width],
                 false => factors,
             });
-            kernels::sum_powers(columns, width, tau, out);
+            kernels::sum_powers(simd, columns, width, tau, out);
         }
     }
 
     /// Writes how far the coordinates have moved, given their causes and the transition.
-    pub fn moved(&self, causes: &[f64], transition: &[Lane], out: &mut [Lane]) {
+    #[inline(always)]
+    pub fn moved<S: Simd>(&self, simd: S, causes: &[f64], transition: &[Lane], out: &mut [Lane]) {
         out.fill(Lane::ZERO);
         let columns = transition.chunks_exact(self.groups().max(1));
-        kernels::add_multiples(columns, causes, out);
+        kernels::add_multiples(simd, columns, causes, out);
     }
 
     /// The polynomial of a function with these weights of the coordinates, within `window` s.
@@ -300,8 +305,10 @@ impl Polynomial {
 
     /// Writes for some causes what each power of time adds to the value and the derivatives of
     /// order 1 to 3, and returns a bound of the fourth one.
-    pub fn terms(
+    #[inline(always)]
+    pub fn terms<S: Simd>(
         &self,
+        simd: S,
         causes: &[f64],
         coefficients: &mut Vec<Lane>,
         terms: &mut Vec<Lane>,
@@ -310,7 +317,7 @@ impl Polynomial {
         coefficients.clear();
         coefficients.resize(self.fourth.len() + 1, Lane::ZERO);
         let columns = self.columns.iter().map(Vec::as_slice);
-        kernels::add_multiples(columns, causes, coefficients);
+        kernels::add_multiples(simd, columns, causes, coefficients);
         let fourth = coefficients.iter().zip(&self.fourth);
         let fourth = fourth.fold(Lane::ZERO, |sum, (c, factor)| sum + c.abs() * *factor);
         terms.clear();

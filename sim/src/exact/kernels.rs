@@ -1,8 +1,9 @@
-//! The loops over groups of numbers that a motion spends its time in, each compiled for
-//! several instruction sets and chosen when they run. They do the same operations in the same
-//! order whatever the set, without fused ones, so that no bit depends on the choice.
+//! The loops over groups of numbers that a motion spends its time in. With all that calls them
+//! they are compiled for several instruction sets; which one is chosen when a motion runs. They
+//! do the same operations in the same order whatever the set, without fused ones, so that no
+//! bit depends on the choice.
 
-use fearless_simd::{Level, Simd, SimdBase, SimdFloat, SimdFrom, dispatch, f64x4};
+use fearless_simd::{Simd, SimdBase, SimdFloat, SimdFrom, f64x4};
 
 use super::functional::{ValueWeights, Weights};
 use super::lanes::{Lane, Pairs, numbers};
@@ -21,12 +22,8 @@ pub(super) struct Summed {
 
 /// Adds a product with a matrix whose rows stand in groups, in each the columns one after the
 /// other.
-pub(super) fn add_product(entries: &[Lane], columns: usize, vector: &[f64], out: &mut [Lane]) {
-    dispatch!(Level::new(), simd => add_product_by(simd, entries, columns, vector, out));
-}
-
 #[inline(always)]
-fn add_product_by<S: Simd>(
+pub(super) fn add_product<S: Simd>(
     simd: S,
     entries: &[Lane],
     columns: usize,
@@ -55,16 +52,8 @@ fn add_product_by<S: Simd>(
 }
 
 /// Adds multiples of columns, which may be shorter than the whole.
-pub(super) fn add_multiples<'a>(
-    columns: impl Iterator<Item = &'a [Lane]>,
-    factors: &[f64],
-    out: &mut [Lane],
-) {
-    dispatch!(Level::new(), simd => add_multiples_by(simd, columns, factors, out));
-}
-
 #[inline(always)]
-fn add_multiples_by<'a, S: Simd>(
+pub(super) fn add_multiples<'a, S: Simd>(
     simd: S,
     columns: impl Iterator<Item = &'a [Lane]>,
     factors: &[f64],
@@ -100,12 +89,8 @@ impl Amplitudes<'_> {
 }
 
 /// Advances modes by their gains over some time.
-pub(super) fn advance(gains: &Pairs, amplitudes: Amplitudes<'_>) {
-    dispatch!(Level::new(), simd => advance_by(simd, gains, amplitudes));
-}
-
 #[inline(always)]
-fn advance_by<S: Simd>(simd: S, gains: &Pairs, mut amplitudes: Amplitudes<'_>) {
+pub(super) fn advance<S: Simd>(simd: S, gains: &Pairs, mut amplitudes: Amplitudes<'_>) {
     let groups = gains.re.len();
     for group in 0..groups {
         let gain = (load(simd, gains.re[group]), load(simd, gains.im[group]));
@@ -125,12 +110,8 @@ const RECIPROCALS: [f64; 19] = {
 
 /// Advances modes of these rates by so little, s, that one more than so many terms of a
 /// series give the gains.
-pub(super) fn advance_little(rates: &Pairs, time: f64, terms: usize, amplitudes: Amplitudes<'_>) {
-    dispatch!(Level::new(), simd => advance_little_by(simd, rates, time, terms, amplitudes));
-}
-
 #[inline(always)]
-fn advance_little_by<S: Simd>(
+pub(super) fn advance_little<S: Simd>(
     simd: S,
     rates: &Pairs,
     time: f64,
@@ -166,17 +147,8 @@ pub(super) struct Factors<'a> {
 /// Sums up a function, given the amplitudes, how far they have moved, and the powers of time.
 /// `before` becomes the sums over the modes before each and over all: of the amplitudes, and
 /// for the derivatives of order 1 to 3.
-pub(super) fn sum_up(
-    factors: Factors<'_>,
-    amplitudes: (&[Lane], &[Lane]),
-    powers: &[f64],
-    before: &mut [Lane],
-) -> Summed {
-    dispatch!(Level::new(), simd => sum_up_by(simd, factors, amplitudes, powers, before))
-}
-
 #[inline(always)]
-fn sum_up_by<S: Simd>(
+pub(super) fn sum_up<S: Simd>(
     simd: S,
     factors: Factors<'_>,
     (now, moved): (&[Lane], &[Lane]),
@@ -230,12 +202,13 @@ fn sum_up_by<S: Simd>(
 
 /// Sums up the magnitudes of a function's modes, given those of their amplitudes: `before`
 /// becomes the sums over the modes before each and over all.
-pub(super) fn sum_sizes(weights: &[Weights], sizes: &[Lane], before: &mut [Lane]) {
-    dispatch!(Level::new(), simd => sum_sizes_by(simd, weights, sizes, before));
-}
-
 #[inline(always)]
-fn sum_sizes_by<S: Simd>(simd: S, weights: &[Weights], sizes: &[Lane], before: &mut [Lane]) {
+pub(super) fn sum_sizes<S: Simd>(
+    simd: S,
+    weights: &[Weights],
+    sizes: &[Lane],
+    before: &mut [Lane],
+) {
     let mut sums = f64x4::splat(simd, 0.0);
     let (slots, all) = before.split_at_mut(weights.len());
     for ((weights, size), slot) in weights.iter().zip(numbers(sizes)).zip(slots) {
@@ -246,12 +219,8 @@ fn sum_sizes_by<S: Simd>(simd: S, weights: &[Weights], sizes: &[Lane], before: &
 }
 
 /// The magnitudes of amplitudes in groups.
-pub(super) fn magnitudes((re, im): (&[Lane], &[Lane]), out: &mut [Lane]) {
-    dispatch!(Level::new(), simd => magnitudes_by(simd, re, im, out));
-}
-
 #[inline(always)]
-fn magnitudes_by<S: Simd>(simd: S, re: &[Lane], im: &[Lane], out: &mut [Lane]) {
+pub(super) fn magnitudes<S: Simd>(simd: S, re: &[Lane], im: &[Lane], out: &mut [Lane]) {
     for ((re, im), slot) in re.iter().zip(im).zip(out) {
         let (re, im) = (load(simd, *re), load(simd, *im));
         *slot = store((re * re + im * im).sqrt());
@@ -260,17 +229,8 @@ fn magnitudes_by<S: Simd>(simd: S, re: &[Lane], im: &[Lane], out: &mut [Lane]) {
 
 /// For each of these columns, power by power in groups of a width, the sum over the powers of
 /// a time from the first on.
-pub(super) fn sum_powers<'a>(
-    columns: impl Iterator<Item = &'a [Lane]>,
-    width: usize,
-    time: f64,
-    out: &mut [Lane],
-) {
-    dispatch!(Level::new(), simd => sum_powers_by(simd, columns, width, time, out));
-}
-
 #[inline(always)]
-fn sum_powers_by<'a, S: Simd>(
+pub(super) fn sum_powers<'a, S: Simd>(
     simd: S,
     columns: impl Iterator<Item = &'a [Lane]>,
     width: usize,

@@ -5,6 +5,7 @@
 use std::ops::{Add, AddAssign, Mul, MulAssign, Sub, SubAssign};
 
 use bytemuck::{Pod, Zeroable};
+use fearless_simd::Simd;
 use nalgebra::Complex;
 
 use super::kernels;
@@ -144,9 +145,10 @@ impl Packed {
     }
 
     /// Adds the product of the first columns with a vector.
-    pub fn add_product(&self, vector: &[f64], out: &mut [Lane]) {
+    #[inline(always)]
+    pub fn add_product<S: Simd>(&self, simd: S, vector: &[f64], out: &mut [Lane]) {
         if self.columns > 0 {
-            kernels::add_product(&self.entries, self.columns, vector, out);
+            kernels::add_product(simd, &self.entries, self.columns, vector, out);
         }
     }
 }
@@ -202,6 +204,8 @@ pub(super) fn terms_of_gains(argument: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use fearless_simd::{Level, dispatch};
+
     use super::*;
 
     #[test]
@@ -223,7 +227,7 @@ mod tests {
                 now: &mut now,
             };
             let terms = terms_of_gains(argument.abs());
-            kernels::advance_little(&pairs, time, terms, amplitudes);
+            dispatch!(Level::new(), simd => kernels::advance_little(simd, &pairs, time, terms, amplitudes));
             let [re, im] = moved;
             for (place, rate) in rates.iter().enumerate() {
                 let found = Complex::new(re.to_array()[place], im.to_array()[place]);
@@ -248,7 +252,7 @@ mod tests {
             let packed = Packed::of(rows, columns, entry);
             let vector: Vec<f64> = (0..columns).map(|j| j as f64 + 0.5).collect();
             let mut out = vec![Lane::new([1.0; 4]); groups(rows)];
-            packed.add_product(&vector, &mut out);
+            dispatch!(Level::new(), simd => packed.add_product(simd, &vector, &mut out));
             for row in 0..rows {
                 let wanted: f64 = (0..columns).map(|j| entry(row, j) * vector[j]).sum();
                 // Small integers and halves: no rounding.

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use codegen::affine::system::{AffineEvaluator, AffineSystem};
+use fearless_simd::{Level, Simd, dispatch};
 use nalgebra::{Complex, DVector};
 
 use super::clock::Clock;
@@ -264,34 +265,20 @@ impl Propagator {
         } = &mut self.regimes[motion.regime];
         motion.before.copy_from_slice(&motion.state);
         let flow = &mut self.flow;
-        flow.start(regime, &motion.state, values, &motion.phases);
         let length = remaining.min(regime.ladder.window);
         let start = motion.clock;
-        if motion.at_once > AT_ONCE {
-            // Rounding alone decides between surfaces: the motion itself must.
-            if let Some(shortest) = regime.ladder.rungs.last() {
-                flow.step(regime, shortest);
-            }
-            motion.at_once = 0;
-        }
-        let leap = motion
-            .jumped
-            .take()
-            .and_then(|except| passed(flow, regime, except));
-        let found = match leap {
-            Some(found) => found,
-            None => search(flow, regime, length, rung, &mut motion.effort),
-        };
+        let (found, leapt) = dispatch!(Level::new(), simd => {
+            go_on(simd, flow, regime, motion, (values, length), rung)
+        });
         let reached = match found {
+            Found::Nothing if length < remaining => {
+                motion.clock = start.plus(length);
+                false
+            }
             Found::Nothing => {
-                flow.go_to(regime, length);
-                if length < remaining {
-                    motion.clock = start.plus(length);
-                } else {
-                    motion.clock = Clock::at(target);
-                    motion.jumped = breakpoint.map(|_| None);
-                }
-                length >= remaining && breakpoint.is_none()
+                motion.clock = Clock::at(target);
+                motion.jumped = breakpoint.map(|_| None);
+                breakpoint.is_none()
             }
             Found::Limit { .. } => {
                 motion.clock = start.plus(flow.tau);
@@ -301,7 +288,6 @@ impl Propagator {
         for (slot, phase) in motion.phases.iter_mut().zip(&self.phases) {
             *slot = motion.clock.phase(*phase);
         }
-        flow.state(regime, &mut motion.state);
         if let Some(state) = motion.state.iter().position(|y| !y.is_finite()) {
             return Err(SolveError::NotFinite { t: now, state }.into());
         }
@@ -317,7 +303,7 @@ impl Propagator {
         follow.flowed(&segment, flow);
         if let Found::Limit { functional, upper } = found {
             motion.at_once = if tau > 0.0 { 0 } else { motion.at_once + 1 };
-            self.switch(motion, (functional, upper, leap.is_some()), inputs, follow)?;
+            self.switch(motion, (functional, upper, leapt), inputs, follow)?;
         }
         Ok(reached)
     }
@@ -693,6 +679,40 @@ impl Propagator {
         }
         Ok(found)
     }
+}
+
+/// Moves the state on within a regime, for `length` s at most, to the first limit that is
+/// reached: which one it is, and whether a jump led over it.
+#[inline(always)]
+fn go_on<S: Simd>(
+    simd: S,
+    flow: &mut Flow,
+    regime: &Regime,
+    motion: &mut Motion,
+    (inputs, length): (&[f64], f64),
+    rung: &mut usize,
+) -> (Found, bool) {
+    flow.start(simd, regime, &motion.state, inputs, &motion.phases);
+    if motion.at_once > AT_ONCE {
+        // Rounding alone decides between surfaces: the motion itself must.
+        if let Some(shortest) = regime.ladder.rungs.last() {
+            flow.step(simd, regime, shortest);
+        }
+        motion.at_once = 0;
+    }
+    let leap = match motion.jumped.take() {
+        Some(except) => passed(simd, flow, regime, except),
+        None => None,
+    };
+    let found = match leap {
+        Some(found) => found,
+        None => search(simd, flow, regime, length, rung, &mut motion.effort),
+    };
+    if found == Found::Nothing {
+        flow.go_to(simd, regime, length);
+    }
+    flow.state(simd, regime, &mut motion.state);
+    (found, leap.is_some())
 }
 
 /// The fastest rate that switching can add, 1/s: the root of the largest change of a

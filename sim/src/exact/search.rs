@@ -8,6 +8,8 @@
 //! limit up to rounding crosses it only if its rate leads outward; otherwise two surfaces
 //! left within 1e-11 s of each other would be entered and left for ever.
 
+use fearless_simd::{Level, Simd, dispatch};
+
 use super::bounds::{Verdict, over};
 use super::flow::Flow;
 use super::functional::Limits;
@@ -51,7 +53,9 @@ pub(super) struct Effort {
 
 /// Searches from where the flow stands to `end` after its start, s. `first` is the rung to
 /// begin with and becomes the one at which the last step was made.
-pub(super) fn search(
+#[inline(always)]
+pub(super) fn search<S: Simd>(
+    simd: S,
     flow: &mut Flow,
     regime: &Regime,
     end: f64,
@@ -68,7 +72,7 @@ pub(super) fn search(
         }
         let mut halved = false;
         let outcome = loop {
-            match step(flow, regime, place, rungs[place].length, end, effort) {
+            match step(simd, flow, regime, place, rungs[place].length, end, effort) {
                 Outcome::Halve if place < last => {
                     place += 1;
                     halved = true;
@@ -108,11 +112,23 @@ struct Crossing {
 
 /// Steps shorter than those of the ladder, down to where no function moves by more than its
 /// rounding: what grazes a limit there neither reaches nor leaves it.
+#[cold]
 fn creep(flow: &mut Flow, regime: &Regime, end: f64, effort: &mut Effort) -> Outcome {
+    dispatch!(Level::new(), simd => creep_by(simd, flow, regime, end, effort))
+}
+
+#[inline(always)]
+fn creep_by<S: Simd>(
+    simd: S,
+    flow: &mut Flow,
+    regime: &Regime,
+    end: f64,
+    effort: &mut Effort,
+) -> Outcome {
     let last = regime.ladder.rungs.len() - 1;
     let mut length = regime.ladder.rungs[last].length;
     for functional in 0..regime.functionals.len() {
-        flow.sum_up(regime, functional);
+        flow.sum_up(simd, regime, functional);
     }
     loop {
         length *= 0.5;
@@ -120,11 +136,11 @@ fn creep(flow: &mut Flow, regime: &Regime, end: f64, effort: &mut Effort) -> Out
             return Outcome::End;
         }
         if is_still(flow, regime, length) {
-            flow.shift(regime, length);
+            flow.shift(simd, regime, length);
             effort.steps += 1;
             return Outcome::Made;
         }
-        match step(flow, regime, last, length, end, effort) {
+        match step(simd, flow, regime, last, length, end, effort) {
             Outcome::Halve => {}
             other => return other,
         }
@@ -146,7 +162,9 @@ fn is_still(flow: &Flow, regime: &Regime, length: f64) -> bool {
 }
 
 /// Tries a step of `length` s, at most that of the rung.
-fn step(
+#[inline(always)]
+fn step<S: Simd>(
+    simd: S,
     flow: &mut Flow,
     regime: &Regime,
     place: usize,
@@ -164,7 +182,7 @@ fn step(
             continue;
         }
         if !flow.is_summed_up(functional) {
-            flow.sum_up(regime, functional);
+            flow.sum_up(simd, regime, functional);
             if let Some(found) = reached(flow, regime, functional) {
                 return Outcome::Limit(found);
             }
@@ -190,14 +208,14 @@ fn step(
         }
     }
     effort.steps += 1;
-    let Some(first) = first_of_all(flow, regime, effort) else {
+    let Some(first) = first_of_all(simd, flow, regime, effort) else {
         if until >= end {
             return Outcome::End;
         }
         if length == rung.length {
-            flow.step(regime, rung);
+            flow.step(simd, regime, rung);
         } else {
-            flow.shift(regime, length);
+            flow.shift(simd, regime, length);
         }
         return Outcome::Made;
     };
@@ -212,17 +230,23 @@ fn step(
 
 /// Goes to the first of the crossings that are certain: to the one that seems to be, then back
 /// to those of other functions that turn out to come before.
-fn first_of_all(flow: &mut Flow, regime: &Regime, effort: &mut Effort) -> Option<Crossing> {
+#[inline(always)]
+fn first_of_all<S: Simd>(
+    simd: S,
+    flow: &mut Flow,
+    regime: &Regime,
+    effort: &mut Effort,
+) -> Option<Crossing> {
     let guesses = effort.crossings.iter().copied();
     let mut first = guesses.reduce(|a, b| if b.guess < a.guess { b } else { a })?;
-    flow.shift(regime, first.guess - flow.tau);
-    polish(flow, regime, &first, &mut effort.newton);
+    flow.shift(simd, regime, first.guess - flow.tau);
+    polish(simd, flow, regime, &first, &mut effort.newton);
     let seeming = first.functional;
     for crossing in &effort.crossings {
         if crossing.functional == seeming {
             continue;
         }
-        let here = distance(flow, regime, crossing.functional, crossing.upper);
+        let here = distance(simd, flow, regime, crossing.functional, crossing.upper);
         if here.value < -here.noise && crossing.within[0] < flow.tau {
             first = Crossing {
                 within: [crossing.within[0], crossing.within[1].min(flow.tau)],
@@ -230,8 +254,8 @@ fn first_of_all(flow: &mut Flow, regime: &Regime, effort: &mut Effort) -> Option
             };
             let [near, far] = first.within;
             let guess = (flow.tau + here.newton()).clamp(near, far);
-            flow.shift(regime, guess - flow.tau);
-            polish(flow, regime, &first, &mut effort.newton);
+            flow.shift(simd, regime, guess - flow.tau);
+            polish(simd, flow, regime, &first, &mut effort.newton);
         }
     }
     Some(first)
@@ -254,13 +278,19 @@ fn reached(flow: &Flow, regime: &Regime, functional: usize) -> Option<Found> {
 
 /// A limit that was passed by a jump: of an input, or of the function itself when another
 /// one switched. Functions of the group `except` are where they belong.
-pub(super) fn passed(flow: &mut Flow, regime: &Regime, except: Option<usize>) -> Option<Found> {
+#[inline(always)]
+pub(super) fn passed<S: Simd>(
+    simd: S,
+    flow: &mut Flow,
+    regime: &Regime,
+    except: Option<usize>,
+) -> Option<Found> {
     for (functional, of) in regime.functionals.iter().enumerate() {
         if Some(of.limits.group) == except {
             continue;
         }
         for upper in [false, true] {
-            let here = distance(flow, regime, functional, upper);
+            let here = distance(simd, flow, regime, functional, upper);
             if here.value < -JUMP * here.noise {
                 return Some(Found::Limit { functional, upper });
             }
@@ -270,9 +300,16 @@ pub(super) fn passed(flow: &mut Flow, regime: &Regime, except: Option<usize>) ->
 }
 
 /// The distance of a function to a limit here, summed up anew.
-fn distance(flow: &mut Flow, regime: &Regime, functional: usize, upper: bool) -> Distance {
+#[inline(always)]
+fn distance<S: Simd>(
+    simd: S,
+    flow: &mut Flow,
+    regime: &Regime,
+    functional: usize,
+    upper: bool,
+) -> Distance {
     let rungs = &regime.ladder.rungs;
-    flow.sum_up(regime, functional);
+    flow.sum_up(simd, regime, functional);
     // The shortest step has no fast modes.
     flow.local(regime, functional, &rungs[rungs.len() - 1], |local| {
         Distance::to(local, &regime.functionals[functional].limits, upper)
@@ -280,11 +317,18 @@ fn distance(flow: &mut Flow, regime: &Regime, functional: usize, upper: bool) ->
 }
 
 /// Goes from near a crossing to it, and counts Newton's steps.
-fn polish(flow: &mut Flow, regime: &Regime, crossing: &Crossing, newton: &mut u64) {
+#[inline(always)]
+fn polish<S: Simd>(
+    simd: S,
+    flow: &mut Flow,
+    regime: &Regime,
+    crossing: &Crossing,
+    newton: &mut u64,
+) {
     let [mut near, mut far] = crossing.within;
     for _ in 0..POLISHING {
         *newton += 1;
-        let here = distance(flow, regime, crossing.functional, crossing.upper);
+        let here = distance(simd, flow, regime, crossing.functional, crossing.upper);
         // A motion that comes nearer no more has not turned back yet.
         if here.value > 0.0 || here.rate > 0.0 {
             near = flow.tau;
@@ -301,7 +345,7 @@ fn polish(flow: &mut Flow, regime: &Regime, crossing: &Crossing, newton: &mut u6
         if flow.tau + shift == flow.tau {
             return;
         }
-        flow.shift(regime, shift);
+        flow.shift(simd, regime, shift);
         // What is left of the cubic, and what it leaves out, are below rounding.
         let squared = shift * shift;
         let rest = here.cubic(shift).abs() + here.fourth * squared * squared / 24.0;

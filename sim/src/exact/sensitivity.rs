@@ -7,6 +7,7 @@
 //! switch the saltation matrix holds, with the displacement of the surface. The switching
 //! sequence is that of the motion: grazing is where a trajectory has no derivative.
 
+use fearless_simd::{Level, dispatch};
 use nalgebra::Complex;
 
 use super::error::ExactError;
@@ -223,10 +224,11 @@ impl Neighbours {
             let index = propagator.regime(segment.places, segment.start.time())?;
             let phases = propagator.phases_at(segment.start);
             let regime = propagator.made(index);
-            self.flow
-                .start(regime, segment.state, segment.inputs, &phases);
-            self.flow.go_to(regime, tau);
-            self.flow.state(regime, state);
+            let flow = &mut self.flow;
+            dispatch!(Level::new(), simd => {
+                flow.start(simd, regime, segment.state, segment.inputs, &phases);
+            });
+            flow.state_at(regime, tau, state);
             let factor = factor / (12.0 * self.step);
             vector
                 .iter_mut()

@@ -1,6 +1,7 @@
 //! Neighbouring motions to first order: tangent vectors carried along a motion, through the
 //! flow exactly and through switches by the saltation matrix.
 
+use fearless_simd::{Level, Simd, dispatch};
 use nalgebra::{Complex, DVector};
 
 use super::flow::Flow;
@@ -40,13 +41,15 @@ impl Tangents {
     /// Carries the vectors on for `tau` s.
     pub fn advance(&mut self, regime: &Regime, tau: f64) {
         let gains = Pairs::gains(&regime.modes.rate, tau);
-        let Neighbour { transition, .. } = &mut self.neighbour;
-        regime
-            .integrals
-            .transition(tau, regime.integrals.felt(), transition);
-        for vector in &mut self.vectors {
-            self.neighbour.carry(regime, &gains, tau, vector);
-        }
+        let (neighbour, vectors) = (&mut self.neighbour, &mut self.vectors);
+        dispatch!(Level::new(), simd => {
+            let transition = &mut neighbour.transition;
+            let integrals = &regime.integrals;
+            integrals.transition(simd, tau, integrals.felt(), transition);
+            for vector in vectors {
+                neighbour.carry(simd, regime, &gains, tau, vector);
+            }
+        });
     }
 }
 
@@ -96,14 +99,22 @@ impl Follow for Tangents {
 impl Neighbour {
     /// Adds to a state difference what the flow makes of it after `tau` s, given the modes'
     /// gains over that time.
-    fn carry(&mut self, regime: &Regime, gains: &Pairs, tau: f64, vector: &mut [f64]) {
+    #[inline(always)]
+    fn carry<S: Simd>(
+        &mut self,
+        simd: S,
+        regime: &Regime,
+        gains: &Pairs,
+        tau: f64,
+        vector: &mut [f64],
+    ) {
         let groups = regime.modes.groups();
         self.coordinates.clear();
         self.coordinates
             .resize(2 * groups + regime.integrals.groups(), Lane::ZERO);
         regime
             .coordinates
-            .add_product(vector, &mut self.coordinates);
+            .add_product(simd, vector, &mut self.coordinates);
         for group in 0..groups {
             let (a, b) = (self.coordinates[group], self.coordinates[groups + group]);
             let (c, d) = (gains.re[group], gains.im[group]);
@@ -115,13 +126,13 @@ impl Neighbour {
         let causes = regime.integrals.free_causes(integrals);
         regime
             .integrals
-            .moved(causes, &self.transition, &mut self.moved);
+            .moved(simd, causes, &self.transition, &mut self.moved);
         integrals.copy_from_slice(&self.moved);
         self.sum.clear();
         self.sum.resize(lanes::groups(vector.len()), Lane::ZERO);
         regime
             .states
-            .add_product(numbers(&self.coordinates), &mut self.sum);
+            .add_product(simd, numbers(&self.coordinates), &mut self.sum);
         for cluster in &regime.clusters {
             add_cluster(cluster, tau, vector, numbers_mut(&mut self.sum));
         }

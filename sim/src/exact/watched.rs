@@ -1,6 +1,8 @@
 //! A function in one flow: what it is made of there, its value and derivatives where the
 //! flow stands, and bounds of what it can do within a step.
 
+use fearless_simd::Simd;
+
 use super::functional::Functional;
 use super::kernels::{self, Factors};
 use super::ladder::Rung;
@@ -67,8 +69,10 @@ pub(super) struct Local {
 impl Watched {
     /// Prepares for a flow from a start, given what is known there and what drives the
     /// integrals. `coefficients` is memory for them.
-    pub fn start(
+    #[inline(always)]
+    pub fn start<S: Simd>(
         &mut self,
+        simd: S,
         functional: &Functional,
         given: &[f64],
         causes: &[f64],
@@ -82,22 +86,31 @@ impl Watched {
         (self.start, self.start_size) = functional.at(given);
         let polynomial = &functional.polynomial;
         self.rate_size = polynomial.rate_size(causes);
-        self.fourth = polynomial.terms(causes, coefficients, &mut self.terms);
+        self.fourth = polynomial.terms(simd, causes, coefficients, &mut self.terms);
     }
 
     /// Takes the magnitudes of the modes' amplitudes, if they are new: those of this
     /// measurement.
-    pub fn take_sizes(&mut self, functional: &Functional, sizes: &[Lane], measurement: u64) {
+    #[inline(always)]
+    pub fn take_sizes<S: Simd>(
+        &mut self,
+        simd: S,
+        functional: &Functional,
+        sizes: &[Lane],
+        measurement: u64,
+    ) {
         if self.measurement != measurement {
             self.measurement = measurement;
-            kernels::sum_sizes(&functional.weights, sizes, &mut self.sizes_before);
+            kernels::sum_sizes(simd, &functional.weights, sizes, &mut self.sizes_before);
         }
     }
 
     /// Sums up, so long after the start, s, given the amplitudes, how far they have moved, and
     /// the powers of the time.
-    pub fn sum_up(
+    #[inline(always)]
+    pub fn sum_up<S: Simd>(
         &mut self,
+        simd: S,
         functional: &Functional,
         amplitudes: (&[Lane], &[Lane]),
         (tau, powers): (f64, &[f64]),
@@ -108,7 +121,7 @@ impl Watched {
             value_weights: &functional.value_weights,
             terms: &self.terms,
         };
-        let summed = kernels::sum_up(factors, amplitudes, powers, &mut self.before);
+        let summed = kernels::sum_up(simd, factors, amplitudes, powers, &mut self.before);
         self.value = self.start + summed.value;
         self.size = self.start_size + self.rate_size * tau + summed.size;
         self.derivatives = summed.derivatives;
