@@ -318,12 +318,9 @@ impl Polynomial {
         coefficients.resize(self.fourth.len() + 1, Lane::ZERO);
         let columns = self.columns.iter().map(Vec::as_slice);
         kernels::add_multiples(simd, columns, causes, coefficients);
-        let fourth = coefficients.iter().zip(&self.fourth);
-        let fourth = fourth.fold(Lane::ZERO, |sum, (c, factor)| sum + c.abs() * *factor);
-        terms.clear();
-        let shifted = numbers(coefficients).windows(4).zip(&self.factors);
-        terms.extend(shifted.map(|(c, factors)| Lane::new([c[0], c[1], c[2], c[3]]) * *factors));
-        fourth.total()
+        terms.resize(self.factors.len(), Lane::ZERO);
+        kernels::shift_powers(simd, coefficients, &self.factors, terms);
+        kernels::sum_magnitudes(simd, coefficients, &self.fourth)
     }
 
     /// The sum of the magnitudes of the first coefficient's terms, which may cancel.

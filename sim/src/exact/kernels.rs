@@ -218,6 +218,31 @@ pub(super) fn sum_sizes<S: Simd>(
     all[0] = store(sums);
 }
 
+/// Writes for each power k the coefficients of the powers k to k + 3, times its factors.
+#[inline(always)]
+pub(super) fn shift_powers<S: Simd>(
+    simd: S,
+    coefficients: &[Lane],
+    factors: &[Lane],
+    out: &mut [Lane],
+) {
+    let shifted = numbers(coefficients).windows(4);
+    for ((coefficients, factors), slot) in shifted.zip(factors).zip(out) {
+        let coefficients = f64x4::from_slice(simd, coefficients);
+        *slot = store(coefficients * load(simd, *factors));
+    }
+}
+
+/// The sum of the magnitudes of numbers in groups, each with its factor.
+#[inline(always)]
+pub(super) fn sum_magnitudes<S: Simd>(simd: S, of: &[Lane], factors: &[Lane]) -> f64 {
+    let mut sum = f64x4::splat(simd, 0.0);
+    for (of, factors) in of.iter().zip(factors) {
+        sum += load(simd, *of).abs() * load(simd, *factors);
+    }
+    store(sum).total()
+}
+
 /// The magnitudes of amplitudes in groups.
 #[inline(always)]
 pub(super) fn magnitudes<S: Simd>(simd: S, re: &[Lane], im: &[Lane], out: &mut [Lane]) {

@@ -29,12 +29,6 @@ impl Lane {
         self.0
     }
 
-    #[inline(always)]
-    pub fn abs(self) -> Self {
-        let [a, b, c, d] = self.0;
-        Self([a.abs(), b.abs(), c.abs(), d.abs()])
-    }
-
     /// The sum of the four.
     #[inline(always)]
     pub fn total(self) -> f64 {

@@ -188,16 +188,24 @@ fn step<S: Simd>(
             }
         }
         let limits = regime.functionals[functional].limits;
-        let verdict = flow.local(regime, functional, rung, |local| {
-            over(local, [limits.low, limits.high], length)
-        });
+        let verdict = flow.local(
+            regime,
+            functional,
+            rung,
+            #[inline(always)]
+            |local| over(local, [limits.low, limits.high], length),
+        );
         match verdict {
             Verdict::Safe => flow.note_safe(functional, until),
             Verdict::Unknown => return Outcome::Halve,
             Verdict::Crossing { upper } => {
-                let guess = flow.local(regime, functional, rung, |local| {
-                    Distance::to(local, &limits, upper).first_guess(length)
-                });
+                let guess = flow.local(
+                    regime,
+                    functional,
+                    rung,
+                    #[inline(always)]
+                    |local| Distance::to(local, &limits, upper).first_guess(length),
+                );
                 effort.crossings.push(Crossing {
                     functional,
                     upper,
@@ -311,9 +319,13 @@ fn distance<S: Simd>(
     let rungs = &regime.ladder.rungs;
     flow.sum_up(simd, regime, functional);
     // The shortest step has no fast modes.
-    flow.local(regime, functional, &rungs[rungs.len() - 1], |local| {
-        Distance::to(local, &regime.functionals[functional].limits, upper)
-    })
+    flow.local(
+        regime,
+        functional,
+        &rungs[rungs.len() - 1],
+        #[inline(always)]
+        |local| Distance::to(local, &regime.functionals[functional].limits, upper),
+    )
 }
 
 /// Goes from near a crossing to it, and counts Newton's steps.
