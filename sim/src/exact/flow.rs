@@ -14,7 +14,7 @@ use super::kernels::{self, Amplitudes};
 use super::ladder::Rung;
 use super::lanes::{LITTLE, Lane, Pairs, groups, numbers, numbers_mut, terms_of_gains};
 use super::regime::Regime;
-use super::watched::{Local, Watched};
+use super::watched::{Local, ROUNDING, Watched};
 
 /// Magnitudes of amplitudes are found anew when the fastest decay since would make this much
 /// of a difference to their logarithm.
@@ -250,6 +250,12 @@ impl Flow {
             (&self.now, &self.moved),
             (self.tau, &self.powers),
         );
+    }
+
+    /// What rounding at the start may have made of the rate of a function, whatever is left of
+    /// what cancelled.
+    pub fn start_rate_noise(&self, regime: &Regime, place: usize) -> f64 {
+        ROUNDING * regime.functionals[place].rate_size(&self.given)
     }
 
     /// Whether a function is known to keep its limits until a time after the start, s.

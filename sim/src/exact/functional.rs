@@ -93,6 +93,9 @@ pub(super) struct Functional {
     pub cluster_powers: Vec<Vec<DVector<Complex<f64>>>>,
     /// What it reads of a motion's start, with factors.
     felt: Vec<(usize, f64)>,
+    /// How much all that is known of a motion's start adds to the magnitudes of what makes up
+    /// the rate, per unit.
+    rate_sizes: Vec<f64>,
 }
 
 impl Functional {
@@ -124,6 +127,10 @@ impl Functional {
             .chain(linear.inputs.iter().copied())
             .chain(sinusoids.flat_map(|(sine, cosine)| [*sine, *cosine]));
         let felt = factors.enumerate().filter(|(_, factor)| *factor != 0.0);
+        let rate_sizes = modes.rate_sizes_by_start(&values);
+        let units = modes.rest.len();
+        let of_rates = integrals.rate_sizes_by_start(&of_integrals, units);
+        let rate_sizes = rate_sizes.iter().zip(of_rates).map(|(a, b)| a + b);
         Self {
             weights: weights(&values, modes),
             value_weights: value_weights(&values),
@@ -137,6 +144,7 @@ impl Functional {
                 .map(|c| c.projections(&linear.state))
                 .collect(),
             felt: felt.collect(),
+            rate_sizes: rate_sizes.collect(),
             linear,
             limits,
         }
@@ -152,6 +160,13 @@ impl Functional {
             size += term.abs();
         }
         (value, size)
+    }
+
+    /// The sum of the magnitudes of what makes up the rate at the start of a motion, before
+    /// any of it cancels.
+    pub fn rate_size(&self, given: &[f64]) -> f64 {
+        let terms = self.rate_sizes.iter().zip(given);
+        terms.map(|(size, given)| size * given.abs()).sum()
     }
 }
 

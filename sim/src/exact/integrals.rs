@@ -274,6 +274,44 @@ impl Integrals {
         }
     }
 
+    /// The sum of the magnitudes of what each cause makes the coordinates' rates, with these
+    /// weights.
+    fn rate_sizes(&self, weights: &[f64]) -> Vec<f64> {
+        let size = |column: usize| {
+            let terms = self.rates.column(column);
+            let terms = terms.iter().zip(weights).map(|(rate, w)| (rate * w).abs());
+            terms.sum()
+        };
+        (0..self.rates.ncols()).map(size).collect()
+    }
+
+    /// The same by what is known of a motion's start: the state, a unit constant and the inputs
+    /// (`units`), and sine and cosine of each phase.
+    pub fn rate_sizes_by_start(&self, weights: &[f64], units: usize) -> Vec<f64> {
+        let (states, felt) = (self.rows.ncols(), self.felt());
+        let by_cause = self.rate_sizes(weights);
+        let mut sizes = vec![0.0; states + units + 2 * self.forced.len()];
+        for (place, size) in by_cause[..felt].iter().enumerate() {
+            let coordinate = self.pure + place;
+            for (slot, entry) in sizes.iter_mut().zip(self.rows.row(coordinate).iter()) {
+                *slot += size * entry.abs();
+            }
+            let forced = self.forced.iter().flatten();
+            for (slot, forced) in sizes[states + units..].iter_mut().zip(forced) {
+                *slot += size * forced[coordinate].abs();
+            }
+        }
+        let (held, turning) = by_cause[felt..].split_at(units);
+        for (slot, size) in sizes[states..].iter_mut().zip(held) {
+            *slot += size;
+        }
+        for (pair, phase) in turning.chunks_exact(2).zip(&self.sinusoids) {
+            let slots = sizes[states + units + 2 * phase..].iter_mut();
+            slots.zip(pair).for_each(|(slot, size)| *slot += size);
+        }
+        sizes
+    }
+
     /// The factors of the coordinates in a linear function of the state.
     pub fn weights(&self, row: &DVector<f64>) -> Vec<f64> {
         (self.columns.transpose() * row).as_slice().to_vec()

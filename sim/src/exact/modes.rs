@@ -40,6 +40,27 @@ pub(super) struct Modes {
 }
 
 impl Modes {
+    /// For a function with these weights of the modes the sum of the magnitudes of what makes
+    /// up its rate, by what is known of a motion's start: the state, a unit constant and the
+    /// inputs, and sine and cosine of each phase.
+    pub fn rate_sizes_by_start(&self, weights: &[Complex<f64>]) -> Vec<f64> {
+        let own = |mode: usize, phase: usize| f64::from(self.phase[mode] == Some(phase));
+        let of = |amplitude: &dyn Fn(usize) -> f64| -> f64 {
+            let modes = weights.iter().zip(&self.magnitude).enumerate();
+            let terms = modes.map(|(mode, (w, rate))| w.norm() * rate * amplitude(mode));
+            terms.sum()
+        };
+        let states = (0..self.rows.ncols()).map(|s| of(&|mode| self.rows[(mode, s)].norm()));
+        let units = self.rest.iter().map(|rest| of(&|mode| rest[mode].norm()));
+        let pairs = self.forced.iter().enumerate();
+        let phases = pairs.flat_map(|(phase, pair)| {
+            let size =
+                |kind: &DVector<Complex<f64>>| of(&|mode| kind[mode].norm() + own(mode, phase));
+            [size(&pair[0]), size(&pair[1])]
+        });
+        states.chain(units).chain(phases).collect()
+    }
+
     /// The modes of simple parts and the sinusoids of these frequencies, rad/s.
     pub fn new(simple: &[Part], forcing: &Forcing, frequencies: &[f64], states: usize) -> Self {
         let mut all: Vec<(Complex<f64>, Option<usize>)> = Vec::new();

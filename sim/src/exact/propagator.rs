@@ -349,9 +349,10 @@ impl Propagator {
             };
             let (here, there) = (rate(self, before), rate(self, after));
             let outward = if upper { 1.0 } else { -1.0 };
-            // A motion that has just left the surface has no rate there but rounding.
+            // A motion that has just left the surface, or hardly gets there, has no rate there
+            // but rounding.
             let slack = self.rate_rounding(after, group, &motion.state);
-            if there * outward < -slack && here * outward > 0.0 {
+            if there * outward < -slack && here * outward > -slack {
                 let mut places = self.regimes[before].places.clone();
                 places[group] = Place::On(rank);
                 after = self.regime(&places, motion.time())?;

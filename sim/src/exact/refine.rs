@@ -19,6 +19,10 @@ const ROUNDS: usize = 5;
 /// eigenvalues that nearly agree there is no telling their vectors apart, nor a need to.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// Subspaces are apart, and corrected by roundings too, if an error turns them by no more than
+/// this many times its part of the eigenvalues.
+const APART: f64 = 1e3;
+
 /// A vector turned by more than this is beyond first order, and left as it is.
 const TURN: f64 = 0.1;
 
@@ -100,17 +104,22 @@ impl Subspaces {
                 } else {
                     wrong.max(relative)
                 };
-                if relative > ROUNDING {
-                    let solved = sylvester(&self.block(rows), &self.block(columns), &found);
-                    if solved.norm() <= TURN {
-                        turn.view_mut(place, shape).copy_from(&solved);
-                    } else if relative > HOPELESS {
-                        inseparable.push((i, j));
-                    }
+                let solved = sylvester(&self.block(rows), &self.block(columns), &found);
+                let is_apart = solved.norm() <= APART * relative;
+                if is_apart || (relative > ROUNDING && solved.norm() <= TURN) {
+                    turn.view_mut(place, shape).copy_from(&solved);
+                } else if relative > HOPELESS {
+                    inseparable.push((i, j));
                 }
             }
         }
-        self.columns += &self.columns * &turn;
+        let correction = &self.columns * &turn;
+        for (entry, correction) in self.columns.iter_mut().zip(correction.iter()) {
+            // What a subspace does not move, it does not move by a rounding either.
+            if entry.norm() > 0.0 || correction.norm() > ROUNDING {
+                *entry += correction;
+            }
+        }
         wrong
     }
 

@@ -118,7 +118,7 @@ impl Regime {
         let places = Places::of(&modes, &integrals);
         Ok(Self {
             coordinates: places.coordinates(&modes, &integrals),
-            states: places.states(&modes, &integrals),
+            states: places.states(&modes, &integrals, &still_states(&system)),
             ladder: Ladder::new(&modes, window, fastest),
             system,
             modes,
@@ -212,12 +212,15 @@ impl Places {
         })
     }
 
-    fn states(&self, modes: &Modes, integrals: &Integrals) -> Packed {
+    /// What coordinates make up of a state; those that are `still` stay where they are, without
+    /// rounding.
+    fn states(&self, modes: &Modes, integrals: &Integrals, still: &[bool]) -> Packed {
         let states = modes.columns.nrows();
         let width = 2 * self.modes + integrals.size;
         Packed::of(states, width, |state, column| {
             let (kind, place) = (column / self.modes.max(1), column % self.modes.max(1));
             match kind {
+                _ if still[state] => 0.0,
                 _ if column >= 2 * self.modes => {
                     integrals.columns[(state, column - 2 * self.modes)]
                 }
@@ -226,6 +229,26 @@ impl Places {
             }
         })
     }
+}
+
+/// Which states have no rate, whatever the others do.
+fn still_states(system: &AffineSystem) -> Vec<bool> {
+    let rates = &system.rates;
+    let blocks = [
+        &rates.state,
+        &rates.inputs,
+        &rates.sines,
+        &rates.cosines,
+        &rates.constant,
+    ];
+    let is_still = |state: usize| {
+        blocks.iter().all(|block| {
+            let width = block.len() / system.states;
+            let row = &block[state * width..(state + 1) * width];
+            row.iter().all(|entry| *entry == 0.0)
+        })
+    };
+    (0..system.states).map(is_still).collect()
 }
 
 impl Forcing {

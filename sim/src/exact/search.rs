@@ -276,10 +276,11 @@ fn reached(flow: &Flow, regime: &Regime, functional: usize) -> Option<Found> {
         return None;
     }
     let rung = regime.ladder.rungs.last()?;
+    let noise = flow.start_rate_noise(regime, functional);
     let upper = flow.local(regime, functional, rung, |local| {
         [false, true]
             .into_iter()
-            .find(|upper| Distance::to(local, limits, *upper).is_reached())
+            .find(|upper| Distance::to(local, limits, *upper).is_reached(noise))
     })?;
     Some(Found::Limit { functional, upper })
 }
@@ -398,9 +399,10 @@ impl Distance {
         }
     }
 
-    /// Whether the limit is reached here and the motion leads beyond it.
-    fn is_reached(&self) -> bool {
-        let leads_outward = self.rate < -self.rate_noise;
+    /// Whether the limit is reached here and the motion leads beyond it, given what rounding
+    /// at the start may have made of the rate.
+    fn is_reached(&self, start_rate_noise: f64) -> bool {
+        let leads_outward = self.rate < -(self.rate_noise + start_rate_noise);
         let is_beyond = self.value < -4.0 * self.noise && self.rate < 0.0;
         is_beyond || (leads_outward && self.value <= 0.0)
     }
