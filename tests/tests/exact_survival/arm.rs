@@ -126,6 +126,7 @@ fn any_number_of_modes() {
         (8, 0.02),
         (16, 0.02),
         (32, 0.004),
+        (64, 0.001),
     ] {
         agrees(&format!("S = {order}"), &arm(order, &[]), until);
         let hit = moving(order, &[], [26e-6, -24e-6], [-1.0, 0.5]);
