@@ -8,17 +8,20 @@
 //! `modes`, `integrals`, `regime`, `functional` and `ladder` (prepared for stepping), `lanes`
 //! and `kernels` (numbers side by side), `forced` (forced polynomials), `flow`, `watched` and
 //! `cluster_flow` (the motion in a regime), `bounds` and `search` (the next switch, which
-//! cannot be missed), `clock` (with `error_free`), [`propagator`] (from switch to switch),
+//! cannot be missed), `clock` (with `error_free`), `entered` and `beyond` (which regimes there are, and where limits lead),
+//! `switching`, [`propagator`] (from switch to switch),
 //! `follow` (to a time, with samples), `simulate`; for neighbouring motions `saltation`,
 //! `tangent`, `neighbours`, [`lyapunov`] and [`sensitivity`].
 //!
 //! What is not linear between switches belongs to [`crate::solve`].
 
+mod beyond;
 mod blocks;
 mod bounds;
 mod clock;
 mod cluster_flow;
 mod decomposition;
+mod entered;
 pub mod error;
 mod error_free;
 mod flow;
@@ -43,6 +46,7 @@ mod search;
 pub mod sensitivity;
 mod simulate;
 mod sliding;
+mod switching;
 mod tangent;
 mod watched;
 

@@ -1,29 +1,23 @@
-//! From switch to switch: regimes are made when they are first entered, and kept.
+//! From switch to switch. Which regimes there are is in `entered`, what lies beyond a limit in
+//! `beyond`.
 
 use std::collections::HashMap;
 
-use codegen::affine::system::{AffineEvaluator, AffineSystem};
+use codegen::affine::system::AffineEvaluator;
 use fearless_simd::{Level, Simd, dispatch};
 use nalgebra::{Complex, DVector};
 
 use super::clock::Clock;
-use super::decomposition::Failure;
+use super::entered::Entered;
 use super::error::ExactError;
 use super::flow::Flow;
-use super::functional::{Limits, Linear};
+use super::functional::Linear;
 use super::groups::{Group, Place, groups};
 use super::regime::Regime;
-use super::saltation;
 use super::search::{Effort, Found, passed, search};
-use super::sliding::slide;
+use super::switching::switched_rate;
 use crate::record::HeldInputs;
 use crate::solve::{SolveError, Switch};
-
-/// Rates that differ by less than this part of their size are continuous.
-const CONTINUOUS: f64 = 1e-12;
-
-/// The roundings of a sum of products of size 1.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// Switches in one instant before the motion is moved on by the shortest step.
 const AT_ONCE: u32 = 16;
@@ -40,43 +34,19 @@ const SWITCHES_AVERAGED: u64 = 1024;
 
 /// Exact motion at fixed parameters.
 pub struct Propagator {
-    evaluator: AffineEvaluator,
-    groups: Vec<Group>,
-    regimes: Vec<Entered>,
-    known: HashMap<Vec<Place>, usize>,
+    pub(super) evaluator: AffineEvaluator,
+    pub(super) groups: Vec<Group>,
+    pub(super) regimes: Vec<Entered>,
+    pub(super) known: HashMap<Vec<Place>, usize>,
     flow: Flow,
     inputs: usize,
-    states: usize,
-    phases: Vec<[f64; 2]>,
-    saltations: Vec<DVector<f64>>,
+    pub(super) states: usize,
+    pub(super) phases: Vec<[f64; 2]>,
+    pub(super) saltations: Vec<DVector<f64>>,
     /// Decays up to this rate are slow beside what happens between switches, 1/s.
-    slow: f64,
+    pub(super) slow: f64,
     /// Give up when switches come faster than this on average, 1/s.
     pub max_switch_rate: f64,
-}
-
-/// A regime that has been entered.
-pub(super) struct Entered {
-    pub places: Vec<Place>,
-    pub regime: Regime,
-    /// The group's function as the regime has it, for each group.
-    functions: Vec<Linear>,
-    /// The rung at which the last search ended.
-    rung: usize,
-    /// For each function and limit the regime beyond, once it is known.
-    beyond: Vec<[Option<Beyond>; 2]>,
-}
-
-/// What lies beyond a limit.
-#[derive(Clone, Copy, Debug)]
-struct Beyond {
-    regime: usize,
-    /// Whether the rate of the group's function may jump there.
-    jumps: bool,
-    /// Where the constant saltation matrix of the passage is kept, if it is constant.
-    saltation: Option<usize>,
-    /// Whether the functions of other groups may jump in the passage.
-    moves_others: bool,
 }
 
 /// Where a motion stands.
@@ -400,286 +370,6 @@ impl Propagator {
         }
         Ok(())
     }
-
-    /// Finds what lies beyond a limit and remembers it.
-    fn find_beyond(
-        &mut self,
-        before: usize,
-        functional: usize,
-        group: usize,
-        upper: bool,
-        t: f64,
-    ) -> Result<Beyond, ExactError> {
-        let mut places = self.regimes[before].places.clone();
-        places[group] = match (places[group], upper) {
-            (Place::Between(above), true) => Place::Between(above + 1),
-            (Place::Between(above), false) => Place::Between(above - 1),
-            (Place::On(rank), true) => Place::Between(rank + 1),
-            (Place::On(rank), false) => Place::Between(rank),
-        };
-        let held = matches!(self.regimes[before].places[group], Place::On(_));
-        let regime = self.regime(&places, t)?;
-        let jumps = !held && self.rate_jumps(before, regime, group);
-        let entered = &self.regimes[before];
-        let limits = &entered.regime.functionals[functional].limits;
-        let constant = saltation::constant(
-            &entered.regime.system,
-            &self.regimes[regime].regime.system,
-            &entered.regime.functionals[functional].linear,
-            if upper { limits.high } else { limits.low },
-        );
-        let saltation = constant.map(|u| {
-            self.saltations.push(u);
-            self.saltations.len() - 1
-        });
-        let beyond = Beyond {
-            regime,
-            jumps,
-            saltation,
-            moves_others: held || self.moves_others(before, regime, group),
-        };
-        self.regimes[before].beyond[functional][usize::from(upper)] = Some(beyond);
-        Ok(beyond)
-    }
-
-    /// Whether what is watched of other groups differs between two regimes.
-    fn moves_others(&self, a: usize, b: usize, group: usize) -> bool {
-        let (a, b) = (&self.regimes[a].regime, &self.regimes[b].regime);
-        let mut pairs = a.functionals.iter().zip(&b.functionals);
-        pairs
-            .any(|(a, b)| a.limits.group != group && (a.linear != b.linear || a.limits != b.limits))
-    }
-
-    /// Whether the rate of a group's function differs between two regimes.
-    fn rate_jumps(&self, a: usize, b: usize, group: usize) -> bool {
-        let row = &self.regimes[a].functions[group].state;
-        let (a, b) = (
-            &self.regimes[a].regime.system.rates,
-            &self.regimes[b].regime.system.rates,
-        );
-        let blocks = [
-            (&a.state, &b.state),
-            (&a.inputs, &b.inputs),
-            (&a.sines, &b.sines),
-            (&a.cosines, &b.cosines),
-            (&a.constant, &b.constant),
-        ];
-        blocks.iter().any(|(a, b)| {
-            let width = a.len() / row.len().max(1);
-            (0..width).any(|column| {
-                let (mut difference, mut size) = (0.0, 0.0);
-                for (state, factor) in row.iter().enumerate() {
-                    let (x, y) = (a[state * width + column], b[state * width + column]);
-                    difference += factor * (x - y);
-                    size += (factor * x).abs() + (factor * y).abs();
-                }
-                difference.abs() > CONTINUOUS * size
-            })
-        })
-    }
-
-    /// The rate of a group's function at a state as a regime has it.
-    fn rate(
-        &self,
-        index: usize,
-        group: usize,
-        state: &[f64],
-        inputs: &[f64],
-        phases: &[Complex<f64>],
-    ) -> f64 {
-        let entered = &self.regimes[index];
-        let function = &entered.functions[group];
-        let mut rates = vec![0.0; self.states];
-        entered.regime.rates(state, inputs, phases, &mut rates);
-        let rate: f64 = function.state.iter().zip(&rates).map(|(a, b)| a * b).sum();
-        rate + self.explicit_rate(function, phases)
-    }
-
-    /// What rounding may make of the rate of a group's function.
-    fn rate_rounding(&self, index: usize, group: usize, state: &[f64]) -> f64 {
-        let entered = &self.regimes[index];
-        let matrix = &entered.regime.system.rates.state;
-        let mut size = 0.0;
-        for (factor, row) in entered.functions[group]
-            .state
-            .iter()
-            .zip(matrix.chunks(self.states.max(1)))
-        {
-            if *factor != 0.0 {
-                let sum: f64 = row.iter().zip(state).map(|(a, y)| (a * y).abs()).sum();
-                size += factor.abs() * sum;
-            }
-        }
-        ROUNDING * size
-    }
-
-    /// The rate of a function of sinusoids that is due to time alone.
-    fn explicit_rate(&self, function: &Linear, phases: &[Complex<f64>]) -> f64 {
-        let terms = phases.iter().enumerate().map(|(place, phase)| {
-            let omega = self.phases[place][0];
-            omega * (function.sines[place] * phase.re - function.cosines[place] * phase.im)
-        });
-        terms.sum()
-    }
-
-    /// Which states any rate or any switching function feels.
-    pub(super) fn felt_states(&mut self) -> Vec<bool> {
-        let guards = self.evaluator.guard_count();
-        let mut felt = vec![false; self.states];
-        for case in 0..guards + 2 {
-            let sides: Vec<f64> = (0..guards)
-                .map(|guard| f64::from(u8::from(case == guards + 1 || case == guard)))
-                .collect();
-            let system = self.evaluator.system(&sides);
-            let rows = [&system.rates.state, &system.guards.state];
-            let rows = rows.map(|rows| rows.chunks(self.states.max(1)));
-            for row in rows.into_iter().flatten() {
-                row.iter()
-                    .zip(&mut felt)
-                    .for_each(|(entry, felt)| *felt |= *entry != 0.0);
-            }
-        }
-        felt
-    }
-
-    /// A regime that has been made.
-    pub(super) fn made(&self, index: usize) -> &Regime {
-        &self.regimes[index].regime
-    }
-
-    /// The regime with these places, made if it is new.
-    pub(super) fn regime(&mut self, places: &[Place], t: f64) -> Result<usize, ExactError> {
-        if let Some(&known) = self.known.get(places) {
-            return Ok(known);
-        }
-        let mut sides = vec![0.0; self.evaluator.guard_count()];
-        let held = places
-            .iter()
-            .position(|place| matches!(place, Place::On(_)));
-        let (system, mut parts) = match held {
-            None => {
-                for (group, place) in self.groups.iter().zip(places) {
-                    group.write_sides(*place, 0.0, &mut sides);
-                }
-                (self.evaluator.system(&sides), Vec::new())
-            }
-            Some(group) => {
-                let guard = self.groups[group].first;
-                let sliding = slide(&mut self.evaluator, &self.groups, places)
-                    .ok_or(ExactError::Held { t, guard })?;
-                (sliding.system, sliding.parts)
-            }
-        };
-        let functions: Vec<Linear> = self
-            .groups
-            .iter()
-            .map(|group| group.function(&system))
-            .collect();
-        let mut watched = Vec::new();
-        for (index, (group, place)) in self.groups.iter().zip(places).enumerate() {
-            watched.push(match place {
-                Place::Between(above) => (
-                    functions[index].clone(),
-                    group.limits(&system, index, *above),
-                ),
-                Place::On(_) => (
-                    parts.remove(0),
-                    Limits {
-                        group: index,
-                        low: 0.0,
-                        high: 1.0,
-                    },
-                ),
-            });
-        }
-        let regime = Regime::new(system, watched, self.slow).map_err(|failure| match failure {
-            Failure::NotFinite => ExactError::NotFinite,
-            Failure::NotConverged => ExactError::NotConverged,
-        })?;
-        let beyond = vec![[None; 2]; regime.functionals.len()];
-        self.regimes.push(Entered {
-            places: places.to_vec(),
-            regime,
-            functions,
-            rung: 0,
-            beyond,
-        });
-        let index = self.regimes.len() - 1;
-        self.known.insert(places.to_vec(), index);
-        Ok(index)
-    }
-
-    /// The places of all groups at a state, below a threshold that is met, and the groups
-    /// and ranks of those that are.
-    fn places_at(
-        &mut self,
-        state: &[f64],
-        inputs: &[f64],
-        phases: &[Complex<f64>],
-    ) -> (Vec<Place>, Vec<(usize, usize)>) {
-        let mut sides = vec![0.0; self.evaluator.guard_count()];
-        let mut places = vec![Place::Between(0); self.groups.len()];
-        let mut tied = Vec::new();
-        // A function may depend on the places of others: once more until all agree.
-        for _ in 0..=self.groups.len() {
-            for (group, place) in self.groups.iter().zip(&places) {
-                group.write_sides(*place, 0.0, &mut sides);
-            }
-            let system = self.evaluator.system(&sides);
-            tied.clear();
-            let mut found = Vec::new();
-            for (index, group) in self.groups.iter().enumerate() {
-                let value = group.function(&system).value(state, inputs, phases);
-                let mut above = 0;
-                for rank in 0..group.ranks.len() {
-                    let threshold = group.threshold(&system, rank);
-                    if (value - threshold).abs() <= 4.0 * f64::EPSILON * threshold.abs() {
-                        tied.push((index, rank));
-                    } else if value > threshold {
-                        above = rank + 1;
-                    }
-                }
-                found.push(Place::Between(above));
-            }
-            if found == places {
-                break;
-            }
-            places = found;
-        }
-        (places, tied)
-    }
-
-    /// The regime of a motion that begins at a state.
-    fn regime_at(
-        &mut self,
-        clock: Clock,
-        state: &[f64],
-        inputs: &[f64],
-    ) -> Result<usize, ExactError> {
-        let phases = self.phases_at(clock);
-        let (mut places, tied) = self.places_at(state, inputs, &phases);
-        let mut found = self.regime(&places, clock.time())?;
-        for (group, rank) in tied {
-            let mut side = |propagator: &mut Self, place: Place| {
-                places[group] = place;
-                propagator.regime(&places, clock.time())
-            };
-            let (down, up) = (
-                side(self, Place::Between(rank))?,
-                side(self, Place::Between(rank + 1))?,
-            );
-            let below = self.rate(down, group, state, inputs, &phases);
-            let above = self.rate(up, group, state, inputs, &phases);
-            found = if above > 0.0 && below >= 0.0 {
-                side(self, Place::Between(rank + 1))?
-            } else if above < 0.0 && below > 0.0 {
-                side(self, Place::On(rank))?
-            } else {
-                side(self, Place::Between(rank))?
-            };
-        }
-        Ok(found)
-    }
 }
 
 /// Moves the state on within a regime, for `length` s at most, to the first limit that is
@@ -714,25 +404,6 @@ fn go_on<S: Simd>(
     }
     flow.state(simd, regime, &mut motion.state);
     (found, leap.is_some())
-}
-
-/// The fastest rate that switching can add, 1/s: the root of the largest change of a
-/// stiffness.
-fn switched_rate(evaluator: &mut AffineEvaluator, system: &AffineSystem) -> f64 {
-    let (guards, states) = (evaluator.guard_count(), evaluator.states());
-    let mut largest: f64 = 0.0;
-    for guard in 0..guards {
-        let sides: Vec<f64> = (0..guards)
-            .map(|g| f64::from(u8::from(g == guard)))
-            .collect();
-        let other = evaluator.system(&sides);
-        let rows = system.rates.state.chunks(states.max(1));
-        for (a, b) in rows.zip(other.rates.state.chunks(states.max(1))) {
-            let positions = a.iter().zip(b).take(states / 2);
-            largest = positions.fold(largest, |m, (a, b)| m.max((a - b).abs()));
-        }
-    }
-    largest.sqrt()
 }
 
 /// The inputs in force from a time on, as many as the model has.
