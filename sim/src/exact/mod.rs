@@ -4,7 +4,8 @@
 //! constant and sinusoidal forces; it is stepped from switch to switch with no error but
 //! rounding. The pipeline, one file each: [`model`] (what can be propagated), `groups`
 //! (parallel switching surfaces), `sliding` (motion held on them), `schur`, `blocks`,
-//! `refine` and `decomposition` (a regime's matrix by parts that move by themselves),
+//! `grouping`, `invariant`, `refine` and `decomposition` (a regime's matrix by parts that move
+//! by themselves),
 //! `modes`, `integrals`, `regime`, `functional` and `ladder` (prepared for stepping), `lanes`
 //! and `kernels` (numbers side by side), `forced` (forced polynomials), `flow`, `watched` and
 //! `cluster_flow` (the motion in a regime), `bounds` and `search` (the next switch, which
@@ -28,8 +29,10 @@ mod flow;
 mod follow;
 mod forced;
 mod functional;
+mod grouping;
 mod groups;
 mod integrals;
+mod invariant;
 mod kernels;
 mod ladder;
 mod lanes;

@@ -1,0 +1,73 @@
+//! Which eigenvalues share a part of a decomposition: those near zero, and those that are too
+//! close to each other.
+
+use std::ops::Range;
+
+use nalgebra::Complex;
+
+/// Eigenvalues below this part of the fastest rate, or of 1 1/s, count as near zero: as modes
+/// of their own they would answer a constant force with a large and useless amplitude.
+const NEAR_ZERO: f64 = 1e-5;
+
+/// Eigenvalues closer than this, relative, always share a part.
+const EQUAL: f64 = 1e-9;
+
+/// Imaginary parts below this part of the largest eigenvalue count as zero.
+pub(super) const REAL: f64 = 1e-11;
+
+/// Which eigenvalues are near zero.
+pub(super) fn near_zero(eigenvalues: &[Complex<f64>], forcing: f64, slow: f64) -> Vec<bool> {
+    let fastest = forcing.abs().max(1.0);
+    let largest = eigenvalues.iter().map(|e| e.norm()).fold(fastest, f64::max);
+    // A conjugate pair differs by rounding only and must not be torn apart.
+    let mut bound = NEAR_ZERO * largest;
+    for value in eigenvalues {
+        if (value.norm() - bound).abs() < 1e-3 * bound {
+            bound *= 1.01;
+        }
+    }
+    let is_slow = |e: &Complex<f64>| e.im.abs() <= REAL * largest && e.re.abs() <= slow;
+    eigenvalues
+        .iter()
+        .map(|e| e.norm() <= bound || is_slow(e))
+        .collect()
+}
+
+/// Eigenvalues in groups: for each the number of its group, 0 for those near zero. `share`
+/// says of two eigenvalues and their relative distance whether they belong together.
+pub(super) fn groups(
+    eigenvalues: &[Complex<f64>],
+    zeros: usize,
+    share: impl Fn(usize, usize, f64) -> bool,
+) -> Vec<usize> {
+    let mut group: Vec<usize> = (0..eigenvalues.len())
+        .map(|place| if place < zeros { 0 } else { place + 1 })
+        .collect();
+    for a in zeros..eigenvalues.len() {
+        for b in a + 1..eigenvalues.len() {
+            let (x, y) = (eigenvalues[a], eigenvalues[b]);
+            let distance = 2.0 * (x - y).norm() / (x.norm() + y.norm());
+            if (distance <= EQUAL || share(a, b, distance)) && group[a] != group[b] {
+                let (kept, gone) = (group[a], group[b]);
+                for place in &mut group {
+                    if *place == gone {
+                        *place = kept;
+                    }
+                }
+            }
+        }
+    }
+    group
+}
+
+/// Ranges of equal neighbours.
+pub(super) fn runs(group: &[usize]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (place, number) in group.iter().enumerate() {
+        match runs.last_mut() {
+            Some(run) if group[run.start] == *number => run.end = place + 1,
+            _ => runs.push(place..place + 1),
+        }
+    }
+    runs
+}
