@@ -1,0 +1,179 @@
+//! Forces that may be hidden on an axis. Dry friction is not the jump of a sign: it is that of
+//! bristles (LuGre), which bend before they slide, or a steep hyperbolic tangent.
+
+/// How dry friction is written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Dry {
+    /// Bristles that bend this far (axis units) before they slide at the whole friction; the
+    /// inertia (force unit s^2 per axis unit) that swings on them sets their damping.
+    Bristles {
+        /// Deflection at which they slide.
+        reach: f64,
+        /// Inertia of the axis.
+        inertia: f64,
+    },
+    /// A hyperbolic tangent of the speed over this one, axis units per second.
+    Steep {
+        /// Speed at which three quarters are reached.
+        speed: f64,
+    },
+}
+
+/// Everything that may act on an axis, in its unit of force and of angle or length. All zero
+/// is nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AxisForces {
+    /// How dry friction is written.
+    pub dry: Dry,
+    /// Dry friction in motion.
+    pub coulomb: f64,
+    /// Dry friction near rest beyond that in motion, and the speed of its fall.
+    pub stribeck: (f64, f64),
+    /// Per speed.
+    pub viscous: f64,
+    /// Per amount of speed.
+    pub asymmetric: f64,
+    /// Per square of the speed.
+    pub drag: f64,
+    /// Constant.
+    pub offset: f64,
+    /// Per displacement from zero.
+    pub restraint: f64,
+    /// An unbalanced weight: cosine and sine of its potential, see [`AxisForces::force`].
+    pub gravity: (f64, f64),
+    /// Per turn, and its cosine and sine.
+    pub ripple: (f64, f64, f64),
+    /// Something that no catalogue holds.
+    pub strange: Strange,
+}
+
+/// What no catalogue holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Strange {
+    /// Nothing.
+    None,
+    /// A friction that grows with the square of the displacement: -size x^2 x'.
+    Worn(f64),
+    /// A force that comes from elsewhere: size sin(2 pi f t), with f in Hz.
+    Hum(f64, f64),
+    /// A drive that weakens with the displacement: -size x u.
+    Weakening(f64),
+}
+
+impl AxisForces {
+    /// Nothing hidden.
+    pub fn none(dry: Dry) -> Self {
+        Self {
+            dry,
+            coulomb: 0.0,
+            stribeck: (0.0, 1.0),
+            viscous: 0.0,
+            asymmetric: 0.0,
+            drag: 0.0,
+            offset: 0.0,
+            restraint: 0.0,
+            gravity: (0.0, 0.0),
+            ripple: (0.0, 0.0, 0.0),
+            strange: Strange::None,
+        }
+    }
+
+    /// The force along the axis at displacement `x`, rate `v`, bristles bent by `z`; with it
+    /// the rate of `z`.
+    pub fn force(&self, t: f64, x: f64, v: f64, z: f64, input: f64) -> (f64, f64) {
+        let (dry, bending) = self.dry_friction(v, z);
+        let per_turn = self.ripple.0 * x;
+        let strange = match self.strange {
+            Strange::None => 0.0,
+            Strange::Worn(size) => -size * x * x * v,
+            Strange::Hum(size, f) => size * (2.0 * std::f64::consts::PI * f * t).sin(),
+            Strange::Weakening(size) => -size * x * input,
+        };
+        let smooth = self.offset
+            - self.viscous * v
+            - self.asymmetric * v.abs()
+            - self.drag * v * v.abs()
+            - self.restraint * x
+            - self.gravity.0 * x.sin()
+            - self.gravity.1 * x.cos()
+            + self.ripple.1 * per_turn.cos()
+            + self.ripple.2 * per_turn.sin();
+        (smooth + strange - dry, bending)
+    }
+
+    fn dry_friction(&self, v: f64, z: f64) -> (f64, f64) {
+        let (near_rest, fall) = self.stribeck;
+        if self.coulomb == 0.0 && near_rest == 0.0 {
+            return (0.0, 0.0);
+        }
+        let level = self.coulomb + near_rest * (-(v / fall) * (v / fall)).exp();
+        match self.dry {
+            Dry::Steep { speed } => (level * (v / speed).tanh(), 0.0),
+            // Bristles whose friction dies away at speed would have to turn infinitely fast.
+            Dry::Bristles { .. } if self.coulomb == 0.0 => {
+                (level * (v / (0.01 * fall)).tanh(), 0.0)
+            }
+            Dry::Bristles { reach, inertia } => {
+                let stiffness = (self.coulomb + near_rest) / reach;
+                let bending = v - stiffness * v.abs() * z / level;
+                // Damping of half the critical one, gone once the bristles slide.
+                let damping = (stiffness * inertia).sqrt();
+                let pace = v / (reach * (stiffness / inertia).sqrt());
+                let damped = damping * bending * (-pace * pace).exp();
+                (stiffness * z + damped, bending)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{AxisForces, Dry};
+
+    /// Slides at a constant speed for long: bristles are bent as far as they go.
+    fn sliding(forces: &AxisForces, v: f64) -> f64 {
+        let mut z = 0.0;
+        for _ in 0..100_000 {
+            z += 1e-6 * forces.force(0.0, 0.0, v, z, 0.0).1;
+        }
+        forces.force(0.0, 0.0, v, z, 0.0).0
+    }
+
+    #[test]
+    fn both_ways_of_writing_friction_slide_alike() {
+        for v in [-0.3, 0.05, 0.5] {
+            let of = |dry| {
+                let mut forces = AxisForces::none(dry);
+                forces.coulomb = 4.0;
+                forces.stribeck = (2.0, 0.1);
+                sliding(&forces, v)
+            };
+            let expected = -v.signum() * (4.0 + 2.0 * (-(v / 0.1) * (v / 0.1)).exp());
+            let bristles = of(Dry::Bristles {
+                reach: 1e-5,
+                inertia: 0.01,
+            });
+            let steep = of(Dry::Steep { speed: 1e-4 });
+            assert!((bristles - expected).abs() < 1e-6, "{bristles} {expected}");
+            assert!((steep - expected).abs() < 1e-6, "{steep} {expected}");
+        }
+    }
+
+    #[test]
+    fn forces_have_the_sign_of_what_they_are() {
+        let mut forces = AxisForces::none(Dry::Steep { speed: 1e-4 });
+        forces.viscous = 2.0;
+        forces.drag = 3.0;
+        assert_eq!(
+            forces.force(0.0, 0.0, -2.0, 0.0, 0.0).0,
+            2.0 * 2.0 + 3.0 * 4.0
+        );
+        let mut forces = AxisForces::none(Dry::Steep { speed: 1e-4 });
+        forces.asymmetric = 1.5;
+        assert_eq!(forces.force(0.0, 0.0, -2.0, 0.0, 0.0).0, -3.0);
+        forces.asymmetric = 0.0;
+        forces.ripple = (2.0, 5.0, 7.0);
+        let quarter = std::f64::consts::FRAC_PI_4;
+        assert!((forces.force(0.0, quarter, 0.0, 0.0, 0.0).0 - 7.0).abs() < 1e-12);
+    }
+}

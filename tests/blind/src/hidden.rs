@@ -1,0 +1,197 @@
+//! What may be hidden: the effects by the names of `discovery.json`, and how each changes a
+//! machine or its sensors.
+
+use serde::{Deserialize, Serialize};
+
+use crate::friction::Strange;
+use crate::machines::{Machine, Setup};
+
+/// An effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[allow(missing_docs)]
+pub enum Effect {
+    CoulombFriction,
+    ViscousFriction,
+    StribeckFriction,
+    AsymmetricFriction,
+    QuadraticDrag,
+    ForceOffset,
+    ElasticRestraint,
+    Gravity,
+    TorqueRipple,
+    StructuralDamping,
+    TipMass,
+    StiffnessNonlinearity,
+    JointCompliance,
+    TransmissionError,
+    StiffnessVariation,
+    AsymmetricBacklash,
+    SensorDelay,
+    SensorGain,
+    SensorBias,
+    ParameterShift,
+    /// Outside the catalogue: friction that grows with the displacement.
+    WornFriction,
+    /// Outside the catalogue: a force that comes from elsewhere.
+    ForeignHum,
+    /// Outside the catalogue: a drive that weakens with the displacement.
+    WeakeningDrive,
+}
+
+/// An effect at its place, with its size.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Hidden {
+    /// The effect.
+    pub effect: Effect,
+    /// Where: an axis, mesh, channel or parameter, or `arm`.
+    pub on: String,
+    /// Per turn, for what repeats with an angle; the frequency in Hz of a hum.
+    pub order: f64,
+    /// -1 or 1, where both make sense.
+    pub sign: f64,
+    /// Between cosine and sine, rad.
+    pub phase: f64,
+    /// How large, in the unit of the effect's first parameter; rad per N m for a joint.
+    pub amount: f64,
+}
+
+/// Deviations of the sensors from what they should be, per channel: gain - 1, bias in SI and
+/// delay in s.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sensors {
+    /// Gain less 1.
+    pub gain: Vec<f64>,
+    /// SI.
+    pub bias: Vec<f64>,
+    /// s.
+    pub delay: Vec<f64>,
+}
+
+impl Sensors {
+    /// As they should be.
+    pub fn right(channels: usize) -> Self {
+        Self {
+            gain: vec![0.0; channels],
+            bias: vec![0.0; channels],
+            delay: vec![0.0; channels],
+        }
+    }
+}
+
+/// Fall of the Stribeck friction, as a part of the axis' usual speed.
+fn stribeck_speed(machine: &Machine) -> f64 {
+    match machine {
+        Machine::Arm(_) => 1.0,
+        Machine::Stage(_) => 0.02,
+        Machine::Pendulum(_) => 0.5,
+    }
+}
+
+impl Hidden {
+    /// Hides it in a machine or its sensors.
+    pub fn hide(&self, machine: &mut Machine, setup: &Setup, sensors: &mut Sensors) {
+        let amount = self.amount * self.sign;
+        let (sine, cosine) = self.phase.sin_cos();
+        let repeating = (self.order, self.amount * cosine, self.amount * sine);
+        let place = || setup.channels.iter().position(|c| c.name == self.on);
+        match self.effect {
+            Effect::SensorDelay => sensors.delay[place().expect("a channel")] += amount,
+            Effect::SensorGain => sensors.gain[place().expect("a channel")] += amount,
+            Effect::SensorBias => sensors.bias[place().expect("a channel")] += amount,
+            Effect::ParameterShift => {
+                assert!(machine.scale(&self.on, 1.0 + amount), "{}", self.on);
+            }
+            Effect::TransmissionError => machine.mesh(&self.on).expect("a mesh").error = repeating,
+            Effect::StiffnessVariation => {
+                machine.mesh(&self.on).expect("a mesh").variation = repeating;
+            }
+            Effect::AsymmetricBacklash => machine.mesh(&self.on).expect("a mesh").middle = amount,
+            _ if self.on == "arm" => self.hide_in_arm(machine, amount),
+            _ => self.hide_on_axis(machine, amount, repeating),
+        }
+    }
+
+    fn hide_in_arm(&self, machine: &mut Machine, amount: f64) {
+        let Machine::Arm(arm) = machine else {
+            panic!("only the arm bends");
+        };
+        match self.effect {
+            Effect::StructuralDamping => arm.loss = amount,
+            Effect::TipMass => arm.tip_mass = amount,
+            Effect::StiffnessNonlinearity => arm.cubic = amount,
+            Effect::JointCompliance => arm.compliance = amount,
+            other => panic!("{other:?} does not sit in an arm"),
+        }
+        arm.prepare();
+    }
+
+    fn hide_on_axis(&self, machine: &mut Machine, amount: f64, repeating: (f64, f64, f64)) {
+        let fall = stribeck_speed(machine);
+        let axis = machine.axis(&self.on).expect("an axis");
+        match self.effect {
+            Effect::CoulombFriction => axis.coulomb = amount,
+            Effect::ViscousFriction => axis.viscous = amount,
+            Effect::StribeckFriction => axis.stribeck = (amount, fall),
+            Effect::AsymmetricFriction => axis.asymmetric = amount,
+            Effect::QuadraticDrag => axis.drag = amount,
+            Effect::ForceOffset => axis.offset = amount,
+            Effect::ElasticRestraint => axis.restraint = amount,
+            Effect::Gravity => axis.gravity = (repeating.1, repeating.2),
+            Effect::TorqueRipple => axis.ripple = repeating,
+            Effect::WornFriction => axis.strange = Strange::Worn(amount),
+            Effect::ForeignHum => axis.strange = Strange::Hum(amount, self.order),
+            Effect::WeakeningDrive => axis.strange = Strange::Weakening(amount),
+            other => panic!("{other:?} does not sit on an axis"),
+        }
+    }
+
+    /// The true values of the effect's parameters, SI, in the order of the parameters' names.
+    pub fn parameters(&self, machine: &Machine) -> Vec<f64> {
+        let amount = self.amount * self.sign;
+        let (sine, cosine) = self.phase.sin_cos();
+        match self.effect {
+            Effect::StribeckFriction => vec![amount, stribeck_speed(machine)],
+            Effect::Gravity
+            | Effect::TorqueRipple
+            | Effect::TransmissionError
+            | Effect::StiffnessVariation => vec![self.amount * cosine, self.amount * sine],
+            Effect::JointCompliance => vec![1.0 / amount],
+            Effect::SensorGain => vec![1.0 + amount],
+            Effect::ParameterShift => Vec::new(),
+            _ => vec![amount],
+        }
+    }
+
+    /// Whether it is outside the catalogue.
+    pub fn is_strange(&self) -> bool {
+        matches!(
+            self.effect,
+            Effect::WornFriction | Effect::ForeignHum | Effect::WeakeningDrive
+        )
+    }
+
+    /// The part of the null model that would take it up, were it not so large: a sensor's
+    /// fault or a declared parameter. One standard deviation of its prior there.
+    pub fn prior(&self, setup: &Setup) -> Option<f64> {
+        let channel = || setup.channels.iter().find(|c| c.name == self.on);
+        match self.effect {
+            Effect::SensorDelay => Some(0.5 * setup.sample),
+            Effect::SensorGain => Some(0.01),
+            Effect::SensorBias => channel().map(|c| 10.0 * c.noise),
+            Effect::ParameterShift => {
+                let declared = setup.uncertain.iter().find(|(name, _)| *name == self.on);
+                declared.map(|(_, relative)| *relative)
+            }
+            _ => None,
+        }
+    }
+
+    /// The name of the effect as results have it.
+    pub fn name(&self) -> String {
+        serde_json::to_value(self.effect)
+            .ok()
+            .and_then(|value| value.as_str().map(str::to_owned))
+            .unwrap_or_default()
+    }
+}

@@ -1,0 +1,143 @@
+//! What drives the machines: slow sines that reverse the motion, a sweep, and steps; and where
+//! the motions begin. Inputs are held from sample to sample.
+
+use crate::machines::{Kind, Machine, Setup};
+use crate::random::Draw;
+
+/// How a machine is driven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Manner {
+    /// Reversals, a sweep and steps.
+    Usual,
+    /// Always in the same direction.
+    OneWay,
+    /// To and fro through a small angle.
+    Gentle,
+}
+
+/// One record's drive.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    /// One number per sample, SI.
+    pub input: Vec<f64>,
+    /// The first state.
+    pub start: Vec<f64>,
+}
+
+/// Sizes of what an input is made of.
+struct Ingredients {
+    /// Frequencies (Hz) and amplitudes of the slow sines.
+    slow: ((f64, f64), (f64, f64)),
+    /// From, to (Hz) and amplitude of the sweep.
+    sweep: (f64, f64, f64),
+    /// Height of the steps and how long they last (s).
+    steps: (f64, (f64, f64)),
+}
+
+/// Draws the drive of record number `place`, the test records after the others.
+pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut Draw) -> Drive {
+    let samples = (setup.duration / setup.sample).round() as usize + 1;
+    let test = place >= setup.records.0;
+    let machine = kind.nominal();
+    let mut start = vec![0.0; machine.state_size()];
+    let input = match (kind, manner) {
+        (Kind::Pendulum, _) => {
+            let amplitudes = [(0.3, 0.6), (1.0, 1.5), (2.0, 2.6), (0.6, 0.9), (1.6, 2.0)];
+            let (low, high) = amplitudes[place % amplitudes.len()];
+            start[0] = std::f64::consts::PI + draw.sign() * draw.between(low, high);
+            start[1] = draw.between(-0.5, 0.5);
+            vec![0.0; samples]
+        }
+        (Kind::Stage, Manner::OneWay) => {
+            start[1] = draw.between(0.25, 0.35);
+            let lasting = viscous(&machine) * start[1];
+            let sines = sines(setup, samples, ((3.0, 8.0), (30.0, 80.0)), draw);
+            sines.iter().map(|sine| lasting + sine).collect()
+        }
+        (Kind::Arm, Manner::Gentle) => sines(setup, samples, ((2.5, 6.0), (0.4, 0.9)), draw),
+        (Kind::Stage, _) => made(
+            setup,
+            samples,
+            &Ingredients {
+                slow: ((0.7, 3.0), (60.0, 160.0)),
+                sweep: (3.0, 25.0, 80.0),
+                steps: (80.0, (0.05, 0.2)),
+            },
+            draw,
+        ),
+        (Kind::Arm, _) => made(
+            setup,
+            samples,
+            &Ingredients {
+                // Jumps and fast sweeps would let the teeth rattle, which no two rigs do alike.
+                slow: ((0.8, 4.0), (1.0, 2.5)),
+                sweep: (5.0, 16.0, 0.4),
+                steps: (0.0, (0.1, 0.1)),
+            },
+            draw,
+        ),
+    };
+    let part = if test { 0.8 } else { 1.0 };
+    Drive {
+        input: input
+            .into_iter()
+            .map(|value| rounded(part * value))
+            .collect(),
+        start,
+    }
+}
+
+/// As the record holds it: the machine is driven by what is written.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.8e}").parse().unwrap_or(value)
+}
+
+fn viscous(machine: &Machine) -> f64 {
+    match machine {
+        Machine::Stage(stage) => stage.viscous,
+        _ => 0.0,
+    }
+}
+
+/// Sines that begin at their crests: the motion they cause from rest goes to and fro.
+fn sines(
+    setup: &Setup,
+    samples: usize,
+    ((low, high), (small, large)): ((f64, f64), (f64, f64)),
+    draw: &mut Draw,
+) -> Vec<f64> {
+    let parts: Vec<(f64, f64)> = (0..3)
+        .map(|_| {
+            (
+                draw.between(low, high),
+                draw.between(small, large) * draw.sign(),
+            )
+        })
+        .collect();
+    let at = |sample: usize| {
+        let t = sample as f64 * setup.sample;
+        let sine = |(f, a): &(f64, f64)| a * (2.0 * std::f64::consts::PI * f * t).cos();
+        parts.iter().map(sine).sum()
+    };
+    (0..samples).map(at).collect()
+}
+
+fn made(setup: &Setup, samples: usize, of: &Ingredients, draw: &mut Draw) -> Vec<f64> {
+    let mut values = sines(setup, samples, of.slow, draw);
+    let (from, to, amplitude) = of.sweep;
+    let turn = draw.between(0.0, 2.0 * std::f64::consts::PI);
+    let (height, (short, long)) = of.steps;
+    let (mut level, mut until) = (0.0, 0.0);
+    for (sample, value) in values.iter_mut().enumerate() {
+        let t = sample as f64 * setup.sample;
+        let turns = from * t + (to - from) * t * t / (2.0 * setup.duration);
+        *value += amplitude * (2.0 * std::f64::consts::PI * turns + turn).sin();
+        if t >= until {
+            level = draw.between(-height, height);
+            until = t + draw.between(short, long);
+        }
+        *value += level;
+    }
+    values
+}

@@ -1,0 +1,343 @@
+//! The flexible arm on its planetary reducer, from Newton's laws for the sun, the planets, the
+//! carrier and the arm, with four clamped-free modes (or fewer). Displacements along the line
+//! of action: x_s of the sun, x_p of a planet; angles th_c of the carrier and th_c + psi of
+//! the arm's root.
+//!
+//! ```text
+//! F = k dead(d, b) + c contact(d, b) d'          d_sp = x_s - x_p - x_c,  d_pr = x_p - x_c
+//! M_s x_s'' = T_s/r_s - 3 F_sp                   x_c = r_c cos(alpha) th_c
+//! M_p x_p'' = F_sp - F_pr                        (each of three planets)
+//! I_c th_c'' = T_c + 3 r_c cos(alpha) (F_sp + F_pr) + M_root
+//! sum over the arm: I_a th_a'' + sum h_i q_i'' = -M_root
+//!                   M_i q_i'' + h_i th_a'' = -K_i (q_i + eta q_i') - k_3 w(l)^3 phi_i(l)
+//! ```
+//! M_root is what holds the arm to the carrier, k_j psi where the joint yields.
+
+use nalgebra::DMatrix;
+
+use crate::friction::{AxisForces, Dry};
+use crate::integrate::Motion;
+
+/// The most modes.
+pub const MODES: usize = 4;
+
+/// Numbers in a state: x_s, x_p, th_c, psi, four modes; their rates; two bent bristles.
+pub const STATE: usize = 2 * COORDINATES + 2;
+
+const COORDINATES: usize = 4 + MODES;
+
+/// The roots of cos(z) cosh(z) = -1.
+const ROOTS: [f64; MODES] = [
+    1.875_104_068_711_961_1,
+    4.694_091_132_974_175,
+    7.854_757_438_237_613,
+    10.995_540_734_875_467,
+];
+
+/// A mesh and what may be hidden in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mesh {
+    /// Stiffness, N/m.
+    pub stiffness: f64,
+    /// Damping in contact, N s/m.
+    pub damping: f64,
+    /// Half the play, m.
+    pub play: f64,
+    /// Middle of the play, m.
+    pub middle: f64,
+    /// Transmission error: per turn of the sun, cosine and sine, m.
+    pub error: (f64, f64, f64),
+    /// Variation of the stiffness: per turn of the sun, cosine and sine, parts of it.
+    pub variation: (f64, f64, f64),
+}
+
+/// The arm on its reducer. SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arm {
+    /// Fall of the motor's torque with speed, N m s.
+    pub b_m: f64,
+    /// I_s/r_s^2, kg.
+    pub sun_mass: f64,
+    /// I_c/r_c^2 of the carrier alone, kg.
+    pub carrier_mass: f64,
+    /// Young's modulus, Pa.
+    pub modulus: f64,
+    /// Number of modes.
+    pub modes: usize,
+    /// Sun and planet, planet and ring.
+    pub meshes: [Mesh; 2],
+    /// What may be hidden on the sun.
+    pub on_sun: AxisForces,
+    /// What may be hidden on the carrier.
+    pub on_carrier: AxisForces,
+    /// Loss of bending, s.
+    pub loss: f64,
+    /// Mass at the end, kg.
+    pub tip_mass: f64,
+    /// Cubic stiffness at the end, N/m^3.
+    pub cubic: f64,
+    /// Compliance of the joint, rad per N m.
+    pub compliance: f64,
+    inverse: Vec<f64>,
+}
+
+/// What does not change between cases.
+mod given {
+    pub const MODULE: f64 = 3e-3;
+    pub const TEETH: (f64, f64) = (27.0, 36.0);
+    pub const PRESSURE_ANGLE: f64 = 24.6 * std::f64::consts::PI / 180.0;
+    pub const PLANET_MASS: f64 = 0.61;
+    pub const PLANET_OWN_MASS: f64 = 0.66;
+    pub const LINEAR_DENSITY: f64 = 7900.0 * 1e-4;
+    pub const LENGTH: f64 = 0.5;
+    pub const SECTION: f64 = 8.333e-10;
+}
+
+/// r_s and r_c, m.
+fn radii() -> (f64, f64) {
+    let (sun, planet) = given::TEETH;
+    let cosine = given::PRESSURE_ANGLE.cos();
+    (
+        given::MODULE * sun * cosine / 2.0,
+        given::MODULE * (sun + planet) / 2.0,
+    )
+}
+
+impl Arm {
+    /// The rig's arm with nothing hidden.
+    pub fn nominal() -> Self {
+        let mesh = Mesh {
+            stiffness: 1e8,
+            damping: 650.0,
+            play: 25e-6,
+            middle: 0.0,
+            error: (0.0, 0.0, 0.0),
+            variation: (0.0, 0.0, 0.0),
+        };
+        let mut arm = Self {
+            b_m: 0.05,
+            sun_mass: 0.39,
+            carrier_mass: 6.29,
+            modulus: 2e11,
+            modes: MODES,
+            meshes: [mesh.clone(), mesh],
+            on_sun: AxisForces::none(Dry::Steep { speed: 0.05 }),
+            on_carrier: AxisForces::none(Dry::Steep { speed: 0.01 }),
+            loss: 0.0,
+            tip_mass: 0.0,
+            cubic: 0.0,
+            compliance: 0.0,
+            inverse: Vec::new(),
+        };
+        arm.prepare();
+        arm
+    }
+
+    /// To be called after masses or the number of modes have changed.
+    pub fn prepare(&mut self) {
+        let (_, r_c) = radii();
+        let length = given::LENGTH;
+        let mass = given::LINEAR_DENSITY * length;
+        let size = 1 + self.modes;
+        let mut of_arm = DMatrix::zeros(size, size);
+        of_arm[(0, 0)] = mass * length * length / 3.0 + self.tip_mass * length * length;
+        for i in 0..self.modes {
+            // int x phi = 2 l^2/z^2 and int phi^2 = l of the modes in cosh - cos - ...
+            let at_end = end_value(i);
+            let turning = 2.0 * mass * length / (ROOTS[i] * ROOTS[i]);
+            of_arm[(0, i + 1)] = turning + self.tip_mass * length * at_end;
+            of_arm[(i + 1, 0)] = of_arm[(0, i + 1)];
+            for j in 0..self.modes {
+                let own = if i == j { mass } else { 0.0 };
+                of_arm[(i + 1, j + 1)] = own + self.tip_mass * at_end * end_value(j);
+            }
+        }
+        let carrier = (self.carrier_mass + 3.0 * given::PLANET_OWN_MASS) * r_c * r_c;
+        let whole = if self.compliance > 0.0 {
+            // Carrier and arm apart.
+            let mut whole = DMatrix::zeros(size + 1, size + 1);
+            whole[(0, 0)] = carrier;
+            whole.view_mut((1, 1), (size, size)).copy_from(&of_arm);
+            whole
+        } else {
+            of_arm[(0, 0)] += carrier;
+            of_arm
+        };
+        let inverse = whole
+            .try_inverse()
+            .expect("the masses are positive, so the matrix has an inverse");
+        self.inverse = inverse.transpose().as_slice().to_vec();
+    }
+
+    /// Kinetic and potential energy, J, where nothing repeats with an angle.
+    pub fn energy(&self, state: &[f64]) -> f64 {
+        let (r_s, r_c) = radii();
+        let rates = &state[COORDINATES..];
+        let root = rates[2] + rates[3];
+        let length = given::LENGTH;
+        let mass = given::LINEAR_DENSITY * length;
+        let mut energy = 0.5 * self.sun_mass * rates[0] * rates[0]
+            + 1.5 * given::PLANET_MASS * rates[1] * rates[1]
+            + 0.5 * (self.carrier_mass + 3.0 * given::PLANET_OWN_MASS) * (r_c * rates[2]).powi(2)
+            + mass * length * length / 6.0 * root * root;
+        for i in 0..self.modes {
+            energy += 0.5 * mass * rates[4 + i] * rates[4 + i]
+                + 2.0 * mass * length / (ROOTS[i] * ROOTS[i]) * rates[4 + i] * root
+                + 0.5 * self.bending(i) * state[4 + i] * state[4 + i];
+        }
+        let tip_rate = length * root
+            + (0..self.modes)
+                .map(|i| end_value(i) * rates[4 + i])
+                .sum::<f64>();
+        let tip = self.tip(state);
+        energy += 0.5 * self.tip_mass * tip_rate * tip_rate + 0.25 * self.cubic * tip.powi(4);
+        if self.compliance > 0.0 {
+            energy += 0.5 * state[3] * state[3] / self.compliance;
+        }
+        let sun = state[0] / r_s;
+        for (mesh, deflection) in self.meshes.iter().zip(self.deflections(state, r_c)) {
+            let dead = dead(
+                deflection - mesh.middle - mesh.at(mesh.error, sun).0,
+                mesh.play,
+            );
+            energy += 1.5 * mesh.stiffness * (1.0 + mesh.at(mesh.variation, sun).0) * dead * dead;
+        }
+        energy
+    }
+
+    /// Stiffness of a mode, N/m.
+    fn bending(&self, mode: usize) -> f64 {
+        self.modulus * given::SECTION * ROOTS[mode].powi(4) / given::LENGTH.powi(3)
+    }
+
+    fn tip(&self, state: &[f64]) -> f64 {
+        (0..self.modes).map(|i| end_value(i) * state[4 + i]).sum()
+    }
+
+    fn deflections(&self, of: &[f64], r_c: f64) -> [f64; 2] {
+        let carrier = r_c * given::PRESSURE_ANGLE.cos() * of[2];
+        [of[0] - of[1] - carrier, of[1] - carrier]
+    }
+
+    /// Angles of sun and carrier, deflection of the end.
+    pub fn outputs(&self, state: &[f64]) -> [f64; 3] {
+        [state[0] / radii().0, state[2], self.tip(state)]
+    }
+
+    /// A state of a machine without a joint that yields.
+    pub fn without_joint(state: &[f64]) -> Vec<f64> {
+        let mut state = state.to_vec();
+        state[3] = 0.0;
+        state[COORDINATES + 3] = 0.0;
+        state
+    }
+
+    /// Places of the states that a model with this many modes has, without bristles.
+    pub fn states_of_model(modes: usize) -> Vec<usize> {
+        let coordinates: Vec<usize> = [0, 1, 2].into_iter().chain(4..4 + modes).collect();
+        let rates = coordinates.iter().map(|place| place + COORDINATES);
+        coordinates.iter().copied().chain(rates).collect()
+    }
+}
+
+/// phi_i(l) = 2 (-1)^(i+1), counted from 1.
+fn end_value(mode: usize) -> f64 {
+    if mode.is_multiple_of(2) { 2.0 } else { -2.0 }
+}
+
+fn dead(deflection: f64, play: f64) -> f64 {
+    if deflection > play {
+        deflection - play
+    } else if deflection < -play {
+        deflection + play
+    } else {
+        0.0
+    }
+}
+
+impl Mesh {
+    /// A part that repeats with the sun's angle, and its slope.
+    fn at(&self, part: (f64, f64, f64), angle: f64) -> (f64, f64) {
+        let (order, cosine, sine) = part;
+        if cosine == 0.0 && sine == 0.0 {
+            return (0.0, 0.0);
+        }
+        let (s, c) = (order * angle).sin_cos();
+        (cosine * c + sine * s, order * (sine * c - cosine * s))
+    }
+
+    /// Force on the line of action, N, and torque on the sun, N m, by which what repeats with
+    /// its angle acts back on it (both of one of three planets).
+    fn forces(&self, deflection: f64, speed: f64, angle: f64, turning: f64) -> (f64, f64) {
+        let (error, error_slope) = self.at(self.error, angle);
+        let (variation, variation_slope) = self.at(self.variation, angle);
+        let deflection = deflection - self.middle - error;
+        let dead = dead(deflection, self.play);
+        if dead == 0.0 {
+            return (0.0, 0.0);
+        }
+        let speed = speed - error_slope * turning;
+        let force = self.stiffness * (1.0 + variation) * dead + self.damping * speed;
+        let back = force * error_slope - 0.5 * self.stiffness * variation_slope * dead * dead;
+        (force, back)
+    }
+}
+
+impl Motion for Arm {
+    fn rates(&self, t: f64, state: &[f64], input: f64, rates: &mut [f64]) {
+        let (r_s, r_c) = radii();
+        let lever = r_c * given::PRESSURE_ANGLE.cos();
+        let (at, moving) = state[..2 * COORDINATES].split_at(COORDINATES);
+        let bristles = &state[2 * COORDINATES..];
+        let (sun, turning) = (at[0] / r_s, moving[0] / r_s);
+        let [d_sp, d_pr] = self.deflections(at, r_c);
+        let [v_sp, v_pr] = self.deflections(moving, r_c);
+        let (f_sp, back_sp) = self.meshes[0].forces(d_sp, v_sp, sun, turning);
+        let (f_pr, back_pr) = self.meshes[1].forces(d_pr, v_pr, sun, turning);
+        let (hidden_sun, bend_sun) = self.on_sun.force(t, sun, turning, bristles[0], input);
+        let (hidden_carrier, bend_carrier) =
+            self.on_carrier
+                .force(t, at[2], moving[2], bristles[1], input);
+        let on_sun = input - self.b_m * turning + hidden_sun + 3.0 * (back_sp + back_pr);
+        let on_carrier = hidden_carrier + 3.0 * lever * (f_sp + f_pr);
+        rates[..COORDINATES].copy_from_slice(moving);
+        rates[COORDINATES] = (on_sun / r_s - 3.0 * f_sp) / self.sun_mass;
+        rates[COORDINATES + 1] = (f_sp - f_pr) / given::PLANET_MASS;
+        rates[2 * COORDINATES] = bend_sun;
+        rates[2 * COORDINATES + 1] = bend_carrier;
+        let mut forces = [0.0; MODES + 2];
+        let yields = usize::from(self.compliance > 0.0);
+        let held = if yields == 1 {
+            at[3] / self.compliance
+        } else {
+            0.0
+        };
+        forces[0] = on_carrier + held;
+        forces[yields] -= held;
+        let cubic = self.cubic * self.tip(at).powi(3);
+        for i in 0..self.modes {
+            let bent = at[4 + i] + self.loss * moving[4 + i];
+            forces[1 + yields + i] = -self.bending(i) * bent - cubic * end_value(i);
+        }
+        let size = 1 + yields + self.modes;
+        let acceleration = |row: usize| -> f64 {
+            let row = &self.inverse[row * size..(row + 1) * size];
+            row.iter().zip(&forces).map(|(a, b)| a * b).sum()
+        };
+        let turned = acceleration(0);
+        rates[COORDINATES + 2] = turned;
+        rates[COORDINATES + 3] = if yields == 1 {
+            acceleration(1) - turned
+        } else {
+            0.0
+        };
+        for i in 0..MODES {
+            let bent = if i < self.modes {
+                acceleration(1 + yields + i)
+            } else {
+                0.0
+            };
+            rates[COORDINATES + 4 + i] = bent;
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! The machines with everything that may be hidden in them, and how each is measured.
+
+pub mod arm;
+pub mod axes;
+
+use crate::friction::{AxisForces, Dry};
+use crate::integrate::Motion;
+use crate::random::Draw;
+use arm::{Arm, Mesh};
+use axes::{Pendulum, Stage};
+
+/// A machine with its true parameters and what is hidden in it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Machine {
+    /// The flexible arm on its reducer.
+    Arm(Box<Arm>),
+    /// A stage driven by a force.
+    Stage(Stage),
+    /// A pendulum that swings freely.
+    Pendulum(Pendulum),
+}
+
+/// Which machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// The flexible arm on its reducer.
+    Arm,
+    /// A stage driven by a force.
+    Stage,
+    /// A pendulum that swings freely.
+    Pendulum,
+}
+
+/// A measured channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Channel {
+    /// Its name in the model and in the record.
+    pub name: &'static str,
+    /// The unit of the record.
+    pub unit: &'static str,
+    /// The record's unit in SI.
+    pub scale: f64,
+    /// One standard deviation, SI: white noise and rounding together.
+    pub noise: f64,
+    /// The encoder's step, SI.
+    pub step: f64,
+}
+
+/// How a machine is measured and what of it is declared uncertain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// The specification, by its file in `model-spec/models`.
+    pub specification: &'static str,
+    /// The truncation order of the model, where it has one.
+    pub order: Option<usize>,
+    /// Channels, in the order of [`Machine::outputs`].
+    pub channels: Vec<Channel>,
+    /// The input's name, and unit, if there is one.
+    pub input: Option<(&'static str, &'static str)>,
+    /// Time between samples, s.
+    pub sample: f64,
+    /// Steps of the integration in each of them.
+    pub steps: usize,
+    /// Length of a record, s.
+    pub duration: f64,
+    /// Length of a window, s; none for the whole record.
+    pub window: Option<f64>,
+    /// Uncertain parameters and the relative standard deviations of their priors.
+    pub uncertain: Vec<(&'static str, f64)>,
+    /// How many records to learn from, and to be judged by.
+    pub records: (usize, usize),
+}
+
+impl Kind {
+    /// The machine with nothing hidden, its parameters as the specification has them.
+    pub fn nominal(self) -> Machine {
+        match self {
+            Kind::Arm => Machine::Arm(Box::new(Arm::nominal())),
+            Kind::Stage => Machine::Stage(Stage::nominal()),
+            Kind::Pendulum => Machine::Pendulum(Pendulum::nominal()),
+        }
+    }
+
+    /// How it is measured.
+    pub fn setup(self) -> Setup {
+        let channel = |name, unit, scale, noise, step| Channel {
+            name,
+            unit,
+            scale,
+            noise,
+            step,
+        };
+        match self {
+            Kind::Arm => Setup {
+                specification: "planetary_arm_rig.toml",
+                order: Some(2),
+                channels: vec![
+                    channel("theta_s", "rad", 1.0, 6e-5, 6e-5),
+                    channel("theta_c", "rad", 1.0, 3e-5, 4e-5),
+                    channel("tip", "m", 1.0, 1.5e-5, 5e-6),
+                ],
+                input: Some(("u", "N m")),
+                sample: 5e-4,
+                steps: 200,
+                duration: 1.2,
+                window: Some(0.1),
+                uncertain: vec![("b_m", 0.02)],
+                records: (1, 1),
+            },
+            Kind::Stage => Setup {
+                specification: "emps.toml",
+                order: None,
+                channels: vec![channel("q", "mm", 1e-3, 2e-6, 3e-6)],
+                input: Some(("force", "N")),
+                sample: 1e-3,
+                steps: 100,
+                duration: 1.6,
+                window: Some(0.25),
+                uncertain: vec![("M", 0.02), ("F_v", 0.05)],
+                records: (1, 1),
+            },
+            Kind::Pendulum => Setup {
+                specification: "pendulum.toml",
+                order: None,
+                channels: vec![channel("theta", "rad", 1.0, 5e-4, 6e-4)],
+                input: None,
+                sample: 2e-3,
+                steps: 100,
+                duration: 1.4,
+                window: None,
+                uncertain: vec![("k", 0.3), ("I", 0.05)],
+                records: (3, 2),
+            },
+        }
+    }
+}
+
+impl Machine {
+    /// Numbers in a state.
+    pub fn state_size(&self) -> usize {
+        match self {
+            Machine::Arm(_) => arm::STATE,
+            Machine::Stage(_) | Machine::Pendulum(_) => 3,
+        }
+    }
+
+    /// What the channels see, SI.
+    pub fn outputs(&self, state: &[f64]) -> Vec<f64> {
+        match self {
+            Machine::Arm(arm) => arm.outputs(state).to_vec(),
+            Machine::Stage(_) | Machine::Pendulum(_) => vec![state[0]],
+        }
+    }
+
+    /// Places of the states that the model of the machine has.
+    pub fn states_of_model(&self) -> Vec<usize> {
+        match self {
+            Machine::Arm(_) => Arm::states_of_model(2),
+            Machine::Stage(_) | Machine::Pendulum(_) => vec![0, 1],
+        }
+    }
+
+    /// A state as a machine with nothing hidden has it.
+    pub fn plain_state(&self, state: &[f64]) -> Vec<f64> {
+        match self {
+            Machine::Arm(_) => Arm::without_joint(state),
+            Machine::Stage(_) | Machine::Pendulum(_) => state.to_vec(),
+        }
+    }
+
+    /// The axis of this name.
+    pub fn axis(&mut self, name: &str) -> Option<&mut AxisForces> {
+        match (self, name) {
+            (Machine::Arm(arm), "theta_s") => Some(&mut arm.on_sun),
+            (Machine::Arm(arm), "theta_c") => Some(&mut arm.on_carrier),
+            (Machine::Stage(stage), "q") => Some(&mut stage.hidden),
+            (Machine::Pendulum(pendulum), "theta") => Some(&mut pendulum.hidden),
+            _ => None,
+        }
+    }
+
+    /// The mesh of this name.
+    pub fn mesh(&mut self, name: &str) -> Option<&mut Mesh> {
+        match (self, name) {
+            (Machine::Arm(arm), "x_sp") => Some(&mut arm.meshes[0]),
+            (Machine::Arm(arm), "x_pr") => Some(&mut arm.meshes[1]),
+            _ => None,
+        }
+    }
+
+    /// Multiplies a parameter; whether there is one of this name.
+    pub fn scale(&mut self, parameter: &str, factor: f64) -> bool {
+        let value = match (self, parameter) {
+            (Machine::Arm(arm), "b_m") => &mut arm.b_m,
+            (Machine::Arm(arm), "E") => &mut arm.modulus,
+            (Machine::Arm(arm), "m_c") => {
+                arm.carrier_mass *= factor;
+                arm.prepare();
+                return true;
+            }
+            (Machine::Stage(stage), "M") => &mut stage.mass,
+            (Machine::Stage(stage), "F_v") => &mut stage.viscous,
+            (Machine::Pendulum(pendulum), "k") => &mut pendulum.viscous,
+            (Machine::Pendulum(pendulum), "I") => &mut pendulum.inertia,
+            (Machine::Pendulum(pendulum), "a") => &mut pendulum.distance,
+            _ => return false,
+        };
+        *value *= factor;
+        true
+    }
+
+    /// Chooses how dry friction is written on every axis.
+    pub fn choose_dry(&mut self, draw: &mut Draw) {
+        let bristles = draw.between(0.0, 1.0) < 0.5;
+        let choose = |forces: &mut AxisForces, reach: f64, inertia: f64| {
+            if bristles {
+                forces.dry = Dry::Bristles { reach, inertia };
+            }
+        };
+        match self {
+            Machine::Arm(arm) => {
+                choose(&mut arm.on_sun, 2e-3, 6e-4);
+                choose(&mut arm.on_carrier, 2e-4, 0.1);
+            }
+            Machine::Stage(stage) => choose(&mut stage.hidden, 5e-6, stage.mass),
+            Machine::Pendulum(pendulum) => choose(&mut pendulum.hidden, 3e-4, 3.3e-3),
+        }
+    }
+}
+
+impl Motion for Machine {
+    fn rates(&self, t: f64, state: &[f64], input: f64, rates: &mut [f64]) {
+        match self {
+            Machine::Arm(arm) => arm.rates(t, state, input, rates),
+            Machine::Stage(stage) => stage.rates(t, state, input, rates),
+            Machine::Pendulum(pendulum) => pendulum.rates(t, state, input, rates),
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! `blind`: makes the cases of a seed, runs the program on them and counts how often it is
+//! right.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+use clap::Parser;
+use eomgen_blind::plan::{Case, Group, plan};
+use eomgen_blind::{records, run, score};
+
+/// Hides effects in records, lets `eomgen discover` look for them, and scores it.
+#[derive(Parser)]
+#[command(after_help = "Example:\n  blind --seed 1 --out blind-1 --only single")]
+struct Options {
+    /// The seed of all cases
+    #[arg(long)]
+    seed: u64,
+    /// The folder for cases, labels, results and the score; what is there is kept
+    #[arg(long)]
+    out: PathBuf,
+    /// Only these cases, as first..end
+    #[arg(long, value_parser = range)]
+    cases: Option<Range<usize>>,
+    /// Only cases of this kind: single, nothing, pair, outside or untellable
+    #[arg(long, value_parser = group)]
+    only: Option<Group>,
+    /// The longest a case may take, s
+    #[arg(long, default_value_t = 60.0)]
+    limit: f64,
+}
+
+fn range(text: &str) -> Result<Range<usize>, String> {
+    let parts = text.split_once("..").map(|(a, b)| (a.parse(), b.parse()));
+    match parts {
+        Some((Ok(first), Ok(end))) if first < end => Ok(first..end),
+        _ => Err("expected first..end, as 0..10".to_owned()),
+    }
+}
+
+fn group(text: &str) -> Result<Group, String> {
+    serde_json::from_value(serde_json::json!(text))
+        .map_err(|_| "expected single, nothing, pair, outside or untellable".to_owned())
+}
+
+fn main() -> ExitCode {
+    match suite(&Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("error: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn suite(options: &Options) -> Result<(), String> {
+    let program = program()?;
+    same_seed(&options.out, options.seed)?;
+    let wanted = |case: &Case| {
+        options
+            .cases
+            .as_ref()
+            .is_none_or(|range| range.contains(&case.number))
+            && options.only.is_none_or(|group| case.group == group)
+    };
+    let cases: Vec<Case> = plan(options.seed).into_iter().filter(wanted).collect();
+    let limit = Duration::try_from_secs_f64(options.limit).map_err(|error| error.to_string())?;
+    let next = AtomicUsize::new(0);
+    let work = || -> Result<(), String> {
+        while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let told = |error: std::io::Error| format!("case {}: {error}", case.number);
+            records::make(case, options.seed, specifications(), &options.out).map_err(told)?;
+            run::run(&program, &options.out, case.number, limit).map_err(told)?;
+            eprint!(
+                "\r{} of {} ",
+                next.load(Ordering::Relaxed).min(cases.len()),
+                cases.len()
+            );
+        }
+        Ok(())
+    };
+    std::thread::scope(|scope| {
+        let workers = [scope.spawn(work), scope.spawn(work)];
+        workers
+            .into_iter()
+            .try_for_each(|worker| match worker.join() {
+                Ok(result) => result,
+                Err(_) => Err("a case could not be made".to_owned()),
+            })
+    })?;
+    eprintln!();
+    let numbers: Vec<usize> = cases.iter().map(|case| case.number).collect();
+    let score = score::score(&options.out, &numbers).map_err(|error| error.to_string())?;
+    print!("{}", score::table(&score));
+    let document = serde_json::to_string_pretty(&score).map_err(|error| error.to_string())?;
+    let path = options.out.join("score.json");
+    records::write_whole(&path, &(document + "\n")).map_err(|error| error.to_string())
+}
+
+/// The shipped specifications.
+fn specifications() -> &'static Path {
+    Path::new(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../model-spec/models"
+    ))
+}
+
+/// The program beside this one.
+fn program() -> Result<PathBuf, String> {
+    let own = std::env::current_exe().map_err(|error| error.to_string())?;
+    let program = own.with_file_name(format!("eomgen{}", std::env::consts::EXE_SUFFIX));
+    if program.is_file() {
+        Ok(program)
+    } else {
+        Err(format!(
+            "there is no {}; build it first: cargo build --release",
+            program.display()
+        ))
+    }
+}
+
+/// A folder holds the cases of one seed.
+fn same_seed(out: &Path, seed: u64) -> Result<(), String> {
+    let path = out.join("seed.txt");
+    match std::fs::read_to_string(&path) {
+        Ok(text) if text.trim() == seed.to_string() => Ok(()),
+        Ok(text) => Err(format!(
+            "{} holds the cases of seed {}; give another folder to seed {seed}",
+            out.display(),
+            text.trim()
+        )),
+        Err(_) => {
+            records::write_whole(&path, &format!("{seed}\n")).map_err(|error| error.to_string())
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! The program on a case, as a user runs it: a specification, a dataset, an order. Labels are
+//! not read here. A case whose result is there is not run again.
+
+use std::fs::File;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::records::write_whole;
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ending {
+    /// With an answer.
+    Answered,
+    /// It took longer than it may.
+    Timeout,
+    /// Without an answer: an error or a crash.
+    Failed,
+}
+
+/// What came of a case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// Its number.
+    pub case: usize,
+    /// How the run ended.
+    pub ending: Ending,
+    /// How long it took, s.
+    pub seconds: f64,
+    /// The end of what it said on its standard error.
+    pub said: String,
+    /// Its `discovery.json`.
+    pub discovery: Option<Value>,
+}
+
+/// Runs the program on a case of the folder `out`, at most `limit` long.
+///
+/// # Errors
+/// A file that cannot be read or written, a program that cannot be started.
+pub fn run(program: &Path, out: &Path, case: usize, limit: Duration) -> std::io::Result<()> {
+    let place = |folder: &str| out.join(folder).join(format!("{case:03}"));
+    let result = place("results").with_extension("json");
+    if result.exists() {
+        return Ok(());
+    }
+    let (given, found) = (place("cases"), place("found"));
+    std::fs::create_dir_all(&found)?;
+    let order = std::fs::read_to_string(given.join("order.txt"))?;
+    let said = found.join("said.txt");
+    let mut command = Command::new(program);
+    command
+        .arg("discover")
+        .arg(given.join("spec.toml"))
+        .arg(given.join("dataset.toml"))
+        .arg("--out")
+        .arg(&found)
+        // Cases run side by side, one on each core.
+        .env("RAYON_NUM_THREADS", "1")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(File::create(&said)?);
+    if !order.is_empty() {
+        command.args(["--order", &order]);
+    }
+    let begin = Instant::now();
+    let ending = ending(&mut command, begin, limit)?;
+    let seconds = begin.elapsed().as_secs_f64();
+    let document = std::fs::read_to_string(found.join("discovery.json")).ok();
+    let outcome = Outcome {
+        case,
+        ending,
+        seconds,
+        said: last_lines(&std::fs::read_to_string(&said).unwrap_or_default()),
+        discovery: document
+            .filter(|_| ending == Ending::Answered)
+            .and_then(|text| serde_json::from_str(&text).ok()),
+    };
+    write_whole(&result, &serde_json::to_string_pretty(&outcome)?)
+}
+
+fn ending(command: &mut Command, begin: Instant, limit: Duration) -> std::io::Result<Ending> {
+    let mut child = command.spawn()?;
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(match status.success() {
+                true => Ending::Answered,
+                false => Ending::Failed,
+            });
+        }
+        if begin.elapsed() > limit {
+            child.kill()?;
+            child.wait()?;
+            return Ok(Ending::Timeout);
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+fn last_lines(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    lines[lines.len().saturating_sub(5)..].join("\n")
+}

@@ -1,0 +1,266 @@
+//! A small fixed part of the blind suite: cases are made, the program is run on them, and
+//! results are scored. What is asserted of discovery is what it must never get wrong; how
+//! often it is right, the whole suite tells.
+
+use std::path::Path;
+use std::time::Duration;
+
+use eomgen_blind::plan::{Case, Group, plan};
+use eomgen_blind::records::{self, Label};
+use eomgen_blind::run::{Ending, Outcome, run};
+use eomgen_blind::score::{self, Judgement, Score};
+use eomgen_tests::models::project;
+use eomgen_tests::program;
+use serde_json::{Value, json};
+
+/// The seed of the fixed part.
+const SEED: u64 = 2026;
+
+fn made(cases: &[&Case], out: &Path) {
+    let specifications = project().join("model-spec/models");
+    for case in cases {
+        records::make(case, SEED, &specifications, out).expect("the case is written");
+    }
+}
+
+/// The first cases on the machines of one coordinate: those are quick.
+fn quick(cases: &[Case]) -> Vec<&Case> {
+    use eomgen_blind::machines::Kind;
+    let of = |kind: Kind, group: Group, count: usize| {
+        let fits = move |case: &&Case| case.machine == kind && case.group == group;
+        cases.iter().filter(fits).take(count)
+    };
+    of(Kind::Stage, Group::Nothing, 1)
+        .chain(of(Kind::Pendulum, Group::Nothing, 1))
+        .chain(of(Kind::Stage, Group::Single, 2))
+        .chain(of(Kind::Pendulum, Group::Single, 2))
+        .collect()
+}
+
+#[test]
+fn a_fixed_part_is_made_run_and_scored() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cases = plan(SEED);
+    let chosen = quick(&cases);
+    assert_eq!(chosen.len(), 6);
+    made(&chosen, folder.path());
+    for case in &chosen {
+        let limit = Duration::from_secs(60);
+        run(program::path(), folder.path(), case.number, limit).expect("the program is run");
+    }
+    let numbers: Vec<usize> = chosen.iter().map(|case| case.number).collect();
+    let score = score::score(folder.path(), &numbers).expect("labels and results");
+    println!("{}", score::table(&score));
+    assert_eq!(score.without_answer, (0, 0), "{score:#?}");
+    assert_eq!(score.false_alarms, (0, 2), "{score:#?}");
+    assert_eq!(score.wrong_signs, 0, "{score:#?}");
+}
+
+#[test]
+fn a_case_that_was_run_is_not_run_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = folder.path().join("results/007.json");
+    records::write_whole(&result, "kept").expect("a file");
+    let nowhere = Path::new("/nowhere/at/all");
+    run(nowhere, folder.path(), 7, Duration::from_secs(1)).expect("nothing is run");
+    assert_eq!(std::fs::read_to_string(&result).expect("a file"), "kept");
+    assert!(run(nowhere, folder.path(), 8, Duration::from_secs(1)).is_err());
+}
+
+#[test]
+fn the_same_seed_makes_the_same_cases() {
+    let cases = plan(SEED);
+    let chosen = [quick(&cases)[2]];
+    let folders = [(), ()].map(|()| tempfile::tempdir().expect("a folder"));
+    for folder in &folders {
+        made(&chosen, folder.path());
+    }
+    for name in ["train0.csv", "dataset.toml", "spec.toml"] {
+        let place = format!("cases/{:03}/{name}", chosen[0].number);
+        let [one, other] = [&folders[0], &folders[1]]
+            .map(|folder| std::fs::read(folder.path().join(&place)).expect("a file"));
+        assert!(one == other && !one.is_empty(), "{place}");
+    }
+}
+
+/// A label with these effects, each with one parameter that is truly 2.
+fn label(group: Group, effects: &[&str]) -> Label {
+    let truth = |effect: &&str| {
+        json!({
+            "hidden": {"effect": effect, "on": "q", "order": 0.0, "sign": 1.0, "phase": 0.0, "amount": 2.0},
+            "effect": effect, "parameters": [2.0], "floors": 5.0, "alike": [],
+        })
+    };
+    let label = json!({
+        "case": 1, "group": group, "machine": "stage", "declared": [["M", 1.01]],
+        "hidden": effects.iter().map(truth).collect::<Vec<Value>>(),
+        "sensors": {"gain": [0.0], "bias": [0.0], "delay": [0.0]},
+    });
+    serde_json::from_value(label).expect("a label")
+}
+
+/// An answer with these effects, each with a value and an equivalent.
+fn answer(verdict: &str, effects: &[(&str, f64, Option<&str>)]) -> Outcome {
+    let effect = |(name, value, other): &(&str, f64, Option<&str>)| {
+        json!({
+            "effect": name, "on": "q",
+            "status": if other.is_some() { "class" } else { "named" },
+            "equivalent": other.iter().map(|o| json!({"effect": o, "on": "q"})).collect::<Vec<_>>(),
+            "parameters": {"p": {"value": value, "sd": 0.1, "unit": "N"}},
+        })
+    };
+    Outcome {
+        case: 1,
+        ending: Ending::Answered,
+        seconds: 1.5,
+        said: String::new(),
+        discovery: Some(json!({
+            "verdict": verdict,
+            "effects": effects.iter().map(effect).collect::<Vec<_>>(),
+            "refitted": {"M": {"value": 95.9, "sd": 0.1}},
+            "closure": {"train": 0.9, "test": 0.85},
+        })),
+    }
+}
+
+#[test]
+fn judgements_are_what_they_should_be() {
+    use Group::{Nothing, Outside, Pair, Single, Untellable};
+    let (coulomb, offset) = ("coulomb_friction", "force_offset");
+    let found = "effects_found";
+    let named = |name| (name, 2.05, None);
+    let class = |name, other| (name, 2.05, Some(other));
+    for (group, hidden, verdict, effects, expected) in [
+        (
+            Nothing,
+            vec![],
+            "no_significant_gap",
+            vec![],
+            Judgement::Right,
+        ),
+        (Nothing, vec![], "unexplained", vec![], Judgement::Right),
+        (
+            Nothing,
+            vec![],
+            found,
+            vec![named(coulomb)],
+            Judgement::Wrong,
+        ),
+        (
+            Single,
+            vec![coulomb],
+            found,
+            vec![named(coulomb)],
+            Judgement::Right,
+        ),
+        (
+            Single,
+            vec![coulomb],
+            found,
+            vec![named(offset), named(coulomb)],
+            Judgement::Wrong,
+        ),
+        (
+            Single,
+            vec![coulomb],
+            found,
+            vec![class(offset, coulomb)],
+            Judgement::Class,
+        ),
+        (
+            Single,
+            vec![coulomb],
+            "no_significant_gap",
+            vec![],
+            Judgement::Missed,
+        ),
+        (
+            Single,
+            vec![coulomb],
+            "unexplained",
+            vec![],
+            Judgement::Unexplained,
+        ),
+        (
+            Pair,
+            vec![coulomb, offset],
+            found,
+            vec![named(offset), named(coulomb)],
+            Judgement::Right,
+        ),
+        (
+            Pair,
+            vec![coulomb, offset],
+            found,
+            vec![named(offset)],
+            Judgement::Part,
+        ),
+        (
+            Untellable,
+            vec![coulomb],
+            found,
+            vec![class(coulomb, offset)],
+            Judgement::Right,
+        ),
+        (
+            Untellable,
+            vec![coulomb],
+            found,
+            vec![named(coulomb)],
+            Judgement::Part,
+        ),
+        (
+            Outside,
+            vec!["worn_friction"],
+            "unexplained",
+            vec![],
+            Judgement::Right,
+        ),
+        (
+            Outside,
+            vec!["worn_friction"],
+            found,
+            vec![named(coulomb)],
+            Judgement::Wrong,
+        ),
+    ] {
+        let judged = score::judge(&label(group, &hidden), &answer(verdict, &effects));
+        assert_eq!(
+            judged.judgement, expected,
+            "{group:?} {hidden:?} {effects:?}"
+        );
+    }
+    let mut late = answer(found, &[named(coulomb)]);
+    late.ending = Ending::Timeout;
+    let judged = score::judge(&label(Single, &[coulomb]), &late);
+    assert_eq!(judged.judgement, Judgement::Timeout);
+}
+
+#[test]
+fn figures_add_up() {
+    let single = |value: f64| {
+        let answer = answer("effects_found", &[("coulomb_friction", value, None)]);
+        score::judge(&label(Group::Single, &["coulomb_friction"]), &answer)
+    };
+    let nothing = score::judge(
+        &label(Group::Nothing, &[]),
+        &answer("no_significant_gap", &[]),
+    );
+    let alarm = answer("effects_found", &[("force_offset", 1.0, None)]);
+    let alarm = score::judge(&label(Group::Nothing, &[]), &alarm);
+    // 1.645 standard deviations of 0.1 hold 2 from 2.16, not from 2.17.
+    let cases = vec![single(2.16), single(2.17), single(-2.0), nothing, alarm];
+    let score: Score = score::summed(cases);
+    assert_eq!(score.named, (3, 3));
+    assert_eq!(score.false_alarms, (1, 2));
+    assert_eq!(score.intervals, (1, 3));
+    assert_eq!(score.wrong_signs, 1);
+    // M is truly 1.01 of 95 kg: 95.95, and 95.9 was found.
+    assert_eq!(score.refitted, (2, 2));
+    assert_eq!(
+        (score.single_closure.reached, score.single_closure.of),
+        (3, 3)
+    );
+    assert!((score.seconds.0 - 7.5).abs() < 1e-12);
+    assert!(score::table(&score).contains("false alarms"));
+}
