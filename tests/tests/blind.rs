@@ -30,8 +30,7 @@ fn quick(cases: &[Case]) -> Vec<&Case> {
         let fits = move |case: &&Case| case.machine == kind && case.group == group;
         cases.iter().filter(fits).take(count)
     };
-    of(Kind::Stage, Group::Nothing, 1)
-        .chain(of(Kind::Pendulum, Group::Nothing, 1))
+    of(Kind::Stage, Group::Nothing, 2)
         .chain(of(Kind::Stage, Group::Single, 2))
         .chain(of(Kind::Pendulum, Group::Single, 2))
         .collect()

@@ -50,10 +50,13 @@ pub fn drive(kind: Kind, setup: &Setup, manner: Manner, place: usize, draw: &mut
             vec![0.0; samples]
         }
         (Kind::Stage, Manner::OneWay) => {
-            start[1] = draw.between(0.25, 0.35);
+            // Speeds that change by half, so that viscous friction is known.
+            start[1] = draw.between(0.3, 0.4);
             let lasting = viscous(&machine) * start[1];
-            let sines = sines(setup, samples, ((3.0, 8.0), (30.0, 80.0)), draw);
-            sines.iter().map(|sine| lasting + sine).collect()
+            let slow = sines(setup, samples, ((0.7, 1.5), (15.0, 30.0)), draw);
+            let fast = sines(setup, samples, ((3.0, 8.0), (30.0, 60.0)), draw);
+            let all = slow.iter().zip(fast);
+            all.map(|(slow, fast)| lasting + slow + fast).collect()
         }
         (Kind::Arm, Manner::Gentle) => sines(setup, samples, ((2.5, 6.0), (0.4, 0.9)), draw),
         (Kind::Stage, _) => made(

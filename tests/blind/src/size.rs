@@ -14,7 +14,7 @@ use crate::machines::{Machine, Setup};
 const RIGHT: f64 = 0.02;
 
 /// The most looks at a size.
-const MOST_LOOKS: usize = 8;
+const MOST_LOOKS: usize = 12;
 
 /// An effect with its size found.
 pub struct Sized {
@@ -50,19 +50,89 @@ pub fn sized(
         return Sized { hidden, floors };
     }
     let (_, largest) = range(&hidden, machine);
+    let mut search = Search::new(level);
+    search.look(hidden.amount, floors);
     for _ in 0..MOST_LOOKS {
-        if (floors / level - 1.0).abs() < RIGHT {
-            break;
-        }
-        let factor = if floors > 0.0 { level / floors } else { 10.0 };
-        let next = (hidden.amount * factor.clamp(0.05, 20.0)).min(largest);
-        if next == hidden.amount {
+        let next = search.next().min(largest);
+        if search.is_found() || search.best.0 == next {
             break;
         }
         hidden.amount = next;
         floors = basis.floors(machine, &coarse, drives, &hidden);
+        search.look(next, floors);
     }
+    (hidden.amount, floors) = search.best;
     Sized { hidden, floors }
+}
+
+/// A search for the amount that stands a level high: by proportion until it lies between two
+/// amounts, then by proportion of logarithms between these.
+struct Search {
+    level: f64,
+    below: Option<(f64, f64)>,
+    above: Option<(f64, f64)>,
+    /// The amount that comes nearest and its floors.
+    best: (f64, f64),
+}
+
+impl Search {
+    fn new(level: f64) -> Self {
+        Self {
+            level,
+            below: None,
+            above: None,
+            best: (0.0, f64::INFINITY),
+        }
+    }
+
+    fn distance(&self, floors: f64) -> f64 {
+        (floors / self.level).ln().abs()
+    }
+
+    fn is_found(&self) -> bool {
+        self.distance(self.best.1) < RIGHT
+    }
+
+    /// What an amount came to; not a number where the machine could not stand it.
+    fn look(&mut self, amount: f64, floors: f64) {
+        let nearer = self.distance(floors) < self.distance(self.best.1);
+        if floors.is_finite() && (nearer || self.best.1.is_infinite()) {
+            self.best = (amount, floors);
+        }
+        if floors < self.level {
+            if self.below.is_none_or(|(known, _)| amount > known) {
+                self.below = Some((amount, floors));
+            }
+        } else if self.above.is_none_or(|(known, _)| amount < known) {
+            self.above = Some((amount, floors));
+        }
+    }
+
+    fn next(&self) -> f64 {
+        match (self.below, self.above) {
+            (Some(below), Some(above)) => {
+                let part = (self.level / below.1).ln() / (above.1 / below.1).ln();
+                // Never too near an end, where a bend would hold it.
+                let part = if part.is_finite() {
+                    part.clamp(0.1, 0.9)
+                } else {
+                    0.5
+                };
+                below.0 * (above.0 / below.0).powf(part)
+            }
+            (Some((amount, floors)), None) => amount * (self.level / floors).min(20.0),
+            (None, Some((amount, floors))) => {
+                let factor = self.level / floors;
+                amount
+                    * if factor.is_finite() {
+                        factor.max(0.05)
+                    } else {
+                        0.05
+                    }
+            }
+            (None, None) => 0.0,
+        }
+    }
 }
 
 /// A size to begin with, and the largest that makes sense, SI.
@@ -74,11 +144,14 @@ fn range(hidden: &Hidden, machine: &Machine) -> (f64, f64) {
         Machine::Pendulum(_) => (pendulum, free),
     };
     match hidden.effect {
-        Effect::StructuralDamping => (1e-4, 0.01),
+        // Half of the critical damping of the first mode.
+        Effect::StructuralDamping => (1e-4, 5e-3),
         Effect::TipMass => (0.01, 1.0),
-        Effect::StiffnessNonlinearity => (1e8, free),
+        // A softening that leaves a stiffness at the largest deflections.
+        Effect::StiffnessNonlinearity if hidden.sign < 0.0 => (3e7, 1e8),
+        Effect::StiffnessNonlinearity => (1e8, 1e11),
         Effect::JointCompliance => (1e-4, 0.01),
-        Effect::TransmissionError => (3e-6, 2e-5),
+        Effect::TransmissionError => (3e-6, 1e-4),
         Effect::StiffnessVariation => (0.2, 0.6),
         Effect::AsymmetricBacklash => (1e-5, 2e-5),
         Effect::ParameterShift => (0.02, 0.5),
@@ -346,4 +419,30 @@ pub fn floors_of_missing_modes(machine: &Machine, setup: &Setup, drives: &[Drive
         differences.push(difference - inside);
     }
     basis.without_declared(differences)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Search;
+
+    #[test]
+    fn an_amount_is_found_where_floors_bend() {
+        for floors in [
+            |a: f64| 3.0 * a,
+            |a: f64| 1e4 * a * a,
+            |a: f64| if a < 0.02 { a } else { 1e3 * a.powi(3) },
+            |a: f64| if a > 0.5 { f64::NAN } else { 40.0 * a },
+        ] {
+            let mut search = Search::new(6.0);
+            let mut amount = 0.3;
+            for _ in 0..12 {
+                search.look(amount, floors(amount));
+                if search.is_found() {
+                    break;
+                }
+                amount = search.next();
+            }
+            assert!(search.is_found(), "{:?}", search.best);
+        }
+    }
 }

@@ -1,107 +1,12 @@
-//! Which cases a seed makes: 60 with one effect, 30 with nothing hidden, 15 with two and 15
-//! with something outside the catalogue or that the record cannot tell. Their order says
-//! nothing of what they are.
+//! What is hidden where: the lists from which cases are made.
 
 use std::f64::consts::PI;
 
-use serde::{Deserialize, Serialize};
-
-use crate::hidden::{Effect, Hidden, Sensors};
+use super::{Case, Group, Nuisances, Planned};
+use crate::hidden::{Effect, Hidden};
 use crate::inputs::Manner;
-use crate::machines::{Kind, Machine, Setup};
+use crate::machines::Kind;
 use crate::random::Draw;
-
-/// What kind of case it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Group {
-    /// One effect of the catalogue.
-    Single,
-    /// Nothing.
-    Nothing,
-    /// Two effects of the catalogue.
-    Pair,
-    /// Something that no catalogue holds.
-    Outside,
-    /// An effect that the record cannot tell from another.
-    Untellable,
-}
-
-/// An effect to hide.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Planned {
-    /// The effect; its size is found later.
-    pub hidden: Hidden,
-    /// How many floors high it shall stand.
-    pub level: f64,
-    /// What the record cannot tell from it.
-    pub alike: Vec<(String, String)>,
-}
-
-/// A case.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Case {
-    /// Its number, from 0.
-    pub number: usize,
-    /// What kind of case it is.
-    pub group: Group,
-    /// The machine.
-    pub machine: Kind,
-    /// How it is driven.
-    pub manner: Manner,
-    /// What is hidden.
-    pub hidden: Vec<Planned>,
-    /// What is off without being an effect.
-    pub nuisances: Nuisances,
-}
-
-/// What is off without being an effect: how many standard deviations of its prior each
-/// declared parameter, bias, gain and delay may be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nuisances {
-    declared: f64,
-    bias: f64,
-    gain: f64,
-    delay: f64,
-}
-
-impl Nuisances {
-    /// Draws them, within two standard deviations; returns the true declared parameters.
-    pub fn draw(
-        &self,
-        setup: &Setup,
-        machine: &mut Machine,
-        sensors: &mut Sensors,
-        draw: &mut Draw,
-    ) -> Vec<(String, f64)> {
-        let mut declared = Vec::new();
-        for (name, relative) in &setup.uncertain {
-            let factor = 1.0 + relative * self.declared * draw.normal_within_two();
-            machine.scale(name, factor);
-            declared.push(((*name).to_owned(), factor));
-        }
-        // A motion that begins before the record cannot be seen late.
-        let late = if setup.input.is_some() {
-            self.delay
-        } else {
-            0.0
-        };
-        for (place, channel) in setup.channels.iter().enumerate() {
-            sensors.bias[place] = 10.0 * channel.noise * self.bias * draw.normal_within_two();
-            sensors.gain[place] = 0.01 * self.gain * draw.normal_within_two();
-            let delay = 0.5 * setup.sample * late * draw.normal_within_two().abs();
-            sensors.delay[place] = delay;
-        }
-        declared
-    }
-}
-
-impl Case {
-    /// Whether its motions begin at rest.
-    pub fn starts_at_rest(&self) -> bool {
-        self.machine != Kind::Pendulum && self.manner != Manner::OneWay
-    }
-}
 
 /// Everything as declared but the parameters.
 const USUAL: Nuisances = Nuisances {
@@ -114,21 +19,6 @@ const USUAL: Nuisances = Nuisances {
 /// How many floors single effects stand high: one that is hard to see, the least that must be
 /// found, and some that are plain.
 const LEVELS: [f64; 5] = [1.5, 3.0, 6.0, 15.0, 60.0];
-
-/// The cases of a seed.
-pub fn plan(seed: u64) -> Vec<Case> {
-    let mut draw = Draw::new(seed, 0);
-    let mut cases = singles(&mut draw);
-    cases.extend(nothings());
-    cases.extend(pairs(&mut draw));
-    cases.extend(outside(&mut draw));
-    cases.extend(untellable(&mut draw));
-    draw.shuffle(&mut cases);
-    for (number, case) in cases.iter_mut().enumerate() {
-        case.number = number;
-    }
-    cases
-}
 
 fn case(group: Group, machine: Kind, manner: Manner, hidden: Vec<Planned>) -> Case {
     Case {
@@ -189,14 +79,20 @@ fn alike(effect: Effect, on: &str) -> Vec<(String, String)> {
         // E and I stand together everywhere.
         (Effect::ParameterShift, "E") => &[("parameter_shift", "I")],
         (Effect::ParameterShift, "m_c") => &[("parameter_shift", "m_p")],
-        (Effect::ParameterShift, "a") => &[("parameter_shift", "g")],
+        (Effect::ParameterShift, "a") => &[("parameter_shift", "g"), ("gravity", "theta")],
+        // Far from upright a spring to upright is little but a constant.
+        (Effect::ForceOffset, "theta") => &[("elastic_restraint", "theta")],
+        (Effect::ElasticRestraint, "theta") => &[("force_offset", "theta")],
+        // An encoder that is turned, or gravity that is.
+        (Effect::SensorBias, "theta") => &[("gravity", "theta")],
         _ => &[],
     };
     let owned = list.iter().map(|(a, b)| ((*a).to_owned(), (*b).to_owned()));
     owned.collect()
 }
 
-fn singles(draw: &mut Draw) -> Vec<Case> {
+/// Every effect of the catalogue alone, three times.
+pub fn singles(draw: &mut Draw) -> Vec<Case> {
     use Effect::{
         AsymmetricBacklash, AsymmetricFriction, CoulombFriction, ElasticRestraint, ForceOffset,
         Gravity, JointCompliance, ParameterShift, QuadraticDrag, SensorBias, SensorDelay,
@@ -251,7 +147,8 @@ fn singles(draw: &mut Draw) -> Vec<Case> {
     cases
 }
 
-fn nothings() -> Vec<Case> {
+/// Nothing hidden, with everything off that may be off.
+pub fn nothings() -> Vec<Case> {
     let none = Nuisances {
         declared: 0.0,
         bias: 0.0,
@@ -284,7 +181,8 @@ fn nothings() -> Vec<Case> {
     cases
 }
 
-fn pairs(draw: &mut Draw) -> Vec<Case> {
+/// Two effects, both plain.
+pub fn pairs(draw: &mut Draw) -> Vec<Case> {
     use Effect::{
         AsymmetricFriction, CoulombFriction, ElasticRestraint, ForceOffset, JointCompliance,
         QuadraticDrag, SensorBias, StribeckFriction, StructuralDamping, TipMass, TorqueRipple,
@@ -336,7 +234,8 @@ fn pairs(draw: &mut Draw) -> Vec<Case> {
     list.map(pair).into()
 }
 
-fn outside(draw: &mut Draw) -> Vec<Case> {
+/// Effects of no catalogue.
+pub fn outside(draw: &mut Draw) -> Vec<Case> {
     use Effect::{ForeignHum, WeakeningDrive, WornFriction};
     use Kind::{Arm, Pendulum, Stage};
     let list = [
@@ -356,7 +255,8 @@ fn outside(draw: &mut Draw) -> Vec<Case> {
     list.map(strange).into()
 }
 
-fn untellable(draw: &mut Draw) -> Vec<Case> {
+/// Effects that their records cannot tell from another.
+pub fn untellable(draw: &mut Draw) -> Vec<Case> {
     use Effect::{CoulombFriction, ElasticRestraint, ForceOffset, ParameterShift};
     use Kind::{Arm, Pendulum, Stage};
     let list = [
@@ -424,27 +324,4 @@ fn untellable(draw: &mut Draw) -> Vec<Case> {
             case(Group::Untellable, machine, manner, vec![hidden])
         };
     list.map(unclear).into()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Group, plan};
-
-    #[test]
-    fn a_seed_makes_the_numbers_of_cases_that_are_promised() {
-        let cases = plan(7);
-        let of = |group| cases.iter().filter(|case| case.group == group).count();
-        assert_eq!(of(Group::Single), 60);
-        assert_eq!(of(Group::Nothing), 30);
-        assert_eq!(of(Group::Pair), 15);
-        assert_eq!(of(Group::Outside) + of(Group::Untellable), 15);
-        assert!(
-            cases
-                .iter()
-                .enumerate()
-                .all(|(place, case)| case.number == place)
-        );
-        assert_eq!(cases, plan(7));
-        assert_ne!(cases, plan(8));
-    }
 }

@@ -1,0 +1,197 @@
+//! One case: what was found against what is hidden.
+
+use serde_json::Value;
+
+use super::{Judged, Judgement};
+use crate::hidden::Effect;
+use crate::plan::Group;
+use crate::records::{Label, Truth};
+use crate::run::{Ending, Outcome};
+
+/// Half of a 90 % interval, in standard deviations.
+const NINETY: f64 = 1.645;
+
+/// Judges one case.
+pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
+    let empty = Vec::new();
+    let discovery = outcome.discovery.as_ref();
+    let list = |key: &str| discovery.and_then(|d| d[key].as_array()).unwrap_or(&empty);
+    let effects = list("effects");
+    let mut judged = Judged {
+        case: label.case,
+        group: label.group,
+        hidden: (label.hidden.iter())
+            .map(|t| (t.effect.clone(), t.hidden.on.clone(), t.floors))
+            .collect(),
+        found: effects
+            .iter()
+            .map(|e| (word(e, "effect"), word(e, "on"), word(e, "status")))
+            .collect(),
+        judgement: judgement(label, outcome, effects),
+        extra: 0,
+        wrong_signs: 0,
+        intervals: (0, 0),
+        refitted: (0, 0),
+        closure: discovery.and_then(|d| d["closure"]["test"].as_f64()),
+        seconds: outcome.seconds,
+    };
+    for found in effects {
+        match label
+            .hidden
+            .iter()
+            .find(|truth| is(found, truth) == Match::Named)
+        {
+            Some(truth) => check(truth, found, &mut judged),
+            None if label
+                .hidden
+                .iter()
+                .any(|truth| is(found, truth) == Match::Class) => {}
+            None => judged.extra += 1,
+        }
+    }
+    if let Some(discovery) = discovery {
+        judged.refitted = refitted(label, discovery);
+    }
+    judged
+}
+
+fn judgement(label: &Label, outcome: &Outcome, effects: &[Value]) -> Judgement {
+    match outcome.ending {
+        Ending::Timeout => return Judgement::Timeout,
+        Ending::Failed => return Judgement::Failed,
+        Ending::Answered if outcome.discovery.is_none() => return Judgement::Failed,
+        Ending::Answered => {}
+    }
+    let empirical = |e: &Value| word(e, "status") == "empirical";
+    match (label.group, effects) {
+        (Group::Nothing, []) => return Judgement::Right,
+        (Group::Outside, found) if found.iter().all(empirical) => {
+            let verdict = outcome.discovery.as_ref().map(|d| word(d, "verdict"));
+            return match verdict.as_deref() {
+                Some("no_significant_gap") => Judgement::Missed,
+                _ => Judgement::Right,
+            };
+        }
+        (Group::Outside | Group::Nothing, _) => return Judgement::Wrong,
+        (_, []) => {
+            let verdict = outcome.discovery.as_ref().map(|d| word(d, "verdict"));
+            return match verdict.as_deref() {
+                Some("no_significant_gap") => Judgement::Missed,
+                _ => Judgement::Unexplained,
+            };
+        }
+        _ => {}
+    }
+    let count = label.hidden.len();
+    let matches: Vec<Match> = (label.hidden.iter())
+        .map(|truth| {
+            let first = effects.iter().take(count).map(|found| is(found, truth));
+            first.max().unwrap_or(Match::None)
+        })
+        .collect();
+    let needs_class = label.group == Group::Untellable;
+    if matches.contains(&Match::None) {
+        let some = matches.iter().any(|m| *m != Match::None);
+        return if some {
+            Judgement::Part
+        } else {
+            Judgement::Wrong
+        };
+    }
+    let as_can_be = |(m, truth): (&Match, &Truth)| match m {
+        Match::Named => !needs_class,
+        Match::Class => needs_class || !truth.alike.is_empty(),
+        Match::None => false,
+    };
+    if matches.iter().zip(&label.hidden).all(as_can_be) {
+        Judgement::Right
+    } else if needs_class {
+        Judgement::Part
+    } else {
+        Judgement::Class
+    }
+}
+
+/// How an accepted effect agrees with a hidden one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Match {
+    None,
+    /// A class that holds it.
+    Class,
+    Named,
+}
+
+fn is(found: &Value, truth: &Truth) -> Match {
+    let same = |entry: &Value| {
+        word(entry, "effect") == truth.effect && word(entry, "on") == truth.hidden.on
+    };
+    let equivalent = found["equivalent"].as_array().into_iter().flatten();
+    let class = word(found, "status") == "class";
+    if class && (same(found) || equivalent.into_iter().any(same)) {
+        Match::Class
+    } else if !class && same(found) {
+        Match::Named
+    } else {
+        Match::None
+    }
+}
+
+/// Signs and intervals of a right effect's parameters, which stand in the order of names.
+fn check(truth: &Truth, found: &Value, judged: &mut Judged) {
+    let Some(parameters) = found["parameters"].as_object() else {
+        return;
+    };
+    if parameters.len() != truth.parameters.len() {
+        return;
+    }
+    for (entry, expected) in parameters.values().zip(&truth.parameters) {
+        let (Some(value), Some(sd)) = (entry["value"].as_f64(), entry["sd"].as_f64()) else {
+            continue;
+        };
+        // A cosine or sine that happens to be small may well come out on the other side.
+        let clear = expected.abs() > NINETY * 2.0 * sd;
+        judged.wrong_signs += usize::from(clear && value * expected < 0.0);
+        judged.intervals.0 += usize::from((value - expected).abs() <= NINETY * sd);
+        judged.intervals.1 += 1;
+    }
+}
+
+/// Intervals of the declared parameters where everything hidden was found.
+fn refitted(label: &Label, discovery: &Value) -> (usize, usize) {
+    let mut counts = (0, 0);
+    let shifted = |name: &str| {
+        let of = |t: &Truth| t.hidden.effect == Effect::ParameterShift && t.hidden.on == name;
+        label.hidden.iter().any(of)
+    };
+    for (name, factor) in &label.declared {
+        let entry = &discovery["refitted"][name];
+        let nominal = nominal(label, name);
+        let (Some(value), Some(sd), Some(nominal)) =
+            (entry["value"].as_f64(), entry["sd"].as_f64(), nominal)
+        else {
+            continue;
+        };
+        if !shifted(name) && label.hidden.is_empty() {
+            counts.0 += usize::from((value - factor * nominal).abs() <= NINETY * sd);
+            counts.1 += 1;
+        }
+    }
+    counts
+}
+
+/// What a specification says of a declared parameter, in its unit.
+fn nominal(label: &Label, name: &str) -> Option<f64> {
+    use crate::machines::Machine;
+    match (label.machine.nominal(), name) {
+        (Machine::Arm(arm), "b_m") => Some(arm.b_m),
+        (Machine::Stage(stage), "M") => Some(stage.mass),
+        (Machine::Stage(stage), "F_v") => Some(stage.viscous),
+        (Machine::Pendulum(pendulum), "k") => Some(pendulum.viscous),
+        (Machine::Pendulum(pendulum), "I") => Some(pendulum.inertia),
+        _ => None,
+    }
+}
+
+fn word(value: &Value, key: &str) -> String {
+    value[key].as_str().unwrap_or_default().to_owned()
+}

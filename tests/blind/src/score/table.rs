@@ -1,0 +1,79 @@
+//! The figures and the confusion table as text.
+
+use std::collections::BTreeMap;
+
+use super::{Closure, FLOORS, Judged, Judgement, Score};
+use crate::plan::Group;
+
+/// The figures and the confusion table as text.
+pub fn table(score: &Score) -> String {
+    let mut rows: BTreeMap<String, BTreeMap<String, usize>> = BTreeMap::new();
+    for judged in &score.cases {
+        let (row, column) = place(judged);
+        *rows.entry(row).or_default().entry(column).or_default() += 1;
+    }
+    let mut text = "hidden                                    found\n".to_owned();
+    for (row, columns) in rows {
+        let list: Vec<String> = columns
+            .iter()
+            .map(|(name, n)| format!("{n} {name}"))
+            .collect();
+        text += &format!("{row:<42}{}\n", list.join(", "));
+    }
+    let part = |(a, b): (usize, usize)| {
+        format!("{a} of {b} ({:.0} %)", 100.0 * a as f64 / b.max(1) as f64)
+    };
+    let closed = |closure: &Closure, enough: f64| {
+        format!(
+            "mean {:.2}, {} of {} reach {enough}",
+            closure.mean, closure.reached, closure.of
+        )
+    };
+    for (name, figure) in [
+        ("single effects of 3 floors named first", part(score.named)),
+        ("... or in a class", part(score.named_or_class)),
+        ("false alarms", part(score.false_alarms)),
+        ("wrong signs", score.wrong_signs.to_string()),
+        ("90 % intervals that hold", part(score.intervals)),
+        ("... of refitted parameters", part(score.refitted)),
+        (
+            "closure, single effects",
+            closed(&score.single_closure, 0.8),
+        ),
+        ("closure, pairs", closed(&score.pair_closure, 0.6)),
+        ("pairs found whole", part(score.pairs)),
+        ("untellable reported as a class", part(score.classes)),
+        ("outside the catalogue, not named", part(score.outside)),
+        ("too long, no answer", format!("{:?}", score.without_answer)),
+        (
+            "seconds in all, longest",
+            format!("{:.0}, {:.1}", score.seconds.0, score.seconds.1),
+        ),
+    ] {
+        text += &format!("{name:<42}{figure}\n");
+    }
+    text
+}
+
+/// The row and column of a case in the table.
+fn place(judged: &Judged) -> (String, String) {
+    let group = format!("{:?}", judged.group).to_lowercase();
+    let row = match (&judged.hidden[..], judged.group) {
+        ([(effect, _, floors)], Group::Single) => {
+            let size = if *floors >= FLOORS { "" } else { ", small" };
+            format!("{effect}{size}")
+        }
+        ([(effect, ..)], _) => format!("{group}: {effect}"),
+        _ => group,
+    };
+    let found: Vec<String> = judged
+        .found
+        .iter()
+        .map(|(effect, on, _)| format!("{effect} on {on}"))
+        .collect();
+    let column = match judged.judgement {
+        Judgement::Wrong | Judgement::Part => found.join(" and "),
+        other => format!("{other:?}").to_lowercase(),
+    };
+    (row, column)
+}
