@@ -11,6 +11,16 @@ const FEWEST_SAMPLES: usize = 50;
 /// A channel of which more than this part is missing is refused.
 const MOST_MISSING: f64 = 0.5;
 
+/// An input is held over what is missing of it; more than this part is refused.
+const MOST_HELD: f64 = 0.1;
+
+/// A channel that spans more noises has a wrong unit or a wrong noise: no sensor resolves so
+/// much.
+const MOST_NOISES: f64 = 1e10;
+
+/// A window with fewer samples says nothing of what happens inside it.
+const FEWEST_IN_WINDOW: f64 = 4.0;
+
 /// Steps that differ from the usual one by more than this part of it are jitter.
 const JITTER: f64 = 0.1;
 
@@ -21,6 +31,9 @@ const CLIPPED: f64 = 0.02;
 /// Records that differ by less than this many noises (root mean square) are one record: two
 /// measurements of the same motion differ by the square root of two.
 const SAME: f64 = 0.3;
+
+/// A channel that spans fewer noises cannot tell records apart.
+const MOVES: f64 = 20.0;
 
 /// Samples that are compared first when records are laid on each other.
 const PROBES: usize = 16;
@@ -58,6 +71,24 @@ pub fn check_times(path: &Path, times: &[f64]) -> Result<(), Refusal> {
     Ok(())
 }
 
+/// An input is known nearly everywhere.
+///
+/// # Errors
+/// An input of which much is missing.
+pub fn check_input(path: &Path, name: &str, column: &[f64]) -> Result<(), Refusal> {
+    let missing = column.iter().filter(|value| !value.is_finite()).count();
+    if missing as f64 > MOST_HELD * column.len() as f64 {
+        return Err(Refusal::file(
+            path,
+            format!(
+                "input `{name}`: {missing} of {} samples are missing; expected nearly all of them",
+                column.len()
+            ),
+        ));
+    }
+    Ok(())
+}
+
 /// The median of the steps between samples, s.
 pub fn typical_step(times: &[f64]) -> f64 {
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
@@ -73,6 +104,8 @@ pub fn examine(dataset: &Dataset) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     for record in dataset.train.iter().chain(&dataset.test) {
         notes.extend(timing(record));
+        notes.extend(held_inputs(record));
+        windows(dataset, record)?;
         for (channel, column) in dataset.channels.iter().zip(&record.channels) {
             notes.extend(values(record, &channel.name, channel.noise, column)?);
         }
@@ -101,6 +134,46 @@ fn timing(record: &Record) -> Option<String> {
     })
 }
 
+/// Remarks on inputs of which samples are missing.
+fn held_inputs(record: &Record) -> Option<String> {
+    let missing = |column: &&Vec<f64>| column.iter().any(|value| !value.is_finite());
+    let count = record.input_columns.iter().filter(missing).count();
+    (count > 0).then(|| {
+        format!(
+            "{}: samples of {count} inputs are missing; the one before is held",
+            record.name
+        )
+    })
+}
+
+/// A window holds some samples, and a record not many more windows than samples.
+fn windows(dataset: &Dataset, record: &Record) -> Result<(), Refusal> {
+    let Some(length) = dataset.window else {
+        return Ok(());
+    };
+    let step = typical_step(&record.times);
+    if length < FEWEST_IN_WINDOW * step {
+        return Err(Refusal::file(
+            &dataset.path,
+            format!(
+                "windows.length = {length} s holds less than {FEWEST_IN_WINDOW} samples, {step:.3e} s apart; expected a longer one"
+            ),
+        ));
+    }
+    let (first, last) = (record.times[0], record.times[record.times.len() - 1]);
+    if (last - first) / length > record.times.len() as f64 {
+        return Err(Refusal::file(
+            &record.path,
+            format!(
+                "{} samples span {:.3e} s: most of the record is missing; expected samples at the pace of {step:.3e} s",
+                record.times.len(),
+                last - first
+            ),
+        ));
+    }
+    Ok(())
+}
+
 /// A channel of one record.
 fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
@@ -125,6 +198,12 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
         return refuse(format!(
             "channel `{name}` is {low} throughout: the sensor is dead or the column another; \
              expected one that moves, or a dataset without it"
+        ));
+    }
+    if (high - low) / noise >= MOST_NOISES {
+        return refuse(format!(
+            "channel `{name}` goes from {low:.3e} to {high:.3e} with a noise of {noise:.1e}, in SI; \
+             expected its unit and its noise to be right"
         ));
     }
     if high - low < 2.0 * noise {
@@ -153,8 +232,9 @@ fn different_channels(dataset: &Dataset, record: &Record) -> Result<(), Refusal>
     for (a, first) in record.channels.iter().enumerate() {
         for (b, second) in record.channels.iter().enumerate().skip(a + 1) {
             for sign in [1.0, -1.0] {
-                let mut pairs = first.iter().zip(second).filter(|(x, _)| x.is_finite());
-                if pairs.all(|(x, y)| *x == sign * y) {
+                let known = |(x, y): &(&f64, &f64)| x.is_finite() && y.is_finite();
+                let mut pairs = first.iter().zip(second).filter(known).peekable();
+                if pairs.peek().is_some() && pairs.all(|(x, y)| *x == sign * y) {
                     return Err(Refusal::file(
                         &record.path,
                         format!(
@@ -171,8 +251,32 @@ fn different_channels(dataset: &Dataset, record: &Record) -> Result<(), Refusal>
 
 /// A test record is not a training record again, later or earlier, of either sign.
 fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result<(), Refusal> {
-    let (a, b) = (&train.channels[0], &test.channels[0]);
-    let noise = dataset.channels[0].noise;
+    let file = |record: &Record| record.path.canonicalize().ok();
+    if file(train).is_some() && file(train) == file(test) {
+        return Err(Refusal::file(
+            &test.path,
+            format!(
+                "{} and {} are one file; expected another measurement",
+                test.name, train.name
+            ),
+        ));
+    }
+    // The channel that moves most tells records apart best.
+    let span = |column: &[f64]| {
+        let known = || column.iter().copied().filter(|v| v.is_finite());
+        known().fold(f64::NEG_INFINITY, f64::max) - known().fold(f64::INFINITY, f64::min)
+    };
+    let in_noises = |place: usize| span(&train.channels[place]) / dataset.channels[place].noise;
+    let Some(channel) =
+        (0..dataset.channels.len()).max_by(|a, b| in_noises(*a).total_cmp(&in_noises(*b)))
+    else {
+        return Ok(());
+    };
+    if in_noises(channel) < MOVES {
+        return Ok(());
+    }
+    let (a, b) = (&train.channels[channel], &test.channels[channel]);
+    let noise = dataset.channels[channel].noise;
     let shortest = a.len().min(b.len()) / 2;
     let range = (b.len() - shortest) as isize;
     for lag in -((a.len() - shortest) as isize)..=range {
@@ -214,13 +318,23 @@ fn is_same(a: &[f64], b: &[f64], lag: isize, sign: f64, noise: f64) -> bool {
     if (0..PROBES).any(|k| probe(k).abs() > 2.0 * noise) {
         return false;
     }
-    let squares = (begin..end)
-        .map(difference)
-        .filter(|d| d.is_finite())
-        .map(|d| d * d);
-    let (sum, count) = squares.fold((0.0, 0.0), |(s, n), d| (s + d, n + 1.0));
-    let moves = (begin..end).any(|place| (a[place] - a[begin]).abs() > 20.0 * noise);
-    moves && count > 0.0 && (sum / count) < (SAME * noise).powi(2)
+    let most = (SAME * noise).powi(2) * (end - begin) as f64;
+    let (mut sum, mut count) = (0.0, 0);
+    for difference in (begin..end).map(difference).filter(|d| d.is_finite()) {
+        sum += difference * difference;
+        count += 1;
+        if sum > most {
+            return false;
+        }
+    }
+    // What is laid on each other must be enough, and must move.
+    let low = a[begin..end].iter().copied().fold(f64::INFINITY, f64::min);
+    let high = a[begin..end]
+        .iter()
+        .copied()
+        .fold(f64::NEG_INFINITY, f64::max);
+    let moves = high - low > MOVES * noise;
+    moves && 2 * count > end - begin && sum < (SAME * noise).powi(2) * count as f64
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! in parts), [`smooth`] and [`starts`] (each part's initial state), [`unknowns`],
 //! [`shooting`] (residuals and derivatives), [`estimate`] (with [`bounded`]: least squares),
 //! [`fitting`] (a specification fitted), [`mod@floor`] (what a right model would leave),
-//! [`locate`] (where the rest is); [`catalogue`], [`sites`] and [`candidates`] (what may be
+//! [`labels`] (whether columns are what they are called), [`locate`] (where the rest is); [`catalogue`], [`sites`] and [`candidates`] (what may be
 //! missing), [`mod@screen`] (what each candidate promises), [`mod@judge`] by [`rule`] (what is
 //! believed), [`mod@search`] (all of it in turn); [`extend`] (the specification changed),
 //! [`document`] and [`report`] (for programs and for people).
@@ -21,6 +21,7 @@ pub mod fitting;
 pub mod floor;
 pub mod gate;
 pub mod judge;
+pub mod labels;
 pub mod locate;
 pub mod plant;
 pub mod report;

@@ -1,7 +1,8 @@
 //! What the whole-path tests share: the shipped specifications with their derived
 //! variants ([`models`]), models made on the spot and their motions ([`motions`]), the built
-//! program ([`program`]) and the arm integrated in extended precision ([`taylor`]). The tests themselves are in `tests/`, one subject per file.
+//! program ([`program`]), records as if measured ([`measured`]) and the arm integrated in extended precision ([`taylor`]). The tests themselves are in `tests/`, one subject per file.
 
+pub mod measured;
 pub mod models;
 pub mod motions;
 pub mod program;

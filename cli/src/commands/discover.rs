@@ -9,7 +9,7 @@ use discover::dataset::{Dataset, read};
 use discover::fitting::{Fit, Setting};
 use discover::floor::{Floor, floor};
 use discover::search::{at_floor, null_fit, search};
-use discover::{catalogue, document, extend, locate, report};
+use discover::{catalogue, document, extend, labels, locate, report};
 use serde_json::{Value, json};
 
 use crate::arguments;
@@ -19,6 +19,16 @@ use crate::variant::{load, orders};
 
 /// Runs `compare`.
 pub fn compare(options: &arguments::Compare) -> Outcome {
+    tell(options.json, &compared(options)?, &options.out)
+}
+
+/// Runs `discover`.
+pub fn discover(options: &arguments::Discover) -> Outcome {
+    tell(options.json, &discovered(options)?, &options.out)
+}
+
+/// Compares; the document that is left beside the page.
+pub fn compared(options: &arguments::Compare) -> Outcome<Value> {
     let begin = Instant::now();
     let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
     let setting = Setting::new(&dataset, order, &options.spec.display().to_string());
@@ -30,11 +40,11 @@ pub fn compare(options: &arguments::Compare) -> Outcome {
     let page = report::page(&setting, &fit, None, &result, (&text, &text));
     write_json(&options.out.join("comparison.json"), &result)?;
     write_file(&options.out.join("report.html"), page.as_bytes())?;
-    tell(options.json, &result, &options.out)
+    Ok(result)
 }
 
-/// Runs `discover`.
-pub fn discover(options: &arguments::Discover) -> Outcome {
+/// Discovers; the document that is left beside the page and the specification.
+pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     let begin = Instant::now();
     let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
     let effects = catalogue::effects(options.effects.as_deref()).map_err(Problem::input)?;
@@ -62,7 +72,7 @@ pub fn discover(options: &arguments::Discover) -> Outcome {
     write_file(&options.out.join("extended.toml"), extended.as_bytes())?;
     write_file(&options.out.join("report.html"), page.as_bytes())?;
     write_json(&options.out.join("discovery.json"), &result)?;
-    tell(options.json, &result, &options.out)
+    Ok(result)
 }
 
 /// The specification's text, the order asked for, and the dataset.
@@ -84,6 +94,7 @@ fn inputs(
 
 /// The null model's fit and the floor there.
 fn null(setting: &Setting<'_>, text: &str, seed: u64) -> Outcome<(Fit, Floor)> {
+    labels::check(setting, text).map_err(|refusal| Problem::input(refusal.to_string()))?;
     progress("fitting the model as it is");
     let fit = null_fit(setting, text).map_err(Problem::input)?;
     let floor = floor(setting, &fit, seed);

@@ -3,13 +3,13 @@
 
 use std::path::Path;
 
-use parquet::file::reader::{FileReader, SerializedFileReader};
-use parquet::record::{Field, RowAccessor};
-
-use super::Refusal;
+use super::{Refusal, parquet_file};
 
 /// The largest record read, in bytes.
-const LARGEST_RECORD: u64 = 512 << 20;
+const LARGEST_RECORD: u64 = 256 << 20;
+
+/// The most samples of a record: some hundred times as many as are searched in minutes.
+pub const MOST_SAMPLES: usize = 1_000_000;
 
 /// Reads these columns of a file; a missing number, `NaN`, an infinity or an empty cell is
 /// NaN.
@@ -35,17 +35,23 @@ pub fn read(path: &Path, wanted: &[&str]) -> Result<Vec<Vec<f64>>, Refusal> {
             ),
         ));
     }
+    if metadata.len() == 0 {
+        return Err(Refusal::file(
+            path,
+            "is empty; expected a line of column names and a line per sample",
+        ));
+    }
     let bytes = std::fs::read(path)
         .map_err(|error| Refusal::file(path, format!("cannot be read: {error}")))?;
     if path.extension().is_some_and(|e| e == "parquet") {
-        read_parquet(path, bytes, wanted)
+        parquet_file::read(path, bytes, wanted)
     } else {
         read_csv(path, &bytes, wanted)
     }
 }
 
 /// Where the wanted columns stand among those that are there.
-fn places(path: &Path, there: &[&str], wanted: &[&str]) -> Result<Vec<usize>, Refusal> {
+pub fn places(path: &Path, there: &[&str], wanted: &[&str]) -> Result<Vec<usize>, Refusal> {
     let place = |name: &&str| {
         let mut found = (there.iter().enumerate()).filter(|(_, header)| header.trim() == *name);
         match (found.next(), found.next()) {
@@ -82,11 +88,24 @@ fn read_csv(path: &Path, bytes: &[u8], wanted: &[&str]) -> Result<Vec<Vec<f64>>,
             "is empty; expected a line of column names and a line per sample",
         ));
     }
+    if let [one] = there[..]
+        && wanted.len() > 1
+        && one.contains([';', '\t'])
+    {
+        return Err(Refusal::line(
+            path,
+            1,
+            "the columns are parted by semicolons or tabs; expected commas",
+        ));
+    }
     let places = places(path, &there, wanted)?;
     let mut columns = vec![Vec::new(); wanted.len()];
     for record in reader.records() {
         let record = record.map_err(|error| Refusal::file(path, error.to_string()))?;
         let line = record.position().map_or(0, csv::Position::line);
+        if columns[0].len() == MOST_SAMPLES {
+            return Err(too_many(path));
+        }
         if record.len() != there.len() {
             return Err(Refusal::line(
                 path,
@@ -110,6 +129,16 @@ fn read_csv(path: &Path, bytes: &[u8], wanted: &[&str]) -> Result<Vec<Vec<f64>>,
     Ok(columns)
 }
 
+/// A record with more samples than are read.
+pub fn too_many(path: &Path) -> Refusal {
+    Refusal::file(
+        path,
+        format!(
+            "has more than {MOST_SAMPLES} samples, the most that are read: cut the record, or sample it less often"
+        ),
+    )
+}
+
 fn number(path: &Path, line: u64, cell: &str, place: usize) -> Result<f64, Refusal> {
     let cell = cell.trim();
     if cell.is_empty() {
@@ -127,36 +156,4 @@ fn number(path: &Path, line: u64, cell: &str, place: usize) -> Result<f64, Refus
             ))
         }
     }
-}
-
-fn read_parquet(path: &Path, bytes: Vec<u8>, wanted: &[&str]) -> Result<Vec<Vec<f64>>, Refusal> {
-    let broken = |error: parquet::errors::ParquetError| {
-        Refusal::file(path, format!("is not a whole Parquet file: {error}"))
-    };
-    let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).map_err(broken)?;
-    let schema = reader.metadata().file_metadata().schema_descr_ptr();
-    let there: Vec<&str> = schema
-        .columns()
-        .iter()
-        .map(|column| column.name())
-        .collect();
-    let places = places(path, &there, wanted)?;
-    let mut columns = vec![Vec::new(); wanted.len()];
-    for row in reader.get_row_iter(None).map_err(broken)? {
-        let row = row.map_err(broken)?;
-        for (column, place) in columns.iter_mut().zip(&places) {
-            let value = row
-                .get_column_iter()
-                .nth(*place)
-                .map(|(_, field)| match field {
-                    Field::Double(_) => row.get_double(*place).unwrap_or(f64::NAN),
-                    Field::Float(_) => f64::from(row.get_float(*place).unwrap_or(f32::NAN)),
-                    Field::Int(number) => f64::from(*number),
-                    Field::Long(number) => *number as f64,
-                    _ => f64::NAN,
-                });
-            column.push(value.filter(|v| v.is_finite()).unwrap_or(f64::NAN));
-        }
-    }
-    Ok(columns)
 }

@@ -5,6 +5,7 @@
 
 mod columns;
 mod description;
+mod parquet_file;
 
 use std::path::{Component, Path, PathBuf};
 
@@ -320,6 +321,9 @@ fn record(
         })
         .collect();
     crate::gate::check_times(&place, &times)?;
+    for (input, column) in model.inputs.iter().zip(&input_columns) {
+        crate::gate::check_input(&place, &input.name, column)?;
+    }
     Ok(Record {
         name: name.to_owned(),
         inputs: held(&times, &input_columns),

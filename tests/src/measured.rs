@@ -1,0 +1,145 @@
+//! Records of the stage of `emps.toml` as if they had been measured: held forces, the closed
+//! form between them, and a noise that repeats. To be spoilt by tests.
+
+use std::path::PathBuf;
+
+use crate::models::path;
+use crate::program;
+
+/// Samples of a record, and the time between them, s.
+pub const SAMPLES: usize = 400;
+const STEP: f64 = 0.005;
+
+/// What the sensor of the position adds, m.
+const NOISE: f64 = 1e-6;
+
+/// A folder with a dataset and its records.
+pub struct Measured {
+    folder: tempfile::TempDir,
+}
+
+/// The dataset file.
+pub const DESCRIPTION: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+
+[time]
+column = "t"
+unit = "s"
+
+[inputs.force]
+column = "force"
+unit = "N"
+hold = "zero-order"
+
+[channels.q]
+column = "q"
+unit = "m"
+noise = 1e-6
+
+[initial]
+state = "rest"
+
+[uncertain]
+F_v = { relative = 0.05 }
+
+[windows]
+length = 0.25
+"#;
+
+/// A record: t, force, q. `friction`: dry friction in N; `turn` makes another record.
+pub fn record(friction: f64, turn: f64) -> String {
+    let (mass, viscous) = (95.0, 210.0);
+    let (mut q, mut v): (f64, f64) = (0.0, 0.0);
+    let mut text = "t,force,q\n".to_owned();
+    let mut noise = 0.5;
+    for sample in 0..SAMPLES {
+        let t = STEP * sample as f64;
+        let force = 300.0 * (5.0 * t + turn).cos() - 150.0 * (13.0 * t * (1.0 + 0.3 * turn)).sin();
+        // The logistic map: a noise that is the same everywhere, of mean 0 once centred.
+        noise = 4.0 * noise * (1.0_f64 - noise) * 0.999_999;
+        text += &format!(
+            "{t:.3},{force:.17},{:.9}\n",
+            q + NOISE * 2.8 * (noise - 0.5)
+        );
+        // Small steps in each of which friction has one direction.
+        let parts = 50;
+        for _ in 0..parts {
+            let dry = friction * (v / 1e-4).tanh();
+            let middle = v + 0.5 * STEP / parts as f64 * (force - dry - viscous * v) / mass;
+            let dry = friction * (middle / 1e-4).tanh();
+            v += STEP / parts as f64 * (force - dry - viscous * middle) / mass;
+            q += STEP / parts as f64 * middle;
+        }
+    }
+    text
+}
+
+impl Measured {
+    /// Two sound records of a stage with this dry friction, N.
+    pub fn stage(friction: f64) -> Self {
+        let measured = Self {
+            folder: tempfile::tempdir().expect("a folder"),
+        };
+        measured.write("dataset.toml", DESCRIPTION.as_bytes());
+        measured.write("train.csv", record(friction, 0.0).as_bytes());
+        measured.write("test.csv", record(friction, 1.0).as_bytes());
+        measured
+    }
+
+    /// A file of the folder.
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// Writes a file of the folder.
+    pub fn write(&self, name: &str, bytes: &[u8]) {
+        std::fs::write(self.file(name), bytes).expect("a file");
+    }
+
+    /// A file of the folder as text.
+    pub fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.file(name)).expect("a file")
+    }
+
+    /// Arguments that run `command` on the dataset.
+    pub fn arguments(&self, command: &str, out: &str) -> Vec<String> {
+        let dataset = self.file("dataset.toml");
+        let out = self.file(out);
+        let texts = [path("emps"), dataset].map(|path| path.display().to_string());
+        let [specification, dataset] = texts;
+        let out = out.display().to_string();
+        vec![
+            command.to_owned(),
+            specification,
+            dataset,
+            "--out".to_owned(),
+            out,
+        ]
+    }
+
+    /// The message with which the dataset is refused; nothing is written.
+    pub fn refused(&self) -> String {
+        let arguments = self.arguments("compare", "refused");
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let message = program::refused(&arguments);
+        assert!(!self.file("refused").exists(), "{message}");
+        message
+    }
+
+    /// The document that `command` leaves, and what it warned of.
+    pub fn answered(&self, command: &str, out: &str) -> (serde_json::Value, String) {
+        let arguments = self.arguments(command, out);
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let output = program::run(&arguments);
+        let message = program::text(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        let name = match command {
+            "compare" => "comparison.json",
+            _ => "discovery.json",
+        };
+        let text = self.read(&format!("{out}/{name}"));
+        (serde_json::from_str(&text).expect("JSON"), message)
+    }
+}

@@ -1,0 +1,289 @@
+//! Records that cannot be believed are refused with the reason, by `compare` and `discover`
+//! alike; what only weakens them is noted.
+
+use eomgen_tests::measured::{DESCRIPTION, Measured, SAMPLES, record};
+
+#[test]
+fn sound_records_are_compared() {
+    let (result, warned) = Measured::stage(0.0).answered("compare", "out");
+    assert_eq!(result["verdict"], "no_significant_gap", "{result:#}");
+    assert_eq!(warned, "");
+}
+
+/// The record with a change to the cells of its lines.
+fn changed(change: impl Fn(usize, &mut Vec<String>)) -> String {
+    let text = record(0.0, 0.0);
+    let line = |(place, line): (usize, &str)| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        change(place, &mut cells);
+        cells.join(",") + "\n"
+    };
+    text.lines().enumerate().map(line).collect()
+}
+
+/// The record with a change to column `column` of the lines from `from` on.
+fn replaced(column: usize, from: usize, by: impl Fn(usize, &str) -> String) -> String {
+    changed(|place, cells| {
+        if place >= from.max(1) {
+            cells[column] = by(place, &cells[column]);
+        }
+    })
+}
+
+#[test]
+fn training_records_that_are_none_are_refused() {
+    let sound = record(0.0, 0.0);
+    let whole = sound.len();
+    let missing = |_: usize, _: &str| "NaN".to_owned();
+    let cases: Vec<(Vec<u8>, &str)> = vec![
+        (Vec::new(), "is empty"),
+        (b"\n\n\n".to_vec(), "train.csv"),
+        (b"t,force,q\n".to_vec(), "holds 0 samples"),
+        (sound.as_bytes()[..700].to_vec(), "train.csv"),
+        (
+            sound.as_bytes()[..whole - 20].to_vec(),
+            "line 401: has 2 cells",
+        ),
+        (
+            (0..20_000).map(|i: u32| (i * i % 251) as u8).collect(),
+            "train.csv",
+        ),
+        (vec![0; 5000], "train.csv"),
+        (b"PAR1 and no more".to_vec(), "no column `t`"),
+        (sound.replace(',', ";").into_bytes(), "parted by semicolons"),
+        (
+            sound.replacen("force", "torque", 1).into_bytes(),
+            "no column `force`; there are t, torque, q",
+        ),
+        (sound.replacen("t,", "q,", 1).into_bytes(), "no column `t`"),
+        (
+            sound.replacen("force", "q", 1).into_bytes(),
+            "no column `force`",
+        ),
+        (
+            sound.replacen("t,force,q", "t,t,q", 1).into_bytes(),
+            "two columns `t`",
+        ),
+        (
+            replaced(2, 100, missing).into_bytes(),
+            "301 of 400 samples are missing",
+        ),
+        (
+            replaced(2, 1, missing).into_bytes(),
+            "400 of 400 samples are missing",
+        ),
+        (
+            replaced(1, 300, missing).into_bytes(),
+            "input `force`: 101 of 400",
+        ),
+        (
+            replaced(0, 200, missing).into_bytes(),
+            "line 201: the time is missing",
+        ),
+        (
+            replaced(0, 200, |_, _| "0.5".to_owned()).into_bytes(),
+            "the time does not increase",
+        ),
+        (
+            replaced(2, 7, |_, _| "oops".to_owned()).into_bytes(),
+            "line 8: column 3: \"oops\" is no number",
+        ),
+        (
+            replaced(2, 1, |_, _| "0.25".to_owned()).into_bytes(),
+            "the sensor is dead",
+        ),
+        (
+            replaced(2, 1, |i, cell| format!("{cell}e{}", i % 40)).into_bytes(),
+            "expected its unit and its noise",
+        ),
+        (
+            replaced(0, 390, |i, _| format!("{i}e9")).into_bytes(),
+            "most of the record is missing",
+        ),
+        (
+            sound
+                .lines()
+                .take(30)
+                .map(|line| format!("{line}\n"))
+                .collect::<String>()
+                .into_bytes(),
+            "holds 29 samples",
+        ),
+    ];
+    let measured = Measured::stage(0.0);
+    for (bytes, part) in cases {
+        measured.write("train.csv", &bytes);
+        let message = measured.refused();
+        assert!(
+            message.contains("train.csv") && message.contains(part),
+            "{part}: {message}"
+        );
+    }
+}
+
+#[test]
+fn datasets_that_say_something_else_are_refused() {
+    let measured = Measured::stage(0.0);
+    for (from, to, part) in [
+        ("unit = \"m\"", "unit = \"N\"", "is in N, expected m"),
+        ("unit = \"N\"", "unit = \"s\"", "is in s, expected N"),
+        ("unit = \"s\"", "unit = \"m\"", "expected s"),
+        ("noise = 1e-6", "noise = 0", "greater than 0"),
+        ("noise = 1e-6", "noise = nan", "greater than 0"),
+        ("noise = 1e-6", "noise = 1e-30", "its noise to be right"),
+        ("noise = 1e-6", "", "noise"),
+        (
+            "[channels.q]",
+            "[channels.elbow]",
+            "no observable or coordinate `elbow`",
+        ),
+        (
+            "length = 0.25",
+            "length = 1e-9",
+            "holds less than 4 samples",
+        ),
+        ("length = 0.25", "length = -1", "expected seconds"),
+        ("length = 0.25", "length = \"all\"", "expected seconds"),
+        ("\"rest\"", "\"asleep\"", "initial.state"),
+        ("F_v", "F_w", "no such parameter"),
+        ("relative = 0.05", "relative = -1", "greater than 0"),
+        ("[\"test.csv\"]", "[]", "lists no test record"),
+        ("[\"test.csv\"]", "[\"train.csv\"]", "one file"),
+        ("[\"test.csv\"]", "[\"none.csv\"]", "none.csv"),
+        ("[\"test.csv\"]", "[\".\"]", "is not a file"),
+        (
+            "[\"test.csv\"]",
+            "[\"../test.csv\"]",
+            "outside the dataset's folder",
+        ),
+        ("[windows]", "[windows", "dataset.toml"),
+    ] {
+        let description = DESCRIPTION.replacen(from, to, 1);
+        assert_ne!(description, DESCRIPTION, "{from}");
+        measured.write("dataset.toml", description.as_bytes());
+        let message = measured.refused();
+        assert!(message.contains(part), "{to}: {message}");
+    }
+}
+
+#[test]
+fn a_test_record_that_is_the_training_record_is_refused() {
+    let measured = Measured::stage(0.0);
+    let sound = record(0.0, 0.0);
+    let lines: Vec<&str> = sound.lines().collect();
+    let later: String = (lines[..1].iter().chain(&lines[81..]))
+        .map(|l| format!("{l}\n"))
+        .collect();
+    let negative = changed(|place, cells| {
+        for cell in cells.iter_mut().skip(1).filter(|_| place > 0) {
+            *cell = match cell.strip_prefix('-') {
+                Some(positive) => positive.to_owned(),
+                None => format!("-{cell}"),
+            };
+        }
+    });
+    let holed = replaced(2, 1, |place, cell| {
+        if place % 9 == 1 {
+            String::new()
+        } else {
+            cell.to_owned()
+        }
+    });
+    for (text, part) in [
+        (sound.clone(), "test[0] is train[0] again;"),
+        (later, "samples later"),
+        (negative, "with the other sign"),
+        (holed, "test[0] is train[0] again;"),
+    ] {
+        measured.write("test.csv", text.as_bytes());
+        let message = measured.refused();
+        assert!(message.contains(part), "{part}: {message}");
+    }
+}
+
+#[test]
+fn two_channels_that_are_one_column_are_refused() {
+    let measured = Measured::stage(0.0);
+    let other = "[channels.again]\ncolumn = \"q\"\nobservable = \"q\"\nunit = \"m\"\nnoise = 1e-6\n\n[initial]";
+    let description = DESCRIPTION.replacen("[initial]", other, 1);
+    measured.write("dataset.toml", description.as_bytes());
+    assert!(measured.refused().contains("are one column"));
+}
+
+#[test]
+fn columns_with_a_wrong_label_are_refused() {
+    let measured = Measured::stage(0.0);
+    let scaled = |by: f64| {
+        replaced(2, 1, |_, cell| {
+            let value: f64 = cell.parse().expect("a number");
+            format!("{:?}", value * by)
+        })
+    };
+    for (by, part) in [
+        (-1.0, "with the other sign"),
+        (1e3, "a thousand times"),
+        (1e-3, "a thousandth of"),
+    ] {
+        measured.write("train.csv", scaled(by).as_bytes());
+        let message = measured.refused();
+        assert!(message.contains(part), "{by}: {message}");
+    }
+    // A gain that may be the sensor's is none of these.
+    measured.write("train.csv", scaled(1.02).as_bytes());
+    measured.answered("compare", "gain");
+}
+
+#[test]
+fn huge_records_are_refused_before_they_are_read() {
+    let measured = Measured::stage(0.0);
+    let file = std::fs::File::create(measured.file("train.csv")).expect("a file");
+    // A hole: a gigabyte that takes no room.
+    file.set_len(1 << 30).expect("a long file");
+    let message = measured.refused();
+    assert!(message.contains("1073741824 bytes; at most"), "{message}");
+    let mut long = "t,force,q\n".to_owned();
+    for sample in 0..1_000_002 {
+        long += &format!("{sample},0,0\n");
+    }
+    measured.write("train.csv", long.as_bytes());
+    let message = measured.refused();
+    assert!(message.contains("more than 1000000 samples"), "{message}");
+}
+
+#[test]
+fn what_weakens_a_record_is_noted() {
+    let measured = Measured::stage(0.0);
+    let holes = |place: usize, cell: &str| {
+        if place % 10 == 3 {
+            "nan".to_owned()
+        } else {
+            cell.to_owned()
+        }
+    };
+    measured.write("train.csv", replaced(2, 1, holes).as_bytes());
+    let (result, warned) = measured.answered("compare", "holes");
+    assert!(
+        warned.contains("40 samples of `q` are missing and left out"),
+        "{warned}"
+    );
+    assert!(
+        result["notes"].to_string().contains("missing"),
+        "{result:#}"
+    );
+    // A fortieth of the motion, from its crest, is cut off.
+    let clipped = replaced(2, 1, |_, cell| {
+        let value: f64 = cell.parse().expect("a number");
+        format!("{:?}", value.min(0.1))
+    });
+    measured.write("train.csv", clipped.as_bytes());
+    let (_, warned) = measured.answered("compare", "clipped");
+    assert!(warned.contains("it may be clipped"), "{warned}");
+    let uneven = replaced(0, 1, |place, cell| {
+        let t: f64 = cell.parse().expect("a number");
+        format!("{:?}", if place % 20 == 0 { t + 0.002 } else { t })
+    });
+    measured.write("train.csv", uneven.as_bytes());
+    let (_, warned) = measured.answered("compare", "uneven");
+    assert!(warned.contains("differ from 0.005"), "{warned}");
+    assert_eq!(SAMPLES, 400);
+}
