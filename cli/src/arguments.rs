@@ -67,7 +67,7 @@ pub enum Command {
     #[command(after_help = "Example:\n  eomgen study backlash --out studies/backlash")]
     Study(Study),
     /// The newcomer's walk: check, derive, generate, validate and simulate the paper's arm,
-    /// and leave one HTML page.
+    /// find what a stage lacks, and leave one HTML page.
     #[command(after_help = "Example:\n  eomgen tour --out tour")]
     Tour(Tour),
 }

@@ -10,4 +10,5 @@ pub mod study;
 pub mod study_search;
 pub mod sweep;
 pub mod tour;
+mod tour_hidden;
 pub mod validate;

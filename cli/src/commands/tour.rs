@@ -1,5 +1,5 @@
-//! `eomgen tour`: the whole way once, on the paper's arm, for somebody who sees the
-//! program for the first time. Leaves one HTML page and the files it shows.
+//! `eomgen tour`: the whole way once, on the paper's arm and at last a stage that lacks
+//! something, for somebody who sees the program for the first time. Leaves one HTML page and the files it shows.
 
 use std::path::Path;
 use std::time::Instant;
@@ -14,6 +14,7 @@ use sim::record::HeldInputs;
 use sim::validate::certificate::Certificate;
 
 use super::generate::source;
+use super::tour_hidden::{Told, told};
 use super::validate;
 use crate::arguments::{Solver, Tour};
 use crate::motion::{Run, Simulated};
@@ -84,7 +85,12 @@ pub fn run(options: &Tour) -> Outcome {
     watch.lap("simulate two seconds");
     let figure = figure(&variant, &table)?;
     leave(options, &variant, &rust, &certificate, &table, &figure)?;
-    let page = page_text(&variant, &rust, &certificate, &simulated, &figure, &watch)?;
+    let note = Note::new("finding a friction that is hidden in a stage");
+    let told = told(&options.out)?;
+    watch.lap("hide a friction in a stage, compare, discover");
+    drop(note);
+    let parts = (&rust[..], &figure[..], &told);
+    let page = page_text(&variant, parts, &certificate, &simulated, &watch)?;
     write_file(&path, page.as_bytes())?;
     say(&summary(options.json, &certificate, &simulated, &path))?;
     if certificate.passed {
@@ -199,12 +205,12 @@ fn figure(variant: &Variant, table: &Table) -> Outcome<String> {
     time_history(&history).map_err(|error| Problem::input(error.to_string()))
 }
 
+/// The page. `parts`: the emitted Rust, the figure and what was found.
 fn page_text(
     variant: &Variant,
-    rust: &str,
+    (rust, figure, told): (&str, &str, &Told),
     certificate: &Certificate,
     simulated: &Simulated,
-    figure: &str,
     watch: &Stopwatch,
 ) -> Outcome<String> {
     let evaluator = variant.evaluator();
@@ -228,6 +234,7 @@ fn page_text(
             detail: &check.detail,
         })
         .collect();
+    let found = told.summary();
     let tour = page::Tour {
         title: &variant.model.title,
         generated_by: concat!("eomgen ", env!("CARGO_PKG_VERSION")),
@@ -252,6 +259,7 @@ fn page_text(
                           what the arm's end is off its place, backlash and bending together.",
             }],
         },
+        hidden: told.chapter(&found),
         durations: watch
             .steps
             .iter()
@@ -282,6 +290,10 @@ fn next_commands() -> Vec<page::NextCommand<'static>> {
         (
             "cargo run --release -- validate model-spec/models/hub_beam_tip_mass.toml --order 8",
             "validates a beam with a tip mass",
+        ),
+        (
+            "cargo run --release -- discover tour/hidden/stage.toml tour/hidden/dataset.toml --out found",
+            "finds once more what the stage lacks; with a specification and records of your own, what your machine lacks",
         ),
     ]
     .into_iter()

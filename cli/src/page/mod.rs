@@ -1,5 +1,5 @@
 //! The newcomer's page: one HTML document that walks from a specification to its equations,
-//! the emitted source, the certificate and a simulation. Only how these are shown; what they
+//! the emitted source, the certificate, a simulation and what is found in records. Only how these are shown; what they
 //! say is handed in.
 //!
 //! The page has no script and refers to nothing outside itself. Every text is escaped, so
@@ -34,6 +34,8 @@ pub struct Tour<'a> {
     pub checks: Vec<CheckRow<'a>>,
     /// What was simulated.
     pub simulation: Simulation<'a>,
+    /// What was hidden, and found.
+    pub hidden: Hidden<'a>,
     /// What took how long, in order.
     pub durations: Vec<StepDuration<'a>>,
     /// What to try next.
@@ -97,6 +99,19 @@ pub struct Figure<'a> {
     pub caption: &'a str,
 }
 
+/// Something hidden in a machine and found from its records.
+#[derive(Clone, Debug)]
+pub struct Hidden<'a> {
+    /// What was hidden and what was found, in sentences.
+    pub summary: &'a str,
+    /// The folder of the records and results.
+    pub path: &'a str,
+    /// The specification with what was found.
+    pub extended: &'a str,
+    /// The pages of the comparison and of the search, complete HTML documents.
+    pub reports: [&'a str; 2],
+}
+
 /// How long a step took.
 #[derive(Clone, Debug)]
 pub struct StepDuration<'a> {
@@ -140,7 +155,7 @@ impl Tour<'_> {
         )
     }
 
-    fn steps(&self) -> [Step; 7] {
+    fn steps(&self) -> [Step; 8] {
         let step = |anchor, heading, content| Step {
             anchor,
             heading,
@@ -167,6 +182,11 @@ impl Tour<'_> {
                 "simulation",
                 "The motion is simulated",
                 steps::simulation(&self.simulation),
+            ),
+            step(
+                "hidden",
+                "What a model lacks is found",
+                steps::hidden(&self.hidden),
             ),
             step(
                 "durations",

@@ -1,8 +1,8 @@
-//! The steps around the equations: specification, source, certificate, simulation, durations
-//! and what next.
+//! The steps around the equations: specification, source, certificate, simulation, what is
+//! found in records, durations and what next.
 
 use super::markup::{escaped, folded, number, table};
-use super::{CheckRow, NextCommand, Simulation, Source, Specification, StepDuration};
+use super::{CheckRow, Hidden, NextCommand, Simulation, Source, Specification, StepDuration};
 
 /// What was checked and what was found.
 pub(super) fn specification(specification: &Specification<'_>) -> String {
@@ -108,6 +108,29 @@ pub(super) fn simulation(simulation: &Simulation<'_>) -> String {
         "<p>{} Every sample is in <code>{}</code>.</p>\n{figures}",
         escaped(simulation.summary),
         escaped(simulation.path)
+    )
+}
+
+/// What was found, with the whole pages of the comparison and the search.
+pub(super) fn hidden(hidden: &Hidden<'_>) -> String {
+    let [before, after] = hidden.reports;
+    let page = |summary: &str, report: &str| {
+        format!(
+            "<details><summary>{summary}</summary>\n<iframe title=\"{summary}\" sandbox srcdoc=\"{}\"></iframe></details>\n",
+            escaped(report)
+        )
+    };
+    format!(
+        "<p>{} Records and results are in <code>{}</code>.</p>\n{}{}{}",
+        escaped(hidden.summary),
+        escaped(hidden.path),
+        page("Read the report of the comparison, before", before),
+        page("Read the report of the search, after", after),
+        folded(
+            "Read the specification with what was found",
+            hidden.extended,
+            false
+        )
     )
 }
 

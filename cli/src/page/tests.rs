@@ -81,6 +81,12 @@ fn tour<'a>(text: &'a str, equations: &'a Report) -> Tour<'a> {
                 caption: text,
             }],
         },
+        hidden: Hidden {
+            summary: text,
+            path: text,
+            extended: text,
+            reports: [text, text],
+        },
         durations: vec![StepDuration {
             step: text,
             seconds: 0.5,
@@ -143,7 +149,7 @@ fn nothing_refers_to_the_outside() {
         assert!(!page.contains(forbidden), "{forbidden}");
     }
     let links = page.split("href=\"").skip(1);
-    assert!(links.clone().count() == 7 && links.clone().all(|link| link.starts_with('#')));
+    assert!(links.clone().count() == 8 && links.clone().all(|link| link.starts_with('#')));
 }
 
 #[test]
@@ -156,6 +162,7 @@ fn every_step_is_there() {
         "source",
         "certificate",
         "simulation",
+        "hidden",
         "durations",
         "next",
     ] {

@@ -1,0 +1,215 @@
+//! The tour's last chapter: a friction is hidden in a simulated stage, its records are given
+//! to `compare` and `discover` with a specification that lacks it, and what they say is shown.
+
+use std::path::{Path, PathBuf};
+
+use model_spec::edit::{self, Edit, NewForce, NewParameter, NewValue};
+use model_spec::source::Source;
+use serde_json::Value;
+use sim::record::HeldInputs;
+
+use super::discover;
+use crate::arguments::{Compare, Discover, Solver};
+use crate::motion::Run;
+use crate::output::write_file;
+use crate::page;
+use crate::problem::{Outcome, Problem};
+use crate::table::Table;
+use crate::variant::derive_variant;
+
+/// The stage as it is known.
+const SPECIFICATION: &str = include_str!("../../../model-spec/models/emps.toml");
+
+/// What is hidden: a dry friction, N, and the speed within which it turns, m/s. Smooth, unlike
+/// the jump that is looked for.
+const FRICTION: f64 = 12.0;
+const TURNS: f64 = 2e-4;
+
+/// Samples of a record, the time between them (s) and the sensor's noise (m).
+const SAMPLES: usize = 750;
+const SAMPLE: f64 = 0.002;
+const NOISE: f64 = 2e-6;
+
+/// Relative tolerance of the simulation.
+const TOLERANCE: f64 = 1e-9;
+
+/// What came of it.
+pub struct Told {
+    comparison: Value,
+    discovery: Value,
+    reports: [String; 2],
+    extended: String,
+}
+
+/// Makes the records below `out`, compares and discovers.
+pub fn told(out: &Path) -> Outcome<Told> {
+    let folder = out.join("hidden");
+    let specification = folder.join("stage.toml");
+    write_file(&specification, SPECIFICATION.as_bytes())?;
+    let truth = truth()?;
+    for (name, turn) in [("train.csv", 0.0), ("test.csv", 1.0)] {
+        let path = folder.join(name);
+        write_file(&path, &record(&truth, turn)?.encode(&path)?)?;
+    }
+    let dataset = folder.join("dataset.toml");
+    write_file(&dataset, description().as_bytes())?;
+    let (compared, found) = (folder.join("compared"), folder.join("found"));
+    let comparison = discover::compared(&Compare {
+        spec: specification.clone(),
+        dataset: dataset.clone(),
+        order: None,
+        out: compared.clone(),
+        seed: 1,
+        json: false,
+    })?;
+    let discovery = discover::discovered(&Discover {
+        spec: specification,
+        dataset,
+        order: None,
+        out: found.clone(),
+        seed: 1,
+        effects: None,
+        json: false,
+    })?;
+    Ok(Told {
+        comparison,
+        discovery,
+        reports: [
+            text(compared.join("report.html"))?,
+            text(found.join("report.html"))?,
+        ],
+        extended: text(found.join("extended.toml"))?,
+    })
+}
+
+fn text(path: PathBuf) -> Outcome<String> {
+    std::fs::read_to_string(&path).map_err(|error| Problem::file("read", &path, &error))
+}
+
+/// The stage with its friction, as a specification.
+fn truth() -> Outcome<String> {
+    let parameter = |name: &str, value: f64, unit: &str| {
+        Edit::AddParameter(NewParameter {
+            name: name.to_owned(),
+            value: NewValue::Number(value),
+            unit: unit.to_owned(),
+            doc: String::new(),
+            source: String::new(),
+        })
+    };
+    let friction = Edit::AddForce(NewForce {
+        name: "hidden".to_owned(),
+        on: "q".to_owned(),
+        value: "-hidden_level*dot(q)/sqrt(dot(q)^2 + hidden_speed^2)".to_owned(),
+        doc: String::new(),
+        source: String::new(),
+    });
+    let edits = [
+        parameter("hidden_level", FRICTION, "N"),
+        parameter("hidden_speed", TURNS, "m/s"),
+        friction,
+    ];
+    edit::apply(&Source::new("stage.toml", SPECIFICATION), &edits)
+        .map_err(|error| Problem::input(error.to_string()))
+}
+
+/// A record of the true stage: reversals of a slow force with a faster one on top; `turn`
+/// makes another one.
+fn record(truth: &str, turn: f64) -> Outcome<Table> {
+    let checked =
+        model_spec::check(Source::new("stage.toml", truth)).map_err(Problem::Specification)?;
+    let variant = derive_variant(checked.model, &[])?;
+    let times: Vec<f64> = (0..SAMPLES).map(|i| i as f64 * SAMPLE).collect();
+    let force = |t: &f64| {
+        let slow = 300.0 * (5.0 * t + turn).cos();
+        slow - 150.0 * (13.0 * t * (1.0 + 0.3 * turn)).sin()
+    };
+    let forces: Vec<f64> = times.iter().map(force).collect();
+    let inputs = HeldInputs::new(times.clone(), forces.clone(), 1)
+        .ok_or_else(|| Problem::input("the stage has no force"))?;
+    let run = Run::new(&variant, inputs, Solver::Rk, TOLERANCE)?;
+    let motion = run.table(&run.simulate(&times)?.trajectory);
+    let positions = motion
+        .column("q")
+        .ok_or_else(|| Problem::input("the stage has no position"))?;
+    // Fractions of n^2 times the golden section are spread evenly, without a pattern to see.
+    let noise = |sample: usize| {
+        let turns = (sample * sample) as f64 * 0.618_033_988_749_895;
+        NOISE * 12f64.sqrt() * (turns.fract() - 0.5)
+    };
+    let seen = positions.iter().enumerate().map(|(i, q)| q + noise(i));
+    Ok(Table::of(&[
+        ("t".to_owned(), times),
+        ("force".to_owned(), forces),
+        ("q".to_owned(), seen.collect()),
+    ]))
+}
+
+fn description() -> String {
+    format!(
+        "title = \"A simulated stage in which a friction is hidden\"\n\n\
+         [records]\ntrain = [\"train.csv\"]\ntest = [\"test.csv\"]\n\n\
+         [time]\ncolumn = \"t\"\nunit = \"s\"\n\n\
+         [inputs.force]\ncolumn = \"force\"\nunit = \"N\"\nhold = \"zero-order\"\n\n\
+         [channels.q]\ncolumn = \"q\"\nunit = \"m\"\nnoise = {NOISE:e}\n\n\
+         [initial]\nstate = \"rest\"\n\n\
+         [uncertain]\nF_v = {{ relative = 0.05 }}\n\n\
+         [windows]\nlength = 0.25\n"
+    )
+}
+
+impl Told {
+    /// What was hidden and what was found, in sentences.
+    pub fn summary(&self) -> String {
+        let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+        let gap = &self.discovery["gap"]["q"];
+        let found: Vec<String> = self.discovery["effects"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .map(effect)
+            .collect();
+        let found = match found.len() {
+            0 => "nothing that it believed".to_owned(),
+            _ => found.join(", "),
+        };
+        format!(
+            "A positioning stage was simulated with a dry friction of {FRICTION} N that its specification does not \
+             have, and its position recorded with a noise of {:.0} um. The comparison said: {}. The search found {found}. \
+             On a record that it had not seen, the model's windows were {:.1} um off before and {:.1} um after; noise \
+             alone is {:.1} um.",
+            1e6 * NOISE,
+            self.comparison["where"]
+                .as_str()
+                .unwrap_or_default()
+                .trim_end_matches('.'),
+            1e6 * number(&gap["before"]["test"]),
+            1e6 * number(&gap["after"]["test"]),
+            1e6 * number(&gap["floor"]),
+        )
+    }
+
+    /// The chapter of the page.
+    pub fn chapter<'a>(&'a self, summary: &'a str) -> page::Hidden<'a> {
+        page::Hidden {
+            summary,
+            path: "hidden",
+            extended: &self.extended,
+            reports: [&self.reports[0], &self.reports[1]],
+        }
+    }
+}
+
+/// An effect with its first parameter.
+fn effect(entry: &Value) -> String {
+    let word = |key: &str| entry[key].as_str().unwrap_or_default().replace('_', " ");
+    let parameter = entry["parameters"]
+        .as_object()
+        .and_then(|p| p.values().next());
+    let size = parameter.map_or_else(String::new, |p| {
+        let number = |key: &str| p[key].as_f64().unwrap_or(f64::NAN);
+        let unit = p["unit"].as_str().unwrap_or_default();
+        format!(" of {:.2} ± {:.2} {unit}", number("value"), number("sd"))
+    });
+    format!("{} on {}{size}", word("effect"), word("on"))
+}
