@@ -15,6 +15,10 @@ const MOVES: f64 = 20.0;
 /// Columns that follow each other this well are one quantity.
 const FOLLOWS: f64 = 0.98;
 
+/// A channel that follows the model less than this does not follow it: what a model lacks
+/// leaves most of the motion.
+const ASTRAY: f64 = 0.5;
+
 /// A factor is a given one if it agrees to this part of it. A hundredth for what parameters
 /// may be off, and as much again for what is lacking.
 const AGREES: f64 = 0.02;
@@ -29,14 +33,15 @@ const FACTORS: [(f64, &str); 6] = [
     (0.017_453_292_52, "as if radians were given for degrees, "),
 ];
 
-/// Looks at the labels of the first training record.
+/// Looks at the labels of the first training record; returns what is worth a remark.
 ///
 /// # Errors
 /// A column with a wrong label.
-pub fn check(setting: &Setting<'_>, text: &str) -> Result<(), Refusal> {
+pub fn check(setting: &Setting<'_>, text: &str) -> Result<Vec<String>, Refusal> {
+    let mut notes = Vec::new();
     let record = &setting.dataset.train[0];
     let Ok(plant) = setting.plant(text) else {
-        return Ok(());
+        return Ok(notes);
     };
     let first = setting.first_state(&plant, record);
     let samples = record.times.len().min(SAMPLES);
@@ -45,7 +50,7 @@ pub fn check(setting: &Setting<'_>, text: &str) -> Result<(), Refusal> {
         .at(&plant.values)
         .and_then(|mut runner| runner.outputs(&first, times, &record.inputs));
     // A model that cannot be run so far is judged by its fit.
-    let Ok(run) = run else { return Ok(()) };
+    let Ok(run) = run else { return Ok(notes) };
     let channels = &setting.dataset.channels;
     let count = channels.len();
     let expected: Vec<Vec<f64>> = (0..count)
@@ -83,22 +88,30 @@ pub fn check(setting: &Setting<'_>, text: &str) -> Result<(), Refusal> {
         }
         for (other, instead) in channels.iter().enumerate() {
             let alike = Likeness::of(times, &expected[other], measured, channel.noise);
-            let same = other != place && instead.unit == channel.unit;
-            if same && alike.correlation > FOLLOWS && (alike.factor - 1.0).abs() < AGREES {
+            if other != place && alike.correlation > FOLLOWS && (alike.factor - 1.0).abs() < AGREES
+            {
                 return refuse(format!(
                     "its column is what the model expects of `{}`; are columns exchanged?",
                     instead.name
                 ));
             }
         }
+        if own.correlation.abs() < ASTRAY && own.shows {
+            notes.push(format!(
+                "{}: `{}` does not follow the model (correlation {:.2}): are its column, and those of the inputs, the right ones?",
+                record.name, channel.name, own.correlation
+            ));
+        }
     }
-    Ok(())
+    Ok(notes)
 }
 
 /// How a column follows what is expected, lines taken out of both.
 struct Likeness {
     correlation: f64,
     factor: f64,
+    /// Whether there is enough to be followed.
+    shows: bool,
 }
 
 impl Likeness {
@@ -106,6 +119,7 @@ impl Likeness {
         let none = Self {
             correlation: 0.0,
             factor: 0.0,
+            shows: false,
         };
         let known: Vec<usize> = (0..times.len())
             .filter(|i| measured[*i].is_finite() && expected[*i].is_finite())
@@ -127,6 +141,7 @@ impl Likeness {
         Self {
             correlation: ab / (aa * bb).sqrt(),
             factor: ab / aa,
+            shows,
         }
     }
 }

@@ -228,6 +228,17 @@ fn columns_with_a_wrong_label_are_refused() {
         let message = measured.refused();
         assert!(message.contains(part), "{by}: {message}");
     }
+    let description = DESCRIPTION
+        .replacen("column = \"force\"", "column = \"q\"", 1)
+        .replacen(
+            "column = \"q\"\nunit = \"m\"",
+            "column = \"force\"\nunit = \"m\"",
+            1,
+        );
+    let exchanged = Measured::stage(0.0);
+    exchanged.write("dataset.toml", description.as_bytes());
+    let (_, warned) = exchanged.answered("compare", "exchanged");
+    assert!(warned.contains("`q` does not follow the model"), "{warned}");
     // A gain that may be the sensor's is none of these.
     measured.write("train.csv", scaled(1.02).as_bytes());
     measured.answered("compare", "gain");

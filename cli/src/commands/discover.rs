@@ -94,7 +94,10 @@ fn inputs(
 
 /// The null model's fit and the floor there.
 fn null(setting: &Setting<'_>, text: &str, seed: u64) -> Outcome<(Fit, Floor)> {
-    labels::check(setting, text).map_err(|refusal| Problem::input(refusal.to_string()))?;
+    let notes = labels::check(setting, text);
+    for note in notes.map_err(|refusal| Problem::input(refusal.to_string()))? {
+        warn(&format!("note: {note}"));
+    }
     progress("fitting the model as it is");
     let fit = null_fit(setting, text).map_err(Problem::input)?;
     let floor = floor(setting, &fit, seed);
