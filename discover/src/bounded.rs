@@ -91,6 +91,11 @@ fn free_solution(
     let matrix = DMatrix::from_fn(a.nrows(), places.len(), |r, c| {
         a[(r, places[c])] / scale[places[c]]
     });
+    // A motion that has left all bounds says nothing of where to go; a decomposition would
+    // panic.
+    if !matrix.iter().chain(&held).all(|value| value.is_finite()) {
+        return target;
+    }
     let decomposition = matrix.svd(true, true);
     if let Ok(solution) = decomposition.solve(&held, 1e-12) {
         for (value, place) in solution.iter().zip(&places) {
@@ -112,6 +117,14 @@ mod tests {
         let b = DVector::from_vec(vec![1.0, 3.0, 5.0]);
         let x = least_squares(&a, &b, &[(-9.0, 9.0), (-9.0, 9.0)]);
         assert!((x - DVector::from_vec(vec![1.0, 2.0])).norm() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_not_a_number_moves_nothing() {
+        let a = DMatrix::from_row_slice(2, 2, &[1.0, f64::NAN, 0.0, 1.0]);
+        let b = DVector::from_vec(vec![1.0, f64::INFINITY]);
+        let x = least_squares(&a, &b, &[(-9.0, 9.0), (-9.0, 9.0)]);
+        assert_eq!(x, DVector::zeros(2));
     }
 
     #[test]
