@@ -18,10 +18,11 @@ mod variants {
 ::lanes::scalar!(variants::full_order_16);
 ::lanes::scalar!(variants::full_order_64);
 
-/// States in a pass: they and their rates stay in the nearest cache.
+/// States.
 const STATES: usize = 16;
 
-/// Passes over the same states in a round.
+/// Calls for each of them in a round: the states are lanes throughout, as in a task that
+/// integrates a motion.
 const PASSES: usize = 32;
 
 /// Rounds of which the best counts.
@@ -56,19 +57,16 @@ macro_rules! compare {
             type Output = ();
             #[inline(always)]
             fn run<V: Vector>(self) {
-                let coefficients = self.coefficients.cast();
-                let places = (0..PASSES).flat_map(|_| 0..STATES / LANES);
-                for place in places {
-                    let (numbers, out) = (&black_box(self.states)[place], &mut self.rates[place]);
-                    let mut state = [Lanes::<V>::splat(0.0); arm::STATES];
-                    for i in 0..arm::STATES {
-                        state[i] = Lanes::from_array(numbers[i]);
-                    }
+                for (place, (numbers, out)) in self.states.iter().zip(self.rates).enumerate() {
+                    let state = numbers.map(Lanes::<V>::from_array);
                     let t = Lanes::from_array(times(place));
-                    let rates = arm::inlined_rates(t, &state, &arm::Inputs::default(), &coefficients);
-                    for i in 0..arm::STATES {
-                        out[i] = rates[i].to_array();
+                    let mut rates = state;
+                    for _ in 0..PASSES {
+                        let (state, coefficients) = (black_box(&state), black_box(self.coefficients));
+                        arm::inlined_rates_into(t, state, &arm::Inputs::default(), coefficients, &mut rates);
+                        black_box(&rates);
                     }
+                    *out = rates.map(Lanes::to_array);
                 }
             }
         }
@@ -78,17 +76,21 @@ macro_rules! compare {
             t: f64,
             state: &[f64; arm::STATES],
             coefficients: &arm::Coefficients,
-        ) -> [f64; arm::STATES] {
-            arm::rates(t, state, &arm::Inputs::default(), coefficients)
+            rates: &mut [f64; arm::STATES],
+        ) {
+            arm::rates_into(t, state, &arm::Inputs::default(), coefficients, rates)
         }
 
         let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
         let single = [state::<{ arm::STATES }>(); STATES];
         let mut single_rates = single;
         let alone = best(|| {
-            for place in (0..PASSES).flat_map(|_| 0..STATES) {
-                let (t, state) = (times(place / LANES)[place % LANES], &black_box(&single)[place]);
-                single_rates[place] = rates(t, state, black_box(&coefficients));
+            for (place, (state, found)) in single.iter().zip(&mut single_rates).enumerate() {
+                let t = times(place / LANES)[place % LANES];
+                for _ in 0..PASSES {
+                    rates(t, black_box(state), black_box(&coefficients), found);
+                    black_box(&found);
+                }
             }
             black_box(&single_rates);
         });

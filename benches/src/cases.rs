@@ -25,22 +25,28 @@ macro_rules! right_hand_sides {
                 coefficients: &variants::$module::Coefficients,
             ) {
                 let inputs = variants::$module::Inputs::default();
+                let mut rates = *state;
                 repeat(|| {
-                    black_box(&variants::$module::rates(black_box(0.3), black_box(state), &inputs, coefficients));
+                    variants::$module::rates_into(black_box(0.3), black_box(state), &inputs, coefficients, &mut rates);
+                    black_box(&rates);
                 });
             }
 
             #[inline(never)]
             fn $hand_written(state: &[f64; variants::$module::STATES], arm: &Eliminated<$order>) {
+                let mut rates = *state;
                 repeat(|| {
-                    black_box(&black_box(arm).rates(black_box(0.3), black_box(state)));
+                    black_box(arm).rates(black_box(0.3), black_box(state), &mut rates);
+                    black_box(&rates);
                 });
             }
 
             #[inline(never)]
             fn $equation_22(state: &[f64; variants::$module::STATES], arm: &Equation22<$order>) {
+                let mut rates = *state;
                 repeat(|| {
-                    black_box(&equation_22(black_box(arm), black_box(0.3), black_box(state)));
+                    equation_22(black_box(arm), black_box(0.3), black_box(state), &mut rates);
+                    black_box(&rates);
                 });
             }
         )*

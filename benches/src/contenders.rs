@@ -1,7 +1,8 @@
 //! What generated code is compared with, each as one call that is not inlined: emitted
-//! functions are not inlined into other crates, so neither are the others.
+//! functions are not inlined into other crates, so neither are the others. All write their
+//! result to where the caller wants it.
 
-use sim::reference::equation_22::Equation22;
+use sim::reference::equation_22::{Equation22, copy_in_pairs};
 
 /// Calls a macro with every order that is compared and the module of [`crate::variants`]
 /// that holds it.
@@ -17,13 +18,9 @@ macro_rules! at_all_orders {
 
 /// What nobody can go below: one sine, and the rates as they stand in the state.
 #[inline(never)]
-pub fn floor<const N: usize>(t: f64, state: &[f64; N], omega: f64) -> [f64; N] {
-    let mut out = [0.0; N];
-    for i in 0..N / 2 {
-        out[i] = state[N / 2 + i];
-    }
-    out[N / 2] = elementary::sin(omega * t);
-    out
+pub fn floor<const N: usize>(t: f64, state: &[f64; N], omega: f64, rates: &mut [f64; N]) {
+    copy_in_pairs(&state[N / 2..], &mut rates[..N / 2]);
+    rates[N / 2] = elementary::sin(omega * t);
 }
 
 /// Hand-assembled Eq. (22).
@@ -32,8 +29,7 @@ pub fn equation_22<const S: usize, const N: usize>(
     arm: &Equation22<S>,
     t: f64,
     state: &[f64; N],
-) -> [f64; N] {
-    let mut out = [0.0; N];
-    arm.rates(t, state, &mut out);
-    out
+    rates: &mut [f64; N],
+) {
+    arm.rates(t, state, rates);
 }

@@ -25,7 +25,8 @@ macro_rules! agree {
                 let degrees = arm::DEGREES_OF_FREEDOM;
                 let expected = reference.evaluate(0.3, &state).expect("as many numbers as states");
                 let generated = arm::rates(0.3, &state, &arm::Inputs::default(), &coefficients);
-                let written = eliminated.rates(0.3, &state);
+                let mut written = [0.0; arm::STATES];
+                eliminated.rates(0.3, &state, &mut written);
                 assert_eq!(generated[..degrees], state[degrees..]);
                 assert_eq!(written[..degrees], state[degrees..]);
                 let between = written[degrees..].iter().zip(&generated[degrees..]).zip(&expected.scales);

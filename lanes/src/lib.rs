@@ -35,12 +35,11 @@
 //!     type Output = ();
 //!     #[inline(always)]
 //!     fn run<V: Vector>(self) {
-//!         let coefficients = self.coefficients.cast();
 //!         let (t, h) = (Lanes::<V>::splat(0.0), Lanes::splat(1e-3));
 //!         for numbers in self.states {
 //!             let state = numbers.map(Lanes::from_array);
 //!             let inputs = pendulum::Inputs::default();
-//!             let rates = pendulum::inlined_rates(t, &state, &inputs, &coefficients);
+//!             let rates = pendulum::inlined_rates(t, &state, &inputs, &self.coefficients);
 //!             for i in 0..pendulum::STATES {
 //!                 numbers[i] = (state[i] + h * rates[i]).to_array();
 //!             }

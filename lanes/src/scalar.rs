@@ -154,6 +154,12 @@ macro_rules! scalar {
                 F::value(self, other)
             }
         }
+        impl<V: $crate::Vector> $($module)::+::Coefficient<$crate::Lanes<V>> for f64 {
+            #[inline(always)]
+            fn read(self) -> $crate::Lanes<V> {
+                $crate::Lanes::splat(self)
+            }
+        }
         impl<V: $crate::Vector> $($module)::+::Real for $crate::Lanes<V> {
             #[inline(always)]
             fn select_equal(a: Self, b: Self, then: Self, otherwise: Self) -> Self {

@@ -29,9 +29,9 @@ macro_rules! bits {
                     #[inline(always)]
                     fn run<V: Vector>(self) -> Self::Output {
                         let (t, state) = (Lanes::<V>::from_array(self.t), self.state.map(Lanes::from_array));
-                        let (inputs, c) = ($module::Inputs::default(), self.coefficients.cast());
-                        let rates = $module::inlined_rates(t, &state, &inputs, &c);
-                        let observables = $module::inlined_observables(t, &state, &inputs, &c);
+                        let (inputs, c) = ($module::Inputs::default(), &self.coefficients);
+                        let rates = $module::inlined_rates(t, &state, &inputs, c);
+                        let observables = $module::inlined_observables(t, &state, &inputs, c);
                         rates.iter().chain(&observables).map(|lanes| lanes.to_array()).collect()
                     }
                 }

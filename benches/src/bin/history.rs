@@ -45,18 +45,19 @@ macro_rules! times {
             let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
             let eliminated = Eliminated::<$order>::new(&parameters);
             let equation = Equation22::<$order>::new(&parameters, 1.0, 1.0);
+            let [a, b, c, d] = &mut [state; 4];
             let [floor, generated, hand_written, equation_22] = fastest(&mut [
                 &mut || for _ in 0..CALLS {
-                    black_box(&floor(black_box(0.3), black_box(&state), black_box(31.4)));
+                    floor(black_box(0.3), black_box(&state), black_box(31.4), black_box(a));
                 },
                 &mut || for _ in 0..CALLS {
-                    black_box(&arm::rates(black_box(0.3), black_box(&state), &inputs, black_box(&coefficients)));
+                    arm::rates_into(black_box(0.3), black_box(&state), &inputs, black_box(&coefficients), black_box(b));
                 },
                 &mut || for _ in 0..CALLS {
-                    black_box(&black_box(&eliminated).rates(black_box(0.3), black_box(&state)));
+                    black_box(&eliminated).rates(black_box(0.3), black_box(&state), black_box(c));
                 },
                 &mut || for _ in 0..CALLS {
-                    black_box(&equation_22(black_box(&equation), black_box(0.3), black_box(&state)));
+                    equation_22(black_box(&equation), black_box(0.3), black_box(&state), black_box(d));
                 },
             ]);
             Times { order: $order, floor, generated, hand_written, equation_22 }

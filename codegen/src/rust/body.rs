@@ -12,7 +12,7 @@ use super::functions::Needed;
 use super::literals::{block, identifier};
 use super::names::Names;
 use crate::evaluator::elementary_function;
-use crate::program::{Argument, Extent, Op, PARTIAL_SUMS, Program, ValueId, Variable};
+use crate::program::{Argument, Extent, Op, PARTIAL_SUMS, Program, Request, ValueId, Variable};
 use elementary::Function as Elementary;
 use model_spec::model::Function;
 
@@ -362,15 +362,29 @@ impl<'a> Body<'a> {
                             id.index()
                         )));
                     };
-                    let field = Expression::field("coefficients", name);
-                    match index {
-                        Some(index) => Expression::element(&field.to_string(), index),
-                        None => field,
-                    }
+                    self.coefficient(name, index)
                 }
                 _ => return Ok(None),
             },
         }))
+    }
+
+    /// A coefficient, or the entry of one; lanes share it.
+    fn coefficient(&self, name: &str, index: Option<&str>) -> Expression {
+        let field = Expression::field("coefficients", name);
+        let number = match index {
+            Some(index) => Expression::element(&field.to_string(), index),
+            None => field,
+        };
+        if self.for_lanes() {
+            Expression::call("C::read", &[number])
+        } else {
+            number
+        }
+    }
+
+    fn for_lanes(&self) -> bool {
+        self.program.requested.requests.contains(&Request::Lanes)
     }
 
     fn leaf(&self, id: ValueId) -> Emitted<Expression> {
@@ -404,7 +418,18 @@ impl<'a> Body<'a> {
             let name = identifier(&self.program.tables[place].name)?;
             return Ok(Expression::converted(format!("{name}[{index}]")));
         }
+        if let Some(name) = self.prepared_name(id) {
+            return Ok(self.coefficient(name, Some(index)));
+        }
         Ok(Expression::element(&self.numbers(id)?, index))
+    }
+
+    /// The name of a value among the coefficients that this stage reads.
+    fn prepared_name(&self, id: ValueId) -> Option<&'a str> {
+        match self.access {
+            Access::Coefficients(fields) => fields.get(&id).map(String::as_str),
+            Access::Prepare => None,
+        }
     }
 
     /// A vector or matrix as a whole.
@@ -424,15 +449,21 @@ impl<'a> Body<'a> {
             };
             return Ok(format!("{function}(&{name})"));
         }
-        match &self.access {
-            Access::Coefficients(fields) if fields.contains_key(&id) => {
-                Ok(Expression::field("coefficients", &fields[&id]).to_string())
-            }
-            _ => Err(EmitError::Value(format!(
+        let Some(name) = self.prepared_name(id) else {
+            return Err(EmitError::Value(format!(
                 "value {} is no array",
                 id.index()
-            ))),
+            )));
+        };
+        let field = Expression::field("coefficients", name);
+        if !self.for_lanes() {
+            return Ok(field.to_string());
         }
+        let matrix = matches!(self.program.value(id).extent, Extent::Matrix(..));
+        self.needed.read_array |= !matrix;
+        self.needed.read_matrix |= matrix;
+        let function = if matrix { "read_matrix" } else { "read_array" };
+        Ok(Expression::call(function, &[reference(field.to_string())]).to_string())
     }
 
     /// A vector as a whole array, copied where it is none; a scalar stands for every element.

@@ -10,7 +10,7 @@ use super::layout;
 use super::literals::{block, doc, file_doc, identifier, number};
 use super::names::Names;
 use super::requested::requested_roots;
-use super::scalar::SCALAR;
+use super::scalar::{COEFFICIENT, SCALAR};
 use crate::program::{Extent, Op, Program, ValueId};
 
 /// What the emitted file is.
@@ -79,6 +79,7 @@ impl<'p> File<'p> {
             self.requested(&mut needed)?,
             self.tables()?,
             SCALAR.to_owned(),
+            if self.for_lanes() { COEFFICIENT } else { "" }.to_owned(),
             items(&needed),
         ]
         .concat();

@@ -28,6 +28,10 @@ pub struct Needed {
     pub converted: bool,
     /// Matrices of another type.
     pub converted_matrix: bool,
+    /// Vectors of coefficients as a whole.
+    pub read_array: bool,
+    /// Matrices of coefficients as a whole.
+    pub read_matrix: bool,
     /// Sums of more elements than there are partial sums.
     pub sum: bool,
     /// Sums of no more.
@@ -45,6 +49,8 @@ pub fn items(needed: &Needed) -> String {
         (needed.cholesky_of_matrix, CHOLESKY_OF_MATRIX),
         (needed.converted || needed.converted_matrix, CONVERTED),
         (needed.converted_matrix, CONVERTED_MATRIX),
+        (needed.read_array || needed.read_matrix, READ_ARRAY),
+        (needed.read_matrix, READ_MATRIX),
         (needed.sum || needed.sum_of_few, PAIRED),
         (needed.sum_of_few, SUM_OF_FEW),
         (needed.sum, SUM),
@@ -198,6 +204,34 @@ fn paired<const N: usize, T: Scalar>(s: &[T; 8]) -> T {
     let left = if N > 2 { a + b } else { a };
     let right = if N > 6 { c + d } else { c };
     if N > 4 { left + right } else { left }
+}
+";
+
+/// Coefficients that are read as a whole.
+const READ_ARRAY: &str = "\
+/// These coefficients as what is computed with.
+#[inline(always)]
+fn read_array<T: Scalar, C: Coefficient<T>, const N: usize>(numbers: &[C; N]) -> [T; N] {
+    let mut read = [T::number(0.0); N];
+    for i in 0..N {
+        read[i] = C::read(numbers[i]);
+    }
+    read
+}
+";
+
+/// The same of matrices.
+const READ_MATRIX: &str = "\
+/// This matrix of coefficients as what is computed with.
+#[inline(always)]
+fn read_matrix<T: Scalar, C: Coefficient<T>, const N: usize, const M: usize>(
+    matrix: &[[C; N]; M],
+) -> [[T; N]; M] {
+    let mut read = [[T::number(0.0); N]; M];
+    for i in 0..M {
+        read[i] = read_array(&matrix[i]);
+    }
+    read
 }
 ";
 

@@ -2,10 +2,11 @@
 //! which the places of all are made at compile time, and a function that returns the
 //! nonzeros, row by row. The linearisation puts them into dense matrices.
 
-use super::body::{Access, Body};
+use super::body::Body;
 use super::expression::{Expression, array, assignment, infix};
 use super::file::{Emitted, File};
 use super::functions::Needed;
+use super::types::literal;
 use crate::program::{Entry, Extent, Jacobian, Op, Program, Request, ValueId};
 
 impl File<'_> {
@@ -25,10 +26,34 @@ impl File<'_> {
                 "/// The linearisation about a point.\n",
                 "linearise",
                 "Linearisation<T>",
-                LINEARISE,
+                &self.linearise(),
             );
         }
         Ok(text + PATTERN)
+    }
+
+    /// The statements of the linearisation: every part from its own function.
+    fn linearise(&self) -> String {
+        let arguments = ["t", "state", "inputs", "coefficients"].map(Expression::atom);
+        let parts = [
+            "rates",
+            "observables",
+            "rates_by_state",
+            "rates_by_inputs",
+            "observables_by_state",
+            "observables_by_inputs",
+        ];
+        let call = |part: &str| Expression::call(&format!("{}{part}", self.inlined()), &arguments);
+        let computed = parts.map(|part| assignment(&format!("let {part}"), call(part)) + "\n");
+        let fields = ["A", "B", "C", "D"].iter().zip(&parts[2..]);
+        let dense =
+            fields.map(|(field, part)| format!("{field}: {}.dense(&{part})", part.to_uppercase()));
+        let fields: Vec<String> = parts[..2]
+            .iter()
+            .map(|part| (*part).to_owned())
+            .chain(dense)
+            .collect();
+        computed.concat() + &literal("Linearisation", &fields)
     }
 
     /// Names and numbers of what Jacobians are taken by.
@@ -87,8 +112,7 @@ impl File<'_> {
 
     fn jacobian(&self, jacobian: &Jacobian<ValueId>, needed: &mut Needed) -> Emitted<String> {
         let roots = entry_roots(self.program, jacobian);
-        let access = Access::Coefficients(&self.field_names);
-        let mut body = Body::new(self.program, access, &roots, needed)?;
+        let mut body = self.body(&roots, needed)?;
         let constant = format!("{}_NONZEROS", jacobian.name.to_uppercase());
         body.push(&format!("let mut values = [T::number(0.0); {constant}];"));
         for (entry, (start, width)) in jacobian.entries.iter().zip(jacobian.places()) {
@@ -248,18 +272,5 @@ pub struct Linearisation<T = f64> {
     pub C: [[T; STATES]; OBSERVABLES],
     /// The observables by the inputs.
     pub D: [[T; INPUTS]; OBSERVABLES],
-}
-";
-
-const LINEARISE: &str = "\
-Linearisation {
-    rates: rates(t, state, inputs, coefficients),
-    observables: observables(t, state, inputs, coefficients),
-    A: RATES_BY_STATE.dense(&rates_by_state(t, state, inputs, coefficients)),
-    B: RATES_BY_INPUTS.dense(&rates_by_inputs(t, state, inputs, coefficients)),
-    C: OBSERVABLES_BY_STATE
-        .dense(&observables_by_state(t, state, inputs, coefficients)),
-    D: OBSERVABLES_BY_INPUTS
-        .dense(&observables_by_inputs(t, state, inputs, coefficients)),
 }
 ";

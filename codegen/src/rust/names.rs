@@ -9,7 +9,7 @@ use crate::program::{Program, ValueId};
 
 /// Names that emitted functions use for themselves: variables, helpers, constants, fields,
 /// and what Rust's prelude gives a value of.
-const TAKEN: [&str; 50] = [
+const TAKEN: [&str; 52] = [
     "t",
     "state",
     "inputs",
@@ -34,6 +34,8 @@ const TAKEN: [&str; 50] = [
     "cholesky_solve_matrix",
     "converted",
     "converted_matrix",
+    "read_array",
+    "read_matrix",
     "accelerations",
     "direction",
     "input_direction",

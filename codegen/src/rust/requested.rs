@@ -37,7 +37,12 @@ impl File<'_> {
         Ok(text)
     }
 
-    fn body<'b>(&'b self, roots: &[ValueId], needed: &'b mut Needed) -> Emitted<Body<'b>> {
+    /// A stage that reads coefficients and computes `roots`.
+    pub(super) fn body<'b>(
+        &'b self,
+        roots: &[ValueId],
+        needed: &'b mut Needed,
+    ) -> Emitted<Body<'b>> {
         let access = Access::Coefficients(&self.field_names);
         Body::new(self.program, access, roots, needed)
     }
@@ -59,7 +64,7 @@ impl File<'_> {
     }
 
     /// Rows into `target` from a place on.
-    fn write_row_values(
+    pub(super) fn write_row_values(
         &self,
         body: &mut Body<'_>,
         target: &str,

@@ -147,3 +147,19 @@ impl Scalar for f32 {
     }
 }
 ";
+
+/// What lanes read coefficients by.
+pub const COEFFICIENT: &str = "\
+/// A coefficient as the functions for lanes read it: a number of the type that they compute
+/// with, or an `f64` that all lanes share, which takes an eighth of the memory.
+pub trait Coefficient<T>: Copy {
+    /// The number, in every lane.
+    fn read(self) -> T;
+}
+impl<T: Scalar> Coefficient<T> for T {
+    #[inline(always)]
+    fn read(self) -> T {
+        self
+    }
+}
+";

@@ -1,78 +1,73 @@
 //! The emitted functions that are called with prepared coefficients, one per stage.
 
-use super::body::{Access, Body, looped};
+use super::body::{Body, looped};
 use super::expression::{Expression, array, assignment, infix};
 use super::file::{Emitted, File, mass_roots, quantity_line};
 use super::functions::Needed;
 use super::layout::{DEEPER, SHALLOWER};
 use super::literals::{block, doc};
-use crate::program::{Extent, Op, Request, RowValues, ValueId};
+use crate::program::{Extent, Op, Request, ValueId};
 
 impl File<'_> {
+    /// The rates written to where the caller wants them, and the same returned: what is
+    /// returned has to be filled with zeros first.
     pub(super) fn rates(&self, needed: &mut Needed) -> Emitted<String> {
         let program = self.program;
         let rows = &program.accelerations;
-        let mut body = Body::new(
-            program,
-            Access::Coefficients(&self.field_names),
-            &rows.all(),
-            needed,
-        )?;
+        let mut body = self.body(&rows.all(), needed)?;
+        self.write_rates_of_positions(&mut body);
         let degrees = program.degrees_of_freedom();
-        body.push("let mut rates = [T::number(0.0); STATES];");
-        let rate = infix("+", degrees, "i");
-        let coordinates = program.coordinates.len();
-        if coordinates > 0 {
-            body.push_loop("i", coordinates, &format!("rates[i] = state[{rate}];"));
-        }
-        self.write_rows(&mut body, rows)?;
-        body.push("rates");
-        Ok(self.stage(
-            "/// Rates of the state.\n///\n\
-             /// `t` in s; `state` and the result in the order of [`STATE_NAMES`].\n\
-             #[allow(unused_variables)]\n",
-            "rates",
-            "[T; STATES]",
+        self.write_row_values(&mut body, "rates", degrees, rows)?;
+        let order = "`t` in s; `state` and the rates in the order of [`STATE_NAMES`].";
+        let written = self.stage_with(
+            &format!(
+                "/// Rates of the state, written to `rates`.\n///\n/// {order}\n\
+                 #[allow(unused_variables)]\n"
+            ),
+            "rates_into",
+            "rates: &mut [T; STATES],\n",
+            "",
             &body.statements(),
-        ))
+        );
+        let call = format!(
+            "let mut rates = [T::number(0.0); STATES];\n\
+             {}rates_into(t, state, inputs, coefficients, &mut rates);\n\
+             rates\n",
+            self.inlined()
+        );
+        let head = format!("/// Rates of the state, returned.\n///\n/// {order}\n");
+        Ok(written + &self.stage(&head, "rates", "[T; STATES]", &call))
     }
 
-    /// The accelerations; with those of the modes also their rates. One loop for both is
-    /// not taken for a copy, which the compiler would call a function for.
-    fn write_rows(&self, body: &mut Body<'_>, rows: &RowValues) -> Emitted<()> {
+    /// The first half of the rates stands in the state. Two numbers in a turn: one by one the
+    /// compiler takes the loop for a copy of memory and calls a function for it, which costs
+    /// more than the copy.
+    fn write_rates_of_positions(&self, body: &mut Body<'_>) {
         let degrees = self.program.degrees_of_freedom();
-        for (place, id) in rows.scalars.iter().enumerate() {
-            let value = body.scalar(*id)?;
-            body.push(&assignment(&format!("rates[{}]", degrees + place), value));
-        }
-        for (field, id) in rows.modal.iter().enumerate() {
-            let order = self.program.fields[field].order;
-            if order == 0 {
-                continue;
-            }
-            let first = self.program.mode_offset(field);
-            let place = infix("+", first, "i");
-            let place_of_rate = infix("+", degrees + first, "i");
-            let rate = assignment(
-                &format!("rates[{place}]"),
-                format!("state[{place_of_rate}]"),
+        let rate = |first: usize| {
+            let (to, from) = (
+                if first == 0 {
+                    "2 * k".to_owned()
+                } else {
+                    format!("2 * k + {first}")
+                },
+                infix("+", degrees + first, "2 * k"),
             );
-            let value = body.element(*id)?;
-            let acceleration = assignment(&format!("rates[{place_of_rate}]"), value);
-            body.push_loop("i", order, &format!("{rate}\n{acceleration}"));
+            assignment(&format!("rates[{to}]"), format!("state[{from}]"))
+        };
+        if degrees > 1 {
+            body.push_loop("k", degrees / 2, &format!("{}\n{}", rate(0), rate(1)));
         }
-        Ok(())
+        if degrees % 2 == 1 {
+            let last = degrees - 1;
+            body.push(&format!("rates[{last}] = state[{}];", degrees + last));
+        }
     }
 
     pub(super) fn observables(&self, needed: &mut Needed) -> Emitted<String> {
         let program = self.program;
         let ids = &program.observable_values;
-        let mut body = Body::new(
-            program,
-            Access::Coefficients(&self.field_names),
-            ids,
-            needed,
-        )?;
+        let mut body = self.body(ids, needed)?;
         let values = ids
             .iter()
             .map(|id| body.scalar(*id))
@@ -120,8 +115,7 @@ impl File<'_> {
         id: ValueId,
         needed: &mut Needed,
     ) -> Emitted<String> {
-        let access = Access::Coefficients(&self.field_names);
-        let mut body = Body::new(self.program, access, &[id], needed)?;
+        let mut body = self.body(&[id], needed)?;
         let value = body.scalar(id)?;
         body.push(&value.to_string());
         let head = format!("/// {line}\n#[allow(unused_variables)]\n");
@@ -143,8 +137,7 @@ impl File<'_> {
         needed: &mut Needed,
     ) -> Emitted<String> {
         let program = self.program;
-        let access = Access::Coefficients(&self.field_names);
-        let mut body = Body::new(program, access, ids, needed)?;
+        let mut body = self.body(ids, needed)?;
         body.push("let mut values = [T::number(0.0); GUARDS];");
         let mut place = 0;
         let mut lines = vec![line.to_owned(), String::new()];
@@ -176,12 +169,7 @@ impl File<'_> {
     pub(super) fn mass_matrix(&self, needed: &mut Needed) -> Emitted<String> {
         let program = self.program;
         let roots = mass_roots(program);
-        let mut body = Body::new(
-            program,
-            Access::Coefficients(&self.field_names),
-            &roots,
-            needed,
-        )?;
+        let mut body = self.body(&roots, needed)?;
         body.push("let mut values = [[T::number(0.0); DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];");
         for (row, entries) in program.mass.scalars.iter().enumerate() {
             for (column, id) in entries.iter().enumerate() {
@@ -259,20 +247,26 @@ impl File<'_> {
         result: &str,
         statements: &str,
     ) -> String {
-        let signature = |name: &str| {
+        let returned = if result.is_empty() {
+            String::new()
+        } else {
+            format!(" -> {result}")
+        };
+        let signature = |name: &str, generics: &str, coefficients: &str| {
             format!(
-                "pub fn {name}<T: Scalar>(\n\
+                "pub fn {name}<{generics}>(\n\
                  {DEEPER}t: T,\n\
                  state: &[T; STATES],\n\
                  inputs: &{},\n\
-                 coefficients: &{},\n\
-                 {arguments}{SHALLOWER}) -> {result} {{",
+                 coefficients: &{coefficients},\n\
+                 {arguments}{SHALLOWER}){returned} {{",
                 self.generic("Inputs"),
-                self.generic("Coefficients"),
             )
         };
-        if !self.program.requested.requests.contains(&Request::Lanes) {
-            return block(&format!("{head}{}", signature(name)), statements, "}");
+        let coefficients = self.generic("Coefficients");
+        let whole = format!("{head}{}", signature(name, "T: Scalar", &coefficients));
+        if !self.for_lanes() {
+            return block(&whole, statements, "}");
         }
         let further: Vec<&str> = arguments
             .lines()
@@ -284,7 +278,7 @@ impl File<'_> {
         ]
         .concat();
         let passed: Vec<Expression> = passed.into_iter().map(Expression::atom).collect();
-        let inlined = format!("inlined_{name}");
+        let inlined = format!("{}{name}", self.inlined());
         let call = format!("{}\n", Expression::call(&inlined, &passed));
         let allowed = head.lines().filter(|line| line.starts_with("#["));
         let allowed: String = allowed.map(|line| format!("{line}\n")).collect();
@@ -292,11 +286,23 @@ impl File<'_> {
             "/// [`{name}`], inlined where it is called, to be compiled for the registers there.\n\
              {allowed}#[inline(always)]\n"
         );
-        block(&format!("{head}{}", signature(name)), &call, "}")
-            + &block(
-                &format!("{inlined_head}{}", signature(&inlined)),
-                statements,
-                "}",
-            )
+        let generics = if self.fields.is_empty() {
+            "T: Scalar"
+        } else {
+            "T: Scalar, C: Coefficient<T>"
+        };
+        let read = coefficients.replace("<T>", "<C>");
+        let signature = signature(&inlined, generics, &read);
+        block(&whole, &call, "}") + &block(&format!("{inlined_head}{signature}"), statements, "}")
+    }
+
+    /// Whether every function is written a second time, for lanes.
+    pub(super) fn for_lanes(&self) -> bool {
+        self.program.requested.requests.contains(&Request::Lanes)
+    }
+
+    /// What the names of functions that emitted functions call begin with.
+    pub(super) fn inlined(&self) -> &'static str {
+        if self.for_lanes() { "inlined_" } else { "" }
     }
 }

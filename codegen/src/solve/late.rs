@@ -1,6 +1,8 @@
 //! What waits for an elementary function, moved to the end of an acceleration: in
 //! c (a + k sin(x)) with prepared c and k the result waits for three operations after the
 //! sine, in c a + (c k) sin(x) for two, and the rest is done by then. No operation is added.
+//! Neither is one
+//! by opening c (a + k b) to c a + (c k) b.
 
 use std::collections::HashMap;
 
@@ -21,7 +23,7 @@ pub(super) fn late_terms_last(graph: &mut Graph, rows: &Rows) -> Rows {
             let mut parts = Vec::new();
             pull_out(graph, &uses, (1.0, one), row, &mut parts);
             let waits = graph.waits(row);
-            let terms = terms_by_scale(graph, waits, parts);
+            let terms = terms_by_scale(graph, &uses, waits, parts);
             graph.combine(&terms)
         })
         .collect();
@@ -79,9 +81,14 @@ fn pull_out(
     }
 }
 
-/// The parts as terms of a sum: late ones each by itself, those before them collected by
-/// their scale.
-fn terms_by_scale(graph: &mut Graph, waits: u32, parts: Vec<Part>) -> Vec<(f64, Id)> {
+/// The parts as terms of a sum: late ones and those that take their scale for nothing each by
+/// itself, the others collected by their scale.
+fn terms_by_scale(
+    graph: &mut Graph,
+    uses: &HashMap<Id, usize>,
+    waits: u32,
+    parts: Vec<Part>,
+) -> Vec<(f64, Id)> {
     let mut terms = Vec::new();
     let mut early: Vec<(Id, Vec<(f64, Id)>)> = Vec::new();
     for part in parts {
@@ -96,9 +103,29 @@ fn terms_by_scale(graph: &mut Graph, waits: u32, parts: Vec<Part>) -> Vec<(f64, 
         }
     }
     for (scale, collected) in early {
-        terms.push(scaled_sum(graph, scale, &collected));
+        let (free, bound): (Vec<_>, Vec<_>) = collected
+            .into_iter()
+            .partition(|(_, node)| takes_a_scale(graph, uses, *node));
+        for (factor, node) in free {
+            terms.push((factor, graph.multiply(scale, node)));
+        }
+        if !bound.is_empty() {
+            terms.push(scaled_sum(graph, scale, &bound));
+        }
     }
     terms
+}
+
+/// Whether a term can be scaled for nothing: it is prepared, or has a prepared factor and is not
+/// needed as it is. So scaled it may be what another row has.
+fn takes_a_scale(graph: &Graph, uses: &HashMap<Id, usize>, node: Id) -> bool {
+    let prepared = |id: Id| graph.dependence(id).is_prepared();
+    let shared = uses.get(&node).is_some_and(|uses| *uses > 1);
+    let has_a_factor = match graph.operation(node) {
+        Operation::Product(factors) => factors.iter().any(|(factor, _)| prepared(*factor)),
+        _ => false,
+    };
+    prepared(node) || (has_a_factor && !shared)
 }
 
 /// The scaled sum of terms as one term, with the sign in front if all of them are negative.

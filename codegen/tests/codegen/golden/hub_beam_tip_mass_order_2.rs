@@ -434,16 +434,17 @@ impl Coefficients {
     }
 }
 
-/// Rates of the state.
+/// Rates of the state, written to `rates`.
 ///
-/// `t` in s; `state` and the result in the order of [`STATE_NAMES`].
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
 #[allow(unused_variables)]
-pub fn rates<T: Scalar>(
+pub fn rates_into<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
     coefficients: &Coefficients<T>,
-) -> [T; STATES] {
+    rates: &mut [T; STATES],
+) {
     let theta_dot = state[3];
     let u = inputs.u;
     let s_1 = sum_of_few([(); 2], |i| coefficients.c_5[i] * state[1 + i]);
@@ -456,16 +457,29 @@ pub fn rates<T: Scalar>(
     let s_6 = s_4 - coefficients.c_14 * s_5;
     let s_7 = coefficients.c_16 * s_2 - coefficients.c_13 * s_6
         - coefficients.c_15 * s_5;
-    let mut rates = [T::number(0.0); STATES];
-    for i in 0..1 {
-        rates[i] = state[3 + i];
+    for k in 0..1 {
+        rates[2 * k] = state[3 + 2 * k];
+        rates[2 * k + 1] = state[4 + 2 * k];
     }
+    rates[2] = state[5];
     rates[3] = theta_ddot;
     for i in 0..2 {
-        rates[1 + i] = state[4 + i];
         rates[4 + i] = coefficients.c_19[i] * state[1 + i] - coefficients.c_12[i] * s_7
             - coefficients.c_17[i] * s_6 - coefficients.c_18[i] * s_5;
     }
+}
+
+/// Rates of the state, returned.
+///
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
+pub fn rates<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> [T; STATES] {
+    let mut rates = [T::number(0.0); STATES];
+    rates_into(t, state, inputs, coefficients, &mut rates);
     rates
 }
 

@@ -1696,10 +1696,62 @@ impl Coefficients {
     }
 }
 
-/// Rates of the state.
+/// Rates of the state, written to `rates`.
 ///
-/// `t` in s; `state` and the result in the order of [`STATE_NAMES`].
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
 #[allow(unused_variables)]
+pub fn rates_into<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+    rates: &mut [T; STATES],
+) {
+    inlined_rates_into(t, state, inputs, coefficients, rates)
+}
+
+/// [`rates_into`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables)]
+#[inline(always)]
+pub fn inlined_rates_into<T: Scalar, C: Coefficient<T>>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<C>,
+    rates: &mut [T; STATES],
+) {
+    let theta_dot = state[3];
+    let u = inputs.u;
+    let s_1 = sum_of_few([(); 2], |i| C::read(coefficients.c_8[i]) * state[1 + i]);
+    let s_2 = sum_of_few([(); 2], |i| C::read(coefficients.c_10[i]) * state[1 + i]);
+    let s_3 = sum_of_few([(); 2], |i| C::read(coefficients.c_12[i]) * state[1 + i]);
+    let s_4 = C::read(coefficients.c_13) * s_2 - s_3;
+    let s_5 = u + s_1 - C::read(coefficients.c) * theta_dot
+        - C::read(coefficients.c_9) * s_2 - C::read(coefficients.c_11) * s_4;
+    let theta_ddot = C::read(coefficients.c_7) * s_5;
+    let s_6 = s_4 - C::read(coefficients.c_18) * s_5;
+    let s_7 = C::read(coefficients.c_20) * s_2 - C::read(coefficients.c_17) * s_6
+        - C::read(coefficients.c_19) * s_5;
+    let mut q_ddot = [T::number(0.0); 2];
+    for i in 0..2 {
+        q_ddot[i] = C::read(coefficients.c_24[i]) * state[1 + i]
+            - C::read(coefficients.c_16[i]) * s_7 - C::read(coefficients.c_21[i]) * s_6
+            - C::read(coefficients.c_23[i]) * s_5;
+    }
+    for k in 0..1 {
+        rates[2 * k] = state[3 + 2 * k];
+        rates[2 * k + 1] = state[4 + 2 * k];
+    }
+    rates[2] = state[5];
+    rates[3] = theta_ddot;
+    for i in 0..2 {
+        rates[4 + i] = q_ddot[i];
+    }
+}
+
+/// Rates of the state, returned.
+///
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
 pub fn rates<T: Scalar>(
     t: T,
     state: &[T; STATES],
@@ -1710,36 +1762,15 @@ pub fn rates<T: Scalar>(
 }
 
 /// [`rates`], inlined where it is called, to be compiled for the registers there.
-#[allow(unused_variables)]
 #[inline(always)]
-pub fn inlined_rates<T: Scalar>(
+pub fn inlined_rates<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> [T; STATES] {
-    let theta_dot = state[3];
-    let u = inputs.u;
-    let s_1 = sum_of_few([(); 2], |i| coefficients.c_8[i] * state[1 + i]);
-    let s_2 = sum_of_few([(); 2], |i| coefficients.c_10[i] * state[1 + i]);
-    let s_3 = sum_of_few([(); 2], |i| coefficients.c_12[i] * state[1 + i]);
-    let s_4 = coefficients.c_13 * s_2 - s_3;
-    let s_5 = u + s_1 - coefficients.c * theta_dot - coefficients.c_9 * s_2
-        - coefficients.c_11 * s_4;
-    let theta_ddot = coefficients.c_7 * s_5;
-    let s_6 = s_4 - coefficients.c_18 * s_5;
-    let s_7 = coefficients.c_20 * s_2 - coefficients.c_17 * s_6
-        - coefficients.c_19 * s_5;
     let mut rates = [T::number(0.0); STATES];
-    for i in 0..1 {
-        rates[i] = state[3 + i];
-    }
-    rates[3] = theta_ddot;
-    for i in 0..2 {
-        rates[1 + i] = state[4 + i];
-        rates[4 + i] = coefficients.c_24[i] * state[1 + i] - coefficients.c_16[i] * s_7
-            - coefficients.c_21[i] * s_6 - coefficients.c_23[i] * s_5;
-    }
+    inlined_rates_into(t, state, inputs, coefficients, &mut rates);
     rates
 }
 
@@ -1762,42 +1793,42 @@ pub fn observables<T: Scalar>(
 /// [`observables`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables)]
 #[inline(always)]
-pub fn inlined_observables<T: Scalar>(
+pub fn inlined_observables<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> [T; OBSERVABLES] {
     let theta_dot = state[3];
     let u = inputs.u;
     let tip = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[1 + i]);
     let s_1 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[1 + i]);
-    let tip_slope = coefficients.c_28 * s_1;
+    let tip_slope = C::read(coefficients.c_28) * s_1;
     let s_2 = theta_dot * theta_dot;
     let s_3 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
     let s_4 = sum_of_few(
         [(); 2],
         |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[4 + i] * state[4 + i]),
     );
-    let s_5 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
-    let s_6 = coefficients.l * theta_dot + s_5;
-    let s_7 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
-    let s_8 = theta_dot + coefficients.c_28 * s_7;
-    let T_tip = coefficients.c_31 * (s_6 * s_6) + coefficients.c_32 * (s_8 * s_8);
-    let s_9 = coefficients.c_29 * s_2
-        + T::number(0.5)
-            * (coefficients.c_1 * s_2 + coefficients.c_30 * (theta_dot * s_3)
-                + coefficients.c_6 * s_4);
+    let s_5 = C::read(coefficients.c_1) * s_2
+        + C::read(coefficients.c_30) * (theta_dot * s_3)
+        + C::read(coefficients.c_6) * s_4;
+    let s_6 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
+    let s_7 = C::read(coefficients.l) * theta_dot + s_6;
+    let s_8 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
+    let s_9 = theta_dot + C::read(coefficients.c_28) * s_8;
+    let T_tip = C::read(coefficients.c_31) * (s_7 * s_7)
+        + C::read(coefficients.c_32) * (s_9 * s_9);
     let s_10 = sum_of_few(
         [(); 2],
         |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[1 + i] * state[1 + i]),
     );
-    let V_bending = coefficients.c_33 * s_10;
+    let V_bending = C::read(coefficients.c_33) * s_10;
     [
         tip,
         tip_slope,
-        s_9 + T_tip + V_bending,
-        theta_dot * (u - coefficients.c * theta_dot),
+        C::read(coefficients.c_29) * s_2 + T::number(0.5) * s_5 + T_tip + V_bending,
+        theta_dot * (u - C::read(coefficients.c) * theta_dot),
     ]
 }
 
@@ -1815,11 +1846,11 @@ pub fn energy<T: Scalar>(
 /// [`energy`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables)]
 #[inline(always)]
-pub fn inlined_energy<T: Scalar>(
+pub fn inlined_energy<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> T {
     let theta_dot = state[3];
     let s_1 = theta_dot * theta_dot;
@@ -1828,21 +1859,21 @@ pub fn inlined_energy<T: Scalar>(
         [(); 2],
         |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[4 + i] * state[4 + i]),
     );
-    let s_4 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
-    let s_5 = coefficients.l * theta_dot + s_4;
-    let s_6 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
-    let s_7 = theta_dot + coefficients.c_28 * s_6;
-    let T_tip = coefficients.c_31 * (s_5 * s_5) + coefficients.c_32 * (s_7 * s_7);
-    let s_8 = coefficients.c_29 * s_1
-        + T::number(0.5)
-            * (coefficients.c_1 * s_1 + coefficients.c_30 * (theta_dot * s_2)
-                + coefficients.c_6 * s_3);
+    let s_4 = C::read(coefficients.c_1) * s_1
+        + C::read(coefficients.c_30) * (theta_dot * s_2)
+        + C::read(coefficients.c_6) * s_3;
+    let s_5 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
+    let s_6 = C::read(coefficients.l) * theta_dot + s_5;
+    let s_7 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
+    let s_8 = theta_dot + C::read(coefficients.c_28) * s_7;
+    let T_tip = C::read(coefficients.c_31) * (s_6 * s_6)
+        + C::read(coefficients.c_32) * (s_8 * s_8);
     let s_9 = sum_of_few(
         [(); 2],
         |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[1 + i] * state[1 + i]),
     );
-    let V_bending = coefficients.c_33 * s_9;
-    s_8 + T_tip + V_bending
+    let V_bending = C::read(coefficients.c_33) * s_9;
+    C::read(coefficients.c_29) * s_1 + T::number(0.5) * s_4 + T_tip + V_bending
 }
 
 /// Power of all non-conservative forces, in W: the rate of the energy.
@@ -1859,15 +1890,15 @@ pub fn power<T: Scalar>(
 /// [`power`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables)]
 #[inline(always)]
-pub fn inlined_power<T: Scalar>(
+pub fn inlined_power<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> T {
     let theta_dot = state[3];
     let u = inputs.u;
-    theta_dot * (u - coefficients.c * theta_dot)
+    theta_dot * (u - C::read(coefficients.c) * theta_dot)
 }
 
 /// Switching surfaces: the equations change where one of these changes sign.
@@ -1885,11 +1916,11 @@ pub fn guards<T: Scalar>(
 /// [`guards`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
-pub fn inlined_guards<T: Scalar>(
+pub fn inlined_guards<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> [T; GUARDS] {
     let mut values = [T::number(0.0); GUARDS];
     values
@@ -1909,25 +1940,25 @@ pub fn mass_matrix<T: Scalar>(
 /// [`mass_matrix`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
-pub fn inlined_mass_matrix<T: Scalar>(
+pub fn inlined_mass_matrix<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> [[T; DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM] {
     let mut values = [[T::number(0.0); DEGREES_OF_FREEDOM]; DEGREES_OF_FREEDOM];
-    values[0][0] = coefficients.M_theta_theta;
+    values[0][0] = C::read(coefficients.M_theta_theta);
     for i in 0..2 {
-        values[0][1 + i] = coefficients.M_theta_q[i];
+        values[0][1 + i] = C::read(coefficients.M_theta_q[i]);
         values[1 + i][0] = values[0][1 + i];
     }
     for i in 0..2 {
-        values[1 + i][1 + i] = values[1 + i][1 + i] + coefficients.c_15[i];
+        values[1 + i][1 + i] = values[1 + i][1 + i] + C::read(coefficients.c_15[i]);
         for j in 0..2 {
             values[1 + i][1 + j] = values[1 + i][1 + j]
-                + coefficients.c_25[i] * T::number(PHI_AT_END[j]);
+                + C::read(coefficients.c_25[i]) * T::number(PHI_AT_END[j]);
             values[1 + i][1 + j] = values[1 + i][1 + j]
-                + coefficients.c_5[i] * coefficients.c_26[j];
+                + C::read(coefficients.c_5[i]) * C::read(coefficients.c_26[j]);
         }
     }
     values
@@ -1948,18 +1979,18 @@ pub fn bias_forces<T: Scalar>(
 /// [`bias_forces`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
-pub fn inlined_bias_forces<T: Scalar>(
+pub fn inlined_bias_forces<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> [T; DEGREES_OF_FREEDOM] {
     let theta_dot = state[3];
     let u = inputs.u;
     let mut values = [T::number(0.0); DEGREES_OF_FREEDOM];
-    values[0] = -(u - coefficients.c * theta_dot);
+    values[0] = -(u - C::read(coefficients.c) * theta_dot);
     for i in 0..2 {
-        values[1 + i] = coefficients.c_27[i] * state[1 + i];
+        values[1 + i] = C::read(coefficients.c_27[i]) * state[1 + i];
     }
     values
 }
@@ -1981,17 +2012,20 @@ pub fn inverse_dynamics<T: Scalar>(
 /// [`inverse_dynamics`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
-pub fn inlined_inverse_dynamics<T: Scalar>(
+pub fn inlined_inverse_dynamics<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
     accelerations: &[T; DEGREES_OF_FREEDOM],
 ) -> [T; DEGREES_OF_FREEDOM] {
     let theta_dot = state[3];
     let u = inputs.u;
     let s = accelerations[0];
-    let s_1 = sum_of_few([(); 2], |i| coefficients.M_theta_q[i] * accelerations[1 + i]);
+    let s_1 = sum_of_few(
+        [(); 2],
+        |i| C::read(coefficients.M_theta_q[i]) * accelerations[1 + i],
+    );
     let s_2 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * accelerations[1 + i]);
     let s_3 = sum_of_few(
         [(); 2],
@@ -1999,14 +2033,16 @@ pub fn inlined_inverse_dynamics<T: Scalar>(
     );
     let mut s_4 = [T::number(0.0); 2];
     for i in 0..2 {
-        s_4[i] = coefficients.c_27[i] * state[1 + i] + coefficients.M_theta_q[i] * s
-            + coefficients.c_15[i] * accelerations[1 + i] + coefficients.c_25[i] * s_2
-            + coefficients.c_34[i] * s_3;
+        s_4[i] = C::read(coefficients.c_27[i]) * state[1 + i]
+            + C::read(coefficients.M_theta_q[i]) * s
+            + C::read(coefficients.c_15[i]) * accelerations[1 + i]
+            + C::read(coefficients.c_25[i]) * s_2;
     }
     let mut values = [T::number(0.0); DEGREES_OF_FREEDOM];
-    values[0] = coefficients.M_theta_theta * s + s_1 - (u - coefficients.c * theta_dot);
+    values[0] = C::read(coefficients.M_theta_theta) * s + s_1
+        - (u - C::read(coefficients.c) * theta_dot);
     for i in 0..2 {
-        values[1 + i] = s_4[i];
+        values[1 + i] = s_4[i] + C::read(coefficients.c_34[i]) * s_3;
     }
     values
 }
@@ -2026,11 +2062,11 @@ pub fn guard_rates<T: Scalar>(
 /// [`guard_rates`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
-pub fn inlined_guard_rates<T: Scalar>(
+pub fn inlined_guard_rates<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> [T; GUARDS] {
     let mut values = [T::number(0.0); GUARDS];
     values
@@ -2060,34 +2096,39 @@ pub fn jacobian_vector_product<T: Scalar>(
 /// [`jacobian_vector_product`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables)]
 #[inline(always)]
-pub fn inlined_jacobian_vector_product<T: Scalar>(
+pub fn inlined_jacobian_vector_product<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
     direction: &[T; STATES],
     input_direction: &Inputs<T>,
 ) -> [T; STATES] {
     let s = direction[3];
     let s_1 = input_direction.u;
-    let s_2 = sum_of_few([(); 2], |i| coefficients.c_49[i] * direction[1 + i]);
-    let s_3 = sum_of_few([(); 2], |i| coefficients.c_10[i] * direction[1 + i]);
-    let s_4 = sum_of_few([(); 2], |i| coefficients.c_56[i] * direction[1 + i]);
-    let s_5 = coefficients.c_13 * s_3 - coefficients.c_195 * s_4;
-    let s_6 = s_1 + coefficients.c_76 * s_2 - coefficients.c * s - coefficients.c_9 * s_3
-        - coefficients.c_11 * s_5;
-    let s_7 = s_5 - coefficients.c_18 * s_6;
-    let s_8 = coefficients.c_20 * s_3 - coefficients.c_17 * s_7
-        - coefficients.c_19 * s_6;
+    let s_2 = sum_of_few([(); 2], |i| C::read(coefficients.c_49[i]) * direction[1 + i]);
+    let s_3 = sum_of_few([(); 2], |i| C::read(coefficients.c_10[i]) * direction[1 + i]);
+    let s_4 = sum_of_few([(); 2], |i| C::read(coefficients.c_56[i]) * direction[1 + i]);
+    let s_5 = C::read(coefficients.c_13) * s_3 - C::read(coefficients.c_195) * s_4;
+    let s_6 = s_1 + C::read(coefficients.c_76) * s_2 - C::read(coefficients.c) * s
+        - C::read(coefficients.c_9) * s_3;
+    let s_7 = s_6 - C::read(coefficients.c_11) * s_5;
+    let s_8 = s_5 - C::read(coefficients.c_18) * s_7;
+    let s_9 = C::read(coefficients.c_20) * s_3 - C::read(coefficients.c_17) * s_8
+        - C::read(coefficients.c_19) * s_7;
+    let mut s_10 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_10[i] = C::read(coefficients.c_24[i]) * direction[1 + i]
+            - C::read(coefficients.c_16[i]) * s_9 - C::read(coefficients.c_21[i]) * s_8
+            - C::read(coefficients.c_23[i]) * s_7;
+    }
     let mut product = [T::number(0.0); STATES];
     for i in 0..3 {
         product[i] = direction[3 + i];
     }
-    product[3] = coefficients.c_7 * s_6;
+    product[3] = C::read(coefficients.c_7) * s_7;
     for i in 0..2 {
-        product[4 + i] = coefficients.c_24[i] * direction[1 + i]
-            - coefficients.c_16[i] * s_8 - coefficients.c_21[i] * s_7
-            - coefficients.c_23[i] * s_6;
+        product[4 + i] = s_10[i];
     }
     product
 }
@@ -2108,31 +2149,36 @@ pub fn vector_jacobian_product<T: Scalar>(
 /// [`vector_jacobian_product`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables)]
 #[inline(always)]
-pub fn inlined_vector_jacobian_product<T: Scalar>(
+pub fn inlined_vector_jacobian_product<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
     weights: &[T; STATES],
 ) -> ([T; STATES], Inputs<T>) {
-    let s_1 = sum_of_few([(); 2], |i| coefficients.c_22[i] * weights[4 + i]);
-    let s_2 = sum_of_few([(); 2], |i| coefficients.c_197[i] * weights[4 + i]);
-    let s_3 = sum_of_few([(); 2], |i| coefficients.c_199[i] * weights[4 + i]);
-    let s_4 = coefficients.c_200 * s_2 - coefficients.c_198 * s_3;
+    let s_1 = sum_of_few([(); 2], |i| C::read(coefficients.c_22[i]) * weights[4 + i]);
+    let s_2 = sum_of_few([(); 2], |i| C::read(coefficients.c_197[i]) * weights[4 + i]);
+    let s_3 = sum_of_few([(); 2], |i| C::read(coefficients.c_199[i]) * weights[4 + i]);
+    let s_4 = C::read(coefficients.c_200) * s_2 - C::read(coefficients.c_198) * s_3;
     let s = weights[3];
-    let s_5 = coefficients.c_196 * s_2 + coefficients.c_7 * s - coefficients.c_7 * s_1
-        - coefficients.c_18 * s_4;
-    let s_6 = s_4 - coefficients.c_11 * s_5;
-    let s_7 = coefficients.c_13 * s_6 + coefficients.c_202 * s_2
-        - coefficients.c_9 * s_5;
+    let s_5 = C::read(coefficients.c_196) * s_2 + C::read(coefficients.c_7) * s
+        - C::read(coefficients.c_7) * s_1 - C::read(coefficients.c_18) * s_4;
+    let s_6 = s_4 - C::read(coefficients.c_11) * s_5;
+    let s_7 = C::read(coefficients.c_13) * s_6 + C::read(coefficients.c_202) * s_2
+        - C::read(coefficients.c_9) * s_5;
+    let mut s_8 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_8[i] = C::read(coefficients.c_8[i]) * s_5 + C::read(coefficients.c_10[i]) * s_7
+            - C::read(coefficients.c_12[i]) * s_6
+            - C::read(coefficients.c_14[i]) * weights[4 + i];
+    }
     let mut product = [T::number(0.0); STATES];
     for i in 0..3 {
         product[3 + i] = weights[i];
     }
-    product[3] = product[3] + coefficients.c_201 * s_5;
+    product[3] = product[3] + C::read(coefficients.c_201) * s_5;
     for i in 0..2 {
-        product[1 + i] = coefficients.c_8[i] * s_5 + coefficients.c_10[i] * s_7
-            - coefficients.c_12[i] * s_6 - coefficients.c_14[i] * weights[4 + i];
+        product[1 + i] = s_8[i];
     }
     let input_product = Inputs { u: s_5 };
     (product, input_product)
@@ -2167,33 +2213,33 @@ pub fn rates_by_state<T: Scalar>(
 /// [`rates_by_state`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
-pub fn inlined_rates_by_state<T: Scalar>(
+pub fn inlined_rates_by_state<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> [T; RATES_BY_STATE_NONZEROS] {
     let mut values = [T::number(0.0); RATES_BY_STATE_NONZEROS];
     for i in 0..3 {
         values[0 + i] = T::number(1.0);
     }
     for i in 0..2 {
-        values[3 + i] = coefficients.c_36[i];
+        values[3 + i] = C::read(coefficients.c_36[i]);
     }
-    values[5] = coefficients.c_37;
+    values[5] = C::read(coefficients.c_37);
     for i in 0..2 {
-        values[6 + 3 * i + i] = values[6 + 3 * i + i] + coefficients.c_24[i];
+        values[6 + 3 * i + i] = values[6 + 3 * i + i] + C::read(coefficients.c_24[i]);
         for j in 0..2 {
             values[6 + 3 * i + j] = values[6 + 3 * i + j]
-                + coefficients.c_38[i] * coefficients.c_40[j];
+                + C::read(coefficients.c_38[i]) * C::read(coefficients.c_40[j]);
             values[6 + 3 * i + j] = values[6 + 3 * i + j]
-                + coefficients.c_41[i] * coefficients.c_39[j];
+                + C::read(coefficients.c_41[i]) * C::read(coefficients.c_39[j]);
             values[6 + 3 * i + j] = values[6 + 3 * i + j]
-                + coefficients.c_42[i] * coefficients.c_35[j];
+                + C::read(coefficients.c_42[i]) * C::read(coefficients.c_35[j]);
         }
     }
     for i in 0..2 {
-        values[8 + 3 * i] = coefficients.c_43[i];
+        values[8 + 3 * i] = C::read(coefficients.c_43[i]);
     }
     values
 }
@@ -2219,16 +2265,16 @@ pub fn rates_by_inputs<T: Scalar>(
 /// [`rates_by_inputs`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
-pub fn inlined_rates_by_inputs<T: Scalar>(
+pub fn inlined_rates_by_inputs<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> [T; RATES_BY_INPUTS_NONZEROS] {
     let mut values = [T::number(0.0); RATES_BY_INPUTS_NONZEROS];
-    values[0] = coefficients.c_7;
+    values[0] = C::read(coefficients.c_7);
     for i in 0..2 {
-        values[1 + i] = coefficients.c_46[i];
+        values[1 + i] = C::read(coefficients.c_46[i]);
     }
     values
 }
@@ -2275,192 +2321,257 @@ pub fn rates_by_parameters<T: Scalar>(
 /// [`rates_by_parameters`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
-pub fn inlined_rates_by_parameters<T: Scalar>(
+pub fn inlined_rates_by_parameters<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> [T; RATES_BY_PARAMETERS_NONZEROS] {
     let theta_dot = state[3];
     let u = inputs.u;
-    let s_1 = sum_of_few([(); 2], |i| coefficients.c_8[i] * state[1 + i]);
-    let s_2 = sum_of_few([(); 2], |i| coefficients.c_10[i] * state[1 + i]);
-    let s_3 = sum_of_few([(); 2], |i| coefficients.c_12[i] * state[1 + i]);
-    let s_4 = coefficients.c_13 * s_2 - s_3;
-    let s_5 = u + s_1 - coefficients.c * theta_dot - coefficients.c_9 * s_2
-        - coefficients.c_11 * s_4;
-    let s_6 = s_4 - coefficients.c_18 * s_5;
-    let s_7 = coefficients.c_20 * s_2 - coefficients.c_17 * s_6
-        - coefficients.c_19 * s_5;
-    let s_8 = sum_of_few([(); 2], |i| coefficients.c_49[i] * state[1 + i]);
-    let s_9 = sum_of_few([(); 2], |i| coefficients.c_51[i] * state[1 + i]);
-    let s_10 = sum_of_few([(); 2], |i| coefficients.c_56[i] * state[1 + i]);
-    let s_11 = coefficients.c_55 * s_10
-        + (coefficients.c_58 * s_2 - coefficients.c_57 * s_2);
-    let s_12 = coefficients.c_50 * s_9 - coefficients.c_48 * s_8
-        - (coefficients.c_54 * s_2 - coefficients.c_52 * s_2 - coefficients.c_53 * s_2);
+    let s_1 = sum_of_few([(); 2], |i| C::read(coefficients.c_8[i]) * state[1 + i]);
+    let s_2 = sum_of_few([(); 2], |i| C::read(coefficients.c_10[i]) * state[1 + i]);
+    let s_3 = sum_of_few([(); 2], |i| C::read(coefficients.c_12[i]) * state[1 + i]);
+    let s_4 = C::read(coefficients.c_13) * s_2 - s_3;
+    let s_5 = u + s_1 - C::read(coefficients.c) * theta_dot
+        - C::read(coefficients.c_9) * s_2 - C::read(coefficients.c_11) * s_4;
+    let s_6 = s_4 - C::read(coefficients.c_18) * s_5;
+    let s_7 = C::read(coefficients.c_20) * s_2 - C::read(coefficients.c_17) * s_6
+        - C::read(coefficients.c_19) * s_5;
+    let s_8 = sum_of_few([(); 2], |i| C::read(coefficients.c_49[i]) * state[1 + i]);
+    let s_9 = sum_of_few([(); 2], |i| C::read(coefficients.c_51[i]) * state[1 + i]);
+    let s_10 = sum_of_few([(); 2], |i| C::read(coefficients.c_56[i]) * state[1 + i]);
+    let s_11 = C::read(coefficients.c_55) * s_10
+        + (C::read(coefficients.c_58) * s_2 - C::read(coefficients.c_57) * s_2);
+    let s_12 = C::read(coefficients.c_50) * s_9 - C::read(coefficients.c_48) * s_8
+        - (C::read(coefficients.c_54) * s_2 - C::read(coefficients.c_52) * s_2
+            - C::read(coefficients.c_53) * s_2);
     let s_13 = s_12
-        - (coefficients.c_11 * s_11 + coefficients.c_59 * s_4 - coefficients.c_60 * s_4);
-    let s_14 = coefficients.c_68 * s_10
-        + (coefficients.c_70 * s_2 - coefficients.c_69 * s_2);
-    let s_15 = coefficients.c_64 * s_9 - coefficients.c_63 * s_8
-        - (coefficients.c_67 * s_2 - coefficients.c_65 * s_2 - coefficients.c_66 * s_2);
+        - (C::read(coefficients.c_11) * s_11 + C::read(coefficients.c_59) * s_4
+            - C::read(coefficients.c_60) * s_4);
+    let s_14 = C::read(coefficients.c_68) * s_10
+        + (C::read(coefficients.c_70) * s_2 - C::read(coefficients.c_69) * s_2);
+    let s_15 = C::read(coefficients.c_64) * s_9 - C::read(coefficients.c_63) * s_8
+        - (C::read(coefficients.c_67) * s_2 - C::read(coefficients.c_65) * s_2
+            - C::read(coefficients.c_66) * s_2);
     let s_16 = s_15
-        - (coefficients.c_11 * s_14 + coefficients.c_71 * s_4 - coefficients.c_72 * s_4);
-    let s_17 = sum_of_few([(); 2], |i| coefficients.c_77[i] * state[1 + i]);
-    let s_18 = coefficients.c_81 * s_10
-        + (coefficients.c_83 * s_2 - coefficients.c_82 * s_2);
-    let s_19 = coefficients.c_76 * s_17 - coefficients.c_75 * s_8
-        - (coefficients.c_79 * s_2 + coefficients.c_80 * s_2 - coefficients.c_78 * s_2);
+        - (C::read(coefficients.c_11) * s_14 + C::read(coefficients.c_71) * s_4
+            - C::read(coefficients.c_72) * s_4);
+    let s_17 = sum_of_few([(); 2], |i| C::read(coefficients.c_77[i]) * state[1 + i]);
+    let s_18 = C::read(coefficients.c_81) * s_10
+        + (C::read(coefficients.c_83) * s_2 - C::read(coefficients.c_82) * s_2);
+    let s_19 = C::read(coefficients.c_76) * s_17 - C::read(coefficients.c_75) * s_8
+        - (C::read(coefficients.c_79) * s_2 + C::read(coefficients.c_80) * s_2
+            - C::read(coefficients.c_78) * s_2);
     let s_20 = s_19
-        - (coefficients.c_11 * s_18 + coefficients.c_84 * s_4 - coefficients.c_85 * s_4);
-    let s_21 = coefficients.c_90 * s_2 - coefficients.c_89 * s_10;
-    let s_22 = coefficients.c_87 * s_8 - coefficients.c_88 * s_2
-        - coefficients.c_11 * s_21;
-    let s_23 = coefficients.c_94 * s_2 - coefficients.c_93 * s_10;
-    let s_24 = coefficients.c_91 * s_8 - coefficients.c_92 * s_2
-        - coefficients.c_11 * s_23;
-    let s_25 = coefficients.c_99 * s_2 - coefficients.c_100 * s_2;
-    let s_26 = coefficients.c_95 * s_2
-        - (coefficients.c_96 * s_2 + coefficients.c_97 * s_2 - coefficients.c_98 * s_2)
-        - (coefficients.c_11 * s_25 + coefficients.c_101 * s_4
-            + coefficients.c_102 * s_4);
-    let s_27 = coefficients.c_107 * s_2 - coefficients.c_106 * s_10;
-    let s_28 = coefficients.c_104 * s_10 - coefficients.c_105 * s_2
-        - (coefficients.c_11 * s_27 + coefficients.c_108 * s_4
-            - coefficients.c_109 * s_4);
-    let s_29 = coefficients.c_113 * s_5 - coefficients.c_112 * s_5;
-    let s_30 = s_11
-        - (coefficients.c_122 * s_5 + coefficients.c_18 * s_13
-            - coefficients.c_123 * s_5);
-    let s_31 = coefficients.c_119 * s_2
-        - (coefficients.c_17 * s_30 - coefficients.c_120 * s_6
-            - coefficients.c_121 * s_6)
-        - (coefficients.c_19 * s_13 - coefficients.c_124 * s_5
-            - coefficients.c_125 * s_5);
-    let mut s_32 = [T::number(0.0); 2];
+        - (C::read(coefficients.c_11) * s_18 + C::read(coefficients.c_84) * s_4
+            - C::read(coefficients.c_85) * s_4);
+    let s_21 = C::read(coefficients.c_90) * s_2 - C::read(coefficients.c_89) * s_10;
+    let s_22 = C::read(coefficients.c_87) * s_8 - C::read(coefficients.c_88) * s_2
+        - C::read(coefficients.c_11) * s_21;
+    let s_23 = C::read(coefficients.c_94) * s_2 - C::read(coefficients.c_93) * s_10;
+    let s_24 = C::read(coefficients.c_91) * s_8 - C::read(coefficients.c_92) * s_2
+        - C::read(coefficients.c_11) * s_23;
+    let s_25 = C::read(coefficients.c_99) * s_2 - C::read(coefficients.c_100) * s_2;
+    let s_26 = C::read(coefficients.c_95) * s_2
+        - (C::read(coefficients.c_96) * s_2 + C::read(coefficients.c_97) * s_2
+            - C::read(coefficients.c_98) * s_2);
+    let s_27 = s_26
+        - (C::read(coefficients.c_11) * s_25 + C::read(coefficients.c_101) * s_4
+            + C::read(coefficients.c_102) * s_4);
+    let s_28 = C::read(coefficients.c_107) * s_2 - C::read(coefficients.c_106) * s_10;
+    let s_29 = C::read(coefficients.c_104) * s_10 - C::read(coefficients.c_105) * s_2
+        - (C::read(coefficients.c_11) * s_28 + C::read(coefficients.c_108) * s_4
+            - C::read(coefficients.c_109) * s_4);
+    let s_30 = C::read(coefficients.c_113) * s_5 - C::read(coefficients.c_112) * s_5;
+    let s_31 = s_11
+        - (C::read(coefficients.c_122) * s_5 + C::read(coefficients.c_18) * s_13
+            - C::read(coefficients.c_123) * s_5);
+    let s_32 = C::read(coefficients.c_119) * s_2
+        - (C::read(coefficients.c_17) * s_31 - C::read(coefficients.c_120) * s_6
+            - C::read(coefficients.c_121) * s_6);
+    let s_33 = s_32
+        - (C::read(coefficients.c_19) * s_13 - C::read(coefficients.c_124) * s_5
+            - C::read(coefficients.c_125) * s_5);
+    let mut s_34 = [T::number(0.0); 2];
     for i in 0..2 {
-        s_32[i] = coefficients.c_116[i] * state[1 + i]
-            - (coefficients.c_118[i] * s_7 + coefficients.c_16[i] * s_31
-                - coefficients.c_117[i] * s_7)
-            - (coefficients.c_21[i] * s_30 - coefficients.c_126[i] * s_6
-                - coefficients.c_127[i] * s_6);
+        s_34[i] = C::read(coefficients.c_116[i]) * state[1 + i]
+            - (C::read(coefficients.c_118[i]) * s_7
+                + C::read(coefficients.c_16[i]) * s_33
+                - C::read(coefficients.c_117[i]) * s_7);
     }
-    let s_33 = s_14
-        - (coefficients.c_136 * s_5 + coefficients.c_18 * s_16
-            - coefficients.c_137 * s_5);
-    let s_34 = coefficients.c_133 * s_2
-        - (coefficients.c_17 * s_33 - coefficients.c_134 * s_6
-            - coefficients.c_135 * s_6)
-        - (coefficients.c_19 * s_16 - coefficients.c_138 * s_5
-            - coefficients.c_139 * s_5);
     let mut s_35 = [T::number(0.0); 2];
     for i in 0..2 {
-        s_35[i] = coefficients.c_130[i] * state[1 + i]
-            - (coefficients.c_132[i] * s_7 + coefficients.c_16[i] * s_34
-                - coefficients.c_131[i] * s_7)
-            - (coefficients.c_21[i] * s_33 - coefficients.c_140[i] * s_6
-                - coefficients.c_141[i] * s_6);
+        s_35[i] = s_34[i]
+            - (C::read(coefficients.c_21[i]) * s_31
+                - C::read(coefficients.c_126[i]) * s_6
+                - C::read(coefficients.c_127[i]) * s_6);
     }
-    let s_36 = s_18
-        - (coefficients.c_150 * s_5 + coefficients.c_18 * s_20
-            - coefficients.c_151 * s_5);
-    let s_37 = coefficients.c_147 * s_2
-        - (coefficients.c_17 * s_36 - coefficients.c_148 * s_6
-            - coefficients.c_149 * s_6)
-        - (coefficients.c_152 * s_5 + coefficients.c_19 * s_20
-            - coefficients.c_153 * s_5);
-    let mut s_38 = [T::number(0.0); 2];
+    let mut s_36 = [T::number(0.0); 2];
     for i in 0..2 {
-        s_38[i] = coefficients.c_144[i] * state[1 + i]
-            - (coefficients.c_146[i] * s_7 + coefficients.c_16[i] * s_37
-                - coefficients.c_145[i] * s_7)
-            - (coefficients.c_21[i] * s_36 - coefficients.c_154[i] * s_6
-                - coefficients.c_155[i] * s_6);
+        s_36[i] = s_35[i]
+            - (C::read(coefficients.c_23[i]) * s_13
+                - C::read(coefficients.c_128[i]) * s_5
+                - C::read(coefficients.c_129[i]) * s_5);
     }
-    let s_39 = s_21 - coefficients.c_18 * s_22;
-    let s_40 = coefficients.c_158 * s_2 - coefficients.c_17 * s_39
-        - coefficients.c_19 * s_22;
-    let s_41 = s_23 - coefficients.c_18 * s_24;
-    let s_42 = coefficients.c_160 * s_2 - coefficients.c_17 * s_41
-        - coefficients.c_19 * s_24;
-    let s_43 = s_25
-        - (coefficients.c_165 * s_5 + coefficients.c_18 * s_26
-            - coefficients.c_166 * s_5);
-    let s_44 = coefficients.c_170 * s_2
-        - (coefficients.c_163 * s_6 + coefficients.c_164 * s_6
-            + coefficients.c_17 * s_43)
-        - (coefficients.c_167 * s_5 + coefficients.c_168 * s_5 + coefficients.c_19 * s_26
-            - coefficients.c_169 * s_5);
-    let mut s_45 = [T::number(0.0); 2];
+    let s_37 = s_14
+        - (C::read(coefficients.c_136) * s_5 + C::read(coefficients.c_18) * s_16
+            - C::read(coefficients.c_137) * s_5);
+    let s_38 = C::read(coefficients.c_133) * s_2
+        - (C::read(coefficients.c_17) * s_37 - C::read(coefficients.c_134) * s_6
+            - C::read(coefficients.c_135) * s_6);
+    let s_39 = s_38
+        - (C::read(coefficients.c_19) * s_16 - C::read(coefficients.c_138) * s_5
+            - C::read(coefficients.c_139) * s_5);
+    let mut s_40 = [T::number(0.0); 2];
     for i in 0..2 {
-        s_45[i] = -(coefficients.c_16[i] * s_44 - coefficients.c_162[i] * s_7)
-            - (coefficients.c_171[i] * s_6 + coefficients.c_21[i] * s_43)
-            - (coefficients.c_172[i] * s_5 + coefficients.c_23[i] * s_26
-                - coefficients.c_173[i] * s_5);
+        s_40[i] = C::read(coefficients.c_130[i]) * state[1 + i]
+            - (C::read(coefficients.c_132[i]) * s_7
+                + C::read(coefficients.c_16[i]) * s_39
+                - C::read(coefficients.c_131[i]) * s_7);
     }
-    let s_46 = s_27
-        - (coefficients.c_175 * s_5 + coefficients.c_18 * s_28
-            - coefficients.c_176 * s_5);
-    let s_47 = -(coefficients.c_17 * s_46 - coefficients.c_174 * s_6)
-        - (coefficients.c_177 * s_5 + coefficients.c_19 * s_28
-            - coefficients.c_178 * s_5);
+    let mut s_41 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_41[i] = s_40[i]
+            - (C::read(coefficients.c_21[i]) * s_37
+                - C::read(coefficients.c_140[i]) * s_6
+                - C::read(coefficients.c_141[i]) * s_6);
+    }
+    let mut s_42 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_42[i] = s_41[i]
+            - (C::read(coefficients.c_23[i]) * s_16
+                - C::read(coefficients.c_142[i]) * s_5
+                - C::read(coefficients.c_143[i]) * s_5);
+    }
+    let s_43 = s_18
+        - (C::read(coefficients.c_150) * s_5 + C::read(coefficients.c_18) * s_20
+            - C::read(coefficients.c_151) * s_5);
+    let s_44 = C::read(coefficients.c_147) * s_2
+        - (C::read(coefficients.c_17) * s_43 - C::read(coefficients.c_148) * s_6
+            - C::read(coefficients.c_149) * s_6);
+    let s_45 = s_44
+        - (C::read(coefficients.c_152) * s_5 + C::read(coefficients.c_19) * s_20
+            - C::read(coefficients.c_153) * s_5);
+    let mut s_46 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_46[i] = C::read(coefficients.c_144[i]) * state[1 + i]
+            - (C::read(coefficients.c_146[i]) * s_7
+                + C::read(coefficients.c_16[i]) * s_45
+                - C::read(coefficients.c_145[i]) * s_7);
+    }
+    let mut s_47 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_47[i] = s_46[i]
+            - (C::read(coefficients.c_21[i]) * s_43
+                - C::read(coefficients.c_154[i]) * s_6
+                - C::read(coefficients.c_155[i]) * s_6);
+    }
     let mut s_48 = [T::number(0.0); 2];
     for i in 0..2 {
-        s_48[i] = coefficients.c_38[i] * s_47
-            - (coefficients.c_21[i] * s_46 - coefficients.c_179[i] * s_6)
-            - (coefficients.c_180[i] * s_5 + coefficients.c_23[i] * s_28
-                - coefficients.c_181[i] * s_5);
+        s_48[i] = s_47[i]
+            - (C::read(coefficients.c_156[i]) * s_5
+                + C::read(coefficients.c_23[i]) * s_20
+                - C::read(coefficients.c_157[i]) * s_5);
     }
-    let s_49 = coefficients.c_19 * theta_dot - coefficients.c_44 * theta_dot;
+    let s_49 = s_21 - C::read(coefficients.c_18) * s_22;
+    let s_50 = C::read(coefficients.c_158) * s_2 - C::read(coefficients.c_17) * s_49
+        - C::read(coefficients.c_19) * s_22;
+    let mut s_51 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_51[i] = C::read(coefficients.c_159[i]) * state[1 + i]
+            - C::read(coefficients.c_16[i]) * s_50 - C::read(coefficients.c_21[i]) * s_49
+            - C::read(coefficients.c_23[i]) * s_22;
+    }
+    let s_52 = s_23 - C::read(coefficients.c_18) * s_24;
+    let s_53 = C::read(coefficients.c_160) * s_2 - C::read(coefficients.c_17) * s_52
+        - C::read(coefficients.c_19) * s_24;
+    let mut s_54 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_54[i] = C::read(coefficients.c_161[i]) * state[1 + i]
+            - C::read(coefficients.c_16[i]) * s_53 - C::read(coefficients.c_21[i]) * s_52
+            - C::read(coefficients.c_23[i]) * s_24;
+    }
+    let s_55 = s_25
+        - (C::read(coefficients.c_165) * s_5 + C::read(coefficients.c_18) * s_27
+            - C::read(coefficients.c_166) * s_5);
+    let s_56 = C::read(coefficients.c_167) * s_5 + C::read(coefficients.c_168) * s_5
+        + C::read(coefficients.c_19) * s_27 - C::read(coefficients.c_169) * s_5;
+    let s_57 = C::read(coefficients.c_170) * s_2
+        - (C::read(coefficients.c_163) * s_6 + C::read(coefficients.c_164) * s_6
+            + C::read(coefficients.c_17) * s_55);
+    let s_58 = s_57 - s_56;
+    let mut s_59 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_59[i] = -(C::read(coefficients.c_16[i]) * s_58
+            - C::read(coefficients.c_162[i]) * s_7)
+            - (C::read(coefficients.c_171[i]) * s_6
+                + C::read(coefficients.c_21[i]) * s_55);
+    }
+    let mut s_60 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_60[i] = s_59[i]
+            - (C::read(coefficients.c_172[i]) * s_5
+                + C::read(coefficients.c_23[i]) * s_27
+                - C::read(coefficients.c_173[i]) * s_5);
+    }
+    let s_61 = s_28
+        - (C::read(coefficients.c_175) * s_5 + C::read(coefficients.c_18) * s_29
+            - C::read(coefficients.c_176) * s_5);
+    let s_62 = -(C::read(coefficients.c_17) * s_61 - C::read(coefficients.c_174) * s_6)
+        - (C::read(coefficients.c_177) * s_5 + C::read(coefficients.c_19) * s_29
+            - C::read(coefficients.c_178) * s_5);
+    let mut s_63 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_63[i] = C::read(coefficients.c_38[i]) * s_62
+            - (C::read(coefficients.c_21[i]) * s_61
+                - C::read(coefficients.c_179[i]) * s_6)
+            - (C::read(coefficients.c_180[i]) * s_5
+                + C::read(coefficients.c_23[i]) * s_29
+                - C::read(coefficients.c_181[i]) * s_5);
+    }
+    let s_64 = C::read(coefficients.c_19) * theta_dot
+        - C::read(coefficients.c_44) * theta_dot;
     let mut values = [T::number(0.0); RATES_BY_PARAMETERS_NONZEROS];
-    values[0] = coefficients.c_47 * s_5;
-    values[1] = coefficients.c_7 * s_13 - coefficients.c_62 * s_5;
-    values[2] = coefficients.c_7 * s_16 - coefficients.c_74 * s_5;
-    values[3] = coefficients.c_7 * s_20 - coefficients.c_86 * s_5;
-    values[4] = coefficients.c_7 * s_22;
-    values[5] = coefficients.c_7 * s_24;
-    values[6] = coefficients.c_7 * s_26 - coefficients.c_103 * s_5;
-    values[7] = coefficients.c_7 * s_28 - coefficients.c_110 * s_5;
-    values[8] = coefficients.c_111 * theta_dot;
+    values[0] = C::read(coefficients.c_47) * s_5;
+    values[1] = C::read(coefficients.c_7) * s_13 - C::read(coefficients.c_62) * s_5;
+    values[2] = C::read(coefficients.c_7) * s_16 - C::read(coefficients.c_74) * s_5;
+    values[3] = C::read(coefficients.c_7) * s_20 - C::read(coefficients.c_86) * s_5;
+    values[4] = C::read(coefficients.c_7) * s_22;
+    values[5] = C::read(coefficients.c_7) * s_24;
+    values[6] = C::read(coefficients.c_7) * s_27 - C::read(coefficients.c_103) * s_5;
+    values[7] = C::read(coefficients.c_7) * s_29 - C::read(coefficients.c_110) * s_5;
+    values[8] = C::read(coefficients.c_111) * theta_dot;
     for i in 0..2 {
-        values[9 + 9 * i] = coefficients.c_115[i] * s_5 - coefficients.c_16[i] * s_29
-            - coefficients.c_114[i] * s_5;
+        values[9 + 9 * i] = C::read(coefficients.c_115[i]) * s_5
+            - C::read(coefficients.c_16[i]) * s_30
+            - C::read(coefficients.c_114[i]) * s_5;
     }
     for i in 0..2 {
-        values[10 + 9 * i] = s_32[i]
-            - (coefficients.c_23[i] * s_13 - coefficients.c_128[i] * s_5
-                - coefficients.c_129[i] * s_5);
+        values[10 + 9 * i] = s_36[i];
     }
     for i in 0..2 {
-        values[11 + 9 * i] = s_35[i]
-            - (coefficients.c_23[i] * s_16 - coefficients.c_142[i] * s_5
-                - coefficients.c_143[i] * s_5);
+        values[11 + 9 * i] = s_42[i];
     }
     for i in 0..2 {
-        values[12 + 9 * i] = s_38[i]
-            - (coefficients.c_156[i] * s_5 + coefficients.c_23[i] * s_20
-                - coefficients.c_157[i] * s_5);
+        values[12 + 9 * i] = s_48[i];
     }
     for i in 0..2 {
-        values[13 + 9 * i] = coefficients.c_159[i] * state[1 + i]
-            - coefficients.c_16[i] * s_40 - coefficients.c_21[i] * s_39
-            - coefficients.c_23[i] * s_22;
+        values[13 + 9 * i] = s_51[i];
     }
     for i in 0..2 {
-        values[14 + 9 * i] = coefficients.c_161[i] * state[1 + i]
-            - coefficients.c_16[i] * s_42 - coefficients.c_21[i] * s_41
-            - coefficients.c_23[i] * s_24;
+        values[14 + 9 * i] = s_54[i];
     }
     for i in 0..2 {
-        values[15 + 9 * i] = s_45[i];
+        values[15 + 9 * i] = s_60[i];
     }
     for i in 0..2 {
-        values[16 + 9 * i] = s_48[i];
+        values[16 + 9 * i] = s_63[i];
     }
     for i in 0..2 {
-        values[17 + 9 * i] = coefficients.c_23[i] * theta_dot
-            - coefficients.c_16[i] * s_49 - coefficients.c_45[i] * theta_dot;
+        values[17 + 9 * i] = C::read(coefficients.c_23[i]) * theta_dot
+            - C::read(coefficients.c_16[i]) * s_64
+            - C::read(coefficients.c_45[i]) * theta_dot;
     }
     values
 }
@@ -2495,38 +2606,45 @@ pub fn observables_by_state<T: Scalar>(
 /// [`observables_by_state`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
-pub fn inlined_observables_by_state<T: Scalar>(
+pub fn inlined_observables_by_state<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> [T; OBSERVABLES_BY_STATE_NONZEROS] {
     let theta_dot = state[3];
-    let s_1 = coefficients.c * theta_dot;
+    let s_1 = C::read(coefficients.c) * theta_dot;
     let u = inputs.u;
     let s_2 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[4 + i]);
     let s_3 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
-    let s_4 = coefficients.l * theta_dot + s_3;
+    let s_4 = C::read(coefficients.l) * theta_dot + s_3;
     let s_5 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
-    let s_6 = theta_dot + coefficients.c_28 * s_5;
-    let s_7 = coefficients.J_h * theta_dot
-        + T::number(0.5) * (coefficients.c_182 * theta_dot + coefficients.c_30 * s_2)
-        + (coefficients.c_4 * s_4 + coefficients.J_t * s_6);
+    let s_6 = theta_dot + C::read(coefficients.c_28) * s_5;
+    let s_7 = C::read(coefficients.J_h) * theta_dot
+        + T::number(0.5)
+            * (C::read(coefficients.c_182) * theta_dot
+                + C::read(coefficients.c_30) * s_2);
+    let mut s_8 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_8[i] = T::number(0.5)
+            * (C::read(coefficients.c_183[i]) * theta_dot
+                + C::read(coefficients.c_184[i]) * state[4 + i])
+            + (C::read(coefficients.c_25[i]) * s_4 + C::read(coefficients.c_5[i]) * s_6);
+    }
     let mut values = [T::number(0.0); OBSERVABLES_BY_STATE_NONZEROS];
     for i in 0..2 {
         values[0 + i] = T::number(PHI_AT_END[i]);
     }
     for i in 0..2 {
-        values[2 + i] = coefficients.c_26[i];
+        values[2 + i] = C::read(coefficients.c_26[i]);
     }
     for i in 0..2 {
-        values[4 + i] = coefficients.c_27[i] * state[1 + i];
+        values[4 + i] = C::read(coefficients.c_27[i]) * state[1 + i];
     }
-    values[6] = s_7;
+    values[6] = s_7
+        + (C::read(coefficients.c_4) * s_4 + C::read(coefficients.J_t) * s_6);
     for i in 0..2 {
-        values[7 + i] = T::number(0.5)
-            * (coefficients.c_183[i] * theta_dot + coefficients.c_184[i] * state[4 + i])
-            + (coefficients.c_25[i] * s_4 + coefficients.c_5[i] * s_6);
+        values[7 + i] = s_8[i];
     }
     values[9] = u - s_1 - s_1;
     values
@@ -2553,11 +2671,11 @@ pub fn observables_by_inputs<T: Scalar>(
 /// [`observables_by_inputs`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
-pub fn inlined_observables_by_inputs<T: Scalar>(
+pub fn inlined_observables_by_inputs<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> [T; OBSERVABLES_BY_INPUTS_NONZEROS] {
     let theta_dot = state[3];
     let mut values = [T::number(0.0); OBSERVABLES_BY_INPUTS_NONZEROS];
@@ -2599,11 +2717,11 @@ pub fn observables_by_parameters<T: Scalar>(
 /// [`observables_by_parameters`], inlined where it is called, to be compiled for the registers there.
 #[allow(unused_variables, unused_mut)]
 #[inline(always)]
-pub fn inlined_observables_by_parameters<T: Scalar>(
+pub fn inlined_observables_by_parameters<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> [T; OBSERVABLES_BY_PARAMETERS_NONZEROS] {
     let theta_dot = state[3];
     let s_1 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[1 + i]);
@@ -2615,28 +2733,34 @@ pub fn inlined_observables_by_parameters<T: Scalar>(
         |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[4 + i] * state[4 + i]),
     );
     let s_6 = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[4 + i]);
-    let s_7 = coefficients.l * theta_dot + s_6;
+    let s_7 = C::read(coefficients.l) * theta_dot + s_6;
     let s_8 = sum_of_few([(); 2], |i| T::number(PHI_D1_AT_END[i]) * state[4 + i]);
-    let s_9 = theta_dot + coefficients.c_28 * s_8;
+    let s_9 = theta_dot + C::read(coefficients.c_28) * s_8;
     let s_10 = sum_of_few(
         [(); 2],
         |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[1 + i] * state[1 + i]),
     );
     let s_11 = T::number(0.5)
-        * (coefficients.c_3 * s_2 + coefficients.c_190 * s_4 + coefficients.c_2 * s_5)
-        + (coefficients.M_t * (theta_dot * s_7) - coefficients.c_191 * (s_8 * s_9));
+        * (C::read(coefficients.c_61) * s_2 + C::read(coefficients.c_186) * s_4
+            + C::read(coefficients.c_187) * s_5);
+    let s_12 = T::number(0.5)
+        * (C::read(coefficients.c_73) * s_2 + C::read(coefficients.c_188) * s_4
+            + C::read(coefficients.c_189) * s_5);
+    let s_13 = T::number(0.5)
+        * (C::read(coefficients.c_3) * s_2 + C::read(coefficients.c_190) * s_4
+            + C::read(coefficients.c_2) * s_5);
+    let s_14 = s_13
+        + (C::read(coefficients.M_t) * (theta_dot * s_7)
+            - C::read(coefficients.c_191) * (s_8 * s_9))
+        - C::read(coefficients.c_192) * s_10;
     let mut values = [T::number(0.0); OBSERVABLES_BY_PARAMETERS_NONZEROS];
-    values[0] = coefficients.c_185 * s_1;
+    values[0] = C::read(coefficients.c_185) * s_1;
     values[1] = T::number(0.5) * s_2;
-    values[2] = T::number(0.5)
-        * (coefficients.c_61 * s_2 + coefficients.c_186 * s_4
-            + coefficients.c_187 * s_5);
-    values[3] = T::number(0.5)
-        * (coefficients.c_73 * s_2 + coefficients.c_188 * s_4
-            + coefficients.c_189 * s_5);
-    values[4] = s_11 - coefficients.c_192 * s_10;
-    values[5] = coefficients.c_193 * s_10;
-    values[6] = coefficients.c_194 * s_10;
+    values[2] = s_11;
+    values[3] = s_12;
+    values[4] = s_14;
+    values[5] = C::read(coefficients.c_193) * s_10;
+    values[6] = C::read(coefficients.c_194) * s_10;
     values[7] = T::number(0.5) * (s_7 * s_7);
     values[8] = T::number(0.5) * (s_9 * s_9);
     values[9] = -s_2;
@@ -2672,21 +2796,35 @@ pub fn linearise<T: Scalar>(
 
 /// [`linearise`], inlined where it is called, to be compiled for the registers there.
 #[inline(always)]
-pub fn inlined_linearise<T: Scalar>(
+pub fn inlined_linearise<T: Scalar, C: Coefficient<T>>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs<T>,
-    coefficients: &Coefficients<T>,
+    coefficients: &Coefficients<C>,
 ) -> Linearisation<T> {
+    let rates = inlined_rates(t, state, inputs, coefficients);
+    let observables = inlined_observables(t, state, inputs, coefficients);
+    let rates_by_state = inlined_rates_by_state(t, state, inputs, coefficients);
+    let rates_by_inputs = inlined_rates_by_inputs(t, state, inputs, coefficients);
+    let observables_by_state = inlined_observables_by_state(
+        t,
+        state,
+        inputs,
+        coefficients,
+    );
+    let observables_by_inputs = inlined_observables_by_inputs(
+        t,
+        state,
+        inputs,
+        coefficients,
+    );
     Linearisation {
-        rates: rates(t, state, inputs, coefficients),
-        observables: observables(t, state, inputs, coefficients),
-        A: RATES_BY_STATE.dense(&rates_by_state(t, state, inputs, coefficients)),
-        B: RATES_BY_INPUTS.dense(&rates_by_inputs(t, state, inputs, coefficients)),
-        C: OBSERVABLES_BY_STATE
-            .dense(&observables_by_state(t, state, inputs, coefficients)),
-        D: OBSERVABLES_BY_INPUTS
-            .dense(&observables_by_inputs(t, state, inputs, coefficients)),
+        rates,
+        observables,
+        A: RATES_BY_STATE.dense(&rates_by_state),
+        B: RATES_BY_INPUTS.dense(&rates_by_inputs),
+        C: OBSERVABLES_BY_STATE.dense(&observables_by_state),
+        D: OBSERVABLES_BY_INPUTS.dense(&observables_by_inputs),
     }
 }
 
@@ -2913,6 +3051,19 @@ impl Scalar for f32 {
     #[inline(never)]
     fn long_loop<F: FnOnce() -> f32>(lines: F) -> f32 {
         lines()
+    }
+}
+
+/// A coefficient as the functions for lanes read it: a number of the type that they compute
+/// with, or an `f64` that all lanes share, which takes an eighth of the memory.
+pub trait Coefficient<T>: Copy {
+    /// The number, in every lane.
+    fn read(self) -> T;
+}
+impl<T: Scalar> Coefficient<T> for T {
+    #[inline(always)]
+    fn read(self) -> T {
+        self
     }
 }
 

@@ -137,24 +137,35 @@ impl Coefficients {
     }
 }
 
-/// Rates of the state.
+/// Rates of the state, written to `rates`.
 ///
-/// `t` in s; `state` and the result in the order of [`STATE_NAMES`].
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
 #[allow(unused_variables)]
+pub fn rates_into<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs,
+    coefficients: &Coefficients<T>,
+    rates: &mut [T; STATES],
+) {
+    let theta_dot = state[1];
+    let theta = state[0];
+    let theta_ddot = coefficients.c_3 * sin(theta) - coefficients.c_1 * theta_dot;
+    rates[0] = state[1];
+    rates[1] = theta_ddot;
+}
+
+/// Rates of the state, returned.
+///
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
 pub fn rates<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs,
     coefficients: &Coefficients<T>,
 ) -> [T; STATES] {
-    let theta_dot = state[1];
-    let theta = state[0];
-    let theta_ddot = coefficients.c_3 * sin(theta) - coefficients.c_1 * theta_dot;
     let mut rates = [T::number(0.0); STATES];
-    for i in 0..1 {
-        rates[i] = state[1 + i];
-    }
-    rates[1] = theta_ddot;
+    rates_into(t, state, inputs, coefficients, &mut rates);
     rates
 }
 

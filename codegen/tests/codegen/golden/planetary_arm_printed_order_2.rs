@@ -182,53 +182,53 @@ pub struct Inputs {}
 /// What depends on the parameters alone: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients<T = f64> {
-    /// `r_s/I_s`
+    /// `0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)`
     pub c_1: T,
-    /// `a_m`
-    pub a_m: T,
-    /// `b_m/r_s`
+    /// `0.5*rho*A*l`
     pub c_2: T,
-    /// `r_s*r_s/I_s`
-    pub c_3: T,
+    /// `cholesky(block of the mass matrix)`
+    pub c_3: [[T; 2]; 2],
+    /// `rho*A*l*l*INTEGRAL_S1_PHI/(cos(alpha)*r_c)`
+    pub M_x_c_q: [T; 2],
+    /// `1/pivot_x_c`
+    pub c_4: T,
+    /// `2.0*1/pivot_x_c`
+    pub c_5: T,
     /// `c_sp`
     pub c_sp: T,
     /// `3.0*c_sp`
-    pub c_4: T,
+    pub c_6: T,
     /// `b_sp`
     pub b_sp: T,
-    /// `k_sp`
-    pub k_sp: T,
-    /// `3.0*k_sp`
-    pub c_5: T,
-    /// `0.3333333333333333*r_p*r_p*I_s/(r_s*r_s*I_p)`
-    pub c_6: T,
     /// `c_pr`
     pub c_pr: T,
     /// `3.0*c_pr`
     pub c_7: T,
     /// `b_pr`
     pub b_pr: T,
+    /// `k_sp`
+    pub k_sp: T,
+    /// `3.0*k_sp`
+    pub c_8: T,
     /// `k_pr`
     pub k_pr: T,
     /// `3.0*k_pr`
-    pub c_8: T,
-    /// `0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)`
     pub c_9: T,
-    /// `0.5*rho*A*l`
+    /// `0.5*E*I/(l*l*l)`
     pub c_10: T,
-    /// `cholesky(block of the mass matrix)`
-    pub c_11: [[T; 2]; 2],
-    /// `rho*A*l*l*INTEGRAL_S1_PHI/(cos(alpha)*r_c)`
-    pub M_x_c_q: [T; 2],
-    /// `1/pivot_x_c`
+    /// `-(0.5*E*I/(l*l*l))`
+    pub c_11: T,
+    /// `0.3333333333333333*r_p*r_p/I_p`
     pub c_12: T,
     /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)`
     pub c_13: T,
-    /// `0.5*E*I/(l*l*l)`
+    /// `r_s/I_s`
     pub c_14: T,
-    /// `-(0.5*E*I/(l*l*l))`
+    /// `a_m`
+    pub a_m: T,
+    /// `b_m/r_s`
     pub c_15: T,
-    /// `2.0*I_s*1/pivot_x_c/(r_s*r_s)`
+    /// `r_s*r_s/I_s`
     pub c_16: T,
     /// `F_w`
     pub F_w: T,
@@ -236,10 +236,8 @@ pub struct Coefficients<T = f64> {
     pub c_17: T,
     /// `omega`
     pub omega: T,
-    /// `0.3333333333333333*r_p*r_p/I_p`
-    pub c_18: T,
     /// `1/pivot_x_c*solve(cholesky(block of the mass matrix), M_x_c_q)`
-    pub c_19: [T; 2],
+    pub c_18: [T; 2],
     /// `I_s/(r_s*r_s)`
     pub M_x_sp_x_sp: T,
     /// `2.0*I_s/(r_s*r_s)`
@@ -251,173 +249,170 @@ pub struct Coefficients<T = f64> {
     /// `4.0*I_s/(r_s*r_s) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
     pub M_x_c_x_c: T,
     /// `1.0/r_s`
-    pub c_20: T,
+    pub c_19: T,
     /// `2.0/r_s`
-    pub c_21: T,
+    pub c_20: T,
     /// `1.0/r_p`
-    pub c_22: T,
+    pub c_21: T,
     /// `1.0/(cos(alpha)*r_c)`
-    pub c_23: T,
+    pub c_22: T,
     /// `1.0/(r_s*i_sH)`
-    pub c_24: T,
+    pub c_23: T,
     /// `l/(r_s*i_sH)`
-    pub c_25: T,
+    pub c_24: T,
     /// `0.5*I_s/(r_s*r_s)`
-    pub c_26: T,
+    pub c_25: T,
     /// `1.5*I_p/(r_p*r_p)`
-    pub c_27: T,
+    pub c_26: T,
     /// `1.5*m_p/(cos(alpha)*cos(alpha))`
-    pub c_28: T,
+    pub c_27: T,
     /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
-    pub c_29: T,
+    pub c_28: T,
     /// `2.0*rho*A*l*l/(cos(alpha)*r_c)`
-    pub c_30: T,
+    pub c_29: T,
     /// `rho*A*l`
-    pub c_31: T,
+    pub c_30: T,
     /// `1.5*k_sp`
-    pub c_32: T,
+    pub c_31: T,
     /// `1.5*k_pr`
-    pub c_33: T,
+    pub c_32: T,
     /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
     pub positive_definite: bool,
 }
 impl<T: Scalar> Coefficients<T> {
     /// The coefficients of these parameters.
     pub fn prepare(parameters: &Parameters<T>) -> Self {
-        let m = parameters.m;
-        let s_1 = T::number(0.5) * m;
-        let z_s = parameters.z_s;
         let alpha = parameters.alpha;
-        let s_2 = cos(alpha);
-        let r_s = s_1 * z_s * s_2;
-        let M_s = parameters.M_s;
-        let s_3 = r_s * r_s;
-        let I_s = M_s * s_3;
-        let a_m = parameters.a_m;
-        let b_m = parameters.b_m;
-        let c_sp = parameters.c_sp;
-        let b_sp = parameters.b_sp;
-        let k_sp = parameters.k_sp;
-        let z_p = parameters.z_p;
-        let r_p = s_1 * s_2 * z_p;
-        let s_4 = r_p * r_p;
-        let s_5 = T::number(0.3333333333333333) * s_4;
-        let M_p = parameters.M_p;
-        let I_p = M_p * s_4;
-        let c_pr = parameters.c_pr;
-        let b_pr = parameters.b_pr;
-        let k_pr = parameters.k_pr;
-        let s_6 = T::number(3.0) * I_p;
-        let s_7 = s_2 * s_2;
+        let s_1 = cos(alpha);
+        let s_2 = s_1 * s_1;
         let m_p = parameters.m_p;
-        let s_8 = T::number(3.0) * m_p / s_7;
-        let r_c = s_1 * (z_s + z_p);
-        let s_9 = r_c * r_c;
-        let s_10 = s_7 * s_9;
+        let s_3 = T::number(3.0) * m_p / s_2;
+        let m = parameters.m;
+        let s_4 = T::number(0.5) * m;
+        let z_s = parameters.z_s;
+        let z_p = parameters.z_p;
+        let r_c = s_4 * (z_s + z_p);
+        let s_5 = r_c * r_c;
+        let s_6 = s_2 * s_5;
         let m_c = parameters.m_c;
-        let I_c = m_c * s_9;
-        let s_11 = I_c / s_10;
+        let I_c = m_c * s_5;
+        let s_7 = I_c / s_6;
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
-        let s_12 = l * l;
-        let s_13 = l * s_12;
-        let s_14 = T::number(0.3333333333333333) * rho * A * s_13 / s_10;
-        let s_15 = s_2 * r_c;
-        let s_16 = rho * A;
-        let s_17 = s_16 * s_12;
-        let s_18 = T::number(0.5) * rho * A * l;
-        let mut s_19 = [[T::number(0.0); 2]; 2];
+        let s_8 = l * l;
+        let s_9 = l * s_8;
+        let s_10 = T::number(0.3333333333333333) * rho * A * s_9 / s_6;
+        let s_11 = s_1 * r_c;
+        let s_12 = rho * A;
+        let s_13 = s_12 * s_8;
+        let s_14 = T::number(0.5) * rho * A * l;
+        let mut s_15 = [[T::number(0.0); 2]; 2];
         for i in 0..2 {
             for j in 0..2 {
-                s_19[i][j] = s_19[i][j]
-                    + s_18 * T::number(INTEGRAL_PHI_BY_PHI[i][j]) * T::number(1.0);
-                s_19[i][j] = s_19[i][j]
-                    + s_18 * T::number(INTEGRAL_PHI_BY_PHI[j][i]) * T::number(1.0);
+                s_15[i][j] = s_15[i][j]
+                    + s_14 * T::number(INTEGRAL_PHI_BY_PHI[i][j]) * T::number(1.0);
+                s_15[i][j] = s_15[i][j]
+                    + s_14 * T::number(INTEGRAL_PHI_BY_PHI[j][i]) * T::number(1.0);
             }
         }
-        let s_20 = cholesky(&s_19);
+        let s_16 = cholesky(&s_15);
         let mut M_x_c_q = [T::number(0.0); 2];
         for i in 0..2 {
-            M_x_c_q[i] = s_17 * T::number(INTEGRAL_S1_PHI[i]) / s_15;
+            M_x_c_q[i] = s_13 * T::number(INTEGRAL_S1_PHI[i]) / s_11;
         }
-        let s_21 = cholesky_solve(&s_20, &M_x_c_q);
-        let s_22 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * s_21[i]);
-        let pivot_x_c = s_8 + s_11 + s_14 - s_17 * s_22 / s_15;
-        let s_23 = pivot_reciprocal(pivot_x_c);
+        let s_17 = cholesky_solve(&s_16, &M_x_c_q);
+        let s_18 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * s_17[i]);
+        let pivot_x_c = s_3 + s_7 + s_10 - s_13 * s_18 / s_11;
+        let s_19 = pivot_reciprocal(pivot_x_c);
+        let c_sp = parameters.c_sp;
+        let b_sp = parameters.b_sp;
+        let c_pr = parameters.c_pr;
+        let b_pr = parameters.b_pr;
+        let k_sp = parameters.k_sp;
+        let k_pr = parameters.k_pr;
         let E = parameters.E;
         let I = parameters.I;
-        let s_24 = T::number(0.5) * E * I / s_13;
-        let s_25 = T::number(2.0) * I_s;
+        let s_20 = T::number(0.5) * E * I / s_9;
+        let r_p = s_4 * s_1 * z_p;
+        let s_21 = r_p * r_p;
+        let M_p = parameters.M_p;
+        let I_p = M_p * s_21;
+        let s_22 = T::number(3.0) * I_p;
+        let r_s = s_4 * z_s * s_1;
+        let M_s = parameters.M_s;
+        let s_23 = r_s * r_s;
+        let I_s = M_s * s_23;
+        let a_m = parameters.a_m;
+        let b_m = parameters.b_m;
         let F_w = parameters.F_w;
         let omega = parameters.omega;
-        let mut s_26 = [T::number(0.0); 2];
+        let mut s_24 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_26[i] = s_23 * s_21[i];
+            s_24[i] = s_19 * s_17[i];
         }
-        let M_x_sp_x_sp = I_s / s_3;
-        let M_x_sp_x_c = s_25 / s_3;
-        let pivot_x_pr = s_6 / s_4;
+        let M_x_sp_x_sp = I_s / s_23;
+        let M_x_sp_x_c = T::number(2.0) * I_s / s_23;
+        let pivot_x_pr = s_22 / s_21;
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = T::number(4.0) * I_s / s_3 + (pivot_x_pr + s_8) + s_11 + s_14;
+        let M_x_c_x_c = T::number(4.0) * I_s / s_23 + (pivot_x_pr + s_3) + s_7 + s_10;
         let z_r = parameters.z_r;
         let i_sH = T::number(1.0) + z_r / z_s;
-        let s_27 = r_s * i_sH;
+        let s_25 = r_s * i_sH;
         let mut positive_4 = true;
         for i in 0..2 {
-            positive_4 = positive_4 && T::all_greater(s_20[i][i], T::number(0.0))
-                && T::all_greater(T::number(f64::INFINITY), s_20[i][i]);
+            positive_4 = positive_4 && T::all_greater(s_16[i][i], T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_16[i][i]);
         }
         Self {
-            c_1: r_s / I_s,
-            a_m: a_m,
-            c_2: b_m / r_s,
-            c_3: s_3 / I_s,
+            c_1: s_10,
+            c_2: s_14,
+            c_3: s_16,
+            M_x_c_q: M_x_c_q,
+            c_4: s_19,
+            c_5: T::number(2.0) * s_19,
             c_sp: c_sp,
-            c_4: T::number(3.0) * c_sp,
+            c_6: T::number(3.0) * c_sp,
             b_sp: b_sp,
-            k_sp: k_sp,
-            c_5: T::number(3.0) * k_sp,
-            c_6: s_5 * I_s / (s_3 * I_p),
             c_pr: c_pr,
             c_7: T::number(3.0) * c_pr,
             b_pr: b_pr,
+            k_sp: k_sp,
+            c_8: T::number(3.0) * k_sp,
             k_pr: k_pr,
-            c_8: T::number(3.0) * k_pr,
-            c_9: s_14,
-            c_10: s_18,
-            c_11: s_20,
-            M_x_c_q: M_x_c_q,
-            c_12: s_23,
-            c_13: s_6 * s_23 / s_4,
-            c_14: s_24,
-            c_15: -s_24,
-            c_16: s_25 * s_23 / s_3,
+            c_9: T::number(3.0) * k_pr,
+            c_10: s_20,
+            c_11: -s_20,
+            c_12: T::number(0.3333333333333333) * s_21 / I_p,
+            c_13: s_22 * s_19 / s_21,
+            c_14: r_s / I_s,
+            a_m: a_m,
+            c_15: b_m / r_s,
+            c_16: s_23 / I_s,
             F_w: F_w,
             c_17: r_s * F_w / I_s,
             omega: omega,
-            c_18: s_5 / I_p,
-            c_19: s_26,
+            c_18: s_24,
             M_x_sp_x_sp: M_x_sp_x_sp,
             M_x_sp_x_c: M_x_sp_x_c,
             M_x_pr_x_pr: M_x_pr_x_pr,
             M_x_pr_x_c: M_x_pr_x_c,
             M_x_c_x_c: M_x_c_x_c,
-            c_20: T::number(1.0) / r_s,
-            c_21: T::number(2.0) / r_s,
-            c_22: T::number(1.0) / r_p,
-            c_23: T::number(1.0) / s_15,
-            c_24: T::number(1.0) / s_27,
-            c_25: l / s_27,
-            c_26: T::number(0.5) * I_s / s_3,
-            c_27: T::number(1.5) * I_p / s_4,
-            c_28: T::number(1.5) * m_p / s_7,
-            c_29: T::number(0.5) * I_c / s_10,
-            c_30: T::number(2.0) * rho * A * s_12 / s_15,
-            c_31: s_16 * l,
-            c_32: T::number(1.5) * k_sp,
-            c_33: T::number(1.5) * k_pr,
+            c_19: T::number(1.0) / r_s,
+            c_20: T::number(2.0) / r_s,
+            c_21: T::number(1.0) / r_p,
+            c_22: T::number(1.0) / s_11,
+            c_23: T::number(1.0) / s_25,
+            c_24: l / s_25,
+            c_25: T::number(0.5) * I_s / s_23,
+            c_26: T::number(1.5) * I_p / s_21,
+            c_27: T::number(1.5) * m_p / s_2,
+            c_28: T::number(0.5) * I_c / s_6,
+            c_29: T::number(2.0) * rho * A * s_8 / s_11,
+            c_30: s_12 * l,
+            c_31: T::number(1.5) * k_sp,
+            c_32: T::number(1.5) * k_pr,
             positive_definite: T::all_greater(M_x_sp_x_sp, T::number(0.0))
                 && T::all_greater(T::number(f64::INFINITY), M_x_sp_x_sp)
                 && T::all_greater(pivot_x_pr, T::number(0.0))
@@ -433,39 +428,39 @@ impl Coefficients {
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
             c_1: T::number(self.c_1),
-            a_m: T::number(self.a_m),
             c_2: T::number(self.c_2),
-            c_3: T::number(self.c_3),
-            c_sp: T::number(self.c_sp),
+            c_3: converted_matrix(&self.c_3),
+            M_x_c_q: converted(&self.M_x_c_q),
             c_4: T::number(self.c_4),
-            b_sp: T::number(self.b_sp),
-            k_sp: T::number(self.k_sp),
             c_5: T::number(self.c_5),
+            c_sp: T::number(self.c_sp),
             c_6: T::number(self.c_6),
+            b_sp: T::number(self.b_sp),
             c_pr: T::number(self.c_pr),
             c_7: T::number(self.c_7),
             b_pr: T::number(self.b_pr),
-            k_pr: T::number(self.k_pr),
+            k_sp: T::number(self.k_sp),
             c_8: T::number(self.c_8),
+            k_pr: T::number(self.k_pr),
             c_9: T::number(self.c_9),
             c_10: T::number(self.c_10),
-            c_11: converted_matrix(&self.c_11),
-            M_x_c_q: converted(&self.M_x_c_q),
+            c_11: T::number(self.c_11),
             c_12: T::number(self.c_12),
             c_13: T::number(self.c_13),
             c_14: T::number(self.c_14),
+            a_m: T::number(self.a_m),
             c_15: T::number(self.c_15),
             c_16: T::number(self.c_16),
             F_w: T::number(self.F_w),
             c_17: T::number(self.c_17),
             omega: T::number(self.omega),
-            c_18: T::number(self.c_18),
-            c_19: converted(&self.c_19),
+            c_18: converted(&self.c_18),
             M_x_sp_x_sp: T::number(self.M_x_sp_x_sp),
             M_x_sp_x_c: T::number(self.M_x_sp_x_c),
             M_x_pr_x_pr: T::number(self.M_x_pr_x_pr),
             M_x_pr_x_c: T::number(self.M_x_pr_x_c),
             M_x_c_x_c: T::number(self.M_x_c_x_c),
+            c_19: T::number(self.c_19),
             c_20: T::number(self.c_20),
             c_21: T::number(self.c_21),
             c_22: T::number(self.c_22),
@@ -479,82 +474,95 @@ impl Coefficients {
             c_30: T::number(self.c_30),
             c_31: T::number(self.c_31),
             c_32: T::number(self.c_32),
-            c_33: T::number(self.c_33),
             positive_definite: self.positive_definite,
         }
     }
 }
 
-/// Rates of the state.
+/// Rates of the state, written to `rates`.
 ///
-/// `t` in s; `state` and the result in the order of [`STATE_NAMES`].
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
 #[allow(unused_variables)]
-pub fn rates<T: Scalar>(
+pub fn rates_into<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs,
     coefficients: &Coefficients<T>,
-) -> [T; STATES] {
+    rates: &mut [T; STATES],
+) {
     let x_sp_dot = state[5];
-    let x_pr_dot = state[6];
-    let x_c_dot = state[7];
     let x_sp = state[0];
-    let s_1 = coefficients.c_4
+    let s_1 = coefficients.c_6
         * T::select_greater(
             contact(x_sp, coefficients.b_sp),
             T::number(0.0),
             x_sp_dot,
             T::number(0.0),
         );
-    let s_2 = coefficients.c_5 * deadzone(x_sp, coefficients.b_sp);
+    let x_pr_dot = state[6];
     let x_pr = state[1];
-    let s_3 = coefficients.c_7
+    let s_2 = coefficients.c_7
         * T::select_greater(
             contact(x_pr, coefficients.b_pr),
             T::number(0.0),
             x_pr_dot,
             T::number(0.0),
         );
-    let s_4 = coefficients.c_8 * deadzone(x_pr, coefficients.b_pr);
-    let s_5 = s_1 + s_2;
+    let s_3 = coefficients.c_8 * deadzone(x_sp, coefficients.b_sp);
+    let s_4 = coefficients.c_9 * deadzone(x_pr, coefficients.b_pr);
+    let mut s_5 = [T::number(0.0); 2];
+    for i in 0..2 {
+        for k in 0..2 {
+            s_5[i] = s_5[i] + T::number(INTEGRAL_PHI_D2_BY_PHI_D2[i][k]) * state[3 + k];
+        }
+    }
     let mut s_6 = [T::number(0.0); 2];
     for i in 0..2 {
         for k in 0..2 {
-            s_6[i] = s_6[i] + T::number(INTEGRAL_PHI_D2_BY_PHI_D2[i][k]) * state[3 + k];
+            s_6[i] = s_6[i] + T::number(INTEGRAL_PHI_D2_BY_PHI_D2[k][i]) * state[3 + k];
         }
     }
     let mut s_7 = [T::number(0.0); 2];
     for i in 0..2 {
-        for k in 0..2 {
-            s_7[i] = s_7[i] + T::number(INTEGRAL_PHI_D2_BY_PHI_D2[k][i]) * state[3 + k];
-        }
+        s_7[i] = coefficients.c_11 * (s_5[i] + s_6[i]);
     }
-    let mut s_8 = [T::number(0.0); 2];
-    for i in 0..2 {
-        s_8[i] = coefficients.c_15 * (s_6[i] + s_7[i]);
-    }
-    let s_9 = cholesky_solve(&coefficients.c_11, &s_8);
-    let s_10 = sum_of_few([(); 2], |i| coefficients.M_x_c_q[i] * s_9[i]);
-    let s_11 = s_1 + s_3 + s_2 + s_4 - s_10;
-    let s_12 = s_5 - s_3 - s_4 - coefficients.c_13 * s_11;
-    let s_13 = coefficients.c_1
+    let s_8 = cholesky_solve(&coefficients.c_3, &s_7);
+    let s_9 = sum_of_few([(); 2], |i| coefficients.M_x_c_q[i] * s_8[i]);
+    let s_10 = s_1 + s_2 + s_3 + s_4 - s_9;
+    let s_11 = s_1 + s_3;
+    let x_pr_ddot = coefficients.c_12 * (s_11 - s_2 - s_4 - coefficients.c_13 * s_10);
+    let x_c_dot = state[7];
+    let s_12 = coefficients.c_14
         * (coefficients.a_m
-            - coefficients.c_2 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot))
-        - coefficients.c_3 * (s_5 + coefficients.c_6 * s_12 + coefficients.c_16 * s_11);
-    let x_sp_ddot = s_13 + coefficients.c_17 * sin(coefficients.omega * t);
-    let x_pr_ddot = coefficients.c_18 * s_12;
-    let x_c_ddot = coefficients.c_12 * s_11;
-    let mut rates = [T::number(0.0); STATES];
-    for i in 0..3 {
-        rates[i] = state[5 + i];
+            - coefficients.c_15 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot))
+        - coefficients.c_5 * s_10 - x_pr_ddot;
+    let x_sp_ddot = s_12 - coefficients.c_16 * s_11
+        + coefficients.c_17 * sin(coefficients.omega * t);
+    let x_c_ddot = coefficients.c_4 * s_10;
+    for k in 0..2 {
+        rates[2 * k] = state[5 + 2 * k];
+        rates[2 * k + 1] = state[6 + 2 * k];
     }
+    rates[4] = state[9];
     rates[5] = x_sp_ddot;
     rates[6] = x_pr_ddot;
     rates[7] = x_c_ddot;
     for i in 0..2 {
-        rates[3 + i] = state[8 + i];
-        rates[8 + i] = s_9[i] - coefficients.c_19[i] * s_11;
+        rates[8 + i] = s_8[i] - coefficients.c_18[i] * s_10;
     }
+}
+
+/// Rates of the state, returned.
+///
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
+pub fn rates<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs,
+    coefficients: &Coefficients<T>,
+) -> [T; STATES] {
+    let mut rates = [T::number(0.0); STATES];
+    rates_into(t, state, inputs, coefficients, &mut rates);
     rates
 }
 
@@ -579,51 +587,51 @@ pub fn observables<T: Scalar>(
     coefficients: &Coefficients<T>,
 ) -> [T; OBSERVABLES] {
     let x_sp_dot = state[5];
-    let x_pr_dot = state[6];
-    let x_c_dot = state[7];
-    let s_1 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
     let x_sp = state[0];
-    let s_2 = T::select_greater(
+    let s_1 = T::select_greater(
         contact(x_sp, coefficients.b_sp),
         T::number(0.0),
         x_sp_dot,
         T::number(0.0),
     );
-    let s_3 = deadzone(x_sp, coefficients.b_sp);
+    let x_pr_dot = state[6];
     let x_pr = state[1];
-    let s_4 = T::select_greater(
+    let s_2 = T::select_greater(
         contact(x_pr, coefficients.b_pr),
         T::number(0.0),
         x_pr_dot,
         T::number(0.0),
     );
-    let s_5 = deadzone(x_pr, coefficients.b_pr);
-    let mut s_6 = [T::number(0.0); 2];
+    let s_3 = deadzone(x_sp, coefficients.b_sp);
+    let s_4 = deadzone(x_pr, coefficients.b_pr);
+    let mut s_5 = [T::number(0.0); 2];
     for i in 0..2 {
         for k in 0..2 {
-            s_6[i] = s_6[i] + T::number(INTEGRAL_PHI_D2_BY_PHI_D2[i][k]) * state[3 + k];
+            s_5[i] = s_5[i] + T::number(INTEGRAL_PHI_D2_BY_PHI_D2[i][k]) * state[3 + k];
         }
     }
-    let motor = coefficients.a_m - coefficients.c_2 * s_1
+    let x_c_dot = state[7];
+    let s_6 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
+    let motor = coefficients.a_m - coefficients.c_15 * s_6
         + coefficients.F_w * sin(coefficients.omega * t);
-    let s_7 = coefficients.c_20 * motor;
+    let s_7 = coefficients.c_19 * motor;
     let s_8 = x_sp + x_pr;
     let x_c = state[2];
     let x_s = s_8 + T::number(2.0) * x_c;
-    let theta_s = coefficients.c_20 * x_s;
+    let theta_s = coefficients.c_19 * x_s;
     let x_p = x_pr + x_c;
-    let theta_p = coefficients.c_22 * x_p;
-    let theta_c = coefficients.c_23 * x_c;
+    let theta_p = coefficients.c_21 * x_p;
+    let theta_c = coefficients.c_22 * x_c;
     let tip = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[3 + i]);
-    let dtheta = coefficients.c_24 * s_8;
-    let s_9 = coefficients.c_25 * s_8;
+    let dtheta = coefficients.c_23 * s_8;
+    let s_9 = coefficients.c_24 * s_8;
     let f_la = tip + s_9;
     let f_la_signed = tip - s_9;
-    let F_sp = coefficients.c_sp * s_2 + coefficients.k_sp * s_3;
-    let F_pr = coefficients.c_pr * s_4 + coefficients.k_pr * s_5;
+    let F_sp = coefficients.c_sp * s_1 + coefficients.k_sp * s_3;
+    let F_pr = coefficients.c_pr * s_2 + coefficients.k_pr * s_4;
     let s_10 = x_pr_dot + x_c_dot;
     let s_11 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_27 * (s_10 * s_10) + coefficients.c_28 * s_11;
+    let T_planets = coefficients.c_26 * (s_10 * s_10) + coefficients.c_27 * s_11;
     let s_12 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[8 + i]);
     let mut s_13 = [T::number(0.0); 2];
     for i in 0..2 {
@@ -632,14 +640,14 @@ pub fn observables<T: Scalar>(
         }
     }
     let s_14 = sum_of_few([(); 2], |i| state[8 + i] * s_13[i]);
-    let s_15 = coefficients.c_26 * (s_1 * s_1) + T_planets + coefficients.c_29 * s_11
+    let s_15 = coefficients.c_25 * (s_6 * s_6) + T_planets + coefficients.c_28 * s_11
         + T::number(0.5)
-            * (coefficients.c_9 * s_11 + coefficients.c_30 * (x_c_dot * s_12)
-                + coefficients.c_31 * s_14);
-    let s_16 = sum_of_few([(); 2], |i| state[3 + i] * s_6[i]);
-    let s_17 = x_sp_dot * (s_7 - coefficients.c_4 * s_2)
-        + x_pr_dot * (s_7 - coefficients.c_7 * s_4)
-        + coefficients.c_21 * (x_c_dot * motor);
+            * (coefficients.c_1 * s_11 + coefficients.c_29 * (x_c_dot * s_12)
+                + coefficients.c_30 * s_14);
+    let s_16 = sum_of_few([(); 2], |i| state[3 + i] * s_5[i]);
+    let s_17 = x_sp_dot * (s_7 - coefficients.c_6 * s_1)
+        + x_pr_dot * (s_7 - coefficients.c_7 * s_2)
+        + coefficients.c_20 * (x_c_dot * motor);
     [
         theta_s,
         theta_p,
@@ -651,8 +659,8 @@ pub fn observables<T: Scalar>(
         F_sp,
         F_pr,
         s_15
-            + (coefficients.c_32 * (s_3 * s_3) + coefficients.c_33 * (s_5 * s_5)
-                + coefficients.c_14 * s_16),
+            + (coefficients.c_31 * (s_3 * s_3) + coefficients.c_32 * (s_4 * s_4)
+                + coefficients.c_10 * s_16),
         s_17,
     ]
 }
@@ -666,22 +674,22 @@ pub fn energy<T: Scalar>(
     coefficients: &Coefficients<T>,
 ) -> T {
     let x_sp_dot = state[5];
-    let x_pr_dot = state[6];
-    let x_c_dot = state[7];
-    let s_1 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
     let x_sp = state[0];
-    let s_2 = deadzone(x_sp, coefficients.b_sp);
+    let x_pr_dot = state[6];
     let x_pr = state[1];
-    let s_3 = deadzone(x_pr, coefficients.b_pr);
-    let mut s_4 = [T::number(0.0); 2];
+    let s_1 = deadzone(x_sp, coefficients.b_sp);
+    let s_2 = deadzone(x_pr, coefficients.b_pr);
+    let mut s_3 = [T::number(0.0); 2];
     for i in 0..2 {
         for k in 0..2 {
-            s_4[i] = s_4[i] + T::number(INTEGRAL_PHI_D2_BY_PHI_D2[i][k]) * state[3 + k];
+            s_3[i] = s_3[i] + T::number(INTEGRAL_PHI_D2_BY_PHI_D2[i][k]) * state[3 + k];
         }
     }
+    let x_c_dot = state[7];
+    let s_4 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
     let s_5 = x_pr_dot + x_c_dot;
     let s_6 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_27 * (s_5 * s_5) + coefficients.c_28 * s_6;
+    let T_planets = coefficients.c_26 * (s_5 * s_5) + coefficients.c_27 * s_6;
     let s_7 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[8 + i]);
     let mut s_8 = [T::number(0.0); 2];
     for i in 0..2 {
@@ -690,14 +698,14 @@ pub fn energy<T: Scalar>(
         }
     }
     let s_9 = sum_of_few([(); 2], |i| state[8 + i] * s_8[i]);
-    let s_10 = coefficients.c_26 * (s_1 * s_1) + T_planets + coefficients.c_29 * s_6
+    let s_10 = coefficients.c_25 * (s_4 * s_4) + T_planets + coefficients.c_28 * s_6
         + T::number(0.5)
-            * (coefficients.c_9 * s_6 + coefficients.c_30 * (x_c_dot * s_7)
-                + coefficients.c_31 * s_9);
-    let s_11 = sum_of_few([(); 2], |i| state[3 + i] * s_4[i]);
+            * (coefficients.c_1 * s_6 + coefficients.c_29 * (x_c_dot * s_7)
+                + coefficients.c_30 * s_9);
+    let s_11 = sum_of_few([(); 2], |i| state[3 + i] * s_3[i]);
     s_10
-        + (coefficients.c_32 * (s_2 * s_2) + coefficients.c_33 * (s_3 * s_3)
-            + coefficients.c_14 * s_11)
+        + (coefficients.c_31 * (s_1 * s_1) + coefficients.c_32 * (s_2 * s_2)
+            + coefficients.c_10 * s_11)
 }
 
 /// Power of all non-conservative forces, in W: the rate of the energy.
@@ -709,17 +717,17 @@ pub fn power<T: Scalar>(
     coefficients: &Coefficients<T>,
 ) -> T {
     let x_sp_dot = state[5];
-    let x_pr_dot = state[6];
-    let x_c_dot = state[7];
     let x_sp = state[0];
+    let x_pr_dot = state[6];
     let x_pr = state[1];
+    let x_c_dot = state[7];
     let motor = coefficients.a_m
-        - coefficients.c_2 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
+        - coefficients.c_15 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
         + coefficients.F_w * sin(coefficients.omega * t);
-    let s_1 = coefficients.c_20 * motor;
+    let s_1 = coefficients.c_19 * motor;
     let s_2 = x_sp_dot
         * (s_1
-            - coefficients.c_4
+            - coefficients.c_6
                 * T::select_greater(
                     contact(x_sp, coefficients.b_sp),
                     T::number(0.0),
@@ -735,7 +743,7 @@ pub fn power<T: Scalar>(
                         x_pr_dot,
                         T::number(0.0),
                     ));
-    s_2 + coefficients.c_21 * (x_c_dot * motor)
+    s_2 + coefficients.c_20 * (x_c_dot * motor)
 }
 
 /// Switching surfaces: the equations change where one of these changes sign.
@@ -786,10 +794,10 @@ pub fn mass_matrix<T: Scalar>(
     for i in 0..2 {
         for j in 0..2 {
             values[3 + i][3 + j] = values[3 + i][3 + j]
-                + coefficients.c_10 * T::number(INTEGRAL_PHI_BY_PHI[i][j])
+                + coefficients.c_2 * T::number(INTEGRAL_PHI_BY_PHI[i][j])
                     * T::number(1.0);
             values[3 + i][3 + j] = values[3 + i][3 + j]
-                + coefficients.c_10 * T::number(INTEGRAL_PHI_BY_PHI[j][i])
+                + coefficients.c_2 * T::number(INTEGRAL_PHI_BY_PHI[j][i])
                     * T::number(1.0);
         }
     }

@@ -89,11 +89,11 @@ impl<const S: usize> Eliminated<S> {
         }
     }
 
-    /// The rates of `state` (x_sp, x_pr, x_c, q_1 .. q_S in m, then their rates in m/s) at
+    /// Writes the rates of `state` (x_sp, x_pr, x_c, q_1 .. q_S in m, then their rates in m/s) at
     /// time `t` in s. The motor's sine is waited for last. Not inlined, as emitted functions
-    /// are not into other crates: the result is written where the caller wants it.
+    /// are not into other crates.
     #[inline(never)]
-    pub fn rates<const N: usize>(&self, t: f64, state: &[f64; N]) -> [f64; N] {
+    pub fn rates<const N: usize>(&self, t: f64, state: &[f64; N], rates: &mut [f64; N]) {
         const { assert!(N == 2 * (3 + S)) };
         let (position, rate) = state.split_at(3 + S);
         let (x, q) = position.split_at(3);
@@ -109,20 +109,28 @@ impl<const S: usize> Eliminated<S> {
             - 2.0 * x_c;
         let x_sp = sun + self.fluctuation * elementary::sin(self.omega * t);
 
-        let mut out = [0.0; N];
-        out[0] = rate[0];
-        out[1] = rate[1];
-        out[2] = rate[2];
-        out[3 + S] = x_sp;
-        out[4 + S] = x_pr;
-        out[5 + S] = x_c;
+        let (velocity, acceleration) = rates.split_at_mut(3 + S);
+        copy_in_pairs(rate, velocity);
+        acceleration[0] = x_sp;
+        acceleration[1] = x_pr;
+        acceleration[2] = x_c;
         for i in 0..S {
-            out[6 + S + i] = self.minus_square[i] * q[i] + self.minus_coupling[i] * force;
+            acceleration[3 + i] = self.minus_square[i] * q[i] + self.minus_coupling[i] * force;
         }
-        // One copy of memory, after the rest: in the loop it would be one vector at a time, and
-        // before it the zeros above would all be written.
-        out[3..3 + S].copy_from_slice(&rate[3..]);
-        out
+    }
+}
+
+/// Copies numbers, two in a turn: one by one the compiler takes the loop for a copy of memory
+/// and calls the system's function, which costs more than the copy.
+#[inline(always)]
+pub fn copy_in_pairs(from: &[f64], to: &mut [f64]) {
+    let length = from.len().min(to.len());
+    for k in 0..length / 2 {
+        to[2 * k] = from[2 * k];
+        to[2 * k + 1] = from[2 * k + 1];
+    }
+    if length % 2 == 1 {
+        to[length - 1] = from[length - 1];
     }
 }
 
@@ -137,8 +145,9 @@ fn sum_of_products<const S: usize>(a: &[f64; S], b: &[f64]) -> f64 {
 
 /// The same in eight partial sums, so that it is not one chain of additions. These are added
 /// half to half and not neighbour to neighbour, for which vectors need not be taken apart: by
-/// neighbours the compiler shuffles all that it multiplies.
-#[inline(always)]
+/// neighbours the compiler shuffles all that it multiplies. Not inlined: with the loops around
+/// it unrolled into one piece the compiler vectorises across them, and spills.
+#[inline(never)]
 fn sum_in_blocks(a: &[f64], b: &[f64]) -> f64 {
     let ((a_blocks, a_rest), (b_blocks, b_rest)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
     let mut s = [0.0; 8];
