@@ -226,6 +226,34 @@ mod tests {
     }
 
     #[test]
+    fn what_is_requested_is_emitted_besides() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let requests = [Request::Products, Request::GuardRates];
+        let paths = variants(&arm(), &[2], &requests, folder.path()).expect("generated");
+        let text = std::fs::read_to_string(&paths[0]).expect("readable");
+        for function in [
+            "rates",
+            "jacobian_vector_product",
+            "vector_jacobian_product",
+            "guard_rates",
+        ] {
+            assert!(text.contains(&format!("pub fn {function}<")), "{function}");
+        }
+        assert!(!text.contains("pub fn inverse_dynamics"), "not requested");
+    }
+
+    #[test]
+    fn a_request_that_is_not_known_is_refused() {
+        let refused = generate_with("p.toml", &[], &["jacobian"]).expect_err("refused");
+        let message = refused.to_string();
+        assert!(
+            message.starts_with("`jacobian` is not known; known are "),
+            "{message}"
+        );
+        assert!(message.contains("jacobians"), "{message}");
+    }
+
+    #[test]
     fn what_cannot_be_had_is_said() {
         let folder = tempfile::tempdir().expect("a folder");
         let no_field = variants(&checked(PENDULUM), &[3], &[], folder.path()).expect_err("refused");

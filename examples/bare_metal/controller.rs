@@ -4,10 +4,20 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
-use arm::{Coefficients, Inputs, STATES, rates};
+use arm::{Parameters, STATES, rates_into};
 
-/// The scalar of all numbers, as the arm was emitted for.
+/// What all numbers are: `f64`, or `f32` with `--cfg single`.
+#[cfg(not(single))]
 pub type Real = f64;
+/// What all numbers are: `f64`, or `f32` with `--cfg single`.
+#[cfg(single)]
+pub type Real = f32;
+
+/// The arm's coefficients.
+pub type Coefficients = arm::Coefficients<Real>;
+
+/// The arm's inputs.
+pub type Inputs = arm::Inputs<Real>;
 
 /// The state: deflections, the carrier's path, the modes, and the rates of all.
 pub type State = [Real; STATES];
@@ -23,6 +33,11 @@ pub const GAIN: State = [
     192.6589, 456.0491, 998.8651, -312.1875, -105.3722, 20.75653, 457.063, 1.629354, 5.443445,
     23.76957, -1.397188, -0.8054563, -0.8642767, -0.8870597,
 ];
+
+/// The coefficients of the specification's parameters, prepared in double precision.
+pub fn prepared() -> Coefficients {
+    arm::Coefficients::prepare(&Parameters::default()).cast()
+}
 
 /// Where a run begins: the carrier displaced by 2 mm, at rest, the meshes loaded.
 pub fn displaced() -> State {
@@ -47,20 +62,15 @@ pub fn torque(state: &State) -> Real {
 pub fn step(t: Real, state: &State, coefficients: &Coefficients) -> State {
     let inputs = Inputs { u: torque(state) };
     let half = 0.5 * STEP;
-    let at_begin = rates(t, state, &inputs, coefficients);
-    let at_middle = rates(
-        t + half,
-        &moved(state, half, &at_begin),
-        &inputs,
-        coefficients,
-    );
-    let again = rates(
-        t + half,
-        &moved(state, half, &at_middle),
-        &inputs,
-        coefficients,
-    );
-    let at_end = rates(t + STEP, &moved(state, STEP, &again), &inputs, coefficients);
+    let rates = |t: Real, state: &State| {
+        let mut rates = [0.0; STATES];
+        rates_into(t, state, &inputs, coefficients, &mut rates);
+        rates
+    };
+    let at_begin = rates(t, state);
+    let at_middle = rates(t + half, &moved(state, half, &at_begin));
+    let again = rates(t + half, &moved(state, half, &at_middle));
+    let at_end = rates(t + STEP, &moved(state, STEP, &again));
     let mut next = *state;
     for i in 0..STATES {
         let between = at_middle[i] + again[i];

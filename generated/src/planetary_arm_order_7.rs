@@ -191,45 +191,45 @@ pub struct Inputs {}
 /// What depends on the parameters alone: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients<T = f64> {
-    /// `r_s/I_s`
-    pub c_1: T,
     /// `a_m`
     pub a_m: T,
-    /// `b_m/r_s`
+    /// `r_s*a_m/I_s`
+    pub c_1: T,
+    /// `0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)`
     pub c_2: T,
-    /// `r_s*r_s/I_s`
+    /// `1/pivot_x_c`
     pub c_3: T,
+    /// `2.0*1/pivot_x_c`
+    pub c_4: T,
     /// `c_sp`
     pub c_sp: T,
     /// `3.0*c_sp`
-    pub c_4: T,
+    pub c_5: T,
     /// `b_sp`
     pub b_sp: T,
-    /// `k_sp`
-    pub k_sp: T,
-    /// `3.0*k_sp`
-    pub c_5: T,
-    /// `0.3333333333333333*r_p*r_p*I_s/(r_s*r_s*I_p)`
-    pub c_6: T,
     /// `c_pr`
     pub c_pr: T,
     /// `3.0*c_pr`
-    pub c_7: T,
+    pub c_6: T,
     /// `b_pr`
     pub b_pr: T,
+    /// `k_sp`
+    pub k_sp: T,
+    /// `3.0*k_sp`
+    pub c_7: T,
     /// `k_pr`
     pub k_pr: T,
     /// `3.0*k_pr`
     pub c_8: T,
-    /// `0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)`
-    pub c_9: T,
-    /// `1/pivot_x_c`
+    /// `E*I*INTEGRAL_S1_PHI*INTEGRAL_PHI_D2_SQUARED/(cos(alpha)*r_c*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_9: [T; 7],
+    /// `0.3333333333333333*r_p*r_p/I_p`
     pub c_10: T,
     /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)`
     pub c_11: T,
-    /// `E*I*INTEGRAL_S1_PHI*INTEGRAL_PHI_D2_SQUARED/(cos(alpha)*r_c*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_12: [T; 7],
-    /// `2.0*I_s*1/pivot_x_c/(r_s*r_s)`
+    /// `b_m/I_s`
+    pub c_12: T,
+    /// `r_s*r_s/I_s`
     pub c_13: T,
     /// `F_w`
     pub F_w: T,
@@ -237,12 +237,10 @@ pub struct Coefficients<T = f64> {
     pub c_14: T,
     /// `omega`
     pub omega: T,
-    /// `0.3333333333333333*r_p*r_p/I_p`
-    pub c_15: T,
     /// `l*1/pivot_x_c*INTEGRAL_S1_PHI/(cos(alpha)*r_c*INTEGRAL_PHI_SQUARED)`
-    pub c_16: [T; 7],
+    pub c_15: [T; 7],
     /// `-(E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))`
-    pub c_17: [T; 7],
+    pub c_16: [T; 7],
     /// `I_s/(r_s*r_s)`
     pub M_x_sp_x_sp: T,
     /// `2.0*I_s/(r_s*r_s)`
@@ -256,10 +254,12 @@ pub struct Coefficients<T = f64> {
     /// `rho*A*l*l*INTEGRAL_S1_PHI/(cos(alpha)*r_c)`
     pub M_x_c_q: [T; 7],
     /// `rho*A*l`
-    pub c_18: T,
+    pub c_17: T,
     /// `rho*A*l*INTEGRAL_PHI_SQUARED`
-    pub c_19: [T; 7],
+    pub c_18: [T; 7],
     /// `1.0/r_s`
+    pub c_19: T,
+    /// `b_m/r_s`
     pub c_20: T,
     /// `2.0/r_s`
     pub c_21: T,
@@ -303,144 +303,142 @@ impl<T: Scalar> Coefficients<T> {
         let s_3 = r_s * r_s;
         let I_s = M_s * s_3;
         let a_m = parameters.a_m;
-        let b_m = parameters.b_m;
-        let c_sp = parameters.c_sp;
-        let b_sp = parameters.b_sp;
-        let k_sp = parameters.k_sp;
-        let z_p = parameters.z_p;
-        let r_p = s_1 * s_2 * z_p;
-        let s_4 = r_p * r_p;
-        let s_5 = T::number(0.3333333333333333) * s_4;
-        let M_p = parameters.M_p;
-        let I_p = M_p * s_4;
-        let c_pr = parameters.c_pr;
-        let b_pr = parameters.b_pr;
-        let k_pr = parameters.k_pr;
-        let s_6 = T::number(3.0) * I_p;
-        let s_7 = s_2 * s_2;
+        let s_4 = s_2 * s_2;
         let m_p = parameters.m_p;
-        let s_8 = T::number(3.0) * m_p / s_7;
+        let s_5 = T::number(3.0) * m_p / s_4;
+        let z_p = parameters.z_p;
         let r_c = s_1 * (z_s + z_p);
-        let s_9 = r_c * r_c;
-        let s_10 = s_7 * s_9;
+        let s_6 = r_c * r_c;
+        let s_7 = s_4 * s_6;
         let m_c = parameters.m_c;
-        let I_c = m_c * s_9;
-        let s_11 = I_c / s_10;
+        let I_c = m_c * s_6;
+        let s_8 = I_c / s_7;
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
-        let s_12 = l * l;
-        let s_13 = l * s_12;
-        let s_14 = T::number(0.3333333333333333) * rho * A * s_13 / s_10;
-        let s_15 = rho * A;
-        let s_16 = sum_of_few(
+        let s_9 = l * l;
+        let s_10 = l * s_9;
+        let s_11 = T::number(0.3333333333333333) * rho * A * s_10 / s_7;
+        let s_12 = rho * A;
+        let s_13 = sum_of_few(
             [(); 7],
             |i| {
                 T::number(INTEGRAL_S1_PHI[i]) * T::number(INTEGRAL_S1_PHI[i])
                     / T::number(INTEGRAL_PHI_SQUARED[i])
             },
         );
-        let pivot_x_c = s_8 + s_11 + s_14 - s_15 * s_13 * s_16 / s_10;
-        let s_17 = pivot_reciprocal(pivot_x_c);
-        let s_18 = s_2 * r_c;
-        let s_19 = s_18 * s_12;
+        let pivot_x_c = s_5 + s_8 + s_11 - s_12 * s_10 * s_13 / s_7;
+        let s_14 = pivot_reciprocal(pivot_x_c);
+        let c_sp = parameters.c_sp;
+        let b_sp = parameters.b_sp;
+        let c_pr = parameters.c_pr;
+        let b_pr = parameters.b_pr;
+        let k_sp = parameters.k_sp;
+        let k_pr = parameters.k_pr;
+        let s_15 = s_2 * r_c;
+        let s_16 = s_15 * s_9;
         let E = parameters.E;
         let I = parameters.I;
-        let s_20 = E * I;
-        let mut s_21 = [T::number(0.0); 7];
+        let s_17 = E * I;
+        let mut s_18 = [T::number(0.0); 7];
         for i in 0..7 {
-            s_21[i] = s_20 * T::number(INTEGRAL_S1_PHI[i])
+            s_18[i] = s_17 * T::number(INTEGRAL_S1_PHI[i])
                 * T::number(INTEGRAL_PHI_D2_SQUARED[i])
-                / (s_19 * T::number(INTEGRAL_PHI_SQUARED[i]));
+                / (s_16 * T::number(INTEGRAL_PHI_SQUARED[i]));
         }
-        let s_22 = T::number(2.0) * I_s;
+        let r_p = s_1 * s_2 * z_p;
+        let s_19 = r_p * r_p;
+        let M_p = parameters.M_p;
+        let I_p = M_p * s_19;
+        let s_20 = T::number(3.0) * I_p;
+        let b_m = parameters.b_m;
         let F_w = parameters.F_w;
         let omega = parameters.omega;
-        let s_23 = s_15 * (s_12 * s_12);
-        let s_24 = l * s_17;
-        let mut s_25 = [T::number(0.0); 7];
+        let s_21 = s_12 * (s_9 * s_9);
+        let s_22 = l * s_14;
+        let mut s_23 = [T::number(0.0); 7];
         for i in 0..7 {
-            s_25[i] = s_24 * T::number(INTEGRAL_S1_PHI[i])
-                / (s_18 * T::number(INTEGRAL_PHI_SQUARED[i]));
+            s_23[i] = s_22 * T::number(INTEGRAL_S1_PHI[i])
+                / (s_15 * T::number(INTEGRAL_PHI_SQUARED[i]));
         }
-        let mut s_26 = [T::number(0.0); 7];
+        let mut s_24 = [T::number(0.0); 7];
         for i in 0..7 {
-            s_26[i] = -(s_20 * T::number(INTEGRAL_PHI_D2_SQUARED[i])
-                / (s_23 * T::number(INTEGRAL_PHI_SQUARED[i])));
+            s_24[i] = -(s_17 * T::number(INTEGRAL_PHI_D2_SQUARED[i])
+                / (s_21 * T::number(INTEGRAL_PHI_SQUARED[i])));
         }
         let M_x_sp_x_sp = I_s / s_3;
-        let M_x_sp_x_c = s_22 / s_3;
-        let pivot_x_pr = s_6 / s_4;
+        let M_x_sp_x_c = T::number(2.0) * I_s / s_3;
+        let pivot_x_pr = s_20 / s_19;
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = T::number(4.0) * I_s / s_3 + (pivot_x_pr + s_8) + s_11 + s_14;
-        let s_27 = s_15 * s_12;
+        let M_x_c_x_c = T::number(4.0) * I_s / s_3 + (pivot_x_pr + s_5) + s_8 + s_11;
+        let s_25 = s_12 * s_9;
         let mut M_x_c_q = [T::number(0.0); 7];
         for i in 0..7 {
-            M_x_c_q[i] = s_27 * T::number(INTEGRAL_S1_PHI[i]) / s_18;
+            M_x_c_q[i] = s_25 * T::number(INTEGRAL_S1_PHI[i]) / s_15;
         }
-        let s_28 = s_15 * l;
-        let mut s_29 = [T::number(0.0); 7];
+        let s_26 = s_12 * l;
+        let mut s_27 = [T::number(0.0); 7];
         for i in 0..7 {
-            s_29[i] = s_28 * T::number(INTEGRAL_PHI_SQUARED[i]);
+            s_27[i] = s_26 * T::number(INTEGRAL_PHI_SQUARED[i]);
         }
         let z_r = parameters.z_r;
         let i_sH = T::number(1.0) + z_r / z_s;
-        let s_30 = r_s * i_sH;
+        let s_28 = r_s * i_sH;
         let mut positive_4 = true;
         for i in 0..7 {
-            positive_4 = positive_4 && T::all_greater(s_29[i], T::number(0.0))
-                && T::all_greater(T::number(f64::INFINITY), s_29[i]);
+            positive_4 = positive_4 && T::all_greater(s_27[i], T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_27[i]);
         }
         Self {
-            c_1: r_s / I_s,
             a_m: a_m,
-            c_2: b_m / r_s,
-            c_3: s_3 / I_s,
+            c_1: r_s * a_m / I_s,
+            c_2: s_11,
+            c_3: s_14,
+            c_4: T::number(2.0) * s_14,
             c_sp: c_sp,
-            c_4: T::number(3.0) * c_sp,
+            c_5: T::number(3.0) * c_sp,
             b_sp: b_sp,
-            k_sp: k_sp,
-            c_5: T::number(3.0) * k_sp,
-            c_6: s_5 * I_s / (s_3 * I_p),
             c_pr: c_pr,
-            c_7: T::number(3.0) * c_pr,
+            c_6: T::number(3.0) * c_pr,
             b_pr: b_pr,
+            k_sp: k_sp,
+            c_7: T::number(3.0) * k_sp,
             k_pr: k_pr,
             c_8: T::number(3.0) * k_pr,
-            c_9: s_14,
-            c_10: s_17,
-            c_11: s_6 * s_17 / s_4,
-            c_12: s_21,
-            c_13: s_22 * s_17 / s_3,
+            c_9: s_18,
+            c_10: T::number(0.3333333333333333) * s_19 / I_p,
+            c_11: s_20 * s_14 / s_19,
+            c_12: b_m / I_s,
+            c_13: s_3 / I_s,
             F_w: F_w,
             c_14: r_s * F_w / I_s,
             omega: omega,
-            c_15: s_5 / I_p,
-            c_16: s_25,
-            c_17: s_26,
+            c_15: s_23,
+            c_16: s_24,
             M_x_sp_x_sp: M_x_sp_x_sp,
             M_x_sp_x_c: M_x_sp_x_c,
             M_x_pr_x_pr: M_x_pr_x_pr,
             M_x_pr_x_c: M_x_pr_x_c,
             M_x_c_x_c: M_x_c_x_c,
             M_x_c_q: M_x_c_q,
-            c_18: s_28,
-            c_19: s_29,
-            c_20: T::number(1.0) / r_s,
+            c_17: s_26,
+            c_18: s_27,
+            c_19: T::number(1.0) / r_s,
+            c_20: b_m / r_s,
             c_21: T::number(2.0) / r_s,
             c_22: T::number(1.0) / r_p,
-            c_23: T::number(1.0) / s_18,
-            c_24: T::number(1.0) / s_30,
-            c_25: l / s_30,
+            c_23: T::number(1.0) / s_15,
+            c_24: T::number(1.0) / s_28,
+            c_25: l / s_28,
             c_26: T::number(0.5) * I_s / s_3,
-            c_27: T::number(1.5) * I_p / s_4,
-            c_28: T::number(1.5) * m_p / s_7,
-            c_29: T::number(0.5) * I_c / s_10,
-            c_30: T::number(2.0) * rho * A * s_12 / s_18,
+            c_27: T::number(1.5) * I_p / s_19,
+            c_28: T::number(1.5) * m_p / s_4,
+            c_29: T::number(0.5) * I_c / s_7,
+            c_30: T::number(2.0) * rho * A * s_9 / s_15,
             c_31: T::number(1.5) * k_sp,
             c_32: T::number(1.5) * k_pr,
-            c_33: T::number(0.5) * E * I / s_13,
+            c_33: T::number(0.5) * E * I / s_10,
             positive_definite: T::all_greater(M_x_sp_x_sp, T::number(0.0))
                 && T::all_greater(T::number(f64::INFINITY), M_x_sp_x_sp)
                 && T::all_greater(pivot_x_pr, T::number(0.0))
@@ -455,40 +453,40 @@ impl Coefficients {
     #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
-            c_1: T::number(self.c_1),
             a_m: T::number(self.a_m),
+            c_1: T::number(self.c_1),
             c_2: T::number(self.c_2),
             c_3: T::number(self.c_3),
-            c_sp: T::number(self.c_sp),
             c_4: T::number(self.c_4),
-            b_sp: T::number(self.b_sp),
-            k_sp: T::number(self.k_sp),
+            c_sp: T::number(self.c_sp),
             c_5: T::number(self.c_5),
-            c_6: T::number(self.c_6),
+            b_sp: T::number(self.b_sp),
             c_pr: T::number(self.c_pr),
-            c_7: T::number(self.c_7),
+            c_6: T::number(self.c_6),
             b_pr: T::number(self.b_pr),
+            k_sp: T::number(self.k_sp),
+            c_7: T::number(self.c_7),
             k_pr: T::number(self.k_pr),
             c_8: T::number(self.c_8),
-            c_9: T::number(self.c_9),
+            c_9: converted(&self.c_9),
             c_10: T::number(self.c_10),
             c_11: T::number(self.c_11),
-            c_12: converted(&self.c_12),
+            c_12: T::number(self.c_12),
             c_13: T::number(self.c_13),
             F_w: T::number(self.F_w),
             c_14: T::number(self.c_14),
             omega: T::number(self.omega),
-            c_15: T::number(self.c_15),
+            c_15: converted(&self.c_15),
             c_16: converted(&self.c_16),
-            c_17: converted(&self.c_17),
             M_x_sp_x_sp: T::number(self.M_x_sp_x_sp),
             M_x_sp_x_c: T::number(self.M_x_sp_x_c),
             M_x_pr_x_pr: T::number(self.M_x_pr_x_pr),
             M_x_pr_x_c: T::number(self.M_x_pr_x_c),
             M_x_c_x_c: T::number(self.M_x_c_x_c),
             M_x_c_q: converted(&self.M_x_c_q),
-            c_18: T::number(self.c_18),
-            c_19: converted(&self.c_19),
+            c_17: T::number(self.c_17),
+            c_18: converted(&self.c_18),
+            c_19: T::number(self.c_19),
             c_20: T::number(self.c_20),
             c_21: T::number(self.c_21),
             c_22: T::number(self.c_22),
@@ -508,59 +506,70 @@ impl Coefficients {
     }
 }
 
-/// Rates of the state.
+/// Rates of the state, written to `rates`.
 ///
-/// `t` in s; `state` and the result in the order of [`STATE_NAMES`].
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
 #[allow(unused_variables)]
-pub fn rates<T: Scalar>(
+pub fn rates_into<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs,
     coefficients: &Coefficients<T>,
-) -> [T; STATES] {
+    rates: &mut [T; STATES],
+) {
     let x_sp_dot = state[10];
-    let x_pr_dot = state[11];
-    let x_c_dot = state[12];
     let x_sp = state[0];
-    let s_1 = coefficients.c_4
+    let s_1 = coefficients.c_5
         * T::select_greater(
             contact(x_sp, coefficients.b_sp),
             T::number(0.0),
             x_sp_dot,
             T::number(0.0),
         );
-    let s_2 = coefficients.c_5 * deadzone(x_sp, coefficients.b_sp);
+    let x_pr_dot = state[11];
     let x_pr = state[1];
-    let s_3 = coefficients.c_7
+    let s_2 = coefficients.c_6
         * T::select_greater(
             contact(x_pr, coefficients.b_pr),
             T::number(0.0),
             x_pr_dot,
             T::number(0.0),
         );
+    let s_3 = coefficients.c_7 * deadzone(x_sp, coefficients.b_sp);
     let s_4 = coefficients.c_8 * deadzone(x_pr, coefficients.b_pr);
-    let s_5 = s_1 + s_2;
-    let s_6 = sum_of_few([(); 7], |i| coefficients.c_12[i] * state[3 + i]);
-    let s_7 = s_1 + s_3 + s_2 + s_4 + s_6;
-    let s_8 = s_5 - s_3 - s_4 - coefficients.c_11 * s_7;
-    let s_9 = coefficients.c_1
-        * (coefficients.a_m
-            - coefficients.c_2 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot))
-        - coefficients.c_3 * (s_5 + coefficients.c_6 * s_8 + coefficients.c_13 * s_7);
-    let x_sp_ddot = s_9 + coefficients.c_14 * sin(coefficients.omega * t);
-    let x_pr_ddot = coefficients.c_15 * s_8;
-    let x_c_ddot = coefficients.c_10 * s_7;
-    let mut rates = [T::number(0.0); STATES];
-    for i in 0..3 {
-        rates[i] = state[10 + i];
+    let s_5 = sum_of_few([(); 7], |i| coefficients.c_9[i] * state[3 + i]);
+    let s_6 = s_1 + s_2 + s_3 + s_4 + s_5;
+    let s_7 = s_1 + s_3;
+    let x_pr_ddot = coefficients.c_10 * (s_7 - s_2 - s_4 - coefficients.c_11 * s_6);
+    let x_c_dot = state[12];
+    let s_8 = coefficients.c_1 - coefficients.c_4 * s_6 - x_pr_ddot
+        - coefficients.c_12 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
+        - coefficients.c_13 * s_7;
+    let x_sp_ddot = s_8 + coefficients.c_14 * sin(coefficients.omega * t);
+    let x_c_ddot = coefficients.c_3 * s_6;
+    for k in 0..5 {
+        rates[2 * k] = state[10 + 2 * k];
+        rates[2 * k + 1] = state[11 + 2 * k];
     }
     rates[10] = x_sp_ddot;
     rates[11] = x_pr_ddot;
     rates[12] = x_c_ddot;
     for i in 0..7 {
-        rates[3 + i] = state[13 + i];
-        rates[13 + i] = coefficients.c_17[i] * state[3 + i] - coefficients.c_16[i] * s_7;
+        rates[13 + i] = coefficients.c_16[i] * state[3 + i] - coefficients.c_15[i] * s_6;
     }
+}
+
+/// Rates of the state, returned.
+///
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
+pub fn rates<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs,
+    coefficients: &Coefficients<T>,
+) -> [T; STATES] {
+    let mut rates = [T::number(0.0); STATES];
+    rates_into(t, state, inputs, coefficients, &mut rates);
     rates
 }
 
@@ -585,32 +594,32 @@ pub fn observables<T: Scalar>(
     coefficients: &Coefficients<T>,
 ) -> [T; OBSERVABLES] {
     let x_sp_dot = state[10];
-    let x_pr_dot = state[11];
-    let x_c_dot = state[12];
-    let s_1 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
     let x_sp = state[0];
-    let s_2 = T::select_greater(
+    let s_1 = T::select_greater(
         contact(x_sp, coefficients.b_sp),
         T::number(0.0),
         x_sp_dot,
         T::number(0.0),
     );
-    let s_3 = deadzone(x_sp, coefficients.b_sp);
+    let x_pr_dot = state[11];
     let x_pr = state[1];
-    let s_4 = T::select_greater(
+    let s_2 = T::select_greater(
         contact(x_pr, coefficients.b_pr),
         T::number(0.0),
         x_pr_dot,
         T::number(0.0),
     );
-    let s_5 = deadzone(x_pr, coefficients.b_pr);
-    let motor = coefficients.a_m - coefficients.c_2 * s_1
+    let s_3 = deadzone(x_sp, coefficients.b_sp);
+    let s_4 = deadzone(x_pr, coefficients.b_pr);
+    let x_c_dot = state[12];
+    let s_5 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
+    let motor = coefficients.a_m - coefficients.c_20 * s_5
         + coefficients.F_w * sin(coefficients.omega * t);
-    let s_6 = coefficients.c_20 * motor;
+    let s_6 = coefficients.c_19 * motor;
     let s_7 = x_sp + x_pr;
     let x_c = state[2];
     let x_s = s_7 + T::number(2.0) * x_c;
-    let theta_s = coefficients.c_20 * x_s;
+    let theta_s = coefficients.c_19 * x_s;
     let x_p = x_pr + x_c;
     let theta_p = coefficients.c_22 * x_p;
     let theta_c = coefficients.c_23 * x_c;
@@ -619,8 +628,8 @@ pub fn observables<T: Scalar>(
     let s_8 = coefficients.c_25 * s_7;
     let f_la = tip + s_8;
     let f_la_signed = tip - s_8;
-    let F_sp = coefficients.c_sp * s_2 + coefficients.k_sp * s_3;
-    let F_pr = coefficients.c_pr * s_4 + coefficients.k_pr * s_5;
+    let F_sp = coefficients.c_sp * s_1 + coefficients.k_sp * s_3;
+    let F_pr = coefficients.c_pr * s_2 + coefficients.k_pr * s_4;
     let s_9 = x_pr_dot + x_c_dot;
     let s_10 = x_c_dot * x_c_dot;
     let T_planets = coefficients.c_27 * (s_9 * s_9) + coefficients.c_28 * s_10;
@@ -629,16 +638,16 @@ pub fn observables<T: Scalar>(
         [(); 7],
         |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[13 + i] * state[13 + i]),
     );
-    let s_13 = coefficients.c_26 * (s_1 * s_1) + T_planets + coefficients.c_29 * s_10
+    let s_13 = coefficients.c_26 * (s_5 * s_5) + T_planets + coefficients.c_29 * s_10
         + T::number(0.5)
-            * (coefficients.c_9 * s_10 + coefficients.c_30 * (x_c_dot * s_11)
-                + coefficients.c_18 * s_12);
+            * (coefficients.c_2 * s_10 + coefficients.c_30 * (x_c_dot * s_11)
+                + coefficients.c_17 * s_12);
     let s_14 = sum_of_few(
         [(); 7],
         |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[3 + i] * state[3 + i]),
     );
-    let s_15 = x_sp_dot * (s_6 - coefficients.c_4 * s_2)
-        + x_pr_dot * (s_6 - coefficients.c_7 * s_4)
+    let s_15 = x_sp_dot * (s_6 - coefficients.c_5 * s_1)
+        + x_pr_dot * (s_6 - coefficients.c_6 * s_2)
         + coefficients.c_21 * (x_c_dot * motor);
     [
         theta_s,
@@ -651,7 +660,7 @@ pub fn observables<T: Scalar>(
         F_sp,
         F_pr,
         s_13
-            + (coefficients.c_31 * (s_3 * s_3) + coefficients.c_32 * (s_5 * s_5)
+            + (coefficients.c_31 * (s_3 * s_3) + coefficients.c_32 * (s_4 * s_4)
                 + coefficients.c_33 * s_14),
         s_15,
     ]
@@ -666,13 +675,13 @@ pub fn energy<T: Scalar>(
     coefficients: &Coefficients<T>,
 ) -> T {
     let x_sp_dot = state[10];
-    let x_pr_dot = state[11];
-    let x_c_dot = state[12];
-    let s_1 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
     let x_sp = state[0];
-    let s_2 = deadzone(x_sp, coefficients.b_sp);
+    let x_pr_dot = state[11];
     let x_pr = state[1];
-    let s_3 = deadzone(x_pr, coefficients.b_pr);
+    let s_1 = deadzone(x_sp, coefficients.b_sp);
+    let s_2 = deadzone(x_pr, coefficients.b_pr);
+    let x_c_dot = state[12];
+    let s_3 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
     let s_4 = x_pr_dot + x_c_dot;
     let s_5 = x_c_dot * x_c_dot;
     let T_planets = coefficients.c_27 * (s_4 * s_4) + coefficients.c_28 * s_5;
@@ -681,16 +690,16 @@ pub fn energy<T: Scalar>(
         [(); 7],
         |i| T::number(INTEGRAL_PHI_SQUARED[i]) * (state[13 + i] * state[13 + i]),
     );
-    let s_8 = coefficients.c_26 * (s_1 * s_1) + T_planets + coefficients.c_29 * s_5
+    let s_8 = coefficients.c_26 * (s_3 * s_3) + T_planets + coefficients.c_29 * s_5
         + T::number(0.5)
-            * (coefficients.c_9 * s_5 + coefficients.c_30 * (x_c_dot * s_6)
-                + coefficients.c_18 * s_7);
+            * (coefficients.c_2 * s_5 + coefficients.c_30 * (x_c_dot * s_6)
+                + coefficients.c_17 * s_7);
     let s_9 = sum_of_few(
         [(); 7],
         |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[3 + i] * state[3 + i]),
     );
     s_8
-        + (coefficients.c_31 * (s_2 * s_2) + coefficients.c_32 * (s_3 * s_3)
+        + (coefficients.c_31 * (s_1 * s_1) + coefficients.c_32 * (s_2 * s_2)
             + coefficients.c_33 * s_9)
 }
 
@@ -703,17 +712,17 @@ pub fn power<T: Scalar>(
     coefficients: &Coefficients<T>,
 ) -> T {
     let x_sp_dot = state[10];
-    let x_pr_dot = state[11];
-    let x_c_dot = state[12];
     let x_sp = state[0];
+    let x_pr_dot = state[11];
     let x_pr = state[1];
+    let x_c_dot = state[12];
     let motor = coefficients.a_m
-        - coefficients.c_2 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
+        - coefficients.c_20 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
         + coefficients.F_w * sin(coefficients.omega * t);
-    let s_1 = coefficients.c_20 * motor;
+    let s_1 = coefficients.c_19 * motor;
     let s_2 = x_sp_dot
         * (s_1
-            - coefficients.c_4
+            - coefficients.c_5
                 * T::select_greater(
                     contact(x_sp, coefficients.b_sp),
                     T::number(0.0),
@@ -722,7 +731,7 @@ pub fn power<T: Scalar>(
                 ))
         + x_pr_dot
             * (s_1
-                - coefficients.c_7
+                - coefficients.c_6
                     * T::select_greater(
                         contact(x_pr, coefficients.b_pr),
                         T::number(0.0),
@@ -778,7 +787,7 @@ pub fn mass_matrix<T: Scalar>(
         values[3 + i][2] = values[2][3 + i];
     }
     for i in 0..7 {
-        values[3 + i][3 + i] = values[3 + i][3 + i] + coefficients.c_19[i];
+        values[3 + i][3 + i] = values[3 + i][3 + i] + coefficients.c_18[i];
     }
     values
 }
@@ -973,8 +982,8 @@ impl Scalar for f32 {
 /// Deflection beyond the backlash: f_k of Eq. (7).
 #[inline(always)]
 fn deadzone<T: Scalar>(p: T, b: T) -> T {
-    let beyond = T::select_greater(-b, p, p + b, T::number(0.0));
-    T::select_greater(p, b, p - b, beyond)
+    let held = T::select_greater(p, b, b, p);
+    p - T::select_greater(-b, held, -b, held)
 }
 
 /// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).

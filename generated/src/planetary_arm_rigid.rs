@@ -177,13 +177,13 @@ pub struct Inputs {}
 /// What depends on the parameters alone: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients<T = f64> {
-    /// `r_s/I_s`
-    pub c_1: T,
     /// `a_m`
     pub a_m: T,
-    /// `b_m/r_s`
+    /// `r_s*a_m/I_s`
+    pub c_1: T,
+    /// `1/pivot_x_c`
     pub c_2: T,
-    /// `r_s*r_s/I_s`
+    /// `2.0*1/pivot_x_c`
     pub c_3: T,
     /// `c_sp`
     pub c_sp: T,
@@ -191,27 +191,27 @@ pub struct Coefficients<T = f64> {
     pub c_4: T,
     /// `b_sp`
     pub b_sp: T,
-    /// `k_sp`
-    pub k_sp: T,
-    /// `3.0*k_sp`
-    pub c_5: T,
-    /// `0.3333333333333333*r_p*r_p*I_s/(r_s*r_s*I_p)`
-    pub c_6: T,
     /// `c_pr`
     pub c_pr: T,
     /// `3.0*c_pr`
-    pub c_7: T,
+    pub c_5: T,
     /// `b_pr`
     pub b_pr: T,
+    /// `k_sp`
+    pub k_sp: T,
+    /// `3.0*k_sp`
+    pub c_6: T,
     /// `k_pr`
     pub k_pr: T,
     /// `3.0*k_pr`
+    pub c_7: T,
+    /// `0.3333333333333333*r_p*r_p/I_p`
     pub c_8: T,
-    /// `1/pivot_x_c`
-    pub c_9: T,
     /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)`
+    pub c_9: T,
+    /// `b_m/I_s`
     pub c_10: T,
-    /// `2.0*I_s*1/pivot_x_c/(r_s*r_s)`
+    /// `r_s*r_s/I_s`
     pub c_11: T,
     /// `F_w`
     pub F_w: T,
@@ -219,8 +219,6 @@ pub struct Coefficients<T = f64> {
     pub c_12: T,
     /// `omega`
     pub omega: T,
-    /// `0.3333333333333333*r_p*r_p/I_p`
-    pub c_13: T,
     /// `I_s/(r_s*r_s)`
     pub M_x_sp_x_sp: T,
     /// `2.0*I_s/(r_s*r_s)`
@@ -232,6 +230,8 @@ pub struct Coefficients<T = f64> {
     /// `4.0*I_s/(r_s*r_s) + pivot_x_pr + 3.0*m_p/(cos(alpha)*cos(alpha)) + I_c/(cos(alpha)*cos(alpha)*r_c*r_c) + 0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r...`
     pub M_x_c_x_c: T,
     /// `1.0/r_s`
+    pub c_13: T,
+    /// `b_m/r_s`
     pub c_14: T,
     /// `2.0/r_s`
     pub c_15: T,
@@ -275,89 +275,87 @@ impl<T: Scalar> Coefficients<T> {
         let s_3 = r_s * r_s;
         let I_s = M_s * s_3;
         let a_m = parameters.a_m;
-        let b_m = parameters.b_m;
-        let c_sp = parameters.c_sp;
-        let b_sp = parameters.b_sp;
-        let k_sp = parameters.k_sp;
-        let z_p = parameters.z_p;
-        let r_p = s_1 * s_2 * z_p;
-        let s_4 = r_p * r_p;
-        let s_5 = T::number(0.3333333333333333) * s_4;
-        let M_p = parameters.M_p;
-        let I_p = M_p * s_4;
-        let c_pr = parameters.c_pr;
-        let b_pr = parameters.b_pr;
-        let k_pr = parameters.k_pr;
-        let s_6 = T::number(3.0) * I_p;
-        let s_7 = s_2 * s_2;
+        let s_4 = s_2 * s_2;
         let m_p = parameters.m_p;
-        let s_8 = T::number(3.0) * m_p / s_7;
+        let s_5 = T::number(3.0) * m_p / s_4;
+        let z_p = parameters.z_p;
         let r_c = s_1 * (z_s + z_p);
-        let s_9 = r_c * r_c;
-        let s_10 = s_7 * s_9;
+        let s_6 = r_c * r_c;
+        let s_7 = s_4 * s_6;
         let m_c = parameters.m_c;
-        let I_c = m_c * s_9;
-        let s_11 = I_c / s_10;
+        let I_c = m_c * s_6;
+        let s_8 = I_c / s_7;
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
-        let s_12 = l * (l * l);
-        let s_13 = T::number(0.3333333333333333) * rho * A * s_12 / s_10;
-        let pivot_x_c = s_8 + s_11 + s_13;
-        let s_14 = pivot_reciprocal(pivot_x_c);
-        let s_15 = T::number(2.0) * I_s;
+        let s_9 = l * (l * l);
+        let s_10 = T::number(0.3333333333333333) * rho * A * s_9 / s_7;
+        let pivot_x_c = s_5 + s_8 + s_10;
+        let s_11 = pivot_reciprocal(pivot_x_c);
+        let c_sp = parameters.c_sp;
+        let b_sp = parameters.b_sp;
+        let c_pr = parameters.c_pr;
+        let b_pr = parameters.b_pr;
+        let k_sp = parameters.k_sp;
+        let k_pr = parameters.k_pr;
+        let r_p = s_1 * s_2 * z_p;
+        let s_12 = r_p * r_p;
+        let M_p = parameters.M_p;
+        let I_p = M_p * s_12;
+        let s_13 = T::number(3.0) * I_p;
+        let b_m = parameters.b_m;
         let F_w = parameters.F_w;
         let omega = parameters.omega;
         let M_x_sp_x_sp = I_s / s_3;
-        let M_x_sp_x_c = s_15 / s_3;
-        let pivot_x_pr = s_6 / s_4;
+        let M_x_sp_x_c = T::number(2.0) * I_s / s_3;
+        let pivot_x_pr = s_13 / s_12;
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = T::number(4.0) * I_s / s_3 + (pivot_x_pr + s_8) + s_11 + s_13;
+        let M_x_c_x_c = T::number(4.0) * I_s / s_3 + (pivot_x_pr + s_5) + s_8 + s_10;
         let z_r = parameters.z_r;
         let i_sH = T::number(1.0) + z_r / z_s;
-        let s_16 = r_s * i_sH;
-        let s_17 = l / s_16;
+        let s_14 = r_s * i_sH;
+        let s_15 = l / s_14;
         Self {
-            c_1: r_s / I_s,
             a_m: a_m,
-            c_2: b_m / r_s,
-            c_3: s_3 / I_s,
+            c_1: r_s * a_m / I_s,
+            c_2: s_11,
+            c_3: T::number(2.0) * s_11,
             c_sp: c_sp,
             c_4: T::number(3.0) * c_sp,
             b_sp: b_sp,
-            k_sp: k_sp,
-            c_5: T::number(3.0) * k_sp,
-            c_6: s_5 * I_s / (s_3 * I_p),
             c_pr: c_pr,
-            c_7: T::number(3.0) * c_pr,
+            c_5: T::number(3.0) * c_pr,
             b_pr: b_pr,
+            k_sp: k_sp,
+            c_6: T::number(3.0) * k_sp,
             k_pr: k_pr,
-            c_8: T::number(3.0) * k_pr,
-            c_9: s_14,
-            c_10: s_6 * s_14 / s_4,
-            c_11: s_15 * s_14 / s_3,
+            c_7: T::number(3.0) * k_pr,
+            c_8: T::number(0.3333333333333333) * s_12 / I_p,
+            c_9: s_13 * s_11 / s_12,
+            c_10: b_m / I_s,
+            c_11: s_3 / I_s,
             F_w: F_w,
             c_12: r_s * F_w / I_s,
             omega: omega,
-            c_13: s_5 / I_p,
             M_x_sp_x_sp: M_x_sp_x_sp,
             M_x_sp_x_c: M_x_sp_x_c,
             M_x_pr_x_pr: M_x_pr_x_pr,
             M_x_pr_x_c: M_x_pr_x_c,
             M_x_c_x_c: M_x_c_x_c,
-            c_14: T::number(1.0) / r_s,
+            c_13: T::number(1.0) / r_s,
+            c_14: b_m / r_s,
             c_15: T::number(2.0) / r_s,
             c_16: T::number(1.0) / r_p,
             c_17: T::number(1.0) / (s_2 * r_c),
-            c_18: T::number(1.0) / s_16,
-            c_19: s_17,
-            c_20: -s_17,
+            c_18: T::number(1.0) / s_14,
+            c_19: s_15,
+            c_20: -s_15,
             c_21: T::number(0.5) * I_s / s_3,
-            c_22: T::number(1.5) * I_p / s_4,
-            c_23: T::number(1.5) * m_p / s_7,
-            c_24: T::number(0.5) * I_c / s_10,
-            c_25: T::number(0.16666666666666666) * rho * A * s_12 / s_10,
+            c_22: T::number(1.5) * I_p / s_12,
+            c_23: T::number(1.5) * m_p / s_4,
+            c_24: T::number(0.5) * I_c / s_7,
+            c_25: T::number(0.16666666666666666) * rho * A * s_9 / s_7,
             c_26: T::number(1.5) * k_sp,
             c_27: T::number(1.5) * k_pr,
             positive_definite: T::all_greater(M_x_sp_x_sp, T::number(0.0))
@@ -374,20 +372,20 @@ impl Coefficients {
     #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
-            c_1: T::number(self.c_1),
             a_m: T::number(self.a_m),
+            c_1: T::number(self.c_1),
             c_2: T::number(self.c_2),
             c_3: T::number(self.c_3),
             c_sp: T::number(self.c_sp),
             c_4: T::number(self.c_4),
             b_sp: T::number(self.b_sp),
-            k_sp: T::number(self.k_sp),
-            c_5: T::number(self.c_5),
-            c_6: T::number(self.c_6),
             c_pr: T::number(self.c_pr),
-            c_7: T::number(self.c_7),
+            c_5: T::number(self.c_5),
             b_pr: T::number(self.b_pr),
+            k_sp: T::number(self.k_sp),
+            c_6: T::number(self.c_6),
             k_pr: T::number(self.k_pr),
+            c_7: T::number(self.c_7),
             c_8: T::number(self.c_8),
             c_9: T::number(self.c_9),
             c_10: T::number(self.c_10),
@@ -395,12 +393,12 @@ impl Coefficients {
             F_w: T::number(self.F_w),
             c_12: T::number(self.c_12),
             omega: T::number(self.omega),
-            c_13: T::number(self.c_13),
             M_x_sp_x_sp: T::number(self.M_x_sp_x_sp),
             M_x_sp_x_c: T::number(self.M_x_sp_x_c),
             M_x_pr_x_pr: T::number(self.M_x_pr_x_pr),
             M_x_pr_x_c: T::number(self.M_x_pr_x_c),
             M_x_c_x_c: T::number(self.M_x_c_x_c),
+            c_13: T::number(self.c_13),
             c_14: T::number(self.c_14),
             c_15: T::number(self.c_15),
             c_16: T::number(self.c_16),
@@ -420,19 +418,18 @@ impl Coefficients {
     }
 }
 
-/// Rates of the state.
+/// Rates of the state, written to `rates`.
 ///
-/// `t` in s; `state` and the result in the order of [`STATE_NAMES`].
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
 #[allow(unused_variables)]
-pub fn rates<T: Scalar>(
+pub fn rates_into<T: Scalar>(
     t: T,
     state: &[T; STATES],
     inputs: &Inputs,
     coefficients: &Coefficients<T>,
-) -> [T; STATES] {
+    rates: &mut [T; STATES],
+) {
     let x_sp_dot = state[3];
-    let x_pr_dot = state[4];
-    let x_c_dot = state[5];
     let x_sp = state[0];
     let s_1 = coefficients.c_4
         * T::select_greater(
@@ -441,33 +438,45 @@ pub fn rates<T: Scalar>(
             x_sp_dot,
             T::number(0.0),
         );
-    let s_2 = coefficients.c_5 * deadzone(x_sp, coefficients.b_sp);
+    let x_pr_dot = state[4];
     let x_pr = state[1];
-    let s_3 = coefficients.c_7
+    let s_2 = coefficients.c_5
         * T::select_greater(
             contact(x_pr, coefficients.b_pr),
             T::number(0.0),
             x_pr_dot,
             T::number(0.0),
         );
-    let s_4 = coefficients.c_8 * deadzone(x_pr, coefficients.b_pr);
-    let s_5 = s_1 + s_2;
-    let s_6 = s_1 + s_3 + s_2 + s_4;
-    let s_7 = s_5 - s_3 - s_4 - coefficients.c_10 * s_6;
-    let s_8 = coefficients.c_1
-        * (coefficients.a_m
-            - coefficients.c_2 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot))
-        - coefficients.c_3 * (s_5 + coefficients.c_6 * s_7 + coefficients.c_11 * s_6);
-    let x_sp_ddot = s_8 + coefficients.c_12 * sin(coefficients.omega * t);
-    let x_pr_ddot = coefficients.c_13 * s_7;
-    let x_c_ddot = coefficients.c_9 * s_6;
-    let mut rates = [T::number(0.0); STATES];
+    let s_3 = coefficients.c_6 * deadzone(x_sp, coefficients.b_sp);
+    let s_4 = coefficients.c_7 * deadzone(x_pr, coefficients.b_pr);
+    let s_5 = s_1 + s_2 + s_3 + s_4;
+    let s_6 = s_1 + s_3;
+    let x_pr_ddot = coefficients.c_8 * (s_6 - s_2 - s_4 - coefficients.c_9 * s_5);
+    let x_c_dot = state[5];
+    let s_7 = coefficients.c_1 - coefficients.c_3 * s_5 - x_pr_ddot
+        - coefficients.c_10 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
+        - coefficients.c_11 * s_6;
+    let x_sp_ddot = s_7 + coefficients.c_12 * sin(coefficients.omega * t);
+    let x_c_ddot = coefficients.c_2 * s_5;
     for i in 0..3 {
         rates[i] = state[3 + i];
     }
     rates[3] = x_sp_ddot;
     rates[4] = x_pr_ddot;
     rates[5] = x_c_ddot;
+}
+
+/// Rates of the state, returned.
+///
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
+pub fn rates<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs,
+    coefficients: &Coefficients<T>,
+) -> [T; STATES] {
+    let mut rates = [T::number(0.0); STATES];
+    rates_into(t, state, inputs, coefficients, &mut rates);
     rates
 }
 
@@ -492,48 +501,48 @@ pub fn observables<T: Scalar>(
     coefficients: &Coefficients<T>,
 ) -> [T; OBSERVABLES] {
     let x_sp_dot = state[3];
-    let x_pr_dot = state[4];
-    let x_c_dot = state[5];
-    let s_1 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
     let x_sp = state[0];
-    let s_2 = T::select_greater(
+    let s_1 = T::select_greater(
         contact(x_sp, coefficients.b_sp),
         T::number(0.0),
         x_sp_dot,
         T::number(0.0),
     );
-    let s_3 = deadzone(x_sp, coefficients.b_sp);
+    let x_pr_dot = state[4];
     let x_pr = state[1];
-    let s_4 = T::select_greater(
+    let s_2 = T::select_greater(
         contact(x_pr, coefficients.b_pr),
         T::number(0.0),
         x_pr_dot,
         T::number(0.0),
     );
-    let s_5 = deadzone(x_pr, coefficients.b_pr);
-    let motor = coefficients.a_m - coefficients.c_2 * s_1
+    let s_3 = deadzone(x_sp, coefficients.b_sp);
+    let s_4 = deadzone(x_pr, coefficients.b_pr);
+    let x_c_dot = state[5];
+    let s_5 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
+    let motor = coefficients.a_m - coefficients.c_14 * s_5
         + coefficients.F_w * sin(coefficients.omega * t);
-    let s_6 = coefficients.c_14 * motor;
+    let s_6 = coefficients.c_13 * motor;
     let s_7 = x_sp + x_pr;
     let x_c = state[2];
     let x_s = s_7 + T::number(2.0) * x_c;
-    let theta_s = coefficients.c_14 * x_s;
+    let theta_s = coefficients.c_13 * x_s;
     let x_p = x_pr + x_c;
     let theta_p = coefficients.c_16 * x_p;
     let theta_c = coefficients.c_17 * x_c;
     let dtheta = coefficients.c_18 * s_7;
     let f_la = coefficients.c_19 * s_7;
     let f_la_signed = coefficients.c_20 * s_7;
-    let F_sp = coefficients.c_sp * s_2 + coefficients.k_sp * s_3;
-    let F_pr = coefficients.c_pr * s_4 + coefficients.k_pr * s_5;
+    let F_sp = coefficients.c_sp * s_1 + coefficients.k_sp * s_3;
+    let F_pr = coefficients.c_pr * s_2 + coefficients.k_pr * s_4;
     let s_8 = x_pr_dot + x_c_dot;
     let s_9 = x_c_dot * x_c_dot;
     let T_planets = coefficients.c_22 * (s_8 * s_8) + coefficients.c_23 * s_9;
-    let s_10 = coefficients.c_21 * (s_1 * s_1) + T_planets + coefficients.c_24 * s_9
+    let s_10 = coefficients.c_21 * (s_5 * s_5) + T_planets + coefficients.c_24 * s_9
         + coefficients.c_25 * s_9
-        + (coefficients.c_26 * (s_3 * s_3) + coefficients.c_27 * (s_5 * s_5));
-    let s_11 = x_sp_dot * (s_6 - coefficients.c_4 * s_2)
-        + x_pr_dot * (s_6 - coefficients.c_7 * s_4)
+        + (coefficients.c_26 * (s_3 * s_3) + coefficients.c_27 * (s_4 * s_4));
+    let s_11 = x_sp_dot * (s_6 - coefficients.c_4 * s_1)
+        + x_pr_dot * (s_6 - coefficients.c_5 * s_2)
         + coefficients.c_15 * (x_c_dot * motor);
     [
         theta_s,
@@ -559,19 +568,19 @@ pub fn energy<T: Scalar>(
     coefficients: &Coefficients<T>,
 ) -> T {
     let x_sp_dot = state[3];
-    let x_pr_dot = state[4];
-    let x_c_dot = state[5];
-    let s_1 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
     let x_sp = state[0];
-    let s_2 = deadzone(x_sp, coefficients.b_sp);
+    let x_pr_dot = state[4];
     let x_pr = state[1];
-    let s_3 = deadzone(x_pr, coefficients.b_pr);
+    let s_1 = deadzone(x_sp, coefficients.b_sp);
+    let s_2 = deadzone(x_pr, coefficients.b_pr);
+    let x_c_dot = state[5];
+    let s_3 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
     let s_4 = x_pr_dot + x_c_dot;
     let s_5 = x_c_dot * x_c_dot;
     let T_planets = coefficients.c_22 * (s_4 * s_4) + coefficients.c_23 * s_5;
-    let s_6 = coefficients.c_21 * (s_1 * s_1) + T_planets + coefficients.c_24 * s_5
+    let s_6 = coefficients.c_21 * (s_3 * s_3) + T_planets + coefficients.c_24 * s_5
         + coefficients.c_25 * s_5
-        + (coefficients.c_26 * (s_2 * s_2) + coefficients.c_27 * (s_3 * s_3));
+        + (coefficients.c_26 * (s_1 * s_1) + coefficients.c_27 * (s_2 * s_2));
     s_6
 }
 
@@ -584,14 +593,14 @@ pub fn power<T: Scalar>(
     coefficients: &Coefficients<T>,
 ) -> T {
     let x_sp_dot = state[3];
-    let x_pr_dot = state[4];
-    let x_c_dot = state[5];
     let x_sp = state[0];
+    let x_pr_dot = state[4];
     let x_pr = state[1];
+    let x_c_dot = state[5];
     let motor = coefficients.a_m
-        - coefficients.c_2 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
+        - coefficients.c_14 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
         + coefficients.F_w * sin(coefficients.omega * t);
-    let s_1 = coefficients.c_14 * motor;
+    let s_1 = coefficients.c_13 * motor;
     let s_2 = x_sp_dot
         * (s_1
             - coefficients.c_4
@@ -603,7 +612,7 @@ pub fn power<T: Scalar>(
                 ))
         + x_pr_dot
             * (s_1
-                - coefficients.c_7
+                - coefficients.c_5
                     * T::select_greater(
                         contact(x_pr, coefficients.b_pr),
                         T::number(0.0),
@@ -803,8 +812,8 @@ impl Scalar for f32 {
 /// Deflection beyond the backlash: f_k of Eq. (7).
 #[inline(always)]
 fn deadzone<T: Scalar>(p: T, b: T) -> T {
-    let beyond = T::select_greater(-b, p, p + b, T::number(0.0));
-    T::select_greater(p, b, p - b, beyond)
+    let held = T::select_greater(p, b, b, p);
+    p - T::select_greater(-b, held, -b, held)
 }
 
 /// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).

@@ -120,10 +120,13 @@ impl Writer<'_, '_, '_> {
 
     /// f_k of Eq. (7).
     fn deadzone(&mut self, p: Value, b: Value) -> Value {
-        let [above, below] = self.beyond(p, b);
-        let (less, more) = (self.ins().fsub(p, b), self.ins().fadd(p, b));
-        let otherwise = self.ins().band(below, more);
-        self.ins().bitselect(above, less, otherwise)
+        let sign = self.bits(SIGN);
+        let minus_b = self.ins().bxor(b, sign);
+        let above = self.compare(FloatCC::GreaterThan, p, b);
+        let held = self.ins().bitselect(above, b, p);
+        let below = self.compare(FloatCC::GreaterThan, minus_b, held);
+        let held = self.ins().bitselect(below, minus_b, held);
+        self.ins().fsub(p, held)
     }
 
     /// 1 where |p| > b, 0 elsewhere, Eq. (8).

@@ -22,13 +22,8 @@ pub fn call(function: Function, a: f64, b: f64) -> f64 {
 
 /// f_k of Eq. (7).
 fn deadzone(p: f64, b: f64) -> f64 {
-    if p > b {
-        p - b
-    } else if p < -b {
-        p + b
-    } else {
-        0.0
-    }
+    let held = if p > b { b } else { p };
+    p - if -b > held { -b } else { held }
 }
 
 /// 1 where |p| > b, 0 elsewhere, Eq. (8).

@@ -74,8 +74,8 @@ const DEADZONE: &str = "\
 /// Deflection beyond the backlash: f_k of Eq. (7).
 #[inline(always)]
 fn deadzone<T: Scalar>(p: T, b: T) -> T {
-    let beyond = T::select_greater(-b, p, p + b, T::number(0.0));
-    T::select_greater(p, b, p - b, beyond)
+    let held = T::select_greater(p, b, b, p);
+    p - T::select_greater(-b, held, -b, held)
 }
 ";
 

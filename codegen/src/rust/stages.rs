@@ -8,6 +8,9 @@ use super::layout::{DEEPER, SHALLOWER};
 use super::literals::{block, doc};
 use crate::program::{Extent, Op, Request, ValueId};
 
+/// The most numbers whose copy every compiler writes out: one cache line.
+const COPIED_AT_ONCE: usize = 8;
+
 impl File<'_> {
     /// The rates written to where the caller wants them, and the same returned: what is
     /// returned has to be filled with zeros first.
@@ -39,25 +42,23 @@ impl File<'_> {
         Ok(written + &self.stage(&head, "rates", "[T; STATES]", &call))
     }
 
-    /// The first half of the rates stands in the state. Two numbers in a turn: one by one the
-    /// compiler takes the loop for a copy of memory and calls a function for it, which costs
-    /// more than the copy.
+    /// The first half of the rates stands in the state. Many numbers are copied two in a turn:
+    /// one by one the compiler takes the loop for a copy of memory and calls a function for
+    /// it, which costs more than the copy. For few it writes the copy out.
     fn write_rates_of_positions(&self, body: &mut Body<'_>) {
         let degrees = self.program.degrees_of_freedom();
-        let rate = |first: usize| {
-            let (to, from) = (
-                if first == 0 {
-                    "2 * k".to_owned()
-                } else {
-                    format!("2 * k + {first}")
-                },
-                infix("+", degrees + first, "2 * k"),
-            );
-            assignment(&format!("rates[{to}]"), format!("state[{from}]"))
-        };
-        if degrees > 1 {
-            body.push_loop("k", degrees / 2, &format!("{}\n{}", rate(0), rate(1)));
+        if degrees <= COPIED_AT_ONCE {
+            let from = infix("+", degrees, "i");
+            body.push_loop("i", degrees, &format!("rates[i] = state[{from}];"));
+            return;
         }
+        let from = |first: usize| infix("+", first, "2 * k");
+        let pair = format!(
+            "rates[2 * k] = state[{}];\nrates[2 * k + 1] = state[{}];",
+            from(degrees),
+            from(degrees + 1)
+        );
+        body.push_loop("k", degrees / 2, &pair);
         if degrees % 2 == 1 {
             let last = degrees - 1;
             body.push(&format!("rates[{last}] = state[{}];", degrees + last));

@@ -103,7 +103,7 @@ fn terms_by_scale(
         }
     }
     for (scale, collected) in early {
-        let (free, bound): (Vec<_>, Vec<_>) = collected
+        let (free, bound): (Vec<_>, Vec<_>) = opened(graph, uses, collected)
             .into_iter()
             .partition(|(_, node)| takes_a_scale(graph, uses, *node));
         for (factor, node) in free {
@@ -114,6 +114,23 @@ fn terms_by_scale(
         }
     }
     terms
+}
+
+/// The terms, sums that nothing else needs replaced by theirs if all of these take a scale.
+fn opened(graph: &Graph, uses: &HashMap<Id, usize>, terms: Vec<(f64, Id)>) -> Vec<(f64, Id)> {
+    let mut all = Vec::new();
+    for (factor, node) in terms {
+        let shared = uses.get(&node).is_some_and(|uses| *uses > 1);
+        match graph.operation(node) {
+            Operation::Sum(inner)
+                if !shared && inner.iter().all(|(_, id)| takes_a_scale(graph, uses, *id)) =>
+            {
+                all.extend(inner.iter().map(|(c, id)| (factor * c.value(), *id)));
+            }
+            _ => all.push((factor, node)),
+        }
+    }
+    all
 }
 
 /// Whether a term can be scaled for nothing: it is prepared, or has a prepared factor and is not

@@ -457,11 +457,9 @@ pub fn rates_into<T: Scalar>(
     let s_6 = s_4 - coefficients.c_14 * s_5;
     let s_7 = coefficients.c_16 * s_2 - coefficients.c_13 * s_6
         - coefficients.c_15 * s_5;
-    for k in 0..1 {
-        rates[2 * k] = state[3 + 2 * k];
-        rates[2 * k + 1] = state[4 + 2 * k];
+    for i in 0..3 {
+        rates[i] = state[3 + i];
     }
-    rates[2] = state[5];
     rates[3] = theta_ddot;
     for i in 0..2 {
         rates[4 + i] = coefficients.c_19[i] * state[1 + i] - coefficients.c_12[i] * s_7

@@ -1738,11 +1738,9 @@ pub fn inlined_rates_into<T: Scalar, C: Coefficient<T>>(
             - C::read(coefficients.c_16[i]) * s_7 - C::read(coefficients.c_21[i]) * s_6
             - C::read(coefficients.c_23[i]) * s_5;
     }
-    for k in 0..1 {
-        rates[2 * k] = state[3 + 2 * k];
-        rates[2 * k + 1] = state[4 + 2 * k];
+    for i in 0..3 {
+        rates[i] = state[3 + i];
     }
-    rates[2] = state[5];
     rates[3] = theta_ddot;
     for i in 0..2 {
         rates[4 + i] = q_ddot[i];

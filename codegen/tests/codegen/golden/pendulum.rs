@@ -151,7 +151,9 @@ pub fn rates_into<T: Scalar>(
     let theta_dot = state[1];
     let theta = state[0];
     let theta_ddot = coefficients.c_3 * sin(theta) - coefficients.c_1 * theta_dot;
-    rates[0] = state[1];
+    for i in 0..1 {
+        rates[i] = state[1 + i];
+    }
     rates[1] = theta_ddot;
 }
 

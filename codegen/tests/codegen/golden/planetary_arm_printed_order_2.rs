@@ -182,51 +182,51 @@ pub struct Inputs {}
 /// What depends on the parameters alone: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients<T = f64> {
-    /// `0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)`
+    /// `a_m`
+    pub a_m: T,
+    /// `r_s*a_m/I_s`
     pub c_1: T,
-    /// `0.5*rho*A*l`
+    /// `0.3333333333333333*rho*A*l*l*l/(cos(alpha)*cos(alpha)*r_c*r_c)`
     pub c_2: T,
+    /// `0.5*rho*A*l`
+    pub c_3: T,
     /// `cholesky(block of the mass matrix)`
-    pub c_3: [[T; 2]; 2],
+    pub c_4: [[T; 2]; 2],
     /// `rho*A*l*l*INTEGRAL_S1_PHI/(cos(alpha)*r_c)`
     pub M_x_c_q: [T; 2],
     /// `1/pivot_x_c`
-    pub c_4: T,
-    /// `2.0*1/pivot_x_c`
     pub c_5: T,
+    /// `2.0*1/pivot_x_c`
+    pub c_6: T,
     /// `c_sp`
     pub c_sp: T,
     /// `3.0*c_sp`
-    pub c_6: T,
+    pub c_7: T,
     /// `b_sp`
     pub b_sp: T,
     /// `c_pr`
     pub c_pr: T,
     /// `3.0*c_pr`
-    pub c_7: T,
+    pub c_8: T,
     /// `b_pr`
     pub b_pr: T,
     /// `k_sp`
     pub k_sp: T,
     /// `3.0*k_sp`
-    pub c_8: T,
+    pub c_9: T,
     /// `k_pr`
     pub k_pr: T,
     /// `3.0*k_pr`
-    pub c_9: T,
-    /// `0.5*E*I/(l*l*l)`
     pub c_10: T,
-    /// `-(0.5*E*I/(l*l*l))`
+    /// `0.5*E*I/(l*l*l)`
     pub c_11: T,
-    /// `0.3333333333333333*r_p*r_p/I_p`
+    /// `-(0.5*E*I/(l*l*l))`
     pub c_12: T,
-    /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)`
+    /// `0.3333333333333333*r_p*r_p/I_p`
     pub c_13: T,
-    /// `r_s/I_s`
+    /// `3.0*I_p*1/pivot_x_c/(r_p*r_p)`
     pub c_14: T,
-    /// `a_m`
-    pub a_m: T,
-    /// `b_m/r_s`
+    /// `b_m/I_s`
     pub c_15: T,
     /// `r_s*r_s/I_s`
     pub c_16: T,
@@ -250,81 +250,88 @@ pub struct Coefficients<T = f64> {
     pub M_x_c_x_c: T,
     /// `1.0/r_s`
     pub c_19: T,
-    /// `2.0/r_s`
+    /// `b_m/r_s`
     pub c_20: T,
-    /// `1.0/r_p`
+    /// `2.0/r_s`
     pub c_21: T,
-    /// `1.0/(cos(alpha)*r_c)`
+    /// `1.0/r_p`
     pub c_22: T,
-    /// `1.0/(r_s*i_sH)`
+    /// `1.0/(cos(alpha)*r_c)`
     pub c_23: T,
-    /// `l/(r_s*i_sH)`
+    /// `1.0/(r_s*i_sH)`
     pub c_24: T,
-    /// `0.5*I_s/(r_s*r_s)`
+    /// `l/(r_s*i_sH)`
     pub c_25: T,
-    /// `1.5*I_p/(r_p*r_p)`
+    /// `0.5*I_s/(r_s*r_s)`
     pub c_26: T,
-    /// `1.5*m_p/(cos(alpha)*cos(alpha))`
+    /// `1.5*I_p/(r_p*r_p)`
     pub c_27: T,
-    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
+    /// `1.5*m_p/(cos(alpha)*cos(alpha))`
     pub c_28: T,
-    /// `2.0*rho*A*l*l/(cos(alpha)*r_c)`
+    /// `0.5*I_c/(cos(alpha)*cos(alpha)*r_c*r_c)`
     pub c_29: T,
-    /// `rho*A*l`
+    /// `2.0*rho*A*l*l/(cos(alpha)*r_c)`
     pub c_30: T,
-    /// `1.5*k_sp`
+    /// `rho*A*l`
     pub c_31: T,
-    /// `1.5*k_pr`
+    /// `1.5*k_sp`
     pub c_32: T,
+    /// `1.5*k_pr`
+    pub c_33: T,
     /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
     pub positive_definite: bool,
 }
 impl<T: Scalar> Coefficients<T> {
     /// The coefficients of these parameters.
     pub fn prepare(parameters: &Parameters<T>) -> Self {
-        let alpha = parameters.alpha;
-        let s_1 = cos(alpha);
-        let s_2 = s_1 * s_1;
-        let m_p = parameters.m_p;
-        let s_3 = T::number(3.0) * m_p / s_2;
         let m = parameters.m;
-        let s_4 = T::number(0.5) * m;
+        let s_1 = T::number(0.5) * m;
         let z_s = parameters.z_s;
+        let alpha = parameters.alpha;
+        let s_2 = cos(alpha);
+        let r_s = s_1 * z_s * s_2;
+        let M_s = parameters.M_s;
+        let s_3 = r_s * r_s;
+        let I_s = M_s * s_3;
+        let a_m = parameters.a_m;
+        let s_4 = s_2 * s_2;
+        let m_p = parameters.m_p;
+        let s_5 = T::number(3.0) * m_p / s_4;
         let z_p = parameters.z_p;
-        let r_c = s_4 * (z_s + z_p);
-        let s_5 = r_c * r_c;
-        let s_6 = s_2 * s_5;
+        let r_c = s_1 * (z_s + z_p);
+        let s_6 = r_c * r_c;
+        let s_7 = s_4 * s_6;
         let m_c = parameters.m_c;
-        let I_c = m_c * s_5;
-        let s_7 = I_c / s_6;
+        let I_c = m_c * s_6;
+        let s_8 = I_c / s_7;
         let rho = parameters.rho;
         let A = parameters.A;
         let l = parameters.l;
-        let s_8 = l * l;
-        let s_9 = l * s_8;
-        let s_10 = T::number(0.3333333333333333) * rho * A * s_9 / s_6;
-        let s_11 = s_1 * r_c;
-        let s_12 = rho * A;
-        let s_13 = s_12 * s_8;
-        let s_14 = T::number(0.5) * rho * A * l;
-        let mut s_15 = [[T::number(0.0); 2]; 2];
+        let s_9 = l * l;
+        let s_10 = l * s_9;
+        let s_11 = T::number(0.3333333333333333) * rho * A * s_10 / s_7;
+        let s_12 = s_2 * r_c;
+        let s_13 = rho * A;
+        let s_14 = s_13 * s_9;
+        let s_15 = T::number(0.5) * rho * A * l;
+        let mut s_16 = [[T::number(0.0); 2]; 2];
         for i in 0..2 {
             for j in 0..2 {
-                s_15[i][j] = s_15[i][j]
-                    + s_14 * T::number(INTEGRAL_PHI_BY_PHI[i][j]) * T::number(1.0);
-                s_15[i][j] = s_15[i][j]
-                    + s_14 * T::number(INTEGRAL_PHI_BY_PHI[j][i]) * T::number(1.0);
+                s_16[i][j] = s_16[i][j]
+                    + s_15 * T::number(INTEGRAL_PHI_BY_PHI[i][j]) * T::number(1.0);
+                s_16[i][j] = s_16[i][j]
+                    + s_15 * T::number(INTEGRAL_PHI_BY_PHI[j][i]) * T::number(1.0);
             }
         }
-        let s_16 = cholesky(&s_15);
+        let s_17 = cholesky(&s_16);
         let mut M_x_c_q = [T::number(0.0); 2];
         for i in 0..2 {
-            M_x_c_q[i] = s_13 * T::number(INTEGRAL_S1_PHI[i]) / s_11;
+            M_x_c_q[i] = s_14 * T::number(INTEGRAL_S1_PHI[i]) / s_12;
         }
-        let s_17 = cholesky_solve(&s_16, &M_x_c_q);
-        let s_18 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * s_17[i]);
-        let pivot_x_c = s_3 + s_7 + s_10 - s_13 * s_18 / s_11;
-        let s_19 = pivot_reciprocal(pivot_x_c);
+        let s_18 = cholesky_solve(&s_17, &M_x_c_q);
+        let s_19 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * s_18[i]);
+        let pivot_x_c = s_5 + s_8 + s_11 - s_14 * s_19 / s_12;
+        let s_20 = pivot_reciprocal(pivot_x_c);
         let c_sp = parameters.c_sp;
         let b_sp = parameters.b_sp;
         let c_pr = parameters.c_pr;
@@ -333,63 +340,58 @@ impl<T: Scalar> Coefficients<T> {
         let k_pr = parameters.k_pr;
         let E = parameters.E;
         let I = parameters.I;
-        let s_20 = T::number(0.5) * E * I / s_9;
-        let r_p = s_4 * s_1 * z_p;
-        let s_21 = r_p * r_p;
+        let s_21 = T::number(0.5) * E * I / s_10;
+        let r_p = s_1 * s_2 * z_p;
+        let s_22 = r_p * r_p;
         let M_p = parameters.M_p;
-        let I_p = M_p * s_21;
-        let s_22 = T::number(3.0) * I_p;
-        let r_s = s_4 * z_s * s_1;
-        let M_s = parameters.M_s;
-        let s_23 = r_s * r_s;
-        let I_s = M_s * s_23;
-        let a_m = parameters.a_m;
+        let I_p = M_p * s_22;
+        let s_23 = T::number(3.0) * I_p;
         let b_m = parameters.b_m;
         let F_w = parameters.F_w;
         let omega = parameters.omega;
         let mut s_24 = [T::number(0.0); 2];
         for i in 0..2 {
-            s_24[i] = s_19 * s_17[i];
+            s_24[i] = s_20 * s_18[i];
         }
-        let M_x_sp_x_sp = I_s / s_23;
-        let M_x_sp_x_c = T::number(2.0) * I_s / s_23;
-        let pivot_x_pr = s_22 / s_21;
+        let M_x_sp_x_sp = I_s / s_3;
+        let M_x_sp_x_c = T::number(2.0) * I_s / s_3;
+        let pivot_x_pr = s_23 / s_22;
         let M_x_pr_x_pr = M_x_sp_x_sp + pivot_x_pr;
         let M_x_pr_x_c = M_x_sp_x_c + pivot_x_pr;
-        let M_x_c_x_c = T::number(4.0) * I_s / s_23 + (pivot_x_pr + s_3) + s_7 + s_10;
+        let M_x_c_x_c = T::number(4.0) * I_s / s_3 + (pivot_x_pr + s_5) + s_8 + s_11;
         let z_r = parameters.z_r;
         let i_sH = T::number(1.0) + z_r / z_s;
         let s_25 = r_s * i_sH;
         let mut positive_4 = true;
         for i in 0..2 {
-            positive_4 = positive_4 && T::all_greater(s_16[i][i], T::number(0.0))
-                && T::all_greater(T::number(f64::INFINITY), s_16[i][i]);
+            positive_4 = positive_4 && T::all_greater(s_17[i][i], T::number(0.0))
+                && T::all_greater(T::number(f64::INFINITY), s_17[i][i]);
         }
         Self {
-            c_1: s_10,
-            c_2: s_14,
-            c_3: s_16,
+            a_m: a_m,
+            c_1: r_s * a_m / I_s,
+            c_2: s_11,
+            c_3: s_15,
+            c_4: s_17,
             M_x_c_q: M_x_c_q,
-            c_4: s_19,
-            c_5: T::number(2.0) * s_19,
+            c_5: s_20,
+            c_6: T::number(2.0) * s_20,
             c_sp: c_sp,
-            c_6: T::number(3.0) * c_sp,
+            c_7: T::number(3.0) * c_sp,
             b_sp: b_sp,
             c_pr: c_pr,
-            c_7: T::number(3.0) * c_pr,
+            c_8: T::number(3.0) * c_pr,
             b_pr: b_pr,
             k_sp: k_sp,
-            c_8: T::number(3.0) * k_sp,
+            c_9: T::number(3.0) * k_sp,
             k_pr: k_pr,
-            c_9: T::number(3.0) * k_pr,
-            c_10: s_20,
-            c_11: -s_20,
-            c_12: T::number(0.3333333333333333) * s_21 / I_p,
-            c_13: s_22 * s_19 / s_21,
-            c_14: r_s / I_s,
-            a_m: a_m,
-            c_15: b_m / r_s,
-            c_16: s_23 / I_s,
+            c_10: T::number(3.0) * k_pr,
+            c_11: s_21,
+            c_12: -s_21,
+            c_13: T::number(0.3333333333333333) * s_22 / I_p,
+            c_14: s_23 * s_20 / s_22,
+            c_15: b_m / I_s,
+            c_16: s_3 / I_s,
             F_w: F_w,
             c_17: r_s * F_w / I_s,
             omega: omega,
@@ -400,19 +402,20 @@ impl<T: Scalar> Coefficients<T> {
             M_x_pr_x_c: M_x_pr_x_c,
             M_x_c_x_c: M_x_c_x_c,
             c_19: T::number(1.0) / r_s,
-            c_20: T::number(2.0) / r_s,
-            c_21: T::number(1.0) / r_p,
-            c_22: T::number(1.0) / s_11,
-            c_23: T::number(1.0) / s_25,
-            c_24: l / s_25,
-            c_25: T::number(0.5) * I_s / s_23,
-            c_26: T::number(1.5) * I_p / s_21,
-            c_27: T::number(1.5) * m_p / s_2,
-            c_28: T::number(0.5) * I_c / s_6,
-            c_29: T::number(2.0) * rho * A * s_8 / s_11,
-            c_30: s_12 * l,
-            c_31: T::number(1.5) * k_sp,
-            c_32: T::number(1.5) * k_pr,
+            c_20: b_m / r_s,
+            c_21: T::number(2.0) / r_s,
+            c_22: T::number(1.0) / r_p,
+            c_23: T::number(1.0) / s_12,
+            c_24: T::number(1.0) / s_25,
+            c_25: l / s_25,
+            c_26: T::number(0.5) * I_s / s_3,
+            c_27: T::number(1.5) * I_p / s_22,
+            c_28: T::number(1.5) * m_p / s_4,
+            c_29: T::number(0.5) * I_c / s_7,
+            c_30: T::number(2.0) * rho * A * s_9 / s_12,
+            c_31: s_13 * l,
+            c_32: T::number(1.5) * k_sp,
+            c_33: T::number(1.5) * k_pr,
             positive_definite: T::all_greater(M_x_sp_x_sp, T::number(0.0))
                 && T::all_greater(T::number(f64::INFINITY), M_x_sp_x_sp)
                 && T::all_greater(pivot_x_pr, T::number(0.0))
@@ -427,28 +430,28 @@ impl Coefficients {
     #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
+            a_m: T::number(self.a_m),
             c_1: T::number(self.c_1),
             c_2: T::number(self.c_2),
-            c_3: converted_matrix(&self.c_3),
+            c_3: T::number(self.c_3),
+            c_4: converted_matrix(&self.c_4),
             M_x_c_q: converted(&self.M_x_c_q),
-            c_4: T::number(self.c_4),
             c_5: T::number(self.c_5),
-            c_sp: T::number(self.c_sp),
             c_6: T::number(self.c_6),
+            c_sp: T::number(self.c_sp),
+            c_7: T::number(self.c_7),
             b_sp: T::number(self.b_sp),
             c_pr: T::number(self.c_pr),
-            c_7: T::number(self.c_7),
+            c_8: T::number(self.c_8),
             b_pr: T::number(self.b_pr),
             k_sp: T::number(self.k_sp),
-            c_8: T::number(self.c_8),
-            k_pr: T::number(self.k_pr),
             c_9: T::number(self.c_9),
+            k_pr: T::number(self.k_pr),
             c_10: T::number(self.c_10),
             c_11: T::number(self.c_11),
             c_12: T::number(self.c_12),
             c_13: T::number(self.c_13),
             c_14: T::number(self.c_14),
-            a_m: T::number(self.a_m),
             c_15: T::number(self.c_15),
             c_16: T::number(self.c_16),
             F_w: T::number(self.F_w),
@@ -474,6 +477,7 @@ impl Coefficients {
             c_30: T::number(self.c_30),
             c_31: T::number(self.c_31),
             c_32: T::number(self.c_32),
+            c_33: T::number(self.c_33),
             positive_definite: self.positive_definite,
         }
     }
@@ -492,7 +496,7 @@ pub fn rates_into<T: Scalar>(
 ) {
     let x_sp_dot = state[5];
     let x_sp = state[0];
-    let s_1 = coefficients.c_6
+    let s_1 = coefficients.c_7
         * T::select_greater(
             contact(x_sp, coefficients.b_sp),
             T::number(0.0),
@@ -501,15 +505,15 @@ pub fn rates_into<T: Scalar>(
         );
     let x_pr_dot = state[6];
     let x_pr = state[1];
-    let s_2 = coefficients.c_7
+    let s_2 = coefficients.c_8
         * T::select_greater(
             contact(x_pr, coefficients.b_pr),
             T::number(0.0),
             x_pr_dot,
             T::number(0.0),
         );
-    let s_3 = coefficients.c_8 * deadzone(x_sp, coefficients.b_sp);
-    let s_4 = coefficients.c_9 * deadzone(x_pr, coefficients.b_pr);
+    let s_3 = coefficients.c_9 * deadzone(x_sp, coefficients.b_sp);
+    let s_4 = coefficients.c_10 * deadzone(x_pr, coefficients.b_pr);
     let mut s_5 = [T::number(0.0); 2];
     for i in 0..2 {
         for k in 0..2 {
@@ -524,26 +528,22 @@ pub fn rates_into<T: Scalar>(
     }
     let mut s_7 = [T::number(0.0); 2];
     for i in 0..2 {
-        s_7[i] = coefficients.c_11 * (s_5[i] + s_6[i]);
+        s_7[i] = coefficients.c_12 * (s_5[i] + s_6[i]);
     }
-    let s_8 = cholesky_solve(&coefficients.c_3, &s_7);
+    let s_8 = cholesky_solve(&coefficients.c_4, &s_7);
     let s_9 = sum_of_few([(); 2], |i| coefficients.M_x_c_q[i] * s_8[i]);
     let s_10 = s_1 + s_2 + s_3 + s_4 - s_9;
     let s_11 = s_1 + s_3;
-    let x_pr_ddot = coefficients.c_12 * (s_11 - s_2 - s_4 - coefficients.c_13 * s_10);
+    let x_pr_ddot = coefficients.c_13 * (s_11 - s_2 - s_4 - coefficients.c_14 * s_10);
     let x_c_dot = state[7];
-    let s_12 = coefficients.c_14
-        * (coefficients.a_m
-            - coefficients.c_15 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot))
-        - coefficients.c_5 * s_10 - x_pr_ddot;
-    let x_sp_ddot = s_12 - coefficients.c_16 * s_11
-        + coefficients.c_17 * sin(coefficients.omega * t);
-    let x_c_ddot = coefficients.c_4 * s_10;
-    for k in 0..2 {
-        rates[2 * k] = state[5 + 2 * k];
-        rates[2 * k + 1] = state[6 + 2 * k];
+    let s_12 = coefficients.c_1 - coefficients.c_6 * s_10 - x_pr_ddot
+        - coefficients.c_15 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
+        - coefficients.c_16 * s_11;
+    let x_sp_ddot = s_12 + coefficients.c_17 * sin(coefficients.omega * t);
+    let x_c_ddot = coefficients.c_5 * s_10;
+    for i in 0..5 {
+        rates[i] = state[5 + i];
     }
-    rates[4] = state[9];
     rates[5] = x_sp_ddot;
     rates[6] = x_pr_ddot;
     rates[7] = x_c_ddot;
@@ -612,7 +612,7 @@ pub fn observables<T: Scalar>(
     }
     let x_c_dot = state[7];
     let s_6 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
-    let motor = coefficients.a_m - coefficients.c_15 * s_6
+    let motor = coefficients.a_m - coefficients.c_20 * s_6
         + coefficients.F_w * sin(coefficients.omega * t);
     let s_7 = coefficients.c_19 * motor;
     let s_8 = x_sp + x_pr;
@@ -620,18 +620,18 @@ pub fn observables<T: Scalar>(
     let x_s = s_8 + T::number(2.0) * x_c;
     let theta_s = coefficients.c_19 * x_s;
     let x_p = x_pr + x_c;
-    let theta_p = coefficients.c_21 * x_p;
-    let theta_c = coefficients.c_22 * x_c;
+    let theta_p = coefficients.c_22 * x_p;
+    let theta_c = coefficients.c_23 * x_c;
     let tip = sum_of_few([(); 2], |i| T::number(PHI_AT_END[i]) * state[3 + i]);
-    let dtheta = coefficients.c_23 * s_8;
-    let s_9 = coefficients.c_24 * s_8;
+    let dtheta = coefficients.c_24 * s_8;
+    let s_9 = coefficients.c_25 * s_8;
     let f_la = tip + s_9;
     let f_la_signed = tip - s_9;
     let F_sp = coefficients.c_sp * s_1 + coefficients.k_sp * s_3;
     let F_pr = coefficients.c_pr * s_2 + coefficients.k_pr * s_4;
     let s_10 = x_pr_dot + x_c_dot;
     let s_11 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_26 * (s_10 * s_10) + coefficients.c_27 * s_11;
+    let T_planets = coefficients.c_27 * (s_10 * s_10) + coefficients.c_28 * s_11;
     let s_12 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[8 + i]);
     let mut s_13 = [T::number(0.0); 2];
     for i in 0..2 {
@@ -640,14 +640,14 @@ pub fn observables<T: Scalar>(
         }
     }
     let s_14 = sum_of_few([(); 2], |i| state[8 + i] * s_13[i]);
-    let s_15 = coefficients.c_25 * (s_6 * s_6) + T_planets + coefficients.c_28 * s_11
+    let s_15 = coefficients.c_26 * (s_6 * s_6) + T_planets + coefficients.c_29 * s_11
         + T::number(0.5)
-            * (coefficients.c_1 * s_11 + coefficients.c_29 * (x_c_dot * s_12)
-                + coefficients.c_30 * s_14);
+            * (coefficients.c_2 * s_11 + coefficients.c_30 * (x_c_dot * s_12)
+                + coefficients.c_31 * s_14);
     let s_16 = sum_of_few([(); 2], |i| state[3 + i] * s_5[i]);
-    let s_17 = x_sp_dot * (s_7 - coefficients.c_6 * s_1)
-        + x_pr_dot * (s_7 - coefficients.c_7 * s_2)
-        + coefficients.c_20 * (x_c_dot * motor);
+    let s_17 = x_sp_dot * (s_7 - coefficients.c_7 * s_1)
+        + x_pr_dot * (s_7 - coefficients.c_8 * s_2)
+        + coefficients.c_21 * (x_c_dot * motor);
     [
         theta_s,
         theta_p,
@@ -659,8 +659,8 @@ pub fn observables<T: Scalar>(
         F_sp,
         F_pr,
         s_15
-            + (coefficients.c_31 * (s_3 * s_3) + coefficients.c_32 * (s_4 * s_4)
-                + coefficients.c_10 * s_16),
+            + (coefficients.c_32 * (s_3 * s_3) + coefficients.c_33 * (s_4 * s_4)
+                + coefficients.c_11 * s_16),
         s_17,
     ]
 }
@@ -689,7 +689,7 @@ pub fn energy<T: Scalar>(
     let s_4 = x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot;
     let s_5 = x_pr_dot + x_c_dot;
     let s_6 = x_c_dot * x_c_dot;
-    let T_planets = coefficients.c_26 * (s_5 * s_5) + coefficients.c_27 * s_6;
+    let T_planets = coefficients.c_27 * (s_5 * s_5) + coefficients.c_28 * s_6;
     let s_7 = sum_of_few([(); 2], |i| T::number(INTEGRAL_S1_PHI[i]) * state[8 + i]);
     let mut s_8 = [T::number(0.0); 2];
     for i in 0..2 {
@@ -698,14 +698,14 @@ pub fn energy<T: Scalar>(
         }
     }
     let s_9 = sum_of_few([(); 2], |i| state[8 + i] * s_8[i]);
-    let s_10 = coefficients.c_25 * (s_4 * s_4) + T_planets + coefficients.c_28 * s_6
+    let s_10 = coefficients.c_26 * (s_4 * s_4) + T_planets + coefficients.c_29 * s_6
         + T::number(0.5)
-            * (coefficients.c_1 * s_6 + coefficients.c_29 * (x_c_dot * s_7)
-                + coefficients.c_30 * s_9);
+            * (coefficients.c_2 * s_6 + coefficients.c_30 * (x_c_dot * s_7)
+                + coefficients.c_31 * s_9);
     let s_11 = sum_of_few([(); 2], |i| state[3 + i] * s_3[i]);
     s_10
-        + (coefficients.c_31 * (s_1 * s_1) + coefficients.c_32 * (s_2 * s_2)
-            + coefficients.c_10 * s_11)
+        + (coefficients.c_32 * (s_1 * s_1) + coefficients.c_33 * (s_2 * s_2)
+            + coefficients.c_11 * s_11)
 }
 
 /// Power of all non-conservative forces, in W: the rate of the energy.
@@ -722,12 +722,12 @@ pub fn power<T: Scalar>(
     let x_pr = state[1];
     let x_c_dot = state[7];
     let motor = coefficients.a_m
-        - coefficients.c_15 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
+        - coefficients.c_20 * (x_sp_dot + x_pr_dot + T::number(2.0) * x_c_dot)
         + coefficients.F_w * sin(coefficients.omega * t);
     let s_1 = coefficients.c_19 * motor;
     let s_2 = x_sp_dot
         * (s_1
-            - coefficients.c_6
+            - coefficients.c_7
                 * T::select_greater(
                     contact(x_sp, coefficients.b_sp),
                     T::number(0.0),
@@ -736,14 +736,14 @@ pub fn power<T: Scalar>(
                 ))
         + x_pr_dot
             * (s_1
-                - coefficients.c_7
+                - coefficients.c_8
                     * T::select_greater(
                         contact(x_pr, coefficients.b_pr),
                         T::number(0.0),
                         x_pr_dot,
                         T::number(0.0),
                     ));
-    s_2 + coefficients.c_20 * (x_c_dot * motor)
+    s_2 + coefficients.c_21 * (x_c_dot * motor)
 }
 
 /// Switching surfaces: the equations change where one of these changes sign.
@@ -794,10 +794,10 @@ pub fn mass_matrix<T: Scalar>(
     for i in 0..2 {
         for j in 0..2 {
             values[3 + i][3 + j] = values[3 + i][3 + j]
-                + coefficients.c_2 * T::number(INTEGRAL_PHI_BY_PHI[i][j])
+                + coefficients.c_3 * T::number(INTEGRAL_PHI_BY_PHI[i][j])
                     * T::number(1.0);
             values[3 + i][3 + j] = values[3 + i][3 + j]
-                + coefficients.c_2 * T::number(INTEGRAL_PHI_BY_PHI[j][i])
+                + coefficients.c_3 * T::number(INTEGRAL_PHI_BY_PHI[j][i])
                     * T::number(1.0);
         }
     }
@@ -968,8 +968,8 @@ impl Scalar for f32 {
 /// Deflection beyond the backlash: f_k of Eq. (7).
 #[inline(always)]
 fn deadzone<T: Scalar>(p: T, b: T) -> T {
-    let beyond = T::select_greater(-b, p, p + b, T::number(0.0));
-    T::select_greater(p, b, p - b, beyond)
+    let held = T::select_greater(p, b, b, p);
+    p - T::select_greater(-b, held, -b, held)
 }
 
 /// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).
