@@ -23,6 +23,7 @@ pub mod gate;
 pub mod judge;
 pub mod labels;
 pub mod locate;
+pub mod march;
 pub mod plant;
 pub mod report;
 pub mod rule;

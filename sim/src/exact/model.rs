@@ -76,9 +76,15 @@ impl PiecewiseLinear {
     /// # Errors
     /// If the matrices are not finite or a dead zone has a negative half-width.
     pub fn at(&self, values: &[f64]) -> Result<Propagator, ExactError> {
+        Propagator::new(self.evaluator(values))
+    }
+
+    /// What gives the matrices of any regime at these values of the independent parameters,
+    /// SI, in the order of the specification.
+    pub fn evaluator(&self, values: &[f64]) -> AffineEvaluator {
         let mut evaluator = AffineEvaluator::new(self.program.clone());
         evaluator.set_parameters(values);
-        Propagator::new(evaluator)
+        evaluator
     }
 
     /// The names of the independent parameters, in the order of their values.

@@ -1,0 +1,71 @@
+//! Where within a step a function of the motion reaches its surface.
+
+use super::surfaces::Side;
+
+/// Halvings of the part of a step in which a crossing lies: a function is polished afterwards.
+const HALVINGS: usize = 30;
+
+/// A function's value and rate at one end of a step.
+type End = (f64, f64);
+
+/// The time after the beginning of a step of this length, s, at which a function leaves its
+/// side for the first time, by the cubic through both ends.
+#[inline(always)]
+pub fn first_crossing(side: Side, (begin, end): (End, End), length: f64) -> Option<f64> {
+    let sign = match side {
+        Side::Held => return None,
+        Side::Below => -1.0,
+        Side::Above => 1.0,
+    };
+    // On its side the function is positive from here on.
+    let (a, da) = ((sign * begin.0).max(0.0), sign * begin.1 * length);
+    let (b, db) = (sign * end.0, sign * end.1 * length);
+    if b >= 0.0 && (da >= 0.0 || db <= 0.0 || a + da > 0.0) {
+        return None;
+    }
+    crossing([a, da, b, db]).map(|s| s * length)
+}
+
+/// The same over a step of length 1 for a function that begins at `a` and should not be
+/// negative.
+#[inline(never)]
+fn crossing([a, da, b, db]: [f64; 4]) -> Option<f64> {
+    let (c, d) = (3.0 * (b - a) - 2.0 * da - db, 2.0 * (a - b) + da + db);
+    let value = |s: f64| a + s * (da + s * (c + s * d));
+    let mut last = 1.0;
+    // The lowest point within, where the function has one.
+    let discriminant = c * c - 3.0 * da * d;
+    if discriminant > 0.0 {
+        let root = discriminant.sqrt();
+        let candidates = [(-c + root) / (3.0 * d), (-c - root) / (3.0 * d), -0.5 * da / c];
+        for s in candidates {
+            if s > 0.0 && s < last && value(s) < 0.0 {
+                last = s;
+            }
+        }
+    }
+    if value(last) >= 0.0 {
+        return None;
+    }
+    // A motion that has just entered its side has value 0 there: what counts is when it
+    // leaves.
+    let mut first = 0.0;
+    if a == 0.0 {
+        if da <= 0.0 {
+            return Some(0.0);
+        }
+        first = 1e-6;
+        if value(first) < 0.0 {
+            return Some(0.0);
+        }
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (first + last);
+        if value(middle) < 0.0 {
+            last = middle;
+        } else {
+            first = middle;
+        }
+    }
+    Some(last)
+}

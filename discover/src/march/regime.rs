@@ -1,0 +1,182 @@
+//! One regime of a piecewise-linear model, prepared for steps of one length: x' = A x + B u,
+//! where u is a unit constant and the inputs. A state held on surfaces moves by the convex
+//! combination of the motions on both sides that keeps it there.
+
+use codegen::affine::system::{AffineEvaluator, AffineSystem};
+use nalgebra::DMatrix;
+
+use super::kernels::Columns;
+use super::surfaces::{Row, Side, Surfaces};
+
+/// Forces on the two sides of a surface that differ by less than this part do not.
+const SAME: f64 = 1e-9;
+
+/// Terms of a series for a part of a step: a step turns no mode by more than about one
+/// radian, and 1/14! is rounding's size.
+pub const TERMS: usize = 14;
+
+/// A regime.
+#[derive(Clone, Debug)]
+pub struct Regime {
+    /// The rates' matrix, states x states.
+    pub matrix: Columns,
+    /// What a unit constant and the inputs do to the rates.
+    pub given: DMatrix<f64>,
+    /// A state to the one a step later; below it the surfaces' functions there, then their
+    /// rates.
+    pub step: Columns,
+    /// What a unit constant and the inputs, held over the step, add to that.
+    pub step_given: Columns,
+    /// What accelerations held over the step add to it.
+    pub step_force: Columns,
+    /// The surfaces' functions.
+    pub functions: Vec<Row>,
+    /// And their rates.
+    pub rates: Vec<Row>,
+    /// For each surface that is held its place and its side, which must stay within 0 and 1.
+    pub held: Vec<(usize, Row)>,
+}
+
+/// The rates of a regime as matrices.
+struct Rates {
+    state: DMatrix<f64>,
+    given: DMatrix<f64>,
+}
+
+impl Rates {
+    fn of(system: &AffineSystem) -> Self {
+        let n = system.states;
+        let inputs = system.rates.inputs.len() / n.max(1);
+        Self {
+            state: DMatrix::from_row_slice(n, n, &system.rates.state),
+            given: DMatrix::from_fn(n, inputs + 1, |row, column| match column {
+                0 => system.rates.constant[row],
+                _ => system.rates.inputs[row * inputs + column - 1],
+            }),
+        }
+    }
+}
+
+impl Regime {
+    /// The regime with these sides, for steps of `step` s; none if a state cannot be held as
+    /// they say, or its matrices are not finite.
+    pub fn new(
+        evaluator: &mut AffineEvaluator,
+        surfaces: &Surfaces,
+        sides: &[Side],
+        step: f64,
+    ) -> Option<Self> {
+        let system = evaluator.system(&surfaces.numbers(sides, |_| 0.0));
+        let mut rates = Rates::of(&system);
+        let functions = surfaces.rows(&system);
+        let held = hold(evaluator, surfaces, sides, &functions, &mut rates)?;
+        if rates.state.iter().chain(rates.given.iter()).any(|e| !e.is_finite()) {
+            return None;
+        }
+        let n = system.states;
+        let columns = n + rates.given.ncols() + n / 2;
+        let mut whole = DMatrix::zeros(columns, columns);
+        whole.view_mut((0, 0), (n, n)).copy_from(&rates.state);
+        let given = rates.given.ncols();
+        whole.view_mut((0, n), (n, given)).copy_from(&rates.given);
+        for place in 0..n / 2 {
+            whole[(n / 2 + place, n + given + place)] = 1.0;
+        }
+        let flow = (whole * step).exp();
+        let speeds: Vec<Row> = functions.iter().map(|row| along(row, &rates)).collect();
+        let below: Vec<&Row> = functions.iter().chain(&speeds).collect();
+        let row_of = |row: usize, column: usize, own: Option<usize>| {
+            if row < n {
+                return flow[(row, column)];
+            }
+            let function = below[row - n];
+            let sum: f64 = (0..n).map(|k| function.state[k] * flow[(k, column)]).sum();
+            sum + own.map_or(0.0, |place| function.given[place])
+        };
+        let rows = n + below.len();
+        Some(Self {
+            matrix: Columns::of(n, n, |r, c| rates.state[(r, c)]),
+            step: Columns::of(rows, n, |r, c| row_of(r, c, None)),
+            step_given: Columns::of(rows, given, |r, c| row_of(r, n + c, Some(c))),
+            step_force: Columns::of(rows, n / 2, |r, c| row_of(r, n + given + c, None)),
+            given: rates.given,
+            functions,
+            rates: speeds,
+            held,
+        })
+    }
+}
+
+/// The rate of a function along a motion.
+fn along(row: &Row, rates: &Rates) -> Row {
+    let times = |matrix: &DMatrix<f64>| -> Vec<f64> {
+        let columns = matrix.column_iter();
+        columns
+            .map(|column| column.iter().zip(&row.state).map(|(a, b)| a * b).sum())
+            .collect()
+    };
+    Row {
+        state: times(&rates.state),
+        given: times(&rates.given),
+    }
+}
+
+/// Makes the rates those of a state that is held where the sides say so; returns what the
+/// sides then are.
+fn hold(
+    evaluator: &mut AffineEvaluator,
+    surfaces: &Surfaces,
+    sides: &[Side],
+    functions: &[Row],
+    rates: &mut Rates,
+) -> Option<Vec<(usize, Row)>> {
+    let places: Vec<usize> = (0..sides.len())
+        .filter(|place| sides[*place] == Side::Held)
+        .collect();
+    if places.is_empty() {
+        return Some(Vec::new());
+    }
+    let n = rates.state.nrows();
+    let mut jumps = DMatrix::zeros(n, places.len());
+    for (column, held) in places.iter().enumerate() {
+        let numbers = surfaces.numbers(sides, |place| f64::from(u8::from(place == *held)));
+        let other = Rates::of(&evaluator.system(&numbers));
+        let size = other.state.amax().max(rates.state.amax());
+        if (&other.state - &rates.state).amax() > SAME * size {
+            return None;
+        }
+        jumps.set_column(column, &(other.given.column(0) - rates.given.column(0)));
+    }
+    let rows = DMatrix::from_fn(places.len(), n, |r, c| functions[places[r]].state[c]);
+    let inverse = (&rows * &jumps).try_inverse()?;
+    let factor = -inverse * rows;
+    let of_state = &factor * &rates.state;
+    let of_given = &factor * &rates.given;
+    rates.state += &jumps * &of_state;
+    rates.given += &jumps * &of_given;
+    let row = |place: usize| Row {
+        state: of_state.row(place).iter().copied().collect(),
+        given: of_given.row(place).iter().copied().collect(),
+    };
+    Some(places.iter().enumerate().map(|(k, p)| (*p, row(k))).collect())
+}
+
+/// The largest magnitude of the rates' eigenvalues over the regimes, 1/s.
+pub fn fastest(evaluator: &mut AffineEvaluator, surfaces: &Surfaces) -> f64 {
+    let count = surfaces.guards.len();
+    let mut fastest: f64 = 0.0;
+    for case in 0..count + 2 {
+        let side = |place: usize| match case == count + 1 || place == case {
+            true => Side::Above,
+            false => Side::Below,
+        };
+        let sides: Vec<Side> = (0..count).map(side).collect();
+        let system = evaluator.system(&surfaces.numbers(&sides, |_| 0.0));
+        let rates = Rates::of(&system);
+        if rates.state.iter().all(|entry| entry.is_finite()) {
+            let eigenvalues = rates.state.complex_eigenvalues();
+            fastest = eigenvalues.iter().map(|e| e.norm()).fold(fastest, f64::max);
+        }
+    }
+    fastest
+}

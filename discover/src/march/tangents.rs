@@ -1,0 +1,172 @@
+//! Neighbouring motions to first order, carried along a march: through steps by the regime's
+//! own matrix, through switches by the saltation matrix, driven by accelerations that differ.
+
+use super::kernels::Columns;
+use super::regime::{Regime, TERMS};
+use super::surfaces::{Row, dot};
+
+/// A switch whose function has less than this part of its usual rate divides by nothing.
+const GRAZING: f64 = 1e-9;
+
+/// Differences of accelerations that drive neighbouring motions.
+pub trait Drives {
+    /// For each driven vector the difference of each acceleration at a state, one after the
+    /// other.
+    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
+}
+
+/// Nothing is driven.
+pub struct Free;
+
+impl Drives for Free {
+    fn at(&mut self, _: f64, _: &[f64], _: &[f64], _: &mut [f64]) {}
+}
+
+/// Tangent vectors: those of the initial state first, then the driven ones.
+pub struct Tangents<'d> {
+    states: usize,
+    /// How many are of the initial state.
+    free: usize,
+    driven: usize,
+    /// Numbers from one vector to the next.
+    pub stride: usize,
+    /// The vectors.
+    pub vectors: Vec<f64>,
+    next: Vec<f64>,
+    drives: &'d mut dyn Drives,
+    /// The drives where the motion stands, and a step later.
+    here: Vec<f64>,
+    there: Vec<f64>,
+}
+
+impl<'d> Tangents<'d> {
+    /// The vectors of all initial states, if they are wanted, and driven ones that begin as
+    /// nothing.
+    pub fn new(states: usize, by_state: bool, driven: usize, drives: &'d mut dyn Drives) -> Self {
+        Self {
+            states,
+            free: if by_state { states } else { 0 },
+            driven,
+            stride: 0,
+            vectors: Vec::new(),
+            next: Vec::new(),
+            drives,
+            here: vec![0.0; driven * (states / 2)],
+            there: vec![0.0; driven * (states / 2)],
+        }
+    }
+
+    /// Begins at a state, with vectors so far apart.
+    pub fn begin(&mut self, stride: usize, t: f64, state: &[f64], inputs: &[f64]) {
+        self.stride = stride;
+        self.vectors = vec![0.0; stride * (self.free + self.driven)];
+        for place in 0..self.free {
+            self.vectors[place * stride + place] = 1.0;
+        }
+        self.next = self.vectors.clone();
+        self.meet(t, state, inputs);
+    }
+
+    /// Finds the drives anew where the inputs changed.
+    pub fn meet(&mut self, t: f64, state: &[f64], inputs: &[f64]) {
+        self.drives.at(t, state, inputs, &mut self.here);
+    }
+
+    /// How many vectors there are.
+    pub fn count(&self) -> usize {
+        self.free + self.driven
+    }
+
+    /// Goes on by a whole step that ends at a state.
+    pub fn step(&mut self, regime: &Regime, t: f64, state: &[f64], inputs: &[f64]) {
+        self.next.fill(0.0);
+        let half = self.states / 2;
+        if self.driven > 0 {
+            self.drives.at(t, state, inputs, &mut self.there);
+            for place in 0..self.driven {
+                let range = place * half..(place + 1) * half;
+                for (a, b) in self.here[range.clone()].iter_mut().zip(&self.there[range.clone()]) {
+                    *a = 0.5 * (*a + b);
+                }
+                let first = (self.free + place) * self.stride;
+                let out = &mut self.next[first..first + self.stride];
+                regime.step_force.add_product(&self.here[range], out);
+            }
+            std::mem::swap(&mut self.here, &mut self.there);
+        }
+        regime.step.add_products(self.states, &self.vectors, &mut self.next);
+        std::mem::swap(&mut self.vectors, &mut self.next);
+    }
+
+    /// Goes on by a part of a step, s, that ends at a state.
+    pub fn part(&mut self, regime: &Regime, tau: f64, end: (f64, &[f64], &[f64])) {
+        let (n, half) = (self.states, self.states / 2);
+        let mut rates = vec![0.0; regime.matrix.rows];
+        for place in 0..self.count() {
+            let vector = &mut self.vectors[place * self.stride..place * self.stride + n];
+            rates.fill(0.0);
+            regime.matrix.add_product(vector, &mut rates);
+            if place >= self.free {
+                let first = (place - self.free) * half;
+                let drives = &self.here[first..first + half];
+                rates[half..n].iter_mut().zip(drives).for_each(|(r, d)| *r += d);
+            }
+            series(&regime.matrix, vector, &mut rates, tau);
+        }
+        let (t, state, inputs) = end;
+        self.meet(t, state, inputs);
+    }
+
+    /// Goes through a switch: the function that reached its surface, the rates before and
+    /// after.
+    pub fn switch(&mut self, function: &Row, before: &[f64], after: &[f64]) {
+        let n = self.states;
+        let rate = dot(&function.state, &before[..n]);
+        let size: f64 = function.state.iter().zip(before).map(|(a, b)| (a * b).abs()).sum();
+        if rate.abs() <= GRAZING * size {
+            return;
+        }
+        for vector in self.vectors.chunks_exact_mut(self.stride.max(1)) {
+            let delay = dot(&function.state, &vector[..n]) / rate;
+            for ((slot, a), b) in vector[..n].iter_mut().zip(after).zip(before) {
+                *slot += (a - b) * delay;
+            }
+        }
+    }
+}
+
+/// Adds to a vector how far it moves in `tau` s from its rates, by the exponential series.
+pub fn series(matrix: &Columns, vector: &mut [f64], rates: &mut [f64], tau: f64) {
+    let n = vector.len();
+    let mut next = [0.0; 64];
+    let mut large = Vec::new();
+    let next: &mut [f64] = if rates.len() <= 64 {
+        &mut next[..rates.len()]
+    } else {
+        large.resize(rates.len(), 0.0);
+        &mut large
+    };
+    for (slot, rate) in rates.iter_mut().enumerate() {
+        *rate *= tau;
+        if let Some(value) = vector.get_mut(slot) {
+            *value += *rate;
+        }
+    }
+    for term in 2..=TERMS {
+        next.fill(0.0);
+        matrix.add_product(&rates[..n], next);
+        let factor = tau / term as f64;
+        let (mut moved, mut size) = (0.0f64, 0.0f64);
+        for (place, (slot, value)) in rates.iter_mut().zip(&*next).enumerate() {
+            *slot = value * factor;
+            if let Some(sum) = vector.get_mut(place) {
+                moved += slot.abs();
+                *sum += *slot;
+                size += sum.abs();
+            }
+        }
+        if moved <= f64::EPSILON * 1e-3 * size {
+            break;
+        }
+    }
+}
