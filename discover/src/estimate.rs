@@ -6,7 +6,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::bounded::least_squares;
-use crate::shooting::{Crew, Linear, Residual, Shooting};
+use crate::crew::{Crew, Linear};
+use crate::shooting::{Residual, Shooting};
 
 /// A step that lowers the sum of squares by less than this part is the last.
 const SETTLED: f64 = 1e-3;

@@ -106,7 +106,7 @@ impl<'d> Setting<'d> {
     /// # Errors
     /// What is wrong with the text.
     pub fn plant(&self, text: &str) -> Result<Plant, String> {
-        let mut plant = Plant::of(text, &self.path, self.order, &self.dataset.channels)?;
+        let mut plant = Plant::of(text, None, &self.path, self.order, &self.dataset.channels)?;
         let record = &self.dataset.train[0];
         let first = self.first_state(&plant, record);
         plant.choose_steps(record, &first, &self.noise);

@@ -13,6 +13,7 @@
 pub mod bounded;
 pub mod candidates;
 pub mod catalogue;
+pub mod crew;
 pub mod dataset;
 pub mod document;
 pub mod estimate;
@@ -27,6 +28,7 @@ pub mod march;
 pub mod plant;
 pub mod report;
 pub mod rule;
+pub mod runner;
 pub mod screen;
 pub mod search;
 pub mod shooting;

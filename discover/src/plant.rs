@@ -1,29 +1,23 @@
-//! A model as something that can be run: its derived program, its exact propagator where it
-//! is linear between its switches, and the measured quantities among its outputs. What is
-//! estimated with it is decided elsewhere.
+//! A model as something that can be run: its derived program, its part that is linear between
+//! switches, and the measured quantities among its outputs. It runs in [`crate::runner`]; what
+//! is estimated with it is decided elsewhere.
 
-use std::cell::RefCell;
 use std::sync::Arc;
 
-use codegen::evaluator::{Evaluator, MachineCode, Point};
+use codegen::evaluator::{Evaluator, MachineCode};
 use codegen::program::Program;
 use codegen::variant::Variant;
 use model_spec::model::{Model, ParameterValue};
 use model_spec::source::Source;
-use sim::exact::{PiecewiseLinear, Propagator};
-use sim::record::HeldInputs;
-use sim::solve::{Settings, System, simulate};
+use sim::exact::PiecewiseLinear;
 
 use crate::dataset::{Channel, Quantity, Record};
-
-/// Relative error of one step of the general solver: far below any sensor's noise.
-const TOLERANCE: f64 = 1e-7;
-
-/// The most steps of the general solver in one window.
-const MOST_STEPS: u64 = 400_000;
+use crate::gate::typical_step;
+use crate::march::March;
+use crate::runner::{Beyond, Runner, Shown};
 
 /// Switches per simulated second beyond which a trial motion is given up, 1/s.
-const FASTEST_SWITCHING: f64 = 1e5;
+pub(crate) const FASTEST_SWITCHING: f64 = 1e5;
 
 /// Samples on which the number of marching steps is tried.
 const TRIED_SAMPLES: usize = 100;
@@ -46,29 +40,67 @@ pub struct Plant {
     pub values: Vec<f64>,
     /// The names of the states.
     pub states: Vec<String>,
+    code: Code,
+    linear: Option<LinearPart>,
+    pub(crate) outputs: Vec<Output>,
+    channels: Vec<String>,
+    /// Runge-Kutta steps from sample to sample, where the motion has no linear part; none
+    /// where a solver decides.
+    pub(crate) steps: Option<usize>,
+    /// The usual time from sample to sample, s, and into how many parts of it steps are made
+    /// shorter where the linear part is not all.
+    sample: f64,
+    refinement: f64,
+}
+
+/// A program with its machine code.
+struct Code {
     program: Program,
     code: Option<Arc<dyn MachineCode>>,
-    exact: Option<PiecewiseLinear>,
-    outputs: Vec<Output>,
-    channels: Vec<String>,
-    /// Steps from sample to sample, where the motion is marched; none where a solver decides.
-    steps: Option<usize>,
+}
+
+impl Code {
+    fn of(program: Program) -> Self {
+        Self {
+            code: jit::code(&program),
+            program,
+        }
+    }
+
+    fn evaluator(&self, values: &[f64]) -> Evaluator {
+        let mut evaluator = match &self.code {
+            Some(code) => Evaluator::with_code(self.program.clone(), code.clone()),
+            None => Evaluator::new(self.program.clone()),
+        };
+        evaluator.prepare(values);
+        evaluator
+    }
+}
+
+/// What of a model is linear between switches.
+struct LinearPart {
+    exact: PiecewiseLinear,
+    /// Where it is not all: the program of this part and, for each of its parameters, the
+    /// place among the whole model's.
+    beside: Option<(Code, Vec<usize>)>,
 }
 
 /// Where a channel's quantity is found.
 #[derive(Clone, Copy)]
-enum Output {
+pub(crate) enum Output {
     State(usize),
     Observable(usize),
 }
 
 impl Plant {
-    /// Derives the model of a specification's text.
+    /// Derives the model of a specification's text. `linear`: a text of the same model without
+    /// terms that are not linear between switches, if there are such terms.
     ///
     /// # Errors
     /// What is wrong with the text, in words.
     pub fn of(
         text: &str,
+        linear: Option<&str>,
         name: &str,
         order: Option<usize>,
         channels: &[Channel],
@@ -77,7 +109,7 @@ impl Plant {
         let model = checked.model;
         let orders = model.orders(order).map_err(|error| error.to_string())?;
         let variant = Variant::derive(&model, &orders).map_err(|d| d.render(false))?;
-        let exact = PiecewiseLinear::of(&model, &orders).ok();
+        let states = model.state_names(&orders);
         let program = variant.program;
         let independent =
             |p: &&model_spec::model::Parameter| matches!(p.value, ParameterValue::Number(_));
@@ -85,7 +117,17 @@ impl Plant {
             .parameters
             .iter()
             .filter(independent)
-            .map(|p| p.name.clone());
+            .map(|p| p.name.clone())
+            .collect::<Vec<_>>();
+        let whole = PiecewiseLinear::of(&model, &orders).ok();
+        let linear = match (whole, linear) {
+            (Some(exact), _) => Some(LinearPart {
+                exact,
+                beside: None,
+            }),
+            (None, Some(linear)) => linear_part(linear, name, order, &states, &parameters),
+            (None, None) => None,
+        };
         let outputs = channels.iter().map(|channel| match channel.quantity {
             Quantity::Observable(place) => Output::Observable(place),
             Quantity::Coordinate(place) => Output::State(place),
@@ -97,15 +139,16 @@ impl Plant {
                 .iter()
                 .map(|channel| channel.name.clone())
                 .collect(),
-            parameters: parameters.collect(),
+            parameters,
             values: program.default_parameters(),
-            states: model.state_names(&orders),
-            code: jit::code(&program),
+            states,
+            code: Code::of(program),
+            linear,
             steps: None,
+            sample: 0.0,
+            refinement: 1.0,
             model,
             orders,
-            program,
-            exact,
         })
     }
 
@@ -126,7 +169,7 @@ impl Plant {
         self.channels.iter().position(|channel| channel == name)
     }
 
-    fn shows_states_only(&self) -> bool {
+    pub(crate) fn shows_states_only(&self) -> bool {
         self.outputs
             .iter()
             .all(|output| matches!(output, Output::State(_)))
@@ -137,9 +180,15 @@ impl Plant {
         self.states.len()
     }
 
-    /// Whether the exact propagator takes it.
-    pub fn is_exact(&self) -> bool {
-        self.exact.is_some()
+    /// How many observables the model has.
+    pub(crate) fn observables(&self) -> usize {
+        self.code.program.observables.len()
+    }
+
+    /// A text with no terms but those that are linear between switches is enough for the
+    /// whole model.
+    pub fn is_linear(&self) -> bool {
+        self.linear.as_ref().is_some_and(|part| part.beside.is_none())
     }
 
     /// The initial state that the specification gives.
@@ -148,24 +197,30 @@ impl Plant {
         given.unwrap_or_else(|_| vec![0.0; self.state_count()])
     }
 
-    /// Decides in how many steps a motion that is not exact is marched from sample to sample:
-    /// as many as change its outputs by less than a part of the noise, tried on the beginning
-    /// of a record. Where there are none, a solver with error control goes on deciding.
+    /// Decides in how many steps a motion is marched from sample to sample, where that is not
+    /// known beforehand: as many as change its outputs by less than a part of the noise, tried
+    /// on the beginning of a record. Where there are none, a solver with error control goes on
+    /// deciding.
     pub fn choose_steps(&mut self, record: &Record, initial: &[f64], noise: &[f64]) {
-        if self.exact.is_some() {
+        self.sample = typical_step(&record.times);
+        if self.is_linear() {
             return;
         }
         let times = &record.times[..record.times.len().min(TRIED_SAMPLES)];
-        let run = |steps: usize| {
-            let mut runner = self.at(&self.values).ok()?;
-            let states = runner.march(initial, times, &record.inputs, steps)?;
-            Some(runner.shown(times, &states, &record.inputs))
+        let marched = self.linear.is_some();
+        let run = |plant: &mut Self, doubling: u32| {
+            if marched {
+                plant.refinement = f64::from(1 << doubling);
+            } else {
+                plant.steps = Some(1 << doubling);
+            }
+            let mut runner = plant.at(&plant.values).ok()?;
+            let outputs = runner.outputs(initial, times, &record.inputs).ok()?;
+            Some(outputs.values)
         };
-        let mut coarse = run(1);
-        let mut found = None;
+        let mut coarse = run(self, 0);
         for doubling in 1..MOST_DOUBLINGS {
-            let steps = 1 << doubling;
-            let fine = run(steps);
+            let fine = run(self, doubling);
             let near = |(coarse, fine): (&Vec<f64>, &Vec<f64>)| {
                 let pairs = coarse.iter().zip(fine).enumerate();
                 pairs.into_iter().all(|(place, (a, b))| {
@@ -173,12 +228,18 @@ impl Plant {
                 })
             };
             if coarse.as_ref().zip(fine.as_ref()).is_some_and(near) {
-                found = Some(steps);
-                break;
+                if marched {
+                    // A march gains a factor of four by each doubling: the coarser is enough.
+                    self.refinement = f64::from(1 << (doubling - 1));
+                }
+                return;
             }
             coarse = fine;
         }
-        self.steps = found;
+        if marched {
+            self.refinement = 1.0;
+        }
+        self.steps = None;
     }
 
     /// The model at these values of the independent parameters, ready to run.
@@ -186,282 +247,66 @@ impl Plant {
     /// # Errors
     /// Values at which there is no motion, in words.
     pub fn at(&self, values: &[f64]) -> Result<Runner<'_>, String> {
-        let mut evaluator = match &self.code {
-            Some(code) => Evaluator::with_code(self.program.clone(), code.clone()),
-            None => Evaluator::new(self.program.clone()),
-        };
-        evaluator.prepare(values);
+        let mut evaluator = self.code.evaluator(values);
         if !evaluator.pivots_are_positive() {
             return Err("the mass matrix is not positive definite".to_owned());
         }
-        let propagator = match &self.exact {
-            Some(exact) => match exact.at(values) {
-                Ok(mut propagator) => {
-                    propagator.max_switch_rate = FASTEST_SWITCHING;
-                    Some(propagator)
-                }
-                Err(error) => return Err(error.to_string()),
-            },
-            None => None,
+        let shown = Shown::of(self, &mut evaluator);
+        let mut runner = Runner::new(self, evaluator, shown);
+        let Some(part) = &self.linear else {
+            return Ok(runner);
         };
-        Ok(Runner {
-            plant: self,
-            evaluator: RefCell::new(evaluator),
-            observables: vec![0.0; self.program.observables.len()],
-            propagator,
-        })
-    }
-}
-
-/// A model at fixed parameters.
-pub struct Runner<'p> {
-    plant: &'p Plant,
-    evaluator: RefCell<Evaluator>,
-    observables: Vec<f64>,
-    propagator: Option<Propagator>,
-}
-
-/// Outputs of a window: a row per sample, a number per channel; and the state at the end.
-#[derive(Clone, Debug, Default)]
-pub struct Outputs {
-    /// Row by row.
-    pub values: Vec<f64>,
-    /// The state at the last sample.
-    pub last: Vec<f64>,
-}
-
-impl Runner<'_> {
-    /// The states at the samples (s, ascending) of a motion that starts at the first of them.
-    ///
-    /// # Errors
-    /// Why the motion cannot be followed, in words.
-    pub fn states(
-        &mut self,
-        initial: &[f64],
-        samples: &[f64],
-        inputs: &HeldInputs,
-    ) -> Result<Vec<Vec<f64>>, String> {
-        let (Some(begin), Some(end)) = (samples.first(), samples.last()) else {
-            return Ok(Vec::new());
+        let own = match &part.beside {
+            None => values.to_vec(),
+            Some((_, places)) => places.iter().map(|place| values[*place]).collect(),
         };
-        let span = (*begin, *end);
-        if let Some(propagator) = &mut self.propagator {
-            let trajectory = propagator.simulate(initial, span, samples, inputs, &mut |_| {});
-            if let Ok(trajectory) = trajectory {
-                return Ok(trajectory.states);
+        let sample = self.sample / self.refinement;
+        runner.march = March::new(part.exact.evaluator(&own), sample);
+        match (&runner.march, &part.beside) {
+            (Some(_), None) => {}
+            (Some(_), Some((code, _))) => {
+                let whole = self.code.evaluator(values);
+                runner.beyond = Some(Beyond::new(whole, code.evaluator(&own)));
             }
-        }
-        if let Some(steps) = self.plant.steps {
-            let states = self.march(initial, samples, inputs, steps);
-            return states.ok_or_else(|| "the motion grows beyond all bounds".to_owned());
-        }
-        let settings = Settings {
-            max_steps: MOST_STEPS,
-            max_switch_rate: FASTEST_SWITCHING,
-            ..Settings::with_tolerance(TOLERANCE)
-        };
-        let driven = Driven {
-            evaluator: &self.evaluator,
-            inputs,
-            states: self.plant.state_count(),
-        };
-        simulate(&driven, initial, span, samples, &settings, &mut |_| {})
-            .map(|trajectory| trajectory.states)
-            .map_err(|error| error.to_string())
-    }
-
-    /// The states at the samples by classical Runge-Kutta steps, so many from sample to
-    /// sample; none if they do not stay finite.
-    fn march(
-        &mut self,
-        initial: &[f64],
-        samples: &[f64],
-        inputs: &HeldInputs,
-        steps: usize,
-    ) -> Option<Vec<Vec<f64>>> {
-        let mut state = initial.to_vec();
-        let mut states = Vec::with_capacity(samples.len());
-        states.push(state.clone());
-        let mut slopes = [const { Vec::new() }; 4];
-        slopes
-            .iter_mut()
-            .for_each(|slope| slope.resize(state.len(), 0.0));
-        let mut trial = state.clone();
-        let evaluator = self.evaluator.get_mut();
-        for pair in samples.windows(2) {
-            let h = (pair[1] - pair[0]) / steps as f64;
-            for step in 0..steps {
-                let begin = pair[0] + step as f64 * h;
-                // Half a step on, so that rounding of a sample's time does not decide.
-                let inputs = inputs.at(begin + 0.5 * h);
-                for (stage, at) in [0.0, 0.5, 0.5, 1.0].into_iter().enumerate() {
-                    trial.copy_from_slice(&state);
-                    if stage > 0 {
-                        let slope = &slopes[stage - 1];
-                        trial
-                            .iter_mut()
-                            .zip(slope)
-                            .for_each(|(x, k)| *x += at * h * k);
-                    }
-                    let point = Point {
-                        t: begin + at * h,
-                        state: &trial,
-                        inputs,
-                    };
-                    evaluator.rates(point, &mut slopes[stage]);
-                }
-                for (place, x) in state.iter_mut().enumerate() {
-                    let [a, b, c, d] = [0, 1, 2, 3].map(|stage: usize| slopes[stage][place]);
-                    *x += h / 6.0 * (a + 2.0 * (b + c) + d);
-                }
+            (None, None) => {
+                let exact = part.exact.at(values).map_err(|error| error.to_string())?;
+                runner.propagate(exact, FASTEST_SWITCHING);
             }
-            if state.iter().any(|x| !x.is_finite()) {
-                return None;
-            }
-            states.push(state.clone());
+            (None, Some(_)) => {}
         }
-        Some(states)
+        Ok(runner)
     }
 
-    /// The channels' quantities at states: a row per sample.
-    fn shown(&mut self, times: &[f64], states: &[Vec<f64>], inputs: &HeldInputs) -> Vec<f64> {
-        let mut values = Vec::with_capacity(times.len() * self.plant.outputs.len());
-        for (t, state) in times.iter().zip(states) {
-            self.show(*t, state, inputs, &mut values);
-        }
-        values
-    }
-
-    /// The channels' quantities at the samples of a motion that starts at the first of them.
-    ///
-    /// # Errors
-    /// As [`Runner::states`].
-    pub fn outputs(
-        &mut self,
-        initial: &[f64],
-        samples: &[f64],
-        inputs: &HeldInputs,
-    ) -> Result<Outputs, String> {
-        let states = self.states(initial, samples, inputs)?;
-        let values = self.shown(samples, &states, inputs);
-        Ok(Outputs {
-            values,
-            last: states.into_iter().next_back().unwrap_or_default(),
-        })
-    }
-
-    /// The channels' quantities and their derivatives by each initial state, if the exact
-    /// propagator takes the motion: for each sample a row of derivatives per state, one number
-    /// per channel. `steps`: over how much of each state a nonlinear observable is
-    /// differentiated.
-    pub fn tangents(
-        &mut self,
-        initial: &[f64],
-        samples: &[f64],
-        inputs: &HeldInputs,
-        steps: &[f64],
-    ) -> Option<(Outputs, Vec<f64>)> {
-        let span = (*samples.first()?, *samples.last()?);
-        let count = initial.len();
-        let unit = |place: usize| {
-            (0..count)
-                .map(|k| f64::from(u8::from(k == place)))
-                .collect()
-        };
-        let directions: Vec<Vec<f64>> = (0..count).map(unit).collect();
-        let propagator = self.propagator.as_mut()?;
-        let found = propagator
-            .neighbours(initial, span, samples, inputs, directions)
-            .ok()?;
-        let channels = self.plant.outputs.len();
-        let mut outputs = Outputs::default();
-        let mut derivatives = Vec::with_capacity(samples.len() * count * channels);
-        let mut moved = vec![0.0; count];
-        for ((t, state), tangents) in samples.iter().zip(&found.states).zip(&found.derivatives) {
-            let here = outputs.values.len();
-            self.show(*t, state, inputs, &mut outputs.values);
-            for (tangent, step) in tangents.iter().zip(steps) {
-                let sums = moved.iter_mut().zip(state).zip(tangent);
-                sums.for_each(|((slot, x), d)| *slot = x + step * d);
-                let there = derivatives.len();
-                self.show(*t, &moved, inputs, &mut derivatives);
-                for channel in 0..channels {
-                    let difference = derivatives[there + channel] - outputs.values[here + channel];
-                    derivatives[there + channel] = difference / step;
-                }
-            }
-        }
-        outputs.last = found.states.into_iter().next_back().unwrap_or_default();
-        Some((outputs, derivatives))
-    }
-
-    /// Appends the channels' quantities at a state.
-    fn show(&mut self, t: f64, state: &[f64], inputs: &HeldInputs, values: &mut Vec<f64>) {
-        if !self.plant.shows_states_only() {
-            self.observe(t, state, inputs);
-        }
-        values.extend(self.plant.outputs.iter().map(|output| match *output {
-            Output::State(place) => state[place],
-            Output::Observable(place) => self.observables[place],
-        }));
-    }
-
-    fn observe(&mut self, t: f64, state: &[f64], inputs: &HeldInputs) {
-        let point = Point {
-            t,
-            state,
-            inputs: inputs.at(t),
-        };
-        let evaluator = self.evaluator.get_mut();
-        evaluator.observables(point, &mut self.observables);
-    }
-
-    /// The accelerations' part of the rates at a state.
-    pub fn rates(&mut self, t: f64, state: &[f64], inputs: &[f64]) -> Vec<f64> {
-        let mut rates = vec![0.0; state.len()];
-        let point = Point { t, state, inputs };
-        self.evaluator.get_mut().rates(point, &mut rates);
-        rates
+    /// The model's equations at these values, to be compared with others.
+    pub(crate) fn evaluator(&self, values: &[f64]) -> (Evaluator, Option<Shown>) {
+        let mut evaluator = self.code.evaluator(values);
+        let shown = Shown::of(self, &mut evaluator);
+        (evaluator, shown)
     }
 }
 
-/// A model as the general solver sees it.
-struct Driven<'a> {
-    evaluator: &'a RefCell<Evaluator>,
-    inputs: &'a HeldInputs,
-    states: usize,
-}
-
-impl Driven<'_> {
-    fn point<'b>(&'b self, t: f64, state: &'b [f64]) -> Point<'b> {
-        Point {
-            t,
-            state,
-            inputs: self.inputs.at(t),
-        }
+/// The linear part of a model whose text is given, if it has the model's states.
+fn linear_part(
+    text: &str,
+    name: &str,
+    order: Option<usize>,
+    states: &[String],
+    parameters: &[String],
+) -> Option<LinearPart> {
+    let model = model_spec::check(Source::new(name, text)).ok()?.model;
+    let orders = model.orders(order).ok()?;
+    if model.state_names(&orders) != states {
+        return None;
     }
-}
-
-impl System for Driven<'_> {
-    fn states(&self) -> usize {
-        self.states
-    }
-
-    fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        let mut evaluator = self.evaluator.borrow_mut();
-        evaluator.rates(self.point(t, y), out);
-    }
-
-    fn guard_count(&self) -> usize {
-        self.evaluator.borrow().guard_count()
-    }
-
-    fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        let mut evaluator = self.evaluator.borrow_mut();
-        evaluator.guards(self.point(t, y), out);
-    }
-
-    fn next_breakpoint(&self, t: f64) -> Option<f64> {
-        self.inputs.next_change(t)
-    }
+    let exact = PiecewiseLinear::of(&model, &orders).ok()?;
+    let places = exact.parameters().iter().map(|own| {
+        let mut all = parameters.iter();
+        all.position(|name| name == own)
+    });
+    let places = places.collect::<Option<Vec<usize>>>()?;
+    let program = Variant::derive(&model, &orders).ok()?.program;
+    Some(LinearPart {
+        exact,
+        beside: Some((Code::of(program), places)),
+    })
 }

@@ -12,7 +12,8 @@ use crate::estimate;
 use crate::fitting::{Fit, Setting};
 use crate::plant::Plant;
 use crate::rule;
-use crate::shooting::{Crew, Shooting};
+use crate::crew::Crew;
+use crate::shooting::Shooting;
 use crate::unknowns::{Unknown, What};
 
 /// Windows that are screened on; they are spread evenly.

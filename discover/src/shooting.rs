@@ -1,20 +1,14 @@
 //! Multiple shooting: what the windows' outputs are at a state for each and at the unknowns,
-//! how far they are from what was measured, and how they depend on both. Differences are in
-//! standard deviations of the sensors' noise. What to make of it is decided elsewhere.
+//! and how far they are from what was measured, in standard deviations of the sensors' noise.
+//! How they depend on both is found in [`crate::crew`]; what to make of it is decided elsewhere.
 
-use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::plant::{Plant, Runner};
+use crate::plant::Plant;
+use crate::crew::{Crew, Linear};
+use crate::runner::Runner;
 use crate::unknowns::{Unknown, What};
 use crate::windows::{Window, Windows};
-
-/// A difference quotient moves the outputs by this part of what the residual is: far above
-/// rounding, and over the small folds that impacts leave in the outputs.
-const QUOTIENT: f64 = 0.3;
-
-/// A difference quotient is not taken over more than this part of a state's own range.
-const LARGEST_QUOTIENT: f64 = 0.03;
 
 /// The sensors' part of the unknowns.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,22 +44,10 @@ pub struct Shooting<'a> {
     pub prior_weight: f64,
 }
 
-/// A window's residuals and derivatives.
-pub struct Linear {
-    /// Simulated minus measured, in noises: row by row, a number per channel; 0 where nothing
-    /// was measured.
-    pub residual: DVector<f64>,
-    /// By the initial state.
-    pub by_state: DMatrix<f64>,
-    /// By the unknowns.
-    pub by_unknown: DMatrix<f64>,
-    /// The state at the window's end.
-    pub last: Vec<f64>,
-}
-
 /// A window's residuals.
 pub struct Residual {
-    /// As in [`Linear`].
+    /// Simulated minus measured, in noises: row by row, a number per channel; 0 where nothing
+    /// was measured.
     pub values: Vec<f64>,
     /// The state at the window's end.
     pub last: Vec<f64>,
@@ -180,12 +162,12 @@ impl<'a> Shooting<'a> {
     }
 
     /// Differences from what was measured, in noises.
-    fn normalised(&self, window: &Window, seen: &[f64]) -> Vec<f64> {
+    pub(crate) fn normalised(&self, window: &Window, seen: &[f64]) -> Vec<f64> {
         self.differences(window, seen, |seen, measured| seen - measured)
     }
 
     /// A function of what is seen and measured, in noises; 0 where nothing counts.
-    fn differences(&self, window: &Window, seen: &[f64], of: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    pub(crate) fn differences(&self, window: &Window, seen: &[f64], of: impl Fn(f64, f64) -> f64) -> Vec<f64> {
         let channels = self.channels();
         let samples = seen.len() / channels;
         let margin = self.margin.min(samples / 4);
@@ -232,226 +214,10 @@ impl<'a> Shooting<'a> {
     }
 }
 
-/// The plant at the unknowns and at neighbouring values of each parameter.
-pub struct Crew<'a> {
-    shooting: Shooting<'a>,
-    base: Runner<'a>,
-    sensors: Sensors,
-    /// For each unknown that is a parameter the neighbouring plant and the step.
-    neighbours: Vec<Option<(Runner<'a>, f64)>>,
-    level: f64,
-}
-
-impl<'a> Crew<'a> {
-    /// The crew at these unknowns, if there is a motion.
-    pub fn new(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
-        let values = shooting.values(theta);
-        let mut neighbours = Vec::with_capacity(theta.len());
-        for (place, unknown) in shooting.unknowns.iter().enumerate() {
-            if !matches!(unknown.what, What::Parameter(_) | What::Inverse(_)) {
-                neighbours.push(None);
-                continue;
-            }
-            let step = quotient_step(unknown, theta[place]);
-            let mut moved = theta.to_vec();
-            moved[place] += step;
-            neighbours.push(Some((
-                shooting.plant.at(&shooting.values(&moved)).ok()?,
-                step,
-            )));
-        }
-        Some(Self {
-            base: shooting.plant.at(&values).ok()?,
-            sensors: shooting.sensors(theta),
-            neighbours,
-            level,
-            shooting: *shooting,
-        })
-    }
-
-    /// The crew at these unknowns, which are not differentiated by.
-    pub fn frozen(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
-        Some(Self {
-            base: shooting.plant.at(&shooting.values(theta)).ok()?,
-            sensors: shooting.sensors(theta),
-            neighbours: Vec::new(),
-            level,
-            shooting: *shooting,
-        })
-    }
-
-    /// From here on only this part of a window is looked at, from its beginning.
-    pub fn see(&mut self, part: f64) {
-        self.shooting.part = part;
-    }
-
-    /// The state that a window's motion reaches at a time, s.
-    pub fn carried(&mut self, place: usize, start: &[f64], until: f64) -> Option<Vec<f64>> {
-        let window = &self.shooting.windows.list[place];
-        let inputs = self.shooting.windows.inputs(window);
-        let states = self
-            .base
-            .states(start, &[window.times[0], until], inputs)
-            .ok()?;
-        states.into_iter().next_back()
-    }
-
-    /// A window's residuals alone.
-    pub fn residual(&mut self, place: usize, start: &[f64]) -> Option<Residual> {
-        let shooting = self.shooting;
-        shooting.residual(&mut self.base, &self.sensors, place, start)
-    }
-
-    /// A window's residuals and derivatives.
-    pub fn linear(&mut self, place: usize, start: &[f64]) -> Option<Linear> {
-        let shooting = self.shooting;
-        let window = &shooting.windows.list[place];
-        let inputs = shooting.windows.inputs(window);
-        let times = &window.times[..samples_in(window, shooting.part)];
-        let steps: Vec<f64> = (shooting.ranges.unwrap_or_default().iter())
-            .map(|range| LARGEST_QUOTIENT * range)
-            .collect();
-        let tangents = match shooting.ranges {
-            Some(_) => self.base.tangents(start, times, inputs, &steps),
-            None => None,
-        };
-        let (outputs, derivatives) = match tangents {
-            Some((outputs, derivatives)) => (outputs, Some(derivatives)),
-            None => (self.base.outputs(start, times, inputs).ok()?, None),
-        };
-        let seen = shooting.seen(times, &self.sensors, &outputs.values);
-        let residual = DVector::from_vec(shooting.normalised(window, &seen));
-        if residual.iter().any(|r| !r.is_finite()) {
-            return None;
-        }
-        let by_state = match derivatives {
-            Some(derivatives) => self.by_tangents(window, times, start.len(), &derivatives),
-            None => self.by_state(place, start, &residual)?,
-        };
-        let mut by_unknown = DMatrix::zeros(residual.len(), self.neighbours.len());
-        for (column, neighbour) in self.neighbours.iter_mut().enumerate() {
-            let unknown = &shooting.unknowns[column];
-            let (moved, step) = match neighbour {
-                Some((runner, step)) => {
-                    let moved = runner.outputs(start, times, inputs).ok()?;
-                    (shooting.seen(times, &self.sensors, &moved.values), *step)
-                }
-                None => {
-                    let (sensors, step) = moved_sensors(&self.sensors, unknown);
-                    (shooting.seen(times, &sensors, &outputs.values), step)
-                }
-            };
-            let moved = shooting.normalised(window, &moved);
-            for (row, (after, before)) in moved.iter().zip(residual.iter()).enumerate() {
-                by_unknown[(row, column)] = (after - before) / step;
-            }
-        }
-        let finite = by_unknown.iter().all(|entry: &f64| entry.is_finite());
-        finite.then_some(Linear {
-            residual,
-            by_state,
-            by_unknown,
-            last: outputs.last,
-        })
-    }
-
-    /// The derivative by the initial state from the quantities' own derivatives.
-    fn by_tangents(
-        &self,
-        window: &Window,
-        times: &[f64],
-        states: usize,
-        derivatives: &[f64],
-    ) -> DMatrix<f64> {
-        let shooting = &self.shooting;
-        let channels = shooting.channels();
-        let sensors = Sensors {
-            bias: vec![0.0; channels],
-            ..self.sensors.clone()
-        };
-        let rows = times.len() * channels;
-        let mut matrix = DMatrix::zeros(rows, states);
-        let mut column = vec![0.0; rows];
-        for state in 0..states {
-            for sample in 0..times.len() {
-                let from = (sample * states + state) * channels;
-                let to = sample * channels;
-                column[to..to + channels].copy_from_slice(&derivatives[from..from + channels]);
-            }
-            let seen = shooting.seen(times, &sensors, &column);
-            let differences = shooting.differences(window, &seen, |seen, _| seen);
-            matrix.column_mut(state).copy_from_slice(&differences);
-        }
-        matrix
-    }
-
-    /// The derivative by the initial state; no columns where that is given.
-    fn by_state(
-        &mut self,
-        place: usize,
-        start: &[f64],
-        residual: &DVector<f64>,
-    ) -> Option<DMatrix<f64>> {
-        let shooting = self.shooting;
-        let Some(ranges) = shooting.ranges else {
-            return Some(DMatrix::zeros(residual.len(), 0));
-        };
-        let mut matrix = DMatrix::zeros(residual.len(), start.len());
-        let mut moved = start.to_vec();
-        for state in 0..start.len() {
-            let largest = LARGEST_QUOTIENT * ranges[state];
-            let mut step = largest;
-            // The step that moves the outputs as wanted is found by trying: what a state does
-            // to them differs by orders of magnitude.
-            for _ in 0..3 {
-                moved[state] = start[state] + step;
-                let after = self.residual(place, &moved)?;
-                let differences = after.values.iter().zip(residual.iter()).map(|(a, b)| a - b);
-                let mut column = matrix.column_mut(state);
-                let mut furthest: f64 = 0.0;
-                for (slot, difference) in column.iter_mut().zip(differences) {
-                    *slot = difference / step;
-                    furthest = furthest.max(difference.abs());
-                }
-                let wanted = QUOTIENT * self.level * 4.0;
-                if furthest <= 4.0 * wanted {
-                    break;
-                }
-                step *= wanted / furthest;
-            }
-            moved[state] = start[state];
-        }
-        Some(matrix)
-    }
-}
-
 /// How many samples a part of a window holds.
-fn samples_in(window: &Window, part: f64) -> usize {
+pub(crate) fn samples_in(window: &Window, part: f64) -> usize {
     let count = window.times.len();
     ((part * count as f64) as usize).clamp(count.min(8), count)
-}
-
-/// The step of a parameter's difference quotient; away from a bound that is near.
-fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
-    let step = 0.01 * unknown.scale;
-    if value + step > unknown.bounds.1 {
-        -step
-    } else {
-        step
-    }
-}
-
-/// The sensors with one unknown moved, and the step.
-fn moved_sensors(sensors: &Sensors, unknown: &Unknown) -> (Sensors, f64) {
-    let step = 0.1 * unknown.scale;
-    let mut moved = sensors.clone();
-    match unknown.what {
-        What::Gain(place) => moved.gain[place] += step,
-        What::Bias(place) => moved.bias[place] += step,
-        What::Delay(place) => moved.delay[place] += step,
-        What::Parameter(_) | What::Inverse(_) => {}
-    }
-    (moved, step)
 }
 
 /// A channel's quantity at a time near a sample, by the cubic through its four neighbours.

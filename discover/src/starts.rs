@@ -5,7 +5,8 @@ use crate::dataset::{Channel, Initial, Quantity, Record};
 use crate::estimate::{StartPrior, settle};
 use crate::plant::Plant;
 use crate::rule;
-use crate::shooting::{Crew, Shooting};
+use crate::crew::Crew;
+use crate::shooting::Shooting;
 use crate::smooth::{sloped, smoothed};
 use crate::windows::Windows;
 
