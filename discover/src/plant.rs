@@ -105,6 +105,28 @@ impl Plant {
         order: Option<usize>,
         channels: &[Channel],
     ) -> Result<Self, String> {
+        let mut plant = Self::equations(text, name, order, channels)?;
+        plant.linear = match (PiecewiseLinear::of(&plant.model, &plant.orders), linear) {
+            (Ok(exact), _) => Some(LinearPart {
+                exact,
+                beside: None,
+            }),
+            (Err(_), Some(linear)) => linear_part(linear, name, order, &plant),
+            (Err(_), None) => None,
+        };
+        Ok(plant)
+    }
+
+    /// The same with its equations alone, to be compared with another's.
+    ///
+    /// # Errors
+    /// As for [`Plant::of`].
+    pub fn equations(
+        text: &str,
+        name: &str,
+        order: Option<usize>,
+        channels: &[Channel],
+    ) -> Result<Self, String> {
         let checked = model_spec::check(Source::new(name, text)).map_err(|d| d.render(false))?;
         let model = checked.model;
         let orders = model.orders(order).map_err(|error| error.to_string())?;
@@ -119,15 +141,6 @@ impl Plant {
             .filter(independent)
             .map(|p| p.name.clone())
             .collect::<Vec<_>>();
-        let whole = PiecewiseLinear::of(&model, &orders).ok();
-        let linear = match (whole, linear) {
-            (Some(exact), _) => Some(LinearPart {
-                exact,
-                beside: None,
-            }),
-            (None, Some(linear)) => linear_part(linear, name, order, &states, &parameters),
-            (None, None) => None,
-        };
         let outputs = channels.iter().map(|channel| match channel.quantity {
             Quantity::Observable(place) => Output::Observable(place),
             Quantity::Coordinate(place) => Output::State(place),
@@ -143,7 +156,7 @@ impl Plant {
             values: program.default_parameters(),
             states,
             code: Code::of(program),
-            linear,
+            linear: None,
             steps: None,
             sample: 0.0,
             refinement: 1.0,
@@ -285,24 +298,29 @@ impl Plant {
     }
 }
 
+/// Whether a text's model is linear between its switches.
+pub fn is_linear(text: &str, name: &str, order: Option<usize>) -> bool {
+    let Ok(checked) = model_spec::check(Source::new(name, text)) else {
+        return false;
+    };
+    let orders = checked.model.orders(order);
+    orders.is_ok_and(|orders| PiecewiseLinear::of(&checked.model, &orders).is_ok())
+}
+
 /// The linear part of a model whose text is given, if it has the model's states.
 fn linear_part(
     text: &str,
     name: &str,
     order: Option<usize>,
-    states: &[String],
-    parameters: &[String],
+    plant: &Plant,
 ) -> Option<LinearPart> {
     let model = model_spec::check(Source::new(name, text)).ok()?.model;
     let orders = model.orders(order).ok()?;
-    if model.state_names(&orders) != states {
+    if model.state_names(&orders) != plant.states {
         return None;
     }
     let exact = PiecewiseLinear::of(&model, &orders).ok()?;
-    let places = exact.parameters().iter().map(|own| {
-        let mut all = parameters.iter();
-        all.position(|name| name == own)
-    });
+    let places = exact.parameters().iter().map(|own| plant.place(own));
     let places = places.collect::<Option<Vec<usize>>>()?;
     let program = Variant::derive(&model, &orders).ok()?.program;
     Some(LinearPart {

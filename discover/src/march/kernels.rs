@@ -3,7 +3,7 @@
 use fearless_simd::{Level, dispatch};
 
 /// Rows are filled up to a multiple of this.
-const GROUP: usize = 8;
+pub const GROUP: usize = 8;
 
 /// A matrix whose columns stand one after the other, filled with zeros to whole groups of rows.
 #[derive(Clone, Debug, Default)]
@@ -49,16 +49,53 @@ impl Columns {
 
 #[inline(always)]
 fn add_product(entries: &[f64], rows: usize, vector: &[f64], out: &mut [f64]) {
-    for first in (0..rows).step_by(GROUP) {
-        let mut sums = [0.0; GROUP];
-        sums.copy_from_slice(&out[first..first + GROUP]);
-        for (column, factor) in entries.chunks_exact(rows).zip(vector) {
-            let column = &column[first..first + GROUP];
-            for (sum, entry) in sums.iter_mut().zip(column) {
-                *sum += entry * factor;
+    match rows / GROUP {
+        1 => add_groups::<1>(entries, vector, out),
+        2 => add_groups::<2>(entries, vector, out),
+        3 => add_groups::<3>(entries, vector, out),
+        4 => add_groups::<4>(entries, vector, out),
+        _ => {
+            for (column, factor) in entries.chunks_exact(rows).zip(vector) {
+                for (slot, entry) in out.iter_mut().zip(column) {
+                    *slot += entry * factor;
+                }
             }
         }
-        out[first..first + GROUP].copy_from_slice(&sums);
+    }
+}
+
+/// The same for so many groups of rows, whose sums stay in registers: those of even and of odd
+/// columns apart, so that one addition need not wait for the other.
+#[inline(always)]
+fn add_groups<const GROUPS: usize>(entries: &[f64], vector: &[f64], out: &mut [f64]) {
+    let (entries, _) = entries.as_chunks::<GROUP>();
+    let (out, _) = out.as_chunks_mut::<GROUP>();
+    let mut even = [[0.0; GROUP]; GROUPS];
+    let mut odd = [[0.0; GROUP]; GROUPS];
+    even.copy_from_slice(&out[..GROUPS]);
+    let (pairs, last) = vector.as_chunks::<2>();
+    let mut columns = entries.chunks_exact(2 * GROUPS);
+    for (columns, [a, b]) in columns.by_ref().zip(pairs) {
+        for group in 0..GROUPS {
+            for lane in 0..GROUP {
+                even[group][lane] += columns[group][lane] * a;
+                odd[group][lane] += columns[GROUPS + group][lane] * b;
+            }
+        }
+    }
+    if let [factor] = last {
+        let first = 2 * GROUPS * pairs.len();
+        let column = &entries[first..first + GROUPS];
+        for group in 0..GROUPS {
+            for lane in 0..GROUP {
+                even[group][lane] += column[group][lane] * factor;
+            }
+        }
+    }
+    for group in 0..GROUPS {
+        for lane in 0..GROUP {
+            out[group][lane] = even[group][lane] + odd[group][lane];
+        }
     }
 }
 

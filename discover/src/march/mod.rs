@@ -26,8 +26,8 @@ use surfaces::{Side, Surfaces, dot};
 pub use tangents::{Drives, Free, Tangents};
 
 /// The fastest mode turns by so many radians in a step: the cubic through a step's ends then
-/// knows where a surface is crossed to a thousandth.
-const TURN: f64 = 1.0;
+/// knows where a surface is crossed to a hundredth, and finds it from there.
+const TURN: f64 = 1.5;
 
 /// Steps from sample to sample at least: forces that are held over a step follow a motion
 /// that the samples show.
@@ -38,6 +38,9 @@ const MOST_STEPS: f64 = 256.0;
 
 /// Crossings within a step after which the rest of it is made without looking.
 const MOST_CROSSINGS: usize = 12;
+
+/// The motion itself is right to this part of its size.
+const ROUNDING: f64 = 1e-16;
 
 /// Where a function's rate leads back by less than this part of its size, it does not.
 const LEADS_BACK: f64 = 1e-9;
@@ -187,8 +190,7 @@ impl March {
             force.at(t, &motion.state, values, &mut motion.force);
         }
         if let Some(tangents) = &mut company.tangents {
-            let stride = self.regimes[motion.regime].step.rows;
-            tangents.begin(stride, t, &motion.state, values);
+            tangents.begin(t, &motion.state, values);
         }
         Ok(motion)
     }
@@ -236,11 +238,15 @@ impl March {
         let count = if whole { rounded.max(1.0) } else { count };
         let length = (until - begin) / count;
         for place in 1..=count as usize {
-            self.release(motion)?;
+            self.release(motion, begin + (place - 1) as f64 * length, company)?;
             let end = begin + place as f64 * length;
             if !(whole && self.whole_step(motion, end, inputs, company)) {
                 self.parts(motion, length, end, inputs, company)?;
             }
+        }
+        if let Some(tangents) = &mut company.tangents {
+            let regime = &self.regimes[motion.regime];
+            tangents.catch_up(regime, until, &motion.state, inputs);
         }
         Ok(())
     }
@@ -272,7 +278,12 @@ impl March {
     }
 
     /// Lets go what is no longer held.
-    fn release(&mut self, motion: &mut Motion) -> Result<(), String> {
+    fn release(
+        &mut self,
+        motion: &mut Motion,
+        t: f64,
+        company: &mut Company<'_, '_>,
+    ) -> Result<(), String> {
         let regime = &self.regimes[motion.regime];
         if regime.held.is_empty() {
             return Ok(());
@@ -286,6 +297,9 @@ impl March {
             }
         }
         if changed {
+            if let Some(tangents) = &mut company.tangents {
+                tangents.catch_up(regime, t, &motion.state, &motion.given[1..]);
+            }
             motion.regime = self.regime(&motion.sides)?;
             self.prepare(motion);
         }
@@ -359,6 +373,10 @@ impl March {
     ) -> Result<(), String> {
         let mut rest = length;
         let surfaces = motion.sides.len();
+        if let Some(tangents) = &mut company.tangents {
+            let regime = &self.regimes[motion.regime];
+            tangents.catch_up(regime, end - length, &motion.state, inputs);
+        }
         for _ in 0..MOST_CROSSINGS {
             self.watch(motion);
             let begin = (motion.watched.clone(), motion.state.clone());
@@ -410,7 +428,7 @@ impl March {
         let regime = &self.regimes[motion.regime];
         let mut rates = vec![0.0; regime.matrix.rows];
         self.rates(motion, &mut rates);
-        tangents::series(&regime.matrix, &mut motion.state, &mut rates, tau);
+        tangents::series(&regime.matrix, &mut motion.state, &mut rates, tau, ROUNDING);
     }
 
     /// The rates where the motion stands.

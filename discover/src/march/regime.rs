@@ -15,6 +15,9 @@ const SAME: f64 = 1e-9;
 /// radian, and 1/14! is rounding's size.
 pub const TERMS: usize = 14;
 
+/// Steps that neighbouring motions make at once are doubled so often at most.
+const DOUBLINGS: usize = 6;
+
 /// A regime.
 #[derive(Clone, Debug)]
 pub struct Regime {
@@ -29,6 +32,9 @@ pub struct Regime {
     pub step_given: Columns,
     /// What accelerations held over the step add to it.
     pub step_force: Columns,
+    /// For neighbouring motions: the state's part of one step, of two, four and so on, and what
+    /// accelerations held so long add.
+    pub doubled: Vec<(Columns, Columns)>,
     /// The surfaces' functions.
     pub functions: Vec<Row>,
     /// And their rates.
@@ -83,6 +89,15 @@ impl Regime {
             whole[(n / 2 + place, n + given + place)] = 1.0;
         }
         let flow = (whole * step).exp();
+        let mut doubled = Vec::with_capacity(DOUBLINGS);
+        let mut longer = flow.clone();
+        for _ in 0..DOUBLINGS {
+            doubled.push((
+                Columns::of(n, n, |r, c| longer[(r, c)]),
+                Columns::of(n, n / 2, |r, c| longer[(r, n + given + c)]),
+            ));
+            longer = &longer * &longer;
+        }
         let speeds: Vec<Row> = functions.iter().map(|row| along(row, &rates)).collect();
         let below: Vec<&Row> = functions.iter().chain(&speeds).collect();
         let row_of = |row: usize, column: usize, own: Option<usize>| {
@@ -99,6 +114,7 @@ impl Regime {
             step: Columns::of(rows, n, |r, c| row_of(r, c, None)),
             step_given: Columns::of(rows, given, |r, c| row_of(r, n + c, Some(c))),
             step_force: Columns::of(rows, n / 2, |r, c| row_of(r, n + given + c, None)),
+            doubled,
             given: rates.given,
             functions,
             rates: speeds,

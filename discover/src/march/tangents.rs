@@ -1,12 +1,18 @@
 //! Neighbouring motions to first order, carried along a march: through steps by the regime's
 //! own matrix, through switches by the saltation matrix, driven by accelerations that differ.
 
-use super::kernels::Columns;
+use super::kernels::{self, Columns};
 use super::regime::{Regime, TERMS};
 use super::surfaces::{Row, dot};
 
 /// A switch whose function has less than this part of its usual rate divides by nothing.
 const GRAZING: f64 = 1e-9;
+
+/// Steps over which drives are held, at their mean over both ends.
+const DRIVEN_STEPS: usize = 4;
+
+/// A neighbouring motion through a part of a step is right to this part of its size.
+const PART_ERROR: f64 = 1e-9;
 
 /// Differences of accelerations that drive neighbouring motions.
 pub trait Drives {
@@ -33,6 +39,8 @@ pub struct Tangents<'d> {
     /// The vectors.
     pub vectors: Vec<f64>,
     next: Vec<f64>,
+    /// Steps that the motion has made and the vectors have not.
+    pending: usize,
     drives: &'d mut dyn Drives,
     /// The drives where the motion stands, and a step later.
     here: Vec<f64>,
@@ -47,7 +55,8 @@ impl<'d> Tangents<'d> {
             states,
             free: if by_state { states } else { 0 },
             driven,
-            stride: 0,
+            stride: states.next_multiple_of(kernels::GROUP),
+            pending: 0,
             vectors: Vec::new(),
             next: Vec::new(),
             drives,
@@ -56,20 +65,23 @@ impl<'d> Tangents<'d> {
         }
     }
 
-    /// Begins at a state, with vectors so far apart.
-    pub fn begin(&mut self, stride: usize, t: f64, state: &[f64], inputs: &[f64]) {
-        self.stride = stride;
+    /// Begins at a state.
+    pub fn begin(&mut self, t: f64, state: &[f64], inputs: &[f64]) {
+        let stride = self.stride;
         self.vectors = vec![0.0; stride * (self.free + self.driven)];
         for place in 0..self.free {
             self.vectors[place * stride + place] = 1.0;
         }
         self.next = self.vectors.clone();
+        self.pending = 0;
         self.meet(t, state, inputs);
     }
 
-    /// Finds the drives anew where the inputs changed.
+    /// Finds the drives anew where the motion stands.
     pub fn meet(&mut self, t: f64, state: &[f64], inputs: &[f64]) {
-        self.drives.at(t, state, inputs, &mut self.here);
+        if self.driven > 0 {
+            self.drives.at(t, state, inputs, &mut self.here);
+        }
     }
 
     /// How many vectors there are.
@@ -77,24 +89,43 @@ impl<'d> Tangents<'d> {
         self.free + self.driven
     }
 
-    /// Goes on by a whole step that ends at a state.
+    /// The motion went on by a whole step, to a state.
     pub fn step(&mut self, regime: &Regime, t: f64, state: &[f64], inputs: &[f64]) {
-        self.next.fill(0.0);
-        let half = self.states / 2;
+        self.pending += 1;
+        if self.driven > 0 && self.pending == DRIVEN_STEPS {
+            self.catch_up(regime, t, state, inputs);
+        }
+    }
+
+    /// Makes the steps that are still to be made, in a regime, up to a state.
+    pub fn catch_up(&mut self, regime: &Regime, t: f64, state: &[f64], inputs: &[f64]) {
+        if self.pending == 0 {
+            return;
+        }
         if self.driven > 0 {
             self.drives.at(t, state, inputs, &mut self.there);
-            for place in 0..self.driven {
-                let range = place * half..(place + 1) * half;
-                for (a, b) in self.here[range.clone()].iter_mut().zip(&self.there[range.clone()]) {
-                    *a = 0.5 * (*a + b);
-                }
-                let first = (self.free + place) * self.stride;
-                let out = &mut self.next[first..first + self.stride];
-                regime.step_force.add_product(&self.here[range], out);
+            for (a, b) in self.here.iter_mut().zip(&self.there) {
+                *a = 0.5 * (*a + b);
             }
-            std::mem::swap(&mut self.here, &mut self.there);
         }
-        regime.step.add_products(self.states, &self.vectors, &mut self.next);
+        while self.pending > 0 {
+            let doubling = (self.pending.ilog2() as usize).min(regime.doubled.len() - 1);
+            self.pending -= 1 << doubling;
+            self.several(&regime.doubled[doubling]);
+        }
+        std::mem::swap(&mut self.here, &mut self.there);
+    }
+
+    /// Makes several steps at once, with the drives held.
+    fn several(&mut self, (state, force): &(Columns, Columns)) {
+        let half = self.states / 2;
+        self.next.fill(0.0);
+        for place in 0..self.driven {
+            let first = (self.free + place) * self.stride;
+            let out = &mut self.next[first..first + self.stride];
+            force.add_product(&self.here[place * half..(place + 1) * half], out);
+        }
+        state.add_products(self.states, &self.vectors, &mut self.next);
         std::mem::swap(&mut self.vectors, &mut self.next);
     }
 
@@ -111,7 +142,7 @@ impl<'d> Tangents<'d> {
                 let drives = &self.here[first..first + half];
                 rates[half..n].iter_mut().zip(drives).for_each(|(r, d)| *r += d);
             }
-            series(&regime.matrix, vector, &mut rates, tau);
+            series(&regime.matrix, vector, &mut rates, tau, PART_ERROR);
         }
         let (t, state, inputs) = end;
         self.meet(t, state, inputs);
@@ -135,8 +166,9 @@ impl<'d> Tangents<'d> {
     }
 }
 
-/// Adds to a vector how far it moves in `tau` s from its rates, by the exponential series.
-pub fn series(matrix: &Columns, vector: &mut [f64], rates: &mut [f64], tau: f64) {
+/// Adds to a vector how far it moves in `tau` s from its rates, by the exponential series,
+/// until a term is smaller than a part of the vector.
+pub fn series(matrix: &Columns, vector: &mut [f64], rates: &mut [f64], tau: f64, error: f64) {
     let n = vector.len();
     let mut next = [0.0; 64];
     let mut large = Vec::new();
@@ -165,7 +197,7 @@ pub fn series(matrix: &Columns, vector: &mut [f64], rates: &mut [f64], tau: f64)
                 size += sum.abs();
             }
         }
-        if moved <= f64::EPSILON * 1e-3 * size {
+        if moved <= error * size {
             break;
         }
     }
