@@ -135,13 +135,17 @@ impl<'a> Crew<'a> {
         let window = &shooting.windows.list[place];
         let inputs = shooting.windows.inputs(window);
         let times = &window.times[..samples_in(window, shooting.part)];
-        let mut drives = Neighbours::of(&mut self.neighbours, &mut self.equations, start.len());
-        let count = drives.moved.len();
+        let moved = self.neighbours.iter_mut().flatten();
+        let moved = moved.filter_map(|(neighbour, step)| match neighbour {
+            Neighbour::Drives(evaluator, _) => Some((&mut **evaluator, *step)),
+            Neighbour::Runs(_) => None,
+        });
+        let mut drives = Differences::new(&mut self.equations, moved.collect());
+        let count = drives.count();
         let by_state = shooting.ranges.is_some();
         let marched =
             self.base
                 .linearised(start, times, inputs, by_state, (count, &mut drives))?;
-        drop(drives);
         let seen = shooting.seen(times, &self.sensors, &marched.outputs.values);
         let residual = DVector::from_vec(shooting.normalised(window, &seen));
         let states = if by_state { start.len() } else { 0 };
@@ -183,6 +187,25 @@ impl<'a> Crew<'a> {
             by_unknown,
             last: marched.outputs.last,
         })
+    }
+
+    /// What drives do to a window's residuals, a column for each; none if neighbouring motions
+    /// do not come along.
+    pub(crate) fn driven(
+        &mut self,
+        place: usize,
+        start: &[f64],
+        drives: &mut Differences<'_>,
+    ) -> Option<DMatrix<f64>> {
+        let shooting = self.shooting;
+        let window = &shooting.windows.list[place];
+        let inputs = shooting.windows.inputs(window);
+        let times = &window.times[..samples_in(window, shooting.part)];
+        let count = drives.count();
+        let found = self
+            .base
+            .linearised(start, times, inputs, false, (count, drives))?;
+        Some(self.columns(window, times, count, &found.by_drive))
     }
 
     /// The same by difference quotients.
@@ -240,7 +263,7 @@ impl<'a> Crew<'a> {
 
     /// Derivatives of the quantities, for each sample a row per column, as the sensors show
     /// them, in noises.
-    pub(crate) fn columns(
+    fn columns(
         &self,
         window: &Window,
         times: &[f64],
@@ -309,33 +332,32 @@ impl<'a> Crew<'a> {
     }
 }
 
-/// The plants at neighbouring parameters as drives of neighbouring motions.
-struct Neighbours<'c> {
+/// Differences between the accelerations of a model and of others, per size, as drives of
+/// neighbouring motions.
+pub(crate) struct Differences<'c> {
     base: &'c mut Evaluator,
     moved: Vec<(&'c mut Evaluator, f64)>,
     rates: [Vec<f64>; 2],
 }
 
-impl<'c> Neighbours<'c> {
-    fn of(
-        neighbours: &'c mut [Option<(Neighbour<'_>, f64)>],
-        base: &'c mut Evaluator,
-        states: usize,
-    ) -> Self {
-        let moved = neighbours.iter_mut().flatten();
-        let moved = moved.filter_map(|(neighbour, step)| match neighbour {
-            Neighbour::Drives(evaluator, _) => Some((&mut **evaluator, *step)),
-            Neighbour::Runs(_) => None,
-        });
+impl<'c> Differences<'c> {
+    /// Others with the sizes by which they differ.
+    pub fn new(base: &'c mut Evaluator, moved: Vec<(&'c mut Evaluator, f64)>) -> Self {
+        let states = 2 * base.program().degrees_of_freedom();
         Self {
             base,
-            moved: moved.collect(),
+            moved,
             rates: [vec![0.0; states], vec![0.0; states]],
         }
     }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.moved.len()
+    }
 }
 
-impl Drives for Neighbours<'_> {
+impl Drives for Differences<'_> {
     fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
         let [base, moved] = &mut self.rates;
         let half = base.len() / 2;

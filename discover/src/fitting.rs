@@ -63,6 +63,8 @@ pub struct Rest {
 pub struct Fit {
     /// The text.
     pub text: String,
+    /// The text without terms that are not linear between switches, where that is possible.
+    pub linear: String,
     /// Its model, ready to run.
     pub plant: Plant,
     /// What was estimated.
@@ -101,12 +103,14 @@ impl<'d> Setting<'d> {
         }
     }
 
-    /// The model of a text, ready to run on these records.
+    /// The model of a text, ready to run on these records. `linear`: the text without terms
+    /// that are not linear between switches, where there are such.
     ///
     /// # Errors
     /// What is wrong with the text.
-    pub fn plant(&self, text: &str) -> Result<Plant, String> {
-        let mut plant = Plant::of(text, None, &self.path, self.order, &self.dataset.channels)?;
+    pub fn plant(&self, text: &str, linear: Option<&str>) -> Result<Plant, String> {
+        let channels = &self.dataset.channels;
+        let mut plant = Plant::of(text, linear, &self.path, self.order, channels)?;
         let record = &self.dataset.train[0];
         let first = self.first_state(&plant, record);
         plant.choose_steps(record, &first, &self.noise);
@@ -185,8 +189,13 @@ impl<'d> Setting<'d> {
     ///
     /// # Errors
     /// What is wrong with the text, or why no motion can be followed.
-    pub fn fit(&self, text: String, unknowns: Vec<Unknown>, theta: &[f64]) -> Result<Fit, String> {
-        let plant = self.plant(&text)?;
+    pub fn fit(
+        &self,
+        (text, linear): (String, String),
+        unknowns: Vec<Unknown>,
+        theta: &[f64],
+    ) -> Result<Fit, String> {
+        let plant = self.plant(&text, Some(&linear))?;
         let ranges = self.ranges(&plant);
         let places: Vec<usize> = (0..unknowns.len())
             .filter(|p| is_physical(&unknowns[*p]))
@@ -230,6 +239,7 @@ impl<'d> Setting<'d> {
         Ok(Fit {
             sd: sd.iter().map(|sd| sd * inflation.sqrt()).collect(),
             text,
+            linear,
             unknowns,
             ranges,
             prior,

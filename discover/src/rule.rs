@@ -58,6 +58,10 @@ pub const MOST_EFFECTS: usize = 4;
 /// The most candidates that are fitted in earnest in one round.
 pub const MOST_FITS: usize = 4;
 
+/// So many candidates are fitted side by side before it is decided whether more are worth it:
+/// one per core of a small machine.
+pub const FITS_AT_ONCE: usize = 2;
+
 /// A pair is fitted if screening promises this many times what the best single one does.
 pub const PAIR_PROMISE: f64 = 1.2;
 

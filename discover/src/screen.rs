@@ -4,36 +4,16 @@
 //! passes is fitted in earnest elsewhere.
 
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 use crate::bounded::least_squares;
 use crate::candidates::Candidate;
 use crate::estimate;
 use crate::fitting::{Fit, Setting};
-use crate::plant::Plant;
+use crate::response::{Base, Trial, base, responses};
 use crate::rule;
-use crate::crew::Crew;
-use crate::shooting::Shooting;
-use crate::unknowns::{Unknown, What};
 
 /// Windows that are screened on; they are spread evenly.
 const MOST_WINDOWS: usize = 12;
-
-/// A candidate's parameter is tried at the size that moves the outputs by this part of the
-/// misfit.
-const TRIAL: f64 = 0.3;
-
-/// Attempts to find that size, each at most so many powers of ten further.
-const ATTEMPTS: (usize, f64) = (8, 1e6);
-
-/// A candidate's parameter with its bounds and the size tried, SI.
-#[derive(Clone, Debug)]
-pub struct Trial {
-    /// The unknown, absent where it is 0.
-    pub unknown: Unknown,
-    /// Whether it shapes the effect without scaling it; its value is then kept.
-    pub is_shape: bool,
-}
 
 /// A screened candidate.
 #[derive(Clone, Debug)]
@@ -76,7 +56,7 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate]) -> Scr
     let places: Vec<usize> = (0..count).map(|k| k * all / count).collect();
     let level = estimate::level(&shooting, estimate);
     let base = base(&shooting, fit, &places, level);
-    let found = found(setting, fit, candidates, &places, &base, level);
+    let found = responses(setting, fit, candidates, &places, &base, level);
     let nuisances = fit.unknowns.len();
     let mut responses = Vec::new();
     let mut silent = Vec::new();
@@ -127,223 +107,6 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate]) -> Scr
     };
     screen.judge();
     screen
-}
-
-/// The responses of all candidates. Those of one effect at one place that differ in the order
-/// alone are of one size: it is searched for once.
-fn found(
-    setting: &Setting<'_>,
-    fit: &Fit,
-    candidates: &[Candidate],
-    places: &[usize],
-    base: &Base,
-    level: f64,
-) -> Vec<Result<Columns, String>> {
-    let alike = |a: &Candidate, b: &Candidate| {
-        let angle = |c: &Candidate| c.order.as_ref().map(|(angle, _)| angle.clone());
-        a.effect == b.effect && a.on == b.on && angle(a) == angle(b)
-    };
-    let groups: Vec<&[Candidate]> = candidates.chunk_by(alike).collect();
-    let found: Vec<Vec<Result<Columns, String>>> = groups
-        .par_iter()
-        .map(|group| {
-            let mut sizes: Vec<f64> = Vec::new();
-            let of_group = group.iter().map(|candidate| {
-                let found = response(setting, fit, candidate, places, base, (level, &sizes));
-                if let Ok((trials, _)) = &found {
-                    sizes = trials.iter().map(|trial| trial.unknown.scale).collect();
-                }
-                found
-            });
-            of_group.collect()
-        })
-        .collect();
-    found.into_iter().flatten().collect()
-}
-
-/// A candidate's parameters, and for each window a column per parameter that scales it.
-type Columns = (Vec<Trial>, Vec<DMatrix<f64>>);
-
-/// A window at the fit: residual, derivatives by state and by unknowns.
-type Base = Vec<Option<estimate::Eliminator>>;
-
-fn base(shooting: &Shooting<'_>, fit: &Fit, places: &[usize], level: f64) -> Base {
-    let estimate = &fit.train.estimate;
-    let mut crew = Crew::new(shooting, &estimate.theta, level);
-    places
-        .iter()
-        .map(|place| {
-            let linear = crew.as_mut()?.linear(*place, &estimate.starts[*place])?;
-            Some(estimate::Eliminator::new(
-                &linear,
-                &fit.prior,
-                *place,
-                &estimate.starts[*place],
-            ))
-        })
-        .collect()
-}
-
-/// What a candidate does in each window, a column per parameter that scales it.
-fn response(
-    setting: &Setting<'_>,
-    fit: &Fit,
-    candidate: &Candidate,
-    places: &[usize],
-    base: &Base,
-    (level, sizes): (f64, &[f64]),
-) -> Result<Columns, String> {
-    let start: Vec<f64> = candidate
-        .parameters
-        .iter()
-        .map(|p| absent(p.inverse, p.shape))
-        .collect();
-    let text = candidate
-        .written(&fit.text, &setting.path, &start, "")
-        .map_err(|e| e.to_string())?;
-    let plant = setting.plant(&text)?;
-    let mut trials: Vec<Trial> = candidate.parameters.iter().map(trial).collect();
-    for (trial, size) in trials.iter_mut().zip(sizes) {
-        trial.unknown.scale = *size;
-    }
-    let extended: Vec<Unknown> = fit
-        .unknowns
-        .iter()
-        .cloned()
-        .chain(trials.iter().map(|t| t.unknown.clone()))
-        .collect();
-    let ranges = mapped(fit, &plant, &fit.ranges);
-    let shooting = setting.shooting(&plant, &setting.train, &extended, &ranges);
-    let nuisances = fit.unknowns.len();
-    let mut columns = vec![Vec::new(); places.len()];
-    for place in 0..trials.len() {
-        if trials[place].is_shape {
-            continue;
-        }
-        let theta = |size: f64| {
-            let mut theta = fit.train.estimate.theta.clone();
-            theta.extend(trials.iter().map(|trial| trial.unknown.start));
-            theta[nuisances + place] = size;
-            theta
-        };
-        // The size is found on the first, the middle and the last of the windows.
-        let few = [0, places.len() / 2, places.len() - 1];
-        let size = trial_size(trials[place].unknown.scale, level, |size| {
-            let changes = changes(
-                &shooting,
-                fit,
-                &theta(size),
-                few.iter().map(|k| (places[*k], &base[*k])),
-            )?;
-            let numbers: f64 = changes.iter().map(|c| c.len() as f64).sum();
-            let square: f64 = changes.iter().map(DVector::norm_squared).sum();
-            Some((square / numbers).sqrt())
-        });
-        let Some(size) = size else {
-            return Err(
-                "nothing in the record would show it: it does not change the outputs".to_owned(),
-            );
-        };
-        let pairs = places.iter().copied().zip(base.iter());
-        let changes = changes(&shooting, fit, &theta(size), pairs)
-            .ok_or("the motion with it cannot be followed")?;
-        for (window, change) in columns.iter_mut().zip(changes) {
-            window.push(change / size);
-        }
-        trials[place].unknown.scale = size;
-    }
-    let blocks = columns.iter().map(|columns| {
-        let rows = columns.first().map_or(0, |c: &DVector<f64>| c.len());
-        DMatrix::from_fn(rows, columns.len(), |r, c| columns[c][r])
-    });
-    Ok((trials, blocks.collect()))
-}
-
-/// The value of a parameter where its effect is absent, or nearly.
-fn absent(inverse: bool, shape: Option<f64>) -> f64 {
-    match (inverse, shape) {
-        (_, Some(shape)) => shape,
-        (true, None) => 1e12,
-        (false, None) => 0.0,
-    }
-}
-
-fn trial(parameter: &crate::candidates::CandidateParameter) -> Trial {
-    let low = match (parameter.inverse, parameter.positive) {
-        (true, _) => 1e-12,
-        (false, true) => 0.0,
-        (false, false) => f64::NEG_INFINITY,
-    };
-    let name = parameter.name.clone();
-    let unknown = Unknown {
-        what: if parameter.inverse {
-            What::Inverse(name)
-        } else {
-            What::Parameter(name)
-        },
-        start: parameter.shape.unwrap_or(low.max(0.0)),
-        prior: None,
-        bounds: match parameter.shape {
-            Some(shape) => (rule::SHAPE_RANGE.0 * shape, rule::SHAPE_RANGE.1 * shape),
-            None => (low, f64::INFINITY),
-        },
-        scale: parameter
-            .shape
-            .unwrap_or(if parameter.inverse { 1e-4 } else { 1.0 }),
-    };
-    Trial {
-        unknown,
-        is_shape: parameter.shape.is_some(),
-    }
-}
-
-/// Changes of the residuals in some windows; none if a motion cannot be followed.
-fn changes<'b>(
-    shooting: &Shooting<'_>,
-    fit: &Fit,
-    theta: &[f64],
-    windows: impl Iterator<Item = (usize, &'b Option<estimate::Eliminator>)>,
-) -> Option<Vec<DVector<f64>>> {
-    let mut crew = Crew::frozen(shooting, theta, 1.0)?;
-    let mut changes = Vec::new();
-    for (place, base) in windows {
-        let Some(base) = base else {
-            changes.push(DVector::zeros(0));
-            continue;
-        };
-        let start = mapped(fit, shooting.plant, &fit.train.estimate.starts[place]);
-        let residual = crew.residual(place, &start)?;
-        changes.push(DVector::from_vec(residual.values) - &base.residual);
-    }
-    Some(changes)
-}
-
-/// A state of the fit's plant as one of another plant: what that has beside is 0.
-pub fn mapped(fit: &Fit, plant: &Plant, state: &[f64]) -> Vec<f64> {
-    if state.is_empty() {
-        return Vec::new();
-    }
-    let value = |name: &String| {
-        let place = fit.plant.states.iter().position(|known| known == name);
-        place.map_or(0.0, |place| state[place])
-    };
-    plant.states.iter().map(value).collect()
-}
-
-/// The size of a parameter that moves the outputs as wanted; none if none does.
-fn trial_size(start: f64, level: f64, moved: impl Fn(f64) -> Option<f64>) -> Option<f64> {
-    let wanted = TRIAL * level;
-    let mut size = start;
-    for _ in 0..ATTEMPTS.0 {
-        let factor = match moved(size) {
-            Some(change) if change > 0.2 * wanted && change < 5.0 * wanted => return Some(size),
-            Some(change) if change.is_finite() && change > 0.0 => wanted / change,
-            Some(_) => ATTEMPTS.1,
-            None => 1e-3,
-        };
-        size *= factor.clamp(1.0 / ATTEMPTS.1, ATTEMPTS.1);
-    }
-    None
 }
 
 /// Products of all columns with the initial states eliminated.

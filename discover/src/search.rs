@@ -3,10 +3,13 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use crate::candidates::{Candidate, candidates};
 use crate::catalogue::Effect;
 use crate::fitting::{Fit, Setting};
 use crate::judge::{Evidence, evidence, judge};
+use crate::plant::is_linear;
 use crate::rule;
 use crate::screen::{Response, Screen, screen};
 use crate::sites::sites;
@@ -69,7 +72,7 @@ struct Trial {
 /// # Errors
 /// Why no motion can be followed.
 pub fn null_fit(setting: &Setting<'_>, text: &str) -> Result<Fit, String> {
-    let plant = setting.plant(text)?;
+    let plant = setting.plant(text, None)?;
     let values: Vec<(String, f64)> = plant
         .parameters
         .iter()
@@ -78,7 +81,7 @@ pub fn null_fit(setting: &Setting<'_>, text: &str) -> Result<Fit, String> {
         .collect();
     let unknowns = of_null_model(setting.dataset, &plant.model, &values);
     let theta: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
-    setting.fit(text.to_owned(), unknowns, &theta)
+    setting.fit((text.to_owned(), text.to_owned()), unknowns, &theta)
 }
 
 /// Searches for what a model lacks. `floor`: the gap that a right model would leave, in noises.
@@ -207,77 +210,89 @@ fn trials(
         }
     }
     let mut trials: Vec<Trial> = Vec::new();
-    for set in sets {
+    for sets in sets.chunks(rule::FITS_AT_ONCE) {
         // Once one is believed, only what promises nearly as much or looks like it may be
         // another answer.
         let believed = trials.iter().find(|trial| trial.verdict.is_ok());
-        let is_rival = |trial: &Trial| {
-            let gain = |place: usize| screen.responses[place].gain;
-            let near = gain(set[0]) > rule::RIVAL * gain(trial.responses[0]);
-            let alike = screen.similarity(trial.responses[0], set[0]) > rule::ALIKE;
-            alike || (near && !at_floor(&trial.fit, floor))
+        let is_rival = |set: &&Vec<usize>| {
+            believed.is_none_or(|trial| {
+                let gain = |place: usize| screen.responses[place].gain;
+                let near = gain(set[0]) > rule::RIVAL * gain(trial.responses[0]);
+                let alike = screen.similarity(trial.responses[0], set[0]) > rule::ALIKE;
+                alike || (near && !at_floor(&trial.fit, floor))
+            })
         };
-        if believed.is_none_or(is_rival) {
-            let sizes = screen.left(&set).1;
-            let set = Set {
-                responses: set,
+        let wanted: Vec<Set> = (sets.iter().filter(is_rival))
+            .map(|set| Set {
+                responses: set.clone(),
                 deleted: None,
-                sizes,
-            };
-            trials.extend(trial(setting, fit, candidates, screen, set, said));
-        }
+                sizes: screen.left(set).1,
+            })
+            .collect();
+        trials.extend(fitted(setting, fit, candidates, screen, wanted, said));
     }
     if trials.iter().all(|trial| trial.verdict.is_err()) {
-        for pair in best_pairs(screen, fit, candidates, &ranked) {
-            trials.extend(trial(setting, fit, candidates, screen, pair, said));
-        }
+        let pairs = best_pairs(screen, fit, candidates, &ranked);
+        trials.extend(fitted(setting, fit, candidates, screen, pairs, said));
     }
     trials
 }
 
-/// A set of candidates fitted in earnest.
-fn trial(
+/// Sets of candidates fitted in earnest, side by side.
+fn fitted(
     setting: &Setting<'_>,
     fit: &Fit,
     candidates: &[Candidate],
     screen: &Screen,
-    set: Set,
+    sets: Vec<Set>,
     said: &dyn Fn(&str),
-) -> Option<Trial> {
-    let labels: Vec<String> = set
-        .responses
-        .iter()
-        .map(|r| candidates[screen.responses[*r].candidate].label())
-        .collect();
-    said(&format!("fitting {}", labels.join(" and ")));
-    let chosen: Vec<&Response> = set
-        .responses
-        .iter()
-        .map(|r| &screen.responses[*r])
-        .collect();
-    match fit_with(setting, fit, candidates, &chosen, &set) {
-        Ok(new) => {
-            let first = fit.unknowns.len();
-            let shapes: Vec<bool> = chosen
+) -> Vec<Trial> {
+    let label = |set: &Set| {
+        let labels = set
+            .responses
+            .iter()
+            .map(|r| candidates[screen.responses[*r].candidate].label());
+        labels.collect::<Vec<_>>().join(" and ")
+    };
+    for set in &sets {
+        said(&format!("fitting {}", label(set)));
+    }
+    let fits: Vec<Result<Fit, String>> = sets
+        .par_iter()
+        .map(|set| {
+            let chosen: Vec<&Response> = set
+                .responses
                 .iter()
-                .flat_map(|r| r.trials.iter().map(|t| t.is_shape))
+                .map(|r| &screen.responses[*r])
                 .collect();
-            let verdict = judge(fit, &new, first, &shapes);
-            said(&format!(
-                "  train {:.3} test {:.3} {:?} {:?}",
-                new.train.pooled, new.test.pooled, verdict, &new.train.estimate.theta
-            ));
-            Some(Trial {
-                responses: set.responses,
-                fit: new,
-                verdict,
-            })
-        }
-        Err(error) => {
-            said(&format!("  {error}"));
-            None
+            fit_with(setting, fit, candidates, &chosen, set)
+        })
+        .collect();
+    let mut trials = Vec::new();
+    for (set, new) in sets.into_iter().zip(fits) {
+        let label = label(&set);
+        match new {
+            Ok(new) => {
+                let shapes: Vec<bool> = set
+                    .responses
+                    .iter()
+                    .flat_map(|r| screen.responses[*r].trials.iter().map(|t| t.is_shape))
+                    .collect();
+                let verdict = judge(fit, &new, fit.unknowns.len(), &shapes);
+                said(&format!(
+                    "  {label}: train {:.3} test {:.3} {:?}",
+                    new.train.pooled, new.test.pooled, verdict
+                ));
+                trials.push(Trial {
+                    responses: set.responses,
+                    fit: new,
+                    verdict,
+                });
+            }
+            Err(error) => said(&format!("  {label}: {error}")),
         }
     }
+    trials
 }
 
 /// Candidates to be fitted together, and a parameter whose term they replace.
@@ -352,7 +367,7 @@ fn fit_with(
     responses: &[&Response],
     set: &Set,
 ) -> Result<Fit, String> {
-    let mut text = fit.text.clone();
+    let (mut text, mut linear) = (fit.text.clone(), fit.linear.clone());
     let mut unknowns = fit.unknowns.clone();
     // Parameters and sensors that took up what the effect does begin anew.
     let known = unknowns.iter().zip(&fit.train.estimate.theta);
@@ -392,8 +407,14 @@ fn fit_with(
         text = candidate
             .written(&text, &setting.path, &values, "")
             .map_err(|e| e.to_string())?;
+        // What is linear between switches itself belongs to the linear part.
+        if let Ok(extended) = candidate.written(&linear, &setting.path, &values, "")
+            && is_linear(&extended, &setting.path, setting.order)
+        {
+            linear = extended;
+        }
     }
-    setting.fit(text, unknowns, &theta)
+    setting.fit((text, linear), unknowns, &theta)
 }
 
 fn note_rejected(

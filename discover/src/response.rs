@@ -1,0 +1,131 @@
+//! What candidates do to the windows' outputs, to first order: by neighbouring motions that
+//! they drive, where the fitted model is marched and the candidate adds no state; otherwise by
+//! motions of the candidate's own model.
+
+use nalgebra::DMatrix;
+
+use crate::candidates::Candidate;
+use crate::crew::Crew;
+use crate::driven::driven;
+use crate::estimate;
+use crate::fitting::{Fit, Setting};
+use crate::plant::Plant;
+use crate::rule;
+use crate::shooting::Shooting;
+use crate::tried::tried;
+use crate::unknowns::{Unknown, What};
+
+/// A candidate's parameter is tried at the size that moves the outputs by this part of the
+/// misfit.
+pub(crate) const TRIAL: f64 = 0.3;
+
+/// A candidate's parameter with its bounds and the size tried, SI.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// The unknown, absent where it is 0.
+    pub unknown: Unknown,
+    /// Whether it shapes the effect without scaling it; its value is then kept.
+    pub is_shape: bool,
+}
+
+/// A candidate's parameters, and for each window a column per parameter that scales it.
+pub type Columns = (Vec<Trial>, Vec<DMatrix<f64>>);
+
+/// A window at the fit: residual, derivatives by state and by unknowns.
+pub type Base = Vec<Option<estimate::Eliminator>>;
+
+/// The windows at a fit. `level`: the size of the residuals, in noises.
+pub fn base(shooting: &Shooting<'_>, fit: &Fit, places: &[usize], level: f64) -> Base {
+    let estimate = &fit.train.estimate;
+    let mut crew = Crew::new(shooting, &estimate.theta, level);
+    places
+        .iter()
+        .map(|place| {
+            let linear = crew.as_mut()?.linear(*place, &estimate.starts[*place])?;
+            Some(estimate::Eliminator::new(
+                &linear,
+                &fit.prior,
+                *place,
+                &estimate.starts[*place],
+            ))
+        })
+        .collect()
+}
+
+/// The responses of all candidates.
+pub fn responses(
+    setting: &Setting<'_>,
+    fit: &Fit,
+    candidates: &[Candidate],
+    places: &[usize],
+    base: &Base,
+    level: f64,
+) -> Vec<Result<Columns, String>> {
+    let mut found = driven(setting, fit, candidates, places, base, level);
+    let rest: Vec<usize> = (0..candidates.len())
+        .filter(|place| found[*place].is_none())
+        .collect();
+    let others: Vec<Candidate> = rest.iter().map(|place| candidates[*place].clone()).collect();
+    let tried = tried(setting, fit, &others, places, base, level);
+    for (place, response) in rest.into_iter().zip(tried) {
+        found[place] = Some(response);
+    }
+    found.into_iter().flatten().collect()
+}
+
+/// What is said of a candidate that does nothing.
+pub(crate) fn silent() -> String {
+    "nothing in the record would show it: it does not change the outputs".to_owned()
+}
+
+/// The value of a parameter where its effect is absent, or nearly.
+pub(crate) fn absent(inverse: bool, shape: Option<f64>) -> f64 {
+    match (inverse, shape) {
+        (_, Some(shape)) => shape,
+        (true, None) => 1e12,
+        (false, None) => 0.0,
+    }
+}
+
+/// A candidate's parameter as an unknown.
+pub(crate) fn trial(parameter: &crate::candidates::CandidateParameter) -> Trial {
+    let low = match (parameter.inverse, parameter.positive) {
+        (true, _) => 1e-12,
+        (false, true) => 0.0,
+        (false, false) => f64::NEG_INFINITY,
+    };
+    let name = parameter.name.clone();
+    let unknown = Unknown {
+        what: if parameter.inverse {
+            What::Inverse(name)
+        } else {
+            What::Parameter(name)
+        },
+        start: parameter.shape.unwrap_or(low.max(0.0)),
+        prior: None,
+        bounds: match parameter.shape {
+            Some(shape) => (rule::SHAPE_RANGE.0 * shape, rule::SHAPE_RANGE.1 * shape),
+            None => (low, f64::INFINITY),
+        },
+        scale: parameter
+            .shape
+            .unwrap_or(if parameter.inverse { 1e-4 } else { 1.0 }),
+    };
+    Trial {
+        unknown,
+        is_shape: parameter.shape.is_some(),
+    }
+}
+
+/// A state of the fit's plant as one of another plant: what that has beside is 0.
+pub fn mapped(fit: &Fit, plant: &Plant, state: &[f64]) -> Vec<f64> {
+    if state.is_empty() {
+        return Vec::new();
+    }
+    let value = |name: &String| {
+        let place = fit.plant.states.iter().position(|known| known == name);
+        place.map_or(0.0, |place| state[place])
+    };
+    plant.states.iter().map(value).collect()
+}
+
