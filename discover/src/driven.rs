@@ -10,7 +10,8 @@ use crate::candidates::Candidate;
 use crate::crew::{Crew, Differences};
 use crate::fitting::{Fit, Setting};
 use crate::plant::Plant;
-use crate::response::{Base, Columns, TRIAL, Trial, absent, silent, trial};
+use crate::shooting::Shooting;
+use crate::response::{At, Columns, TRIAL, Trial, absent, silent, trial};
 
 /// A candidate is taken at a size that changes accelerations by this part of their own size,
 /// in any direction: small beside them, large beside rounding.
@@ -47,15 +48,13 @@ struct Ready {
 /// For each candidate what it does, or why that cannot be seen; none where its own motion must
 /// tell.
 pub fn driven(
+    at: &At,
     setting: &Setting<'_>,
     fit: &Fit,
     candidates: &[Candidate],
-    places: &[usize],
-    base: &Base,
-    level: f64,
 ) -> Vec<Option<Result<Columns, String>>> {
     let mut found: Vec<Option<Result<Columns, String>>> = vec![None; candidates.len()];
-    let Some(points) = points(setting, fit, places) else {
+    let Some(points) = points(at, setting, fit) else {
         return found;
     };
     let ready: Vec<Option<Result<Ready, String>>> = (0..candidates.len())
@@ -70,7 +69,7 @@ pub fn driven(
             None => {}
         }
     }
-    let windows = marched(setting, fit, &all, places, base);
+    let windows = marched(at, setting, fit, &all);
     let mut first = 0;
     for mut of in all {
         let columns = first..first + of.moved.len();
@@ -82,7 +81,7 @@ pub fn driven(
                 _ => window.columns(columns.start, columns.len()).into_owned(),
             })
             .collect();
-        found[of.candidate] = Some(sized(&mut of.trials, blocks, level));
+        found[of.candidate] = Some(sized(&mut of.trials, blocks, at.level));
     }
     found
 }
@@ -107,9 +106,9 @@ fn sized(
 }
 
 /// Points of the fitted motion; none if neighbouring motions do not come with it.
-fn points(setting: &Setting<'_>, fit: &Fit, places: &[usize]) -> Option<Points> {
+fn points(at: &At, setting: &Setting<'_>, fit: &Fit) -> Option<Points> {
     let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
-    let estimate = &fit.train.estimate;
+    let At { estimate, places, .. } = at;
     let values = shooting.values(&estimate.theta);
     let mut runner = fit.plant.at(&values).ok()?;
     if !runner.is_marched() {
@@ -240,14 +239,22 @@ fn change(evaluator: &mut Evaluator, points: &Points) -> f64 {
 
 /// For each window a column per parameter; no columns where the fit has no motion.
 fn marched(
+    at: &At,
     setting: &Setting<'_>,
     fit: &Fit,
     ready: &[Ready],
-    places: &[usize],
-    base: &Base,
 ) -> Vec<DMatrix<f64>> {
-    let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
-    let estimate = &fit.train.estimate;
+    let whole = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+    let shooting = Shooting {
+        part: at.part,
+        ..whole
+    };
+    let At {
+        estimate,
+        places,
+        base,
+        ..
+    } = at;
     let size = places.len().div_ceil(rayon::current_num_threads().max(1)).max(1);
     let parts: Vec<Vec<DMatrix<f64>>> = (0..places.len())
         .collect::<Vec<_>>()

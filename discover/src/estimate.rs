@@ -13,7 +13,7 @@ use crate::shooting::{Residual, Shooting};
 const SETTLED: f64 = 1e-3;
 
 /// Parts of a step that are tried.
-const PARTS: [f64; 5] = [1.0, 0.5, 0.2, 0.05, 0.01];
+const PARTS: [f64; 3] = [1.0, 0.3, 0.05];
 
 /// How the damping of a step grows where it does not help, and shrinks where it does.
 const DAMPING: [f64; 4] = [0.0, 0.03, 1.0, 30.0];
@@ -209,8 +209,9 @@ impl Reduced {
     }
 }
 
-/// How initial states are found at given unknowns: what is known before, and the states.
-pub type Follow<'f> = dyn Fn(&[f64]) -> (StartPrior, Vec<Vec<f64>>) + 'f;
+/// How initial states are found at given unknowns, from those at others if they are known:
+/// what is known before, and the states.
+pub type Follow<'f> = dyn Fn(&[f64], Option<&[Vec<f64>]>) -> (StartPrior, Vec<Vec<f64>>) + 'f;
 
 /// Estimates the unknowns from far away: for every trial of them the initial states are
 /// followed anew through the records, because those that were fitted at wrong unknowns hold
@@ -221,19 +222,20 @@ pub fn approach(
     follow: &Follow<'_>,
     steps: usize,
 ) -> (StartPrior, Estimate) {
-    let at = |theta: Vec<f64>| {
-        let (prior, starts) = follow(&theta);
+    let at = |theta: Vec<f64>, before: Option<&[Vec<f64>]>| {
+        let (prior, starts) = follow(&theta, before);
         let estimate = evaluated(shooting, &prior, theta, starts);
         (prior, estimate)
     };
-    let (mut prior, mut present) = at(theta.to_vec());
+    let (mut prior, mut present) = at(theta.to_vec(), None);
     for _ in 0..steps {
         let level = level(shooting, &present);
         let linear = shooting.linear(&present.theta, &present.starts, level);
         let windows = eliminated(&prior, &present, &linear);
         let change = change_of_unknowns(shooting, &present, &windows, 0.0);
         let better = PARTS.iter().find_map(|part| {
-            let (prior, next) = at(moved_unknowns(shooting, &present, &change, *part));
+            let theta = moved_unknowns(shooting, &present, &change, *part);
+            let (prior, next) = at(theta, Some(&present.starts));
             (next.cost < present.cost).then_some((prior, next))
         });
         let Some((new_prior, next)) = better else {

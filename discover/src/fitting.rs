@@ -13,13 +13,20 @@ use crate::unknowns::{Unknown, What};
 use crate::windows::Windows;
 
 /// The parts of a window over which initial states are fitted, one after the other.
-const HORIZONS: [f64; 5] = [0.05, 0.12, 0.25, 0.5, 1.0];
+const HORIZONS: [f64; 4] = [0.08, 0.25, 0.5, 1.0];
 
 /// The part of a window on which unknowns are first approached, and the horizons up to it.
-const FIRST_PART: (f64, usize) = (0.25, 3);
+const FIRST_PART: (f64, usize) = (0.25, 2);
 
 /// The most steps while unknowns are far away, and close by.
-const STEPS: (usize, usize) = (8, 8);
+const STEPS: (usize, usize) = (5, 4);
+
+/// Steps of a sketch where initial states are read from the record.
+const SKETCHING_STEPS: usize = 3;
+
+/// Windows are followed anew so often at most, while that lowers the cost by this part.
+const REFRESHES: usize = 2;
+const WORTH_A_REFRESH: f64 = 0.005;
 
 /// Into so many blocks a set of windows is parted to judge what differs by chance.
 const BLOCKS: usize = 40;
@@ -83,8 +90,18 @@ pub struct Fit {
     pub test: Rest,
 }
 
-/// What is known before of initial states, the states, and the unknowns they belong to.
-type Approached = (StartPrior, Vec<Vec<f64>>, Vec<f64>);
+/// A specification fitted to the beginnings of the windows.
+pub struct Sketch {
+    /// The sum of squares that is left there, in noises, with what priors add.
+    pub left: f64,
+    text: String,
+    linear: String,
+    plant: Plant,
+    unknowns: Vec<Unknown>,
+    ranges: Vec<f64>,
+    theta: Vec<f64>,
+    starts: Vec<Vec<f64>>,
+}
 
 impl<'d> Setting<'d> {
     /// The setting of a dataset.
@@ -159,6 +176,7 @@ impl<'d> Setting<'d> {
         theta: &[f64],
         ranges: &[f64],
         horizons: &[f64],
+        before: Option<&[Vec<f64>]>,
     ) -> Result<(StartPrior, Vec<Vec<f64>>), String> {
         if !self.fits_starts() {
             let read =
@@ -169,7 +187,9 @@ impl<'d> Setting<'d> {
         let firsts: Vec<Vec<f64>> = records
             .map(|r| self.first_state(shooting.plant, r))
             .collect();
-        Ok(starts::followed(shooting, theta, &firsts, ranges, horizons))
+        Ok(starts::followed(
+            shooting, theta, &firsts, ranges, horizons, before,
+        ))
     }
 
     /// Initial states of all windows at these unknowns, found as they are in a fit.
@@ -182,7 +202,7 @@ impl<'d> Setting<'d> {
         theta: &[f64],
         ranges: &[f64],
     ) -> Result<Vec<Vec<f64>>, String> {
-        Ok(self.starts(shooting, theta, ranges, &HORIZONS)?.1)
+        Ok(self.starts(shooting, theta, ranges, &HORIZONS, None)?.1)
     }
 
     /// Fits a specification: its unknowns from `theta`, then what is left.
@@ -191,42 +211,124 @@ impl<'d> Setting<'d> {
     /// What is wrong with the text, or why no motion can be followed.
     pub fn fit(
         &self,
-        (text, linear): (String, String),
+        texts: (String, String),
         unknowns: Vec<Unknown>,
         theta: &[f64],
     ) -> Result<Fit, String> {
+        self.complete(self.sketch(texts, unknowns, theta)?)
+    }
+
+    /// Fits the model's unknowns to the beginnings of the windows, which tells good ones from
+    /// bad ones at a part of the cost. `texts`: the specification's, and its linear part's.
+    ///
+    /// # Errors
+    /// As for [`Setting::fit`].
+    pub fn sketch(
+        &self,
+        (text, linear): (String, String),
+        unknowns: Vec<Unknown>,
+        theta: &[f64],
+    ) -> Result<Sketch, String> {
         let plant = self.plant(&text, Some(&linear))?;
         let ranges = self.ranges(&plant);
-        let places: Vec<usize> = (0..unknowns.len())
-            .filter(|p| is_physical(&unknowns[*p]))
-            .collect();
-        let physical: Vec<Unknown> = places
-            .iter()
-            .map(|place| unknowns[*place].clone())
-            .collect();
         let mut theta = theta.to_vec();
+        let places = physical(&unknowns);
+        let own: Vec<Unknown> = places.iter().map(|p| unknowns[*p].clone()).collect();
         let begin: Vec<f64> = places.iter().map(|place| theta[*place]).collect();
-        let (prior, starts, near) = self.approached(&plant, &ranges, &physical, begin)?;
-        let shooting = self.shooting(&plant, &self.train, &physical, &ranges);
-        let near = estimate::estimate(&shooting, &prior, &near, &starts, STEPS.1);
+        let shooting = self.shooting(&plant, &self.train, &own, &ranges);
+        let found = if self.fits_starts() {
+            let shooting = Shooting {
+                part: FIRST_PART.0,
+                ..shooting
+            };
+            let follow = self.follow(&shooting, &ranges, FIRST_PART.1);
+            estimate::approach(&shooting, &begin, &follow, STEPS.0)
+        } else {
+            let (prior, starts) = self.starts(&shooting, &begin, &ranges, &HORIZONS, None)?;
+            let found = estimate::estimate(&shooting, &prior, &begin, &starts, SKETCHING_STEPS);
+            (prior, found)
+        };
+        for (place, value) in places.iter().zip(&found.1.theta) {
+            theta[*place] = *value;
+        }
+        Ok(Sketch {
+            left: found.1.cost,
+            starts: found.1.starts,
+            text,
+            linear,
+            plant,
+            unknowns,
+            ranges,
+            theta,
+        })
+    }
+
+    /// Initial states that follow unknowns, by so many horizons.
+    fn follow<'f>(
+        &'f self,
+        shooting: &'f Shooting<'f>,
+        ranges: &'f [f64],
+        horizons: usize,
+    ) -> Box<estimate::Follow<'f>> {
+        Box::new(move |theta, before| {
+            let horizons = &HORIZONS[..horizons];
+            self.starts(shooting, theta, ranges, horizons, before)
+                .unwrap_or_default()
+        })
+    }
+
+    /// Fits everything to the whole windows, from a sketch.
+    ///
+    /// # Errors
+    /// As for [`Setting::fit`].
+    pub fn complete(&self, sketch: Sketch) -> Result<Fit, String> {
+        let Sketch {
+            text,
+            linear,
+            plant,
+            unknowns,
+            ranges,
+            mut theta,
+            starts,
+            ..
+        } = sketch;
+        let places = physical(&unknowns);
+        let own: Vec<Unknown> = places.iter().map(|p| unknowns[*p].clone()).collect();
+        let begin: Vec<f64> = places.iter().map(|place| theta[*place]).collect();
+        let shooting = self.shooting(&plant, &self.train, &own, &ranges);
+        let (mut prior, near) = if self.fits_starts() {
+            let follow = self.follow(&shooting, &ranges, HORIZONS.len());
+            estimate::approach(&shooting, &begin, &follow, STEPS.0)
+        } else {
+            (
+                StartPrior::default(),
+                estimate::evaluated(&shooting, &StartPrior::default(), begin, starts),
+            )
+        };
+        let near = estimate::estimate(&shooting, &prior, &near.theta, &near.starts, STEPS.1);
         for (place, value) in places.iter().zip(&near.theta) {
             theta[*place] = *value;
         }
         let mut all = self.shooting(&plant, &self.train, &unknowns, &ranges);
-        let rest = self.rest(
-            &all,
-            Estimate {
-                theta: theta.clone(),
-                ..near
-            },
-        );
-        let prior_weight = (rest.pooled * rest.pooled).max(1.0) * rest.correlation;
-        all.prior_weight = prior_weight;
-        let found = estimate::estimate(&all, &prior, &theta, &rest.estimate.starts, STEPS.1);
-        let sd = self.uncertainty(&all, &prior, &found);
-        let train = self.rest(&all, found);
+        let mut rest = self.rest(&all, Estimate { theta, ..near });
+        for _ in 0..REFRESHES {
+            all.prior_weight = (rest.pooled * rest.pooled).max(1.0) * rest.correlation;
+            let Estimate { theta, starts, .. } = &rest.estimate;
+            let found = estimate::estimate(&all, &prior, theta, starts, STEPS.1);
+            let before = found.cost;
+            let (new_prior, found) = self.refreshed(&all, &ranges, prior, found);
+            prior = new_prior;
+            let settled = found.cost > (1.0 - WORTH_A_REFRESH) * before;
+            rest = self.rest(&all, found);
+            if settled {
+                break;
+            }
+        }
+        let prior_weight = all.prior_weight;
+        let sd = self.uncertainty(&all, &prior, &rest.estimate);
+        let train = rest;
         let held_out = self.shooting(&plant, &self.test, &unknowns, &ranges);
-        let (_, starts) = self.starts(&held_out, &train.estimate.theta, &ranges, &HORIZONS)?;
+        let (_, starts) = self.starts(&held_out, &train.estimate.theta, &ranges, &HORIZONS, None)?;
         let test = estimate::evaluated(
             &held_out,
             &StartPrior::default(),
@@ -250,31 +352,49 @@ impl<'d> Setting<'d> {
         })
     }
 
-    /// The physical unknowns brought near, with initial states there.
-    fn approached(
+    /// The windows followed anew at an estimate: those that are better for it begin there.
+    fn refreshed(
         &self,
-        plant: &Plant,
+        shooting: &Shooting<'_>,
         ranges: &[f64],
-        physical: &[Unknown],
-        mut theta: Vec<f64>,
-    ) -> Result<Approached, String> {
-        let shooting = self.shooting(plant, &self.train, physical, ranges);
+        mut prior: StartPrior,
+        found: Estimate,
+    ) -> (StartPrior, Estimate) {
         if !self.fits_starts() {
-            let (prior, starts) = self.starts(&shooting, &theta, ranges, &HORIZONS)?;
-            return Ok((prior, starts, theta));
+            return (prior, found);
         }
-        let mut found = (StartPrior::default(), Vec::new());
-        for (part, horizons) in [FIRST_PART, (1.0, HORIZONS.len())] {
-            let shooting = Shooting { part, ..shooting };
-            let follow = |theta: &[f64]| {
-                self.starts(&shooting, theta, ranges, &HORIZONS[..horizons])
-                    .unwrap_or_default()
-            };
-            let (prior, near) = estimate::approach(&shooting, &theta, &follow, STEPS.0);
-            theta = near.theta;
-            found = (prior, near.starts);
+        let Ok((anew, starts)) = self.starts(shooting, &found.theta, ranges, &HORIZONS, None)
+        else {
+            return (prior, found);
+        };
+        let new = estimate::evaluated(shooting, &anew, found.theta.clone(), starts);
+        let mut starts = found.starts.clone();
+        for (place, start) in starts.iter_mut().enumerate() {
+            if new.squares[place] < found.squares[place] {
+                start.clone_from(&new.starts[place]);
+                prior.mean[place].clone_from(&anew.mean[place]);
+            }
         }
-        Ok((found.0, found.1, theta))
+        let found = estimate::evaluated(shooting, &prior, found.theta, starts);
+        (prior, found)
+    }
+
+    /// The beginnings of the windows at a fit: the part that is looked at, what is known of
+    /// initial states, and states that suit these parts.
+    pub fn beginnings(&self, fit: &Fit) -> (f64, StartPrior, Estimate) {
+        if !self.fits_starts() {
+            return (1.0, fit.prior.clone(), fit.train.estimate.clone());
+        }
+        let whole = self.shooting(&fit.plant, &self.train, &fit.unknowns, &fit.ranges);
+        let shooting = Shooting {
+            part: FIRST_PART.0,
+            ..whole
+        };
+        let theta = fit.train.estimate.theta.clone();
+        let follow = self.follow(&shooting, &fit.ranges, FIRST_PART.1);
+        let (prior, starts) = follow(&theta, None);
+        let estimate = estimate::evaluated(&shooting, &prior, theta, starts);
+        (FIRST_PART.0, prior, estimate)
     }
 
     /// The range of each state in the training records.
@@ -352,9 +472,13 @@ impl<'d> Setting<'d> {
     }
 }
 
-/// Whether an unknown is one of the model's, not of a sensor.
-fn is_physical(unknown: &Unknown) -> bool {
-    matches!(unknown.what, What::Parameter(_) | What::Inverse(_))
+/// The places of the unknowns that are the model's, not a sensor's.
+fn physical(unknowns: &[Unknown]) -> Vec<usize> {
+    let of_model = |place: &usize| {
+        let what = &unknowns[*place].what;
+        matches!(what, What::Parameter(_) | What::Inverse(_))
+    };
+    (0..unknowns.len()).filter(of_model).collect()
 }
 
 fn not_shown(state: String) -> String {

@@ -15,6 +15,9 @@ use crate::shooting::Shooting;
 use crate::tried::tried;
 use crate::unknowns::{Unknown, What};
 
+/// Windows that are looked at, at most; they are spread evenly.
+const MOST_WINDOWS: usize = 40;
+
 /// A candidate's parameter is tried at the size that moves the outputs by this part of the
 /// misfit.
 pub(crate) const TRIAL: f64 = 0.3;
@@ -34,39 +37,63 @@ pub type Columns = (Vec<Trial>, Vec<DMatrix<f64>>);
 /// A window at the fit: residual, derivatives by state and by unknowns.
 pub type Base = Vec<Option<estimate::Eliminator>>;
 
-/// The windows at a fit. `level`: the size of the residuals, in noises.
-pub fn base(shooting: &Shooting<'_>, fit: &Fit, places: &[usize], level: f64) -> Base {
-    let estimate = &fit.train.estimate;
-    let mut crew = Crew::new(shooting, &estimate.theta, level);
-    places
-        .iter()
-        .map(|place| {
-            let linear = crew.as_mut()?.linear(*place, &estimate.starts[*place])?;
-            Some(estimate::Eliminator::new(
-                &linear,
-                &fit.prior,
-                *place,
-                &estimate.starts[*place],
-            ))
-        })
-        .collect()
+/// Where candidates are looked at: beginnings of windows, over which a motion is nearly linear
+/// in whatever changes it, with initial states that suit these parts.
+pub struct At {
+    /// The part of each window that is looked at.
+    pub part: f64,
+    /// The windows.
+    pub places: Vec<usize>,
+    /// The estimate there.
+    pub estimate: estimate::Estimate,
+    /// Residuals and derivatives.
+    pub base: Base,
+    /// The size of the residuals, in noises.
+    pub level: f64,
+}
+
+impl At {
+    /// The beginnings of the windows at a fit.
+    pub fn of(setting: &Setting<'_>, fit: &Fit) -> Self {
+        let (part, prior, estimate) = setting.beginnings(fit);
+        let whole = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+        let shooting = Shooting { part, ..whole };
+        let all = setting.train.list.len();
+        let count = all.min(MOST_WINDOWS);
+        let places: Vec<usize> = (0..count).map(|k| k * all / count).collect();
+        let level = estimate::level(&shooting, &estimate) / part.sqrt();
+        let mut crew = Crew::new(&shooting, &estimate.theta, level);
+        let base = places
+            .iter()
+            .map(|place| {
+                let start = &estimate.starts[*place];
+                let linear = crew.as_mut()?.linear(*place, start)?;
+                Some(estimate::Eliminator::new(&linear, &prior, *place, start))
+            })
+            .collect();
+        Self {
+            part,
+            places,
+            estimate,
+            base,
+            level,
+        }
+    }
 }
 
 /// The responses of all candidates.
 pub fn responses(
+    at: &At,
     setting: &Setting<'_>,
     fit: &Fit,
     candidates: &[Candidate],
-    places: &[usize],
-    base: &Base,
-    level: f64,
 ) -> Vec<Result<Columns, String>> {
-    let mut found = driven(setting, fit, candidates, places, base, level);
+    let mut found = driven(at, setting, fit, candidates);
     let rest: Vec<usize> = (0..candidates.len())
         .filter(|place| found[*place].is_none())
         .collect();
     let others: Vec<Candidate> = rest.iter().map(|place| candidates[*place].clone()).collect();
-    let tried = tried(setting, fit, &others, places, base, level);
+    let tried = tried(at, setting, fit, &others);
     for (place, response) in rest.into_iter().zip(tried) {
         found[place] = Some(response);
     }

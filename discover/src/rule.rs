@@ -69,9 +69,13 @@ pub const PAIR_PROMISE: f64 = 1.2;
 /// other promises this part of the gap.
 pub const ENOUGH: f64 = 0.5;
 
-/// Once a candidate is believed, others are fitted only if screening promises this part of
-/// what it promises of that one.
-pub const RIVAL: f64 = 0.6;
+/// The most candidates, or pairs of them, that are fitted to the beginnings of the windows in
+/// one round.
+pub const MOST_SKETCHES: usize = 8;
+
+/// Candidates are fitted in earnest only if, fitted to the beginnings of the windows, they
+/// leave less than this times the squares of the best one.
+pub const RIVAL: f64 = 1.5;
 
 /// A term of the model may be deleted if its parameter is this many standard deviations of its
 /// prior from 0 at most.

@@ -7,13 +7,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::bounded::least_squares;
 use crate::candidates::Candidate;
-use crate::estimate;
 use crate::fitting::{Fit, Setting};
-use crate::response::{Base, Trial, base, responses};
+use crate::response::{At, Base, Trial, responses};
 use crate::rule;
-
-/// Windows that are screened on; they are spread evenly.
-const MOST_WINDOWS: usize = 12;
 
 /// A screened candidate.
 #[derive(Clone, Debug)]
@@ -43,20 +39,15 @@ pub struct Screen {
     pub responses: Vec<Response>,
     /// The candidates that do nothing that could be seen, with why.
     pub silent: Vec<(usize, String)>,
-    /// How many of the training numbers were looked at.
-    pub share: f64,
+    /// How many numbers were looked at.
+    pub numbers: f64,
 }
 
 /// Screens candidates at a fit.
 pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate]) -> Screen {
-    let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
-    let estimate = &fit.train.estimate;
-    let all = setting.train.list.len();
-    let count = all.min(MOST_WINDOWS);
-    let places: Vec<usize> = (0..count).map(|k| k * all / count).collect();
-    let level = estimate::level(&shooting, estimate);
-    let base = base(&shooting, fit, &places, level);
-    let found = responses(setting, fit, candidates, &places, &base, level);
+    let at = At::of(setting, fit);
+    let (base, places, estimate) = (&at.base, &at.places, &at.estimate);
+    let found = responses(&at, setting, fit, candidates);
     let nuisances = fit.unknowns.len();
     let mut responses = Vec::new();
     let mut silent = Vec::new();
@@ -80,7 +71,7 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate]) -> Scr
             Err(reason) => silent.push((candidate, reason)),
         }
     }
-    let mut products = products(fit, &places, &base, &blocks, columns);
+    let mut products = products(fit, places, base, &blocks, columns);
     let mut bounds = Vec::new();
     for (place, unknown) in fit.unknowns.iter().enumerate() {
         let value = estimate.theta[place];
@@ -103,7 +94,7 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate]) -> Scr
         bounds,
         responses,
         silent,
-        share: count as f64 / all as f64,
+        numbers: base.iter().flatten().map(|b| b.residual.len() as f64).sum(),
     };
     screen.judge();
     screen
@@ -146,7 +137,7 @@ impl Screen {
             let (left, values) = self.left(&[place]);
             let visible = self.visible(place);
             let response = &mut self.responses[place];
-            response.gain = (alone - left) / self.share;
+            response.gain = alone - left;
             response.values = values;
             response.visible = visible;
         }
@@ -197,7 +188,7 @@ impl Screen {
             nuisances: self.nuisances,
             responses: self.responses.clone(),
             silent: Vec::new(),
-            share: self.share,
+            numbers: self.numbers,
         })
     }
 

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::candidates::{Candidate, candidates};
 use crate::catalogue::Effect;
-use crate::fitting::{Fit, Setting};
+use crate::fitting::{Fit, Setting, Sketch};
 use crate::judge::{Evidence, evidence, judge};
 use crate::plant::is_linear;
 use crate::rule;
@@ -140,8 +140,7 @@ fn screened(
     said(&format!("screening {} candidates", plain.len()));
     let found = screen(setting, fit, &plain);
     let best = found.responses.iter().map(|r| r.gain).fold(0.0, f64::max);
-    let square: f64 = fit.train.blocks.iter().sum();
-    let above = square * (1.0 - (floor / fit.train.pooled).powi(2));
+    let above = found.left(&[]).0 - floor * floor * found.numbers;
     if plain.len() == all.len() || best > rule::ENOUGH * above {
         return (plain, found);
     }
@@ -197,67 +196,73 @@ fn trials(
             r.values
         ));
     }
-    let mut sets: Vec<Vec<usize>> = Vec::new();
+    let mut sets: Vec<Set> = Vec::new();
     for response in &ranked {
         let of = &candidates[screen.responses[*response].candidate];
         // Of the orders of one effect at one place the two best are enough.
-        let same = sets.iter().flatten().filter(|known| {
+        let same = sets.iter().flat_map(|set| &set.responses).filter(|known| {
             let known = &candidates[screen.responses[**known].candidate];
             known.effect == of.effect && known.on == of.on
         });
-        if same.count() < 2 && sets.len() < rule::MOST_FITS {
-            sets.push(vec![*response]);
+        if same.count() < 2 && sets.len() < rule::MOST_SKETCHES {
+            sets.push(Set {
+                sizes: screen.left(&[*response]).1,
+                responses: vec![*response],
+                deleted: None,
+            });
         }
     }
+    let mut sketches = sketched(setting, fit, candidates, screen, sets, said);
+    let best = sketches.first().map_or(0.0, |(_, sketch)| sketch.left);
     let mut trials: Vec<Trial> = Vec::new();
-    for sets in sets.chunks(rule::FITS_AT_ONCE) {
-        // Once one is believed, only what promises nearly as much or looks like it may be
-        // another answer.
+    let mut fits = 0;
+    while !sketches.is_empty() && fits < rule::MOST_FITS {
+        // Once one is believed, only what is nearly as good or looks like it may be another
+        // answer.
         let believed = trials.iter().find(|trial| trial.verdict.is_ok());
-        let is_rival = |set: &&Vec<usize>| {
-            believed.is_none_or(|trial| {
-                let gain = |place: usize| screen.responses[place].gain;
-                let near = gain(set[0]) > rule::RIVAL * gain(trial.responses[0]);
-                let alike = screen.similarity(trial.responses[0], set[0]) > rule::ALIKE;
-                alike || (near && !at_floor(&trial.fit, floor))
-            })
+        let count = sketches.len().min(rule::FITS_AT_ONCE);
+        let next: Vec<(Set, Sketch)> = sketches.drain(..count).collect();
+        let is_rival = |(set, sketch): &(Set, Sketch)| {
+            let near = sketch.left < rule::RIVAL * best;
+            let alike = |trial: &Trial| {
+                screen.similarity(trial.responses[0], set.responses[0]) > rule::ALIKE
+            };
+            match believed {
+                Some(trial) => alike(trial) || (near && !at_floor(&trial.fit, floor)),
+                None => near,
+            }
         };
-        let wanted: Vec<Set> = (sets.iter().filter(is_rival))
-            .map(|set| Set {
-                responses: set.clone(),
-                deleted: None,
-                sizes: screen.left(set).1,
-            })
-            .collect();
-        trials.extend(fitted(setting, fit, candidates, screen, wanted, said));
+        let wanted: Vec<(Set, Sketch)> = next.into_iter().filter(is_rival).collect();
+        fits += wanted.len();
+        trials.extend(completed(setting, fit, candidates, screen, wanted, said));
     }
     if trials.iter().all(|trial| trial.verdict.is_err()) {
         let pairs = best_pairs(screen, fit, candidates, &ranked);
-        trials.extend(fitted(setting, fit, candidates, screen, pairs, said));
+        let pairs = sketched(setting, fit, candidates, screen, pairs, said);
+        trials.extend(completed(setting, fit, candidates, screen, pairs, said));
     }
     trials
 }
 
-/// Sets of candidates fitted in earnest, side by side.
-fn fitted(
+/// The names of a set's candidates.
+fn label(candidates: &[Candidate], screen: &Screen, set: &Set) -> String {
+    let labels = set
+        .responses
+        .iter()
+        .map(|r| candidates[screen.responses[*r].candidate].label());
+    labels.collect::<Vec<_>>().join(" and ")
+}
+
+/// Sets of candidates fitted to the beginnings of the windows, side by side; the best first.
+fn sketched(
     setting: &Setting<'_>,
     fit: &Fit,
     candidates: &[Candidate],
     screen: &Screen,
     sets: Vec<Set>,
     said: &dyn Fn(&str),
-) -> Vec<Trial> {
-    let label = |set: &Set| {
-        let labels = set
-            .responses
-            .iter()
-            .map(|r| candidates[screen.responses[*r].candidate].label());
-        labels.collect::<Vec<_>>().join(" and ")
-    };
-    for set in &sets {
-        said(&format!("fitting {}", label(set)));
-    }
-    let fits: Vec<Result<Fit, String>> = sets
+) -> Vec<(Set, Sketch)> {
+    let sketches: Vec<Result<Sketch, String>> = sets
         .par_iter()
         .map(|set| {
             let chosen: Vec<&Response> = set
@@ -265,12 +270,40 @@ fn fitted(
                 .iter()
                 .map(|r| &screen.responses[*r])
                 .collect();
-            fit_with(setting, fit, candidates, &chosen, set)
+            sketch_with(setting, fit, candidates, &chosen, set)
         })
         .collect();
+    let mut found = Vec::new();
+    for (set, sketch) in sets.into_iter().zip(sketches) {
+        let label = label(candidates, screen, &set);
+        match sketch {
+            Ok(sketch) => {
+                said(&format!("  {label}: {:.4e} left", sketch.left));
+                found.push((set, sketch));
+            }
+            Err(error) => said(&format!("  {label}: {error}")),
+        }
+    }
+    found.sort_by(|a, b| a.1.left.total_cmp(&b.1.left));
+    found
+}
+
+/// Sketches fitted in earnest, side by side.
+fn completed(
+    setting: &Setting<'_>,
+    fit: &Fit,
+    candidates: &[Candidate],
+    screen: &Screen,
+    sketches: Vec<(Set, Sketch)>,
+    said: &dyn Fn(&str),
+) -> Vec<Trial> {
+    let fits: Vec<(Set, Result<Fit, String>)> = sketches
+        .into_par_iter()
+        .map(|(set, sketch)| (set, setting.complete(sketch)))
+        .collect();
     let mut trials = Vec::new();
-    for (set, new) in sets.into_iter().zip(fits) {
-        let label = label(&set);
+    for (set, new) in fits {
+        let label = label(candidates, screen, &set);
         match new {
             Ok(new) => {
                 let shapes: Vec<bool> = set
@@ -335,7 +368,7 @@ fn best_pairs(screen: &Screen, fit: &Fit, candidates: &[Candidate], ranked: &[us
             for b in &few[number + 1..] {
                 let responses = vec![*a, *b];
                 let (left, sizes) = screen.left(&responses);
-                let gain = (alone - left) / screen.share;
+                let gain = alone - left;
                 let better = found.as_ref().is_none_or(|(g, _)| gain > *g);
                 if sizes.iter().all(|v| *v != 0.0) && better {
                     let set = Set {
@@ -359,14 +392,14 @@ fn best_pairs(screen: &Screen, fit: &Fit, candidates: &[Candidate], ranked: &[us
         .collect()
 }
 
-/// A fit with some candidates more.
-fn fit_with(
+/// A sketch with some candidates more.
+fn sketch_with(
     setting: &Setting<'_>,
     fit: &Fit,
     candidates: &[Candidate],
     responses: &[&Response],
     set: &Set,
-) -> Result<Fit, String> {
+) -> Result<Sketch, String> {
     let (mut text, mut linear) = (fit.text.clone(), fit.linear.clone());
     let mut unknowns = fit.unknowns.clone();
     // Parameters and sensors that took up what the effect does begin anew.
@@ -414,7 +447,7 @@ fn fit_with(
             linear = extended;
         }
     }
-    setting.fit((text, linear), unknowns, &theta)
+    setting.sketch((text, linear), unknowns, &theta)
 }
 
 fn note_rejected(

@@ -1,6 +1,8 @@
 //! Where the windows' initial states come from: followed through the record from window to
 //! window, or read from a record smoothed without delay.
 
+use rayon::prelude::*;
+
 use crate::dataset::{Channel, Initial, Quantity, Record};
 use crate::estimate::{StartPrior, settle};
 use crate::plant::Plant;
@@ -108,45 +110,74 @@ fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
     }
 }
 
+/// Windows that are followed from another estimate's initial states, side by side.
+const CHAINS: usize = 2;
+
 /// Initial states followed from window to window: each begins where the one before ended and
-/// is then fitted to its own samples.
+/// is then fitted to its own samples. `before`: those at other unknowns, from which parts of
+/// the records may be followed side by side.
 pub fn followed(
     shooting: &Shooting<'_>,
     theta: &[f64],
     firsts: &[Vec<f64>],
     ranges: &[f64],
     horizons: &[f64],
+    before: Option<&[Vec<f64>]>,
 ) -> (StartPrior, Vec<Vec<f64>>) {
     let sd: Vec<f64> = ranges
         .iter()
         .map(|range| rule::START_PRIOR * range)
         .collect();
     let count = shooting.windows.list.len();
-    let mut prior = StartPrior {
-        mean: vec![Vec::new(); count],
-        sd,
-    };
-    let mut starts: Vec<Vec<f64>> = Vec::with_capacity(count);
+    let chains = before.map_or(1, |_| CHAINS).min(count).max(1);
+    let parts: Vec<std::ops::Range<usize>> = (0..chains)
+        .map(|chain| chain * count / chains..(chain + 1) * count / chains)
+        .collect();
+    let followed: Vec<Vec<(Vec<f64>, Vec<f64>)>> = parts
+        .into_par_iter()
+        .map(|windows| {
+            let first = windows.start;
+            let known = before.filter(|_| first > 0).map(|starts| starts[first].clone());
+            chain(shooting, theta, (firsts, &sd), horizons, (windows, known))
+        })
+        .collect();
+    let (mean, starts) = followed.into_iter().flatten().unzip();
+    (StartPrior { mean, sd }, starts)
+}
+
+/// Some windows, one after the other: what is known of each initial state before, and the
+/// state.
+fn chain(
+    shooting: &Shooting<'_>,
+    theta: &[f64],
+    (firsts, sd): (&[Vec<f64>], &[f64]),
+    horizons: &[f64],
+    (windows, mut carried): (std::ops::Range<usize>, Option<Vec<f64>>),
+) -> Vec<(Vec<f64>, Vec<f64>)> {
     let Some(mut crew) = Crew::frozen(shooting, theta, 1.0) else {
-        let states = shooting.plant.state_count();
-        prior.mean = vec![vec![0.0; states]; count];
-        return (prior.clone(), prior.mean);
+        let nothing = vec![0.0; shooting.plant.state_count()];
+        return windows.map(|_| (nothing.clone(), nothing.clone())).collect();
     };
-    let mut carried: Option<Vec<f64>> = None;
-    for (place, window) in shooting.windows.list.iter().enumerate() {
+    let mut prior = StartPrior {
+        mean: vec![Vec::new(); shooting.windows.list.len()],
+        sd: sd.to_vec(),
+    };
+    let mut found = Vec::with_capacity(windows.len());
+    for place in windows {
+        let window = &shooting.windows.list[place];
         let begin = match (window.follows, carried.take()) {
             (Some(_), Some(state)) => state,
             _ => firsts[window.record].clone(),
         };
         prior.mean[place].clone_from(&begin);
         let settled = settle(&mut crew, &prior, place, begin.clone(), horizons);
-        let start = settled.unwrap_or(begin);
+        let start = settled.unwrap_or_else(|| begin.clone());
         if let Some(next) = shooting.windows.list.get(place + 1) {
             carried = crew.carried(place, &start, next.times[0]);
         }
-        starts.push(start);
+        found.push((begin, start));
     }
-    (prior, starts)
+    found
 }
 
 /// Initial states read from smoothed records, where the channels show all coordinates.

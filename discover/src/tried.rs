@@ -6,9 +6,9 @@ use rayon::prelude::*;
 
 use crate::candidates::Candidate;
 use crate::crew::Crew;
-use crate::estimate;
+use crate::estimate::{self, Estimate};
 use crate::fitting::{Fit, Setting};
-use crate::response::{Base, Columns, TRIAL, Trial, absent, mapped, silent, trial};
+use crate::response::{At, Columns, TRIAL, Trial, absent, mapped, silent, trial};
 use crate::shooting::Shooting;
 use crate::unknowns::Unknown;
 
@@ -18,12 +18,10 @@ const ATTEMPTS: (usize, f64) = (8, 1e6);
 /// The responses of all candidates. Those of one effect at one place that differ in the order
 /// alone are of one size: it is searched for once.
 pub fn tried(
+    at: &At,
     setting: &Setting<'_>,
     fit: &Fit,
     candidates: &[Candidate],
-    places: &[usize],
-    base: &Base,
-    level: f64,
 ) -> Vec<Result<Columns, String>> {
     let alike = |a: &Candidate, b: &Candidate| {
         let angle = |c: &Candidate| c.order.as_ref().map(|(angle, _)| angle.clone());
@@ -35,7 +33,7 @@ pub fn tried(
         .map(|group| {
             let mut sizes: Vec<f64> = Vec::new();
             let of_group = group.iter().map(|candidate| {
-                let found = response(setting, fit, candidate, places, base, (level, &sizes));
+                let found = response(at, setting, fit, candidate, &sizes);
                 if let Ok((trials, _)) = &found {
                     sizes = trials.iter().map(|trial| trial.unknown.scale).collect();
                 }
@@ -49,13 +47,19 @@ pub fn tried(
 
 /// What a candidate does in each window, a column per parameter that scales it.
 fn response(
+    at: &At,
     setting: &Setting<'_>,
     fit: &Fit,
     candidate: &Candidate,
-    places: &[usize],
-    base: &Base,
-    (level, sizes): (f64, &[f64]),
+    sizes: &[f64],
 ) -> Result<Columns, String> {
+    let At {
+        places,
+        base,
+        level,
+        estimate,
+        part,
+    } = at;
     let start: Vec<f64> = candidate
         .parameters
         .iter()
@@ -76,7 +80,11 @@ fn response(
         .chain(trials.iter().map(|t| t.unknown.clone()))
         .collect();
     let ranges = mapped(fit, &plant, &fit.ranges);
-    let shooting = setting.shooting(&plant, &setting.train, &extended, &ranges);
+    let whole = setting.shooting(&plant, &setting.train, &extended, &ranges);
+    let shooting = Shooting {
+        part: *part,
+        ..whole
+    };
     let nuisances = fit.unknowns.len();
     let mut columns = vec![Vec::new(); places.len()];
     for place in 0..trials.len() {
@@ -84,17 +92,17 @@ fn response(
             continue;
         }
         let theta = |size: f64| {
-            let mut theta = fit.train.estimate.theta.clone();
+            let mut theta = estimate.theta.clone();
             theta.extend(trials.iter().map(|trial| trial.unknown.start));
             theta[nuisances + place] = size;
             theta
         };
         // The size is found on the first, the middle and the last of the windows.
         let few = [0, places.len() / 2, places.len() - 1];
-        let size = trial_size(trials[place].unknown.scale, level, |size| {
+        let size = trial_size(trials[place].unknown.scale, *level, |size| {
             let changes = changes(
                 &shooting,
-                fit,
+                (fit, estimate),
                 &theta(size),
                 few.iter().map(|k| (places[*k], &base[*k])),
             )?;
@@ -106,7 +114,7 @@ fn response(
             return Err(silent());
         };
         let pairs = places.iter().copied().zip(base.iter());
-        let changes = changes(&shooting, fit, &theta(size), pairs)
+        let changes = changes(&shooting, (fit, estimate), &theta(size), pairs)
             .ok_or("the motion with it cannot be followed")?;
         for (window, change) in columns.iter_mut().zip(changes) {
             window.push(change / size);
@@ -123,7 +131,7 @@ fn response(
 /// Changes of the residuals in some windows; none if a motion cannot be followed.
 fn changes<'b>(
     shooting: &Shooting<'_>,
-    fit: &Fit,
+    (fit, estimate): (&Fit, &Estimate),
     theta: &[f64],
     windows: impl Iterator<Item = (usize, &'b Option<estimate::Eliminator>)>,
 ) -> Option<Vec<DVector<f64>>> {
@@ -134,7 +142,7 @@ fn changes<'b>(
             changes.push(DVector::zeros(0));
             continue;
         };
-        let start = mapped(fit, shooting.plant, &fit.train.estimate.starts[place]);
+        let start = mapped(fit, shooting.plant, &estimate.starts[place]);
         let residual = crew.residual(place, &start)?;
         changes.push(DVector::from_vec(residual.values) - &base.residual);
     }
