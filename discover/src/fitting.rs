@@ -3,6 +3,7 @@
 //! mean is judged in [`crate::judge`].
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use crate::dataset::{Dataset, Start};
 use crate::estimate::{self, Estimate, StartPrior, stacked};
@@ -15,6 +16,10 @@ use crate::windows::Windows;
 /// The parts of a window over which initial states are fitted, one after the other.
 const HORIZONS: [f64; 4] = [0.08, 0.25, 0.5, 1.0];
 
+/// Others, for another try: where impacts fold the outputs, one way may end in the wrong fold
+/// and another in the right one.
+const OTHER_HORIZONS: [f64; 5] = [0.05, 0.12, 0.3, 0.7, 1.0];
+
 /// The part of a window on which unknowns are first approached, and the horizons up to it.
 const FIRST_PART: (f64, usize) = (0.25, 2);
 
@@ -23,6 +28,9 @@ const STEPS: (usize, usize) = (5, 4);
 
 /// Steps of a sketch where initial states are read from the record.
 const SKETCHING_STEPS: usize = 3;
+
+/// What leaves more than this many noises is not worth being followed anew.
+const FAR: f64 = 8.0;
 
 /// Windows are followed anew so often at most, while that lowers the cost by this part.
 const REFRESHES: usize = 2;
@@ -202,7 +210,29 @@ impl<'d> Setting<'d> {
         theta: &[f64],
         ranges: &[f64],
     ) -> Result<Vec<Vec<f64>>, String> {
-        Ok(self.starts(shooting, theta, ranges, &HORIZONS, None)?.1)
+        let ladders = [&HORIZONS[..], &OTHER_HORIZONS];
+        let ladders = if self.fits_starts() {
+            &ladders[..]
+        } else {
+            &ladders[..1]
+        };
+        let found: Vec<Result<Estimate, String>> = ladders
+            .par_iter()
+            .map(|horizons| {
+                let (_, starts) = self.starts(shooting, theta, ranges, horizons, None)?;
+                let prior = StartPrior::default();
+                Ok(estimate::evaluated(shooting, &prior, theta.to_vec(), starts))
+            })
+            .collect();
+        let found = found.into_iter().collect::<Result<Vec<Estimate>, String>>()?;
+        let best = (0..shooting.windows.list.len()).map(|window| {
+            let order = |a: &&Estimate, b: &&Estimate| {
+                a.squares[window].total_cmp(&b.squares[window])
+            };
+            let best = found.iter().min_by(order);
+            best.map_or_else(Vec::new, |found| found.starts[window].clone())
+        });
+        Ok(best.collect())
     }
 
     /// Fits a specification: its unknowns from `theta`, then what is left.
@@ -305,7 +335,12 @@ impl<'d> Setting<'d> {
                 estimate::evaluated(&shooting, &StartPrior::default(), begin, starts),
             )
         };
-        let near = estimate::estimate(&shooting, &prior, &near.theta, &near.starts, STEPS.1);
+        let numbers: usize = self.train.list.iter().map(|w| w.measured.len()).sum();
+        let is_far = near.cost > FAR * FAR * numbers as f64;
+        let near = match is_far {
+            true => near,
+            false => estimate::estimate(&shooting, &prior, &near.theta, &near.starts, STEPS.1),
+        };
         for (place, value) in places.iter().zip(&near.theta) {
             theta[*place] = *value;
         }
@@ -315,6 +350,10 @@ impl<'d> Setting<'d> {
             all.prior_weight = (rest.pooled * rest.pooled).max(1.0) * rest.correlation;
             let Estimate { theta, starts, .. } = &rest.estimate;
             let found = estimate::estimate(&all, &prior, theta, starts, STEPS.1);
+            if is_far {
+                rest = self.rest(&all, found);
+                break;
+            }
             let before = found.cost;
             let (new_prior, found) = self.refreshed(&all, &ranges, prior, found);
             prior = new_prior;
@@ -328,7 +367,7 @@ impl<'d> Setting<'d> {
         let sd = self.uncertainty(&all, &prior, &rest.estimate);
         let train = rest;
         let held_out = self.shooting(&plant, &self.test, &unknowns, &ranges);
-        let (_, starts) = self.starts(&held_out, &train.estimate.theta, &ranges, &HORIZONS, None)?;
+        let starts = self.all_starts(&held_out, &train.estimate.theta, &ranges)?;
         let test = estimate::evaluated(
             &held_out,
             &StartPrior::default(),
@@ -363,7 +402,7 @@ impl<'d> Setting<'d> {
         if !self.fits_starts() {
             return (prior, found);
         }
-        let Ok((anew, starts)) = self.starts(shooting, &found.theta, ranges, &HORIZONS, None)
+        let Ok((anew, starts)) = self.starts(shooting, &found.theta, ranges, &OTHER_HORIZONS, None)
         else {
             return (prior, found);
         };

@@ -58,6 +58,10 @@ pub const MOST_EFFECTS: usize = 4;
 /// The most candidates that are fitted in earnest in one round.
 pub const MOST_FITS: usize = 4;
 
+/// A candidate is fitted if screening promises that it takes this part of the squares away:
+/// half of what is asked for on held-out records.
+pub const PROMISE: f64 = 0.05;
+
 /// So many candidates are fitted side by side before it is decided whether more are worth it:
 /// one per core of a small machine.
 pub const FITS_AT_ONCE: usize = 2;

@@ -179,7 +179,8 @@ fn trials(
 ) -> Vec<Trial> {
     let mut ranked: Vec<usize> = (0..screen.responses.len())
         .filter(|r| {
-            screen.responses[*r].visible > rule::OWN_PART && screen.responses[*r].gain > 0.0
+            let response = &screen.responses[*r];
+            response.visible > rule::OWN_PART && response.gain > rule::PROMISE * screen.left(&[]).0
         })
         .collect();
     ranked.sort_by(|a, b| {
