@@ -126,7 +126,10 @@ impl<'a> Crew<'a> {
             false => self.by_quotients(place, start)?,
         };
         let finite = found.residual.iter().chain(found.by_unknown.iter());
-        (finite.chain(found.by_state.iter()).all(|entry| entry.is_finite())).then_some(found)
+        (finite
+            .chain(found.by_state.iter())
+            .all(|entry| entry.is_finite()))
+        .then_some(found)
     }
 
     /// The same with neighbouring motions that come along.
@@ -143,9 +146,9 @@ impl<'a> Crew<'a> {
         let mut drives = Differences::new(&mut self.equations, moved.collect());
         let count = drives.count();
         let by_state = shooting.ranges.is_some();
-        let marched =
-            self.base
-                .linearised(start, times, inputs, by_state, (count, &mut drives))?;
+        let marched = self
+            .base
+            .linearised(start, times, inputs, by_state, (count, &mut drives))?;
         let seen = shooting.seen(times, &self.sensors, &marched.outputs.values);
         let residual = DVector::from_vec(shooting.normalised(window, &seen));
         let states = if by_state { start.len() } else { 0 };
@@ -365,7 +368,10 @@ impl Drives for Differences<'_> {
         let slots = out.chunks_exact_mut(half.max(1));
         for ((evaluator, step), slots) in self.moved.iter_mut().zip(slots) {
             evaluator.rates(Point { t, state, inputs }, moved);
-            for (slot, (a, b)) in slots.iter_mut().zip(moved[half..].iter().zip(&base[half..])) {
+            for (slot, (a, b)) in slots
+                .iter_mut()
+                .zip(moved[half..].iter().zip(&base[half..]))
+            {
                 *slot = (a - b) / *step;
             }
         }
@@ -394,4 +400,3 @@ fn moved_sensors(sensors: &Sensors, unknown: &Unknown) -> (Sensors, f64) {
     }
     (moved, step)
 }
-

@@ -10,8 +10,8 @@ use crate::candidates::Candidate;
 use crate::crew::{Crew, Differences};
 use crate::fitting::{Fit, Setting};
 use crate::plant::Plant;
-use crate::shooting::Shooting;
 use crate::response::{At, Columns, TRIAL, Trial, absent, silent, trial};
+use crate::shooting::Shooting;
 
 /// A candidate is taken at a size that changes accelerations by this part of their own size,
 /// in any direction: small beside them, large beside rounding.
@@ -87,11 +87,7 @@ pub fn driven(
 }
 
 /// A candidate's columns with the sizes that would move the outputs by a part of the misfit.
-fn sized(
-    trials: &mut [Trial],
-    blocks: Vec<DMatrix<f64>>,
-    level: f64,
-) -> Result<Columns, String> {
+fn sized(trials: &mut [Trial], blocks: Vec<DMatrix<f64>>, level: f64) -> Result<Columns, String> {
     let scaling = trials.iter_mut().filter(|trial| !trial.is_shape);
     for (column, trial) in scaling.enumerate() {
         let numbers: usize = blocks.iter().map(DMatrix::nrows).sum();
@@ -108,7 +104,9 @@ fn sized(
 /// Points of the fitted motion; none if neighbouring motions do not come with it.
 fn points(at: &At, setting: &Setting<'_>, fit: &Fit) -> Option<Points> {
     let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
-    let At { estimate, places, .. } = at;
+    let At {
+        estimate, places, ..
+    } = at;
     let values = shooting.values(&estimate.theta);
     let mut runner = fit.plant.at(&values).ok()?;
     if !runner.is_marched() {
@@ -226,7 +224,14 @@ fn change(evaluator: &mut Evaluator, points: &Points) -> f64 {
     let mut rates = vec![0.0; 2 * half];
     for (place, t) in points.times.iter().enumerate() {
         let (state, inputs) = (&points.states[place], &points.inputs[place]);
-        evaluator.rates(Point { t: *t, state, inputs }, &mut rates);
+        evaluator.rates(
+            Point {
+                t: *t,
+                state,
+                inputs,
+            },
+            &mut rates,
+        );
         let pairs = rates[half..].iter().zip(&points.rates[place][half..]);
         for (sum, (a, b)) in sums.iter_mut().zip(pairs) {
             *sum += (a - b) * (a - b);
@@ -238,12 +243,7 @@ fn change(evaluator: &mut Evaluator, points: &Points) -> f64 {
 }
 
 /// For each window a column per parameter; no columns where the fit has no motion.
-fn marched(
-    at: &At,
-    setting: &Setting<'_>,
-    fit: &Fit,
-    ready: &[Ready],
-) -> Vec<DMatrix<f64>> {
+fn marched(at: &At, setting: &Setting<'_>, fit: &Fit, ready: &[Ready]) -> Vec<DMatrix<f64>> {
     let whole = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
     let shooting = Shooting {
         part: at.part,
@@ -255,7 +255,10 @@ fn marched(
         base,
         ..
     } = at;
-    let size = places.len().div_ceil(rayon::current_num_threads().max(1)).max(1);
+    let size = places
+        .len()
+        .div_ceil(rayon::current_num_threads().max(1))
+        .max(1);
     let parts: Vec<Vec<DMatrix<f64>>> = (0..places.len())
         .collect::<Vec<_>>()
         .par_chunks(size)
@@ -266,7 +269,11 @@ fn marched(
             };
             let mut evaluators: Vec<(Evaluator, f64)> = ready
                 .iter()
-                .flat_map(|of| of.moved.iter().map(|(v, size)| (of.plant.evaluator(v).0, *size)))
+                .flat_map(|of| {
+                    of.moved
+                        .iter()
+                        .map(|(v, size)| (of.plant.evaluator(v).0, *size))
+                })
                 .collect();
             let mut own = fit.plant.evaluator(&shooting.values(&estimate.theta)).0;
             part.iter()

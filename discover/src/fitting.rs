@@ -221,14 +221,20 @@ impl<'d> Setting<'d> {
             .map(|horizons| {
                 let (_, starts) = self.starts(shooting, theta, ranges, horizons, None)?;
                 let prior = StartPrior::default();
-                Ok(estimate::evaluated(shooting, &prior, theta.to_vec(), starts))
+                Ok(estimate::evaluated(
+                    shooting,
+                    &prior,
+                    theta.to_vec(),
+                    starts,
+                ))
             })
             .collect();
-        let found = found.into_iter().collect::<Result<Vec<Estimate>, String>>()?;
+        let found = found
+            .into_iter()
+            .collect::<Result<Vec<Estimate>, String>>()?;
         let best = (0..shooting.windows.list.len()).map(|window| {
-            let order = |a: &&Estimate, b: &&Estimate| {
-                a.squares[window].total_cmp(&b.squares[window])
-            };
+            let order =
+                |a: &&Estimate, b: &&Estimate| a.squares[window].total_cmp(&b.squares[window]);
             let best = found.iter().min_by(order);
             best.map_or_else(Vec::new, |found| found.starts[window].clone())
         });

@@ -201,7 +201,9 @@ impl Plant {
     /// A text with no terms but those that are linear between switches is enough for the
     /// whole model.
     pub fn is_linear(&self) -> bool {
-        self.linear.as_ref().is_some_and(|part| part.beside.is_none())
+        self.linear
+            .as_ref()
+            .is_some_and(|part| part.beside.is_none())
     }
 
     /// The initial state that the specification gives.
@@ -308,12 +310,7 @@ pub fn is_linear(text: &str, name: &str, order: Option<usize>) -> bool {
 }
 
 /// The linear part of a model whose text is given, if it has the model's states.
-fn linear_part(
-    text: &str,
-    name: &str,
-    order: Option<usize>,
-    plant: &Plant,
-) -> Option<LinearPart> {
+fn linear_part(text: &str, name: &str, order: Option<usize>, plant: &Plant) -> Option<LinearPart> {
     let model = model_spec::check(Source::new(name, text)).ok()?.model;
     let orders = model.orders(order).ok()?;
     if model.state_names(&orders) != plant.states {

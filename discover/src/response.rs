@@ -92,7 +92,10 @@ pub fn responses(
     let rest: Vec<usize> = (0..candidates.len())
         .filter(|place| found[*place].is_none())
         .collect();
-    let others: Vec<Candidate> = rest.iter().map(|place| candidates[*place].clone()).collect();
+    let others: Vec<Candidate> = rest
+        .iter()
+        .map(|place| candidates[*place].clone())
+        .collect();
     let tried = tried(at, setting, fit, &others);
     for (place, response) in rest.into_iter().zip(tried) {
         found[place] = Some(response);
@@ -155,4 +158,3 @@ pub fn mapped(fit: &Fit, plant: &Plant, state: &[f64]) -> Vec<f64> {
     };
     plant.states.iter().map(value).collect()
 }
-

@@ -62,6 +62,13 @@ pub const MOST_FITS: usize = 4;
 /// half of what is asked for on held-out records.
 pub const PROMISE: f64 = 0.05;
 
+/// Where much more than noise is left, effects are far from small and a straight line promises
+/// a part of what they do: this part is enough there.
+pub const PROMISE_FAR: f64 = 0.005;
+
+/// Much more than noise are so many noises.
+pub const FAR: f64 = 3.0;
+
 /// So many candidates are fitted side by side before it is decided whether more are worth it:
 /// one per core of a small machine.
 pub const FITS_AT_ONCE: usize = 2;

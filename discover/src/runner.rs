@@ -67,7 +67,10 @@ impl Shown {
             let mut found = Vec::new();
             shown.add_to(&state, &mut found);
             let pairs = wanted.iter().zip(&found);
-            if !pairs.into_iter().all(|(a, b)| (a - b).abs() <= LINEAR * (a.abs() + 1e-12)) {
+            if !pairs
+                .into_iter()
+                .all(|(a, b)| (a - b).abs() <= LINEAR * (a.abs() + 1e-12))
+            {
                 return None;
             }
         }
@@ -114,7 +117,10 @@ impl Force for Beyond {
         self.whole.rates(Point { t, state, inputs }, whole);
         self.linear.rates(Point { t, state, inputs }, linear);
         let half = out.len();
-        for (slot, (a, b)) in out.iter_mut().zip(whole[half..].iter().zip(&linear[half..])) {
+        for (slot, (a, b)) in out
+            .iter_mut()
+            .zip(whole[half..].iter().zip(&linear[half..]))
+        {
             *slot = a - b;
         }
     }
@@ -203,19 +209,25 @@ impl<'p> Runner<'p> {
             tangents: Some(&mut tangents),
         };
         march
-            .run(initial, samples, inputs, company, &mut |_, state, tangents| {
-                shown.add_to(state, &mut found.outputs.values);
-                found.states.push(state.to_vec());
-                let Some(tangents) = tangents else { return };
-                let vectors = tangents.vectors.chunks_exact(tangents.stride);
-                for (place, vector) in vectors.enumerate() {
-                    let out = match place < free {
-                        true => &mut found.by_state,
-                        false => &mut found.by_drive,
-                    };
-                    shown.add_tangent(&vector[..n], out);
-                }
-            })
+            .run(
+                initial,
+                samples,
+                inputs,
+                company,
+                &mut |_, state, tangents| {
+                    shown.add_to(state, &mut found.outputs.values);
+                    found.states.push(state.to_vec());
+                    let Some(tangents) = tangents else { return };
+                    let vectors = tangents.vectors.chunks_exact(tangents.stride);
+                    for (place, vector) in vectors.enumerate() {
+                        let out = match place < free {
+                            true => &mut found.by_state,
+                            false => &mut found.by_drive,
+                        };
+                        shown.add_tangent(&vector[..n], out);
+                    }
+                },
+            )
             .ok()?;
         found.outputs.last = found.states.last().cloned().unwrap_or_default();
         Some(found)

@@ -15,6 +15,12 @@ use crate::screen::{Response, Screen, screen};
 use crate::sites::sites;
 use crate::unknowns::{What, of_null_model};
 
+/// Parts of the size that screening promises at which a fit begins, one after the other.
+const SHORTENED: [f64; 3] = [1.0, 0.3, 0.1];
+
+/// A fit that leaves less than this part of the squares has begun well.
+const WELL_BEGUN: f64 = 0.2;
+
 /// An effect that was believed.
 #[derive(Clone, Debug)]
 pub struct Accepted {
@@ -177,10 +183,15 @@ fn trials(
     floor: f64,
     said: &dyn Fn(&str),
 ) -> Vec<Trial> {
+    let alone = screen.left(&[]).0;
+    let promise = match alone > rule::FAR * rule::FAR * screen.numbers {
+        true => rule::PROMISE_FAR,
+        false => rule::PROMISE,
+    };
     let mut ranked: Vec<usize> = (0..screen.responses.len())
         .filter(|r| {
             let response = &screen.responses[*r];
-            response.visible > rule::OWN_PART && response.gain > rule::PROMISE * screen.left(&[]).0
+            response.visible > rule::OWN_PART && response.gain > promise * alone
         })
         .collect();
     ranked.sort_by(|a, b| {
@@ -263,6 +274,7 @@ fn sketched(
     sets: Vec<Set>,
     said: &dyn Fn(&str),
 ) -> Vec<(Set, Sketch)> {
+    let alone = screen.left(&[]).0;
     let sketches: Vec<Result<Sketch, String>> = sets
         .par_iter()
         .map(|set| {
@@ -271,7 +283,23 @@ fn sketched(
                 .iter()
                 .map(|r| &screen.responses[*r])
                 .collect();
-            sketch_with(setting, fit, candidates, &chosen, set)
+            // What a straight line promises may be far beyond where it leads.
+            let mut best: Result<Sketch, String> = Err("no motion can be followed".to_owned());
+            for part in SHORTENED {
+                let sizes = set.sizes.iter().map(|size| part * size).collect();
+                let found = sketch_with(setting, fit, candidates, &chosen, (set.deleted, sizes));
+                let left = best.as_ref().map_or(f64::INFINITY, |best| best.left);
+                if found.as_ref().is_ok_and(|found| found.left < left) || best.is_err() {
+                    best = found;
+                }
+                if best
+                    .as_ref()
+                    .is_ok_and(|best| best.left < WELL_BEGUN * alone)
+                {
+                    break;
+                }
+            }
+            best
         })
         .collect();
     let mut found = Vec::new();
@@ -399,7 +427,7 @@ fn sketch_with(
     fit: &Fit,
     candidates: &[Candidate],
     responses: &[&Response],
-    set: &Set,
+    (deleted, sizes): (Option<usize>, Vec<f64>),
 ) -> Result<Sketch, String> {
     let (mut text, mut linear) = (fit.text.clone(), fit.linear.clone());
     let mut unknowns = fit.unknowns.clone();
@@ -408,11 +436,11 @@ fn sketch_with(
     let mut theta: Vec<f64> = known
         .map(|(unknown, value)| unknown.prior.map_or(*value, |(mean, _)| mean))
         .collect();
-    if let Some(place) = set.deleted {
+    if let Some(place) = deleted {
         unknowns[place].bounds = (0.0, 0.0);
         theta[place] = 0.0;
     }
-    let mut sizes = set.sizes.iter();
+    let mut sizes = sizes.iter();
     for response in responses {
         let candidate = &candidates[response.candidate];
         let mut values = Vec::new();

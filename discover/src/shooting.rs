@@ -4,8 +4,8 @@
 
 use rayon::prelude::*;
 
-use crate::plant::Plant;
 use crate::crew::{Crew, Linear};
+use crate::plant::Plant;
 use crate::runner::Runner;
 use crate::unknowns::{Unknown, What};
 use crate::windows::{Window, Windows};
@@ -167,7 +167,12 @@ impl<'a> Shooting<'a> {
     }
 
     /// A function of what is seen and measured, in noises; 0 where nothing counts.
-    pub(crate) fn differences(&self, window: &Window, seen: &[f64], of: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    pub(crate) fn differences(
+        &self,
+        window: &Window,
+        seen: &[f64],
+        of: impl Fn(f64, f64) -> f64,
+    ) -> Vec<f64> {
         let channels = self.channels();
         let samples = seen.len() / channels;
         let margin = self.margin.min(samples / 4);

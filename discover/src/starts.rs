@@ -3,11 +3,11 @@
 
 use rayon::prelude::*;
 
+use crate::crew::Crew;
 use crate::dataset::{Channel, Initial, Quantity, Record};
 use crate::estimate::{StartPrior, settle};
 use crate::plant::Plant;
 use crate::rule;
-use crate::crew::Crew;
 use crate::shooting::Shooting;
 use crate::smooth::{sloped, smoothed};
 use crate::windows::Windows;
@@ -137,7 +137,9 @@ pub fn followed(
         .into_par_iter()
         .map(|windows| {
             let first = windows.start;
-            let known = before.filter(|_| first > 0).map(|starts| starts[first].clone());
+            let known = before
+                .filter(|_| first > 0)
+                .map(|starts| starts[first].clone());
             chain(shooting, theta, (firsts, &sd), horizons, (windows, known))
         })
         .collect();
@@ -156,7 +158,9 @@ fn chain(
 ) -> Vec<(Vec<f64>, Vec<f64>)> {
     let Some(mut crew) = Crew::frozen(shooting, theta, 1.0) else {
         let nothing = vec![0.0; shooting.plant.state_count()];
-        return windows.map(|_| (nothing.clone(), nothing.clone())).collect();
+        return windows
+            .map(|_| (nothing.clone(), nothing.clone()))
+            .collect();
     };
     let mut prior = StartPrior {
         mean: vec![Vec::new(); shooting.windows.list.len()],

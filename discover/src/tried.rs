@@ -164,4 +164,3 @@ fn trial_size(start: f64, level: f64, moved: impl Fn(f64) -> Option<f64>) -> Opt
     }
     None
 }
-

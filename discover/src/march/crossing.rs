@@ -37,7 +37,11 @@ fn crossing([a, da, b, db]: [f64; 4]) -> Option<f64> {
     let discriminant = c * c - 3.0 * da * d;
     if discriminant > 0.0 {
         let root = discriminant.sqrt();
-        let candidates = [(-c + root) / (3.0 * d), (-c - root) / (3.0 * d), -0.5 * da / c];
+        let candidates = [
+            (-c + root) / (3.0 * d),
+            (-c - root) / (3.0 * d),
+            -0.5 * da / c,
+        ];
         for s in candidates {
             if s > 0.0 && s < last && value(s) < 0.0 {
                 last = s;

@@ -88,6 +88,9 @@ pub struct Company<'c, 'd> {
     pub tangents: Option<&'c mut Tangents<'d>>,
 }
 
+/// Who is shown the samples: each one's place, the state there and the neighbouring motions.
+pub type Show<'s> = dyn FnMut(usize, &[f64], Option<&Tangents<'_>>) + 's;
+
 impl March {
     /// A march of a model at its parameters, for samples so far apart, s; none if it is not
     /// of a kind that can be marched.
@@ -123,7 +126,7 @@ impl March {
         samples: &[f64],
         inputs: &HeldInputs,
         mut company: Company<'_, '_>,
-        show: &mut dyn FnMut(usize, &[f64], Option<&Tangents<'_>>),
+        show: &mut Show<'_>,
     ) -> Result<(), String> {
         let Some(begin) = samples.first() else {
             return Ok(());
@@ -134,7 +137,9 @@ impl March {
             while motion.t < *end {
                 // Times of samples and of inputs may differ by rounding.
                 let near = motion.t + 1e-3 * self.step;
-                let change = inputs.next_change(near).filter(|next| *next < *end - 1e-3 * self.step);
+                let change = inputs
+                    .next_change(near)
+                    .filter(|next| *next < *end - 1e-3 * self.step);
                 let until = change.unwrap_or(*end);
                 let values = inputs.at(0.5 * (motion.t + until));
                 self.interval(&mut motion, until, values, &mut company)?;
@@ -256,7 +261,9 @@ impl March {
         let regime = &self.regimes[motion.regime];
         motion.base.clear();
         motion.base.resize(regime.step.rows, 0.0);
-        regime.step_given.add_product(&motion.given, &mut motion.base);
+        regime
+            .step_given
+            .add_product(&motion.given, &mut motion.base);
         self.watch(motion);
     }
 
@@ -321,13 +328,17 @@ impl March {
         regime.step.add_product(&motion.state, &mut motion.next);
         let mut later = [0.0; 32];
         if let Some(force) = &mut company.force {
-            regime.step_force.add_product(&motion.force, &mut motion.next);
+            regime
+                .step_force
+                .add_product(&motion.force, &mut motion.next);
             let later = &mut later[..half];
             force.at(end, &motion.next[..n], inputs, later);
             for (new, old) in later.iter().zip(&mut motion.force) {
                 *old = 0.5 * (new - *old);
             }
-            regime.step_force.add_product(&motion.force, &mut motion.next);
+            regime
+                .step_force
+                .add_product(&motion.force, &mut motion.next);
             // Undone, for the case that the step is made in parts.
             for (new, old) in later.iter().zip(&mut motion.force) {
                 *old = new - 2.0 * *old;
@@ -349,7 +360,9 @@ impl March {
         if company.force.is_some() {
             motion.force.copy_from_slice(&later[..half]);
         }
-        motion.watched.copy_from_slice(&motion.next[n..n + 2 * surfaces]);
+        motion
+            .watched
+            .copy_from_slice(&motion.next[n..n + 2 * surfaces]);
         if company.force.is_some() {
             for place in 0..surfaces {
                 let forced = dot(&regime.functions[place].state[half..], &motion.force);
@@ -437,9 +450,14 @@ impl March {
         let (n, half) = (self.states, self.states / 2);
         out.fill(0.0);
         for (column, value) in regime.given.column_iter().zip(&motion.given) {
-            out.iter_mut().zip(column.iter()).for_each(|(o, c)| *o += c * value);
+            out.iter_mut()
+                .zip(column.iter())
+                .for_each(|(o, c)| *o += c * value);
         }
-        out[half..n].iter_mut().zip(&motion.force).for_each(|(o, f)| *o += f);
+        out[half..n]
+            .iter_mut()
+            .zip(&motion.force)
+            .for_each(|(o, f)| *o += f);
         regime.matrix.add_product(&motion.state, out);
     }
 
@@ -519,7 +537,11 @@ impl March {
         let mut after = rates.clone();
         self.rates(motion, &mut after);
         let function = &self.regimes[before].functions[surface].state;
-        let size: f64 = function.iter().zip(&after).map(|(a, b)| (a * b).abs()).sum();
+        let size: f64 = function
+            .iter()
+            .zip(&after)
+            .map(|(a, b)| (a * b).abs())
+            .sum();
         let (here, there) = (dot(function, &rates), dot(function, &after));
         if there * outward < -LEADS_BACK * size && here * outward > 0.0 {
             motion.sides[surface] = Side::Held;

@@ -76,7 +76,12 @@ impl Regime {
         let mut rates = Rates::of(&system);
         let functions = surfaces.rows(&system);
         let held = hold(evaluator, surfaces, sides, &functions, &mut rates)?;
-        if rates.state.iter().chain(rates.given.iter()).any(|e| !e.is_finite()) {
+        if rates
+            .state
+            .iter()
+            .chain(rates.given.iter())
+            .any(|e| !e.is_finite())
+        {
             return None;
         }
         let n = system.states;
@@ -174,7 +179,13 @@ fn hold(
         state: of_state.row(place).iter().copied().collect(),
         given: of_given.row(place).iter().copied().collect(),
     };
-    Some(places.iter().enumerate().map(|(k, p)| (*p, row(k))).collect())
+    Some(
+        places
+            .iter()
+            .enumerate()
+            .map(|(k, p)| (*p, row(k)))
+            .collect(),
+    )
 }
 
 /// The largest magnitude of the rates' eigenvalues over the regimes, 1/s.

@@ -140,7 +140,10 @@ impl<'d> Tangents<'d> {
             if place >= self.free {
                 let first = (place - self.free) * half;
                 let drives = &self.here[first..first + half];
-                rates[half..n].iter_mut().zip(drives).for_each(|(r, d)| *r += d);
+                rates[half..n]
+                    .iter_mut()
+                    .zip(drives)
+                    .for_each(|(r, d)| *r += d);
             }
             series(&regime.matrix, vector, &mut rates, tau, PART_ERROR);
         }
@@ -153,7 +156,12 @@ impl<'d> Tangents<'d> {
     pub fn switch(&mut self, function: &Row, before: &[f64], after: &[f64]) {
         let n = self.states;
         let rate = dot(&function.state, &before[..n]);
-        let size: f64 = function.state.iter().zip(before).map(|(a, b)| (a * b).abs()).sum();
+        let size: f64 = function
+            .state
+            .iter()
+            .zip(before)
+            .map(|(a, b)| (a * b).abs())
+            .sum();
         if rate.abs() <= GRAZING * size {
             return;
         }

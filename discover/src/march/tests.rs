@@ -9,14 +9,18 @@ use sim::record::HeldInputs;
 use super::{Company, Drives, Free, March, Tangents};
 
 fn rig() -> Model {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../model-spec/models/planetary_arm_rig.toml");
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm_rig.toml");
     let text = fs::read_to_string(path).expect("the rig");
-    model_spec::check(Source::new("rig", &*text)).expect("valid").model
+    model_spec::check(Source::new("rig", &*text))
+        .expect("valid")
+        .model
 }
 
 fn torque(times: &[f64]) -> HeldInputs {
-    let values = times.iter().map(|t| (20.0 * t).sin() + 0.5 * (73.0 * t).sin());
+    let values = times
+        .iter()
+        .map(|t| (20.0 * t).sin() + 0.5 * (73.0 * t).sin());
     HeldInputs::new(times.to_vec(), values.collect(), 1).expect("as many values as times")
 }
 
@@ -54,16 +58,21 @@ fn a_march_follows_the_exact_motion_through_its_switches() {
     for (sample, (a, b)) in found.iter().zip(&wanted.states).enumerate() {
         for place in 0..7 {
             let difference = (a[place] - b[place]).abs();
-            assert!(difference < 2e-8, "{place} at sample {sample}: {difference:e}");
+            assert!(
+                difference < 2e-8,
+                "{place} at sample {sample}: {difference:e}"
+            );
         }
     }
 }
 
 fn exact_values(model: &Model) -> Vec<f64> {
     let all = model.parameter_values().expect("values");
-    let independent = model.parameters.iter().zip(&all).filter(|(p, _)| {
-        matches!(p.value, model_spec::model::ParameterValue::Number(_))
-    });
+    let independent = model
+        .parameters
+        .iter()
+        .zip(&all)
+        .filter(|(p, _)| matches!(p.value, model_spec::model::ParameterValue::Number(_)));
     independent.map(|(_, value)| *value).collect()
 }
 
@@ -94,7 +103,9 @@ fn tangents_are_differences_of_neighbouring_motions() {
             }
         })
         .expect("a motion");
-    let steps = [1e-9, 1e-9, 1e-9, 1e-8, 1e-8, 1e-8, 1e-8, 1e-6, 1e-6, 1e-6, 1e-5, 1e-5, 1e-5, 1e-5];
+    let steps = [
+        1e-9, 1e-9, 1e-9, 1e-8, 1e-8, 1e-8, 1e-8, 1e-6, 1e-6, 1e-6, 1e-5, 1e-5, 1e-5, 1e-5,
+    ];
     for place in 0..14 {
         let mut ends = Vec::new();
         for sign in [1.0, -1.0] {
@@ -102,11 +113,16 @@ fn tangents_are_differences_of_neighbouring_motions() {
             moved[place] += sign * steps[place];
             ends.push(run(&mut march, &moved, &times, &inputs)[59].clone());
         }
-        let scale: f64 = (0..7).map(|k| found[place * 14 + k].abs()).fold(0.0, f64::max);
+        let scale: f64 = (0..7)
+            .map(|k| found[place * 14 + k].abs())
+            .fold(0.0, f64::max);
         for k in 0..7 {
             let quotient = (ends[0][k] - ends[1][k]) / (2.0 * steps[place]);
             let difference = (found[place * 14 + k] - quotient).abs();
-            assert!(difference < 1e-2 * scale, "{k} by {place}: {difference:e} of {scale:e}");
+            assert!(
+                difference < 1e-2 * scale,
+                "{k} by {place}: {difference:e} of {scale:e}"
+            );
         }
     }
 }
@@ -129,7 +145,9 @@ block = "1/2*m*dot(x)^2"
 push = { on = "x", value = "u" }
 friction = { on = "x", value = "-T*sign(dot(x))" }
 "#;
-    model_spec::check(Source::new("block", text)).expect("valid").model
+    model_spec::check(Source::new("block", text))
+        .expect("valid")
+        .model
 }
 
 #[test]
@@ -172,10 +190,16 @@ fn a_driven_tangent_is_the_motion_of_what_drives_it() {
         tangents: Some(&mut tangents),
     };
     march
-        .run(&[0.0, 0.1], &times, &inputs, company, &mut |_, _, tangents| {
-            let tangents = tangents.expect("tangents");
-            last = tangents.vectors[..2 * tangents.stride].to_vec();
-        })
+        .run(
+            &[0.0, 0.1],
+            &times,
+            &inputs,
+            company,
+            &mut |_, _, tangents| {
+                let tangents = tangents.expect("tangents");
+                last = tangents.vectors[..2 * tangents.stride].to_vec();
+            },
+        )
         .expect("a motion");
     let stride = last.len() / 2;
     assert!(last[0] == 0.0 && (last[stride] - 0.5).abs() < 1e-12);
