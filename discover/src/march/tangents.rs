@@ -9,7 +9,7 @@ use super::surfaces::{Row, dot};
 const GRAZING: f64 = 1e-9;
 
 /// Steps over which drives are held, at their mean over both ends.
-const DRIVEN_STEPS: usize = 4;
+const DRIVEN_STEPS: usize = 2;
 
 /// A neighbouring motion through a part of a step is right to this part of its size.
 const PART_ERROR: f64 = 1e-9;
@@ -41,6 +41,8 @@ pub struct Tangents<'d> {
     next: Vec<f64>,
     /// Steps that the motion has made and the vectors have not.
     pending: usize,
+    /// The motion stands on a surface, where rounding decides what the drives are.
+    on_surface: bool,
     drives: &'d mut dyn Drives,
     /// The drives where the motion stands, and a step later.
     here: Vec<f64>,
@@ -57,6 +59,7 @@ impl<'d> Tangents<'d> {
             driven,
             stride: states.next_multiple_of(kernels::GROUP),
             pending: 0,
+            on_surface: false,
             vectors: Vec::new(),
             next: Vec::new(),
             drives,
@@ -82,6 +85,7 @@ impl<'d> Tangents<'d> {
         if self.driven > 0 {
             self.drives.at(t, state, inputs, &mut self.here);
         }
+        self.on_surface = false;
     }
 
     /// How many vectors there are.
@@ -105,8 +109,9 @@ impl<'d> Tangents<'d> {
         if self.driven > 0 {
             self.drives.at(t, state, inputs, &mut self.there);
             for (a, b) in self.here.iter_mut().zip(&self.there) {
-                *a = 0.5 * (*a + b);
+                *a = if self.on_surface { *b } else { 0.5 * (*a + b) };
             }
+            self.on_surface = false;
         }
         while self.pending > 0 {
             let doubling = (self.pending.ilog2() as usize).min(regime.doubled.len() - 1);
@@ -132,6 +137,10 @@ impl<'d> Tangents<'d> {
     /// Goes on by a part of a step, s, that ends at a state.
     pub fn part(&mut self, regime: &Regime, tau: f64, end: (f64, &[f64], &[f64])) {
         let (n, half) = (self.states, self.states / 2);
+        let (t, state, inputs) = end;
+        if self.on_surface {
+            self.meet(t, state, inputs);
+        }
         let mut rates = vec![0.0; regime.matrix.rows];
         for place in 0..self.count() {
             let vector = &mut self.vectors[place * self.stride..place * self.stride + n];
@@ -147,13 +156,13 @@ impl<'d> Tangents<'d> {
             }
             series(&regime.matrix, vector, &mut rates, tau, PART_ERROR);
         }
-        let (t, state, inputs) = end;
         self.meet(t, state, inputs);
     }
 
     /// Goes through a switch: the function that reached its surface, the rates before and
     /// after.
     pub fn switch(&mut self, function: &Row, before: &[f64], after: &[f64]) {
+        self.on_surface = true;
         let n = self.states;
         let rate = dot(&function.state, &before[..n]);
         let size: f64 = function
