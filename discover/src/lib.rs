@@ -1,14 +1,17 @@
 //! Compares a model with measurements, finds what it lacks, names it and adds it.
 //!
 //! The pipeline, one file each: [`dataset`] (records with their description) and [`gate`]
-//! (whether they can be believed); [`plant`] (a model that can be run), [`windows`] (records
-//! in parts), [`smooth`] and [`starts`] (each part's initial state), [`unknowns`],
-//! [`shooting`] (residuals and derivatives), [`estimate`] (with [`bounded`]: least squares),
-//! [`fitting`] (a specification fitted), [`mod@floor`] (what a right model would leave),
-//! [`labels`] (whether columns are what they are called), [`locate`] (where the rest is); [`catalogue`], [`sites`] and [`candidates`] (what may be
-//! missing), [`mod@screen`] (what each candidate promises), [`mod@judge`] by [`rule`] (what is
-//! believed), [`mod@search`] (all of it in turn); [`extend`] (the specification changed),
-//! [`document`] and [`report`] (for programs and for people).
+//! (whether they can be believed); [`plant`] (a model that can be run), [`runner`] and
+//! [`march`] (how it runs), [`windows`] (records in parts), [`smooth`] and [`starts`] (each
+//! part's initial state), [`unknowns`], [`shooting`] (residuals) and [`crew`] (derivatives),
+//! [`estimate`] (with [`bounded`]: least squares), [`fitting`] (a specification fitted),
+//! [`mod@floor`] (what a right model would leave), [`labels`] (whether columns are what they are
+//! called), [`locate`] (where the rest is);
+//! [`catalogue`], [`sites`] and [`candidates`] (what may be missing), [`response`] with
+//! [`mod@driven`] and [`mod@tried`] (what each candidate does), [`mod@screen`] (what it
+//! promises), [`mod@judge`] by [`rule`] (what is believed), [`mod@search`] (all of it in turn);
+//! [`extend`] (the specification changed), [`document`] and [`report`] (for programs and for
+//! people).
 
 pub mod bounded;
 pub mod candidates;
