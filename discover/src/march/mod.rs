@@ -36,6 +36,10 @@ const LEAST_STEPS: f64 = 4.0;
 /// Steps from sample to sample at most; a model that needs more is not marched.
 const MOST_STEPS: f64 = 256.0;
 
+/// Intervals that differ from whole steps by less than this part are whole steps: so do the
+/// times of records with rounded or jittering clocks, which err by no more than that.
+const JITTER: f64 = 1e-4;
+
 /// Crossings within a step after which the rest of it is made without looking.
 const MOST_CROSSINGS: usize = 12;
 
@@ -239,7 +243,7 @@ impl March {
         let begin = motion.t;
         let count = ((until - begin) / self.step).ceil().max(1.0);
         let rounded = ((until - begin) / self.step).round();
-        let whole = (rounded * self.step - (until - begin)).abs() < 1e-5 * self.step;
+        let whole = (rounded * self.step - (until - begin)).abs() < JITTER * (until - begin);
         let count = if whole { rounded.max(1.0) } else { count };
         let length = (until - begin) / count;
         for place in 1..=count as usize {
