@@ -40,7 +40,7 @@ const FACTORS: [(f64, &str); 6] = [
 pub fn check(setting: &Setting<'_>, text: &str) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     let record = &setting.dataset.train[0];
-    let Ok(plant) = setting.plant(text) else {
+    let Ok(plant) = setting.plant(text, None) else {
         return Ok(notes);
     };
     let first = setting.first_state(&plant, record);
