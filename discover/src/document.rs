@@ -64,7 +64,8 @@ pub fn discovered(
     });
     let mut order: Vec<&Accepted> = found.accepted.iter().collect();
     order.sort_by(|a, b| {
-        let closed = |effect: &Accepted| effect.test_gap.0 - effect.test_gap.1;
+        // Squares add up: what one effect closes of them hardly depends on what came before.
+        let closed = |effect: &Accepted| effect.test_gap.0.powi(2) - effect.test_gap.1.powi(2);
         closed(b).total_cmp(&closed(a))
     });
     let (not_testable, rejected): (Vec<&Rejected>, Vec<&Rejected>) = found

@@ -18,8 +18,9 @@ pub const LONGEST_DELAY: f64 = 2.0;
 pub const START_PRIOR: f64 = 0.02;
 
 /// A shape, such as the speed at which friction has fallen, is searched within these factors
-/// of its usual size.
-pub const SHAPE_RANGE: (f64, f64) = (0.02, 10.0);
+/// of its usual size, a tenth of the usual speed. What has not fallen at a third of that speed
+/// is no friction near rest: it would take over what another friction does at every speed.
+pub const SHAPE_RANGE: (f64, f64) = (0.02, 3.0);
 
 /// Columns that agree to this part of their square are one: products of doubles know no
 /// better.

@@ -199,13 +199,12 @@ fn trials(
             .gain
             .total_cmp(&screen.responses[*a].gain)
     });
-    for response in ranked.iter().take(8) {
-        let r = &screen.responses[*response];
+    if let Some(best) = ranked.first() {
+        let best = &candidates[screen.responses[*best].candidate];
+        let count = ranked.len();
         said(&format!(
-            "  {:.3e} {} {:?}",
-            r.gain,
-            candidates[r.candidate].label(),
-            r.values
+            "{count} promise enough to be fitted, {} most",
+            best.label()
         ));
     }
     let mut sets: Vec<Set> = Vec::new();
@@ -307,7 +306,10 @@ fn sketched(
         let label = label(candidates, screen, &set);
         match sketch {
             Ok(sketch) => {
-                said(&format!("  {label}: {:.4e} left", sketch.left));
+                let part = 100.0 * sketch.left / alone;
+                said(&format!(
+                    "  {label}: {part:.1} % left of the beginnings of windows"
+                ));
                 found.push((set, sketch));
             }
             Err(error) => said(&format!("  {label}: {error}")),
@@ -341,9 +343,10 @@ fn completed(
                     .flat_map(|r| screen.responses[*r].trials.iter().map(|t| t.is_shape))
                     .collect();
                 let verdict = judge(fit, &new, fit.unknowns.len(), &shapes);
+                let outcome = verdict.as_ref().err().map_or("believed", String::as_str);
+                let (train, test) = (new.train.pooled, new.test.pooled);
                 said(&format!(
-                    "  {label}: train {:.3} test {:.3} {:?}",
-                    new.train.pooled, new.test.pooled, verdict
+                    "  {label}: {train:.2} noises are left in training, {test:.2} in test; {outcome}"
                 ));
                 trials.push(Trial {
                     responses: set.responses,
