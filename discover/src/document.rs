@@ -6,6 +6,7 @@ use crate::dataset::Channel;
 use crate::fitting::{Fit, Setting};
 use crate::floor::Floor;
 use crate::search::{Accepted, Found, Rejected};
+use crate::shifted::{Shifted, shifted};
 use crate::unknowns::What;
 
 /// The verdict of a comparison.
@@ -49,7 +50,12 @@ pub fn discovered(
     place: &str,
 ) -> Value {
     let (before, after) = (&found.null, found.best());
-    let verdict = match (found.accepted.is_empty(), at_floor) {
+    let shifts = if at_floor {
+        shifted(setting, after)
+    } else {
+        Vec::new()
+    };
+    let verdict = match (found.accepted.is_empty() && shifts.is_empty(), at_floor) {
         (false, _) => "effects_found",
         (true, true) => "no_significant_gap",
         (true, false) => "unexplained",
@@ -68,6 +74,7 @@ pub fn discovered(
         let closed = |effect: &Accepted| effect.test_gap.0.powi(2) - effect.test_gap.1.powi(2);
         closed(b).total_cmp(&closed(a))
     });
+    let effects = order.iter().map(|effect| effect_entry(after, effect));
     let (not_testable, rejected): (Vec<&Rejected>, Vec<&Rejected>) = found
         .rejected
         .iter()
@@ -75,7 +82,7 @@ pub fn discovered(
     json!({
         "schema": 1,
         "verdict": verdict,
-        "effects": order.iter().map(|effect| effect_entry(after, effect)).collect::<Vec<_>>(),
+        "effects": effects.chain(shifts.iter().map(shift_entry)).collect::<Vec<_>>(),
         "rejected": rejected.iter().map(|r| json!({
             "effect": r.candidate.effect, "on": r.candidate.on, "reason": reason(r),
         })).collect::<Vec<_>>(),
@@ -157,6 +164,20 @@ fn effect_entry(fit: &Fit, effect: &Accepted) -> Value {
         entry["experiment"] = json!(effect.candidate.experiment);
     }
     entry
+}
+
+/// A parameter or a sensor that is off.
+fn shift_entry(shift: &Shifted) -> Value {
+    let parameter = json!({"value": shift.value, "sd": shift.sd, "unit": shift.unit});
+    json!({
+        "effect": shift.effect,
+        "on": shift.on,
+        "status": "named",
+        "equivalent": [],
+        "parameters": {&shift.name: parameter},
+        "term": format!("{} = {}", shift.name, shift.value),
+        "evidence": {"prior_standard_deviations": shift.off},
+    })
 }
 
 /// Parameters of the null model.

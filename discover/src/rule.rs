@@ -92,3 +92,7 @@ pub const RIVAL: f64 = 1.5;
 /// A term of the model may be deleted if its parameter is this many standard deviations of its
 /// prior from 0 at most.
 pub const PRIOR_REACH: f64 = 3.0;
+
+/// A declared parameter or a sensor is an effect if it is this many standard deviations of its
+/// prior off: one in four hundred is by chance.
+pub const SHIFTED: f64 = 3.0;

@@ -116,14 +116,39 @@ pub fn search(
         let (candidates, screen) = screened(setting, fit, effects, floor, said);
         let trials = trials(setting, fit, &candidates, &screen, floor, said);
         note_rejected(&mut found.rejected, &candidates, &screen, &trials);
-        let best = trials
-            .into_iter()
-            .filter(|trial| trial.verdict.is_ok())
-            .min_by(|a, b| a.fit.train.pooled.total_cmp(&b.fit.train.pooled));
-        let Some(best) = best else { break };
-        accept(&mut found, &candidates, &screen, best);
+        let (mut believed, _): (Vec<Trial>, Vec<Trial>) =
+            trials.into_iter().partition(|trial| trial.verdict.is_ok());
+        believed.sort_by(|a, b| a.fit.train.pooled.total_cmp(&b.fit.train.pooled));
+        if believed.is_empty() {
+            break;
+        }
+        let best = believed.remove(0);
+        let equivalent = indistinct(&best, &believed, &screen);
+        let equivalent = equivalent.map(|place| candidates[place].clone()).collect();
+        accept(&mut found, &candidates, &screen, best, equivalent);
     }
     Ok(found)
+}
+
+/// Which candidates the record does not tell from the best one: their responses are alike, and
+/// so is what they leave of the test records.
+fn indistinct<'t>(
+    best: &'t Trial,
+    others: &'t [Trial],
+    screen: &'t Screen,
+) -> impl Iterator<Item = usize> + 't {
+    let single = |trial: &Trial| match trial.responses[..] {
+        [response] => Some(response),
+        _ => None,
+    };
+    others.iter().filter_map(move |other| {
+        let (a, b) = (single(best)?, single(other)?);
+        let errors = evidence(&best.fit, &other.fit, other.fit.unknowns.len(), &[]).held_out_errors;
+        let alike = screen.similarity(a, b) > rule::ALIKE;
+        // Fits that leave the same to the last digit have no error to be judged by.
+        let as_good = errors.is_nan() || errors.abs() < rule::STANDARD_ERRORS;
+        (alike && as_good).then(|| screen.responses[b].candidate)
+    })
 }
 
 /// Whether a fit leaves no more than a right model would.
@@ -522,8 +547,14 @@ fn note_rejected(
     }
 }
 
-/// Takes a trial over.
-fn accept(found: &mut Found, candidates: &[Candidate], screen: &Screen, best: Trial) {
+/// Takes a trial over, with the candidates that cannot be told from it.
+fn accept(
+    found: &mut Found,
+    candidates: &[Candidate],
+    screen: &Screen,
+    best: Trial,
+    equivalent: Vec<Candidate>,
+) {
     let before = found.best();
     let mut first = before.unknowns.len();
     let before_gap = before.test.pooled;
@@ -544,7 +575,7 @@ fn accept(found: &mut Found, candidates: &[Candidate], screen: &Screen, best: Tr
         found.accepted.push(Accepted {
             candidate,
             unknowns,
-            equivalent: Vec::new(),
+            equivalent: equivalent.clone(),
             evidence: evidence.clone(),
             test_gap: gap,
         });
