@@ -97,9 +97,23 @@ pub fn discovered(
             "train": closure(before.train.pooled, after.train.pooled, floor.pooled),
             "test": closure(before.test.pooled, after.test.pooled, floor.pooled),
         },
+        "ladder": ladder(found),
         "where": place,
         "notes": setting.dataset.notes,
     })
+}
+
+/// The test gap step by step, in noises: of the model as it is, and after each round.
+fn ladder(found: &Found) -> Value {
+    let mut steps = vec![json!({"added": [], "test_in_noises": found.null.test.pooled})];
+    for round in found.accepted.chunk_by(|a, b| a.test_gap == b.test_gap) {
+        let labels = round.iter().map(|effect| effect.candidate.label());
+        steps.push(json!({
+            "added": labels.collect::<Vec<_>>(),
+            "test_in_noises": round[0].test_gap.1,
+        }));
+    }
+    Value::Array(steps)
 }
 
 /// Why a candidate was rejected; with the order where it has one.

@@ -37,6 +37,7 @@ pub fn page(
     body += &section("The gap", &gap_table(document));
     if document.get("effects").is_some() {
         body += &section("What was found", &effects_table(document));
+        body += &section("Step by step", &ladder_table(document));
     }
     body += &section("The test record", &figures(setting, before, after));
     body += &section(
@@ -157,6 +158,26 @@ fn effects_table(document: &Value) -> String {
     format!(
         "<table><tr><th>effect</th><th>on</th><th>status</th><th>parameters</th><th>term</th></tr>\n{rows}</table>\n"
     )
+}
+
+/// The test gap after each round.
+fn ladder_table(document: &Value) -> String {
+    let mut rows = String::new();
+    for step in document["ladder"].as_array().into_iter().flatten() {
+        let added: Vec<&str> = step["added"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .filter_map(Value::as_str)
+            .collect();
+        let added = match added.is_empty() {
+            true => "the model as it is".to_owned(),
+            false => format!("+ {}", added.join(", ")),
+        };
+        let gap = number(&step["test_in_noises"]);
+        rows += &format!("<tr><td>{}</td><td>{gap}</td></tr>\n", escaped(&added));
+    }
+    format!("<table><tr><th>model</th><th>test gap, in noises</th></tr>\n{rows}</table>\n")
 }
 
 fn rejected_table(list: &[Value]) -> String {
