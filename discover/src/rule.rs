@@ -94,5 +94,5 @@ pub const RIVAL: f64 = 1.5;
 pub const PRIOR_REACH: f64 = 3.0;
 
 /// A declared parameter or a sensor is an effect if it is this many standard deviations of its
-/// prior off: one in four hundred is by chance.
+/// prior off, with `STANDARD_ERRORS` of its estimate to spare: one in four hundred is by chance.
 pub const SHIFTED: f64 = 3.0;

@@ -34,7 +34,9 @@ pub fn shifted(setting: &Setting<'_>, fit: &Fit) -> Vec<Shifted> {
         };
         let value = fit.train.estimate.theta[place];
         let off = (value - mean).abs() / prior;
-        if off.is_nan() || off <= rule::SHIFTED {
+        // Beyond its prior for certain, not by what the record leaves open.
+        let sure = off - rule::STANDARD_ERRORS * fit.sd[place] / prior;
+        if sure.is_nan() || sure <= rule::SHIFTED {
             continue;
         }
         if let Some(entry) = entry(setting, fit, place, off) {
