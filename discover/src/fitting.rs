@@ -32,6 +32,9 @@ const SKETCHING_STEPS: usize = 3;
 /// What leaves more than this many noises is not worth being followed anew.
 const FAR: f64 = 8.0;
 
+/// A fit that leaves so many noises has nothing to look for.
+const NOISE_ALONE: f64 = 1.2;
+
 /// Windows are followed anew so often at most, while that lowers the cost by this part.
 const REFRESHES: usize = 2;
 const WORTH_A_REFRESH: f64 = 0.005;
@@ -352,6 +355,14 @@ impl<'d> Setting<'d> {
         }
         let mut all = self.shooting(&plant, &self.train, &unknowns, &ranges);
         let mut rest = self.rest(&all, Estimate { theta, ..near });
+        // First as if nothing were missing: a bias may be all that is left. Where more is, the
+        // records are believed the less against the priors.
+        let Estimate { theta, starts, .. } = &rest.estimate;
+        let free = estimate::estimate(&all, &prior, theta, starts, STEPS.1);
+        let free = self.rest(&all, free);
+        if free.pooled < NOISE_ALONE {
+            rest = free;
+        }
         for _ in 0..REFRESHES {
             all.prior_weight = (rest.pooled * rest.pooled).max(1.0) * rest.correlation;
             let Estimate { theta, starts, .. } = &rest.estimate;
