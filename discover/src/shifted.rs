@@ -33,6 +33,10 @@ pub fn shifted(setting: &Setting<'_>, fit: &Fit) -> Vec<Shifted> {
             continue;
         };
         let value = fit.train.estimate.theta[place];
+        if value <= unknown.bounds.0 || value >= unknown.bounds.1 {
+            // A bound is no estimate.
+            continue;
+        }
         let off = (value - mean).abs() / prior;
         // Beyond its prior for certain, not by what the record leaves open.
         let sure = off - rule::STANDARD_ERRORS * fit.sd[place] / prior;
