@@ -116,8 +116,8 @@ pub fn search(
         let (candidates, screen) = screened(setting, fit, effects, floor, said);
         let trials = trials(setting, fit, &candidates, &screen, floor, said);
         note_rejected(&mut found.rejected, &candidates, &screen, &trials);
-        let (mut believed, _): (Vec<Trial>, Vec<Trial>) =
-            trials.into_iter().partition(|trial| trial.verdict.is_ok());
+        let mut believed = trials;
+        believed.retain(|trial| trial.verdict.is_ok());
         believed.sort_by(|a, b| a.fit.train.pooled.total_cmp(&b.fit.train.pooled));
         if believed.is_empty() {
             break;
