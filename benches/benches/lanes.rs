@@ -58,7 +58,7 @@ macro_rules! compare {
             #[inline(always)]
             fn run<V: Vector>(self) {
                 for (place, (numbers, out)) in self.states.iter().zip(self.rates).enumerate() {
-                    let state = numbers.map(Lanes::<V>::from_array);
+                    let state = Lanes::<V>::from_arrays(numbers);
                     let t = Lanes::from_array(times(place));
                     let mut rates = state;
                     for _ in 0..PASSES {
@@ -66,7 +66,7 @@ macro_rules! compare {
                         arm::inlined_rates_into(t, state, &arm::Inputs::default(), coefficients, &mut rates);
                         black_box(&rates);
                     }
-                    *out = rates.map(Lanes::to_array);
+                    *out = Lanes::to_arrays(&rates);
                 }
             }
         }

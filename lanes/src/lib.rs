@@ -37,7 +37,7 @@
 //!     fn run<V: Vector>(self) {
 //!         let (t, h) = (Lanes::<V>::splat(0.0), Lanes::splat(1e-3));
 //!         for numbers in self.states {
-//!             let state = numbers.map(Lanes::from_array);
+//!             let state = Lanes::from_arrays(numbers);
 //!             let inputs = pendulum::Inputs::default();
 //!             let rates = pendulum::inlined_rates(t, &state, &inputs, &self.coefficients);
 //!             for i in 0..pendulum::STATES {

@@ -34,6 +34,27 @@ impl<V: Vector> Lanes<V> {
         self.0.to_array()
     }
 
+    /// Each entry's numbers. An array's own `map` would be a call, compiled for the plainest
+    /// machine and dearer than what lanes gain.
+    #[inline(always)]
+    pub fn from_arrays<const N: usize>(entries: &[[f64; LANES]; N]) -> [Self; N] {
+        let mut lanes = [Self::splat(0.0); N];
+        for (lanes, numbers) in lanes.iter_mut().zip(entries) {
+            *lanes = Self::from_array(*numbers);
+        }
+        lanes
+    }
+
+    /// The numbers of each entry.
+    #[inline(always)]
+    pub fn to_arrays<const N: usize>(lanes: &[Self; N]) -> [[f64; LANES]; N] {
+        let mut entries = [[0.0; LANES]; N];
+        for (numbers, lanes) in entries.iter_mut().zip(lanes) {
+            *numbers = lanes.to_array();
+        }
+        entries
+    }
+
     /// `then` where a > b, `otherwise` elsewhere, also where either is NaN.
     #[inline(always)]
     pub fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self {

@@ -155,16 +155,23 @@ impl Vector for Pair {
     }
     #[inline(always)]
     fn from_array(numbers: [f64; LANES]) -> Self {
-        let [a, b, c, d, e, f, g, h] = numbers;
-        Self(unsafe { [_mm256_setr_pd(a, b, c, d), _mm256_setr_pd(e, f, g, h)] })
+        let start = numbers.as_ptr();
+        Self(unsafe {
+            [
+                _mm256_loadu_pd(start),
+                _mm256_loadu_pd(start.add(LANES / 2)),
+            ]
+        })
     }
     #[inline(always)]
     fn to_array(self) -> [f64; LANES] {
-        let mut halves = [[0.0; LANES / 2]; 2];
-        for (half, register) in halves.iter_mut().zip(self.0) {
-            unsafe { _mm256_storeu_pd(half.as_mut_ptr(), register) };
+        let mut numbers = [0.0; LANES];
+        let start = numbers.as_mut_ptr();
+        unsafe {
+            _mm256_storeu_pd(start, self.0[0]);
+            _mm256_storeu_pd(start.add(LANES / 2), self.0[1]);
         }
-        std::array::from_fn(|i| halves[i / (LANES / 2)][i % (LANES / 2)])
+        numbers
     }
     #[inline(always)]
     fn add(self, other: Self) -> Self {

@@ -28,7 +28,7 @@ macro_rules! bits {
                     type Output = Vec<[f64; LANES]>;
                     #[inline(always)]
                     fn run<V: Vector>(self) -> Self::Output {
-                        let (t, state) = (Lanes::<V>::from_array(self.t), self.state.map(Lanes::from_array));
+                        let (t, state) = (Lanes::<V>::from_array(self.t), Lanes::from_arrays(&self.state));
                         let (inputs, c) = ($module::Inputs::default(), &self.coefficients);
                         let rates = $module::inlined_rates(t, &state, &inputs, c);
                         let observables = $module::inlined_observables(t, &state, &inputs, c);
