@@ -175,7 +175,8 @@ pub struct Generate {
     pub order: Option<String>,
     /// What to emit besides rates, observables, energy, power, guards and mass matrix:
     /// bias_forces, inverse_dynamics, guard_rates, jacobians, products (of the Jacobian with
-    /// vectors), linearisation, lanes (every function inlined once more).
+    /// vectors), linearisation, regimes (rates with every contact
+    /// decided), lanes (every function inlined once more).
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub with: Vec<Request>,
     /// The language.

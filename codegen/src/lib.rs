@@ -5,8 +5,8 @@
 //! algebraic laws), `modes`, `tables` and `quadrature` (constants of a basis),
 //! `differentiate` and `matrix` (derivatives that keep their structure), `lagrange`,
 //! `forces` and `equations` (the equations of motion), `solve` (the accelerations),
-//! `coefficients` (names as in Eq. (22)), `request` and `requested`, `jacobian`, `matrix_derivatives`
-//! and `adjoint` (what is derived on request), `linearity` (whether a model is linear between its
+//! `coefficients` (names as in Eq. (22)), `request` and `requested`, `jacobian`, `matrix_derivatives`,
+//! `adjoint` and `regimes` (what is derived on request), `linearity` (whether a model is linear between its
 //! switches), `affine` (its matrices then), `lower` (to the `program`), `operations` (what it costs),
 //! `evaluator` and `rust` (backends), `print` and
 //! `report` (for people).
@@ -39,6 +39,7 @@ mod operations;
 pub mod print;
 pub mod program;
 pub mod quadrature;
+pub mod regimes;
 pub mod report;
 pub mod request;
 pub mod requested;

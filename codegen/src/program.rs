@@ -11,6 +11,7 @@
 use model_spec::model::Function;
 
 pub use crate::operation::{Argument, Variable};
+pub use crate::regimes::{Decided, SURFACES_OF_A_REGIME, Switch};
 pub use crate::request::Request;
 pub use crate::requested::{Entry, Jacobian, Products, Requested};
 

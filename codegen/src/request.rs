@@ -16,6 +16,8 @@ pub enum Request {
     Products,
     /// A, B, C and D about a point; brings the Jacobians with it.
     Linearisation,
+    /// The number of a state's regime, and the rates in a regime with every branch decided.
+    Regimes,
     /// Every function a second time as `inlined_...`, for lanes: to be compiled with the code
     /// around it for registers that are known at run time.
     Lanes,
@@ -23,13 +25,14 @@ pub enum Request {
 
 impl Request {
     /// Every request.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::BiasForces,
         Self::InverseDynamics,
         Self::GuardRates,
         Self::Jacobians,
         Self::Products,
         Self::Linearisation,
+        Self::Regimes,
         Self::Lanes,
     ];
 
@@ -42,6 +45,7 @@ impl Request {
             Self::Jacobians => "jacobians",
             Self::Products => "products",
             Self::Linearisation => "linearisation",
+            Self::Regimes => "regimes",
             Self::Lanes => "lanes",
         }
     }

@@ -9,6 +9,7 @@ use crate::graph::{Argument, Graph, Id, Operation, Space, Variable};
 use crate::jacobian::{by_parameters, by_variables, observable_rows, rate_rows};
 use crate::matrix::StructuredMatrix;
 use crate::matrix_derivatives::holds_moving_matrix;
+use crate::regimes::{Switch, switches};
 use crate::request::Request;
 use crate::translate::along_motion;
 
@@ -27,6 +28,8 @@ pub struct Requested<N, R> {
     pub jacobians: Vec<Jacobian<N>>,
     /// Products with the Jacobian of the rates.
     pub products: Option<Products<N, R>>,
+    /// What a regime decides in the accelerations.
+    pub regimes: Option<Vec<Switch<N>>>,
 }
 
 impl<N, R> Default for Requested<N, R> {
@@ -38,6 +41,7 @@ impl<N, R> Default for Requested<N, R> {
             guard_rates: None,
             jacobians: Vec::new(),
             products: None,
+            regimes: None,
         }
     }
 }
@@ -149,6 +153,7 @@ pub fn requested(
         result.jacobians = jacobians(equations);
     }
     result.products = has(Request::Products).then(|| products(equations));
+    result.regimes = has(Request::Regimes).then(|| switches(equations));
     Ok(result)
 }
 

@@ -72,7 +72,7 @@ pub fn generate(specification: impl AsRef<Path>, orders: &[usize]) -> Result<Vec
 }
 
 /// The same with further functions: `bias_forces`, `inverse_dynamics`, `guard_rates`,
-/// `jacobians`, `products`, `linearisation`, `lanes`.
+/// `jacobians`, `products`, `linearisation`, `regimes`, `lanes`.
 ///
 /// # Errors
 /// The same; a name that is not known.

@@ -61,7 +61,8 @@
 /// ```
 ///
 /// `with = [...]` asks for more, beside `spec` or before the sections: `bias_forces`,
-/// `inverse_dynamics`, `guard_rates`, `jacobians`, `products`, `linearisation`, `lanes`.
+/// `inverse_dynamics`, `guard_rates`, `jacobians`, `products`, `linearisation`, `regimes`,
+/// `lanes`.
 ///
 /// ```
 /// mod slider {

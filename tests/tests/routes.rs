@@ -172,6 +172,7 @@ fn the_pages_show_the_examples() {
         "with_macro/src/lib.rs",
         "with_macro/src/main.rs",
         "with_macro/src/bin/jacobian.rs",
+        "with_macro/src/bin/regimes.rs",
         "with_build_script/build.rs",
         "with_build_script/src/lib.rs",
         "with_command_line/controller.rs",

@@ -4,6 +4,7 @@ use super::values::Lowering;
 use crate::equations::Rows;
 use crate::graph::Id;
 use crate::program::{RowValues, ValueId};
+use crate::regimes::Switch;
 use crate::requested::{Entry, Jacobian, Products, Requested};
 
 impl Lowering<'_> {
@@ -34,6 +35,15 @@ impl Lowering<'_> {
                     .iter()
                     .map(|(variable, node)| (*variable, self.value(*node)))
                     .collect(),
+            }),
+            regimes: requested.regimes.as_ref().map(|switches| {
+                let switches = switches.iter();
+                switches
+                    .map(|switch| Switch {
+                        value: self.value(switch.value),
+                        decided: switch.decided,
+                    })
+                    .collect()
             }),
         }
     }

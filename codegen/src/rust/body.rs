@@ -11,6 +11,7 @@ use super::expression::{Expression, assignment, infix};
 use super::functions::Needed;
 use super::literals::{block, identifier};
 use super::names::Names;
+use super::regimes::{Switches, of_side};
 use crate::evaluator::elementary_function;
 use crate::program::{Argument, Extent, Op, PARTIAL_SUMS, Program, Request, ValueId, Variable};
 use elementary::Function as Elementary;
@@ -39,6 +40,8 @@ pub struct Body<'a> {
     pub(super) needed: &'a mut Needed,
     /// Vectors that the caller reads as arrays.
     arrays: HashSet<ValueId>,
+    /// What is decided by the regime that the stage is for.
+    switches: Switches,
 }
 
 pub(super) type Emitted<T> = Result<T, EmitError>;
@@ -51,6 +54,17 @@ impl<'a> Body<'a> {
         roots: &[ValueId],
         needed: &'a mut Needed,
     ) -> Emitted<Self> {
+        Self::in_regime(program, access, roots, needed, Switches::new())
+    }
+
+    /// The same for a stage in which a regime decides about these values.
+    pub fn in_regime(
+        program: &'a Program,
+        access: Access<'a>,
+        roots: &[ValueId],
+        needed: &'a mut Needed,
+        switches: Switches,
+    ) -> Emitted<Self> {
         let mut body = Self {
             program,
             access,
@@ -61,6 +75,7 @@ impl<'a> Body<'a> {
             statements: String::new(),
             needed,
             arrays: HashSet::new(),
+            switches,
         };
         if matches!(body.access, Access::Prepare) {
             body.arrays.extend(roots);
@@ -284,7 +299,8 @@ impl<'a> Body<'a> {
                 self.expression(operand, if scalar { None } else { index })
             })
             .collect::<Emitted<Vec<_>>>()?;
-        Ok(self.operation(&op, &operands))
+        let decided = of_side(self.program, &self.switches, id, &operands, self.needed);
+        Ok(decided.unwrap_or_else(|| self.operation(&op, &operands)))
     }
 
     /// An operation of scalars or elements.

@@ -76,6 +76,7 @@ impl<'p> File<'p> {
             self.observables(&mut needed)?,
             self.guards(&mut needed)?,
             self.mass_matrix(&mut needed)?,
+            self.regimes(&mut needed)?,
             self.requested(&mut needed)?,
             self.tables()?,
             SCALAR.to_owned(),

@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use super::expression::{Expression, assignment};
 use super::layout::{DEEPER, SHALLOWER};
 use super::literals::block;
+use super::piecewise::{CHOSEN, CONTACT, DEADZONE, DEADZONE_ON_SIDE, POSITIVE, TOUCHING};
 use super::slopes;
 use elementary::{Function as Elementary, Kernel, Operation};
 
@@ -18,6 +19,12 @@ pub struct Needed {
     pub deadzone: bool,
     /// The indicator of Eq. (8).
     pub contact: bool,
+    /// The same where the side is known.
+    pub deadzone_on_side: bool,
+    /// Whether there is contact where the side is known.
+    pub touching: bool,
+    /// One of two by what is known.
+    pub chosen: bool,
     /// Reciprocals of pivots.
     pub pivot_reciprocal: bool,
     /// Cholesky factors and their solutions.
@@ -44,6 +51,13 @@ pub fn items(needed: &Needed) -> String {
     for (needed, item) in [
         (needed.deadzone, DEADZONE),
         (needed.contact, CONTACT),
+        (needed.deadzone_on_side, DEADZONE_ON_SIDE),
+        (needed.touching, TOUCHING),
+        (needed.chosen, CHOSEN),
+        (
+            needed.deadzone_on_side || needed.touching || needed.chosen,
+            POSITIVE,
+        ),
         (needed.pivot_reciprocal, PIVOT_RECIPROCAL),
         (needed.cholesky || needed.cholesky_of_matrix, CHOLESKY),
         (needed.cholesky_of_matrix, CHOLESKY_OF_MATRIX),
@@ -68,26 +82,6 @@ pub fn items(needed: &Needed) -> String {
         .map(elementary_function)
         .collect::<String>()
 }
-
-/// f_k of Eq. (7).
-const DEADZONE: &str = "\
-/// Deflection beyond the backlash: f_k of Eq. (7).
-#[inline(always)]
-fn deadzone<T: Scalar>(p: T, b: T) -> T {
-    let held = T::select_greater(p, b, b, p);
-    p - T::select_greater(-b, held, -b, held)
-}
-";
-
-/// The indicator of Eq. (8).
-const CONTACT: &str = "\
-/// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).
-#[inline(always)]
-fn contact<T: Scalar>(p: T, b: T) -> T {
-    let beyond = T::select_greater(-b, p, T::number(1.0), T::number(0.0));
-    T::select_greater(p, b, T::number(1.0), beyond)
-}
-";
 
 /// The reciprocal that is NaN where a pivot is not positive.
 const PIVOT_RECIPROCAL: &str = "\

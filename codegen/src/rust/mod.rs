@@ -2,8 +2,8 @@
 //! allocation or panic, that compiles on its own with any edition.
 //!
 //! `file` lays the items out, `types` writes parameters and coefficients, `stages` the
-//! functions (`requested` and `jacobians` those on request), `body` (with `blocks` for matrices) writes the statements of a stage out of
-//! `expression`s, `scalar` the trait of the numbers, `functions` (with `slopes`) the
+//! functions (`requested`, `regimes` and `jacobians` those on request), `body` (with `blocks` for matrices) writes the statements of a stage out of
+//! `expression`s, `scalar` the trait of the numbers, `functions` (with `slopes` and `piecewise`) the
 //! elementary functions, `literals` numbers and names. All of it reads the program alone.
 
 mod blocks;
@@ -15,6 +15,8 @@ mod jacobians;
 mod layout;
 mod literals;
 mod names;
+mod piecewise;
+mod regimes;
 mod requested;
 mod scalar;
 mod slopes;

@@ -9,7 +9,7 @@ use crate::program::{Program, ValueId};
 
 /// Names that emitted functions use for themselves: variables, helpers, constants, fields,
 /// and what Rust's prelude gives a value of.
-const TAKEN: [&str; 52] = [
+const TAKEN: [&str; 57] = [
     "t",
     "state",
     "inputs",
@@ -47,6 +47,11 @@ const TAKEN: [&str; 52] = [
     "INPUT_NAMES",
     "PARAMETERS",
     "PARAMETER_NAMES",
+    "guards",
+    "deadzone_on_side",
+    "touching",
+    "chosen",
+    "positive",
     "pivot_reciprocal",
     "positive_definite",
     "ORDERS",

@@ -6,6 +6,7 @@ use super::expression::{assignment, infix};
 use super::file::{Emitted, File};
 use super::functions::Needed;
 use super::literals::identifier;
+use super::stages::Signature;
 use crate::program::{Op, Products, RowValues, ValueId, Variable};
 
 impl File<'_> {
@@ -59,8 +60,11 @@ impl File<'_> {
         self.write_row_values(&mut body, "values", 0, rows)?;
         body.push("values");
         let head = format!("{head}#[allow(unused_variables, unused_mut)]\n");
-        let result = "[T; DEGREES_OF_FREEDOM]";
-        Ok(self.stage_with(&head, name, argument, result, &body.statements()))
+        let signature = Signature {
+            arguments: argument,
+            ..Signature::of(name, "[T; DEGREES_OF_FREEDOM]")
+        };
+        Ok(self.stage_with(&head, &signature, &body.statements()))
     }
 
     /// Rows into `target` from a place on.
@@ -110,9 +114,10 @@ impl File<'_> {
             "/// Product of the Jacobian of the rates by state and inputs with a direction: how the\n\
              /// rates change along it.\n\
              #[allow(unused_variables)]\n",
-            "jacobian_vector_product",
-            &argument,
-            "[T; STATES]",
+            &Signature {
+                arguments: &argument,
+                ..Signature::of("jacobian_vector_product", "[T; STATES]")
+            },
             &body.statements(),
         ))
     }
@@ -165,9 +170,10 @@ impl File<'_> {
             "/// Product of weights with the Jacobian of the rates by state and inputs: the gradient of\n\
              /// the weighted sum of the rates.\n\
              #[allow(unused_variables)]\n",
-            "vector_jacobian_product",
-            "weights: &[T; STATES],\n",
-            &result,
+            &Signature {
+                arguments: "weights: &[T; STATES],\n",
+                ..Signature::of("vector_jacobian_product", &result)
+            },
             &body.statements(),
         ))
     }

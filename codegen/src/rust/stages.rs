@@ -8,6 +8,32 @@ use super::layout::{DEEPER, SHALLOWER};
 use super::literals::{block, doc};
 use crate::program::{Extent, Op, Request, ValueId};
 
+/// What arguments and results of the rates are.
+pub(super) const ORDER: &str = "`t` in s; `state` and the rates in the order of [`STATE_NAMES`].";
+
+/// What an emitted function is called with and returns, beside what all are called with.
+pub(super) struct Signature<'a> {
+    pub(super) name: &'a str,
+    /// Constants among the generic parameters, each with its comma.
+    pub(super) constant: &'a str,
+    /// Further arguments, a line each.
+    pub(super) arguments: &'a str,
+    /// Empty for nothing.
+    pub(super) result: &'a str,
+}
+
+impl<'a> Signature<'a> {
+    /// No more than a name and a result.
+    pub(super) fn of(name: &'a str, result: &'a str) -> Self {
+        Self {
+            name,
+            constant: "",
+            arguments: "",
+            result,
+        }
+    }
+}
+
 /// The most numbers whose copy every compiler writes out: one cache line.
 const COPIED_AT_ONCE: usize = 8;
 
@@ -15,22 +41,17 @@ impl File<'_> {
     /// The rates written to where the caller wants them, and the same returned: what is
     /// returned has to be filled with zeros first.
     pub(super) fn rates(&self, needed: &mut Needed) -> Emitted<String> {
-        let program = self.program;
-        let rows = &program.accelerations;
-        let mut body = self.body(&rows.all(), needed)?;
-        self.write_rates_of_positions(&mut body);
-        let degrees = program.degrees_of_freedom();
-        self.write_row_values(&mut body, "rates", degrees, rows)?;
-        let order = "`t` in s; `state` and the rates in the order of [`STATE_NAMES`].";
+        let body = self.body(&self.program.accelerations.all(), needed)?;
         let written = self.stage_with(
             &format!(
-                "/// Rates of the state, written to `rates`.\n///\n/// {order}\n\
+                "/// Rates of the state, written to `rates`.\n///\n/// {ORDER}\n\
                  #[allow(unused_variables)]\n"
             ),
-            "rates_into",
-            "rates: &mut [T; STATES],\n",
-            "",
-            &body.statements(),
+            &Signature {
+                arguments: "rates: &mut [T; STATES],\n",
+                ..Signature::of("rates_into", "")
+            },
+            &self.rates_statements(body)?,
         );
         let call = format!(
             "let mut rates = [T::number(0.0); STATES];\n\
@@ -38,8 +59,16 @@ impl File<'_> {
              rates\n",
             self.inlined()
         );
-        let head = format!("/// Rates of the state, returned.\n///\n/// {order}\n");
+        let head = format!("/// Rates of the state, returned.\n///\n/// {ORDER}\n");
         Ok(written + &self.stage(&head, "rates", "[T; STATES]", &call))
+    }
+
+    /// The statements that write the rates out of a body that has their values.
+    pub(super) fn rates_statements(&self, mut body: Body<'_>) -> Emitted<String> {
+        let degrees = self.program.degrees_of_freedom();
+        self.write_rates_of_positions(&mut body);
+        self.write_row_values(&mut body, "rates", degrees, &self.program.accelerations)?;
+        Ok(body.statements())
     }
 
     /// The first half of the rates stands in the state. Many numbers are copied two in a turn:
@@ -236,18 +265,17 @@ impl File<'_> {
 
     /// A function that is called with prepared coefficients.
     pub(super) fn stage(&self, head: &str, name: &str, result: &str, statements: &str) -> String {
-        self.stage_with(head, name, "", result, statements)
+        self.stage_with(head, &Signature::of(name, result), statements)
     }
 
-    /// The same with further arguments, a line each.
-    pub(super) fn stage_with(
-        &self,
-        head: &str,
-        name: &str,
-        arguments: &str,
-        result: &str,
-        statements: &str,
-    ) -> String {
+    /// The same with more than a name and a result.
+    pub(super) fn stage_with(&self, head: &str, with: &Signature<'_>, statements: &str) -> String {
+        let &Signature {
+            name,
+            constant,
+            arguments,
+            result,
+        } = with;
         let returned = if result.is_empty() {
             String::new()
         } else {
@@ -255,7 +283,7 @@ impl File<'_> {
         };
         let signature = |name: &str, generics: &str, coefficients: &str| {
             format!(
-                "pub fn {name}<{generics}>(\n\
+                "pub fn {name}<{constant}{generics}>(\n\
                  {DEEPER}t: T,\n\
                  state: &[T; STATES],\n\
                  inputs: &{},\n\
@@ -280,7 +308,8 @@ impl File<'_> {
         .concat();
         let passed: Vec<Expression> = passed.into_iter().map(Expression::atom).collect();
         let inlined = format!("{}{name}", self.inlined());
-        let call = format!("{}\n", Expression::call(&inlined, &passed));
+        let call = Expression::call(&format!("{inlined}{}", self.given(constant)), &passed);
+        let call = format!("{call}\n");
         let allowed = head.lines().filter(|line| line.starts_with("#["));
         let allowed: String = allowed.map(|line| format!("{line}\n")).collect();
         let inlined_head = format!(
@@ -295,6 +324,19 @@ impl File<'_> {
         let read = coefficients.replace("<T>", "<C>");
         let signature = signature(&inlined, generics, &read);
         block(&whole, &call, "}") + &block(&format!("{inlined_head}{signature}"), statements, "}")
+    }
+
+    /// What follows the name of a function for lanes that is called with constants.
+    fn given(&self, constant: &str) -> String {
+        let constants: Vec<&str> = constant
+            .split(", ")
+            .filter_map(|one| one.strip_prefix("const ")?.split(':').next())
+            .collect();
+        match (constants.is_empty(), self.fields.is_empty()) {
+            (true, _) => String::new(),
+            (false, true) => format!("::<{}, _>", constants.join(", ")),
+            (false, false) => format!("::<{}, _, _>", constants.join(", ")),
+        }
     }
 
     /// Whether every function is written a second time, for lanes.

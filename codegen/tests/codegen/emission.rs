@@ -3,6 +3,10 @@
 
 use std::path::Path;
 
+use codegen::request::Request;
+use codegen::rust::{Packaging, emit};
+use codegen::variant::Variant;
+
 use crate::support::{compile, emitted, emitted_with_all, models, shipped};
 
 /// Compares with a file in `golden/`; with EOMGEN_REFRESH set, writes it instead.
@@ -65,6 +69,20 @@ fn the_printed_basis_is_emitted_as_kept() {
         &["--edition", "2015", "--emit=metadata"],
     );
     compare("planetary_arm_printed_order_2.rs", &source);
+}
+
+/// A regime's kernel asks for no contact; the rest of the file is that of any other.
+#[test]
+fn the_regimes_of_the_arm_are_emitted_as_kept() {
+    let model = shipped("planetary_arm");
+    let Ok(variant) = Variant::derive_with(&model, &[2], &[Request::Regimes]) else {
+        panic!("the arm has regimes");
+    };
+    let source = emit(&variant.program, Packaging::Crate).unwrap();
+    let begin = source.find("/// The regime that").unwrap();
+    let kernel = begin + source[begin..].find("rates_in_regime_into<").unwrap();
+    let end = kernel + source[kernel..].find("\n}\n").unwrap() + 3;
+    compare("planetary_arm_order_2_regimes.rs", &source[begin..end]);
 }
 
 fn names() -> Vec<String> {

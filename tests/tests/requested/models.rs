@@ -11,7 +11,7 @@ macro_rules! models {
                     spec = $spec,
                     order = $order,
                     with = [
-                        bias_forces, inverse_dynamics, guard_rates, jacobians, products, linearisation, lanes
+                        bias_forces, inverse_dynamics, guard_rates, jacobians, products, linearisation, regimes, lanes
                     ]
                 }
             }

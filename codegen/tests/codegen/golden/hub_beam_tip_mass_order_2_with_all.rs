@@ -1962,6 +1962,84 @@ pub fn inlined_mass_matrix<T: Scalar, C: Coefficient<T>>(
     values
 }
 
+/// The regime that a state is in: bit k is set where number k of [`guards`] is positive,
+/// for up to 32 of them. Crossing one flips its bit. Of lanes, which have to be in
+/// one regime, a bit is set where it is in all.
+#[allow(unused_variables)]
+pub fn regime<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+) -> u32 {
+    inlined_regime(t, state, inputs, coefficients)
+}
+
+/// [`regime`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables)]
+#[inline(always)]
+pub fn inlined_regime<T: Scalar, C: Coefficient<T>>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<C>,
+) -> u32 {
+    0
+}
+
+/// Rates of the state within a regime, written to `rates`: those of [`rates_into`] where
+/// [`regime`] is `REGIME`, for half-widths that are not negative. Beyond the regime they go
+/// on as they are within, and on its surfaces they are those of its side.
+///
+/// `t` in s; `state` and the rates in the order of [`STATE_NAMES`].
+#[allow(unused_variables)]
+pub fn rates_in_regime_into<const REGIME: u32, T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+    rates: &mut [T; STATES],
+) {
+    inlined_rates_in_regime_into::<REGIME, _, _>(t, state, inputs, coefficients, rates)
+}
+
+/// [`rates_in_regime_into`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables)]
+#[inline(always)]
+pub fn inlined_rates_in_regime_into<const REGIME: u32, T: Scalar, C: Coefficient<T>>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<C>,
+    rates: &mut [T; STATES],
+) {
+    let theta_dot = state[3];
+    let u = inputs.u;
+    let s_1 = sum_of_few([(); 2], |i| C::read(coefficients.c_8[i]) * state[1 + i]);
+    let s_2 = sum_of_few([(); 2], |i| C::read(coefficients.c_10[i]) * state[1 + i]);
+    let s_3 = sum_of_few([(); 2], |i| C::read(coefficients.c_12[i]) * state[1 + i]);
+    let s_4 = C::read(coefficients.c_13) * s_2 - s_3;
+    let s_5 = u + s_1 - C::read(coefficients.c) * theta_dot
+        - C::read(coefficients.c_9) * s_2 - C::read(coefficients.c_11) * s_4;
+    let theta_ddot = C::read(coefficients.c_7) * s_5;
+    let s_6 = s_4 - C::read(coefficients.c_18) * s_5;
+    let s_7 = C::read(coefficients.c_20) * s_2 - C::read(coefficients.c_17) * s_6
+        - C::read(coefficients.c_19) * s_5;
+    let mut q_ddot = [T::number(0.0); 2];
+    for i in 0..2 {
+        q_ddot[i] = C::read(coefficients.c_24[i]) * state[1 + i]
+            - C::read(coefficients.c_16[i]) * s_7 - C::read(coefficients.c_21[i]) * s_6
+            - C::read(coefficients.c_23[i]) * s_5;
+    }
+    for i in 0..3 {
+        rates[i] = state[3 + i];
+    }
+    rates[3] = theta_ddot;
+    for i in 0..2 {
+        rates[4 + i] = q_ddot[i];
+    }
+}
+
 /// Bias forces c - f of M q'' + c = f, in the order of the first half of
 /// [`STATE_NAMES`]: the forces missing for no acceleration.
 #[allow(unused_variables, unused_mut)]

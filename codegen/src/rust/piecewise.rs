@@ -1,0 +1,58 @@
+//! The emitted helpers of piecewise functions: with a choice at every call, and on a side that
+//! the constant number of a regime tells.
+
+/// f_k of Eq. (7).
+pub const DEADZONE: &str = "\
+/// Deflection beyond the backlash: f_k of Eq. (7).
+#[inline(always)]
+fn deadzone<T: Scalar>(p: T, b: T) -> T {
+    let held = T::select_greater(p, b, b, p);
+    p - T::select_greater(-b, held, -b, held)
+}
+";
+
+/// The indicator of Eq. (8).
+pub const CONTACT: &str = "\
+/// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).
+#[inline(always)]
+fn contact<T: Scalar>(p: T, b: T) -> T {
+    let beyond = T::select_greater(-b, p, T::number(1.0), T::number(0.0));
+    T::select_greater(p, b, T::number(1.0), beyond)
+}
+";
+
+/// f_k on a side of its dead zone.
+pub const DEADZONE_ON_SIDE: &str = "\
+/// Deflection beyond the backlash on a known side of it: f_k of Eq. (7).
+#[inline(always)]
+fn deadzone_on_side<T: Scalar>(above: bool, beyond: bool, p: T, b: T) -> T {
+    if above { p - b } else if beyond { T::number(0.0) } else { p + b }
+}
+";
+
+/// The indicator on a side of its dead zone.
+pub const TOUCHING: &str = "\
+/// Whether there is contact on a known side of the backlash.
+#[inline(always)]
+fn touching(above: bool, beyond: bool) -> bool {
+    above || !beyond
+}
+";
+
+/// A choice that is made when a kernel is compiled.
+pub const CHOSEN: &str = "\
+/// One of two, where it is known which.
+#[inline(always)]
+fn chosen<T: Scalar>(first: bool, then: T, otherwise: T) -> T {
+    if first { then } else { otherwise }
+}
+";
+
+/// The sides of a regime.
+pub const POSITIVE: &str = "\
+/// Whether a guard, by its place, is positive in a regime.
+#[inline(always)]
+fn positive(regime: u32, guard: u32) -> bool {
+    regime >> guard & 1 == 1
+}
+";
