@@ -4,17 +4,14 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use eomgen_benches::{state, variants};
+use eomgen_benches::{generated, state, variants};
 
 /// Results are looked at where they lie: a copy of them would be timed with the call.
 macro_rules! compare {
     ($criterion:ident, $($order:literal $module:ident),*) => {$({
         use variants::$module as arm;
         type State = [f64; arm::STATES];
-        #[inline(never)]
-        fn rates(t: f64, state: &State, c: &arm::Coefficients) -> State {
-            arm::rates(t, state, &arm::Inputs::default(), c)
-        }
+        generated!(arm);
         #[inline(never)]
         fn forward(t: f64, state: &State, c: &arm::Coefficients, direction: &State) -> State {
             let inputs = arm::Inputs::default();
@@ -34,10 +31,12 @@ macro_rules! compare {
         }
         let mut group = $criterion.benchmark_group(concat!("jacobian_order_", $order));
         let state = state::<{ arm::STATES }>();
+        let mut rates = state;
         let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
         group.bench_function("rates", |bencher| {
             bencher.iter(|| {
-                black_box(&rates(black_box(0.3), black_box(&state), black_box(&coefficients)));
+                generated(black_box(0.3), black_box(&state), black_box(&coefficients), &mut rates);
+                black_box(&rates);
             })
         });
         group.bench_function("jacobian_vector_product", |bencher| {

@@ -5,7 +5,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use eomgen_benches::state;
+use eomgen_benches::{generated, state};
 use lanes::{LANES, Lanes, Registers, Task, Vector};
 
 /// Of this crate, because a scalar is made of its own or of the traits of its own.
@@ -71,15 +71,7 @@ macro_rules! compare {
             }
         }
 
-        #[inline(never)]
-        fn rates(
-            t: f64,
-            state: &[f64; arm::STATES],
-            coefficients: &arm::Coefficients,
-            rates: &mut [f64; arm::STATES],
-        ) {
-            arm::rates_into(t, state, &arm::Inputs::default(), coefficients, rates)
-        }
+        generated!(arm);
 
         let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
         let single = [state::<{ arm::STATES }>(); STATES];
@@ -88,7 +80,7 @@ macro_rules! compare {
             for (place, (state, found)) in single.iter().zip(&mut single_rates).enumerate() {
                 let t = times(place / LANES)[place % LANES];
                 for _ in 0..PASSES {
-                    rates(t, black_box(state), black_box(&coefficients), found);
+                    generated(t, black_box(state), black_box(&coefficients), found);
                     black_box(&found);
                 }
             }

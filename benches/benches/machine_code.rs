@@ -9,7 +9,7 @@ use codegen::evaluator::{Evaluator, Point};
 use codegen::lower::lower;
 use codegen::program::Program;
 use criterion::{Criterion, criterion_group, criterion_main};
-use eomgen_benches::{state, variants};
+use eomgen_benches::{generated, state, variants};
 
 fn program(order: usize) -> Program {
     let path =
@@ -31,15 +31,13 @@ macro_rules! compare {
         use variants::$module as arm;
         let mut group = $criterion.benchmark_group(concat!("machine_code_order_", $order));
         let state = state::<{ arm::STATES }>();
-        #[inline(never)]
-        fn generated(t: f64, state: &[f64; arm::STATES], c: &arm::Coefficients) -> [f64; arm::STATES] {
-            arm::rates(t, state, &arm::Inputs::default(), c)
-        }
+        generated!(arm);
+        let mut rates = state;
         let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
         group.bench_function("generated", |bencher| {
             bencher.iter(|| {
-                let out = generated(black_box(0.3), black_box(&state), black_box(&coefficients));
-                black_box(&out);
+                generated(black_box(0.3), black_box(&state), black_box(&coefficients), &mut rates);
+                black_box(&rates);
             })
         });
         let program = program($order);

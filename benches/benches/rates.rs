@@ -7,7 +7,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use eomgen_benches::contenders::{equation_22, floor};
-use eomgen_benches::{at_all_orders, state, variants};
+use eomgen_benches::{at_all_orders, generated, state, variants};
 use sim::reference::PlanetaryArmParameters;
 use sim::reference::equation_22::{Eliminated, Equation22};
 
@@ -25,15 +25,7 @@ macro_rules! compare {
                 black_box(&rates);
             })
         });
-        #[inline(never)]
-        fn generated(
-            t: f64,
-            state: &[f64; arm::STATES],
-            coefficients: &arm::Coefficients,
-            rates: &mut [f64; arm::STATES],
-        ) {
-            arm::rates_into(t, state, &arm::Inputs::default(), coefficients, rates);
-        }
+        generated!(arm);
         let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
         group.bench_function("generated", |bencher| {
             bencher.iter(|| {

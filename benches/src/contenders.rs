@@ -16,6 +16,22 @@ macro_rules! at_all_orders {
     };
 }
 
+/// Defines `generated`, one call of the rates of the emitted module in scope under this name.
+#[macro_export]
+macro_rules! generated {
+    ($arm:ident) => {
+        #[inline(never)]
+        fn generated(
+            t: f64,
+            state: &[f64; $arm::STATES],
+            coefficients: &$arm::Coefficients,
+            rates: &mut [f64; $arm::STATES],
+        ) {
+            $arm::rates_into(t, state, &$arm::Inputs::default(), coefficients, rates);
+        }
+    };
+}
+
 /// What nobody can go below: one sine, and the rates as they stand in the state.
 #[inline(never)]
 pub fn floor<const N: usize>(t: f64, state: &[f64; N], omega: f64, rates: &mut [f64; N]) {

@@ -7,11 +7,20 @@ use sim::plot::{Axes, Frame, Panel, Plate, PlotError, Series, plate};
 
 use crate::instructions::Count;
 
-/// The fastest of many calls at one order, s.
+/// The fastest of many calls at one order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Times {
     /// The order S.
     pub order: usize,
+    /// Of calls that wait for nothing, so that several are under way at once.
+    pub overlapping: Contenders,
+    /// Of calls each of which takes its time t from the result of the one before.
+    pub waiting: Contenders,
+}
+
+/// A call of each contender, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contenders {
     /// One sine and copying the rates.
     pub floor: f64,
     /// Generated.
@@ -56,17 +65,25 @@ pub fn heading() -> String {
     for case in COUNTED {
         let _ = write!(line, ",instructions_{case}");
     }
+    for order in KEPT {
+        let _ = write!(line, ",hand_to_floor_waiting_{order}");
+    }
     line + "\n"
 }
 
 /// A line of the table; `run` is date, commit and target features. What was not counted is
-/// empty. The floor is that of order 4 throughout.
+/// empty. The floor is that of order 4 throughout, called as what is compared with it.
 pub fn line(run: &[String; 3], times: &[Times], counts: &[Count]) -> String {
     let at = |order: usize| times.iter().find(|times| times.order == order);
-    let floor = at(4).map_or(f64::NAN, |times| times.floor);
+    let floor_of = |way: fn(&Times) -> Contenders| at(4).map_or(f64::NAN, |t| way(t).floor);
+    let floor = floor_of(|times| times.overlapping);
+    let waiting_floor = floor_of(|times| times.waiting);
     let mut line = format!("{},{:.2}", run.join(","), 1e9 * floor);
     for order in KEPT {
-        if let Some(times) = at(order) {
+        if let Some(Times {
+            overlapping: times, ..
+        }) = at(order)
+        {
             let ratios = [
                 times.generated / times.hand_written,
                 times.generated / times.equation_22,
@@ -85,28 +102,37 @@ pub fn line(run: &[String; 3], times: &[Times], counts: &[Count]) -> String {
             count.map_or(String::new(), |(_, n)| n.to_string())
         );
     }
+    for order in KEPT {
+        let ratio = at(order).map_or(f64::NAN, |t| t.waiting.hand_written / waiting_floor);
+        let _ = write!(line, ",{ratio:.3}");
+    }
     line + "\n"
 }
 
 /// The times of one run as a table, ns.
 pub fn table(times: &[Times]) -> String {
-    let line = |t: &Times| {
-        let all = [t.floor, t.generated, t.hand_written, t.equation_22].map(|time| 1e9 * time);
+    let line = |order: usize, calls: &str, c: &Contenders| {
+        let all = [c.floor, c.generated, c.hand_written, c.equation_22].map(|time| 1e9 * time);
         let [floor, generated, hand_written, equation_22] = all;
-        let order = t.order;
-        format!("{order},{floor:.2},{generated:.2},{hand_written:.2},{equation_22:.2}\n")
+        format!("{order},{calls},{floor:.2},{generated:.2},{hand_written:.2},{equation_22:.2}\n")
     };
-    let lines: String = times.iter().map(line).collect();
-    format!("order,floor,generated,hand_written,equation_22\n{lines}")
+    let overlapping = times
+        .iter()
+        .map(|t| line(t.order, "overlapping", &t.overlapping));
+    let waiting = times.iter().map(|t| line(t.order, "waiting", &t.waiting));
+    let lines: String = overlapping.chain(waiting).collect();
+    format!("order,calls,floor,generated,hand_written,equation_22\n{lines}")
 }
 
-/// The times of one run over the order, as SVG.
+/// The times of calls that overlap in one run, over the order, as SVG.
 ///
 /// # Errors
 /// If there is nothing to draw.
 pub fn curves(times: &[Times]) -> Result<String, PlotError> {
     let orders: Vec<f64> = times.iter().map(|times| times.order as f64).collect();
-    let of = |time: fn(&Times) -> f64| times.iter().map(time).collect::<Vec<f64>>();
+    let of = |time: fn(&Contenders) -> f64| -> Vec<f64> {
+        times.iter().map(|times| time(&times.overlapping)).collect()
+    };
     let contenders = [
         ("Eq. (22) by hand", of(|times| times.equation_22)),
         ("O(S) by hand", of(|times| times.hand_written)),
@@ -212,12 +238,20 @@ mod tests {
     use super::*;
 
     fn times(order: usize) -> Times {
-        Times {
-            order,
+        let overlapping = Contenders {
             floor: 1e-8,
             generated: 2e-8,
             hand_written: 4e-8,
             equation_22: 8e-8,
+        };
+        let waiting = Contenders {
+            floor: 3e-8,
+            ..overlapping
+        };
+        Times {
+            order,
+            overlapping,
+            waiting,
         }
     }
 
@@ -233,5 +267,7 @@ mod tests {
         assert_eq!(column(&text, "generated_to_equation_22_64"), [0.25]);
         assert_eq!(column(&text, "instructions_generated_16"), [321.0]);
         assert!(column(&text, "instructions_generated_4")[0].is_nan());
+        assert_eq!(column(&text, "hand_to_floor_64"), [4.0]);
+        assert_eq!(column(&text, "hand_to_floor_waiting_64"), [1.333]);
     }
 }

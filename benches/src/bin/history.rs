@@ -10,7 +10,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use eomgen_benches::contenders::{equation_22, floor};
-use eomgen_benches::history::{Times, curves, development, heading, line, table};
+use eomgen_benches::history::{Contenders, Times, curves, development, heading, line, table};
 use eomgen_benches::instructions::{ARGUMENT, available, counted, names};
 use eomgen_benches::{at_all_orders, cases, state, variants};
 use sim::reference::PlanetaryArmParameters;
@@ -35,6 +35,71 @@ fn fastest(contenders: &mut [&mut dyn FnMut(); 4]) -> [f64; 4] {
     best
 }
 
+/// The time of a call that waits for nothing.
+#[inline(always)]
+fn known(_: f64) -> f64 {
+    black_box(0.3)
+}
+
+/// The time of a call that is known with a result: the rate that holds the sine.
+#[inline(always)]
+fn with(result: f64) -> f64 {
+    0.3 + 0.0 * result
+}
+
+/// The fastest call of each contender, its time t from this function of the result before.
+macro_rules! calls {
+    ($t:ident, $arm:ident, $state:ident, $inputs:ident, $coefficients:ident, $eliminated:ident, $equation:ident) => {{
+        let [a, b, c, d] = &mut [$state; 4];
+        // The row with the motor's sine.
+        let row = $arm::DEGREES_OF_FREEDOM;
+        let [floor, generated, hand_written, equation_22] = fastest(&mut [
+            &mut || {
+                for _ in 0..CALLS {
+                    floor(
+                        $t(a[row]),
+                        black_box(&$state),
+                        black_box(31.4),
+                        black_box(a),
+                    );
+                }
+            },
+            &mut || {
+                for _ in 0..CALLS {
+                    $arm::rates_into(
+                        $t(b[row]),
+                        black_box(&$state),
+                        &$inputs,
+                        black_box(&$coefficients),
+                        black_box(b),
+                    );
+                }
+            },
+            &mut || {
+                for _ in 0..CALLS {
+                    black_box(&$eliminated).rates($t(c[row]), black_box(&$state), black_box(c));
+                }
+            },
+            &mut || {
+                for _ in 0..CALLS {
+                    equation_22(
+                        black_box(&$equation),
+                        $t(d[row]),
+                        black_box(&$state),
+                        black_box(d),
+                    );
+                }
+            },
+        ]);
+        Contenders {
+            floor,
+            generated,
+            hand_written,
+            equation_22,
+        }
+    }};
+}
+
 macro_rules! times {
     ($($order:literal $module:ident),*) => {
         vec![$({
@@ -45,22 +110,11 @@ macro_rules! times {
             let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
             let eliminated = Eliminated::<$order>::new(&parameters);
             let equation = Equation22::<$order>::new(&parameters, 1.0, 1.0);
-            let [a, b, c, d] = &mut [state; 4];
-            let [floor, generated, hand_written, equation_22] = fastest(&mut [
-                &mut || for _ in 0..CALLS {
-                    floor(black_box(0.3), black_box(&state), black_box(31.4), black_box(a));
-                },
-                &mut || for _ in 0..CALLS {
-                    arm::rates_into(black_box(0.3), black_box(&state), &inputs, black_box(&coefficients), black_box(b));
-                },
-                &mut || for _ in 0..CALLS {
-                    black_box(&eliminated).rates(black_box(0.3), black_box(&state), black_box(c));
-                },
-                &mut || for _ in 0..CALLS {
-                    equation_22(black_box(&equation), black_box(0.3), black_box(&state), black_box(d));
-                },
-            ]);
-            Times { order: $order, floor, generated, hand_written, equation_22 }
+            Times {
+                order: $order,
+                overlapping: calls!(known, arm, state, inputs, coefficients, eliminated, equation),
+                waiting: calls!(with, arm, state, inputs, coefficients, eliminated, equation),
+            }
         }),*]
     };
 }
