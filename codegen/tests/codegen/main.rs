@@ -8,6 +8,7 @@ mod guards;
 mod modes;
 mod names;
 mod operations;
+mod requests;
 mod size;
 mod solved;
 mod support;
