@@ -22,6 +22,15 @@ macro_rules! compare {
             arm::vector_jacobian_product(t, state, &arm::Inputs::default(), c, weights).0
         }
         #[inline(never)]
+        fn by_parameters(
+            t: f64,
+            state: &State,
+            c: &arm::Coefficients,
+            weights: &State,
+        ) -> [f64; arm::PARAMETERS] {
+            arm::vector_jacobian_product_by_parameters(t, state, &arm::Inputs::default(), c, weights)
+        }
+        #[inline(never)]
         fn jacobian(
             t: f64,
             state: &State,
@@ -49,6 +58,12 @@ macro_rules! compare {
             bencher.iter(|| {
                 let weights = black_box(&state);
                 black_box(&reverse(black_box(0.3), black_box(&state), black_box(&coefficients), weights));
+            })
+        });
+        group.bench_function("product_by_parameters", |bencher| {
+            bencher.iter(|| {
+                let weights = black_box(&state);
+                black_box(&by_parameters(black_box(0.3), black_box(&state), black_box(&coefficients), weights));
             })
         });
         group.throughput(Throughput::Elements(arm::RATES_BY_STATE_NONZEROS as u64));

@@ -27,6 +27,23 @@ struct Row {
     field: Option<usize>,
 }
 
+impl JacobianRows {
+    /// One row.
+    pub(crate) fn single(node: Id) -> Self {
+        let row = Row {
+            first: 0,
+            count: 1,
+            node,
+            field: None,
+        };
+        Self {
+            count: 1,
+            identity: None,
+            rows: vec![row],
+        }
+    }
+}
+
 /// The rates of the state: the rates of coordinates are themselves part of the state.
 pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
     let degrees = degrees_of_freedom(equations);

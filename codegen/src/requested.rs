@@ -6,7 +6,7 @@ use crate::adjoint;
 use crate::differentiate::Direction;
 use crate::equations::{Equations, Rows};
 use crate::graph::{Argument, Graph, Id, Operation, Space, Variable};
-use crate::jacobian::{by_parameters, by_variables, observable_rows, rate_rows};
+use crate::jacobian::{JacobianRows, by_parameters, by_variables, observable_rows, rate_rows};
 use crate::matrix::StructuredMatrix;
 use crate::matrix_derivatives::holds_moving_matrix;
 use crate::regimes::{Switch, switches};
@@ -55,6 +55,8 @@ pub struct Products<N, R> {
     /// For each variable, the product of the weights with its column, without what the
     /// rates' own rows add.
     pub reverse: Vec<(Variable, N)>,
+    /// The product of the weights with the columns by parameters: a Jacobian of one row.
+    pub by_parameters: Jacobian<N>,
 }
 
 /// A Jacobian by its structural nonzeros.
@@ -280,7 +282,27 @@ fn products(equations: &mut Equations) -> Products<Id, Rows> {
         .filter_map(|(leaf, node)| Some((variable_of(graph, leaf)?, node)))
         .collect();
     reverse.sort_by_key(|(_, node)| *node);
-    Products { forward, reverse }
+    let sum = JacobianRows::single(weighted_sum(graph, &rows));
+    Products {
+        forward,
+        reverse,
+        by_parameters: by_parameters(equations, &sum, "weighted_rates_by_parameters"),
+    }
+}
+
+/// The sum of weights times accelerations, the rows of the rates that hold parameters.
+fn weighted_sum(graph: &mut Graph, rows: &Rows) -> Id {
+    let mut terms = Vec::new();
+    for (index, row) in rows.scalars.iter().enumerate() {
+        let weight = weight(graph, Variable::Rate(index));
+        terms.push((1.0, graph.multiply(weight, *row)));
+    }
+    for (field, row) in rows.modal.iter().enumerate() {
+        let weight = weight(graph, Variable::ModeRates(field));
+        let product = graph.multiply(weight, *row);
+        terms.push((1.0, graph.total_over(Space::Modes(field), product)));
+    }
+    graph.combine(&terms)
 }
 
 fn derivatives(graph: &mut Graph, direction: &mut Direction<'_>, nodes: &[Id]) -> Vec<Id> {

@@ -26,11 +26,13 @@ pub enum Stage {
     ForwardProduct,
     /// Weights times the Jacobian of the rates.
     ReverseProduct,
+    /// Weights times the Jacobian of the rates by parameters.
+    ParameterProduct,
 }
 
 impl Stage {
     /// Every stage.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Rates,
         Self::Observables,
         Self::Guards,
@@ -41,6 +43,7 @@ impl Stage {
         Self::Jacobians,
         Self::ForwardProduct,
         Self::ReverseProduct,
+        Self::ParameterProduct,
     ];
 
     /// The values it answers with.
@@ -65,7 +68,8 @@ impl Stage {
             | Self::GuardRates
             | Self::Jacobians
             | Self::ForwardProduct
-            | Self::ReverseProduct => self.requested_roots(program),
+            | Self::ReverseProduct
+            | Self::ParameterProduct => self.requested_roots(program),
         }
     }
 }
@@ -83,6 +87,9 @@ impl Stage {
             Self::ForwardProduct => products.flat_map(|p| p.forward.all()).collect(),
             Self::ReverseProduct => products
                 .flat_map(|p| p.reverse.iter().map(|(_, id)| *id))
+                .collect(),
+            Self::ParameterProduct => products
+                .flat_map(|p| p.by_parameters.entries.iter().map(|entry| entry.value))
                 .collect(),
             _ => {
                 let jacobians = requested.jacobians.iter();

@@ -99,6 +99,26 @@ impl Evaluator {
         true
     }
 
+    /// The product of weights with the Jacobian of the rates by parameters; a number per
+    /// independent parameter.
+    pub fn vector_jacobian_product_by_parameters(
+        &mut self,
+        point: Point<'_>,
+        weights: &[f64],
+        out: &mut [f64],
+    ) -> bool {
+        let Some(products) = self.program.requested.products.clone() else {
+            return false;
+        };
+        self.set_argument(Argument::Weights, weights, &[]);
+        self.compute(Stage::ParameterProduct, &point);
+        out.fill(0.0);
+        for entry in &products.by_parameters.entries {
+            out[entry.column] = self.element(entry.value, 0);
+        }
+        true
+    }
+
     fn count(&self, variable: Variable) -> usize {
         match variable {
             Variable::ModeCoordinates(field) | Variable::ModeRates(field) => {

@@ -35,6 +35,7 @@ impl Lowering<'_> {
                     .iter()
                     .map(|(variable, node)| (*variable, self.value(*node)))
                     .collect(),
+                by_parameters: self.jacobian(&products.by_parameters),
             }),
             regimes: requested.regimes.as_ref().map(|switches| {
                 let switches = switches.iter();

@@ -59,7 +59,7 @@ impl File<'_> {
     /// Names and numbers of what Jacobians are taken by.
     pub(super) fn jacobian_constants(&self) -> String {
         let program = self.program;
-        if program.requested.jacobians.is_empty() {
+        if program.requested.jacobians.is_empty() && program.requested.products.is_none() {
             return String::new();
         }
         let quoted = |names: Vec<&String>| {

@@ -33,6 +33,7 @@ impl File<'_> {
         if let Some(products) = &requested.products {
             text += &self.jacobian_vector_product(products, needed)?;
             text += &self.vector_jacobian_product(products, needed)?;
+            text += &self.product_by_parameters(products, needed)?;
         }
         text += &self.jacobians(needed)?;
         Ok(text)
@@ -177,6 +178,32 @@ impl File<'_> {
             &body.statements(),
         ))
     }
+
+    fn product_by_parameters(
+        &self,
+        products: &Products<ValueId, RowValues>,
+        needed: &mut Needed,
+    ) -> Emitted<String> {
+        let entries = &products.by_parameters.entries;
+        let roots: Vec<ValueId> = entries.iter().map(|entry| entry.value).collect();
+        let mut body = self.body(&roots, needed)?;
+        body.push("let mut product = [T::number(0.0); PARAMETERS];");
+        for entry in entries {
+            let value = body.scalar(entry.value)?;
+            body.push(&assignment(&format!("product[{}]", entry.column), value));
+        }
+        body.push("product");
+        Ok(self.stage_with(
+            "/// Product of weights with the Jacobian of the rates by the parameters, in the order of\n\
+             /// [`PARAMETER_NAMES`]: the gradient of the weighted sum of the rates.\n\
+             #[allow(unused_variables, unused_mut)]\n",
+            &Signature {
+                arguments: "weights: &[T; STATES],\n",
+                ..Signature::of("vector_jacobian_product_by_parameters", "[T; PARAMETERS]")
+            },
+            &body.statements(),
+        ))
+    }
 }
 
 /// The values that the requested functions are written from.
@@ -192,6 +219,7 @@ pub(super) fn requested_roots(program: &crate::program::Program) -> Vec<ValueId>
     if let Some(products) = &requested.products {
         roots.extend(products.forward.all());
         roots.extend(products.reverse.iter().map(|(_, id)| *id));
+        roots.extend(products.by_parameters.entries.iter().map(|e| e.value));
     }
     for jacobian in &requested.jacobians {
         roots.extend(super::jacobians::entry_roots(program, jacobian));

@@ -267,318 +267,320 @@ pub struct Coefficients<T = f64> {
     pub c_45: [T; 2],
     /// `(J_t*(...)/(l*l) - (...*.../(...*...)))*1/(... + ... - (.../...))*1/pivot_theta*PHI_D1_AT_END/(rho*A*l*INTEGRAL_PHI_SQUARED) - (1/pivot_theta*(l*INTEGRAL_S1_PHI...`
     pub c_46: [T; 2],
-    /// `-(1/pivot_theta*1/pivot_theta)`
+    /// `1/pivot_theta*1/pivot_theta`
     pub c_47: T,
-    /// `E*I/(rho*rho*A*l*l*l*l)`
+    /// `-(1/pivot_theta*1/pivot_theta)`
     pub c_48: T,
+    /// `E*I/(rho*rho*A*l*l*l*l)`
+    pub c_49: T,
     /// `INTEGRAL_PHI_D2_SQUARED*M_theta_q/INTEGRAL_PHI_SQUARED`
-    pub c_49: [T; 2],
+    pub c_50: [T; 2],
     /// `E*I/(rho*l*l)`
-    pub c_50: T,
+    pub c_51: T,
     /// `INTEGRAL_S1_PHI*INTEGRAL_PHI_D2_SQUARED/INTEGRAL_PHI_SQUARED`
-    pub c_51: [T; 2],
+    pub c_52: [T; 2],
     /// `M_t*E*I*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*.../INT...`
-    pub c_52: T,
-    /// `M_t*E*I*sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*rho*A*A*l*l*l...`
     pub c_53: T,
-    /// `M_t*M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_...`
+    /// `M_t*E*I*sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*rho*A*A*l*l*l...`
     pub c_54: T,
-    /// `J_t*E*I/(rho*rho*A*l*l*l*l*l*l)`
+    /// `M_t*M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_...`
     pub c_55: T,
+    /// `J_t*E*I/(rho*rho*A*l*l*l*l*l*l)`
+    pub c_56: T,
     /// `PHI_D1_AT_END*INTEGRAL_PHI_D2_SQUARED/INTEGRAL_PHI_SQUARED`
-    pub c_56: [T; 2],
+    pub c_57: [T; 2],
     /// `2.0*M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*rho*A*A*l*l*l*l*l*l*l)`
-    pub c_57: T,
-    /// `M_t*M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/...`
     pub c_58: T,
-    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(sum_i...`
+    /// `M_t*M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/...`
     pub c_59: T,
-    /// `(M_t*sum_i(...)*(l*... + .../...)*1/(1.0 + .../...)/(rho*A*l) - (l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(PHI_D1_AT_END*(...*... + ...`
+    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(sum_i...`
     pub c_60: T,
-    /// `0.3333333333333333*A*l*l*l`
+    /// `(M_t*sum_i(...)*(l*... + .../...)*1/(1.0 + .../...)/(rho*A*l) - (l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(PHI_D1_AT_END*(...*... + ...`
     pub c_61: T,
-    /// `1/pivot_theta*1/pivot_theta*(0.3333333333333333*A*l*l*l + ...*...*...*.../(...*A*l) - (...*(...)*1/.../(...*A*l)) - (A*l*l*l*sum_i(INTEGRAL_S1_PHI*INTEGRAL_S1_P...`
+    /// `0.3333333333333333*A*l*l*l`
     pub c_62: T,
-    /// `E*I/(rho*A*A*l*l*l*l)`
+    /// `1/pivot_theta*1/pivot_theta*(0.3333333333333333*A*l*l*l + ...*...*...*.../(...*A*l) - (...*(...)*1/.../(...*A*l)) - (A*l*l*l*sum_i(INTEGRAL_S1_PHI*INTEGRAL_S1_P...`
     pub c_63: T,
-    /// `E*I/(A*l*l)`
+    /// `E*I/(rho*A*A*l*l*l*l)`
     pub c_64: T,
-    /// `M_t*E*I*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*.../INT...`
+    /// `E*I/(A*l*l)`
     pub c_65: T,
-    /// `M_t*E*I*sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*A*l*l*l*l...`
+    /// `M_t*E*I*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*.../INT...`
     pub c_66: T,
-    /// `M_t*M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_...`
+    /// `M_t*E*I*sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*A*l*l*l*l...`
     pub c_67: T,
-    /// `J_t*E*I/(rho*A*A*l*l*l*l*l*l)`
-    pub c_68: T,
-    /// `2.0*M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*A*l*l*l*l*l*l*l)`
-    pub c_69: T,
-    /// `M_t*M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/...`
-    pub c_70: T,
-    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(sum_i...`
-    pub c_71: T,
-    /// `(M_t*sum_i(...)*(l*... + .../...)*1/(1.0 + .../...)/(rho*A*l) - (l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(PHI_D1_AT_END*(...*... + ...`
-    pub c_72: T,
-    /// `0.3333333333333333*rho*l*l*l`
-    pub c_73: T,
-    /// `1/pivot_theta*1/pivot_theta*(0.3333333333333333*rho*l*l*l + ...*...*...*.../(rho*...*l) - (...*(...)*1/.../(rho*...*l)) - (rho*l*l*l*sum_i(INTEGRAL_S1_PHI*INTEG...`
-    pub c_74: T,
-    /// `4.0*E*I/(rho*A*l*l*l*l*l)`
-    pub c_75: T,
-    /// `E*I/(rho*A*l*l*l*l)`
-    pub c_76: T,
-    /// `INTEGRAL_PHI_D2_SQUARED*(2.0*rho*A*l*INTEGRAL_S1_PHI + M_t*PHI_AT_END - (J_t*PHI_D1_AT_END/(l*l)))/INTEGRAL_PHI_SQUARED`
-    pub c_77: [T; 2],
-    /// `4.0*M_t*E*I*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*......`
-    pub c_78: T,
-    /// `M_t*E*I*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*(sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... - ...)/INTEGRAL_PHI_SQUARED)/(rho...`
-    pub c_79: T,
     /// `M_t*M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_...`
-    pub c_80: T,
-    /// `6.0*J_t*E*I/(rho*A*l*l*l*l*l*l*l)`
-    pub c_81: T,
-    /// `7.0*M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l*l)`
-    pub c_82: T,
+    pub c_68: T,
+    /// `J_t*E*I/(rho*A*A*l*l*l*l*l*l)`
+    pub c_69: T,
+    /// `2.0*M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*A*l*l*l*l*l*l*l)`
+    pub c_70: T,
     /// `M_t*M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/...`
-    pub c_83: T,
-    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(M_t*....`
-    pub c_84: T,
-    /// `(M_t*sum_i(...)*(l*... + .../...)*1/(1.0 + .../...)/(rho*A*l) - (l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(PHI_D1_AT_END*(...*... + ...`
-    pub c_85: T,
-    /// `1/pivot_theta*1/pivot_theta*(2.0*l*M_t + rho*A*l*l + ...*(...)*1/...*(sum_i(...) + ... - ...) + ...*...*...*.../(rho*A*l*l) - (sum_i(INTEGRAL_S1_PHI*M_theta_q/I...`
-    pub c_86: T,
-    /// `I/(rho*A*l*l*l*l)`
-    pub c_87: T,
-    /// `M_t*I*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*.../INTEG...`
-    pub c_88: T,
-    /// `J_t*I/(rho*A*l*l*l*l*l*l)`
-    pub c_89: T,
-    /// `M_t*J_t*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l)`
-    pub c_90: T,
-    /// `E/(rho*A*l*l*l*l)`
-    pub c_91: T,
-    /// `M_t*E*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*.../INTEG...`
-    pub c_92: T,
-    /// `J_t*E/(rho*A*l*l*l*l*l*l)`
-    pub c_93: T,
-    /// `M_t*J_t*E*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l)`
-    pub c_94: T,
-    /// `E*I/(rho*A*l*l*l)`
-    pub c_95: T,
-    /// `E*I*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*.../INTEGRA...`
-    pub c_96: T,
-    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l)`
-    pub c_97: T,
-    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_...`
-    pub c_98: T,
-    /// `J_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l)`
-    pub c_99: T,
-    /// `M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/(1.0...`
-    pub c_100: T,
+    pub c_71: T,
     /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(sum_i...`
+    pub c_72: T,
+    /// `(M_t*sum_i(...)*(l*... + .../...)*1/(1.0 + .../...)/(rho*A*l) - (l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(PHI_D1_AT_END*(...*... + ...`
+    pub c_73: T,
+    /// `0.3333333333333333*rho*l*l*l`
+    pub c_74: T,
+    /// `1/pivot_theta*1/pivot_theta*(0.3333333333333333*rho*l*l*l + ...*...*...*.../(rho*...*l) - (...*(...)*1/.../(rho*...*l)) - (rho*l*l*l*sum_i(INTEGRAL_S1_PHI*INTEG...`
+    pub c_75: T,
+    /// `4.0*E*I/(rho*A*l*l*l*l*l)`
+    pub c_76: T,
+    /// `E*I/(rho*A*l*l*l*l)`
+    pub c_77: T,
+    /// `INTEGRAL_PHI_D2_SQUARED*(2.0*rho*A*l*INTEGRAL_S1_PHI + M_t*PHI_AT_END - (J_t*PHI_D1_AT_END/(l*l)))/INTEGRAL_PHI_SQUARED`
+    pub c_78: [T; 2],
+    /// `4.0*M_t*E*I*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*......`
+    pub c_79: T,
+    /// `M_t*E*I*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*(sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... - ...)/INTEGRAL_PHI_SQUARED)/(rho...`
+    pub c_80: T,
+    /// `M_t*M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_...`
+    pub c_81: T,
+    /// `6.0*J_t*E*I/(rho*A*l*l*l*l*l*l*l)`
+    pub c_82: T,
+    /// `7.0*M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l*l)`
+    pub c_83: T,
+    /// `M_t*M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/...`
+    pub c_84: T,
+    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(M_t*....`
+    pub c_85: T,
+    /// `(M_t*sum_i(...)*(l*... + .../...)*1/(1.0 + .../...)/(rho*A*l) - (l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(PHI_D1_AT_END*(...*... + ...`
+    pub c_86: T,
+    /// `1/pivot_theta*1/pivot_theta*(2.0*l*M_t + rho*A*l*l + ...*(...)*1/...*(sum_i(...) + ... - ...) + ...*...*...*.../(rho*A*l*l) - (sum_i(INTEGRAL_S1_PHI*M_theta_q/I...`
+    pub c_87: T,
+    /// `I/(rho*A*l*l*l*l)`
+    pub c_88: T,
+    /// `M_t*I*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*.../INTEG...`
+    pub c_89: T,
+    /// `J_t*I/(rho*A*l*l*l*l*l*l)`
+    pub c_90: T,
+    /// `M_t*J_t*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l)`
+    pub c_91: T,
+    /// `E/(rho*A*l*l*l*l)`
+    pub c_92: T,
+    /// `M_t*E*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*.../INTEG...`
+    pub c_93: T,
+    /// `J_t*E/(rho*A*l*l*l*l*l*l)`
+    pub c_94: T,
+    /// `M_t*J_t*E*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l)`
+    pub c_95: T,
+    /// `E*I/(rho*A*l*l*l)`
+    pub c_96: T,
+    /// `E*I*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(...*.../INTEGRA...`
+    pub c_97: T,
+    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l)`
+    pub c_98: T,
+    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_...`
+    pub c_99: T,
+    /// `J_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l)`
+    pub c_100: T,
+    /// `M_t*J_t*E*I*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/(1.0...`
     pub c_101: T,
-    /// `(M_t*sum_i(...)*(l*... + .../...)*1/(1.0 + .../...)/(rho*A*l) - (l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(PHI_D1_AT_END*(...*... + ...`
+    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(sum_i...`
     pub c_102: T,
-    /// `1/pivot_theta*1/pivot_theta*(l*l + (...)*(...)*1/... + ...*.../(rho*A) - (...*...*...*.../(rho*A*l)) - (l*l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARE...`
-    pub c_103: T,
-    /// `E*I/(rho*A*l*l*l*l*l)`
-    pub c_104: T,
-    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l)`
-    pub c_105: T,
-    /// `E*I/(rho*A*l*l*l*l*l*l)`
-    pub c_106: T,
-    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l)`
-    pub c_107: T,
-    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(M_t*s...`
-    pub c_108: T,
     /// `(M_t*sum_i(...)*(l*... + .../...)*1/(1.0 + .../...)/(rho*A*l) - (l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(PHI_D1_AT_END*(...*... + ...`
+    pub c_103: T,
+    /// `1/pivot_theta*1/pivot_theta*(l*l + (...)*(...)*1/... + ...*.../(rho*A) - (...*...*...*.../(rho*A*l)) - (l*l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARE...`
+    pub c_104: T,
+    /// `E*I/(rho*A*l*l*l*l*l)`
+    pub c_105: T,
+    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l)`
+    pub c_106: T,
+    /// `E*I/(rho*A*l*l*l*l*l*l)`
+    pub c_107: T,
+    /// `M_t*E*I*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l*l*l)`
+    pub c_108: T,
+    /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))*(M_t*s...`
     pub c_109: T,
-    /// `1/pivot_theta*1/pivot_theta*(1.0 + ...*...*(... + ...)*1/(... + ...)/(rho*A*l*l) - (sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(PHI_D1_A...`
+    /// `(M_t*sum_i(...)*(l*... + .../...)*1/(1.0 + .../...)/(rho*A*l) - (l*sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(PHI_D1_AT_END*(...*... + ...`
     pub c_110: T,
-    /// `-(1/pivot_theta)`
+    /// `1/pivot_theta*1/pivot_theta*(1.0 + ...*...*(... + ...)*1/(... + ...)/(rho*A*l*l) - (sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(PHI_D1_A...`
     pub c_111: T,
-    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*(J_t*(l*... + .../...)/(l*l) - (...*...*(... + ...)*1/(... + ...)/(rho*A*l*l*l)))*1/(1.0 + J_t*sum_i(.....`
+    /// `-(1/pivot_theta)`
     pub c_112: T,
-    /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta`
+    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*(J_t*(l*... + .../...)/(l*l) - (...*...*(... + ...)*1/(... + ...)/(rho*A*l*l*l)))*1/(1.0 + J_t*sum_i(.....`
     pub c_113: T,
+    /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(...*... + .../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta`
+    pub c_114: T,
     /// `(J_t*(l*... + .../...)/(l*l) - (...*...*(... + ...)*1/(... + ...)/(rho*A*l*l*l)))*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/pivot_theta*...`
-    pub c_114: [T; 2],
-    /// `1/pivot_theta*1/pivot_theta*(l*INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*l*INTEGRAL_PHI_SQUARED))`
     pub c_115: [T; 2],
-    /// `E*I*INTEGRAL_PHI_D2_SQUARED/(rho*rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    /// `1/pivot_theta*1/pivot_theta*(l*INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*l*INTEGRAL_PHI_SQUARED))`
     pub c_116: [T; 2],
-    /// `1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))*PHI_AT_END/(rho*rho*A*l*INTEGRAL_PHI_SQUARED)`
+    /// `E*I*INTEGRAL_PHI_D2_SQUARED/(rho*rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
     pub c_117: [T; 2],
-    /// `M_t*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*rho*rho*A*A*l*l*INTE...`
+    /// `1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))*PHI_AT_END/(rho*rho*A*l*INTEGRAL_PHI_SQUARED)`
     pub c_118: [T; 2],
+    /// `M_t*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*rho*rho*A*A*l*l*INTE...`
+    pub c_119: [T; 2],
     /// `M_t*E*I/(rho*rho*A*l*l*l*l)`
-    pub c_119: T,
-    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
     pub c_120: T,
-    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
+    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
     pub c_121: T,
-    /// `1/pivot_theta*(-(J_t*sum_i(PHI_D1_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*rho*A*l*l*l)) - (...*...*sum_i(...)*(l*... + .../...)*1/(... + ...)*1/(... + ......`
+    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
     pub c_122: T,
-    /// `(J_t*(l*sum_i(.../...) + sum_i(.../...)/(rho*A*l))/(l*l) - (M_t*J_t*sum_i(.../...)*(l*sum_i(...) + sum_i(...)/(...*l))*1/(1.0 + M_t*.../(...*l))/(rho*A*l*l*l)))...`
+    /// `1/pivot_theta*(-(J_t*sum_i(PHI_D1_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*rho*A*l*l*l)) - (...*...*sum_i(...)*(l*... + .../...)*1/(... + ...)*1/(... + ......`
     pub c_123: T,
-    /// `M_t*sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)*1/pivot_theta/(rho*rho*A*l)`
+    /// `(J_t*(l*sum_i(.../...) + sum_i(.../...)/(rho*A*l))/(l*l) - (M_t*J_t*sum_i(.../...)*(l*sum_i(...) + sum_i(...)/(...*l))*1/(1.0 + M_t*.../(...*l))/(rho*A*l*l*l)))...`
     pub c_124: T,
-    /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(0.333...`
+    /// `M_t*sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)*1/pivot_theta/(rho*rho*A*l)`
     pub c_125: T,
-    /// `1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*rho*A*l*INTEGRAL_PHI_SQU...`
-    pub c_126: [T; 2],
-    /// `1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*(-(J_t*sum_i(.../...)/(rho*rho*A...`
-    pub c_127: [T; 2],
-    /// `1/pivot_theta*(l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*rho*A*l*INTEGRAL_PHI_SQUARED)`
-    pub c_128: [T; 2],
-    /// `1/pivot_theta*1/pivot_theta*(0.3333333333333333*A*l*l*l + ...*.../(...*l) - (...*.../(...*l)) - (A*l*l*l*sum_i(...*.../INTEGRAL_PHI_SQUARED)) - (l*sum_i(.../......`
-    pub c_129: [T; 2],
-    /// `E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_130: [T; 2],
-    /// `1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))*PHI_AT_END/(rho*A*A*l*INTEGRAL_PHI_SQUARED)`
-    pub c_131: [T; 2],
-    /// `M_t*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*rho*A*A*A*l*l*INTEGR...`
-    pub c_132: [T; 2],
-    /// `M_t*E*I/(rho*A*A*l*l*l*l)`
-    pub c_133: T,
-    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
-    pub c_134: T,
-    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
-    pub c_135: T,
-    /// `1/pivot_theta*(-(J_t*sum_i(PHI_D1_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*A*l*l*l)) - (...*...*sum_i(...)*(l*... + .../...)*1/(... + ...)*1/(... + ...)/...`
-    pub c_136: T,
-    /// `(J_t*(l*sum_i(.../...) + sum_i(.../...)/(rho*A*l))/(l*l) - (M_t*J_t*sum_i(.../...)*(l*sum_i(...) + sum_i(...)/(...*l))*1/(1.0 + M_t*.../(...*l))/(rho*A*l*l*l)))...`
-    pub c_137: T,
-    /// `M_t*sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)*1/pivot_theta/(rho*A*A*l)`
-    pub c_138: T,
     /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(0.333...`
-    pub c_139: T,
-    /// `1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*A*A*l*INTEGRAL_PHI_SQUAR...`
-    pub c_140: [T; 2],
-    /// `1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*(-(J_t*sum_i(.../...)/(rho*A*A*l...`
-    pub c_141: [T; 2],
-    /// `1/pivot_theta*(l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*A*l*INTEGRAL_PHI_SQUARED)`
-    pub c_142: [T; 2],
-    /// `1/pivot_theta*1/pivot_theta*(0.3333333333333333*rho*l*l*l + ...*.../(...*l) - (...*.../(...*l)) - (rho*l*l*l*sum_i(...*.../INTEGRAL_PHI_SQUARED)) - (l*sum_i(......`
-    pub c_143: [T; 2],
-    /// `4.0*E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_144: [T; 2],
-    /// `1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))*PHI_AT_END/(rho*A*l*l*INTEGRAL_PHI_SQUARED)`
-    pub c_145: [T; 2],
-    /// `M_t*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*rho*A*A*l*l*l*INTEGR...`
-    pub c_146: [T; 2],
-    /// `4.0*M_t*E*I/(rho*A*l*l*l*l*l)`
-    pub c_147: T,
+    pub c_126: T,
+    /// `1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*rho*A*l*INTEGRAL_PHI_SQU...`
+    pub c_127: [T; 2],
+    /// `1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*(-(J_t*sum_i(.../...)/(rho*rho*A...`
+    pub c_128: [T; 2],
+    /// `1/pivot_theta*(l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*rho*A*l*INTEGRAL_PHI_SQUARED)`
+    pub c_129: [T; 2],
+    /// `1/pivot_theta*1/pivot_theta*(0.3333333333333333*A*l*l*l + ...*.../(...*l) - (...*.../(...*l)) - (A*l*l*l*sum_i(...*.../INTEGRAL_PHI_SQUARED)) - (l*sum_i(.../......`
+    pub c_130: [T; 2],
+    /// `E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*A*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_131: [T; 2],
+    /// `1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))*PHI_AT_END/(rho*A*A*l*INTEGRAL_PHI_SQUARED)`
+    pub c_132: [T; 2],
+    /// `M_t*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*rho*A*A*A*l*l*INTEGR...`
+    pub c_133: [T; 2],
+    /// `M_t*E*I/(rho*A*A*l*l*l*l)`
+    pub c_134: T,
     /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
+    pub c_135: T,
+    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
+    pub c_136: T,
+    /// `1/pivot_theta*(-(J_t*sum_i(PHI_D1_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*A*l*l*l)) - (...*...*sum_i(...)*(l*... + .../...)*1/(... + ...)*1/(... + ...)/...`
+    pub c_137: T,
+    /// `(J_t*(l*sum_i(.../...) + sum_i(.../...)/(rho*A*l))/(l*l) - (M_t*J_t*sum_i(.../...)*(l*sum_i(...) + sum_i(...)/(...*l))*1/(1.0 + M_t*.../(...*l))/(rho*A*l*l*l)))...`
+    pub c_138: T,
+    /// `M_t*sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)*1/pivot_theta/(rho*A*A*l)`
+    pub c_139: T,
+    /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(0.333...`
+    pub c_140: T,
+    /// `1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*A*A*l*INTEGRAL_PHI_SQUAR...`
+    pub c_141: [T; 2],
+    /// `1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*(-(J_t*sum_i(.../...)/(rho*A*A*l...`
+    pub c_142: [T; 2],
+    /// `1/pivot_theta*(l*M_t*PHI_AT_END + J_t*PHI_D1_AT_END/l)/(rho*A*A*l*INTEGRAL_PHI_SQUARED)`
+    pub c_143: [T; 2],
+    /// `1/pivot_theta*1/pivot_theta*(0.3333333333333333*rho*l*l*l + ...*.../(...*l) - (...*.../(...*l)) - (rho*l*l*l*sum_i(...*.../INTEGRAL_PHI_SQUARED)) - (l*sum_i(......`
+    pub c_144: [T; 2],
+    /// `4.0*E*I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_145: [T; 2],
+    /// `1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))*PHI_AT_END/(rho*A*l*l*INTEGRAL_PHI_SQUARED)`
+    pub c_146: [T; 2],
+    /// `M_t*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*rho*A*A*l*l*l*INTEGR...`
+    pub c_147: [T; 2],
+    /// `4.0*M_t*E*I/(rho*A*l*l*l*l*l)`
     pub c_148: T,
-    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
+    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A...`
     pub c_149: T,
-    /// `1/pivot_theta*(J_t*(sum_i(...*.../INTEGRAL_PHI_SQUARED) + sum_i(...)/(...*l) - (sum_i(...)/(...*...)))/(l*l) - (2.0*J_t*(l*sum_i(.../...) + sum_i(.../...)/(rho*...`
+    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
     pub c_150: T,
-    /// `(J_t*(l*sum_i(.../...) + sum_i(.../...)/(rho*A*l))/(l*l) - (M_t*J_t*sum_i(.../...)*(l*sum_i(...) + sum_i(...)/(...*l))*1/(1.0 + M_t*.../(...*l))/(rho*A*l*l*l)))...`
+    /// `1/pivot_theta*(J_t*(sum_i(...*.../INTEGRAL_PHI_SQUARED) + sum_i(...)/(...*l) - (sum_i(...)/(...*...)))/(l*l) - (2.0*J_t*(l*sum_i(.../...) + sum_i(.../...)/(rho*...`
     pub c_151: T,
-    /// `M_t*1/pivot_theta*(sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(M_t*... - (.../...))/INTEGRAL_PHI_SQUARED)/(rho*A*l) - (sum_i(PHI_...`
+    /// `(J_t*(l*sum_i(.../...) + sum_i(.../...)/(rho*A*l))/(l*l) - (M_t*J_t*sum_i(.../...)*(l*sum_i(...) + sum_i(...)/(...*l))*1/(1.0 + M_t*.../(...*l))/(rho*A*l*l*l)))...`
     pub c_152: T,
-    /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(2.0*l...`
+    /// `M_t*1/pivot_theta*(sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(M_t*... - (.../...))/INTEGRAL_PHI_SQUARED)/(rho*A*l) - (sum_i(PHI_...`
     pub c_153: T,
+    /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(2.0*l...`
+    pub c_154: T,
     /// `1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l*l*l*l)))*PHI_D1_AT_END/(rho*A*l*l*INTEGRAL_PHI_SQUAR...`
-    pub c_154: [T; 2],
-    /// `1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*(-(3.0*J_t*sum_i(.../...)/(rho*A...`
     pub c_155: [T; 2],
-    /// `1/pivot_theta*(INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (M_t*PHI_AT_END - (J_t*PHI_D1_AT_END/(l*l)))/(rho*A*l*INTEGRAL_PHI_SQUARED) - ((l*M_t*PHI_AT_END + J_t*PHI...`
+    /// `1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*(-(3.0*J_t*sum_i(.../...)/(rho*A...`
     pub c_156: [T; 2],
-    /// `1/pivot_theta*1/pivot_theta*(...*l*M_t + rho*A*l*l + ...*...*(... + ...) + ...*.../(...*...) - (sum_i(...*M_theta_q/INTEGRAL_PHI_SQUARED) + l*sum_i(.../...)) - ...`
+    /// `1/pivot_theta*(INTEGRAL_S1_PHI/INTEGRAL_PHI_SQUARED + (M_t*PHI_AT_END - (J_t*PHI_D1_AT_END/(l*l)))/(rho*A*l*INTEGRAL_PHI_SQUARED) - ((l*M_t*PHI_AT_END + J_t*PHI...`
     pub c_157: [T; 2],
+    /// `1/pivot_theta*1/pivot_theta*(...*l*M_t + rho*A*l*l + ...*...*(... + ...) + ...*.../(...*...) - (sum_i(...*M_theta_q/INTEGRAL_PHI_SQUARED) + l*sum_i(.../...)) - ...`
+    pub c_158: [T; 2],
     /// `-(M_t*I/(rho*A*l*l*l*l))`
-    pub c_158: T,
+    pub c_159: T,
     /// `-(I*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))`
-    pub c_159: [T; 2],
+    pub c_160: [T; 2],
     /// `-(M_t*E/(rho*A*l*l*l*l))`
-    pub c_160: T,
+    pub c_161: T,
     /// `-(E*INTEGRAL_PHI_D2_SQUARED/(rho*A*l*l*l*l*INTEGRAL_PHI_SQUARED))`
-    pub c_161: [T; 2],
-    /// `sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*rho*A*A*l*l*INTEGRAL_PHI...`
     pub c_162: [T; 2],
+    /// `sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*1/(1.0 + M_t*sum_i(...)/(rho*A*l))*PHI_AT_END/(rho*rho*A*A*l*l*INTEGRAL_PHI...`
+    pub c_163: [T; 2],
     /// `sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*sum_i(...)*1/(1.0 + .../...)/(rho*rho*A*A*l...`
-    pub c_163: T,
-    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
     pub c_164: T,
-    /// `1/pivot_theta*(J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)/(rho*A*l*l) - (J_t*sum_i(...)*(l*... + .../...)*1/(1.0 + .../...)/(rho*A*l*l*l) + M_t*J_...`
-    pub c_165: T,
-    /// `(J_t*(l*sum_i(.../...) + sum_i(.../...)/(rho*A*l))/(l*l) - (M_t*J_t*sum_i(.../...)*(l*sum_i(...) + sum_i(...)/(...*l))*1/(1.0 + M_t*.../(...*l))/(rho*A*l*l*l)))...`
-    pub c_166: T,
-    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta`
-    pub c_167: T,
-    /// `M_t*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/pivot_theta/(rho*A)`
-    pub c_168: T,
-    /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(l*l +...`
-    pub c_169: T,
-    /// `-(E*I/(rho*A*l*l*l*l))`
-    pub c_170: T,
-    /// `1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*(J_t*sum_i(...)*sum_i(...)*1/(1....`
-    pub c_171: [T; 2],
-    /// `1/pivot_theta*PHI_AT_END/(rho*A*INTEGRAL_PHI_SQUARED)`
-    pub c_172: [T; 2],
-    /// `1/pivot_theta*1/pivot_theta*(l*l + ...*... + .../... - (...*.../(...*l)) - (l*l*sum_i(...*.../INTEGRAL_PHI_SQUARED)) - (sum_i(...*M_theta_q/INTEGRAL_PHI_SQUARED...`
-    pub c_173: [T; 2],
     /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
-    pub c_174: T,
-    /// `1/pivot_theta*(J_t*sum_i(PHI_D1_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l*l) + (l*sum_i(...*.../INTEGRAL_PHI_SQUARED) + sum_i(...*(...)/INTEGRAL_P...`
-    pub c_175: T,
+    pub c_165: T,
+    /// `1/pivot_theta*(J_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)/(rho*A*l*l) - (J_t*sum_i(...)*(l*... + .../...)*1/(1.0 + .../...)/(rho*A*l*l*l) + M_t*J_...`
+    pub c_166: T,
     /// `(J_t*(l*sum_i(.../...) + sum_i(.../...)/(rho*A*l))/(l*l) - (M_t*J_t*sum_i(.../...)*(l*sum_i(...) + sum_i(...)/(...*l))*1/(1.0 + M_t*.../(...*l))/(rho*A*l*l*l)))...`
+    pub c_167: T,
+    /// `(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(l*M_t*PHI_AT_END + J_t*.../l)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta`
+    pub c_168: T,
+    /// `M_t*sum_i(PHI_AT_END*PHI_AT_END/INTEGRAL_PHI_SQUARED)*1/pivot_theta/(rho*A)`
+    pub c_169: T,
+    /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(l*l +...`
+    pub c_170: T,
+    /// `-(E*I/(rho*A*l*l*l*l))`
+    pub c_171: T,
+    /// `1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*(J_t*sum_i(...)*sum_i(...)*1/(1....`
+    pub c_172: [T; 2],
+    /// `1/pivot_theta*PHI_AT_END/(rho*A*INTEGRAL_PHI_SQUARED)`
+    pub c_173: [T; 2],
+    /// `1/pivot_theta*1/pivot_theta*(l*l + ...*... + .../... - (...*.../(...*l)) - (l*l*sum_i(...*.../INTEGRAL_PHI_SQUARED)) - (sum_i(...*M_theta_q/INTEGRAL_PHI_SQUARED...`
+    pub c_174: [T; 2],
+    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1...`
+    pub c_175: T,
+    /// `1/pivot_theta*(J_t*sum_i(PHI_D1_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l*l) + (l*sum_i(...*.../INTEGRAL_PHI_SQUARED) + sum_i(...*(...)/INTEGRAL_P...`
     pub c_176: T,
-    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/pivot_theta/(rho*A*l*l)`
+    /// `(J_t*(l*sum_i(.../...) + sum_i(.../...)/(rho*A*l))/(l*l) - (M_t*J_t*sum_i(.../...)*(l*sum_i(...) + sum_i(...)/(...*l))*1/(1.0 + M_t*.../(...*l))/(rho*A*l*l*l)))...`
     pub c_177: T,
-    /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(1.0 +...`
+    /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/pivot_theta/(rho*A*l*l)`
     pub c_178: T,
+    /// `M_t*(l*sum_i(INTEGRAL_S1_PHI*PHI_AT_END/INTEGRAL_PHI_SQUARED) + sum_i(PHI_AT_END*(... + ...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/pivot_theta*1/pivot_theta*(1.0 +...`
+    pub c_179: T,
     /// `1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*1/(1.0 + J_t*.../(...*...) - (...*...*1/.../(...*...*...*...)))*(sum_i(PHI_D1_AT_END*PHI_D1_AT_E...`
-    pub c_179: [T; 2],
-    /// `1/pivot_theta*PHI_D1_AT_END/(rho*A*l*l*INTEGRAL_PHI_SQUARED)`
     pub c_180: [T; 2],
-    /// `1/pivot_theta*1/pivot_theta*(1.0 + ...*(...)*1/.../(rho*A*l*l) - (sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(...*M_theta_q/(l*...) + .....`
+    /// `1/pivot_theta*PHI_D1_AT_END/(rho*A*l*l*INTEGRAL_PHI_SQUARED)`
     pub c_181: [T; 2],
+    /// `1/pivot_theta*1/pivot_theta*(1.0 + ...*(...)*1/.../(rho*A*l*l) - (sum_i(INTEGRAL_S1_PHI*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)) - (sum_i(...*M_theta_q/(l*...) + .....`
+    pub c_182: [T; 2],
     /// `0.6666666666666666*rho*A*l*l*l`
-    pub c_182: T,
+    pub c_183: T,
     /// `2.0*rho*A*l*l*INTEGRAL_S1_PHI`
-    pub c_183: [T; 2],
-    /// `2.0*rho*A*l*INTEGRAL_PHI_SQUARED`
     pub c_184: [T; 2],
+    /// `2.0*rho*A*l*INTEGRAL_PHI_SQUARED`
+    pub c_185: [T; 2],
     /// `-(1.0/(l*l))`
-    pub c_185: T,
-    /// `2.0*A*l*l`
     pub c_186: T,
-    /// `A*l`
+    /// `2.0*A*l*l`
     pub c_187: T,
-    /// `2.0*rho*l*l`
+    /// `A*l`
     pub c_188: T,
-    /// `rho*l`
+    /// `2.0*rho*l*l`
     pub c_189: T,
-    /// `4.0*rho*A*l`
+    /// `rho*l`
     pub c_190: T,
-    /// `J_t/(l*l)`
+    /// `4.0*rho*A*l`
     pub c_191: T,
-    /// `1.5*E*I/(l*l*l*l)`
+    /// `J_t/(l*l)`
     pub c_192: T,
-    /// `0.5*I/(l*l*l)`
+    /// `1.5*E*I/(l*l*l*l)`
     pub c_193: T,
-    /// `0.5*E/(l*l*l)`
+    /// `0.5*I/(l*l*l)`
     pub c_194: T,
-    /// `J_t*E*I/(rho*A*l*l*l*l*l*l)`
+    /// `0.5*E/(l*l*l)`
     pub c_195: T,
-    /// `M_t*(l*sum_i(...*.../INTEGRAL_PHI_SQUARED) + sum_i(...*(...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/pivot_theta/(rho*A*l)`
+    /// `J_t*E*I/(rho*A*l*l*l*l*l*l)`
     pub c_196: T,
+    /// `M_t*(l*sum_i(...*.../INTEGRAL_PHI_SQUARED) + sum_i(...*(...)/INTEGRAL_PHI_SQUARED)/(rho*A*l))*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/pivot_theta/(rho*A*l)`
+    pub c_197: T,
     /// `PHI_AT_END/INTEGRAL_PHI_SQUARED`
-    pub c_197: [T; 2],
+    pub c_198: [T; 2],
     /// `1/(1.0 + J_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l*l*l) - (M_t*J_t*sum_i(.../...)*sum_i(.../...)*1/(1.0 + M_t*.../(...*l))/(rho*rho*A*A*l*l*l*l)))/(rho*A...`
-    pub c_198: T,
+    pub c_199: T,
     /// `PHI_D1_AT_END/INTEGRAL_PHI_SQUARED`
-    pub c_199: [T; 2],
+    pub c_200: [T; 2],
     /// `M_t*sum_i(PHI_AT_END*PHI_D1_AT_END/INTEGRAL_PHI_SQUARED)*1/(1.0 + M_t*sum_i(.../...)/(rho*A*l))*1/(1.0 + J_t*sum_i(.../...)/(rho*A*l*l*l) - (M_t*J_t*sum_i(...)*...`
-    pub c_200: T,
-    /// `-c`
     pub c_201: T,
-    /// `M_t*E*I*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    /// `-c`
     pub c_202: T,
+    /// `M_t*E*I*1/(1.0 + M_t*sum_i(...*.../INTEGRAL_PHI_SQUARED)/(rho*A*l))/(rho*rho*A*A*l*l*l*l*l)`
+    pub c_203: T,
     /// Whether all prepared pivots of the mass matrix are positive and finite. If not, the mass matrix is not positive definite and the rates are not to be used.
     pub positive_definite: bool,
 }
@@ -1312,162 +1314,163 @@ impl<T: Scalar> Coefficients<T> {
             c_44: s_107,
             c_45: s_111,
             c_46: s_112,
-            c_47: -s_113,
-            c_48: s_53 / s_115,
-            c_49: s_116,
-            c_50: s_53 / (rho * s_2),
-            c_51: s_117,
-            c_52: s_59 / s_115,
-            c_53: s_122 / s_121,
-            c_54: s_125 / s_121,
-            c_55: s_65 / (s_114 * s_62),
-            c_56: s_126,
-            c_57: s_129 / (s_119 * s_67),
-            c_58: s_134 / (s_131 * s_132),
-            c_59: s_49 * s_140,
-            c_60: s_142 * s_148,
-            c_61: s_149,
-            c_62: s_162,
-            c_63: s_53 / s_164,
-            c_64: s_53 / (A * s_2),
-            c_65: s_59 / s_164,
-            c_66: s_122 / s_166,
-            c_67: s_125 / s_166,
-            c_68: s_65 / (s_163 * s_62),
-            c_69: s_129 / (s_165 * s_67),
-            c_70: s_134 / (s_167 * s_132),
-            c_71: s_49 * s_170,
-            c_72: s_142 * s_173,
-            c_73: s_174,
-            c_74: s_178,
-            c_75: s_180 / s_179,
-            c_76: s_181,
-            c_77: s_185,
-            c_78: s_187 * s_17 * s_22 / s_179,
-            c_79: s_188 * s_190 / s_52,
-            c_80: s_125 / s_191,
-            c_81: T::number(6.0) * J_t * E * I / (s_6 * s_67),
-            c_82: T::number(7.0) * M_t * J_t * E * I * s_31 * s_22 / (s_43 * s_132),
-            c_83: s_134 / (s_192 * (l * s_132)),
-            c_84: s_49 * s_197,
-            c_85: s_142 * s_199,
-            c_86: s_206,
-            c_87: I / s_52,
-            c_88: s_207 * s_17 * s_22 / s_52,
-            c_89: J_t * I / s_63,
-            c_90: s_30 * I * s_31 * s_22 / s_68,
-            c_91: E / s_52,
-            c_92: s_57 * s_17 * s_22 / s_52,
-            c_93: s_64 / s_63,
-            c_94: s_69 * s_31 * s_22 / s_68,
-            c_95: s_53 / s_29,
-            c_96: s_53 * s_17 * s_22 / s_52,
-            c_97: s_208 * s_22 / s_45,
-            c_98: s_208 * s_17 * s_124 / s_198,
-            c_99: s_65 * s_31 * s_22 / s_68,
-            c_100: s_70 * s_19 * s_31 * s_124 / (s_192 * s_132),
-            c_101: s_49 * s_212,
-            c_102: s_142 * s_214,
-            c_103: s_223,
-            c_104: s_53 / s_179,
-            c_105: s_224 / s_191,
-            c_106: s_53 / s_63,
-            c_107: s_224 / s_68,
-            c_108: s_49 * s_226,
-            c_109: s_142 * s_227,
-            c_110: s_232,
-            c_111: -s_51,
-            c_112: s_106 * s_113 / s_13,
-            c_113: s_233,
-            c_114: s_235,
-            c_115: s_236,
-            c_116: s_237,
-            c_117: s_239,
-            c_118: s_242,
-            c_119: s_58 / s_115,
-            c_120: s_76 / s_135,
-            c_121: s_243 * s_148 / s_13,
-            c_122: s_51 * s_158,
-            c_123: s_244 * s_161,
-            c_124: s_245 / s_135,
-            c_125: s_233 * s_161,
-            c_126: s_246,
-            c_127: s_248,
-            c_128: s_250,
-            c_129: s_251,
-            c_130: s_252,
-            c_131: s_254,
-            c_132: s_255,
-            c_133: s_58 / s_164,
-            c_134: s_76 / s_168,
-            c_135: s_243 * s_173 / s_13,
-            c_136: s_51 * s_175,
-            c_137: s_244 * s_177,
-            c_138: s_245 / s_168,
-            c_139: s_233 * s_177,
-            c_140: s_256,
-            c_141: s_258,
-            c_142: s_259,
-            c_143: s_260,
-            c_144: s_261,
-            c_145: s_263,
-            c_146: s_264,
-            c_147: s_187 / s_179,
-            c_148: s_76 / s_7,
-            c_149: s_243 * s_199 / s_13,
-            c_150: s_51 * s_203,
-            c_151: s_244 * s_205,
-            c_152: M_t * s_51 * s_190,
-            c_153: s_233 * s_205,
-            c_154: s_265,
-            c_155: s_267,
-            c_156: s_268,
-            c_157: s_269,
-            c_158: -(s_207 / s_52),
-            c_159: s_270,
-            c_160: -(s_57 / s_52),
-            c_161: s_271,
-            c_162: s_273,
-            c_163: s_31 * s_49 / s_13,
-            c_164: s_243 * s_214 / s_13,
-            c_165: s_51 * s_221,
-            c_166: s_244 * s_222,
-            c_167: s_17 * s_51,
-            c_168: s_20 * s_51 / s_6,
-            c_169: s_233 * s_222,
-            c_170: -s_181,
-            c_171: s_275,
-            c_172: s_276,
-            c_173: s_277,
-            c_174: s_243 * s_227 / s_13,
-            c_175: s_51 * s_230,
-            c_176: s_244 * s_231,
-            c_177: s_35 * s_51 / s_7,
-            c_178: s_233 * s_231,
-            c_179: s_279,
-            c_180: s_280,
-            c_181: s_281,
-            c_182: T::number(0.6666666666666666) * rho * A * s_3,
-            c_183: s_282,
-            c_184: s_283,
-            c_185: -(T::number(1.0) / s_2),
-            c_186: T::number(2.0) * A * s_2,
-            c_187: A * l,
-            c_188: s_88 * s_2,
-            c_189: rho * l,
-            c_190: T::number(4.0) * rho * A * l,
-            c_191: J_t / s_2,
-            c_192: T::number(1.5) * E * I / s_44,
-            c_193: T::number(0.5) * I / s_3,
-            c_194: s_91 / s_3,
-            c_195: s_65 / s_63,
-            c_196: s_78 * s_22 * s_51 / s_13,
-            c_197: s_284,
-            c_198: s_49 / s_13,
-            c_199: s_285,
-            c_200: s_195 * s_49 / s_210,
-            c_201: -c,
-            c_202: s_188 / s_198,
+            c_47: s_113,
+            c_48: -s_113,
+            c_49: s_53 / s_115,
+            c_50: s_116,
+            c_51: s_53 / (rho * s_2),
+            c_52: s_117,
+            c_53: s_59 / s_115,
+            c_54: s_122 / s_121,
+            c_55: s_125 / s_121,
+            c_56: s_65 / (s_114 * s_62),
+            c_57: s_126,
+            c_58: s_129 / (s_119 * s_67),
+            c_59: s_134 / (s_131 * s_132),
+            c_60: s_49 * s_140,
+            c_61: s_142 * s_148,
+            c_62: s_149,
+            c_63: s_162,
+            c_64: s_53 / s_164,
+            c_65: s_53 / (A * s_2),
+            c_66: s_59 / s_164,
+            c_67: s_122 / s_166,
+            c_68: s_125 / s_166,
+            c_69: s_65 / (s_163 * s_62),
+            c_70: s_129 / (s_165 * s_67),
+            c_71: s_134 / (s_167 * s_132),
+            c_72: s_49 * s_170,
+            c_73: s_142 * s_173,
+            c_74: s_174,
+            c_75: s_178,
+            c_76: s_180 / s_179,
+            c_77: s_181,
+            c_78: s_185,
+            c_79: s_187 * s_17 * s_22 / s_179,
+            c_80: s_188 * s_190 / s_52,
+            c_81: s_125 / s_191,
+            c_82: T::number(6.0) * J_t * E * I / (s_6 * s_67),
+            c_83: T::number(7.0) * M_t * J_t * E * I * s_31 * s_22 / (s_43 * s_132),
+            c_84: s_134 / (s_192 * (l * s_132)),
+            c_85: s_49 * s_197,
+            c_86: s_142 * s_199,
+            c_87: s_206,
+            c_88: I / s_52,
+            c_89: s_207 * s_17 * s_22 / s_52,
+            c_90: J_t * I / s_63,
+            c_91: s_30 * I * s_31 * s_22 / s_68,
+            c_92: E / s_52,
+            c_93: s_57 * s_17 * s_22 / s_52,
+            c_94: s_64 / s_63,
+            c_95: s_69 * s_31 * s_22 / s_68,
+            c_96: s_53 / s_29,
+            c_97: s_53 * s_17 * s_22 / s_52,
+            c_98: s_208 * s_22 / s_45,
+            c_99: s_208 * s_17 * s_124 / s_198,
+            c_100: s_65 * s_31 * s_22 / s_68,
+            c_101: s_70 * s_19 * s_31 * s_124 / (s_192 * s_132),
+            c_102: s_49 * s_212,
+            c_103: s_142 * s_214,
+            c_104: s_223,
+            c_105: s_53 / s_179,
+            c_106: s_224 / s_191,
+            c_107: s_53 / s_63,
+            c_108: s_224 / s_68,
+            c_109: s_49 * s_226,
+            c_110: s_142 * s_227,
+            c_111: s_232,
+            c_112: -s_51,
+            c_113: s_106 * s_113 / s_13,
+            c_114: s_233,
+            c_115: s_235,
+            c_116: s_236,
+            c_117: s_237,
+            c_118: s_239,
+            c_119: s_242,
+            c_120: s_58 / s_115,
+            c_121: s_76 / s_135,
+            c_122: s_243 * s_148 / s_13,
+            c_123: s_51 * s_158,
+            c_124: s_244 * s_161,
+            c_125: s_245 / s_135,
+            c_126: s_233 * s_161,
+            c_127: s_246,
+            c_128: s_248,
+            c_129: s_250,
+            c_130: s_251,
+            c_131: s_252,
+            c_132: s_254,
+            c_133: s_255,
+            c_134: s_58 / s_164,
+            c_135: s_76 / s_168,
+            c_136: s_243 * s_173 / s_13,
+            c_137: s_51 * s_175,
+            c_138: s_244 * s_177,
+            c_139: s_245 / s_168,
+            c_140: s_233 * s_177,
+            c_141: s_256,
+            c_142: s_258,
+            c_143: s_259,
+            c_144: s_260,
+            c_145: s_261,
+            c_146: s_263,
+            c_147: s_264,
+            c_148: s_187 / s_179,
+            c_149: s_76 / s_7,
+            c_150: s_243 * s_199 / s_13,
+            c_151: s_51 * s_203,
+            c_152: s_244 * s_205,
+            c_153: M_t * s_51 * s_190,
+            c_154: s_233 * s_205,
+            c_155: s_265,
+            c_156: s_267,
+            c_157: s_268,
+            c_158: s_269,
+            c_159: -(s_207 / s_52),
+            c_160: s_270,
+            c_161: -(s_57 / s_52),
+            c_162: s_271,
+            c_163: s_273,
+            c_164: s_31 * s_49 / s_13,
+            c_165: s_243 * s_214 / s_13,
+            c_166: s_51 * s_221,
+            c_167: s_244 * s_222,
+            c_168: s_17 * s_51,
+            c_169: s_20 * s_51 / s_6,
+            c_170: s_233 * s_222,
+            c_171: -s_181,
+            c_172: s_275,
+            c_173: s_276,
+            c_174: s_277,
+            c_175: s_243 * s_227 / s_13,
+            c_176: s_51 * s_230,
+            c_177: s_244 * s_231,
+            c_178: s_35 * s_51 / s_7,
+            c_179: s_233 * s_231,
+            c_180: s_279,
+            c_181: s_280,
+            c_182: s_281,
+            c_183: T::number(0.6666666666666666) * rho * A * s_3,
+            c_184: s_282,
+            c_185: s_283,
+            c_186: -(T::number(1.0) / s_2),
+            c_187: T::number(2.0) * A * s_2,
+            c_188: A * l,
+            c_189: s_88 * s_2,
+            c_190: rho * l,
+            c_191: T::number(4.0) * rho * A * l,
+            c_192: J_t / s_2,
+            c_193: T::number(1.5) * E * I / s_44,
+            c_194: T::number(0.5) * I / s_3,
+            c_195: s_91 / s_3,
+            c_196: s_65 / s_63,
+            c_197: s_78 * s_22 * s_51 / s_13,
+            c_198: s_284,
+            c_199: s_49 / s_13,
+            c_200: s_285,
+            c_201: s_195 * s_49 / s_210,
+            c_202: -c,
+            c_203: s_188 / s_198,
             positive_definite: T::all_greater(pivot_theta, T::number(0.0))
                 && T::all_greater(T::number(f64::INFINITY), pivot_theta)
                 && T::all_greater(s_21, T::number(0.0))
@@ -1537,15 +1540,15 @@ impl Coefficients {
             c_46: converted(&self.c_46),
             c_47: T::number(self.c_47),
             c_48: T::number(self.c_48),
-            c_49: converted(&self.c_49),
-            c_50: T::number(self.c_50),
-            c_51: converted(&self.c_51),
-            c_52: T::number(self.c_52),
+            c_49: T::number(self.c_49),
+            c_50: converted(&self.c_50),
+            c_51: T::number(self.c_51),
+            c_52: converted(&self.c_52),
             c_53: T::number(self.c_53),
             c_54: T::number(self.c_54),
             c_55: T::number(self.c_55),
-            c_56: converted(&self.c_56),
-            c_57: T::number(self.c_57),
+            c_56: T::number(self.c_56),
+            c_57: converted(&self.c_57),
             c_58: T::number(self.c_58),
             c_59: T::number(self.c_59),
             c_60: T::number(self.c_60),
@@ -1565,8 +1568,8 @@ impl Coefficients {
             c_74: T::number(self.c_74),
             c_75: T::number(self.c_75),
             c_76: T::number(self.c_76),
-            c_77: converted(&self.c_77),
-            c_78: T::number(self.c_78),
+            c_77: T::number(self.c_77),
+            c_78: converted(&self.c_78),
             c_79: T::number(self.c_79),
             c_80: T::number(self.c_80),
             c_81: T::number(self.c_81),
@@ -1602,56 +1605,56 @@ impl Coefficients {
             c_111: T::number(self.c_111),
             c_112: T::number(self.c_112),
             c_113: T::number(self.c_113),
-            c_114: converted(&self.c_114),
+            c_114: T::number(self.c_114),
             c_115: converted(&self.c_115),
             c_116: converted(&self.c_116),
             c_117: converted(&self.c_117),
             c_118: converted(&self.c_118),
-            c_119: T::number(self.c_119),
+            c_119: converted(&self.c_119),
             c_120: T::number(self.c_120),
             c_121: T::number(self.c_121),
             c_122: T::number(self.c_122),
             c_123: T::number(self.c_123),
             c_124: T::number(self.c_124),
             c_125: T::number(self.c_125),
-            c_126: converted(&self.c_126),
+            c_126: T::number(self.c_126),
             c_127: converted(&self.c_127),
             c_128: converted(&self.c_128),
             c_129: converted(&self.c_129),
             c_130: converted(&self.c_130),
             c_131: converted(&self.c_131),
             c_132: converted(&self.c_132),
-            c_133: T::number(self.c_133),
+            c_133: converted(&self.c_133),
             c_134: T::number(self.c_134),
             c_135: T::number(self.c_135),
             c_136: T::number(self.c_136),
             c_137: T::number(self.c_137),
             c_138: T::number(self.c_138),
             c_139: T::number(self.c_139),
-            c_140: converted(&self.c_140),
+            c_140: T::number(self.c_140),
             c_141: converted(&self.c_141),
             c_142: converted(&self.c_142),
             c_143: converted(&self.c_143),
             c_144: converted(&self.c_144),
             c_145: converted(&self.c_145),
             c_146: converted(&self.c_146),
-            c_147: T::number(self.c_147),
+            c_147: converted(&self.c_147),
             c_148: T::number(self.c_148),
             c_149: T::number(self.c_149),
             c_150: T::number(self.c_150),
             c_151: T::number(self.c_151),
             c_152: T::number(self.c_152),
             c_153: T::number(self.c_153),
-            c_154: converted(&self.c_154),
+            c_154: T::number(self.c_154),
             c_155: converted(&self.c_155),
             c_156: converted(&self.c_156),
             c_157: converted(&self.c_157),
-            c_158: T::number(self.c_158),
-            c_159: converted(&self.c_159),
-            c_160: T::number(self.c_160),
-            c_161: converted(&self.c_161),
+            c_158: converted(&self.c_158),
+            c_159: T::number(self.c_159),
+            c_160: converted(&self.c_160),
+            c_161: T::number(self.c_161),
             c_162: converted(&self.c_162),
-            c_163: T::number(self.c_163),
+            c_163: converted(&self.c_163),
             c_164: T::number(self.c_164),
             c_165: T::number(self.c_165),
             c_166: T::number(self.c_166),
@@ -1659,21 +1662,21 @@ impl Coefficients {
             c_168: T::number(self.c_168),
             c_169: T::number(self.c_169),
             c_170: T::number(self.c_170),
-            c_171: converted(&self.c_171),
+            c_171: T::number(self.c_171),
             c_172: converted(&self.c_172),
             c_173: converted(&self.c_173),
-            c_174: T::number(self.c_174),
+            c_174: converted(&self.c_174),
             c_175: T::number(self.c_175),
             c_176: T::number(self.c_176),
             c_177: T::number(self.c_177),
             c_178: T::number(self.c_178),
-            c_179: converted(&self.c_179),
+            c_179: T::number(self.c_179),
             c_180: converted(&self.c_180),
             c_181: converted(&self.c_181),
-            c_182: T::number(self.c_182),
-            c_183: converted(&self.c_183),
+            c_182: converted(&self.c_182),
+            c_183: T::number(self.c_183),
             c_184: converted(&self.c_184),
-            c_185: T::number(self.c_185),
+            c_185: converted(&self.c_185),
             c_186: T::number(self.c_186),
             c_187: T::number(self.c_187),
             c_188: T::number(self.c_188),
@@ -1685,12 +1688,13 @@ impl Coefficients {
             c_194: T::number(self.c_194),
             c_195: T::number(self.c_195),
             c_196: T::number(self.c_196),
-            c_197: converted(&self.c_197),
-            c_198: T::number(self.c_198),
-            c_199: converted(&self.c_199),
-            c_200: T::number(self.c_200),
+            c_197: T::number(self.c_197),
+            c_198: converted(&self.c_198),
+            c_199: T::number(self.c_199),
+            c_200: converted(&self.c_200),
             c_201: T::number(self.c_201),
             c_202: T::number(self.c_202),
+            c_203: T::number(self.c_203),
             positive_definite: self.positive_definite,
         }
     }
@@ -2182,11 +2186,11 @@ pub fn inlined_jacobian_vector_product<T: Scalar, C: Coefficient<T>>(
 ) -> [T; STATES] {
     let s = direction[3];
     let s_1 = input_direction.u;
-    let s_2 = sum_of_few([(); 2], |i| C::read(coefficients.c_49[i]) * direction[1 + i]);
+    let s_2 = sum_of_few([(); 2], |i| C::read(coefficients.c_50[i]) * direction[1 + i]);
     let s_3 = sum_of_few([(); 2], |i| C::read(coefficients.c_10[i]) * direction[1 + i]);
-    let s_4 = sum_of_few([(); 2], |i| C::read(coefficients.c_56[i]) * direction[1 + i]);
-    let s_5 = C::read(coefficients.c_13) * s_3 - C::read(coefficients.c_195) * s_4;
-    let s_6 = s_1 + C::read(coefficients.c_76) * s_2 - C::read(coefficients.c) * s
+    let s_4 = sum_of_few([(); 2], |i| C::read(coefficients.c_57[i]) * direction[1 + i]);
+    let s_5 = C::read(coefficients.c_13) * s_3 - C::read(coefficients.c_196) * s_4;
+    let s_6 = s_1 + C::read(coefficients.c_77) * s_2 - C::read(coefficients.c) * s
         - C::read(coefficients.c_9) * s_3;
     let s_7 = s_6 - C::read(coefficients.c_11) * s_5;
     let s_8 = s_5 - C::read(coefficients.c_18) * s_7;
@@ -2233,14 +2237,14 @@ pub fn inlined_vector_jacobian_product<T: Scalar, C: Coefficient<T>>(
     weights: &[T; STATES],
 ) -> ([T; STATES], Inputs<T>) {
     let s_1 = sum_of_few([(); 2], |i| C::read(coefficients.c_22[i]) * weights[4 + i]);
-    let s_2 = sum_of_few([(); 2], |i| C::read(coefficients.c_197[i]) * weights[4 + i]);
-    let s_3 = sum_of_few([(); 2], |i| C::read(coefficients.c_199[i]) * weights[4 + i]);
-    let s_4 = C::read(coefficients.c_200) * s_2 - C::read(coefficients.c_198) * s_3;
+    let s_2 = sum_of_few([(); 2], |i| C::read(coefficients.c_198[i]) * weights[4 + i]);
+    let s_3 = sum_of_few([(); 2], |i| C::read(coefficients.c_200[i]) * weights[4 + i]);
+    let s_4 = C::read(coefficients.c_201) * s_2 - C::read(coefficients.c_199) * s_3;
     let s = weights[3];
-    let s_5 = C::read(coefficients.c_196) * s_2 + C::read(coefficients.c_7) * s
+    let s_5 = C::read(coefficients.c_197) * s_2 + C::read(coefficients.c_7) * s
         - C::read(coefficients.c_7) * s_1 - C::read(coefficients.c_18) * s_4;
     let s_6 = s_4 - C::read(coefficients.c_11) * s_5;
-    let s_7 = C::read(coefficients.c_13) * s_6 + C::read(coefficients.c_202) * s_2
+    let s_7 = C::read(coefficients.c_13) * s_6 + C::read(coefficients.c_203) * s_2
         - C::read(coefficients.c_9) * s_5;
     let mut s_8 = [T::number(0.0); 2];
     for i in 0..2 {
@@ -2252,12 +2256,287 @@ pub fn inlined_vector_jacobian_product<T: Scalar, C: Coefficient<T>>(
     for i in 0..3 {
         product[3 + i] = weights[i];
     }
-    product[3] = product[3] + C::read(coefficients.c_201) * s_5;
+    product[3] = product[3] + C::read(coefficients.c_202) * s_5;
     for i in 0..2 {
         product[1 + i] = s_8[i];
     }
     let input_product = Inputs { u: s_5 };
     (product, input_product)
+}
+
+/// Product of weights with the Jacobian of the rates by the parameters, in the order of
+/// [`PARAMETER_NAMES`]: the gradient of the weighted sum of the rates.
+#[allow(unused_variables, unused_mut)]
+pub fn vector_jacobian_product_by_parameters<T: Scalar>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<T>,
+    weights: &[T; STATES],
+) -> [T; PARAMETERS] {
+    inlined_vector_jacobian_product_by_parameters(
+        t,
+        state,
+        inputs,
+        coefficients,
+        weights,
+    )
+}
+
+/// [`vector_jacobian_product_by_parameters`], inlined where it is called, to be compiled for the registers there.
+#[allow(unused_variables, unused_mut)]
+#[inline(always)]
+pub fn inlined_vector_jacobian_product_by_parameters<T: Scalar, C: Coefficient<T>>(
+    t: T,
+    state: &[T; STATES],
+    inputs: &Inputs<T>,
+    coefficients: &Coefficients<C>,
+    weights: &[T; STATES],
+) -> [T; PARAMETERS] {
+    let theta_dot = state[3];
+    let u = inputs.u;
+    let s_1 = sum_of_few([(); 2], |i| C::read(coefficients.c_8[i]) * state[1 + i]);
+    let s_2 = sum_of_few([(); 2], |i| C::read(coefficients.c_10[i]) * state[1 + i]);
+    let s_3 = sum_of_few([(); 2], |i| C::read(coefficients.c_12[i]) * state[1 + i]);
+    let s_4 = C::read(coefficients.c_13) * s_2 - s_3;
+    let s_5 = u + s_1 - C::read(coefficients.c) * theta_dot
+        - C::read(coefficients.c_9) * s_2 - C::read(coefficients.c_11) * s_4;
+    let s_6 = s_4 - C::read(coefficients.c_18) * s_5;
+    let s_7 = C::read(coefficients.c_20) * s_2 - C::read(coefficients.c_17) * s_6
+        - C::read(coefficients.c_19) * s_5;
+    let s_8 = sum_of_few([(); 2], |i| C::read(coefficients.c_50[i]) * state[1 + i]);
+    let s_9 = sum_of_few([(); 2], |i| C::read(coefficients.c_52[i]) * state[1 + i]);
+    let s_10 = sum_of_few([(); 2], |i| C::read(coefficients.c_57[i]) * state[1 + i]);
+    let s_11 = C::read(coefficients.c_56) * s_10
+        + (C::read(coefficients.c_59) * s_2 - C::read(coefficients.c_58) * s_2);
+    let s_12 = C::read(coefficients.c_51) * s_9 - C::read(coefficients.c_49) * s_8
+        - (C::read(coefficients.c_55) * s_2 - C::read(coefficients.c_53) * s_2
+            - C::read(coefficients.c_54) * s_2);
+    let s_13 = s_12
+        - (C::read(coefficients.c_11) * s_11 + C::read(coefficients.c_60) * s_4
+            - C::read(coefficients.c_61) * s_4);
+    let s_14 = C::read(coefficients.c_69) * s_10
+        + (C::read(coefficients.c_71) * s_2 - C::read(coefficients.c_70) * s_2);
+    let s_15 = C::read(coefficients.c_65) * s_9 - C::read(coefficients.c_64) * s_8
+        - (C::read(coefficients.c_68) * s_2 - C::read(coefficients.c_66) * s_2
+            - C::read(coefficients.c_67) * s_2);
+    let s_16 = s_15
+        - (C::read(coefficients.c_11) * s_14 + C::read(coefficients.c_72) * s_4
+            - C::read(coefficients.c_73) * s_4);
+    let s_17 = sum_of_few([(); 2], |i| C::read(coefficients.c_78[i]) * state[1 + i]);
+    let s_18 = C::read(coefficients.c_82) * s_10
+        + (C::read(coefficients.c_84) * s_2 - C::read(coefficients.c_83) * s_2);
+    let s_19 = C::read(coefficients.c_77) * s_17 - C::read(coefficients.c_76) * s_8
+        - (C::read(coefficients.c_80) * s_2 + C::read(coefficients.c_81) * s_2
+            - C::read(coefficients.c_79) * s_2);
+    let s_20 = s_19
+        - (C::read(coefficients.c_11) * s_18 + C::read(coefficients.c_85) * s_4
+            - C::read(coefficients.c_86) * s_4);
+    let s_21 = C::read(coefficients.c_91) * s_2 - C::read(coefficients.c_90) * s_10;
+    let s_22 = C::read(coefficients.c_88) * s_8 - C::read(coefficients.c_89) * s_2
+        - C::read(coefficients.c_11) * s_21;
+    let s_23 = C::read(coefficients.c_95) * s_2 - C::read(coefficients.c_94) * s_10;
+    let s_24 = C::read(coefficients.c_92) * s_8 - C::read(coefficients.c_93) * s_2
+        - C::read(coefficients.c_11) * s_23;
+    let s_25 = C::read(coefficients.c_100) * s_2 - C::read(coefficients.c_101) * s_2;
+    let s_26 = C::read(coefficients.c_96) * s_2
+        - (C::read(coefficients.c_97) * s_2 + C::read(coefficients.c_98) * s_2
+            - C::read(coefficients.c_99) * s_2);
+    let s_27 = s_26
+        - (C::read(coefficients.c_11) * s_25 + C::read(coefficients.c_102) * s_4
+            + C::read(coefficients.c_103) * s_4);
+    let s_28 = C::read(coefficients.c_108) * s_2 - C::read(coefficients.c_107) * s_10;
+    let s_29 = C::read(coefficients.c_105) * s_10 - C::read(coefficients.c_106) * s_2
+        - (C::read(coefficients.c_11) * s_28 + C::read(coefficients.c_109) * s_4
+            - C::read(coefficients.c_110) * s_4);
+    let s_30 = C::read(coefficients.c_114) * s_5 - C::read(coefficients.c_113) * s_5;
+    let s_31 = s_11
+        - (C::read(coefficients.c_123) * s_5 + C::read(coefficients.c_18) * s_13
+            - C::read(coefficients.c_124) * s_5);
+    let s_32 = C::read(coefficients.c_120) * s_2
+        - (C::read(coefficients.c_17) * s_31 - C::read(coefficients.c_121) * s_6
+            - C::read(coefficients.c_122) * s_6);
+    let s_33 = s_32
+        - (C::read(coefficients.c_19) * s_13 - C::read(coefficients.c_125) * s_5
+            - C::read(coefficients.c_126) * s_5);
+    let mut s_34 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_34[i] = C::read(coefficients.c_117[i]) * state[1 + i]
+            - (C::read(coefficients.c_119[i]) * s_7
+                + C::read(coefficients.c_16[i]) * s_33
+                - C::read(coefficients.c_118[i]) * s_7);
+    }
+    let mut s_35 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_35[i] = s_34[i]
+            - (C::read(coefficients.c_21[i]) * s_31
+                - C::read(coefficients.c_127[i]) * s_6
+                - C::read(coefficients.c_128[i]) * s_6);
+    }
+    let mut s_36 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_36[i] = s_35[i]
+            - (C::read(coefficients.c_23[i]) * s_13
+                - C::read(coefficients.c_129[i]) * s_5
+                - C::read(coefficients.c_130[i]) * s_5);
+    }
+    let s_37 = s_14
+        - (C::read(coefficients.c_137) * s_5 + C::read(coefficients.c_18) * s_16
+            - C::read(coefficients.c_138) * s_5);
+    let s_38 = C::read(coefficients.c_134) * s_2
+        - (C::read(coefficients.c_17) * s_37 - C::read(coefficients.c_135) * s_6
+            - C::read(coefficients.c_136) * s_6);
+    let s_39 = s_38
+        - (C::read(coefficients.c_19) * s_16 - C::read(coefficients.c_139) * s_5
+            - C::read(coefficients.c_140) * s_5);
+    let mut s_40 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_40[i] = C::read(coefficients.c_131[i]) * state[1 + i]
+            - (C::read(coefficients.c_133[i]) * s_7
+                + C::read(coefficients.c_16[i]) * s_39
+                - C::read(coefficients.c_132[i]) * s_7);
+    }
+    let mut s_41 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_41[i] = s_40[i]
+            - (C::read(coefficients.c_21[i]) * s_37
+                - C::read(coefficients.c_141[i]) * s_6
+                - C::read(coefficients.c_142[i]) * s_6);
+    }
+    let mut s_42 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_42[i] = s_41[i]
+            - (C::read(coefficients.c_23[i]) * s_16
+                - C::read(coefficients.c_143[i]) * s_5
+                - C::read(coefficients.c_144[i]) * s_5);
+    }
+    let s_43 = s_18
+        - (C::read(coefficients.c_151) * s_5 + C::read(coefficients.c_18) * s_20
+            - C::read(coefficients.c_152) * s_5);
+    let s_44 = C::read(coefficients.c_148) * s_2
+        - (C::read(coefficients.c_17) * s_43 - C::read(coefficients.c_149) * s_6
+            - C::read(coefficients.c_150) * s_6);
+    let s_45 = s_44
+        - (C::read(coefficients.c_153) * s_5 + C::read(coefficients.c_19) * s_20
+            - C::read(coefficients.c_154) * s_5);
+    let mut s_46 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_46[i] = C::read(coefficients.c_145[i]) * state[1 + i]
+            - (C::read(coefficients.c_147[i]) * s_7
+                + C::read(coefficients.c_16[i]) * s_45
+                - C::read(coefficients.c_146[i]) * s_7);
+    }
+    let mut s_47 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_47[i] = s_46[i]
+            - (C::read(coefficients.c_21[i]) * s_43
+                - C::read(coefficients.c_155[i]) * s_6
+                - C::read(coefficients.c_156[i]) * s_6);
+    }
+    let mut s_48 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_48[i] = s_47[i]
+            - (C::read(coefficients.c_157[i]) * s_5
+                + C::read(coefficients.c_23[i]) * s_20
+                - C::read(coefficients.c_158[i]) * s_5);
+    }
+    let s_49 = s_21 - C::read(coefficients.c_18) * s_22;
+    let s_50 = C::read(coefficients.c_159) * s_2 - C::read(coefficients.c_17) * s_49
+        - C::read(coefficients.c_19) * s_22;
+    let mut s_51 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_51[i] = C::read(coefficients.c_160[i]) * state[1 + i]
+            - C::read(coefficients.c_16[i]) * s_50 - C::read(coefficients.c_21[i]) * s_49
+            - C::read(coefficients.c_23[i]) * s_22;
+    }
+    let s_52 = s_23 - C::read(coefficients.c_18) * s_24;
+    let s_53 = C::read(coefficients.c_161) * s_2 - C::read(coefficients.c_17) * s_52
+        - C::read(coefficients.c_19) * s_24;
+    let mut s_54 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_54[i] = C::read(coefficients.c_162[i]) * state[1 + i]
+            - C::read(coefficients.c_16[i]) * s_53 - C::read(coefficients.c_21[i]) * s_52
+            - C::read(coefficients.c_23[i]) * s_24;
+    }
+    let s_55 = s_25
+        - (C::read(coefficients.c_166) * s_5 + C::read(coefficients.c_18) * s_27
+            - C::read(coefficients.c_167) * s_5);
+    let s_56 = C::read(coefficients.c_168) * s_5 + C::read(coefficients.c_169) * s_5
+        + C::read(coefficients.c_19) * s_27 - C::read(coefficients.c_170) * s_5;
+    let s_57 = C::read(coefficients.c_171) * s_2
+        - (C::read(coefficients.c_164) * s_6 + C::read(coefficients.c_165) * s_6
+            + C::read(coefficients.c_17) * s_55);
+    let s_58 = s_57 - s_56;
+    let mut s_59 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_59[i] = -(C::read(coefficients.c_16[i]) * s_58
+            - C::read(coefficients.c_163[i]) * s_7)
+            - (C::read(coefficients.c_172[i]) * s_6
+                + C::read(coefficients.c_21[i]) * s_55);
+    }
+    let mut s_60 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_60[i] = s_59[i]
+            - (C::read(coefficients.c_173[i]) * s_5
+                + C::read(coefficients.c_23[i]) * s_27
+                - C::read(coefficients.c_174[i]) * s_5);
+    }
+    let s_61 = s_28
+        - (C::read(coefficients.c_176) * s_5 + C::read(coefficients.c_18) * s_29
+            - C::read(coefficients.c_177) * s_5);
+    let s_62 = -(C::read(coefficients.c_17) * s_61 - C::read(coefficients.c_175) * s_6)
+        - (C::read(coefficients.c_178) * s_5 + C::read(coefficients.c_19) * s_29
+            - C::read(coefficients.c_179) * s_5);
+    let mut s_63 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_63[i] = C::read(coefficients.c_38[i]) * s_62
+            - (C::read(coefficients.c_21[i]) * s_61
+                - C::read(coefficients.c_180[i]) * s_6)
+            - (C::read(coefficients.c_181[i]) * s_5
+                + C::read(coefficients.c_23[i]) * s_29
+                - C::read(coefficients.c_182[i]) * s_5);
+    }
+    let s_64 = C::read(coefficients.c_19) * theta_dot
+        - C::read(coefficients.c_44) * theta_dot;
+    let s = weights[3];
+    let s_65 = s_5 * s;
+    let mut s_66 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_66[i] = (C::read(coefficients.c_116[i]) * s_5
+            - C::read(coefficients.c_16[i]) * s_30
+            - C::read(coefficients.c_115[i]) * s_5) * weights[4 + i];
+    }
+    let s_67 = sum_of_few([(); 2], |i| s_66[i]);
+    let s_68 = sum_of_few([(); 2], |i| s_36[i] * weights[4 + i]);
+    let s_69 = sum_of_few([(); 2], |i| s_42[i] * weights[4 + i]);
+    let s_70 = sum_of_few([(); 2], |i| s_48[i] * weights[4 + i]);
+    let s_71 = sum_of_few([(); 2], |i| s_51[i] * weights[4 + i]);
+    let s_72 = sum_of_few([(); 2], |i| s_54[i] * weights[4 + i]);
+    let s_73 = sum_of_few([(); 2], |i| s_60[i] * weights[4 + i]);
+    let s_74 = sum_of_few([(); 2], |i| s_63[i] * weights[4 + i]);
+    let mut s_75 = [T::number(0.0); 2];
+    for i in 0..2 {
+        s_75[i] = (C::read(coefficients.c_23[i]) * theta_dot
+            - C::read(coefficients.c_16[i]) * s_64
+            - C::read(coefficients.c_45[i]) * theta_dot) * weights[4 + i];
+    }
+    let s_76 = sum_of_few([(); 2], |i| s_75[i]);
+    let mut product = [T::number(0.0); PARAMETERS];
+    product[0] = s_67 - C::read(coefficients.c_47) * s_65;
+    product[1] = C::read(coefficients.c_7) * (s_13 * s)
+        - C::read(coefficients.c_63) * s_65 + s_68;
+    product[2] = C::read(coefficients.c_7) * (s_16 * s)
+        - C::read(coefficients.c_75) * s_65 + s_69;
+    product[3] = C::read(coefficients.c_7) * (s_20 * s)
+        - C::read(coefficients.c_87) * s_65 + s_70;
+    product[4] = C::read(coefficients.c_7) * (s_22 * s) + s_71;
+    product[5] = C::read(coefficients.c_7) * (s_24 * s) + s_72;
+    product[6] = C::read(coefficients.c_7) * (s_27 * s)
+        - C::read(coefficients.c_104) * s_65 + s_73;
+    product[7] = C::read(coefficients.c_7) * (s_29 * s)
+        - C::read(coefficients.c_111) * s_65 + s_74;
+    product[8] = s_76 - C::read(coefficients.c_7) * (theta_dot * s);
+    product
 }
 
 /// Structural nonzeros of [`rates_by_state`].
@@ -2414,214 +2693,214 @@ pub fn inlined_rates_by_parameters<T: Scalar, C: Coefficient<T>>(
     let s_6 = s_4 - C::read(coefficients.c_18) * s_5;
     let s_7 = C::read(coefficients.c_20) * s_2 - C::read(coefficients.c_17) * s_6
         - C::read(coefficients.c_19) * s_5;
-    let s_8 = sum_of_few([(); 2], |i| C::read(coefficients.c_49[i]) * state[1 + i]);
-    let s_9 = sum_of_few([(); 2], |i| C::read(coefficients.c_51[i]) * state[1 + i]);
-    let s_10 = sum_of_few([(); 2], |i| C::read(coefficients.c_56[i]) * state[1 + i]);
-    let s_11 = C::read(coefficients.c_55) * s_10
-        + (C::read(coefficients.c_58) * s_2 - C::read(coefficients.c_57) * s_2);
-    let s_12 = C::read(coefficients.c_50) * s_9 - C::read(coefficients.c_48) * s_8
-        - (C::read(coefficients.c_54) * s_2 - C::read(coefficients.c_52) * s_2
-            - C::read(coefficients.c_53) * s_2);
+    let s_8 = sum_of_few([(); 2], |i| C::read(coefficients.c_50[i]) * state[1 + i]);
+    let s_9 = sum_of_few([(); 2], |i| C::read(coefficients.c_52[i]) * state[1 + i]);
+    let s_10 = sum_of_few([(); 2], |i| C::read(coefficients.c_57[i]) * state[1 + i]);
+    let s_11 = C::read(coefficients.c_56) * s_10
+        + (C::read(coefficients.c_59) * s_2 - C::read(coefficients.c_58) * s_2);
+    let s_12 = C::read(coefficients.c_51) * s_9 - C::read(coefficients.c_49) * s_8
+        - (C::read(coefficients.c_55) * s_2 - C::read(coefficients.c_53) * s_2
+            - C::read(coefficients.c_54) * s_2);
     let s_13 = s_12
-        - (C::read(coefficients.c_11) * s_11 + C::read(coefficients.c_59) * s_4
-            - C::read(coefficients.c_60) * s_4);
-    let s_14 = C::read(coefficients.c_68) * s_10
-        + (C::read(coefficients.c_70) * s_2 - C::read(coefficients.c_69) * s_2);
-    let s_15 = C::read(coefficients.c_64) * s_9 - C::read(coefficients.c_63) * s_8
-        - (C::read(coefficients.c_67) * s_2 - C::read(coefficients.c_65) * s_2
-            - C::read(coefficients.c_66) * s_2);
+        - (C::read(coefficients.c_11) * s_11 + C::read(coefficients.c_60) * s_4
+            - C::read(coefficients.c_61) * s_4);
+    let s_14 = C::read(coefficients.c_69) * s_10
+        + (C::read(coefficients.c_71) * s_2 - C::read(coefficients.c_70) * s_2);
+    let s_15 = C::read(coefficients.c_65) * s_9 - C::read(coefficients.c_64) * s_8
+        - (C::read(coefficients.c_68) * s_2 - C::read(coefficients.c_66) * s_2
+            - C::read(coefficients.c_67) * s_2);
     let s_16 = s_15
-        - (C::read(coefficients.c_11) * s_14 + C::read(coefficients.c_71) * s_4
-            - C::read(coefficients.c_72) * s_4);
-    let s_17 = sum_of_few([(); 2], |i| C::read(coefficients.c_77[i]) * state[1 + i]);
-    let s_18 = C::read(coefficients.c_81) * s_10
-        + (C::read(coefficients.c_83) * s_2 - C::read(coefficients.c_82) * s_2);
-    let s_19 = C::read(coefficients.c_76) * s_17 - C::read(coefficients.c_75) * s_8
-        - (C::read(coefficients.c_79) * s_2 + C::read(coefficients.c_80) * s_2
-            - C::read(coefficients.c_78) * s_2);
+        - (C::read(coefficients.c_11) * s_14 + C::read(coefficients.c_72) * s_4
+            - C::read(coefficients.c_73) * s_4);
+    let s_17 = sum_of_few([(); 2], |i| C::read(coefficients.c_78[i]) * state[1 + i]);
+    let s_18 = C::read(coefficients.c_82) * s_10
+        + (C::read(coefficients.c_84) * s_2 - C::read(coefficients.c_83) * s_2);
+    let s_19 = C::read(coefficients.c_77) * s_17 - C::read(coefficients.c_76) * s_8
+        - (C::read(coefficients.c_80) * s_2 + C::read(coefficients.c_81) * s_2
+            - C::read(coefficients.c_79) * s_2);
     let s_20 = s_19
-        - (C::read(coefficients.c_11) * s_18 + C::read(coefficients.c_84) * s_4
-            - C::read(coefficients.c_85) * s_4);
-    let s_21 = C::read(coefficients.c_90) * s_2 - C::read(coefficients.c_89) * s_10;
-    let s_22 = C::read(coefficients.c_87) * s_8 - C::read(coefficients.c_88) * s_2
+        - (C::read(coefficients.c_11) * s_18 + C::read(coefficients.c_85) * s_4
+            - C::read(coefficients.c_86) * s_4);
+    let s_21 = C::read(coefficients.c_91) * s_2 - C::read(coefficients.c_90) * s_10;
+    let s_22 = C::read(coefficients.c_88) * s_8 - C::read(coefficients.c_89) * s_2
         - C::read(coefficients.c_11) * s_21;
-    let s_23 = C::read(coefficients.c_94) * s_2 - C::read(coefficients.c_93) * s_10;
-    let s_24 = C::read(coefficients.c_91) * s_8 - C::read(coefficients.c_92) * s_2
+    let s_23 = C::read(coefficients.c_95) * s_2 - C::read(coefficients.c_94) * s_10;
+    let s_24 = C::read(coefficients.c_92) * s_8 - C::read(coefficients.c_93) * s_2
         - C::read(coefficients.c_11) * s_23;
-    let s_25 = C::read(coefficients.c_99) * s_2 - C::read(coefficients.c_100) * s_2;
-    let s_26 = C::read(coefficients.c_95) * s_2
-        - (C::read(coefficients.c_96) * s_2 + C::read(coefficients.c_97) * s_2
-            - C::read(coefficients.c_98) * s_2);
+    let s_25 = C::read(coefficients.c_100) * s_2 - C::read(coefficients.c_101) * s_2;
+    let s_26 = C::read(coefficients.c_96) * s_2
+        - (C::read(coefficients.c_97) * s_2 + C::read(coefficients.c_98) * s_2
+            - C::read(coefficients.c_99) * s_2);
     let s_27 = s_26
-        - (C::read(coefficients.c_11) * s_25 + C::read(coefficients.c_101) * s_4
-            + C::read(coefficients.c_102) * s_4);
-    let s_28 = C::read(coefficients.c_107) * s_2 - C::read(coefficients.c_106) * s_10;
-    let s_29 = C::read(coefficients.c_104) * s_10 - C::read(coefficients.c_105) * s_2
-        - (C::read(coefficients.c_11) * s_28 + C::read(coefficients.c_108) * s_4
-            - C::read(coefficients.c_109) * s_4);
-    let s_30 = C::read(coefficients.c_113) * s_5 - C::read(coefficients.c_112) * s_5;
+        - (C::read(coefficients.c_11) * s_25 + C::read(coefficients.c_102) * s_4
+            + C::read(coefficients.c_103) * s_4);
+    let s_28 = C::read(coefficients.c_108) * s_2 - C::read(coefficients.c_107) * s_10;
+    let s_29 = C::read(coefficients.c_105) * s_10 - C::read(coefficients.c_106) * s_2
+        - (C::read(coefficients.c_11) * s_28 + C::read(coefficients.c_109) * s_4
+            - C::read(coefficients.c_110) * s_4);
+    let s_30 = C::read(coefficients.c_114) * s_5 - C::read(coefficients.c_113) * s_5;
     let s_31 = s_11
-        - (C::read(coefficients.c_122) * s_5 + C::read(coefficients.c_18) * s_13
-            - C::read(coefficients.c_123) * s_5);
-    let s_32 = C::read(coefficients.c_119) * s_2
-        - (C::read(coefficients.c_17) * s_31 - C::read(coefficients.c_120) * s_6
-            - C::read(coefficients.c_121) * s_6);
+        - (C::read(coefficients.c_123) * s_5 + C::read(coefficients.c_18) * s_13
+            - C::read(coefficients.c_124) * s_5);
+    let s_32 = C::read(coefficients.c_120) * s_2
+        - (C::read(coefficients.c_17) * s_31 - C::read(coefficients.c_121) * s_6
+            - C::read(coefficients.c_122) * s_6);
     let s_33 = s_32
-        - (C::read(coefficients.c_19) * s_13 - C::read(coefficients.c_124) * s_5
-            - C::read(coefficients.c_125) * s_5);
+        - (C::read(coefficients.c_19) * s_13 - C::read(coefficients.c_125) * s_5
+            - C::read(coefficients.c_126) * s_5);
     let mut s_34 = [T::number(0.0); 2];
     for i in 0..2 {
-        s_34[i] = C::read(coefficients.c_116[i]) * state[1 + i]
-            - (C::read(coefficients.c_118[i]) * s_7
+        s_34[i] = C::read(coefficients.c_117[i]) * state[1 + i]
+            - (C::read(coefficients.c_119[i]) * s_7
                 + C::read(coefficients.c_16[i]) * s_33
-                - C::read(coefficients.c_117[i]) * s_7);
+                - C::read(coefficients.c_118[i]) * s_7);
     }
     let mut s_35 = [T::number(0.0); 2];
     for i in 0..2 {
         s_35[i] = s_34[i]
             - (C::read(coefficients.c_21[i]) * s_31
-                - C::read(coefficients.c_126[i]) * s_6
-                - C::read(coefficients.c_127[i]) * s_6);
+                - C::read(coefficients.c_127[i]) * s_6
+                - C::read(coefficients.c_128[i]) * s_6);
     }
     let mut s_36 = [T::number(0.0); 2];
     for i in 0..2 {
         s_36[i] = s_35[i]
             - (C::read(coefficients.c_23[i]) * s_13
-                - C::read(coefficients.c_128[i]) * s_5
-                - C::read(coefficients.c_129[i]) * s_5);
+                - C::read(coefficients.c_129[i]) * s_5
+                - C::read(coefficients.c_130[i]) * s_5);
     }
     let s_37 = s_14
-        - (C::read(coefficients.c_136) * s_5 + C::read(coefficients.c_18) * s_16
-            - C::read(coefficients.c_137) * s_5);
-    let s_38 = C::read(coefficients.c_133) * s_2
-        - (C::read(coefficients.c_17) * s_37 - C::read(coefficients.c_134) * s_6
-            - C::read(coefficients.c_135) * s_6);
+        - (C::read(coefficients.c_137) * s_5 + C::read(coefficients.c_18) * s_16
+            - C::read(coefficients.c_138) * s_5);
+    let s_38 = C::read(coefficients.c_134) * s_2
+        - (C::read(coefficients.c_17) * s_37 - C::read(coefficients.c_135) * s_6
+            - C::read(coefficients.c_136) * s_6);
     let s_39 = s_38
-        - (C::read(coefficients.c_19) * s_16 - C::read(coefficients.c_138) * s_5
-            - C::read(coefficients.c_139) * s_5);
+        - (C::read(coefficients.c_19) * s_16 - C::read(coefficients.c_139) * s_5
+            - C::read(coefficients.c_140) * s_5);
     let mut s_40 = [T::number(0.0); 2];
     for i in 0..2 {
-        s_40[i] = C::read(coefficients.c_130[i]) * state[1 + i]
-            - (C::read(coefficients.c_132[i]) * s_7
+        s_40[i] = C::read(coefficients.c_131[i]) * state[1 + i]
+            - (C::read(coefficients.c_133[i]) * s_7
                 + C::read(coefficients.c_16[i]) * s_39
-                - C::read(coefficients.c_131[i]) * s_7);
+                - C::read(coefficients.c_132[i]) * s_7);
     }
     let mut s_41 = [T::number(0.0); 2];
     for i in 0..2 {
         s_41[i] = s_40[i]
             - (C::read(coefficients.c_21[i]) * s_37
-                - C::read(coefficients.c_140[i]) * s_6
-                - C::read(coefficients.c_141[i]) * s_6);
+                - C::read(coefficients.c_141[i]) * s_6
+                - C::read(coefficients.c_142[i]) * s_6);
     }
     let mut s_42 = [T::number(0.0); 2];
     for i in 0..2 {
         s_42[i] = s_41[i]
             - (C::read(coefficients.c_23[i]) * s_16
-                - C::read(coefficients.c_142[i]) * s_5
-                - C::read(coefficients.c_143[i]) * s_5);
+                - C::read(coefficients.c_143[i]) * s_5
+                - C::read(coefficients.c_144[i]) * s_5);
     }
     let s_43 = s_18
-        - (C::read(coefficients.c_150) * s_5 + C::read(coefficients.c_18) * s_20
-            - C::read(coefficients.c_151) * s_5);
-    let s_44 = C::read(coefficients.c_147) * s_2
-        - (C::read(coefficients.c_17) * s_43 - C::read(coefficients.c_148) * s_6
-            - C::read(coefficients.c_149) * s_6);
+        - (C::read(coefficients.c_151) * s_5 + C::read(coefficients.c_18) * s_20
+            - C::read(coefficients.c_152) * s_5);
+    let s_44 = C::read(coefficients.c_148) * s_2
+        - (C::read(coefficients.c_17) * s_43 - C::read(coefficients.c_149) * s_6
+            - C::read(coefficients.c_150) * s_6);
     let s_45 = s_44
-        - (C::read(coefficients.c_152) * s_5 + C::read(coefficients.c_19) * s_20
-            - C::read(coefficients.c_153) * s_5);
+        - (C::read(coefficients.c_153) * s_5 + C::read(coefficients.c_19) * s_20
+            - C::read(coefficients.c_154) * s_5);
     let mut s_46 = [T::number(0.0); 2];
     for i in 0..2 {
-        s_46[i] = C::read(coefficients.c_144[i]) * state[1 + i]
-            - (C::read(coefficients.c_146[i]) * s_7
+        s_46[i] = C::read(coefficients.c_145[i]) * state[1 + i]
+            - (C::read(coefficients.c_147[i]) * s_7
                 + C::read(coefficients.c_16[i]) * s_45
-                - C::read(coefficients.c_145[i]) * s_7);
+                - C::read(coefficients.c_146[i]) * s_7);
     }
     let mut s_47 = [T::number(0.0); 2];
     for i in 0..2 {
         s_47[i] = s_46[i]
             - (C::read(coefficients.c_21[i]) * s_43
-                - C::read(coefficients.c_154[i]) * s_6
-                - C::read(coefficients.c_155[i]) * s_6);
+                - C::read(coefficients.c_155[i]) * s_6
+                - C::read(coefficients.c_156[i]) * s_6);
     }
     let mut s_48 = [T::number(0.0); 2];
     for i in 0..2 {
         s_48[i] = s_47[i]
-            - (C::read(coefficients.c_156[i]) * s_5
+            - (C::read(coefficients.c_157[i]) * s_5
                 + C::read(coefficients.c_23[i]) * s_20
-                - C::read(coefficients.c_157[i]) * s_5);
+                - C::read(coefficients.c_158[i]) * s_5);
     }
     let s_49 = s_21 - C::read(coefficients.c_18) * s_22;
-    let s_50 = C::read(coefficients.c_158) * s_2 - C::read(coefficients.c_17) * s_49
+    let s_50 = C::read(coefficients.c_159) * s_2 - C::read(coefficients.c_17) * s_49
         - C::read(coefficients.c_19) * s_22;
     let mut s_51 = [T::number(0.0); 2];
     for i in 0..2 {
-        s_51[i] = C::read(coefficients.c_159[i]) * state[1 + i]
+        s_51[i] = C::read(coefficients.c_160[i]) * state[1 + i]
             - C::read(coefficients.c_16[i]) * s_50 - C::read(coefficients.c_21[i]) * s_49
             - C::read(coefficients.c_23[i]) * s_22;
     }
     let s_52 = s_23 - C::read(coefficients.c_18) * s_24;
-    let s_53 = C::read(coefficients.c_160) * s_2 - C::read(coefficients.c_17) * s_52
+    let s_53 = C::read(coefficients.c_161) * s_2 - C::read(coefficients.c_17) * s_52
         - C::read(coefficients.c_19) * s_24;
     let mut s_54 = [T::number(0.0); 2];
     for i in 0..2 {
-        s_54[i] = C::read(coefficients.c_161[i]) * state[1 + i]
+        s_54[i] = C::read(coefficients.c_162[i]) * state[1 + i]
             - C::read(coefficients.c_16[i]) * s_53 - C::read(coefficients.c_21[i]) * s_52
             - C::read(coefficients.c_23[i]) * s_24;
     }
     let s_55 = s_25
-        - (C::read(coefficients.c_165) * s_5 + C::read(coefficients.c_18) * s_27
-            - C::read(coefficients.c_166) * s_5);
-    let s_56 = C::read(coefficients.c_167) * s_5 + C::read(coefficients.c_168) * s_5
-        + C::read(coefficients.c_19) * s_27 - C::read(coefficients.c_169) * s_5;
-    let s_57 = C::read(coefficients.c_170) * s_2
-        - (C::read(coefficients.c_163) * s_6 + C::read(coefficients.c_164) * s_6
+        - (C::read(coefficients.c_166) * s_5 + C::read(coefficients.c_18) * s_27
+            - C::read(coefficients.c_167) * s_5);
+    let s_56 = C::read(coefficients.c_168) * s_5 + C::read(coefficients.c_169) * s_5
+        + C::read(coefficients.c_19) * s_27 - C::read(coefficients.c_170) * s_5;
+    let s_57 = C::read(coefficients.c_171) * s_2
+        - (C::read(coefficients.c_164) * s_6 + C::read(coefficients.c_165) * s_6
             + C::read(coefficients.c_17) * s_55);
     let s_58 = s_57 - s_56;
     let mut s_59 = [T::number(0.0); 2];
     for i in 0..2 {
         s_59[i] = -(C::read(coefficients.c_16[i]) * s_58
-            - C::read(coefficients.c_162[i]) * s_7)
-            - (C::read(coefficients.c_171[i]) * s_6
+            - C::read(coefficients.c_163[i]) * s_7)
+            - (C::read(coefficients.c_172[i]) * s_6
                 + C::read(coefficients.c_21[i]) * s_55);
     }
     let mut s_60 = [T::number(0.0); 2];
     for i in 0..2 {
         s_60[i] = s_59[i]
-            - (C::read(coefficients.c_172[i]) * s_5
+            - (C::read(coefficients.c_173[i]) * s_5
                 + C::read(coefficients.c_23[i]) * s_27
-                - C::read(coefficients.c_173[i]) * s_5);
+                - C::read(coefficients.c_174[i]) * s_5);
     }
     let s_61 = s_28
-        - (C::read(coefficients.c_175) * s_5 + C::read(coefficients.c_18) * s_29
-            - C::read(coefficients.c_176) * s_5);
-    let s_62 = -(C::read(coefficients.c_17) * s_61 - C::read(coefficients.c_174) * s_6)
-        - (C::read(coefficients.c_177) * s_5 + C::read(coefficients.c_19) * s_29
-            - C::read(coefficients.c_178) * s_5);
+        - (C::read(coefficients.c_176) * s_5 + C::read(coefficients.c_18) * s_29
+            - C::read(coefficients.c_177) * s_5);
+    let s_62 = -(C::read(coefficients.c_17) * s_61 - C::read(coefficients.c_175) * s_6)
+        - (C::read(coefficients.c_178) * s_5 + C::read(coefficients.c_19) * s_29
+            - C::read(coefficients.c_179) * s_5);
     let mut s_63 = [T::number(0.0); 2];
     for i in 0..2 {
         s_63[i] = C::read(coefficients.c_38[i]) * s_62
             - (C::read(coefficients.c_21[i]) * s_61
-                - C::read(coefficients.c_179[i]) * s_6)
-            - (C::read(coefficients.c_180[i]) * s_5
+                - C::read(coefficients.c_180[i]) * s_6)
+            - (C::read(coefficients.c_181[i]) * s_5
                 + C::read(coefficients.c_23[i]) * s_29
-                - C::read(coefficients.c_181[i]) * s_5);
+                - C::read(coefficients.c_182[i]) * s_5);
     }
     let s_64 = C::read(coefficients.c_19) * theta_dot
         - C::read(coefficients.c_44) * theta_dot;
     let mut values = [T::number(0.0); RATES_BY_PARAMETERS_NONZEROS];
-    values[0] = C::read(coefficients.c_47) * s_5;
-    values[1] = C::read(coefficients.c_7) * s_13 - C::read(coefficients.c_62) * s_5;
-    values[2] = C::read(coefficients.c_7) * s_16 - C::read(coefficients.c_74) * s_5;
-    values[3] = C::read(coefficients.c_7) * s_20 - C::read(coefficients.c_86) * s_5;
+    values[0] = C::read(coefficients.c_48) * s_5;
+    values[1] = C::read(coefficients.c_7) * s_13 - C::read(coefficients.c_63) * s_5;
+    values[2] = C::read(coefficients.c_7) * s_16 - C::read(coefficients.c_75) * s_5;
+    values[3] = C::read(coefficients.c_7) * s_20 - C::read(coefficients.c_87) * s_5;
     values[4] = C::read(coefficients.c_7) * s_22;
     values[5] = C::read(coefficients.c_7) * s_24;
-    values[6] = C::read(coefficients.c_7) * s_27 - C::read(coefficients.c_103) * s_5;
-    values[7] = C::read(coefficients.c_7) * s_29 - C::read(coefficients.c_110) * s_5;
-    values[8] = C::read(coefficients.c_111) * theta_dot;
+    values[6] = C::read(coefficients.c_7) * s_27 - C::read(coefficients.c_104) * s_5;
+    values[7] = C::read(coefficients.c_7) * s_29 - C::read(coefficients.c_111) * s_5;
+    values[8] = C::read(coefficients.c_112) * theta_dot;
     for i in 0..2 {
-        values[9 + 9 * i] = C::read(coefficients.c_115[i]) * s_5
+        values[9 + 9 * i] = C::read(coefficients.c_116[i]) * s_5
             - C::read(coefficients.c_16[i]) * s_30
-            - C::read(coefficients.c_114[i]) * s_5;
+            - C::read(coefficients.c_115[i]) * s_5;
     }
     for i in 0..2 {
         values[10 + 9 * i] = s_36[i];
@@ -2698,13 +2977,13 @@ pub fn inlined_observables_by_state<T: Scalar, C: Coefficient<T>>(
     let s_6 = theta_dot + C::read(coefficients.c_28) * s_5;
     let s_7 = C::read(coefficients.J_h) * theta_dot
         + T::number(0.5)
-            * (C::read(coefficients.c_182) * theta_dot
+            * (C::read(coefficients.c_183) * theta_dot
                 + C::read(coefficients.c_30) * s_2);
     let mut s_8 = [T::number(0.0); 2];
     for i in 0..2 {
         s_8[i] = T::number(0.5)
-            * (C::read(coefficients.c_183[i]) * theta_dot
-                + C::read(coefficients.c_184[i]) * state[4 + i])
+            * (C::read(coefficients.c_184[i]) * theta_dot
+                + C::read(coefficients.c_185[i]) * state[4 + i])
             + (C::read(coefficients.c_25[i]) * s_4 + C::read(coefficients.c_5[i]) * s_6);
     }
     let mut values = [T::number(0.0); OBSERVABLES_BY_STATE_NONZEROS];
@@ -2817,26 +3096,26 @@ pub fn inlined_observables_by_parameters<T: Scalar, C: Coefficient<T>>(
         |i| T::number(INTEGRAL_PHI_D2_SQUARED[i]) * (state[1 + i] * state[1 + i]),
     );
     let s_11 = T::number(0.5)
-        * (C::read(coefficients.c_61) * s_2 + C::read(coefficients.c_186) * s_4
-            + C::read(coefficients.c_187) * s_5);
+        * (C::read(coefficients.c_62) * s_2 + C::read(coefficients.c_187) * s_4
+            + C::read(coefficients.c_188) * s_5);
     let s_12 = T::number(0.5)
-        * (C::read(coefficients.c_73) * s_2 + C::read(coefficients.c_188) * s_4
-            + C::read(coefficients.c_189) * s_5);
+        * (C::read(coefficients.c_74) * s_2 + C::read(coefficients.c_189) * s_4
+            + C::read(coefficients.c_190) * s_5);
     let s_13 = T::number(0.5)
-        * (C::read(coefficients.c_3) * s_2 + C::read(coefficients.c_190) * s_4
+        * (C::read(coefficients.c_3) * s_2 + C::read(coefficients.c_191) * s_4
             + C::read(coefficients.c_2) * s_5);
     let s_14 = s_13
         + (C::read(coefficients.M_t) * (theta_dot * s_7)
-            - C::read(coefficients.c_191) * (s_8 * s_9))
-        - C::read(coefficients.c_192) * s_10;
+            - C::read(coefficients.c_192) * (s_8 * s_9))
+        - C::read(coefficients.c_193) * s_10;
     let mut values = [T::number(0.0); OBSERVABLES_BY_PARAMETERS_NONZEROS];
-    values[0] = C::read(coefficients.c_185) * s_1;
+    values[0] = C::read(coefficients.c_186) * s_1;
     values[1] = T::number(0.5) * s_2;
     values[2] = s_11;
     values[3] = s_12;
     values[4] = s_14;
-    values[5] = C::read(coefficients.c_193) * s_10;
-    values[6] = C::read(coefficients.c_194) * s_10;
+    values[5] = C::read(coefficients.c_194) * s_10;
+    values[6] = C::read(coefficients.c_195) * s_10;
     values[7] = T::number(0.5) * (s_7 * s_7);
     values[8] = T::number(0.5) * (s_9 * s_9);
     values[9] = -s_2;

@@ -228,6 +228,10 @@ macro_rules! checks {
                     let expected: [Tracked; INPUTS] =
                         std::array::from_fn(|i| weighted(&p.along(&still, &unit(i), &fixed).0));
                     agree("weights by inputs", &printed(&by_inputs, &model::INPUT_NAMES), &expected)?;
+                    let by_parameters = model::vector_jacobian_product_by_parameters(t, x, u, c, &weights);
+                    let expected: [Tracked; PARAMETERS] =
+                        std::array::from_fn(|i| weighted(&p.along(&still, &held, &unit(i)).0));
+                    agree("weights by parameters", &by_parameters, &expected)?;
                 }
 
                 #[test]
@@ -308,6 +312,7 @@ macro_rules! checks {
                         model::jacobian_vector_product(t, x, u, c, &dx, &du.into()).to_vec(),
                         by_state.to_vec(),
                         printed(&by_inputs, &model::INPUT_NAMES).to_vec(),
+                        model::vector_jacobian_product_by_parameters(t, x, u, c, &weights).to_vec(),
                         model::rates_by_state(t, x, u, c).to_vec(),
                         model::rates_by_inputs(t, x, u, c).to_vec(),
                         model::rates_by_parameters(t, x, u, c).to_vec(),
@@ -320,11 +325,12 @@ macro_rules! checks {
                         evaluator.prepare(&p.parameters);
                         let point = EvaluatorPoint { t, state: x, inputs: &p.inputs };
                         let mut found = expected.clone().map(|numbers| vec![f64::NAN; numbers.len()]);
-                        let [inverse, guards, forward, state, inputs, jacobians @ ..] = &mut found;
+                        let [inverse, guards, forward, state, inputs, by_parameters, jacobians @ ..] = &mut found;
                         prop_assert!(evaluator.inverse_dynamics(point, &a, inverse));
                         prop_assert!(evaluator.guard_rates(point, guards));
                         prop_assert!(evaluator.jacobian_vector_product(point, (&dx, &du), forward));
                         prop_assert!(evaluator.vector_jacobian_product(point, &weights, (state, inputs)));
+                        prop_assert!(evaluator.vector_jacobian_product_by_parameters(point, &weights, by_parameters));
                         for (place, nonzeros) in jacobians.iter_mut().enumerate() {
                             prop_assert!(evaluator.jacobian(place, point, nonzeros));
                         }
