@@ -10,7 +10,7 @@ use crate::estimate::{self, Estimate, StartPrior, stacked};
 use crate::plant::Plant;
 use crate::shooting::Shooting;
 use crate::starts;
-use crate::unknowns::{Unknown, What};
+use crate::unknowns::Unknown;
 use crate::windows::Windows;
 
 /// The parts of a window over which initial states are fitted, one after the other.
@@ -31,9 +31,6 @@ const SKETCHING_STEPS: usize = 3;
 
 /// What leaves more than this many noises is not worth being followed anew.
 const FAR: f64 = 8.0;
-
-/// A fit that leaves so many noises has nothing to look for.
-const NOISE_ALONE: f64 = 1.2;
 
 /// Windows are followed anew so often at most, while that lowers the cost by this part.
 const REFRESHES: usize = 2;
@@ -270,35 +267,28 @@ impl<'d> Setting<'d> {
     ) -> Result<Sketch, String> {
         let plant = self.plant(&text, Some(&linear))?;
         let ranges = self.ranges(&plant);
-        let mut theta = theta.to_vec();
-        let places = physical(&unknowns);
-        let own: Vec<Unknown> = places.iter().map(|p| unknowns[*p].clone()).collect();
-        let begin: Vec<f64> = places.iter().map(|place| theta[*place]).collect();
-        let shooting = self.shooting(&plant, &self.train, &own, &ranges);
-        let found = if self.fits_starts() {
+        let shooting = self.shooting(&plant, &self.train, &unknowns, &ranges);
+        let (_, found) = if self.fits_starts() {
             let shooting = Shooting {
                 part: FIRST_PART.0,
                 ..shooting
             };
             let follow = self.follow(&shooting, &ranges, FIRST_PART.1);
-            estimate::approach(&shooting, &begin, &follow, STEPS.0)
+            estimate::approach(&shooting, theta, &follow, STEPS.0)
         } else {
-            let (prior, starts) = self.starts(&shooting, &begin, &ranges, &HORIZONS, None)?;
-            let found = estimate::estimate(&shooting, &prior, &begin, &starts, SKETCHING_STEPS);
+            let (prior, starts) = self.starts(&shooting, theta, &ranges, &HORIZONS, None)?;
+            let found = estimate::estimate(&shooting, &prior, theta, &starts, SKETCHING_STEPS);
             (prior, found)
         };
-        for (place, value) in places.iter().zip(&found.1.theta) {
-            theta[*place] = *value;
-        }
         Ok(Sketch {
-            left: found.1.cost,
-            starts: found.1.starts,
+            left: found.cost,
+            starts: found.starts,
+            theta: found.theta,
             text,
             linear,
             plant,
             unknowns,
             ranges,
-            theta,
         })
     }
 
@@ -327,44 +317,30 @@ impl<'d> Setting<'d> {
             plant,
             unknowns,
             ranges,
-            mut theta,
+            theta,
             starts,
             ..
         } = sketch;
-        let places = physical(&unknowns);
-        let own: Vec<Unknown> = places.iter().map(|p| unknowns[*p].clone()).collect();
-        let begin: Vec<f64> = places.iter().map(|place| theta[*place]).collect();
-        let shooting = self.shooting(&plant, &self.train, &own, &ranges);
+        let mut all = self.shooting(&plant, &self.train, &unknowns, &ranges);
         let (mut prior, near) = if self.fits_starts() {
-            let follow = self.follow(&shooting, &ranges, HORIZONS.len());
-            estimate::approach(&shooting, &begin, &follow, STEPS.0)
+            let follow = self.follow(&all, &ranges, HORIZONS.len());
+            estimate::approach(&all, &theta, &follow, STEPS.0)
         } else {
-            (
-                StartPrior::default(),
-                estimate::evaluated(&shooting, &StartPrior::default(), begin, starts),
-            )
+            let prior = StartPrior::default();
+            let near = estimate::evaluated(&all, &prior, theta, starts);
+            (prior, near)
         };
         let numbers: usize = self.train.list.iter().map(|w| w.measured.len()).sum();
         let is_far = near.cost > FAR * FAR * numbers as f64;
-        let near = match is_far {
+        let free = match is_far {
             true => near,
-            false => estimate::estimate(&shooting, &prior, &near.theta, &near.starts, STEPS.1),
+            false => estimate::estimate(&all, &prior, &near.theta, &near.starts, STEPS.1),
         };
-        for (place, value) in places.iter().zip(&near.theta) {
-            theta[*place] = *value;
-        }
-        let mut all = self.shooting(&plant, &self.train, &unknowns, &ranges);
-        let mut rest = self.rest(&all, Estimate { theta, ..near });
-        // First as if nothing were missing: a bias may be all that is left. Where more is, the
-        // records are believed the less against the priors.
-        let Estimate { theta, starts, .. } = &rest.estimate;
-        let free = estimate::estimate(&all, &prior, theta, starts, STEPS.1);
-        let free = self.rest(&all, free);
-        if free.pooled < NOISE_ALONE {
-            rest = free;
-        }
+        let mut rest = self.rest(&all, free);
+        // What is left where records are believed as if noise were all that they hold says how
+        // far they may be believed against the priors.
+        all.prior_weight = (rest.pooled * rest.pooled).max(1.0) * rest.correlation;
         for _ in 0..REFRESHES {
-            all.prior_weight = (rest.pooled * rest.pooled).max(1.0) * rest.correlation;
             let Estimate { theta, starts, .. } = &rest.estimate;
             let found = estimate::estimate(&all, &prior, theta, starts, STEPS.1);
             if is_far {
@@ -526,15 +502,6 @@ impl<'d> Setting<'d> {
             estimate,
         }
     }
-}
-
-/// The places of the unknowns that are the model's, not a sensor's.
-fn physical(unknowns: &[Unknown]) -> Vec<usize> {
-    let of_model = |place: &usize| {
-        let what = &unknowns[*place].what;
-        matches!(what, What::Parameter(_) | What::Inverse(_))
-    };
-    (0..unknowns.len()).filter(of_model).collect()
 }
 
 fn not_shown(state: String) -> String {

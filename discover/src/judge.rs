@@ -73,11 +73,8 @@ pub fn judge(before: &Fit, after: &Fit, first: usize, shapes: &[bool]) -> Result
 /// What speaks for the unknowns from `first` on.
 pub fn evidence(before: &Fit, after: &Fit, first: usize, shapes: &[bool]) -> Evidence {
     let (old, new) = (&before.test, &after.test);
-    let falls: Vec<f64> = old
-        .blocks
-        .iter()
-        .zip(&new.blocks)
-        .map(|(a, b)| a - b)
+    let falls: Vec<f64> = (old.blocks.iter().zip(&new.blocks))
+        .map(|(a, b)| a.sqrt() - b.sqrt())
         .collect();
     let count = falls.len() as f64;
     let mean = falls.iter().sum::<f64>() / count;
