@@ -5,13 +5,17 @@ use std::collections::BTreeMap;
 
 use model_spec::edit::{
     self, Edit, EditError, NewCoordinate, NewForce, NewParameter, NewTerm, NewValue, Section,
-    Substitution,
+    SetParameter, Substitution,
 };
-use model_spec::model::{Model, ParameterValue};
+use model_spec::model::{Model, Parameter, ParameterValue};
 use model_spec::source::Source;
 
 use crate::catalogue::{Change, Effect, SiteKind};
 use crate::sites::Site;
+use crate::unknowns::{What, sign_bounds};
+
+/// The effect of a parameter that is off.
+pub const PARAMETER_SHIFT: &str = "parameter_shift";
 
 /// Shaft orders at which effects that repeat with an angle are tried, beside numbers of teeth.
 const ORDERS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, 24];
@@ -34,6 +38,8 @@ pub struct Candidate {
     changes: Vec<Edit>,
     /// The line that says most of the change.
     pub term: String,
+    /// The unknown of the null model that gives up its prior, if that is the effect.
+    pub released: Option<What>,
 }
 
 /// A parameter of a candidate.
@@ -49,7 +55,49 @@ pub struct CandidateParameter {
     pub inverse: bool,
     /// The size it must have for the effect to be itself, if it does not scale the effect.
     pub shape: Option<f64>,
+    /// What a parameter that the model has already is shifted from.
+    pub shifts: Option<Shifts>,
     doc: String,
+}
+
+/// What is known of a parameter of the model that may be off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shifts {
+    /// Its value in the specification, SI.
+    pub from: f64,
+    /// Its smallest and largest admissible value, SI.
+    pub bounds: (f64, f64),
+    /// The number of its units that one SI unit is.
+    per_si: f64,
+}
+
+impl CandidateParameter {
+    /// Its value where the effect is absent; 0 for what the model does not have yet.
+    pub fn base(&self) -> f64 {
+        self.shifts.as_ref().map_or(0.0, |shifts| shifts.from)
+    }
+
+    /// The number of its units that one SI unit is.
+    pub fn per_si(&self) -> f64 {
+        self.shifts.as_ref().map_or(1.0, |shifts| shifts.per_si)
+    }
+
+    fn edit(&self, value: f64, source: &str) -> Edit {
+        match &self.shifts {
+            Some(_) => Edit::SetParameter(SetParameter {
+                name: self.name.clone(),
+                value: value * self.per_si(),
+                source: source.to_owned(),
+            }),
+            None => Edit::AddParameter(NewParameter {
+                name: self.name.clone(),
+                value: NewValue::Number(value),
+                unit: self.unit.clone(),
+                doc: self.doc.clone(),
+                source: source.to_owned(),
+            }),
+        }
+    }
 }
 
 impl Candidate {
@@ -75,17 +123,8 @@ impl Candidate {
         values: &[f64],
         source: &str,
     ) -> Result<String, EditError> {
-        let mut edits: Vec<Edit> = (self.parameters.iter().zip(values))
-            .map(|(parameter, value)| {
-                Edit::AddParameter(NewParameter {
-                    name: parameter.name.clone(),
-                    value: NewValue::Number(*value),
-                    unit: parameter.unit.clone(),
-                    doc: parameter.doc.clone(),
-                    source: source.to_owned(),
-                })
-            })
-            .collect();
+        let pairs = self.parameters.iter().zip(values);
+        let mut edits: Vec<Edit> = pairs.map(|(parameter, value)| parameter.edit(*value, source)).collect();
         edits.extend(self.changes.iter().cloned());
         edit::apply(&Source::new(name, text), &edits)
     }
@@ -174,6 +213,7 @@ fn candidate(
             positive: parameter.sign == "+",
             inverse: parameter.inverse,
             shape: (parameter.scale == "rate").then_some(parameter.share * rate),
+            shifts: None,
             doc: parameter.doc.clone(),
         });
     }
@@ -201,6 +241,59 @@ fn candidate(
         experiment: effect.experiment.clone(),
         changes,
         term,
+        released: None,
+    })
+}
+
+/// An unknown of the null model that gives up its prior.
+pub fn released(effect: &str, on: &str, says: &str, experiment: &str, what: &What) -> Candidate {
+    Candidate {
+        effect: effect.to_owned(),
+        on: on.to_owned(),
+        order: None,
+        parameters: Vec::new(),
+        says: says.to_owned(),
+        experiment: experiment.to_owned(),
+        changes: Vec::new(),
+        term: String::new(),
+        released: Some(what.clone()),
+    }
+}
+
+/// A parameter of the model that may be off though nobody said so; none where it is 0 or no
+/// number.
+pub fn shift(parameter: &Parameter) -> Option<Candidate> {
+    let ParameterValue::Number(from) = parameter.value else {
+        return None;
+    };
+    let is_count = parameter.unit.text == "1" && from.fract() == 0.0;
+    if from == 0.0 || is_count {
+        return None;
+    }
+    let shifted = CandidateParameter {
+        name: parameter.name.clone(),
+        unit: parameter.unit.text.clone(),
+        positive: false,
+        inverse: false,
+        shape: None,
+        shifts: Some(Shifts {
+            from,
+            bounds: sign_bounds(parameter, from),
+            per_si: parameter.unit.from_si(1.0),
+        }),
+        doc: String::new(),
+    };
+    Some(Candidate {
+        parameters: vec![shifted],
+        released: None,
+        term: format!("{} shifted", parameter.name),
+        ..released(
+            PARAMETER_SHIFT,
+            &parameter.name,
+            "a parameter is not what the specification says",
+            "measure it by itself",
+            &What::Parameter(parameter.name.clone()),
+        )
     })
 }
 

@@ -6,7 +6,7 @@ use crate::dataset::Channel;
 use crate::fitting::{Fit, Setting};
 use crate::floor::Floor;
 use crate::search::{Accepted, Found, Rejected};
-use crate::shifted::{Shifted, shifted};
+use crate::shifted::{Shifted, entry, shifted};
 use crate::unknowns::What;
 
 /// The verdict of a comparison.
@@ -74,7 +74,7 @@ pub fn discovered(
         let closed = |effect: &Accepted| effect.test_gap.0.powi(2) - effect.test_gap.1.powi(2);
         closed(b).total_cmp(&closed(a))
     });
-    let effects = order.iter().map(|effect| effect_entry(after, effect));
+    let effects = order.iter().map(|effect| effect_entry(setting, after, effect));
     let (not_testable, rejected): (Vec<&Rejected>, Vec<&Rejected>) = found
         .rejected
         .iter()
@@ -132,19 +132,26 @@ fn closure(before: f64, after: f64, floor: f64) -> Value {
     json!((before - after) / (before - floor))
 }
 
-fn effect_entry(fit: &Fit, effect: &Accepted) -> Value {
-    let parameters: Map<String, Value> = effect
+fn effect_entry(setting: &Setting<'_>, fit: &Fit, effect: &Accepted) -> Value {
+    let mut term = effect.candidate.term.clone();
+    let mut parameters: Map<String, Value> = effect
         .candidate
         .parameters
         .iter()
-        .zip(effect.unknowns.clone())
+        .zip(effect.unknowns.iter().copied())
         .map(|(parameter, place)| {
             let (value, sd) = match fit.unknowns[place].what {
                 What::Inverse(_) => {
                     let inverse = fit.train.estimate.theta[place];
                     (1.0 / inverse, fit.sd[place] / (inverse * inverse))
                 }
-                _ => (fit.train.estimate.theta[place], fit.sd[place]),
+                _ => {
+                    let per_si = parameter.per_si();
+                    (
+                        per_si * fit.train.estimate.theta[place],
+                        per_si * fit.sd[place],
+                    )
+                }
             };
             (
                 parameter.name.clone(),
@@ -152,6 +159,16 @@ fn effect_entry(fit: &Fit, effect: &Accepted) -> Value {
             )
         })
         .collect();
+    if effect.candidate.released.is_some()
+        && let Some(place) = effect.unknowns.first()
+        && let Some(shift) = entry(setting, fit, *place, 0.0)
+    {
+        term = format!("{} = {}", shift.name, shift.value);
+        parameters.insert(
+            shift.name,
+            json!({"value": shift.value, "sd": shift.sd, "unit": shift.unit}),
+        );
+    }
     let equivalent: Vec<Value> = effect
         .equivalent
         .iter()
@@ -163,7 +180,7 @@ fn effect_entry(fit: &Fit, effect: &Accepted) -> Value {
         "status": if equivalent.is_empty() { "named" } else { "class" },
         "equivalent": equivalent,
         "parameters": parameters,
-        "term": effect.candidate.term,
+        "term": term,
         "evidence": {
             "held_out_gap_falls_by": effect.evidence.held_out,
             "standard_errors": effect.evidence.held_out_errors,
@@ -203,7 +220,7 @@ fn refitted(fit: &Fit, accepted: &[Accepted]) -> Value {
         };
         if accepted
             .iter()
-            .any(|effect| effect.unknowns.contains(&place))
+            .any(|effect| effect.candidate.released.is_none() && effect.unknowns.contains(&place))
         {
             continue;
         }

@@ -148,11 +148,7 @@ fn ready(
     (place, candidate): (usize, &Candidate),
     points: &Points,
 ) -> Option<Result<Ready, String>> {
-    let start: Vec<f64> = candidate
-        .parameters
-        .iter()
-        .map(|p| absent(p.inverse, p.shape))
-        .collect();
+    let start: Vec<f64> = candidate.parameters.iter().map(absent).collect();
     let text = match candidate.written(&fit.text, &setting.path, &start, "") {
         Ok(text) => text,
         Err(error) => return Some(Err(error.to_string())),
@@ -175,7 +171,7 @@ fn ready(
         }
         let at = |size: f64| {
             let mut values = values.clone();
-            plant.set(&mut values, &parameter.name, size);
+            plant.set(&mut values, &parameter.name, trial.base + size);
             values
         };
         let Some(size) = small(&plant, &at, points) else {

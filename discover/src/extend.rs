@@ -24,13 +24,14 @@ pub fn extended(
     let source = provenance(setting);
     let theta = &fit.train.estimate.theta;
     let mut text = text.to_owned();
-    for effect in accepted {
+    let written = || accepted.iter().filter(|effect| effect.candidate.released.is_none());
+    for effect in written() {
         let values: Vec<f64> = effect
             .unknowns
-            .clone()
-            .map(|place| match fit.unknowns[place].what {
-                What::Inverse(_) => 1.0 / theta[place],
-                _ => theta[place],
+            .iter()
+            .map(|place| match fit.unknowns[*place].what {
+                What::Inverse(_) => 1.0 / theta[*place],
+                _ => theta[*place],
             })
             .collect();
         let written = effect
@@ -38,8 +39,7 @@ pub fn extended(
             .written(&text, &setting.path, &values, &source);
         text = written.map_err(|error| error.to_string())?;
     }
-    let added: Vec<usize> = accepted
-        .iter()
+    let added: Vec<usize> = written()
         .flat_map(|effect| effect.unknowns.clone())
         .collect();
     let mut edits = Vec::new();

@@ -8,6 +8,8 @@ use rayon::prelude::*;
 use crate::dataset::{Dataset, Start};
 use crate::estimate::{self, Estimate, StartPrior, stacked};
 use crate::plant::Plant;
+use crate::response::mapped;
+use crate::rule;
 use crate::shooting::Shooting;
 use crate::starts;
 use crate::unknowns::Unknown;
@@ -21,7 +23,7 @@ const HORIZONS: [f64; 4] = [0.08, 0.25, 0.5, 1.0];
 const OTHER_HORIZONS: [f64; 5] = [0.05, 0.12, 0.3, 0.7, 1.0];
 
 /// The part of a window on which unknowns are first approached, and the horizons up to it.
-const FIRST_PART: (f64, usize) = (0.25, 2);
+pub const FIRST_PART: (f64, usize) = (0.25, 2);
 
 /// The most steps while unknowns are far away, and close by.
 const STEPS: (usize, usize) = (5, 4);
@@ -102,6 +104,8 @@ pub struct Fit {
 pub struct Sketch {
     /// The sum of squares that is left there, in noises, with what priors add.
     pub left: f64,
+    /// What is known of the initial states of whole windows, where they begin there already.
+    whole: Option<StartPrior>,
     text: String,
     linear: String,
     plant: Plant,
@@ -147,11 +151,6 @@ impl<'d> Setting<'d> {
         starts::first_state(plant, record, &self.dataset.channels, &self.dataset.initial)
     }
 
-    /// Samples at a window's ends that delayed sensors may see from outside.
-    fn margin(&self) -> usize {
-        crate::rule::LONGEST_DELAY.ceil() as usize
-    }
-
     /// Whether initial states are fitted.
     pub fn fits_starts(&self) -> bool {
         self.dataset.start == Start::Fitted
@@ -170,7 +169,7 @@ impl<'d> Setting<'d> {
             windows,
             noise: &self.noise,
             unknowns,
-            margin: self.margin(),
+            margin: (rule::LONGEST_DELAY as usize, rule::LONGEST_LEAD as usize),
             ranges: self.fits_starts().then_some(ranges),
             part: 1.0,
             prior_weight: 1.0,
@@ -282,8 +281,46 @@ impl<'d> Setting<'d> {
         };
         Ok(Sketch {
             left: found.cost,
+            whole: None,
             starts: found.starts,
             theta: found.theta,
+            text,
+            linear,
+            plant,
+            unknowns,
+            ranges,
+        })
+    }
+
+    /// The model's unknowns as they are expected, with whole windows begun where those of a fit
+    /// begin: close to a fit a straight line says enough. `left`: what it promises to leave.
+    ///
+    /// # Errors
+    /// As for [`Setting::fit`].
+    pub fn expected(
+        &self,
+        (text, linear): (String, String),
+        unknowns: Vec<Unknown>,
+        theta: Vec<f64>,
+        (fit, left): (&Fit, f64),
+    ) -> Result<Sketch, String> {
+        let plant = self.plant(&text, Some(&linear))?;
+        let ranges = self.ranges(&plant);
+        let mapped = |states: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            states.iter().map(|state| mapped(fit, &plant, state)).collect()
+        };
+        let prior = StartPrior {
+            mean: mapped(&fit.prior.mean),
+            sd: match fit.prior.sd.is_empty() {
+                true => Vec::new(),
+                false => starts::spread(&ranges),
+            },
+        };
+        Ok(Sketch {
+            left,
+            whole: Some(prior),
+            starts: mapped(&fit.train.estimate.starts),
+            theta,
             text,
             linear,
             plant,
@@ -319,19 +356,24 @@ impl<'d> Setting<'d> {
             ranges,
             theta,
             starts,
+            whole,
             ..
         } = sketch;
         let mut all = self.shooting(&plant, &self.train, &unknowns, &ranges);
-        let (mut prior, near) = if self.fits_starts() {
-            let follow = self.follow(&all, &ranges, HORIZONS.len());
-            estimate::approach(&all, &theta, &follow, STEPS.0)
-        } else {
-            let prior = StartPrior::default();
-            let near = estimate::evaluated(&all, &prior, theta, starts);
-            (prior, near)
+        let begins_whole = whole.is_some();
+        let (mut prior, near) = match whole {
+            None if self.fits_starts() => {
+                let follow = self.follow(&all, &ranges, HORIZONS.len());
+                estimate::approach(&all, &theta, &follow, STEPS.0)
+            }
+            whole => {
+                let prior = whole.unwrap_or_default();
+                let near = estimate::evaluated(&all, &prior, theta, starts);
+                (prior, near)
+            }
         };
         let numbers: usize = self.train.list.iter().map(|w| w.measured.len()).sum();
-        let is_far = near.cost > FAR * FAR * numbers as f64;
+        let is_far = !begins_whole && near.cost > FAR * FAR * numbers as f64;
         let free = match is_far {
             true => near,
             false => estimate::estimate(&all, &prior, &near.theta, &near.starts, STEPS.1),
@@ -411,22 +453,19 @@ impl<'d> Setting<'d> {
         (prior, found)
     }
 
-    /// The beginnings of the windows at a fit: the part that is looked at, what is known of
-    /// initial states, and states that suit these parts.
-    pub fn beginnings(&self, fit: &Fit) -> (f64, StartPrior, Estimate) {
-        if !self.fits_starts() {
-            return (1.0, fit.prior.clone(), fit.train.estimate.clone());
+    /// So much of each window at a fit: what is known of initial states, and states that suit
+    /// these parts.
+    pub fn beginnings(&self, fit: &Fit, part: f64) -> (StartPrior, Estimate) {
+        if part == 1.0 || !self.fits_starts() {
+            return (fit.prior.clone(), fit.train.estimate.clone());
         }
         let whole = self.shooting(&fit.plant, &self.train, &fit.unknowns, &fit.ranges);
-        let shooting = Shooting {
-            part: FIRST_PART.0,
-            ..whole
-        };
+        let shooting = Shooting { part, ..whole };
         let theta = fit.train.estimate.theta.clone();
         let follow = self.follow(&shooting, &fit.ranges, FIRST_PART.1);
         let (prior, starts) = follow(&theta, None);
         let estimate = estimate::evaluated(&shooting, &prior, theta, starts);
-        (FIRST_PART.0, prior, estimate)
+        (prior, estimate)
     }
 
     /// The range of each state in the training records.

@@ -13,23 +13,42 @@ pub struct Evidence {
     pub held_out_errors: f64,
     /// Half the fall of the training records' squares, whitened.
     pub information: f64,
-    /// The smallest ratio of a scaling parameter (or pair) to its standard deviation.
+    /// How many standard deviations the effect is large; of several the smallest.
     pub t: f64,
     /// What the effect does to the channel that shows it best, in noises.
     pub size: f64,
 }
 
-/// Judges a fit with more unknowns; the new ones begin at `first`, those that shape an effect
-/// are marked in `shapes`.
+/// An unknown of an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Own {
+    /// Its place among the unknowns of the fit.
+    pub place: usize,
+    /// Which of the effects that are judged together it belongs to, from 0.
+    pub effect: usize,
+    /// Its value where the effect is absent, SI.
+    pub base: f64,
+    /// Whether it shapes the effect without scaling it.
+    pub is_shape: bool,
+    /// One standard deviation of the prior that it gave up, SI.
+    pub prior: Option<f64>,
+}
+
+/// Judges a fit with effects whose unknowns these are.
 ///
 /// # Errors
-/// Why the effect is not believed, in words.
-pub fn judge(before: &Fit, after: &Fit, first: usize, shapes: &[bool]) -> Result<Evidence, String> {
-    let evidence = evidence(before, after, first, shapes);
-    let at_bound = at_bound(after, first, shapes);
-    if let Some(name) = at_bound {
+/// Why they are not believed, in words.
+pub fn judge(before: &Fit, after: &Fit, own: &[Own]) -> Result<Evidence, String> {
+    let evidence = evidence(before, after, own);
+    if let Some(name) = at_bound(after, own) {
         return Err(format!(
             "`{name}` has the wrong sign: held to it, the effect vanishes"
+        ));
+    }
+    if let Some((name, off)) = within_prior(after, own) {
+        return Err(format!(
+            "{name} is {off:.1} standard deviations of its prior off, {} are asked for",
+            rule::SHIFTED
         ));
     }
     if evidence.held_out < rule::HELD_OUT {
@@ -70,8 +89,8 @@ pub fn judge(before: &Fit, after: &Fit, first: usize, shapes: &[bool]) -> Result
     Ok(evidence)
 }
 
-/// What speaks for the unknowns from `first` on.
-pub fn evidence(before: &Fit, after: &Fit, first: usize, shapes: &[bool]) -> Evidence {
+/// What speaks for effects whose unknowns these are.
+pub fn evidence(before: &Fit, after: &Fit, own: &[Own]) -> Evidence {
     let (old, new) = (&before.test, &after.test);
     let falls: Vec<f64> = (old.blocks.iter().zip(&new.blocks))
         .map(|(a, b)| a.sqrt() - b.sqrt())
@@ -85,7 +104,7 @@ pub fn evidence(before: &Fit, after: &Fit, first: usize, shapes: &[bool]) -> Evi
         held_out: 1.0 - new.pooled / old.pooled,
         held_out_errors: mean / (variance / count).sqrt(),
         information: fall / (2.0 * whitening),
-        t: significance(after, first, shapes),
+        t: significance(after, own),
         size: size(before, after),
     }
 }
@@ -98,21 +117,37 @@ fn size(before: &Fit, after: &Fit) -> f64 {
     sizes.fold(0.0, f64::max)
 }
 
-/// The size of the new effect in standard deviations. The two parts of a wave count together.
-fn significance(fit: &Fit, first: usize, shapes: &[bool]) -> f64 {
-    let scaling = (first..fit.unknowns.len())
-        .filter(|place| !shapes.get(place - first).copied().unwrap_or(false));
-    let ratios = scaling.map(|place| fit.train.estimate.theta[place] / fit.sd[place]);
-    ratios.map(|t| t * t).sum::<f64>().sqrt()
+/// The size of an effect in standard deviations; of several the smallest. The two parts of a
+/// wave count together.
+fn significance(fit: &Fit, own: &[Own]) -> f64 {
+    let effects = own.iter().map(|own| own.effect + 1).max().unwrap_or(0);
+    let of = |effect: usize| {
+        let scaling = own.iter().filter(|own| own.effect == effect && !own.is_shape);
+        let ratios =
+            scaling.map(|own| (fit.train.estimate.theta[own.place] - own.base) / fit.sd[own.place]);
+        ratios.map(|t| t * t).sum::<f64>().sqrt()
+    };
+    (0..effects).map(of).fold(f64::INFINITY, f64::min)
 }
 
 /// A parameter that its sign's bound holds.
-fn at_bound(fit: &Fit, first: usize, shapes: &[bool]) -> Option<String> {
-    (first..fit.unknowns.len()).find_map(|place| {
-        let unknown = &fit.unknowns[place];
-        let value = fit.train.estimate.theta[place];
-        let is_shape = shapes.get(place - first).copied().unwrap_or(false);
+fn at_bound(fit: &Fit, own: &[Own]) -> Option<String> {
+    own.iter().find_map(|own| {
+        let unknown = &fit.unknowns[own.place];
+        let value = fit.train.estimate.theta[own.place];
         let held = value <= unknown.bounds.0 || value >= unknown.bounds.1;
-        (held && !is_shape).then(|| crate::unknowns::name(&unknown.what))
+        (held && !own.is_shape).then(|| crate::unknowns::name(&unknown.what))
+    })
+}
+
+/// An unknown that gave up its prior and is within it still, and how far it is off.
+fn within_prior(fit: &Fit, own: &[Own]) -> Option<(String, f64)> {
+    own.iter().find_map(|own| {
+        let prior = own.prior?;
+        let off = (fit.train.estimate.theta[own.place] - own.base).abs() / prior;
+        // Beyond its prior for certain, not by what the record leaves open.
+        let sure = off - rule::STANDARD_ERRORS * fit.sd[own.place] / prior;
+        let is_off = sure > rule::SHIFTED;
+        (!is_off).then(|| (crate::unknowns::name(&fit.unknowns[own.place].what), off))
     })
 }

@@ -4,7 +4,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::candidates::Candidate;
+use crate::candidates::{Candidate, CandidateParameter};
 use crate::crew::Crew;
 use crate::driven::driven;
 use crate::estimate;
@@ -25,8 +25,10 @@ pub(crate) const TRIAL: f64 = 0.3;
 /// A candidate's parameter with its bounds and the size tried, SI.
 #[derive(Clone, Debug)]
 pub struct Trial {
-    /// The unknown, absent where it is 0.
+    /// The unknown.
     pub unknown: Unknown,
+    /// Its value where the effect is absent, SI.
+    pub base: f64,
     /// Whether it shapes the effect without scaling it; its value is then kept.
     pub is_shape: bool,
 }
@@ -53,9 +55,9 @@ pub struct At {
 }
 
 impl At {
-    /// The beginnings of the windows at a fit.
-    pub fn of(setting: &Setting<'_>, fit: &Fit) -> Self {
-        let (part, prior, estimate) = setting.beginnings(fit);
+    /// The beginnings of the windows at a fit, so much of each.
+    pub fn of(setting: &Setting<'_>, fit: &Fit, part: f64) -> Self {
+        let (prior, estimate) = setting.beginnings(fit, part);
         let whole = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
         let shooting = Shooting { part, ..whole };
         let all = setting.train.list.len();
@@ -109,40 +111,46 @@ pub(crate) fn silent() -> String {
 }
 
 /// The value of a parameter where its effect is absent, or nearly.
-pub(crate) fn absent(inverse: bool, shape: Option<f64>) -> f64 {
-    match (inverse, shape) {
+pub(crate) fn absent(parameter: &CandidateParameter) -> f64 {
+    match (parameter.inverse, parameter.shape) {
         (_, Some(shape)) => shape,
         (true, None) => 1e12,
-        (false, None) => 0.0,
+        (false, None) => parameter.base(),
     }
 }
 
 /// A candidate's parameter as an unknown.
-pub(crate) fn trial(parameter: &crate::candidates::CandidateParameter) -> Trial {
+pub(crate) fn trial(parameter: &CandidateParameter) -> Trial {
     let low = match (parameter.inverse, parameter.positive) {
         (true, _) => 1e-12,
         (false, true) => 0.0,
         (false, false) => f64::NEG_INFINITY,
     };
     let name = parameter.name.clone();
+    let base = parameter.base();
     let unknown = Unknown {
         what: if parameter.inverse {
             What::Inverse(name)
         } else {
             What::Parameter(name)
         },
-        start: parameter.shape.unwrap_or(low.max(0.0)),
+        start: parameter.shape.unwrap_or(base.max(low)),
         prior: None,
-        bounds: match parameter.shape {
-            Some(shape) => (rule::SHAPE_RANGE.0 * shape, rule::SHAPE_RANGE.1 * shape),
-            None => (low, f64::INFINITY),
+        bounds: match (parameter.shape, &parameter.shifts) {
+            (Some(shape), _) => (rule::SHAPE_RANGE.0 * shape, rule::SHAPE_RANGE.1 * shape),
+            (None, Some(shifts)) => shifts.bounds,
+            (None, None) => (low, f64::INFINITY),
         },
-        scale: parameter
-            .shape
-            .unwrap_or(if parameter.inverse { 1e-4 } else { 1.0 }),
+        scale: match (parameter.shape, parameter.inverse) {
+            (Some(shape), _) => shape,
+            (None, true) => 1e-4,
+            (None, false) if base == 0.0 => 1.0,
+            (None, false) => base.abs(),
+        },
     };
     Trial {
         unknown,
+        base,
         is_shape: parameter.shape.is_some(),
     }
 }

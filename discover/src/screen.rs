@@ -3,6 +3,8 @@
 //! of the misfit each candidate, or a set of them, may explain, and which look alike. Whoever
 //! passes is fitted in earnest elsewhere.
 
+use std::borrow::Cow;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::bounded::least_squares;
@@ -20,6 +22,8 @@ pub struct Response {
     pub trials: Vec<Trial>,
     /// Where its columns stand.
     columns: std::ops::Range<usize>,
+    /// The nuisance that gives up its prior, if that is the effect.
+    pub released: Option<usize>,
     /// The part of what it does that initial states and nuisances cannot do as well.
     pub visible: f64,
     /// How much it lowers the sum of squares alone, in noises squared.
@@ -34,6 +38,8 @@ pub struct Screen {
     /// Products of all columns: nuisances, candidates, the residual last.
     products: DMatrix<f64>,
     nuisances: usize,
+    /// What the prior of each nuisance adds to the products: a weight and how far it is off.
+    priors: Vec<(f64, f64)>,
     bounds: Vec<(f64, f64)>,
     /// The candidates that do something, in their order.
     pub responses: Vec<Response>,
@@ -43,54 +49,69 @@ pub struct Screen {
     pub numbers: f64,
 }
 
-/// Screens candidates at a fit.
-pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate]) -> Screen {
-    let at = At::of(setting, fit);
+/// Screens candidates at a fit, over a part of each window.
+pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate], part: f64) -> Screen {
+    let at = At::of(setting, fit, part);
     let (base, places, estimate) = (&at.base, &at.places, &at.estimate);
-    let found = responses(&at, setting, fit, candidates);
+    let own: Vec<Candidate> = (candidates.iter().filter(|c| c.released.is_none()))
+        .cloned()
+        .collect();
+    let mut found = responses(&at, setting, fit, &own).into_iter();
     let nuisances = fit.unknowns.len();
     let mut responses = Vec::new();
     let mut silent = Vec::new();
     let mut blocks = Vec::new();
     let mut columns = nuisances;
-    for (candidate, found) in found.into_iter().enumerate() {
-        match found {
-            Ok((trials, block)) => {
+    for (candidate, of) in candidates.iter().enumerate() {
+        let mut response = Response {
+            candidate,
+            trials: Vec::new(),
+            columns: columns..columns,
+            released: None,
+            visible: 0.0,
+            gain: 0.0,
+            values: Vec::new(),
+        };
+        if let Some(what) = &of.released {
+            response.released = (fit.unknowns.iter()).position(|unknown| unknown.what == *what);
+            responses.push(response);
+            continue;
+        }
+        match found.next() {
+            Some(Ok((trials, block))) => {
                 let scaling = trials.iter().filter(|trial| !trial.is_shape).count();
-                responses.push(Response {
-                    candidate,
-                    trials,
-                    columns: columns..columns + scaling,
-                    visible: 0.0,
-                    gain: 0.0,
-                    values: Vec::new(),
-                });
                 columns += scaling;
+                response.columns.end = columns;
+                response.trials = trials;
+                responses.push(response);
                 blocks.push(block);
             }
-            Err(reason) => silent.push((candidate, reason)),
+            Some(Err(reason)) => silent.push((candidate, reason)),
+            None => {}
         }
     }
     let mut products = products(fit, places, base, &blocks, columns);
-    let mut bounds = Vec::new();
+    let (mut bounds, mut priors) = (Vec::new(), Vec::new());
     for (place, unknown) in fit.unknowns.iter().enumerate() {
         let value = estimate.theta[place];
         bounds.push((unknown.bounds.0 - value, unknown.bounds.1 - value));
-        if let Some((mean, sd)) = unknown.prior {
-            let weight = fit.prior_weight / (sd * sd);
-            products[(place, place)] += weight;
-            products[(place, columns)] += weight * (value - mean);
-            products[(columns, place)] += weight * (value - mean);
-            products[(columns, columns)] += weight * (value - mean).powi(2);
-        }
+        let prior = unknown
+            .prior
+            .map_or((0.0, 0.0), |(mean, sd)| (fit.prior_weight / (sd * sd), value - mean));
+        add_prior(&mut products, place, prior);
+        priors.push(prior);
     }
     for response in &responses {
         let scaling = response.trials.iter().filter(|trial| !trial.is_shape);
-        bounds.extend(scaling.map(|trial| trial.unknown.bounds));
+        bounds.extend(scaling.map(|trial| {
+            let (low, high) = trial.unknown.bounds;
+            (low - trial.base, high - trial.base)
+        }));
     }
     let mut screen = Screen {
         products,
         nuisances,
+        priors,
         bounds,
         responses,
         silent,
@@ -98,6 +119,16 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate]) -> Scr
     };
     screen.judge();
     screen
+}
+
+/// Adds a prior, or takes it away where its weight is negative, to the products of a nuisance
+/// with itself and with the residual, which stands last.
+fn add_prior(products: &mut DMatrix<f64>, place: usize, (weight, off): (f64, f64)) {
+    let last = products.ncols() - 1;
+    products[(place, place)] += weight;
+    products[(place, last)] += weight * off;
+    products[(last, place)] += weight * off;
+    products[(last, last)] += weight * off * off;
 }
 
 /// Products of all columns with the initial states eliminated.
@@ -143,14 +174,30 @@ impl Screen {
         }
     }
 
-    /// The sum of squares that a set of responses leaves, and their sizes in order.
+    /// The products once the nuisances that these responses release have no priors, and those
+    /// nuisances.
+    fn released(&self, set: &[usize]) -> (Cow<'_, DMatrix<f64>>, Vec<usize>) {
+        let places: Vec<usize> = (set.iter())
+            .filter_map(|response| self.responses[*response].released)
+            .collect();
+        let mut products = Cow::Borrowed(&self.products);
+        for place in &places {
+            let (weight, off) = self.priors[*place];
+            add_prior(products.to_mut(), *place, (-weight, off));
+        }
+        (products, places)
+    }
+
+    /// The sum of squares that a set of responses leaves, and their sizes in order: how far
+    /// each is from absent.
     pub fn left(&self, set: &[usize]) -> (f64, Vec<f64>) {
         let mut places: Vec<usize> = (0..self.nuisances).collect();
         for response in set {
             places.extend(self.responses[*response].columns.clone());
         }
-        let last = self.products.ncols() - 1;
-        let (a, b) = self.system(&places, last);
+        let (products, _) = self.released(set);
+        let last = products.ncols() - 1;
+        let (a, b) = system(&products, &places);
         let bounds: Vec<(f64, f64)> = places
             .iter()
             .map(|place| {
@@ -161,8 +208,17 @@ impl Screen {
             })
             .collect();
         let x = least_squares(&a, &b, &bounds);
-        let left = (&a * &x - &b).norm_squared() - b.norm_squared() + self.products[(last, last)];
-        (left, x.iter().skip(self.nuisances).copied().collect())
+        let left = (&a * &x - &b).norm_squared() - b.norm_squared() + products[(last, last)];
+        let mut added = x.iter().skip(self.nuisances);
+        let sizes = set.iter().flat_map(|response| {
+            let response = &self.responses[*response];
+            match response.released {
+                Some(place) => vec![x[place]],
+                None => added.by_ref().take(response.columns.len()).copied().collect(),
+            }
+        });
+        let sizes = sizes.collect();
+        (left, sizes)
     }
 
     /// The same with a parameter of the model set to 0, its term deleted; none where that is
@@ -186,41 +242,19 @@ impl Screen {
             products,
             bounds,
             nuisances: self.nuisances,
+            priors: self.priors.clone(),
             responses: self.responses.clone(),
             silent: Vec::new(),
             numbers: self.numbers,
         })
     }
 
-    /// A and b whose least squares are those of some columns against the residual, to be
-    /// lowered to its negative.
-    fn system(&self, places: &[usize], last: usize) -> (DMatrix<f64>, DVector<f64>) {
-        let count = places.len();
-        let scale: Vec<f64> = places
-            .iter()
-            .map(|p| self.products[(*p, *p)].sqrt().max(f64::MIN_POSITIVE))
-            .collect();
-        let gram = DMatrix::from_fn(count, count, |r, c| {
-            let ridge = if r == c { rule::RIDGE } else { 0.0 };
-            self.products[(places[r], places[c])] / (scale[r] * scale[c]) + ridge
-        });
-        let right = DVector::from_fn(count, |r, _| -self.products[(places[r], last)] / scale[r]);
-        let Some(factor) = gram.cholesky() else {
-            return (DMatrix::zeros(count, count), DVector::zeros(count));
-        };
-        let lower = factor.l();
-        let b = lower
-            .solve_lower_triangular(&right)
-            .unwrap_or_else(|| DVector::zeros(count));
-        let a = DMatrix::from_fn(count, count, |r, c| lower[(c, r)] * scale[c]);
-        (a, b)
-    }
-
     /// The part of a response's square that the nuisances cannot do as well.
     fn visible(&self, place: usize) -> f64 {
-        let direction = self.direction(place);
-        let own = self.product(&direction, &direction);
-        let rest = self.without_nuisances(&direction, &direction);
+        let (products, released) = self.released(&[place]);
+        let direction = self.direction(&products, place);
+        let own = product(&products, &direction, &direction);
+        let rest = self.without_nuisances((&products, &released), &direction, &direction);
         if own > 0.0 {
             (rest / own).max(0.0)
         } else {
@@ -229,15 +263,17 @@ impl Screen {
     }
 
     /// A response at its best size as a combination of columns.
-    fn direction(&self, place: usize) -> DVector<f64> {
+    fn direction(&self, products: &DMatrix<f64>, place: usize) -> DVector<f64> {
         let response = &self.responses[place];
-        let mut direction = DVector::zeros(self.products.ncols());
+        let mut direction = DVector::zeros(products.ncols());
         let all_zero = response.values.iter().all(|v| *v == 0.0);
-        for (number, column) in response.columns.clone().enumerate() {
+        let columns = match response.released {
+            Some(place) => place..place + 1,
+            None => response.columns.clone(),
+        };
+        for (number, column) in columns.enumerate() {
             direction[column] = if all_zero || response.values.is_empty() {
-                1.0 / self.products[(column, column)]
-                    .sqrt()
-                    .max(f64::MIN_POSITIVE)
+                1.0 / products[(column, column)].sqrt().max(f64::MIN_POSITIVE)
             } else {
                 response.values[number]
             };
@@ -245,18 +281,21 @@ impl Screen {
         direction
     }
 
-    fn product(&self, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
-        (a.transpose() * &self.products * b)[(0, 0)]
-    }
-
-    fn without_nuisances(&self, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
-        let n = self.nuisances;
-        let whole = self.product(a, b);
-        let cross = |v: &DVector<f64>| (&self.products * v).rows(0, n).into_owned();
-        let mut block = self.products.view((0, 0), (n, n)).into_owned();
-        for place in 0..n {
-            block[(place, place)] *= 1.0 + rule::RIDGE;
-        }
+    /// The product of two directions once the nuisances, but those released, are taken out.
+    fn without_nuisances(
+        &self,
+        (products, released): (&DMatrix<f64>, &[usize]),
+        a: &DVector<f64>,
+        b: &DVector<f64>,
+    ) -> f64 {
+        let places: Vec<usize> = (0..self.nuisances).filter(|p| !released.contains(p)).collect();
+        let n = places.len();
+        let whole = product(products, a, b);
+        let cross = |v: &DVector<f64>| (products * v).select_rows(&places);
+        let block = DMatrix::from_fn(n, n, |r, c| {
+            let ridge = if r == c { 1.0 + rule::RIDGE } else { 1.0 };
+            ridge * products[(places[r], places[c])]
+        });
         match block.cholesky() {
             Some(factor) => whole - cross(a).dot(&factor.solve(&cross(b))),
             None => whole,
@@ -265,12 +304,42 @@ impl Screen {
 
     /// How much two responses look alike, 0 to 1, once the nuisances are taken out.
     pub fn similarity(&self, a: usize, b: usize) -> f64 {
-        let (a, b) = (self.direction(a), self.direction(b));
-        let sizes = self.without_nuisances(&a, &a) * self.without_nuisances(&b, &b);
+        let (products, released) = self.released(&[a, b]);
+        let at = (&*products, &released[..]);
+        let (a, b) = (self.direction(&products, a), self.direction(&products, b));
+        let sizes = self.without_nuisances(at, &a, &a) * self.without_nuisances(at, &b, &b);
         if sizes > 0.0 {
-            (self.without_nuisances(&a, &b) / sizes.sqrt()).abs()
+            (self.without_nuisances(at, &a, &b) / sizes.sqrt()).abs()
         } else {
             0.0
         }
     }
+}
+
+fn product(products: &DMatrix<f64>, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
+    a.dot(&(products * b))
+}
+
+/// A and b whose least squares are those of some columns against the residual, to be lowered
+/// to its negative.
+fn system(products: &DMatrix<f64>, places: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
+    let (count, last) = (places.len(), products.ncols() - 1);
+    let scale: Vec<f64> = places
+        .iter()
+        .map(|p| products[(*p, *p)].sqrt().max(f64::MIN_POSITIVE))
+        .collect();
+    let gram = DMatrix::from_fn(count, count, |r, c| {
+        let ridge = if r == c { rule::RIDGE } else { 0.0 };
+        products[(places[r], places[c])] / (scale[r] * scale[c]) + ridge
+    });
+    let right = DVector::from_fn(count, |r, _| -products[(places[r], last)] / scale[r]);
+    let Some(factor) = gram.cholesky() else {
+        return (DMatrix::zeros(count, count), DVector::zeros(count));
+    };
+    let lower = factor.l();
+    let b = lower
+        .solve_lower_triangular(&right)
+        .unwrap_or_else(|| DVector::zeros(count));
+    let a = DMatrix::from_fn(count, count, |r, c| lower[(c, r)] * scale[c]);
+    (a, b)
 }

@@ -3,23 +3,15 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-
-use crate::candidates::{Candidate, candidates};
+use crate::candidates::{self, Candidate, candidates};
 use crate::catalogue::Effect;
-use crate::fitting::{Fit, Setting, Sketch};
-use crate::judge::{Evidence, evidence, judge};
-use crate::plant::is_linear;
+use crate::fitting::{FIRST_PART, Fit, Setting};
+use crate::judge::{Evidence, evidence};
 use crate::rule;
-use crate::screen::{Response, Screen, screen};
+use crate::screen::{Screen, screen};
 use crate::sites::sites;
-use crate::unknowns::{What, of_null_model};
-
-/// Parts of the size that screening promises at which a fit begins, one after the other.
-const SHORTENED: [f64; 3] = [1.0, 0.3, 0.1];
-
-/// A fit that leaves less than this part of the squares has begun well.
-const WELL_BEGUN: f64 = 0.2;
+use crate::trials::{Round, Trial, at_floor};
+use crate::unknowns::{Unknown, What, of_null_model};
 
 /// An effect that was believed.
 #[derive(Clone, Debug)]
@@ -27,7 +19,7 @@ pub struct Accepted {
     /// The effect at its place.
     pub candidate: Candidate,
     /// Which of the unknowns of the last fit are its own.
-    pub unknowns: std::ops::Range<usize>,
+    pub unknowns: Vec<usize>,
     /// Those that could not be told from it.
     pub equivalent: Vec<Candidate>,
     /// What spoke for it when it was added.
@@ -66,13 +58,6 @@ impl Found {
     }
 }
 
-/// A set of candidates fitted in earnest.
-struct Trial {
-    responses: Vec<usize>,
-    fit: Fit,
-    verdict: Result<Evidence, String>,
-}
-
 /// Fits the model with its declared unknowns alone.
 ///
 /// # Errors
@@ -100,7 +85,7 @@ pub fn search(
     null: Fit,
     effects: &[Effect],
     floor: f64,
-    said: &dyn Fn(&str),
+    said: &(dyn Fn(&str) + Sync),
 ) -> Result<Found, String> {
     let mut found = Found {
         null,
@@ -113,21 +98,145 @@ pub fn search(
         if at_floor(fit, floor) {
             break;
         }
-        let (candidates, screen) = screened(setting, fit, effects, floor, said);
-        let trials = trials(setting, fit, &candidates, &screen, floor, said);
-        note_rejected(&mut found.rejected, &candidates, &screen, &trials);
-        let mut believed = trials;
-        believed.retain(|trial| trial.verdict.is_ok());
-        believed.sort_by(|a, b| a.fit.train.pooled.total_cmp(&b.fit.train.pooled));
-        if believed.is_empty() {
-            break;
+        let searched = round(setting, fit, effects, floor, said);
+        let mut believed = Vec::new();
+        for (candidates, screen, trials) in searched {
+            note_rejected(&mut found.rejected, &candidates, &screen, &trials);
+            if trials.iter().any(|trial| trial.verdict.is_ok()) {
+                believed = vec![(candidates, screen, trials)];
+            }
         }
-        let best = believed.remove(0);
-        let equivalent = indistinct(&best, &believed, &screen);
+        let Some((candidates, screen, mut trials)) = believed.pop() else {
+            break;
+        };
+        trials.retain(|trial| trial.verdict.is_ok());
+        let best = trials.remove(best_of(&trials));
+        let equivalent = indistinct(&best, &trials, &screen);
         let equivalent = equivalent.map(|place| candidates[place].clone()).collect();
         accept(&mut found, &candidates, &screen, best, equivalent);
     }
     Ok(found)
+}
+
+/// Candidates, what they promise, and those of them that were fitted in earnest.
+type Searched = (Vec<Candidate>, Screen, Vec<Trial>);
+
+/// One round: over the beginnings of windows, where motions are nearly linear in whatever
+/// changes them, and over whole windows, which show more of what is slow; close to the floor
+/// the other way round. Then whether a parameter may be off that nobody called uncertain.
+fn round(
+    setting: &Setting<'_>,
+    fit: &Fit,
+    effects: &[Effect],
+    floor: f64,
+    said: &(dyn Fn(&str) + Sync),
+) -> Vec<Searched> {
+    let parts = match (setting.fits_starts(), fit.train.pooled < rule::FAR) {
+        (false, _) => vec![1.0],
+        (true, true) => vec![1.0, FIRST_PART.0],
+        (true, false) => vec![FIRST_PART.0, 1.0],
+    };
+    let mut searched: Vec<Searched> = Vec::new();
+    for (number, part) in parts.iter().chain(&parts[..1]).enumerate() {
+        let (candidates, screen) = match number < parts.len() {
+            true => screened(setting, fit, (effects, *part), floor, said),
+            false => {
+                let shifts = shifts(fit);
+                said(&format!("screening {} parameters of the model", shifts.len()));
+                let screen = screen(setting, fit, &shifts, *part);
+                (shifts, screen)
+            }
+        };
+        let round = Round {
+            setting,
+            fit,
+            candidates: &candidates,
+            screen: &screen,
+            is_whole: *part == 1.0,
+            floor,
+            said,
+        };
+        let mut trials = round.singles();
+        let is_enough = |trial: &Trial| trial.verdict.is_ok() && at_floor(&trial.fit, floor);
+        if number < parts.len() && !trials.iter().any(is_enough) {
+            trials.extend(round.pairs());
+        }
+        let is_done = trials.iter().any(|trial| trial.verdict.is_ok());
+        searched.push((candidates, screen, trials));
+        if is_done {
+            break;
+        }
+    }
+    searched
+}
+
+/// The parameters of a model that no unknown moves.
+fn shifts(fit: &Fit) -> Vec<Candidate> {
+    let is_known = |name: &str| {
+        let of = |unknown: &Unknown| match &unknown.what {
+            What::Parameter(known) | What::Inverse(known) => known == name,
+            What::Gain(_) | What::Bias(_) | What::Delay(_) => false,
+        };
+        fit.unknowns.iter().any(of)
+    };
+    let parameters = fit.plant.model.parameters.iter();
+    let free = parameters.filter(|parameter| !is_known(&parameter.name));
+    free.filter_map(candidates::shift).collect()
+}
+
+/// Declared parameters and sensors that may be off by more than their priors allow.
+fn released(setting: &Setting<'_>, fit: &Fit) -> Vec<Candidate> {
+    let unknowns = fit.unknowns.iter().filter(|unknown| unknown.prior.is_some());
+    let candidate = |unknown: &Unknown| {
+        let (effect, on, says, experiment) = match &unknown.what {
+            What::Parameter(name) | What::Inverse(name) => (
+                candidates::PARAMETER_SHIFT,
+                name.clone(),
+                "a parameter is off by more than was declared",
+                "measure it by itself",
+            ),
+            What::Gain(place) => (
+                "sensor_gain",
+                setting.dataset.channels[*place].name.clone(),
+                "a sensor shows too much or too little",
+                "calibrate it over its range",
+            ),
+            What::Bias(place) => (
+                "sensor_bias",
+                setting.dataset.channels[*place].name.clone(),
+                "a sensor is off by a constant",
+                "read it where its quantity is known",
+            ),
+            What::Delay(place) => (
+                "sensor_delay",
+                setting.dataset.channels[*place].name.clone(),
+                "a sensor is late",
+                "excite it with a step that is recorded itself",
+            ),
+        };
+        candidates::released(effect, &on, says, experiment, &unknown.what)
+    };
+    unknowns.map(candidate).collect()
+}
+
+/// The believed trial that leaves least; a pair only if it leaves clearly less than the best
+/// single effect.
+fn best_of(trials: &[Trial]) -> usize {
+    let left = |place: &usize| trials[*place].fit.train.pooled;
+    let least = |count: fn(usize) -> bool| {
+        let places = (0..trials.len()).filter(|place| count(trials[*place].responses.len()));
+        places.min_by(|a, b| left(a).total_cmp(&left(b)))
+    };
+    match (least(|n| n == 1), least(|n| n > 1)) {
+        (Some(single), Some(pair)) => {
+            let (one, two) = (&trials[single].fit, &trials[pair].fit);
+            let better = 1.0 - rule::HELD_OUT;
+            let is_clear = two.train.pooled < better * one.train.pooled
+                && two.test.pooled < better * one.test.pooled;
+            if is_clear { pair } else { single }
+        }
+        (one, two) => one.or(two).unwrap_or(0),
+    }
 }
 
 /// Which candidates the record does not tell from the best one: their responses are alike, and
@@ -143,7 +252,7 @@ fn indistinct<'t>(
     };
     others.iter().filter_map(move |other| {
         let (a, b) = (single(best)?, single(other)?);
-        let errors = evidence(&best.fit, &other.fit, other.fit.unknowns.len(), &[]).held_out_errors;
+        let errors = evidence(&best.fit, &other.fit, &[]).held_out_errors;
         let alike = screen.similarity(a, b) > rule::ALIKE;
         // Fits that leave the same to the last digit have no error to be judged by.
         let as_good = errors.is_nan() || errors.abs() < rule::STANDARD_ERRORS;
@@ -151,25 +260,21 @@ fn indistinct<'t>(
     })
 }
 
-/// Whether a fit leaves no more than a right model would.
-pub fn at_floor(fit: &Fit, floor: f64) -> bool {
-    fit.train.pooled.max(fit.test.pooled) < rule::AT_FLOOR * floor
-}
-
 /// The candidates and their responses: those that repeat with an angle, which are many, only
 /// if the others leave much of the gap.
 fn screened(
     setting: &Setting<'_>,
     fit: &Fit,
-    effects: &[Effect],
+    (effects, part): (&[Effect], f64),
     floor: f64,
     said: &dyn Fn(&str),
 ) -> (Vec<Candidate>, Screen) {
     let model = &fit.plant.model;
-    let all = candidates(model, effects, &sites(model), &usual_rates(setting));
+    let mut all = candidates(model, effects, &sites(model), &usual_rates(setting));
+    all.extend(released(setting, fit));
     let plain: Vec<Candidate> = all.iter().filter(|c| c.order.is_none()).cloned().collect();
     said(&format!("screening {} candidates", plain.len()));
-    let found = screen(setting, fit, &plain);
+    let found = screen(setting, fit, &plain, part);
     let best = found.responses.iter().map(|r| r.gain).fold(0.0, f64::max);
     let above = found.left(&[]).0 - floor * floor * found.numbers;
     if plain.len() == all.len() || best > rule::ENOUGH * above {
@@ -179,7 +284,7 @@ fn screened(
         "screening {} candidates that repeat with an angle",
         all.len() - plain.len()
     ));
-    let found = screen(setting, fit, &all);
+    let found = screen(setting, fit, &all, part);
     (all, found)
 }
 
@@ -196,315 +301,6 @@ fn usual_rates(setting: &Setting<'_>) -> BTreeMap<String, f64> {
             (channel.name.clone(), square.sqrt())
         })
         .collect()
-}
-
-/// The candidates fitted in earnest: the best alone, those that look like it, and a pair where
-/// that promises more.
-fn trials(
-    setting: &Setting<'_>,
-    fit: &Fit,
-    candidates: &[Candidate],
-    screen: &Screen,
-    floor: f64,
-    said: &dyn Fn(&str),
-) -> Vec<Trial> {
-    let alone = screen.left(&[]).0;
-    let promise = match alone > rule::FAR * rule::FAR * screen.numbers {
-        true => rule::PROMISE_FAR,
-        false => rule::PROMISE,
-    };
-    let mut ranked: Vec<usize> = (0..screen.responses.len())
-        .filter(|r| {
-            let response = &screen.responses[*r];
-            response.visible > rule::OWN_PART && response.gain > promise * alone
-        })
-        .collect();
-    ranked.sort_by(|a, b| {
-        screen.responses[*b]
-            .gain
-            .total_cmp(&screen.responses[*a].gain)
-    });
-    if let Some(best) = ranked.first() {
-        let best = &candidates[screen.responses[*best].candidate];
-        let count = ranked.len();
-        said(&format!(
-            "{count} promise enough to be fitted, {} most",
-            best.label()
-        ));
-    }
-    let mut sets: Vec<Set> = Vec::new();
-    for response in &ranked {
-        let of = &candidates[screen.responses[*response].candidate];
-        // Of the orders of one effect at one place the two best are enough.
-        let same = sets.iter().flat_map(|set| &set.responses).filter(|known| {
-            let known = &candidates[screen.responses[**known].candidate];
-            known.effect == of.effect && known.on == of.on
-        });
-        if same.count() < 2 && sets.len() < rule::MOST_SKETCHES {
-            sets.push(Set {
-                sizes: screen.left(&[*response]).1,
-                responses: vec![*response],
-                deleted: None,
-            });
-        }
-    }
-    let mut sketches = sketched(setting, fit, candidates, screen, sets, said);
-    let best = sketches.first().map_or(0.0, |(_, sketch)| sketch.left);
-    let mut trials: Vec<Trial> = Vec::new();
-    let mut fits = 0;
-    while !sketches.is_empty() && fits < rule::MOST_FITS {
-        // Once one is believed, only what is nearly as good or looks like it may be another
-        // answer.
-        let believed = trials.iter().find(|trial| trial.verdict.is_ok());
-        let count = sketches.len().min(rule::FITS_AT_ONCE);
-        let next: Vec<(Set, Sketch)> = sketches.drain(..count).collect();
-        let is_rival = |(set, sketch): &(Set, Sketch)| {
-            let near = sketch.left < rule::RIVAL * best;
-            let alike = |trial: &Trial| {
-                screen.similarity(trial.responses[0], set.responses[0]) > rule::ALIKE
-            };
-            match believed {
-                Some(trial) => alike(trial) || (near && !at_floor(&trial.fit, floor)),
-                None => near,
-            }
-        };
-        let wanted: Vec<(Set, Sketch)> = next.into_iter().filter(is_rival).collect();
-        fits += wanted.len();
-        trials.extend(completed(setting, fit, candidates, screen, wanted, said));
-    }
-    if trials.iter().all(|trial| trial.verdict.is_err()) {
-        let pairs = best_pairs(screen, fit, candidates, &ranked);
-        let pairs = sketched(setting, fit, candidates, screen, pairs, said);
-        trials.extend(completed(setting, fit, candidates, screen, pairs, said));
-    }
-    trials
-}
-
-/// The names of a set's candidates.
-fn label(candidates: &[Candidate], screen: &Screen, set: &Set) -> String {
-    let labels = set
-        .responses
-        .iter()
-        .map(|r| candidates[screen.responses[*r].candidate].label());
-    labels.collect::<Vec<_>>().join(" and ")
-}
-
-/// Sets of candidates fitted to the beginnings of the windows, side by side; the best first.
-fn sketched(
-    setting: &Setting<'_>,
-    fit: &Fit,
-    candidates: &[Candidate],
-    screen: &Screen,
-    sets: Vec<Set>,
-    said: &dyn Fn(&str),
-) -> Vec<(Set, Sketch)> {
-    let alone = screen.left(&[]).0;
-    let sketches: Vec<Result<Sketch, String>> = sets
-        .par_iter()
-        .map(|set| {
-            let chosen: Vec<&Response> = set
-                .responses
-                .iter()
-                .map(|r| &screen.responses[*r])
-                .collect();
-            // What a straight line promises may be far beyond where it leads.
-            let mut best: Result<Sketch, String> = Err("no motion can be followed".to_owned());
-            for part in SHORTENED {
-                let sizes = set.sizes.iter().map(|size| part * size).collect();
-                let found = sketch_with(setting, fit, candidates, &chosen, (set.deleted, sizes));
-                let left = best.as_ref().map_or(f64::INFINITY, |best| best.left);
-                if found.as_ref().is_ok_and(|found| found.left < left) || best.is_err() {
-                    best = found;
-                }
-                if best
-                    .as_ref()
-                    .is_ok_and(|best| best.left < WELL_BEGUN * alone)
-                {
-                    break;
-                }
-            }
-            best
-        })
-        .collect();
-    let mut found = Vec::new();
-    for (set, sketch) in sets.into_iter().zip(sketches) {
-        let label = label(candidates, screen, &set);
-        match sketch {
-            Ok(sketch) => {
-                let part = 100.0 * sketch.left / alone;
-                said(&format!(
-                    "  {label}: {part:.1} % left of the beginnings of windows"
-                ));
-                found.push((set, sketch));
-            }
-            Err(error) => said(&format!("  {label}: {error}")),
-        }
-    }
-    found.sort_by(|a, b| a.1.left.total_cmp(&b.1.left));
-    found
-}
-
-/// Sketches fitted in earnest, side by side.
-fn completed(
-    setting: &Setting<'_>,
-    fit: &Fit,
-    candidates: &[Candidate],
-    screen: &Screen,
-    sketches: Vec<(Set, Sketch)>,
-    said: &dyn Fn(&str),
-) -> Vec<Trial> {
-    let fits: Vec<(Set, Result<Fit, String>)> = sketches
-        .into_par_iter()
-        .map(|(set, sketch)| (set, setting.complete(sketch)))
-        .collect();
-    let mut trials = Vec::new();
-    for (set, new) in fits {
-        let label = label(candidates, screen, &set);
-        match new {
-            Ok(new) => {
-                let shapes: Vec<bool> = set
-                    .responses
-                    .iter()
-                    .flat_map(|r| screen.responses[*r].trials.iter().map(|t| t.is_shape))
-                    .collect();
-                let verdict = judge(fit, &new, fit.unknowns.len(), &shapes);
-                let outcome = verdict.as_ref().err().map_or("believed", String::as_str);
-                let (train, test) = (new.train.pooled, new.test.pooled);
-                said(&format!(
-                    "  {label}: {train:.2} noises are left in training, {test:.2} in test; {outcome}"
-                ));
-                trials.push(Trial {
-                    responses: set.responses,
-                    fit: new,
-                    verdict,
-                });
-            }
-            Err(error) => said(&format!("  {label}: {error}")),
-        }
-    }
-    trials
-}
-
-/// Candidates to be fitted together, and a parameter whose term they replace.
-struct Set {
-    responses: Vec<usize>,
-    deleted: Option<usize>,
-    sizes: Vec<f64>,
-}
-
-/// The pair that promises clearly more than the best single candidate, and for each term of
-/// the model that may go the pair that takes its place best. What repeats with an angle is not
-/// paired: of that there is so much that two of it are lucky.
-fn best_pairs(screen: &Screen, fit: &Fit, candidates: &[Candidate], ranked: &[usize]) -> Vec<Set> {
-    let best = ranked.first().map_or(0.0, |r| screen.responses[*r].gain);
-    let alone = screen.left(&[]).0;
-    // What is nothing alone may be half of a pair: friction of two kinds in place of a third.
-    let few: Vec<usize> = (0..screen.responses.len())
-        .filter(|r| {
-            let response = &screen.responses[*r];
-            candidates[response.candidate].order.is_none() && response.visible > rule::OWN_PART
-        })
-        .collect();
-    let mut screens = vec![(None, screen.clone())];
-    for (place, unknown) in fit.unknowns.iter().enumerate() {
-        let value = fit.train.estimate.theta[place];
-        let near = unknown
-            .prior
-            .is_some_and(|(mean, sd)| mean.abs() < rule::PRIOR_REACH * sd);
-        if matches!(unknown.what, What::Parameter(_)) && near {
-            screens.extend(
-                screen
-                    .without(place, value)
-                    .map(|screen| (Some(place), screen)),
-            );
-        }
-    }
-    let best_of = |deleted: Option<usize>, screen: &Screen| {
-        let mut found: Option<(f64, Set)> = None;
-        for (number, a) in few.iter().enumerate() {
-            for b in &few[number + 1..] {
-                let responses = vec![*a, *b];
-                let (left, sizes) = screen.left(&responses);
-                let gain = alone - left;
-                let better = found.as_ref().is_none_or(|(g, _)| gain > *g);
-                if sizes.iter().all(|v| *v != 0.0) && better {
-                    let set = Set {
-                        responses,
-                        deleted,
-                        sizes,
-                    };
-                    found = Some((gain, set));
-                }
-            }
-        }
-        // What replaces a term is far from where it was linearised: it is not held to a promise.
-        let promising = |gain: f64| deleted.is_some() || gain > rule::PAIR_PROMISE * best;
-        found
-            .filter(|(gain, _)| promising(*gain))
-            .map(|(_, set)| set)
-    };
-    screens
-        .iter()
-        .filter_map(|(deleted, screen)| best_of(*deleted, screen))
-        .collect()
-}
-
-/// A sketch with some candidates more.
-fn sketch_with(
-    setting: &Setting<'_>,
-    fit: &Fit,
-    candidates: &[Candidate],
-    responses: &[&Response],
-    (deleted, sizes): (Option<usize>, Vec<f64>),
-) -> Result<Sketch, String> {
-    let (mut text, mut linear) = (fit.text.clone(), fit.linear.clone());
-    let mut unknowns = fit.unknowns.clone();
-    // Parameters and sensors that took up what the effect does begin anew.
-    let known = unknowns.iter().zip(&fit.train.estimate.theta);
-    let mut theta: Vec<f64> = known
-        .map(|(unknown, value)| unknown.prior.map_or(*value, |(mean, _)| mean))
-        .collect();
-    if let Some(place) = deleted {
-        unknowns[place].bounds = (0.0, 0.0);
-        theta[place] = 0.0;
-    }
-    let mut sizes = sizes.iter();
-    for response in responses {
-        let candidate = &candidates[response.candidate];
-        let mut values = Vec::new();
-        for trial in &response.trials {
-            let size = if trial.is_shape {
-                trial.unknown.start
-            } else {
-                sizes.next().copied().unwrap_or(0.0)
-            };
-            let size = if size == 0.0 {
-                trial.unknown.scale
-            } else {
-                size
-            };
-            let size = trial.unknown.admissible(size);
-            values.push(if matches!(trial.unknown.what, What::Inverse(_)) {
-                1.0 / size
-            } else {
-                size
-            });
-            let mut unknown = trial.unknown.clone();
-            unknown.scale = size.abs().max(1e-3 * unknown.scale);
-            unknowns.push(unknown);
-            theta.push(size);
-        }
-        text = candidate
-            .written(&text, &setting.path, &values, "")
-            .map_err(|e| e.to_string())?;
-        // What is linear between switches itself belongs to the linear part.
-        if let Ok(extended) = candidate.written(&linear, &setting.path, &values, "")
-            && is_linear(&extended, &setting.path, setting.order)
-        {
-            linear = extended;
-        }
-    }
-    setting.sketch((text, linear), unknowns, &theta)
 }
 
 fn note_rejected(
@@ -556,25 +352,20 @@ fn accept(
     equivalent: Vec<Candidate>,
 ) {
     let before = found.best();
-    let mut first = before.unknowns.len();
-    let before_gap = before.test.pooled;
-    let gap = (before_gap, best.fit.test.pooled);
-    let shapes = vec![false; best.fit.unknowns.len() - first];
+    let gap = (before.test.pooled, best.fit.test.pooled);
     let evidence = best
         .verdict
         .clone()
-        .unwrap_or_else(|_| evidence(before, &best.fit, first, &shapes));
-    for response in &best.responses {
-        let response = &screen.responses[*response];
-        let unknowns = first..first + response.trials.len();
-        first = unknowns.end;
-        let candidate = candidates[response.candidate].clone();
+        .unwrap_or_else(|_| evidence(before, &best.fit, &best.own));
+    for (number, response) in best.responses.iter().enumerate() {
+        let own = best.own.iter().filter(|own| own.effect == number);
+        let candidate = candidates[screen.responses[*response].candidate].clone();
         found
             .rejected
             .retain(|known| known.candidate.label() != candidate.label());
         found.accepted.push(Accepted {
             candidate,
-            unknowns,
+            unknowns: own.map(|own| own.place).collect(),
             equivalent: equivalent.clone(),
             evidence: evidence.clone(),
             test_gap: gap,

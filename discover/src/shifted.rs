@@ -51,7 +51,8 @@ pub fn shifted(setting: &Setting<'_>, fit: &Fit) -> Vec<Shifted> {
     found
 }
 
-fn entry(setting: &Setting<'_>, fit: &Fit, place: usize, off: f64) -> Option<Shifted> {
+/// What is off, in the units that it is known in.
+pub(crate) fn entry(setting: &Setting<'_>, fit: &Fit, place: usize, off: f64) -> Option<Shifted> {
     let (value, sd) = (fit.train.estimate.theta[place], fit.sd[place]);
     let channel = |place: usize| &setting.dataset.channels[place];
     let sensor = |effect, place: usize, name: &str, unit: &str| Shifted {

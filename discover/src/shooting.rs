@@ -32,8 +32,9 @@ pub struct Shooting<'a> {
     pub noise: &'a [f64],
     /// The unknowns.
     pub unknowns: &'a [Unknown],
-    /// Samples at a window's ends that delayed sensors may see from outside of it.
-    pub margin: usize,
+    /// Samples at a window's beginning and end that sensors which are late, or early, may see
+    /// from outside of it.
+    pub margin: (usize, usize),
     /// The range of each state, where initial states are estimated.
     pub ranges: Option<&'a [f64]>,
     /// The part of each window that is looked at, from its beginning.
@@ -175,8 +176,8 @@ impl<'a> Shooting<'a> {
     ) -> Vec<f64> {
         let channels = self.channels();
         let samples = seen.len() / channels;
-        let margin = self.margin.min(samples / 4);
-        let inside = margin..samples - margin;
+        let (begin, end) = self.margin;
+        let inside = begin.min(samples / 4)..samples - end.min(samples / 4);
         let pairs = seen.iter().zip(&window.measured).enumerate();
         pairs
             .map(|(place, (seen, measured))| {

@@ -113,6 +113,11 @@ fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
 /// Windows that are followed from another estimate's initial states, side by side.
 const CHAINS: usize = 2;
 
+/// One standard deviation of what is known of each state from the window before.
+pub fn spread(ranges: &[f64]) -> Vec<f64> {
+    ranges.iter().map(|range| rule::START_PRIOR * range).collect()
+}
+
 /// Initial states followed from window to window: each begins where the one before ended and
 /// is then fitted to its own samples. `before`: those at other unknowns, from which parts of
 /// the records may be followed side by side.
@@ -124,10 +129,7 @@ pub fn followed(
     horizons: &[f64],
     before: Option<&[Vec<f64>]>,
 ) -> (StartPrior, Vec<Vec<f64>>) {
-    let sd: Vec<f64> = ranges
-        .iter()
-        .map(|range| rule::START_PRIOR * range)
-        .collect();
+    let sd = spread(ranges);
     let count = shooting.windows.list.len();
     let chains = before.map_or(1, |_| CHAINS).min(count).max(1);
     let parts: Vec<std::ops::Range<usize>> = (0..chains)

@@ -60,11 +60,7 @@ fn response(
         estimate,
         part,
     } = at;
-    let start: Vec<f64> = candidate
-        .parameters
-        .iter()
-        .map(|p| absent(p.inverse, p.shape))
-        .collect();
+    let start: Vec<f64> = candidate.parameters.iter().map(absent).collect();
     let text = candidate
         .written(&fit.text, &setting.path, &start, "")
         .map_err(|e| e.to_string())?;
@@ -94,7 +90,7 @@ fn response(
         let theta = |size: f64| {
             let mut theta = estimate.theta.clone();
             theta.extend(trials.iter().map(|trial| trial.unknown.start));
-            theta[nuisances + place] = size;
+            theta[nuisances + place] = trials[place].base + size;
             theta
         };
         // The size is found on the first, the middle and the last of the windows.

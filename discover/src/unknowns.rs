@@ -90,7 +90,7 @@ pub fn of_sensor(place: usize, channel: &Channel, step: f64) -> [Unknown; 3] {
         unknown(What::Gain(place), 1.0, gain),
         unknown(What::Bias(place), 0.0, bias),
         Unknown {
-            bounds: (-rule::LONGEST_DELAY * step, rule::LONGEST_DELAY * step),
+            bounds: (-rule::LONGEST_LEAD * step, rule::LONGEST_DELAY * step),
             ..unknown(What::Delay(place), 0.0, delay)
         },
     ]

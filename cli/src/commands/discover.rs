@@ -1,14 +1,14 @@
 //! `eomgen compare` and `eomgen discover`: a model and its measurements. What is compared and
 //! what is found is the library's.
 
-use std::io::IsTerminal;
 use std::path::Path;
 use std::time::Instant;
 
 use discover::dataset::{Dataset, read};
 use discover::fitting::{Fit, Setting};
 use discover::floor::{Floor, floor};
-use discover::search::{at_floor, null_fit, search};
+use discover::search::{null_fit, search};
+use discover::trials::at_floor;
 use discover::{catalogue, document, extend, labels, locate, report};
 use serde_json::{Value, json};
 
@@ -104,11 +104,9 @@ fn null(setting: &Setting<'_>, text: &str, seed: u64) -> Outcome<(Fit, Floor)> {
     Ok((fit, floor))
 }
 
-/// What is being done, on a terminal.
+/// What is being done.
 fn progress(text: &str) {
-    if std::io::stderr().is_terminal() {
-        warn(text);
-    }
+    warn(text);
 }
 
 fn write_json(path: &Path, document: &Value) -> Outcome {

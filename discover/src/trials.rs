@@ -1,0 +1,368 @@
+//! Candidates, alone or in pairs, fitted in earnest: those that screening promises most of, as
+//! far as they are worth it. Where they come from is [`crate::search`]'s, whether they are
+//! believed [`crate::judge`]'s.
+
+use rayon::prelude::*;
+
+use crate::candidates::Candidate;
+use crate::fitting::{Fit, Setting, Sketch};
+use crate::judge::{Evidence, Own, judge};
+use crate::plant::is_linear;
+use crate::rule;
+use crate::screen::Screen;
+use crate::unknowns::What;
+
+/// Parts of the size that screening promises at which a fit begins, one after the other.
+const SHORTENED: [f64; 3] = [1.0, 0.3, 0.1];
+
+/// A fit that leaves less than this part of the squares has begun well.
+const WELL_BEGUN: f64 = 0.2;
+
+/// A set of candidates fitted in earnest.
+pub struct Trial {
+    /// Their places among the screened.
+    pub responses: Vec<usize>,
+    /// Their unknowns.
+    pub own: Vec<Own>,
+    /// The fit with them.
+    pub fit: Fit,
+    /// Whether they are believed.
+    pub verdict: Result<Evidence, String>,
+}
+
+/// Candidates to be fitted together, and a parameter whose term they replace.
+#[derive(Clone)]
+struct Set {
+    responses: Vec<usize>,
+    deleted: Option<usize>,
+    sizes: Vec<f64>,
+}
+
+/// What a round of fits works with.
+pub struct Round<'r> {
+    /// The dataset.
+    pub setting: &'r Setting<'r>,
+    /// The fit to be bettered.
+    pub fit: &'r Fit,
+    /// The candidates.
+    pub candidates: &'r [Candidate],
+    /// What they promise.
+    pub screen: &'r Screen,
+    /// Whether that was seen over whole windows.
+    pub is_whole: bool,
+    /// What a right model would leave, in noises.
+    pub floor: f64,
+    /// Is told what is done.
+    pub said: &'r (dyn Fn(&str) + Sync),
+}
+
+impl Round<'_> {
+    /// The best candidates alone and those that look like them.
+    pub fn singles(&self) -> Vec<Trial> {
+        let ranked = self.ranked();
+        if let Some(best) = ranked.first() {
+            let (count, best) = (ranked.len(), self.candidate(*best).label());
+            (self.said)(&format!("{count} promise enough to be fitted, {best} most"));
+        }
+        let mut sets: Vec<Set> = Vec::new();
+        for response in &ranked {
+            let of = self.candidate(*response);
+            // Of the orders of one effect at one place the two best are enough.
+            let same = sets.iter().flat_map(|set| &set.responses).filter(|known| {
+                let known = self.candidate(**known);
+                known.effect == of.effect && known.on == of.on
+            });
+            if same.count() < 2 && sets.len() < rule::MOST_SKETCHES {
+                sets.push(Set {
+                    sizes: self.screen.left(&[*response]).1,
+                    responses: vec![*response],
+                    deleted: None,
+                });
+            }
+        }
+        let mut sketches = self.sketched(sets);
+        let mut trials: Vec<Trial> = Vec::new();
+        let (mut fits, mut best) = (0, f64::INFINITY);
+        while !sketches.is_empty() && fits < rule::MOST_FITS {
+            // Once one is believed, only what is nearly as good or looks like it may be another
+            // answer; until then whoever is next.
+            let believed = trials.iter().find(|trial| trial.verdict.is_ok());
+            if believed.is_none() {
+                best = sketches[0].1.left;
+            }
+            let count = sketches.len().min(rule::FITS_AT_ONCE);
+            let next: Vec<(Set, Sketch)> = sketches.drain(..count).collect();
+            let is_rival = |(set, sketch): &(Set, Sketch)| {
+                let near = sketch.left < rule::RIVAL * best;
+                match believed {
+                    Some(trial) => {
+                        let alike = self.screen.similarity(trial.responses[0], set.responses[0]);
+                        alike > rule::ALIKE || (near && !at_floor(&trial.fit, self.floor))
+                    }
+                    None => near,
+                }
+            };
+            let wanted: Vec<(Set, Sketch)> = next.into_iter().filter(is_rival).collect();
+            fits += wanted.len();
+            trials.extend(self.completed(wanted));
+        }
+        trials
+    }
+
+    /// Candidates that promise enough, the best first.
+    fn ranked(&self) -> Vec<usize> {
+        let screen = self.screen;
+        let alone = screen.left(&[]).0;
+        let promise = match alone > rule::FAR * rule::FAR * screen.numbers {
+            true => rule::PROMISE_FAR,
+            false => rule::PROMISE,
+        };
+        let enough = |r: &usize| {
+            let response = &screen.responses[*r];
+            response.visible > rule::OWN_PART && response.gain > promise * alone
+        };
+        let mut ranked: Vec<usize> = (0..screen.responses.len()).filter(enough).collect();
+        let gain = |r: &usize| screen.responses[*r].gain;
+        ranked.sort_by(|a, b| gain(b).total_cmp(&gain(a)));
+        ranked
+    }
+
+    fn candidate(&self, response: usize) -> &Candidate {
+        &self.candidates[self.screen.responses[response].candidate]
+    }
+
+    /// The names of a set's candidates.
+    fn label(&self, set: &Set) -> String {
+        let labels = set.responses.iter().map(|r| self.candidate(*r).label());
+        labels.collect::<Vec<_>>().join(" and ")
+    }
+
+    /// Sets of candidates begun, side by side; the best first.
+    fn sketched(&self, sets: Vec<Set>) -> Vec<(Set, Sketch)> {
+        let alone = self.screen.left(&[]).0;
+        let sketches: Vec<Result<Sketch, String>> =
+            sets.par_iter().map(|set| self.best_sketch(set, alone)).collect();
+        let mut found = Vec::new();
+        for (set, sketch) in sets.into_iter().zip(sketches) {
+            let label = self.label(&set);
+            match sketch {
+                Ok(sketch) => {
+                    let part = 100.0 * sketch.left / alone;
+                    let of = if self.is_whole { "squares" } else { "beginnings of windows" };
+                    (self.said)(&format!("  {label}: {part:.1} % left of the {of}"));
+                    found.push((set, sketch));
+                }
+                Err(error) => (self.said)(&format!("  {label}: {error}")),
+            }
+        }
+        found.sort_by(|a, b| a.1.left.total_cmp(&b.1.left));
+        found
+    }
+
+    /// What a straight line promises may be far beyond where it leads: shorter steps are tried
+    /// too.
+    fn best_sketch(&self, set: &Set, alone: f64) -> Result<Sketch, String> {
+        if self.is_whole && set.deleted.is_none() {
+            return self.sketch(set, &set.sizes);
+        }
+        let mut best: Result<Sketch, String> = Err("no motion can be followed".to_owned());
+        for part in SHORTENED {
+            let sizes: Vec<f64> = set.sizes.iter().map(|size| part * size).collect();
+            let found = self.sketch(set, &sizes);
+            let left = best.as_ref().map_or(f64::INFINITY, |best| best.left);
+            if found.as_ref().is_ok_and(|found| found.left < left) || best.is_err() {
+                best = found;
+            }
+            let begun = |best: &Sketch| best.left < WELL_BEGUN * alone;
+            if best.as_ref().is_ok_and(begun) {
+                break;
+            }
+        }
+        best
+    }
+
+    /// Sketches fitted in earnest, side by side.
+    fn completed(&self, sketches: Vec<(Set, Sketch)>) -> Vec<Trial> {
+        let fits: Vec<(Set, Result<Fit, String>)> = sketches
+            .into_par_iter()
+            .map(|(set, sketch)| (set, self.setting.complete(sketch)))
+            .collect();
+        let mut trials = Vec::new();
+        for (set, new) in fits {
+            let label = self.label(&set);
+            match new {
+                Ok(new) => {
+                    let own = self.own(&set);
+                    let verdict = judge(self.fit, &new, &own);
+                    let outcome = verdict.as_ref().err().map_or("believed", String::as_str);
+                    let (train, test) = (new.train.pooled, new.test.pooled);
+                    (self.said)(&format!(
+                        "  {label}: {train:.2} noises are left in training, {test:.2} in test; {outcome}"
+                    ));
+                    trials.push(Trial {
+                        responses: set.responses,
+                        own,
+                        fit: new,
+                        verdict,
+                    });
+                }
+                Err(error) => (self.said)(&format!("  {label}: {error}")),
+            }
+        }
+        trials
+    }
+
+    /// The unknowns of a set's effects in a fit with them.
+    fn own(&self, set: &Set) -> Vec<Own> {
+        let mut next = self.fit.unknowns.len();
+        let mut own = Vec::new();
+        for (effect, response) in set.responses.iter().enumerate() {
+            let response = &self.screen.responses[*response];
+            if let Some(place) = response.released
+                && let Some((mean, sd)) = self.fit.unknowns[place].prior
+            {
+                own.push(Own {
+                    place,
+                    effect,
+                    base: mean,
+                    is_shape: false,
+                    prior: Some(sd),
+                });
+            }
+            for trial in &response.trials {
+                own.push(Own {
+                    place: next,
+                    effect,
+                    base: trial.base,
+                    is_shape: trial.is_shape,
+                    prior: None,
+                });
+                next += 1;
+            }
+        }
+        own
+    }
+
+    /// Pairs, and pairs in place of a term of the model.
+    pub fn pairs(&self) -> Vec<Trial> {
+        let ranked = self.ranked();
+        self.completed(self.sketched(self.best_pairs(&ranked)))
+    }
+
+    /// The pairs that promise clearly more than the best single candidate, and for each term of
+    /// the model that may go the pair that takes its place best. What repeats with an angle is
+    /// not paired: of that there is so much that two of it are lucky.
+    fn best_pairs(&self, ranked: &[usize]) -> Vec<Set> {
+        let screen = self.screen;
+        let best = ranked.first().map_or(0.0, |r| screen.responses[*r].gain);
+        let alone = screen.left(&[]).0;
+        // What is nothing alone may be half of a pair: friction of two kinds in place of a third.
+        let few: Vec<usize> = (0..screen.responses.len())
+            .filter(|r| {
+                let response = &screen.responses[*r];
+                self.candidate(*r).order.is_none() && response.visible > rule::OWN_PART
+            })
+            .collect();
+        let best_of = |deleted: Option<usize>, screen: &Screen| {
+            let mut found: Option<(f64, Set)> = None;
+            for (number, a) in few.iter().enumerate() {
+                for b in &few[number + 1..] {
+                    let responses = vec![*a, *b];
+                    let (left, sizes) = screen.left(&responses);
+                    let gain = alone - left;
+                    let better = found.as_ref().is_none_or(|(g, _)| gain > *g);
+                    if sizes.iter().all(|v| *v != 0.0) && better {
+                        let set = Set {
+                            responses,
+                            deleted,
+                            sizes,
+                        };
+                        found = Some((gain, set));
+                    }
+                }
+            }
+            // What replaces a term is far from where it was linearised: it is not held to a
+            // promise.
+            let promising = |gain: f64| deleted.is_some() || gain > rule::PAIR_PROMISE * best;
+            found.filter(|(gain, _)| promising(*gain)).map(|(_, set)| set)
+        };
+        let mut sets: Vec<Set> = best_of(None, screen).into_iter().collect();
+        for (place, unknown) in self.fit.unknowns.iter().enumerate() {
+            let value = self.fit.train.estimate.theta[place];
+            let near = unknown
+                .prior
+                .is_some_and(|(mean, sd)| mean.abs() < rule::PRIOR_REACH * sd);
+            if matches!(unknown.what, What::Parameter(_))
+                && near
+                && let Some(screen) = screen.without(place, value)
+            {
+                sets.extend(best_of(Some(place), &screen));
+            }
+        }
+        sets
+    }
+
+    /// A sketch with a set's candidates, so far from absent.
+    fn sketch(&self, set: &Set, sizes: &[f64]) -> Result<Sketch, String> {
+        let (setting, fit) = (self.setting, self.fit);
+        let (mut text, mut linear) = (fit.text.clone(), fit.linear.clone());
+        let mut unknowns = fit.unknowns.clone();
+        // Parameters and sensors that took up what the effect does begin anew.
+        let known = unknowns.iter().zip(&fit.train.estimate.theta);
+        let mut theta: Vec<f64> = known
+            .map(|(unknown, value)| unknown.prior.map_or(*value, |(mean, _)| mean))
+            .collect();
+        if let Some(place) = set.deleted {
+            unknowns[place].bounds = (0.0, 0.0);
+            theta[place] = 0.0;
+        }
+        let mut sizes = sizes.iter().copied();
+        for response in &set.responses {
+            let response = &self.screen.responses[*response];
+            if let Some(place) = response.released {
+                let size = sizes.next().unwrap_or(0.0);
+                unknowns[place].prior = None;
+                theta[place] =
+                    unknowns[place].admissible(fit.train.estimate.theta[place] + size);
+                continue;
+            }
+            let candidate = &self.candidates[response.candidate];
+            let mut values = Vec::new();
+            for trial in &response.trials {
+                let size = match trial.is_shape {
+                    true => trial.unknown.start - trial.base,
+                    false => sizes.next().unwrap_or(0.0),
+                };
+                let size = if size == 0.0 { trial.unknown.scale } else { size };
+                let value = trial.unknown.admissible(trial.base + size);
+                values.push(match trial.unknown.what {
+                    What::Inverse(_) => 1.0 / value,
+                    _ => value,
+                });
+                let mut unknown = trial.unknown.clone();
+                unknown.scale = size.abs().max(1e-3 * unknown.scale);
+                unknowns.push(unknown);
+                theta.push(value);
+            }
+            text = candidate
+                .written(&text, &setting.path, &values, "")
+                .map_err(|e| e.to_string())?;
+            // What is linear between switches itself belongs to the linear part.
+            if let Ok(extended) = candidate.written(&linear, &setting.path, &values, "")
+                && is_linear(&extended, &setting.path, setting.order)
+            {
+                linear = extended;
+            }
+        }
+        if self.is_whole && set.deleted.is_none() {
+            let left = self.screen.left(&set.responses).0;
+            return setting.expected((text, linear), unknowns, theta, (fit, left));
+        }
+        setting.sketch((text, linear), unknowns, &theta)
+    }
+}
+
+/// Whether a fit leaves no more than a right model would.
+pub fn at_floor(fit: &Fit, floor: f64) -> bool {
+    fit.train.pooled.max(fit.test.pooled) < rule::AT_FLOOR * floor
+}
