@@ -124,7 +124,9 @@ impl Candidate {
         source: &str,
     ) -> Result<String, EditError> {
         let pairs = self.parameters.iter().zip(values);
-        let mut edits: Vec<Edit> = pairs.map(|(parameter, value)| parameter.edit(*value, source)).collect();
+        let mut edits: Vec<Edit> = pairs
+            .map(|(parameter, value)| parameter.edit(*value, source))
+            .collect();
         edits.extend(self.changes.iter().cloned());
         edit::apply(&Source::new(name, text), &edits)
     }

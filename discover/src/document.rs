@@ -74,7 +74,9 @@ pub fn discovered(
         let closed = |effect: &Accepted| effect.test_gap.0.powi(2) - effect.test_gap.1.powi(2);
         closed(b).total_cmp(&closed(a))
     });
-    let effects = order.iter().map(|effect| effect_entry(setting, after, effect));
+    let effects = order
+        .iter()
+        .map(|effect| effect_entry(setting, after, effect));
     let (not_testable, rejected): (Vec<&Rejected>, Vec<&Rejected>) = found
         .rejected
         .iter()

@@ -215,10 +215,10 @@ pub type Follow<'f> = dyn Fn(&[f64], Option<&[Vec<f64>]>) -> (StartPrior, Vec<Ve
 
 /// Estimates the unknowns from far away: for every trial of them the initial states are
 /// followed anew through the records, because those that were fitted at wrong unknowns hold
-/// on to what impacts folded.
+/// on to what impacts folded. It begins with the best of some.
 pub fn approach(
     shooting: &Shooting<'_>,
-    theta: &[f64],
+    begins: &[Vec<f64>],
     follow: &Follow<'_>,
     steps: usize,
 ) -> (StartPrior, Estimate) {
@@ -227,7 +227,9 @@ pub fn approach(
         let estimate = evaluated(shooting, &prior, theta, starts);
         (prior, estimate)
     };
-    let (mut prior, mut present) = at(theta.to_vec(), None);
+    let tried = begins.iter().map(|theta| at(theta.clone(), None));
+    let best = tried.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
+    let (mut prior, mut present) = best.unwrap_or_default();
     for _ in 0..steps {
         let level = level(shooting, &present);
         let linear = shooting.linear(&present.theta, &present.starts, level);

@@ -24,7 +24,11 @@ pub fn extended(
     let source = provenance(setting);
     let theta = &fit.train.estimate.theta;
     let mut text = text.to_owned();
-    let written = || accepted.iter().filter(|effect| effect.candidate.released.is_none());
+    let written = || {
+        accepted
+            .iter()
+            .filter(|effect| effect.candidate.released.is_none())
+    };
     for effect in written() {
         let values: Vec<f64> = effect
             .unknowns

@@ -28,6 +28,9 @@ pub const FIRST_PART: (f64, usize) = (0.25, 2);
 /// The most steps while unknowns are far away, and close by.
 const STEPS: (usize, usize) = (5, 4);
 
+/// The most further steps over beginnings of windows before whole ones are looked at.
+const FURTHER_STEPS: usize = 12;
+
 /// Steps of a sketch where initial states are read from the record.
 const SKETCHING_STEPS: usize = 3;
 
@@ -250,11 +253,12 @@ impl<'d> Setting<'d> {
         unknowns: Vec<Unknown>,
         theta: &[f64],
     ) -> Result<Fit, String> {
-        self.complete(self.sketch(texts, unknowns, theta)?)
+        self.complete(self.sketch(texts, unknowns, &[theta.to_vec()])?)
     }
 
     /// Fits the model's unknowns to the beginnings of the windows, which tells good ones from
-    /// bad ones at a part of the cost. `texts`: the specification's, and its linear part's.
+    /// bad ones at a part of the cost. `texts`: the specification's, and its linear part's;
+    /// `begins`: unknowns to begin with, of which the best is taken.
     ///
     /// # Errors
     /// As for [`Setting::fit`].
@@ -262,7 +266,7 @@ impl<'d> Setting<'d> {
         &self,
         (text, linear): (String, String),
         unknowns: Vec<Unknown>,
-        theta: &[f64],
+        begins: &[Vec<f64>],
     ) -> Result<Sketch, String> {
         let plant = self.plant(&text, Some(&linear))?;
         let ranges = self.ranges(&plant);
@@ -273,8 +277,9 @@ impl<'d> Setting<'d> {
                 ..shooting
             };
             let follow = self.follow(&shooting, &ranges, FIRST_PART.1);
-            estimate::approach(&shooting, theta, &follow, STEPS.0)
+            estimate::approach(&shooting, begins, &follow, STEPS.0)
         } else {
+            let theta = begins.first().map_or(&[][..], Vec::as_slice);
             let (prior, starts) = self.starts(&shooting, theta, &ranges, &HORIZONS, None)?;
             let found = estimate::estimate(&shooting, &prior, theta, &starts, SKETCHING_STEPS);
             (prior, found)
@@ -307,7 +312,10 @@ impl<'d> Setting<'d> {
         let plant = self.plant(&text, Some(&linear))?;
         let ranges = self.ranges(&plant);
         let mapped = |states: &[Vec<f64>]| -> Vec<Vec<f64>> {
-            states.iter().map(|state| mapped(fit, &plant, state)).collect()
+            states
+                .iter()
+                .map(|state| mapped(fit, &plant, state))
+                .collect()
         };
         let prior = StartPrior {
             mean: mapped(&fit.prior.mean),
@@ -363,8 +371,15 @@ impl<'d> Setting<'d> {
         let begins_whole = whole.is_some();
         let (mut prior, near) = match whole {
             None if self.fits_starts() => {
+                // As far as the beginnings lead; longer windows are folded until it is near.
+                let first = Shooting {
+                    part: FIRST_PART.0,
+                    ..all
+                };
+                let follow = self.follow(&first, &ranges, FIRST_PART.1);
+                let (_, begun) = estimate::approach(&first, &[theta], &follow, FURTHER_STEPS);
                 let follow = self.follow(&all, &ranges, HORIZONS.len());
-                estimate::approach(&all, &theta, &follow, STEPS.0)
+                estimate::approach(&all, &[begun.theta], &follow, STEPS.0)
             }
             whole => {
                 let prior = whole.unwrap_or_default();
@@ -447,6 +462,13 @@ impl<'d> Setting<'d> {
             if new.squares[place] < found.squares[place] {
                 start.clone_from(&new.starts[place]);
                 prior.mean[place].clone_from(&anew.mean[place]);
+            }
+        }
+        // What is known of a window from the one before holds at these unknowns, not at others.
+        let carried = starts::carried(shooting, &found.theta, &starts);
+        for (mean, carried) in prior.mean.iter_mut().zip(carried) {
+            if let Some(carried) = carried {
+                *mean = carried;
             }
         }
         let found = estimate::evaluated(shooting, &prior, found.theta, starts);

@@ -122,7 +122,9 @@ fn size(before: &Fit, after: &Fit) -> f64 {
 fn significance(fit: &Fit, own: &[Own]) -> f64 {
     let effects = own.iter().map(|own| own.effect + 1).max().unwrap_or(0);
     let of = |effect: usize| {
-        let scaling = own.iter().filter(|own| own.effect == effect && !own.is_shape);
+        let scaling = own
+            .iter()
+            .filter(|own| own.effect == effect && !own.is_shape);
         let ratios =
             scaling.map(|own| (fit.train.estimate.theta[own.place] - own.base) / fit.sd[own.place]);
         ratios.map(|t| t * t).sum::<f64>().sqrt()

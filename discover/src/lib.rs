@@ -10,7 +10,7 @@
 //! [`catalogue`], [`sites`] and [`candidates`] (what may be missing), [`response`] with
 //! [`mod@driven`] and [`mod@tried`] (what each candidate does), [`mod@screen`] (what it
 //! promises), [`mod@judge`] by [`rule`] (what is believed), [`mod@shifted`] (what is off by more than it may),
-//! [`trials`] (fits in earnest), [`mod@search`] (all of it in turn);
+//! [`trials`] (fits in earnest), [`thinned`] (what is needed no more), [`mod@search`] (all of it in turn);
 //! [`extend`] (the specification changed), [`document`] and [`report`] (for programs and for
 //! people).
 
@@ -42,6 +42,7 @@ pub mod shooting;
 pub mod sites;
 pub mod smooth;
 pub mod starts;
+pub mod thinned;
 pub mod trials;
 pub mod tried;
 pub mod unknowns;

@@ -44,9 +44,9 @@ pub const INFORMATION: f64 = 10.0;
 /// And if its parameters are this many standard deviations, correlated residuals allowed for.
 pub const SIGNIFICANCE: f64 = 5.0;
 
-/// And if what it does to the channel that shows it best is this many noises: what is
-/// smaller may be anything that repeats by chance.
-pub const SIZE: f64 = 2.0;
+/// And if what it does to the channel that shows it best, and nothing else can do, is this many
+/// noises: what is smaller may be anything that repeats by chance.
+pub const SIZE: f64 = 1.0;
 
 /// Nothing is left to be found where the gap is within this factor of the floor.
 pub const AT_FLOOR: f64 = 1.1;

@@ -95,9 +95,9 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate], part: 
     for (place, unknown) in fit.unknowns.iter().enumerate() {
         let value = estimate.theta[place];
         bounds.push((unknown.bounds.0 - value, unknown.bounds.1 - value));
-        let prior = unknown
-            .prior
-            .map_or((0.0, 0.0), |(mean, sd)| (fit.prior_weight / (sd * sd), value - mean));
+        let prior = unknown.prior.map_or((0.0, 0.0), |(mean, sd)| {
+            (fit.prior_weight / (sd * sd), value - mean)
+        });
         add_prior(&mut products, place, prior);
         priors.push(prior);
     }
@@ -214,7 +214,11 @@ impl Screen {
             let response = &self.responses[*response];
             match response.released {
                 Some(place) => vec![x[place]],
-                None => added.by_ref().take(response.columns.len()).copied().collect(),
+                None => added
+                    .by_ref()
+                    .take(response.columns.len())
+                    .copied()
+                    .collect(),
             }
         });
         let sizes = sizes.collect();
@@ -288,7 +292,9 @@ impl Screen {
         a: &DVector<f64>,
         b: &DVector<f64>,
     ) -> f64 {
-        let places: Vec<usize> = (0..self.nuisances).filter(|p| !released.contains(p)).collect();
+        let places: Vec<usize> = (0..self.nuisances)
+            .filter(|p| !released.contains(p))
+            .collect();
         let n = places.len();
         let whole = product(products, a, b);
         let cross = |v: &DVector<f64>| (products * v).select_rows(&places);

@@ -10,6 +10,7 @@ use crate::judge::{Evidence, evidence};
 use crate::rule;
 use crate::screen::{Screen, screen};
 use crate::sites::sites;
+use crate::thinned::thin;
 use crate::trials::{Round, Trial, at_floor};
 use crate::unknowns::{Unknown, What, of_null_model};
 
@@ -114,6 +115,7 @@ pub fn search(
         let equivalent = indistinct(&best, &trials, &screen);
         let equivalent = equivalent.map(|place| candidates[place].clone()).collect();
         accept(&mut found, &candidates, &screen, best, equivalent);
+        thin(setting, &mut found, said);
     }
     Ok(found)
 }
@@ -142,7 +144,10 @@ fn round(
             true => screened(setting, fit, (effects, *part), floor, said),
             false => {
                 let shifts = shifts(fit);
-                said(&format!("screening {} parameters of the model", shifts.len()));
+                said(&format!(
+                    "screening {} parameters of the model",
+                    shifts.len()
+                ));
                 let screen = screen(setting, fit, &shifts, *part);
                 (shifts, screen)
             }
@@ -186,7 +191,10 @@ fn shifts(fit: &Fit) -> Vec<Candidate> {
 
 /// Declared parameters and sensors that may be off by more than their priors allow.
 fn released(setting: &Setting<'_>, fit: &Fit) -> Vec<Candidate> {
-    let unknowns = fit.unknowns.iter().filter(|unknown| unknown.prior.is_some());
+    let unknowns = fit
+        .unknowns
+        .iter()
+        .filter(|unknown| unknown.prior.is_some());
     let candidate = |unknown: &Unknown| {
         let (effect, on, says, experiment) = match &unknown.what {
             What::Parameter(name) | What::Inverse(name) => (

@@ -1,6 +1,7 @@
 //! Where the windows' initial states come from: followed through the record from window to
 //! window, or read from a record smoothed without delay.
 
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::crew::Crew;
@@ -90,23 +91,24 @@ pub fn first_state(
     state
 }
 
-/// The line through a column's first samples at the first time: value and slope.
+/// The parabola through a column's first samples at the first time: value and slope. A line
+/// would show the slope in their middle, and what is late by that looks like a late sensor.
 fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
-    let points = times
-        .iter()
-        .zip(column)
-        .filter(|(_, v)| v.is_finite())
-        .take(FIRST_SAMPLES);
-    let points: Vec<(f64, f64)> = points.map(|(t, v)| (t - times[0], *v)).collect();
-    let n = points.len() as f64;
-    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
-    let (t, v) = (mean(|p| p.0), mean(|p| p.1));
-    let spread: f64 = points.iter().map(|p| (p.0 - t).powi(2)).sum();
-    let slope = points.iter().map(|p| (p.0 - t) * (p.1 - v)).sum::<f64>() / spread;
-    if slope.is_finite() {
-        (v - slope * t, slope)
-    } else {
-        (0.0, 0.0)
+    let points: Vec<(f64, f64)> = (times.iter().zip(column))
+        .filter(|(_, value)| value.is_finite())
+        .take(FIRST_SAMPLES)
+        .map(|(t, value)| (t - times[0], *value))
+        .collect();
+    let Some(span) = points.last().map(|(t, _)| *t).filter(|span| *span > 0.0) else {
+        return (0.0, 0.0);
+    };
+    let powers = DMatrix::from_fn(points.len(), 3, |row, power| {
+        (points[row].0 / span).powi(power as i32)
+    });
+    let values = DVector::from_fn(points.len(), |row, _| points[row].1);
+    match powers.svd(true, true).solve(&values, 1e-12) {
+        Ok(fitted) => (fitted[0], fitted[1] / span),
+        Err(_) => (0.0, 0.0),
     }
 }
 
@@ -115,7 +117,10 @@ const CHAINS: usize = 2;
 
 /// One standard deviation of what is known of each state from the window before.
 pub fn spread(ranges: &[f64]) -> Vec<f64> {
-    ranges.iter().map(|range| rule::START_PRIOR * range).collect()
+    ranges
+        .iter()
+        .map(|range| rule::START_PRIOR * range)
+        .collect()
 }
 
 /// Initial states followed from window to window: each begins where the one before ended and
@@ -147,6 +152,32 @@ pub fn followed(
         .collect();
     let (mean, starts) = followed.into_iter().flatten().unzip();
     (StartPrior { mean, sd }, starts)
+}
+
+/// Where each window's motion from these initial states leaves the next window that follows
+/// it; nothing for the first windows of records.
+pub fn carried(
+    shooting: &Shooting<'_>,
+    theta: &[f64],
+    starts: &[Vec<f64>],
+) -> Vec<Option<Vec<f64>>> {
+    let list = &shooting.windows.list;
+    let size = list.len().div_ceil(CHAINS).max(1);
+    let places: Vec<usize> = (0..list.len()).collect();
+    let parts: Vec<Vec<Option<Vec<f64>>>> = places
+        .par_chunks(size)
+        .map(|places| {
+            let mut crew = Crew::frozen(shooting, theta, 1.0);
+            let mut of = |place: usize| {
+                let before = place.checked_sub(1)?;
+                list[place].follows?;
+                crew.as_mut()?
+                    .carried(before, &starts[before], list[place].times[0])
+            };
+            places.iter().map(|place| of(*place)).collect()
+        })
+        .collect();
+    parts.into_iter().flatten().collect()
 }
 
 /// Some windows, one after the other: what is known of each initial state before, and the

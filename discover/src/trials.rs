@@ -10,13 +10,12 @@ use crate::judge::{Evidence, Own, judge};
 use crate::plant::is_linear;
 use crate::rule;
 use crate::screen::Screen;
-use crate::unknowns::What;
+use crate::unknowns::{Unknown, What};
 
-/// Parts of the size that screening promises at which a fit begins, one after the other.
-const SHORTENED: [f64; 3] = [1.0, 0.3, 0.1];
-
-/// A fit that leaves less than this part of the squares has begun well.
-const WELL_BEGUN: f64 = 0.2;
+/// Parts of the size that screening promises among which a fit begins with the best: a straight
+/// line leads far beyond where impacts fold the outputs, and not far enough where an effect
+/// that grows does less and less.
+const PARTS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
 
 /// A set of candidates fitted in earnest.
 pub struct Trial {
@@ -141,14 +140,18 @@ impl Round<'_> {
     fn sketched(&self, sets: Vec<Set>) -> Vec<(Set, Sketch)> {
         let alone = self.screen.left(&[]).0;
         let sketches: Vec<Result<Sketch, String>> =
-            sets.par_iter().map(|set| self.best_sketch(set, alone)).collect();
+            sets.par_iter().map(|set| self.sketch(set)).collect();
         let mut found = Vec::new();
         for (set, sketch) in sets.into_iter().zip(sketches) {
             let label = self.label(&set);
             match sketch {
                 Ok(sketch) => {
                     let part = 100.0 * sketch.left / alone;
-                    let of = if self.is_whole { "squares" } else { "beginnings of windows" };
+                    let of = if self.is_whole {
+                        "squares"
+                    } else {
+                        "beginnings of windows"
+                    };
                     (self.said)(&format!("  {label}: {part:.1} % left of the {of}"));
                     found.push((set, sketch));
                 }
@@ -157,28 +160,6 @@ impl Round<'_> {
         }
         found.sort_by(|a, b| a.1.left.total_cmp(&b.1.left));
         found
-    }
-
-    /// What a straight line promises may be far beyond where it leads: shorter steps are tried
-    /// too.
-    fn best_sketch(&self, set: &Set, alone: f64) -> Result<Sketch, String> {
-        if self.is_whole && set.deleted.is_none() {
-            return self.sketch(set, &set.sizes);
-        }
-        let mut best: Result<Sketch, String> = Err("no motion can be followed".to_owned());
-        for part in SHORTENED {
-            let sizes: Vec<f64> = set.sizes.iter().map(|size| part * size).collect();
-            let found = self.sketch(set, &sizes);
-            let left = best.as_ref().map_or(f64::INFINITY, |best| best.left);
-            if found.as_ref().is_ok_and(|found| found.left < left) || best.is_err() {
-                best = found;
-            }
-            let begun = |best: &Sketch| best.left < WELL_BEGUN * alone;
-            if best.as_ref().is_ok_and(begun) {
-                break;
-            }
-        }
-        best
     }
 
     /// Sketches fitted in earnest, side by side.
@@ -284,7 +265,9 @@ impl Round<'_> {
             // What replaces a term is far from where it was linearised: it is not held to a
             // promise.
             let promising = |gain: f64| deleted.is_some() || gain > rule::PAIR_PROMISE * best;
-            found.filter(|(gain, _)| promising(*gain)).map(|(_, set)| set)
+            found
+                .filter(|(gain, _)| promising(*gain))
+                .map(|(_, set)| set)
         };
         let mut sets: Vec<Set> = best_of(None, screen).into_iter().collect();
         for (place, unknown) in self.fit.unknowns.iter().enumerate() {
@@ -302,8 +285,25 @@ impl Round<'_> {
         sets
     }
 
-    /// A sketch with a set's candidates, so far from absent.
-    fn sketch(&self, set: &Set, sizes: &[f64]) -> Result<Sketch, String> {
+    /// A sketch with a set's candidates.
+    fn sketch(&self, set: &Set) -> Result<Sketch, String> {
+        let (setting, fit) = (self.setting, self.fit);
+        if self.is_whole && set.deleted.is_none() {
+            let (texts, unknowns, theta) = self.extended(set, 1.0)?;
+            let left = self.screen.left(&set.responses).0;
+            return setting.expected(texts, unknowns, theta, (fit, left));
+        }
+        let (texts, unknowns, first) = self.extended(set, PARTS[0])?;
+        let mut begins = vec![first];
+        for part in &PARTS[1..] {
+            begins.push(self.extended(set, *part)?.2);
+        }
+        setting.sketch(texts, unknowns, &begins)
+    }
+
+    /// The specification and its linear part with a set's candidates, the unknowns and their
+    /// values, so much of the promised sizes from absent.
+    fn extended(&self, set: &Set, part: f64) -> Result<Extended, String> {
         let (setting, fit) = (self.setting, self.fit);
         let (mut text, mut linear) = (fit.text.clone(), fit.linear.clone());
         let mut unknowns = fit.unknowns.clone();
@@ -316,14 +316,13 @@ impl Round<'_> {
             unknowns[place].bounds = (0.0, 0.0);
             theta[place] = 0.0;
         }
-        let mut sizes = sizes.iter().copied();
+        let mut sizes = set.sizes.iter().map(|size| part * size);
         for response in &set.responses {
             let response = &self.screen.responses[*response];
             if let Some(place) = response.released {
                 let size = sizes.next().unwrap_or(0.0);
                 unknowns[place].prior = None;
-                theta[place] =
-                    unknowns[place].admissible(fit.train.estimate.theta[place] + size);
+                theta[place] = unknowns[place].admissible(fit.train.estimate.theta[place] + size);
                 continue;
             }
             let candidate = &self.candidates[response.candidate];
@@ -333,7 +332,11 @@ impl Round<'_> {
                     true => trial.unknown.start - trial.base,
                     false => sizes.next().unwrap_or(0.0),
                 };
-                let size = if size == 0.0 { trial.unknown.scale } else { size };
+                let size = if size == 0.0 {
+                    part * trial.unknown.scale
+                } else {
+                    size
+                };
                 let value = trial.unknown.admissible(trial.base + size);
                 values.push(match trial.unknown.what {
                     What::Inverse(_) => 1.0 / value,
@@ -354,13 +357,12 @@ impl Round<'_> {
                 linear = extended;
             }
         }
-        if self.is_whole && set.deleted.is_none() {
-            let left = self.screen.left(&set.responses).0;
-            return setting.expected((text, linear), unknowns, theta, (fit, left));
-        }
-        setting.sketch((text, linear), unknowns, &theta)
+        Ok(((text, linear), unknowns, theta))
     }
 }
+
+/// The texts of a specification and its linear part, unknowns, and their values.
+type Extended = ((String, String), Vec<Unknown>, Vec<f64>);
 
 /// Whether a fit leaves no more than a right model would.
 pub fn at_floor(fit: &Fit, floor: f64) -> bool {
