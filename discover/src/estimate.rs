@@ -12,6 +12,9 @@ use crate::shooting::{Residual, Shooting};
 /// A step that lowers the sum of squares by less than this part is the last.
 const SETTLED: f64 = 1e-3;
 
+/// The same for a step with all windows followed anew, which costs much more.
+const WORTH_A_STEP: f64 = 0.02;
+
 /// Parts of a step that are tried.
 const PARTS: [f64; 3] = [1.0, 0.3, 0.05];
 
@@ -213,6 +216,16 @@ impl Reduced {
 /// what is known before, and the states.
 pub type Follow<'f> = dyn Fn(&[f64], Option<&[Vec<f64>]>) -> (StartPrior, Vec<Vec<f64>>) + 'f;
 
+/// Where an approach ended.
+pub struct Approached {
+    /// What is known of the windows' initial states.
+    pub prior: StartPrior,
+    /// The estimate.
+    pub estimate: Estimate,
+    /// Whether further steps would help little.
+    pub is_there: bool,
+}
+
 /// Estimates the unknowns from far away: for every trial of them the initial states are
 /// followed anew through the records, because those that were fitted at wrong unknowns hold
 /// on to what impacts folded. It begins with the best of some.
@@ -221,7 +234,7 @@ pub fn approach(
     begins: &[Vec<f64>],
     follow: &Follow<'_>,
     steps: usize,
-) -> (StartPrior, Estimate) {
+) -> Approached {
     let at = |theta: Vec<f64>, before: Option<&[Vec<f64>]>| {
         let (prior, starts) = follow(&theta, before);
         let estimate = evaluated(shooting, &prior, theta, starts);
@@ -230,6 +243,7 @@ pub fn approach(
     let tried = begins.iter().map(|theta| at(theta.clone(), None));
     let best = tried.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
     let (mut prior, mut present) = best.unwrap_or_default();
+    let mut is_there = false;
     for _ in 0..steps {
         let level = level(shooting, &present);
         let linear = shooting.linear(&present.theta, &present.starts, level);
@@ -241,15 +255,20 @@ pub fn approach(
             (next.cost < present.cost).then_some((prior, next))
         });
         let Some((new_prior, next)) = better else {
+            is_there = true;
             break;
         };
-        let settled = present.cost - next.cost < 0.02 * present.cost;
+        is_there = present.cost - next.cost < WORTH_A_STEP * present.cost;
         (prior, present) = (new_prior, next);
-        if settled {
+        if is_there {
             break;
         }
     }
-    (prior, present)
+    Approached {
+        prior,
+        estimate: present,
+        is_there,
+    }
 }
 
 fn moved_unknowns(

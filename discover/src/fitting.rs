@@ -109,6 +109,8 @@ pub struct Sketch {
     pub left: f64,
     /// What is known of the initial states of whole windows, where they begin there already.
     whole: Option<StartPrior>,
+    /// Whether further steps over beginnings of windows would help little.
+    is_there: bool,
     text: String,
     linear: String,
     plant: Plant,
@@ -271,22 +273,24 @@ impl<'d> Setting<'d> {
         let plant = self.plant(&text, Some(&linear))?;
         let ranges = self.ranges(&plant);
         let shooting = self.shooting(&plant, &self.train, &unknowns, &ranges);
-        let (_, found) = if self.fits_starts() {
+        let (found, is_there) = if self.fits_starts() {
             let shooting = Shooting {
                 part: FIRST_PART.0,
                 ..shooting
             };
             let follow = self.follow(&shooting, &ranges, FIRST_PART.1);
-            estimate::approach(&shooting, begins, &follow, STEPS.0)
+            let found = estimate::approach(&shooting, begins, &follow, STEPS.0);
+            (found.estimate, found.is_there)
         } else {
             let theta = begins.first().map_or(&[][..], Vec::as_slice);
             let (prior, starts) = self.starts(&shooting, theta, &ranges, &HORIZONS, None)?;
             let found = estimate::estimate(&shooting, &prior, theta, &starts, SKETCHING_STEPS);
-            (prior, found)
+            (found, true)
         };
         Ok(Sketch {
             left: found.cost,
             whole: None,
+            is_there,
             starts: found.starts,
             theta: found.theta,
             text,
@@ -327,6 +331,7 @@ impl<'d> Setting<'d> {
         Ok(Sketch {
             left,
             whole: Some(prior),
+            is_there: true,
             starts: mapped(&fit.train.estimate.starts),
             theta,
             text,
@@ -365,21 +370,27 @@ impl<'d> Setting<'d> {
             theta,
             starts,
             whole,
+            is_there,
             ..
         } = sketch;
         let mut all = self.shooting(&plant, &self.train, &unknowns, &ranges);
         let begins_whole = whole.is_some();
         let (mut prior, near) = match whole {
             None if self.fits_starts() => {
-                // As far as the beginnings lead; longer windows are folded until it is near.
-                let first = Shooting {
-                    part: FIRST_PART.0,
-                    ..all
-                };
-                let follow = self.follow(&first, &ranges, FIRST_PART.1);
-                let (_, begun) = estimate::approach(&first, &[theta], &follow, FURTHER_STEPS);
+                let mut theta = theta;
+                if !is_there {
+                    // As far as the beginnings lead; longer windows are folded until it is near.
+                    let first = Shooting {
+                        part: FIRST_PART.0,
+                        ..all
+                    };
+                    let follow = self.follow(&first, &ranges, FIRST_PART.1);
+                    let begun = estimate::approach(&first, &[theta], &follow, FURTHER_STEPS);
+                    theta = begun.estimate.theta;
+                }
                 let follow = self.follow(&all, &ranges, HORIZONS.len());
-                estimate::approach(&all, &[begun.theta], &follow, STEPS.0)
+                let near = estimate::approach(&all, &[theta], &follow, STEPS.0);
+                (near.prior, near.estimate)
             }
             whole => {
                 let prior = whole.unwrap_or_default();
@@ -428,7 +439,10 @@ impl<'d> Setting<'d> {
         // A fit worse than noise does not know its unknowns better than its own misfit allows.
         let inflation = (train.pooled * train.pooled).max(1.0) * train.correlation;
         Ok(Fit {
-            sd: sd.iter().map(|sd| sd * inflation.sqrt()).collect(),
+            sd: sd
+                .iter()
+                .map(|sd| rule::WIDER * sd * inflation.sqrt())
+                .collect(),
             text,
             linear,
             unknowns,

@@ -100,17 +100,24 @@ pub fn search(
             break;
         }
         let searched = round(setting, fit, effects, floor, said);
-        let mut believed = Vec::new();
-        for (candidates, screen, trials) in searched {
+        let mut believed: Option<Searched> = None;
+        for (candidates, screen, mut trials) in searched {
             note_rejected(&mut found.rejected, &candidates, &screen, &trials);
-            if trials.iter().any(|trial| trial.verdict.is_ok()) {
-                believed = vec![(candidates, screen, trials)];
+            trials.retain(|trial| trial.verdict.is_ok());
+            let least = |trials: &[Trial]| {
+                let left = trials.iter().map(|trial| trial.fit.train.pooled);
+                left.fold(f64::INFINITY, f64::min)
+            };
+            let known = believed
+                .as_ref()
+                .map_or(f64::INFINITY, |(_, _, known)| least(known));
+            if least(&trials) < known {
+                believed = Some((candidates, screen, trials));
             }
         }
-        let Some((candidates, screen, mut trials)) = believed.pop() else {
+        let Some((candidates, screen, mut trials)) = believed else {
             break;
         };
-        trials.retain(|trial| trial.verdict.is_ok());
         let best = trials.remove(best_of(&trials));
         let equivalent = indistinct(&best, &trials, &screen);
         let equivalent = equivalent.map(|place| candidates[place].clone()).collect();
@@ -139,38 +146,52 @@ fn round(
         (true, false) => vec![FIRST_PART.0, 1.0],
     };
     let mut searched: Vec<Searched> = Vec::new();
-    for (number, part) in parts.iter().chain(&parts[..1]).enumerate() {
-        let (candidates, screen) = match number < parts.len() {
-            true => screened(setting, fit, (effects, *part), floor, said),
-            false => {
-                let shifts = shifts(fit);
-                said(&format!(
-                    "screening {} parameters of the model",
-                    shifts.len()
-                ));
-                let screen = screen(setting, fit, &shifts, *part);
-                (shifts, screen)
-            }
-        };
+    let round = |part: f64, candidates: &[Candidate], screen: &Screen, pairs: bool| {
         let round = Round {
             setting,
             fit,
-            candidates: &candidates,
-            screen: &screen,
-            is_whole: *part == 1.0,
+            candidates,
+            screen,
+            is_whole: part == 1.0,
             floor,
             said,
         };
-        let mut trials = round.singles();
-        let is_enough = |trial: &Trial| trial.verdict.is_ok() && at_floor(&trial.fit, floor);
-        if number < parts.len() && !trials.iter().any(is_enough) {
-            trials.extend(round.pairs());
+        if pairs {
+            round.pairs()
+        } else {
+            round.singles()
         }
-        let is_done = trials.iter().any(|trial| trial.verdict.is_ok());
+    };
+    let is_believed = |(_, _, trials): &Searched| trials.iter().any(|trial| trial.verdict.is_ok());
+    for part in &parts {
+        let (candidates, screen) = screened(setting, fit, (effects, *part), floor, said);
+        let trials = round(*part, &candidates, &screen, false);
         searched.push((candidates, screen, trials));
-        if is_done {
+        if searched.iter().any(is_believed) {
             break;
         }
+    }
+    let is_enough = |trial: &Trial| trial.verdict.is_ok() && at_floor(&trial.fit, floor);
+    if !searched
+        .iter()
+        .any(|(_, _, trials)| trials.iter().any(is_enough))
+    {
+        for (part, (candidates, screen, trials)) in parts.iter().zip(&mut searched) {
+            trials.extend(round(*part, candidates, screen, true));
+            if trials.iter().any(|trial| trial.verdict.is_ok()) {
+                break;
+            }
+        }
+    }
+    if !searched.iter().any(is_believed) {
+        let shifts = shifts(fit);
+        said(&format!(
+            "screening {} parameters of the model",
+            shifts.len()
+        ));
+        let screen = screen(setting, fit, &shifts, parts[0]);
+        let trials = round(parts[0], &shifts, &screen, false);
+        searched.push((shifts, screen, trials));
     }
     searched
 }

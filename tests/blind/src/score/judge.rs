@@ -41,7 +41,7 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
             .iter()
             .find(|truth| is(found, truth) == Match::Named)
         {
-            Some(truth) => check(truth, found, &mut judged),
+            Some(truth) => check(truth, usual_bias(label, truth), found, &mut judged),
             None if label
                 .hidden
                 .iter()
@@ -136,8 +136,18 @@ fn is(found: &Value, truth: &Truth) -> Match {
     }
 }
 
+/// What a biased sensor is off by beside the effect: the bias that every sensor has.
+fn usual_bias(label: &Label, truth: &Truth) -> f64 {
+    if truth.hidden.effect != Effect::SensorBias {
+        return 0.0;
+    }
+    let channels = label.machine.setup().channels;
+    let place = (channels.iter()).position(|channel| channel.name == truth.hidden.on);
+    place.map_or(0.0, |place| label.sensors.bias[place])
+}
+
 /// Signs and intervals of a right effect's parameters, which stand in the order of names.
-fn check(truth: &Truth, found: &Value, judged: &mut Judged) {
+fn check(truth: &Truth, usual_bias: f64, found: &Value, judged: &mut Judged) {
     let Some(parameters) = found["parameters"].as_object() else {
         return;
     };
@@ -145,6 +155,7 @@ fn check(truth: &Truth, found: &Value, judged: &mut Judged) {
         return;
     }
     for (entry, expected) in parameters.values().zip(&truth.parameters) {
+        let expected = expected + usual_bias;
         let (Some(value), Some(sd)) = (entry["value"].as_f64(), entry["sd"].as_f64()) else {
             continue;
         };
