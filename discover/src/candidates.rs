@@ -29,6 +29,8 @@ pub struct Candidate {
     pub on: String,
     /// The angle and the order with which it repeats.
     pub order: Option<(String, u32)>,
+    /// Whether it changes what happens between teeth with play.
+    pub on_mesh: bool,
     /// Its parameters.
     pub parameters: Vec<CandidateParameter>,
     /// What the effect is.
@@ -238,6 +240,7 @@ fn candidate(
         effect: effect.name.clone(),
         on: site.name.clone(),
         order: order.map(|(angle, order)| (angle.name.clone(), order)),
+        on_mesh: site.kind == SiteKind::Mesh,
         parameters,
         says: effect.says.clone(),
         experiment: effect.experiment.clone(),
@@ -253,6 +256,7 @@ pub fn released(effect: &str, on: &str, says: &str, experiment: &str, what: &Wha
         effect: effect.to_owned(),
         on: on.to_owned(),
         order: None,
+        on_mesh: false,
         parameters: Vec::new(),
         says: says.to_owned(),
         experiment: experiment.to_owned(),

@@ -3,13 +3,16 @@
 
 use std::collections::BTreeMap;
 
+use model_spec::edit::{self, Edit, SetParameter};
+use model_spec::source::Source;
+
 use crate::candidates::{self, Candidate, candidates};
 use crate::catalogue::Effect;
 use crate::fitting::{FIRST_PART, Fit, Setting};
 use crate::judge::{Evidence, evidence};
 use crate::rule;
 use crate::screen::{Screen, screen};
-use crate::sites::sites;
+use crate::sites::{plays, sites};
 use crate::thinned::thin;
 use crate::trials::{Round, Trial, at_floor};
 use crate::unknowns::{Unknown, What, of_null_model};
@@ -130,9 +133,20 @@ pub fn search(
 /// Candidates, what they promise, and those of them that were fitted in earnest.
 type Searched = (Vec<Candidate>, Screen, Vec<Trial>);
 
-/// One round: over the beginnings of windows, where motions are nearly linear in whatever
-/// changes them, and over whole windows, which show more of what is slow; close to the floor
-/// the other way round. Then whether a parameter may be off that nobody called uncertain.
+/// How motions are looked at while candidates are screened.
+#[derive(Clone, Copy, PartialEq)]
+enum View {
+    /// The beginnings of windows, where a motion is nearly linear in whatever changes it.
+    Beginnings,
+    /// Whole windows, which show more of what is slow.
+    Whole,
+    /// Whole windows of the model with all play closed: linear in what moves teeth by much more
+    /// than their play, and blind for what is smaller.
+    NoPlay,
+}
+
+/// One round: view after view until something is believed, pairs if that leaves much; then
+/// whether a parameter may be off that nobody called uncertain.
 fn round(
     setting: &Setting<'_>,
     fit: &Fit,
@@ -140,44 +154,60 @@ fn round(
     floor: f64,
     said: &(dyn Fn(&str) + Sync),
 ) -> Vec<Searched> {
-    let parts = match (setting.fits_starts(), fit.train.pooled < rule::FAR) {
-        (false, _) => vec![1.0],
-        (true, true) => vec![1.0, FIRST_PART.0],
-        (true, false) => vec![FIRST_PART.0, 1.0],
+    let views: &[View] = match (setting.fits_starts(), fit.train.pooled < rule::FAR) {
+        (false, _) => &[View::Whole],
+        (true, true) => &[View::Whole, View::Beginnings, View::NoPlay],
+        (true, false) => &[View::Beginnings, View::NoPlay, View::Whole],
     };
-    let mut searched: Vec<Searched> = Vec::new();
-    let round = |part: f64, candidates: &[Candidate], screen: &Screen, pairs: bool| {
+    let round = |view: View, (candidates, screen): (&[Candidate], &Screen), pairs: bool| {
         let round = Round {
             setting,
             fit,
             candidates,
             screen,
-            is_whole: part == 1.0,
+            is_whole: view == View::Whole,
+            most: match view {
+                View::NoPlay => rule::FITS_AT_ONCE,
+                View::Whole | View::Beginnings => rule::MOST_SKETCHES,
+            },
             floor,
             said,
         };
-        if pairs {
-            round.pairs()
-        } else {
-            round.singles()
+        match pairs {
+            true => round.pairs(),
+            false => round.singles(),
         }
     };
     let is_believed = |(_, _, trials): &Searched| trials.iter().any(|trial| trial.verdict.is_ok());
-    for part in &parts {
-        let (candidates, screen) = screened(setting, fit, (effects, *part), floor, said);
-        let trials = round(*part, &candidates, &screen, false);
+    let mut searched: Vec<Searched> = Vec::new();
+    let mut seen: Vec<View> = Vec::new();
+    for view in views {
+        let at = match view {
+            View::NoPlay => match without_play(setting, fit) {
+                Some(at) => at,
+                None => continue,
+            },
+            View::Whole => (None, 1.0),
+            View::Beginnings => (None, FIRST_PART.0),
+        };
+        if view == &View::NoPlay {
+            said("looking at the model without play");
+        }
+        let at = (at.0.as_ref().unwrap_or(fit), at.1);
+        let has_play = *view != View::NoPlay;
+        let (candidates, screen) = screened(setting, at, (effects, has_play), floor, said);
+        let trials = round(*view, (&candidates, &screen), false);
         searched.push((candidates, screen, trials));
+        seen.push(*view);
         if searched.iter().any(is_believed) {
             break;
         }
     }
     let is_enough = |trial: &Trial| trial.verdict.is_ok() && at_floor(&trial.fit, floor);
-    if !searched
-        .iter()
-        .any(|(_, _, trials)| trials.iter().any(is_enough))
-    {
-        for (part, (candidates, screen, trials)) in parts.iter().zip(&mut searched) {
-            trials.extend(round(*part, candidates, screen, true));
+    let is_done = |(_, _, trials): &Searched| trials.iter().any(is_enough);
+    if !searched.iter().any(is_done) {
+        for (view, (candidates, screen, trials)) in seen.iter().zip(&mut searched) {
+            trials.extend(round(*view, (candidates, screen), true));
             if trials.iter().any(|trial| trial.verdict.is_ok()) {
                 break;
             }
@@ -189,11 +219,38 @@ fn round(
             "screening {} parameters of the model",
             shifts.len()
         ));
-        let screen = screen(setting, fit, &shifts, parts[0]);
-        let trials = round(parts[0], &shifts, &screen, false);
+        let (view, part) = match seen.first() {
+            Some(View::Beginnings) => (View::Beginnings, FIRST_PART.0),
+            _ => (View::Whole, 1.0),
+        };
+        let screen = screen(setting, fit, &shifts, part);
+        let trials = round(view, (&shifts, &screen), false);
         searched.push((shifts, screen, trials));
     }
     searched
+}
+
+/// The model with all play closed, fitted, and the part of windows to look at; none if there is
+/// no play.
+fn without_play(setting: &Setting<'_>, fit: &Fit) -> Option<(Option<Fit>, f64)> {
+    let edits: Vec<Edit> = plays(&fit.plant.model)
+        .into_iter()
+        .map(|name| {
+            Edit::SetParameter(SetParameter {
+                name,
+                value: 0.0,
+                source: String::new(),
+            })
+        })
+        .collect();
+    if edits.is_empty() {
+        return None;
+    }
+    let closed = |text: &str| edit::apply(&Source::new(setting.path.as_str(), text), &edits).ok();
+    let texts = (closed(&fit.text)?, closed(&fit.linear)?);
+    let theta = &fit.train.estimate.theta;
+    let closed = setting.fit(texts, fit.unknowns.clone(), theta).ok()?;
+    Some((Some(closed), 1.0))
 }
 
 /// The parameters of a model that no unknown moves.
@@ -290,18 +347,25 @@ fn indistinct<'t>(
 }
 
 /// The candidates and their responses: those that repeat with an angle, which are many, only
-/// if the others leave much of the gap.
+/// if the others leave much of the gap. Teeth that move with an angle do so by much more than
+/// they deflect, and often than their play: they are looked at where all play is closed, and
+/// nothing else is there.
 fn screened(
     setting: &Setting<'_>,
-    fit: &Fit,
-    (effects, part): (&[Effect], f64),
+    (fit, part): (&Fit, f64),
+    (effects, has_play): (&[Effect], bool),
     floor: f64,
     said: &dyn Fn(&str),
 ) -> (Vec<Candidate>, Screen) {
     let model = &fit.plant.model;
     let mut all = candidates(model, effects, &sites(model), &usual_rates(setting));
     all.extend(released(setting, fit));
-    let plain: Vec<Candidate> = all.iter().filter(|c| c.order.is_none()).cloned().collect();
+    all.retain(|c| (c.order.is_none() || c.on_mesh != has_play) && (has_play || c.on_mesh));
+    let plain: Vec<Candidate> = all
+        .iter()
+        .filter(|c| c.order.is_none() || !has_play)
+        .cloned()
+        .collect();
     said(&format!("screening {} candidates", plain.len()));
     let found = screen(setting, fit, &plain, part);
     let best = found.responses.iter().map(|r| r.gain).fold(0.0, f64::max);

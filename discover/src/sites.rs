@@ -157,6 +157,23 @@ fn has_play(expr: &Expr, coordinate: usize) -> bool {
     found
 }
 
+/// The parameters that say how much play there is.
+pub fn plays(model: &Model) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for (_, _, value) in values(model) {
+        value.visit(&mut |part| {
+            if let ExprKind::Call(Function::Deadzone | Function::Contact, arguments) = &part.kind
+                && let Some(ExprKind::Parameter(place)) = arguments.get(1).map(|arg| &arg.kind)
+            {
+                found.push(model.parameters[*place].name.clone());
+            }
+        });
+    }
+    found.sort();
+    found.dedup();
+    found
+}
+
 fn mesh(model: &Model, coordinate: usize) -> Option<Site> {
     let mut terms: Vec<(Section, Vec<String>)> = Vec::new();
     let mut stiffness = None;

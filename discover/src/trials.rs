@@ -49,6 +49,8 @@ pub struct Round<'r> {
     pub screen: &'r Screen,
     /// Whether that was seen over whole windows.
     pub is_whole: bool,
+    /// The most candidates that are begun.
+    pub most: usize,
     /// What a right model would leave, in noises.
     pub floor: f64,
     /// Is told what is done.
@@ -71,7 +73,7 @@ impl Round<'_> {
                 let known = self.candidate(**known);
                 known.effect == of.effect && known.on == of.on
             });
-            if same.count() < 2 && sets.len() < rule::MOST_SKETCHES {
+            if same.count() < 2 && sets.len() < self.most {
                 sets.push(Set {
                     sizes: self.screen.left(&[*response]).1,
                     responses: vec![*response],
@@ -247,7 +249,8 @@ impl Round<'_> {
         let best_of = |deleted: Option<usize>, screen: &Screen| {
             let mut found: Option<(f64, Set)> = None;
             for (number, a) in few.iter().enumerate() {
-                for b in &few[number + 1..] {
+                let others = few[number + 1..].iter();
+                for b in others.filter(|b| !self.share_a_name(*a, **b)) {
                     let responses = vec![*a, *b];
                     let (left, sizes) = screen.left(&responses);
                     let gain = alone - left;
@@ -283,6 +286,14 @@ impl Round<'_> {
             }
         }
         sets
+    }
+
+    /// Whether two candidates call a parameter alike: one effect at two places. Of these the next
+    /// round may add the other.
+    fn share_a_name(&self, a: usize, b: usize) -> bool {
+        let (a, b) = (self.candidate(a), self.candidate(b));
+        let has = |name: &str| b.parameters.iter().any(|other| other.name == name);
+        a.parameters.iter().any(|parameter| has(&parameter.name))
     }
 
     /// A sketch with a set's candidates.
