@@ -6,7 +6,6 @@ use crate::dataset::Channel;
 use crate::fitting::{Fit, Setting};
 use crate::floor::Floor;
 use crate::search::{Accepted, Found, Rejected};
-use crate::shifted::{Shifted, entry, shifted};
 use crate::unknowns::What;
 
 /// The verdict of a comparison.
@@ -50,12 +49,7 @@ pub fn discovered(
     place: &str,
 ) -> Value {
     let (before, after) = (&found.null, found.best());
-    let shifts = if at_floor {
-        shifted(setting, after)
-    } else {
-        Vec::new()
-    };
-    let verdict = match (found.accepted.is_empty() && shifts.is_empty(), at_floor) {
+    let verdict = match (found.accepted.is_empty(), at_floor) {
         (false, _) => "effects_found",
         (true, true) => "no_significant_gap",
         (true, false) => "unexplained",
@@ -84,7 +78,7 @@ pub fn discovered(
     json!({
         "schema": 1,
         "verdict": verdict,
-        "effects": effects.chain(shifts.iter().map(shift_entry)).collect::<Vec<_>>(),
+        "effects": effects.collect::<Vec<_>>(),
         "rejected": rejected.iter().map(|r| json!({
             "effect": r.candidate.effect, "on": r.candidate.on, "reason": reason(r),
         })).collect::<Vec<_>>(),
@@ -163,13 +157,12 @@ fn effect_entry(setting: &Setting<'_>, fit: &Fit, effect: &Accepted) -> Value {
         .collect();
     if effect.candidate.released.is_some()
         && let Some(place) = effect.unknowns.first()
-        && let Some(shift) = entry(setting, fit, *place, 0.0)
+        && let Some((name, per_si, unit)) = named(setting, fit, &fit.unknowns[*place].what)
     {
-        term = format!("{} = {}", shift.name, shift.value);
-        parameters.insert(
-            shift.name,
-            json!({"value": shift.value, "sd": shift.sd, "unit": shift.unit}),
-        );
+        let value = per_si * fit.train.estimate.theta[*place];
+        term = format!("{name} = {value}");
+        let sd = per_si * fit.sd[*place];
+        parameters.insert(name, json!({"value": value, "sd": sd, "unit": unit}));
     }
     let equivalent: Vec<Value> = effect
         .equivalent
@@ -199,18 +192,24 @@ fn effect_entry(setting: &Setting<'_>, fit: &Fit, effect: &Accepted) -> Value {
     entry
 }
 
-/// A parameter or a sensor that is off.
-fn shift_entry(shift: &Shifted) -> Value {
-    let parameter = json!({"value": shift.value, "sd": shift.sd, "unit": shift.unit});
-    json!({
-        "effect": shift.effect,
-        "on": shift.on,
-        "status": "named",
-        "equivalent": [],
-        "parameters": {&shift.name: parameter},
-        "term": format!("{} = {}", shift.name, shift.value),
-        "evidence": {"prior_standard_deviations": shift.off},
-    })
+/// What an unknown of the null model is called, the number of its units that one SI unit is, and
+/// the unit.
+fn named(setting: &Setting<'_>, fit: &Fit, what: &What) -> Option<(String, f64, String)> {
+    match what {
+        What::Gain(_) => Some(("gain".to_owned(), 1.0, "1".to_owned())),
+        What::Bias(at) => {
+            let unit = setting.dataset.channels[*at].unit.clone();
+            Some(("bias".to_owned(), 1.0, unit))
+        }
+        What::Delay(_) => Some(("delay".to_owned(), 1.0, "s".to_owned())),
+        What::Parameter(name) => {
+            let mut parameters = fit.plant.model.parameters.iter();
+            let parameter = parameters.find(|p| p.name == *name)?;
+            let unit = parameter.unit.text.clone();
+            Some((name.clone(), parameter.unit.from_si(1.0), unit))
+        }
+        What::Inverse(_) => None,
+    }
 }
 
 /// Parameters of the null model.

@@ -9,7 +9,7 @@
 //! called), [`locate`] (where the rest is);
 //! [`catalogue`], [`sites`] and [`candidates`] (what may be missing), [`response`] with
 //! [`mod@driven`] and [`mod@tried`] (what each candidate does), [`mod@screen`] (what it
-//! promises), [`mod@judge`] by [`rule`] (what is believed), [`mod@shifted`] (what is off by more than it may),
+//! promises), [`mod@judge`] by [`rule`] (what is believed),
 //! [`trials`] (fits in earnest), [`thinned`] (what is needed no more), [`mod@search`] (all of it in turn);
 //! [`extend`] (the specification changed), [`document`] and [`report`] (for programs and for
 //! people).
@@ -37,7 +37,6 @@ pub mod rule;
 pub mod runner;
 pub mod screen;
 pub mod search;
-pub mod shifted;
 pub mod shooting;
 pub mod sites;
 pub mod smooth;

@@ -128,6 +128,11 @@ pub(crate) fn trial(parameter: &CandidateParameter) -> Trial {
     };
     let name = parameter.name.clone();
     let base = parameter.base();
+    let bounds = match (parameter.shape, &parameter.shifts) {
+        (Some(shape), _) => (rule::SHAPE_RANGE.0 * shape, rule::SHAPE_RANGE.1 * shape),
+        (None, Some(shifts)) => shifts.bounds,
+        (None, None) => (low, f64::INFINITY),
+    };
     let unknown = Unknown {
         what: if parameter.inverse {
             What::Inverse(name)
@@ -136,11 +141,8 @@ pub(crate) fn trial(parameter: &CandidateParameter) -> Trial {
         },
         start: parameter.shape.unwrap_or(base.max(low)),
         prior: None,
-        bounds: match (parameter.shape, &parameter.shifts) {
-            (Some(shape), _) => (rule::SHAPE_RANGE.0 * shape, rule::SHAPE_RANGE.1 * shape),
-            (None, Some(shifts)) => shifts.bounds,
-            (None, None) => (low, f64::INFINITY),
-        },
+        bounds,
+        limits: bounds,
         scale: match (parameter.shape, parameter.inverse) {
             (Some(shape), _) => shape,
             (None, true) => 1e-4,

@@ -97,8 +97,9 @@ pub const RIVAL: f64 = 1.5;
 /// prior from 0 at most.
 pub const PRIOR_REACH: f64 = 3.0;
 
-/// A declared parameter or a sensor is an effect if it is this many standard deviations of its
-/// prior off, with `STANDARD_ERRORS` of its estimate to spare: one in four hundred is by chance.
+/// The null model keeps declared parameters and sensors within so many standard deviations of
+/// their priors. Beyond, with `STANDARD_ERRORS` of the estimate to spare, it is an effect: one in
+/// four hundred is by chance.
 pub const SHIFTED: f64 = 3.0;
 
 /// How much wider uncertainties are than a straight line at the estimate makes them: rounding by

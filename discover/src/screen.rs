@@ -41,6 +41,8 @@ pub struct Screen {
     /// What the prior of each nuisance adds to the products: a weight and how far it is off.
     priors: Vec<(f64, f64)>,
     bounds: Vec<(f64, f64)>,
+    /// The bounds of each nuisance once it is released.
+    limits: Vec<(f64, f64)>,
     /// The candidates that do something, in their order.
     pub responses: Vec<Response>,
     /// The candidates that do nothing that could be seen, with why.
@@ -91,10 +93,11 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate], part: 
         }
     }
     let mut products = products(fit, places, base, &blocks, columns);
-    let (mut bounds, mut priors) = (Vec::new(), Vec::new());
+    let (mut bounds, mut limits, mut priors) = (Vec::new(), Vec::new(), Vec::new());
     for (place, unknown) in fit.unknowns.iter().enumerate() {
         let value = estimate.theta[place];
         bounds.push((unknown.bounds.0 - value, unknown.bounds.1 - value));
+        limits.push((unknown.limits.0 - value, unknown.limits.1 - value));
         let prior = unknown.prior.map_or((0.0, 0.0), |(mean, sd)| {
             (fit.prior_weight / (sd * sd), value - mean)
         });
@@ -113,6 +116,7 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate], part: 
         nuisances,
         priors,
         bounds,
+        limits,
         responses,
         silent,
         numbers: base.iter().flatten().map(|b| b.residual.len() as f64).sum(),
@@ -195,16 +199,17 @@ impl Screen {
         for response in set {
             places.extend(self.responses[*response].columns.clone());
         }
-        let (products, _) = self.released(set);
+        let (products, released) = self.released(set);
         let last = products.ncols() - 1;
         let (a, b) = system(&products, &places);
         let bounds: Vec<(f64, f64)> = places
             .iter()
             .map(|place| {
-                (
-                    self.bounds[*place].0.min(0.0),
-                    self.bounds[*place].1.max(0.0),
-                )
+                let (low, high) = match released.contains(place) {
+                    true => self.limits[*place],
+                    false => self.bounds[*place],
+                };
+                (low.min(0.0), high.max(0.0))
             })
             .collect();
         let x = least_squares(&a, &b, &bounds);
@@ -245,6 +250,7 @@ impl Screen {
         Some(Self {
             products,
             bounds,
+            limits: self.limits.clone(),
             nuisances: self.nuisances,
             priors: self.priors.clone(),
             responses: self.responses.clone(),

@@ -61,7 +61,7 @@ fn without(setting: &Setting<'_>, found: &Found, place: usize) -> Result<Fit, St
     let mut theta = fit.train.estimate.theta.clone();
     if gone.candidate.released.is_some() {
         for at in &gone.unknowns {
-            unknowns[*at].prior = found.null.unknowns[*at].prior;
+            unknowns[*at].clone_from(&found.null.unknowns[*at]);
             theta[*at] = found.null.unknowns[*at].start;
         }
     } else {

@@ -332,7 +332,7 @@ impl Round<'_> {
             let response = &self.screen.responses[*response];
             if let Some(place) = response.released {
                 let size = sizes.next().unwrap_or(0.0);
-                unknowns[place].prior = None;
+                unknowns[place] = unknowns[place].released();
                 theta[place] = unknowns[place].admissible(fit.train.estimate.theta[place] + size);
                 continue;
             }

@@ -33,6 +33,8 @@ pub struct Unknown {
     pub prior: Option<(f64, f64)>,
     /// The smallest and the largest admissible value, SI.
     pub bounds: (f64, f64),
+    /// The same where it need not be what was declared.
+    pub limits: (f64, f64),
     /// A change that matters, SI.
     pub scale: f64,
 }
@@ -41,6 +43,29 @@ impl Unknown {
     /// A value moved into the bounds.
     pub fn admissible(&self, value: f64) -> f64 {
         value.clamp(self.bounds.0, self.bounds.1)
+    }
+
+    /// The same without what was declared of it.
+    pub fn released(&self) -> Self {
+        Self {
+            prior: None,
+            bounds: self.limits,
+            ..self.clone()
+        }
+    }
+
+    /// One of the null model: within so many standard deviations of what was declared, because
+    /// beyond it is an effect.
+    fn declared(what: What, (mean, sd): (f64, f64), limits: (f64, f64)) -> Self {
+        let reach = rule::SHIFTED * sd;
+        Self {
+            what,
+            start: mean,
+            prior: Some((mean, sd)),
+            bounds: (limits.0.max(mean - reach), limits.1.min(mean + reach)),
+            limits,
+            scale: sd,
+        }
     }
 }
 
@@ -55,13 +80,9 @@ pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)])
             continue;
         };
         let sd = uncertain.relative * value.abs();
-        unknowns.push(Unknown {
-            what: What::Parameter(uncertain.name.clone()),
-            start: *value,
-            prior: Some((*value, sd)),
-            bounds: sign_bounds(parameter, *value),
-            scale: sd,
-        });
+        let what = What::Parameter(uncertain.name.clone());
+        let limits = sign_bounds(parameter, *value);
+        unknowns.push(Unknown::declared(what, (*value, sd), limits));
     }
     let step = dataset
         .train
@@ -79,20 +100,11 @@ pub fn of_sensor(place: usize, channel: &Channel, step: f64) -> [Unknown; 3] {
     let bias = rule::BIAS_PRIOR * channel.noise;
     let delay = rule::DELAY_PRIOR * step;
     let free = (f64::NEG_INFINITY, f64::INFINITY);
-    let unknown = |what, start, sd| Unknown {
-        what,
-        start,
-        prior: Some((start, sd)),
-        bounds: free,
-        scale: sd,
-    };
+    let late = (-rule::LONGEST_LEAD * step, rule::LONGEST_DELAY * step);
     [
-        unknown(What::Gain(place), 1.0, gain),
-        unknown(What::Bias(place), 0.0, bias),
-        Unknown {
-            bounds: (-rule::LONGEST_LEAD * step, rule::LONGEST_DELAY * step),
-            ..unknown(What::Delay(place), 0.0, delay)
-        },
+        Unknown::declared(What::Gain(place), (1.0, gain), free),
+        Unknown::declared(What::Bias(place), (0.0, bias), free),
+        Unknown::declared(What::Delay(place), (0.0, delay), late),
     ]
 }
 
