@@ -7,7 +7,7 @@ use model_spec::edit::{
     self, Edit, EditError, NewCoordinate, NewForce, NewParameter, NewTerm, NewValue, Section,
     SetParameter, Substitution,
 };
-use model_spec::model::{Model, Parameter, ParameterValue};
+use model_spec::model::{Expr, Model, Parameter, ParameterValue};
 use model_spec::source::Source;
 
 use crate::catalogue::{Change, Effect, SiteKind};
@@ -390,6 +390,7 @@ fn edits(
                 vec![(Section::Kinetic, terms?)]
             }
             "mesh" => holding(model, site, &find),
+            "measured" => measured(model, &find),
             _ => return None,
         };
         let substitutions = places.into_iter().filter(|(_, terms)| !terms.is_empty());
@@ -441,6 +442,28 @@ fn edits(
         }),
         _ => return None,
     }])
+}
+
+/// The definitions and observables that hold an expression, however it is spaced.
+fn measured(model: &Model, find: &str) -> Vec<(Section, Vec<String>)> {
+    let plain = |text: &str| text.split_whitespace().collect::<String>();
+    let find = plain(find);
+    let holds = |value: &Expr| {
+        let text = model.source.text.get(value.span.start..value.span.end);
+        text.is_some_and(|text| plain(text).contains(&find))
+    };
+    let definitions = model.definitions.iter().filter(|d| holds(&d.value));
+    let observables = model.observables.iter().filter(|o| holds(&o.value));
+    vec![
+        (
+            Section::Definitions,
+            definitions.map(|d| d.name.clone()).collect(),
+        ),
+        (
+            Section::Observables,
+            observables.map(|o| o.name.clone()).collect(),
+        ),
+    ]
 }
 
 /// The mesh's terms that hold a name.

@@ -80,7 +80,8 @@ pub struct Change {
     /// `dissipation` or `definition`.
     #[serde(default)]
     pub add: String,
-    /// Where something is replaced: `kinetic`, or `mesh` for all terms of one.
+    /// Where something is replaced: `kinetic`, `mesh` for all terms of one, or `measured` for
+    /// all definitions and observables.
     #[serde(default)]
     pub substitute: String,
     /// The name of what is added.

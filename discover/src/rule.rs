@@ -54,6 +54,11 @@ pub const AT_FLOOR: f64 = 1.1;
 /// Candidates whose responses agree by more than this are both fitted.
 pub const ALIKE: f64 = 0.95;
 
+/// And they are one class if the held-out gaps that they leave differ by less than
+/// `STANDARD_ERRORS`, or by less than this part: what is so small may come from how they were
+/// fitted.
+pub const TOLD_APART: f64 = 0.01;
+
 /// A response of which less than this part is its own cannot be told from the nuisances.
 pub const OWN_PART: f64 = 0.01;
 
@@ -78,8 +83,9 @@ pub const FAR: f64 = 3.0;
 /// one per core of a small machine.
 pub const FITS_AT_ONCE: usize = 2;
 
-/// A pair is fitted if screening promises this many times what the best single one does.
-pub const PAIR_PROMISE: f64 = 1.2;
+/// A pair is fitted if screening promises that it leaves this part of the squares that the best
+/// single one does.
+pub const PAIR_PROMISE: f64 = 0.8;
 
 /// Effects that repeat with an angle, a dozen for every angle, are screened only where no
 /// other promises this part of the gap.

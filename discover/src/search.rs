@@ -102,7 +102,8 @@ pub fn search(
         if at_floor(fit, floor) {
             break;
         }
-        let searched = round(setting, fit, effects, floor, said);
+        let is_first = found.accepted.is_empty();
+        let searched = round(setting, (fit, is_first), effects, floor, said);
         let mut believed: Option<Searched> = None;
         for (candidates, screen, mut trials) in searched {
             note_rejected(&mut found.rejected, &candidates, &screen, &trials);
@@ -123,7 +124,10 @@ pub fn search(
         };
         let best = trials.remove(best_of(&trials));
         let equivalent = indistinct(&best, &trials, &screen);
-        let equivalent = equivalent.map(|place| candidates[place].clone()).collect();
+        let equivalent = equivalent.map(|place| candidates[place].clone());
+        let named = &candidates[screen.responses[best.responses[0]].candidate];
+        let is_other = |other: &Candidate| (&other.effect, &other.on) != (&named.effect, &named.on);
+        let equivalent = equivalent.filter(is_other).collect();
         accept(&mut found, &candidates, &screen, best, equivalent);
         thin(setting, &mut found, said);
     }
@@ -149,15 +153,17 @@ enum View {
 /// whether a parameter may be off that nobody called uncertain.
 fn round(
     setting: &Setting<'_>,
-    fit: &Fit,
+    (fit, is_first): (&Fit, bool),
     effects: &[Effect],
     floor: f64,
     said: &(dyn Fn(&str) + Sync),
 ) -> Vec<Searched> {
-    let views: &[View] = match (setting.fits_starts(), fit.train.pooled < rule::FAR) {
-        (false, _) => &[View::Whole],
-        (true, true) => &[View::Whole, View::Beginnings, View::NoPlay],
-        (true, false) => &[View::Beginnings, View::NoPlay, View::Whole],
+    let is_near = fit.train.pooled < rule::FAR;
+    let views: &[View] = match (setting.fits_starts(), is_near, is_first) {
+        // What is small beside what was found already is seen over whole windows or not at all.
+        (false, _, _) | (true, true, false) => &[View::Whole],
+        (true, true, true) => &[View::Whole, View::Beginnings, View::NoPlay],
+        (true, false, _) => &[View::Beginnings, View::NoPlay, View::Whole],
     };
     let round = |view: View, (candidates, screen): (&[Candidate], &Screen), pairs: bool| {
         let round = Round {
@@ -213,7 +219,7 @@ fn round(
             }
         }
     }
-    if !searched.iter().any(is_believed) {
+    if !searched.iter().any(is_believed) && (is_first || !is_near) {
         let shifts = shifts(fit);
         said(&format!(
             "screening {} parameters of the model",
@@ -338,10 +344,13 @@ fn indistinct<'t>(
     };
     others.iter().filter_map(move |other| {
         let (a, b) = (single(best)?, single(other)?);
-        let errors = evidence(&best.fit, &other.fit, &[]).held_out_errors;
+        let told = evidence(&best.fit, &other.fit, &[]);
         let alike = screen.similarity(a, b) > rule::ALIKE;
         // Fits that leave the same to the last digit have no error to be judged by.
-        let as_good = errors.is_nan() || errors.abs() < rule::STANDARD_ERRORS;
+        let errors = told.held_out_errors;
+        let as_good = errors.is_nan()
+            || errors.abs() < rule::STANDARD_ERRORS
+            || told.held_out.abs() < rule::TOLD_APART;
         (alike && as_good).then(|| screen.responses[b].candidate)
     })
 }
@@ -453,9 +462,6 @@ fn accept(
     for (number, response) in best.responses.iter().enumerate() {
         let own = best.own.iter().filter(|own| own.effect == number);
         let candidate = candidates[screen.responses[*response].candidate].clone();
-        found
-            .rejected
-            .retain(|known| known.candidate.label() != candidate.label());
         found.accepted.push(Accepted {
             candidate,
             unknowns: own.map(|own| own.place).collect(),
@@ -464,5 +470,13 @@ fn accept(
             test_gap: gap,
         });
     }
+    let is_accepted = |known: &Candidate| {
+        let same =
+            |of: &Accepted| (&of.candidate.effect, &of.candidate.on) == (&known.effect, &known.on);
+        found.accepted.iter().any(same)
+    };
+    found
+        .rejected
+        .retain(|known| !is_accepted(&known.candidate));
     found.last = Some(best.fit);
 }

@@ -236,6 +236,7 @@ fn arms(model: &Model) -> Vec<Site> {
             ("field", declared.name.clone()),
             ("x", declared.along.clone()),
             ("end", text(model, &declared.to)),
+            ("lever", lever(model, &declared.from, &declared.to)),
         ]
         .into();
         words.extend(root.map(|root| ("root", root)));
@@ -248,6 +249,14 @@ fn arms(model: &Model) -> Vec<Site> {
         })
     };
     model.kinetic.iter().filter_map(arm).collect()
+}
+
+/// The distance of a body's end from its root.
+fn lever(model: &Model, from: &Expr, to: &Expr) -> String {
+    match from.kind {
+        ExprKind::Number(0.0) => text(model, to),
+        _ => format!("({} - ({}))", text(model, to), text(model, from)),
+    }
 }
 
 /// The base of a square that holds something wanted.

@@ -65,23 +65,7 @@ impl Round<'_> {
             let (count, best) = (ranked.len(), self.candidate(*best).label());
             (self.said)(&format!("{count} promise enough to be fitted, {best} most"));
         }
-        let mut sets: Vec<Set> = Vec::new();
-        for response in &ranked {
-            let of = self.candidate(*response);
-            // Of the orders of one effect at one place the two best are enough.
-            let same = sets.iter().flat_map(|set| &set.responses).filter(|known| {
-                let known = self.candidate(**known);
-                known.effect == of.effect && known.on == of.on
-            });
-            if same.count() < 2 && sets.len() < self.most {
-                sets.push(Set {
-                    sizes: self.screen.left(&[*response]).1,
-                    responses: vec![*response],
-                    deleted: None,
-                });
-            }
-        }
-        let mut sketches = self.sketched(sets);
+        let mut sketches = self.sketched(self.chosen(&ranked));
         let mut trials: Vec<Trial> = Vec::new();
         let (mut fits, mut best) = (0, f64::INFINITY);
         while !sketches.is_empty() && fits < rule::MOST_FITS {
@@ -108,6 +92,35 @@ impl Round<'_> {
             trials.extend(self.completed(wanted));
         }
         trials
+    }
+
+    /// Those of the ranked that are begun: of what repeats with an angle, of which there is so
+    /// much that some is lucky, half as many, and of the orders of one effect at one place the
+    /// two best.
+    fn chosen(&self, ranked: &[usize]) -> Vec<Set> {
+        let (mut plain, mut repeating) = (Vec::new(), Vec::new());
+        for response in ranked {
+            let of = self.candidate(*response);
+            let is_same = |known: &&usize| {
+                let known = self.candidate(**known);
+                known.effect == of.effect && known.on == of.on
+            };
+            if of.order.is_none() && plain.len() < self.most {
+                plain.push(*response);
+            } else if of.order.is_some()
+                && repeating.len() < self.most.div_ceil(2)
+                && repeating.iter().filter(is_same).count() < 2
+            {
+                repeating.push(*response);
+            }
+        }
+        let both = plain.into_iter().chain(repeating);
+        both.map(|response| Set {
+            sizes: self.screen.left(&[response]).1,
+            responses: vec![response],
+            deleted: None,
+        })
+        .collect()
     }
 
     /// Candidates that promise enough, the best first.
@@ -232,13 +245,13 @@ impl Round<'_> {
         self.completed(self.sketched(self.best_pairs(&ranked)))
     }
 
-    /// The pairs that promise clearly more than the best single candidate, and for each term of
+    /// The pairs that promise to leave clearly less than the best single candidate, and for each term of
     /// the model that may go the pair that takes its place best. What repeats with an angle is
     /// not paired: of that there is so much that two of it are lucky.
     fn best_pairs(&self, ranked: &[usize]) -> Vec<Set> {
         let screen = self.screen;
         let best = ranked.first().map_or(0.0, |r| screen.responses[*r].gain);
-        let alone = screen.left(&[]).0;
+        let single = screen.left(&[]).0 - best;
         // What is nothing alone may be half of a pair: friction of two kinds in place of a third.
         let few: Vec<usize> = (0..screen.responses.len())
             .filter(|r| {
@@ -247,32 +260,38 @@ impl Round<'_> {
             })
             .collect();
         let best_of = |deleted: Option<usize>, screen: &Screen| {
-            let mut found: Option<(f64, Set)> = None;
+            let mut found: Vec<(f64, Set)> = Vec::new();
             for (number, a) in few.iter().enumerate() {
                 let others = few[number + 1..].iter();
                 for b in others.filter(|b| !self.share_a_name(*a, **b)) {
                     let responses = vec![*a, *b];
                     let (left, sizes) = screen.left(&responses);
-                    let gain = alone - left;
-                    let better = found.as_ref().is_none_or(|(g, _)| gain > *g);
-                    if sizes.iter().all(|v| *v != 0.0) && better {
+                    // What replaces a term is far from where it was linearised: it is not held
+                    // to a promise.
+                    let promising = deleted.is_some() || left < rule::PAIR_PROMISE * single;
+                    if promising && sizes.iter().all(|v| *v != 0.0) {
                         let set = Set {
                             responses,
                             deleted,
                             sizes,
                         };
-                        found = Some((gain, set));
+                        found.push((left, set));
                     }
                 }
             }
-            // What replaces a term is far from where it was linearised: it is not held to a
-            // promise.
-            let promising = |gain: f64| deleted.is_some() || gain > rule::PAIR_PROMISE * best;
+            found.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let count = if deleted.is_some() {
+                1
+            } else {
+                rule::FITS_AT_ONCE
+            };
             found
-                .filter(|(gain, _)| promising(*gain))
+                .into_iter()
+                .take(count)
                 .map(|(_, set)| set)
+                .collect::<Vec<Set>>()
         };
-        let mut sets: Vec<Set> = best_of(None, screen).into_iter().collect();
+        let mut sets = best_of(None, screen);
         for (place, unknown) in self.fit.unknowns.iter().enumerate() {
             let value = self.fit.train.estimate.theta[place];
             let near = unknown
