@@ -128,7 +128,8 @@ pub fn search(
         let named = &candidates[screen.responses[best.responses[0]].candidate];
         let is_other = |other: &Candidate| (&other.effect, &other.on) != (&named.effect, &named.on);
         let equivalent = equivalent.filter(is_other).collect();
-        accept(&mut found, &candidates, &screen, best, equivalent);
+        let half = half_way(&best, &trials);
+        accept(&mut found, (&candidates, &screen), best, (half, equivalent));
         thin(setting, &mut found, said);
     }
     Ok(found)
@@ -445,13 +446,24 @@ fn note_rejected(
     }
 }
 
+/// The half of a pair that was believed alone, and the test gap that it left: a step of the way.
+fn half_way(best: &Trial, others: &[Trial]) -> Option<(usize, f64)> {
+    let is_half = |trial: &&Trial| match trial.responses[..] {
+        [response] => best.responses.len() > 1 && best.responses.contains(&response),
+        _ => false,
+    };
+    let halves = others.iter().filter(is_half);
+    let left = |trial: &&Trial| trial.fit.train.pooled;
+    let half = halves.min_by(|a, b| left(a).total_cmp(&left(b)))?;
+    Some((half.responses[0], half.fit.test.pooled))
+}
+
 /// Takes a trial over, with the candidates that cannot be told from it.
 fn accept(
     found: &mut Found,
-    candidates: &[Candidate],
-    screen: &Screen,
+    (candidates, screen): (&[Candidate], &Screen),
     best: Trial,
-    equivalent: Vec<Candidate>,
+    (half, equivalent): (Option<(usize, f64)>, Vec<Candidate>),
 ) {
     let before = found.best();
     let gap = (before.test.pooled, best.fit.test.pooled);
@@ -459,17 +471,25 @@ fn accept(
         .verdict
         .clone()
         .unwrap_or_else(|_| evidence(before, &best.fit, &best.own));
-    for (number, response) in best.responses.iter().enumerate() {
+    let accepted = best.responses.iter().enumerate().map(|(number, response)| {
         let own = best.own.iter().filter(|own| own.effect == number);
-        let candidate = candidates[screen.responses[*response].candidate].clone();
-        found.accepted.push(Accepted {
-            candidate,
+        Accepted {
+            candidate: candidates[screen.responses[*response].candidate].clone(),
             unknowns: own.map(|own| own.place).collect(),
             equivalent: equivalent.clone(),
             evidence: evidence.clone(),
-            test_gap: gap,
-        });
+            test_gap: match half {
+                Some((first, between)) if first == *response => (gap.0, between),
+                Some((_, between)) => (between, gap.1),
+                None => gap,
+            },
+        }
+    });
+    let mut accepted: Vec<Accepted> = accepted.collect();
+    if half.is_some_and(|(first, _)| first != best.responses[0]) {
+        accepted.reverse();
     }
+    found.accepted.extend(accepted);
     let is_accepted = |known: &Candidate| {
         let same =
             |of: &Accepted| (&of.candidate.effect, &of.candidate.on) == (&known.effect, &known.on);
