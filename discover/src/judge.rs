@@ -41,9 +41,7 @@ pub struct Own {
 pub fn judge(before: &Fit, after: &Fit, own: &[Own]) -> Result<Evidence, String> {
     let evidence = evidence(before, after, own);
     if let Some(name) = at_bound(after, own) {
-        return Err(format!(
-            "`{name}` has the wrong sign: held to it, the effect vanishes"
-        ));
+        return Err(name);
     }
     if let Some((name, off)) = within_prior(after, own) {
         return Err(format!(
@@ -79,7 +77,9 @@ pub fn judge(before: &Fit, after: &Fit, own: &[Own]) -> Result<Evidence, String>
             rule::SIGNIFICANCE
         ));
     }
-    if evidence.size < rule::SIZE {
+    // The null model does what is within a prior itself: what is beyond may be small beside it.
+    let has_prior = own.iter().all(|own| own.prior.is_some());
+    if !has_prior && evidence.size < rule::SIZE {
         return Err(format!(
             "what it does is {:.2} of the noise, {} are asked for",
             evidence.size,
@@ -132,14 +132,21 @@ fn significance(fit: &Fit, own: &[Own]) -> f64 {
     (0..effects).map(of).fold(f64::INFINITY, f64::min)
 }
 
-/// A parameter that its sign's bound holds.
+/// What is said of a parameter that a bound holds.
 fn at_bound(fit: &Fit, own: &[Own]) -> Option<String> {
-    own.iter().find_map(|own| {
-        let unknown = &fit.unknowns[own.place];
-        let value = fit.train.estimate.theta[own.place];
-        let held = value <= unknown.bounds.0 || value >= unknown.bounds.1;
-        (held && !own.is_shape).then(|| crate::unknowns::name(&unknown.what))
+    let held = own.iter().find(|own| !own.is_shape && is_held(fit, own))?;
+    let name = crate::unknowns::name(&fit.unknowns[held.place].what);
+    Some(match held.prior {
+        Some(_) => format!("the {name} runs to the end of what is admitted"),
+        None => format!("`{name}` has the wrong sign: held to it, the effect vanishes"),
     })
+}
+
+/// Whether an unknown is held by one of its bounds.
+pub fn is_held(fit: &Fit, own: &Own) -> bool {
+    let unknown = &fit.unknowns[own.place];
+    let value = fit.train.estimate.theta[own.place];
+    value <= unknown.bounds.0 || value >= unknown.bounds.1
 }
 
 /// An unknown that gave up its prior and is within it still, and how far it is off.

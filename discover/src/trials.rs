@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::candidates::Candidate;
 use crate::fitting::{Fit, Setting, Sketch};
-use crate::judge::{Evidence, Own, judge};
+use crate::judge::{Evidence, Own, is_held, judge};
 use crate::plant::is_linear;
 use crate::rule;
 use crate::screen::Screen;
@@ -239,16 +239,24 @@ impl Round<'_> {
         own
     }
 
-    /// Pairs, and pairs in place of a term of the model.
-    pub fn pairs(&self) -> Vec<Trial> {
-        let ranked = self.ranked();
-        self.completed(self.sketched(self.best_pairs(&ranked)))
+    /// Pairs, and pairs in place of a term of the model. `singles`: what was fitted alone.
+    pub fn pairs(&self, singles: &[Trial]) -> Vec<Trial> {
+        // A sensor that runs to the end of what is admitted stands in for something else.
+        let ran_away = |trial: &&Trial| {
+            let of = |own: &Own| own.prior.is_some() && is_held(&trial.fit, own);
+            trial.own.iter().any(of)
+        };
+        let away = singles.iter().filter(ran_away);
+        let away: Vec<usize> = away.flat_map(|trial| trial.responses.clone()).collect();
+        let is_there = |response: &usize| !away.contains(response);
+        let ranked: Vec<usize> = self.ranked().into_iter().filter(is_there).collect();
+        self.completed(self.sketched(self.best_pairs(&ranked, &away)))
     }
 
     /// The pairs that promise to leave clearly less than the best single candidate, and for each term of
     /// the model that may go the pair that takes its place best. What repeats with an angle is
     /// not paired: of that there is so much that two of it are lucky.
-    fn best_pairs(&self, ranked: &[usize]) -> Vec<Set> {
+    fn best_pairs(&self, ranked: &[usize], away: &[usize]) -> Vec<Set> {
         let screen = self.screen;
         let best = ranked.first().map_or(0.0, |r| screen.responses[*r].gain);
         let single = screen.left(&[]).0 - best;
@@ -256,7 +264,8 @@ impl Round<'_> {
         let few: Vec<usize> = (0..screen.responses.len())
             .filter(|r| {
                 let response = &screen.responses[*r];
-                self.candidate(*r).order.is_none() && response.visible > rule::OWN_PART
+                let is_plain = self.candidate(*r).order.is_none() && !away.contains(r);
+                is_plain && response.visible > rule::OWN_PART
             })
             .collect();
         let best_of = |deleted: Option<usize>, screen: &Screen| {

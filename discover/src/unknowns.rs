@@ -104,7 +104,11 @@ pub fn of_sensor(place: usize, channel: &Channel, step: f64) -> [Unknown; 3] {
     [
         Unknown::declared(What::Gain(place), (1.0, gain), free),
         Unknown::declared(What::Bias(place), (0.0, bias), free),
-        Unknown::declared(What::Delay(place), (0.0, delay), late),
+        // What no prior holds is late: no sensor sees ahead.
+        Unknown {
+            limits: (0.0, late.1),
+            ..Unknown::declared(What::Delay(place), (0.0, delay), late)
+        },
     ]
 }
 
