@@ -68,9 +68,14 @@ pub const MOST_EFFECTS: usize = 4;
 /// The most candidates that are fitted in earnest in one round.
 pub const MOST_FITS: usize = 4;
 
-/// A candidate is fitted if screening promises that it takes this part of the squares away:
-/// half of what is asked for on held-out records.
-pub const PROMISE: f64 = 0.05;
+/// Motions are looked at in another way too, unless what is believed leaves less than so many
+/// floors: what one view shows may stand in for what another shows better.
+pub const CLOSE: f64 = 1.5;
+
+/// A candidate is fitted if screening promises that it takes this part of the squares away: a
+/// fifth of what a fall of the held-out gap by `HELD_OUT` comes to, because a straight line
+/// promises less of what saturates, such as damping.
+pub const PROMISE: f64 = 0.02;
 
 /// Where much more than noise is left, effects are far from small and a straight line promises
 /// a part of what they do: this part is enough there.

@@ -172,7 +172,7 @@ enum View {
     NoPlay,
 }
 
-/// One round: view after view until something is believed, pairs if that leaves much; then
+/// One round: view after view until what is believed leaves little, pairs if that leaves much; then
 /// whether a parameter may be off that nobody called uncertain.
 fn round(
     setting: &Setting<'_>,
@@ -209,6 +209,11 @@ fn round(
             }
         };
     let is_believed = |(_, _, trials): &Searched| trials.iter().any(|trial| trial.verdict.is_ok());
+    let leaves_little = |trial: &Trial| {
+        let left = trial.fit.train.pooled.max(trial.fit.test.pooled);
+        trial.verdict.is_ok() && left < rule::CLOSE * floor
+    };
+    let is_close = |(_, _, trials): &Searched| trials.iter().any(leaves_little);
     let mut searched: Vec<Searched> = Vec::new();
     let mut seen: Vec<View> = Vec::new();
     for view in views {
@@ -229,7 +234,7 @@ fn round(
         let trials = round(*view, &candidates, &screen, None);
         searched.push((candidates, screen, trials));
         seen.push(*view);
-        if searched.iter().any(is_believed) {
+        if searched.iter().any(is_close) {
             break;
         }
     }
