@@ -217,6 +217,10 @@ fn round(
     let mut searched: Vec<Searched> = Vec::new();
     let mut seen: Vec<View> = Vec::new();
     for view in views {
+        // Without play everything but teeth is seen worse: it is for what nothing else explains.
+        if *view == View::NoPlay && searched.iter().any(is_believed) {
+            continue;
+        }
         let at = match view {
             View::NoPlay => match without_play(setting, fit) {
                 Some(at) => at,

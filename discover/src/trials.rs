@@ -250,7 +250,13 @@ impl Round<'_> {
         let away: Vec<usize> = away.flat_map(|trial| trial.responses.clone()).collect();
         let is_there = |response: &usize| !away.contains(response);
         let ranked: Vec<usize> = self.ranked().into_iter().filter(is_there).collect();
-        self.completed(self.sketched(self.best_pairs(&ranked, &away)))
+        let mut added = 0;
+        let mut sketches = self.sketched(self.best_pairs(&ranked, &away));
+        sketches.retain(|(set, _)| {
+            added += usize::from(set.deleted.is_none());
+            set.deleted.is_some() || added <= rule::FITS_AT_ONCE
+        });
+        self.completed(sketches)
     }
 
     /// The pairs that promise to leave clearly less than the best single candidate, and for each term of
@@ -289,10 +295,9 @@ impl Round<'_> {
                 }
             }
             found.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let count = if deleted.is_some() {
-                1
-            } else {
-                rule::FITS_AT_ONCE
+            let count = match deleted {
+                Some(_) => 1,
+                None => rule::MOST_SKETCHES,
             };
             found
                 .into_iter()
