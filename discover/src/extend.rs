@@ -30,14 +30,7 @@ pub fn extended(
             .filter(|effect| effect.candidate.released.is_none())
     };
     for effect in written() {
-        let values: Vec<f64> = effect
-            .unknowns
-            .iter()
-            .map(|place| match fit.unknowns[*place].what {
-                What::Inverse(_) => 1.0 / theta[*place],
-                _ => theta[*place],
-            })
-            .collect();
+        let values = fit.stated(&effect.unknowns);
         let written = effect
             .candidate
             .written(&text, &setting.path, &values, &source);

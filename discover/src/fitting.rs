@@ -5,9 +5,10 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::candidates::Candidate;
 use crate::dataset::{Dataset, Start};
 use crate::estimate::{self, Estimate, StartPrior, stacked};
-use crate::plant::Plant;
+use crate::plant::{Plant, is_linear};
 use crate::response::mapped;
 use crate::rule;
 use crate::shooting::Shooting;
@@ -103,6 +104,15 @@ pub struct Fit {
     pub test: Rest,
 }
 
+impl Fit {
+    /// The values of some unknowns as a specification states them, SI.
+    pub fn stated(&self, places: &[usize]) -> Vec<f64> {
+        let theta = &self.train.estimate.theta;
+        let of = |place: &usize| self.unknowns[*place].what.stated(theta[*place]);
+        places.iter().map(of).collect()
+    }
+}
+
 /// A specification fitted to the beginnings of the windows.
 pub struct Sketch {
     /// The sum of squares that is left there, in noises, with what priors add.
@@ -149,6 +159,26 @@ impl<'d> Setting<'d> {
         let first = self.first_state(&plant, record);
         plant.choose_steps(record, &first, &self.noise);
         Ok(plant)
+    }
+
+    /// A specification's text and its linear part's with a candidate at these values.
+    ///
+    /// # Errors
+    /// A place of the edits that the text lacks, in words.
+    pub fn with(
+        &self,
+        (text, linear): (&str, &str),
+        candidate: &Candidate,
+        values: &[f64],
+    ) -> Result<(String, String), String> {
+        let written = |text| candidate.written(text, &self.path, values, "");
+        let extended = written(text).map_err(|error| error.to_string())?;
+        // What is linear between switches itself belongs to the linear part.
+        let linear = match written(linear) {
+            Ok(extended) if is_linear(&extended, &self.path, self.order) => extended,
+            _ => linear.to_owned(),
+        };
+        Ok((extended, linear))
     }
 
     /// The first state of a record, as far as it is known.

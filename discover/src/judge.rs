@@ -40,8 +40,8 @@ pub struct Own {
 /// Why they are not believed, in words.
 pub fn judge(before: &Fit, after: &Fit, own: &[Own]) -> Result<Evidence, String> {
     let evidence = evidence(before, after, own);
-    if let Some(name) = at_bound(after, own) {
-        return Err(name);
+    if let Some(reason) = at_bound(after, own) {
+        return Err(reason);
     }
     if let Some((name, off)) = within_prior(after, own) {
         return Err(format!(

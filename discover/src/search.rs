@@ -14,7 +14,7 @@ use crate::rule;
 use crate::screen::{Screen, screen};
 use crate::sites::{plays, sites};
 use crate::thinned::thin;
-use crate::trials::{Round, Trial, at_floor};
+use crate::trials::{Round, Trial, at_floor, leaves_less};
 use crate::unknowns::{Unknown, What, of_null_model};
 
 /// An effect that was believed.
@@ -172,6 +172,16 @@ enum View {
     NoPlay,
 }
 
+impl View {
+    /// The part of each window that is looked at.
+    fn part(self) -> f64 {
+        match self {
+            Self::Beginnings => FIRST_PART.0,
+            Self::Whole | Self::NoPlay => 1.0,
+        }
+    }
+}
+
 /// One round: view after view until what is believed leaves little, pairs if that leaves much; then
 /// whether a parameter may be off that nobody called uncertain.
 fn round(
@@ -209,10 +219,8 @@ fn round(
             }
         };
     let is_believed = |(_, _, trials): &Searched| trials.iter().any(|trial| trial.verdict.is_ok());
-    let leaves_little = |trial: &Trial| {
-        let left = trial.fit.train.pooled.max(trial.fit.test.pooled);
-        trial.verdict.is_ok() && left < rule::CLOSE * floor
-    };
+    let leaves_little =
+        |trial: &Trial| trial.verdict.is_ok() && leaves_less(&trial.fit, rule::CLOSE * floor);
     let is_close = |(_, _, trials): &Searched| trials.iter().any(leaves_little);
     let mut searched: Vec<Searched> = Vec::new();
     let mut seen: Vec<View> = Vec::new();
@@ -221,18 +229,17 @@ fn round(
         if *view == View::NoPlay && searched.iter().any(is_believed) {
             continue;
         }
-        let at = match view {
+        let closed = match view {
             View::NoPlay => match without_play(setting, fit) {
-                Some(at) => at,
+                Some(closed) => Some(closed),
                 None => continue,
             },
-            View::Whole => (None, 1.0),
-            View::Beginnings => (None, FIRST_PART.0),
+            View::Whole | View::Beginnings => None,
         };
-        if view == &View::NoPlay {
+        if closed.is_some() {
             said("looking at the model without play");
         }
-        let at = (at.0.as_ref().unwrap_or(fit), at.1);
+        let at = (closed.as_ref().unwrap_or(fit), view.part());
         let has_play = *view != View::NoPlay;
         let (candidates, screen) = screened(setting, at, (effects, has_play), floor, said);
         let trials = round(*view, &candidates, &screen, None);
@@ -259,20 +266,16 @@ fn round(
             "screening {} parameters of the model",
             shifts.len()
         ));
-        let (view, part) = match seen.first() {
-            Some(View::Beginnings) => (View::Beginnings, FIRST_PART.0),
-            _ => (View::Whole, 1.0),
-        };
-        let screen = screen(setting, fit, &shifts, part);
+        let view = views[0];
+        let screen = screen(setting, fit, &shifts, view.part());
         let trials = round(view, &shifts, &screen, None);
         searched.push((shifts, screen, trials));
     }
     searched
 }
 
-/// The model with all play closed, fitted, and the part of windows to look at; none if there is
-/// no play.
-fn without_play(setting: &Setting<'_>, fit: &Fit) -> Option<(Option<Fit>, f64)> {
+/// The model with all play closed, fitted; none if there is no play.
+fn without_play(setting: &Setting<'_>, fit: &Fit) -> Option<Fit> {
     let edits: Vec<Edit> = plays(&fit.plant.model)
         .into_iter()
         .map(|name| {
@@ -289,8 +292,7 @@ fn without_play(setting: &Setting<'_>, fit: &Fit) -> Option<(Option<Fit>, f64)> 
     let closed = |text: &str| edit::apply(&Source::new(setting.path.as_str(), text), &edits).ok();
     let texts = (closed(&fit.text)?, closed(&fit.linear)?);
     let theta = &fit.train.estimate.theta;
-    let closed = setting.fit(texts, fit.unknowns.clone(), theta).ok()?;
-    Some((Some(closed), 1.0))
+    setting.fit(texts, fit.unknowns.clone(), theta).ok()
 }
 
 /// The parameters of a model that no unknown moves.

@@ -203,7 +203,7 @@ impl<'a> Shooting<'a> {
 
     /// Shares the windows out to the threads, neighbours together, and puts the answers in
     /// order.
-    fn by_threads<T: Send>(
+    pub(crate) fn by_threads<T: Send>(
         &self,
         work: impl Fn(std::ops::Range<usize>) -> Vec<T> + Send + Sync,
     ) -> Vec<T> {

@@ -162,22 +162,16 @@ pub fn carried(
     starts: &[Vec<f64>],
 ) -> Vec<Option<Vec<f64>>> {
     let list = &shooting.windows.list;
-    let size = list.len().div_ceil(CHAINS).max(1);
-    let places: Vec<usize> = (0..list.len()).collect();
-    let parts: Vec<Vec<Option<Vec<f64>>>> = places
-        .par_chunks(size)
-        .map(|places| {
-            let mut crew = Crew::frozen(shooting, theta, 1.0);
-            let mut of = |place: usize| {
-                let before = place.checked_sub(1)?;
-                list[place].follows?;
-                crew.as_mut()?
-                    .carried(before, &starts[before], list[place].times[0])
-            };
-            places.iter().map(|place| of(*place)).collect()
-        })
-        .collect();
-    parts.into_iter().flatten().collect()
+    shooting.by_threads(|places| {
+        let mut crew = Crew::frozen(shooting, theta, 1.0);
+        let mut of = |place: usize| {
+            let before = place.checked_sub(1)?;
+            list[place].follows?;
+            crew.as_mut()?
+                .carried(before, &starts[before], list[place].times[0])
+        };
+        places.map(&mut of).collect()
+    })
 }
 
 /// Some windows, one after the other: what is known of each initial state before, and the

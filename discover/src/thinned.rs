@@ -1,10 +1,8 @@
 //! What was believed, one effect less: a later effect may do what an earlier one was taken for.
 
 use crate::fitting::{Fit, Setting};
-use crate::plant::is_linear;
 use crate::rule;
 use crate::search::{Accepted, Found};
-use crate::unknowns::What;
 
 /// Takes away effects without which the records are explained as well, the least needed first.
 /// `said` is told which.
@@ -36,26 +34,13 @@ fn is_as_good(with: &Fit, without: &Fit) -> bool {
 fn without(setting: &Setting<'_>, found: &Found, place: usize) -> Result<Fit, String> {
     let fit = found.best();
     let gone = &found.accepted[place];
-    let (mut text, mut linear) = (found.null.text.clone(), found.null.linear.clone());
+    let mut texts = (found.null.text.clone(), found.null.linear.clone());
     for (other, effect) in found.accepted.iter().enumerate() {
         if other == place || effect.candidate.released.is_some() {
             continue;
         }
-        let values: Vec<f64> = (effect.unknowns.iter())
-            .map(|at| match fit.unknowns[*at].what {
-                What::Inverse(_) => 1.0 / fit.train.estimate.theta[*at],
-                _ => fit.train.estimate.theta[*at],
-            })
-            .collect();
-        let written = effect.candidate.written(&text, &setting.path, &values, "");
-        text = written.map_err(|error| error.to_string())?;
-        if let Ok(extended) = effect
-            .candidate
-            .written(&linear, &setting.path, &values, "")
-            && is_linear(&extended, &setting.path, setting.order)
-        {
-            linear = extended;
-        }
+        let values = fit.stated(&effect.unknowns);
+        texts = setting.with((&texts.0, &texts.1), &effect.candidate, &values)?;
     }
     let mut unknowns = fit.unknowns.clone();
     let mut theta = fit.train.estimate.theta.clone();
@@ -71,7 +56,7 @@ fn without(setting: &Setting<'_>, found: &Found, place: usize) -> Result<Fit, St
         theta = kept.iter().map(|at| theta[*at]).collect();
     }
     let left = fit.train.estimate.cost;
-    let sketch = setting.expected((text, linear), unknowns, theta, (fit, left))?;
+    let sketch = setting.expected(texts, unknowns, theta, (fit, left))?;
     setting.complete(sketch)
 }
 

@@ -7,7 +7,6 @@ use rayon::prelude::*;
 use crate::candidates::Candidate;
 use crate::fitting::{Fit, Setting, Sketch};
 use crate::judge::{Evidence, Own, is_held, judge};
-use crate::plant::is_linear;
 use crate::rule;
 use crate::screen::Screen;
 use crate::unknowns::{Unknown, What};
@@ -116,7 +115,7 @@ impl Round<'_> {
         }
         let both = plain.into_iter().chain(repeating);
         both.map(|response| Set {
-            sizes: self.screen.left(&[response]).1,
+            sizes: self.screen.responses[response].values.clone(),
             responses: vec![response],
             deleted: None,
         })
@@ -332,24 +331,35 @@ impl Round<'_> {
     /// A sketch with a set's candidates.
     fn sketch(&self, set: &Set) -> Result<Sketch, String> {
         let (setting, fit) = (self.setting, self.fit);
+        let (unknowns, theta) = self.unknowns(set, PARTS[0]);
+        let mut texts = (fit.text.clone(), fit.linear.clone());
+        let mut next = fit.unknowns.len();
+        for response in &set.responses {
+            let response = &self.screen.responses[*response];
+            if response.released.is_some() {
+                continue;
+            }
+            let own = next..next + response.trials.len();
+            next = own.end;
+            let values: Vec<f64> = own
+                .map(|place| unknowns[place].what.stated(theta[place]))
+                .collect();
+            let candidate = &self.candidates[response.candidate];
+            texts = setting.with((&texts.0, &texts.1), candidate, &values)?;
+        }
         if self.is_whole && set.deleted.is_none() {
-            let (texts, unknowns, theta) = self.extended(set, 1.0)?;
             let left = self.screen.left(&set.responses).0;
             return setting.expected(texts, unknowns, theta, (fit, left));
         }
-        let (texts, unknowns, first) = self.extended(set, PARTS[0])?;
-        let mut begins = vec![first];
-        for part in &PARTS[1..] {
-            begins.push(self.extended(set, *part)?.2);
-        }
+        let others = PARTS[1..].iter().map(|part| self.unknowns(set, *part).1);
+        let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
         setting.sketch(texts, unknowns, &begins)
     }
 
-    /// The specification and its linear part with a set's candidates, the unknowns and their
-    /// values, so much of the promised sizes from absent.
-    fn extended(&self, set: &Set, part: f64) -> Result<Extended, String> {
-        let (setting, fit) = (self.setting, self.fit);
-        let (mut text, mut linear) = (fit.text.clone(), fit.linear.clone());
+    /// The unknowns with a set's candidates and their values, so much of the promised sizes from
+    /// absent.
+    fn unknowns(&self, set: &Set, part: f64) -> (Vec<Unknown>, Vec<f64>) {
+        let fit = self.fit;
         let mut unknowns = fit.unknowns.clone();
         // Parameters and sensors that took up what the effect does begin anew.
         let known = unknowns.iter().zip(&fit.train.estimate.theta);
@@ -369,8 +379,6 @@ impl Round<'_> {
                 theta[place] = unknowns[place].admissible(fit.train.estimate.theta[place] + size);
                 continue;
             }
-            let candidate = &self.candidates[response.candidate];
-            let mut values = Vec::new();
             for trial in &response.trials {
                 let size = match trial.is_shape {
                     true => trial.unknown.start - trial.base,
@@ -381,34 +389,22 @@ impl Round<'_> {
                 } else {
                     size
                 };
-                let value = trial.unknown.admissible(trial.base + size);
-                values.push(match trial.unknown.what {
-                    What::Inverse(_) => 1.0 / value,
-                    _ => value,
-                });
+                theta.push(trial.unknown.admissible(trial.base + size));
                 let mut unknown = trial.unknown.clone();
                 unknown.scale = size.abs().max(1e-3 * unknown.scale);
                 unknowns.push(unknown);
-                theta.push(value);
-            }
-            text = candidate
-                .written(&text, &setting.path, &values, "")
-                .map_err(|e| e.to_string())?;
-            // What is linear between switches itself belongs to the linear part.
-            if let Ok(extended) = candidate.written(&linear, &setting.path, &values, "")
-                && is_linear(&extended, &setting.path, setting.order)
-            {
-                linear = extended;
             }
         }
-        Ok(((text, linear), unknowns, theta))
+        (unknowns, theta)
     }
 }
 
-/// The texts of a specification and its linear part, unknowns, and their values.
-type Extended = ((String, String), Vec<Unknown>, Vec<f64>);
-
 /// Whether a fit leaves no more than a right model would.
 pub fn at_floor(fit: &Fit, floor: f64) -> bool {
-    fit.train.pooled.max(fit.test.pooled) < rule::AT_FLOOR * floor
+    leaves_less(fit, rule::AT_FLOOR * floor)
+}
+
+/// Whether a fit leaves less than so many noises, on both sets of records.
+pub fn leaves_less(fit: &Fit, noises: f64) -> bool {
+    fit.train.pooled.max(fit.test.pooled) < noises
 }

@@ -22,6 +22,16 @@ pub enum What {
     Delay(usize),
 }
 
+impl What {
+    /// Its value as a specification states it, from its estimate, SI.
+    pub fn stated(&self, value: f64) -> f64 {
+        match self {
+            Self::Inverse(_) => 1.0 / value,
+            Self::Parameter(_) | Self::Gain(_) | Self::Bias(_) | Self::Delay(_) => value,
+        }
+    }
+}
+
 /// Something to be estimated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknown {

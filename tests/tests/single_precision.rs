@@ -1,12 +1,12 @@
 //! Emitted code in `f32` against the same in double precision that bounds what `f32` rounds
 //! away at every operation.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+#[path = "../requested/tests/requested/rounded.rs"]
+mod rounded;
 
 use proptest::prelude::*;
 
-/// Half a unit in the last place of 1 in single precision.
-const UNIT: f64 = f32::EPSILON as f64 / 2.0;
+use rounded::Rounded;
 
 /// What is right to the first order in the unit is right to this: products of two roundings,
 /// and what double precision itself rounds away, are some 1e-7 of the first order.
@@ -16,72 +16,8 @@ const FIRST_ORDER: f64 = 1.001;
 const MOTOR: f64 = 100.0;
 
 /// A number in double precision, and a bound of the error that it would have in single
-/// precision (running error analysis: N. J. Higham, Accuracy and Stability of Numerical
-/// Algorithms, section 3.3).
-#[derive(Clone, Copy, Debug)]
-struct Single {
-    number: f64,
-    error: f64,
-}
-
-impl Single {
-    /// A result whose operands left it this error.
-    fn rounded(number: f64, error: f64) -> Self {
-        Self {
-            number,
-            error: error + UNIT * number.abs(),
-        }
-    }
-
-    /// A number that single precision holds.
-    fn exact(number: f32) -> Self {
-        Self {
-            number: number.into(),
-            error: 0.0,
-        }
-    }
-}
-
-impl Add for Single {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self::rounded(self.number + other.number, self.error + other.error)
-    }
-}
-
-impl Sub for Single {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Self::rounded(self.number - other.number, self.error + other.error)
-    }
-}
-
-impl Mul for Single {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        let error = self.number.abs() * other.error + other.number.abs() * self.error;
-        Self::rounded(self.number * other.number, error)
-    }
-}
-
-impl Div for Single {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        let quotient = self.number / other.number;
-        let error = (self.error + quotient.abs() * other.error) / other.number.abs();
-        Self::rounded(quotient, error)
-    }
-}
-
-impl Neg for Single {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self {
-            number: -self.number,
-            error: self.error,
-        }
-    }
-}
+/// precision.
+type Single = Rounded<24>;
 
 macro_rules! agrees {
     ($($module:ident $order:literal $test:ident)*) => {$(

@@ -52,7 +52,7 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     let (fit, floor_before) = null(&setting, &text, options.seed)?;
     let place = locate::located(&setting, &fit);
     let found =
-        search(&setting, fit, &effects, floor_before.pooled, &progress).map_err(Problem::input)?;
+        search(&setting, fit, &effects, floor_before.pooled, &warn).map_err(Problem::input)?;
     let floor = match found.accepted.is_empty() {
         true => floor_before,
         false => floor(&setting, found.best(), options.seed),
@@ -98,15 +98,10 @@ fn null(setting: &Setting<'_>, text: &str, seed: u64) -> Outcome<(Fit, Floor)> {
     for note in notes.map_err(|refusal| Problem::input(refusal.to_string()))? {
         warn(&format!("note: {note}"));
     }
-    progress("fitting the model as it is");
+    warn("fitting the model as it is");
     let fit = null_fit(setting, text).map_err(Problem::input)?;
     let floor = floor(setting, &fit, seed);
     Ok((fit, floor))
-}
-
-/// What is being done.
-fn progress(text: &str) {
-    warn(text);
 }
 
 fn write_json(path: &Path, document: &Value) -> Outcome {

@@ -9,6 +9,7 @@
 mod dual;
 mod evaluators;
 mod models;
+mod rounded;
 mod tracked;
 
 use codegen::evaluator::Point as EvaluatorPoint;

@@ -1,0 +1,75 @@
+//! Numbers that bound their own rounding error (running error analysis: N. J. Higham,
+//! Accuracy and Stability of Numerical Algorithms, section 3.3), computed in double precision.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number and a bound of the error that it has, or would have, with so many binary digits.
+#[derive(Clone, Copy, Debug)]
+pub struct Rounded<const DIGITS: u32> {
+    /// The number.
+    pub number: f64,
+    /// A bound of the error that rounding left in it.
+    pub error: f64,
+}
+
+impl<const DIGITS: u32> Rounded<DIGITS> {
+    /// Half a unit in the last place of 1.
+    const UNIT: f64 = 1.0 / (1_u64 << DIGITS) as f64;
+
+    /// A number without error.
+    pub fn exact(number: impl Into<f64>) -> Self {
+        Self {
+            number: number.into(),
+            error: 0.0,
+        }
+    }
+
+    /// A result whose operands left it this error.
+    pub fn rounded(number: f64, error: f64) -> Self {
+        Self {
+            number,
+            error: error + Self::UNIT * number.abs(),
+        }
+    }
+}
+
+impl<const DIGITS: u32> Add for Rounded<DIGITS> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self::rounded(self.number + other.number, self.error + other.error)
+    }
+}
+
+impl<const DIGITS: u32> Sub for Rounded<DIGITS> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self::rounded(self.number - other.number, self.error + other.error)
+    }
+}
+
+impl<const DIGITS: u32> Mul for Rounded<DIGITS> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let error = self.number.abs() * other.error + other.number.abs() * self.error;
+        Self::rounded(self.number * other.number, error)
+    }
+}
+
+impl<const DIGITS: u32> Div for Rounded<DIGITS> {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        let quotient = self.number / other.number;
+        let error = (self.error + quotient.abs() * other.error) / other.number.abs();
+        Self::rounded(quotient, error)
+    }
+}
+
+impl<const DIGITS: u32> Neg for Rounded<DIGITS> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self {
+            number: -self.number,
+            error: self.error,
+        }
+    }
+}
