@@ -2,7 +2,7 @@
 //!
 //! The pipeline, one file each: [`dataset`] (records with their description) and [`gate`]
 //! (whether they can be believed); [`plant`] (a model that can be run), [`runner`] and
-//! [`march`] (how it runs), [`windows`] (records in parts), [`smooth`] and [`starts`] (each
+//! [`march`] (how it runs; `beside`: what is not linear), [`windows`] (records in parts), [`smooth`] and [`starts`] (each
 //! part's initial state), [`unknowns`], [`shooting`] (residuals) and [`crew`] (derivatives),
 //! [`estimate`] (with [`bounded`]: least squares), [`fitting`] (a specification fitted),
 //! [`mod@floor`] (what a right model would leave), [`labels`] (whether columns are what they are
@@ -14,6 +14,7 @@
 //! [`extend`] (the specification changed), [`document`] and [`report`] (for programs and for
 //! people).
 
+mod beside;
 pub mod bounded;
 pub mod candidates;
 pub mod catalogue;

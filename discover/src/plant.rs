@@ -11,10 +11,11 @@ use model_spec::model::{Model, ParameterValue};
 use model_spec::source::Source;
 use sim::exact::PiecewiseLinear;
 
+use crate::beside::Beside;
 use crate::dataset::{Channel, Quantity, Record};
 use crate::gate::typical_step;
 use crate::march::March;
-use crate::runner::{Beyond, Runner, Shown};
+use crate::runner::{Runner, Shown};
 
 /// Switches per simulated second beyond which a trial motion is given up, 1/s.
 pub(crate) const FASTEST_SWITCHING: f64 = 1e5;
@@ -25,7 +26,7 @@ const TRIED_SAMPLES: usize = 100;
 /// Marching steps from sample to sample are tried up to two to this power.
 const MOST_DOUBLINGS: u32 = 7;
 
-/// The error of marching, in noises: what is marched is compared with noise.
+/// The root mean square error of marching, in noises: what is marched is compared with noise.
 const MARCHING_ERROR: f64 = 0.2;
 
 /// A derived model with its measured outputs.
@@ -230,6 +231,9 @@ impl Plant {
                 plant.steps = Some(1 << doubling);
             }
             let mut runner = plant.at(&plant.values).ok()?;
+            if marched && runner.march.is_none() {
+                return None;
+            }
             let outputs = runner.outputs(initial, times, &record.inputs).ok()?;
             Some(outputs.values)
         };
@@ -238,9 +242,11 @@ impl Plant {
             let fine = run(self, doubling);
             let near = |(coarse, fine): (&Vec<f64>, &Vec<f64>)| {
                 let pairs = coarse.iter().zip(fine).enumerate();
-                pairs.into_iter().all(|(place, (a, b))| {
-                    (a - b).abs() < MARCHING_ERROR * noise[place % noise.len()]
-                })
+                let square = |(place, (a, b)): (usize, (&f64, &f64))| {
+                    ((a - b) / noise[place % noise.len()]).powi(2)
+                };
+                let sum: f64 = pairs.map(square).sum();
+                sum < MARCHING_ERROR.powi(2) * coarse.len() as f64
             };
             if coarse.as_ref().zip(fine.as_ref()).is_some_and(near) {
                 if marched {
@@ -275,13 +281,13 @@ impl Plant {
             None => values.to_vec(),
             Some((_, places)) => places.iter().map(|place| values[*place]).collect(),
         };
-        let sample = self.sample / self.refinement;
-        runner.march = March::new(part.exact.evaluator(&own), sample);
+        let evaluator = part.exact.evaluator(&own);
+        runner.march = March::new(evaluator, self.sample, self.refinement);
         match (&runner.march, &part.beside) {
             (Some(_), None) => {}
             (Some(_), Some((code, _))) => {
                 let whole = self.code.evaluator(values);
-                runner.beyond = Some(Beyond::new(whole, code.evaluator(&own)));
+                runner.beside = Some(Beside::new(whole, code.evaluator(&own)));
             }
             (None, None) => {
                 let exact = part.exact.at(values).map_err(|error| error.to_string())?;

@@ -10,6 +10,7 @@ use sim::exact::Propagator;
 use sim::record::HeldInputs;
 use sim::solve::{Settings, System, simulate};
 
+use crate::beside::Beside;
 use crate::march::{Company, Drives, Force, March, Tangents};
 use crate::plant::{Output, Plant};
 
@@ -93,39 +94,6 @@ fn sum(row: &[f64], vector: &[f64]) -> f64 {
     row.iter().zip(vector).map(|(a, b)| a * b).sum()
 }
 
-/// What of a model's accelerations lies beyond its linear part.
-pub(crate) struct Beyond {
-    whole: Evaluator,
-    linear: Evaluator,
-    rates: [Vec<f64>; 2],
-}
-
-impl Beyond {
-    pub fn new(whole: Evaluator, linear: Evaluator) -> Self {
-        let states = 2 * whole.program().degrees_of_freedom();
-        Self {
-            whole,
-            linear,
-            rates: [vec![0.0; states], vec![0.0; states]],
-        }
-    }
-}
-
-impl Force for Beyond {
-    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
-        let [whole, linear] = &mut self.rates;
-        self.whole.rates(Point { t, state, inputs }, whole);
-        self.linear.rates(Point { t, state, inputs }, linear);
-        let half = out.len();
-        for (slot, (a, b)) in out
-            .iter_mut()
-            .zip(whole[half..].iter().zip(&linear[half..]))
-        {
-            *slot = a - b;
-        }
-    }
-}
-
 /// A model at fixed parameters.
 pub struct Runner<'p> {
     plant: &'p Plant,
@@ -133,7 +101,7 @@ pub struct Runner<'p> {
     observables: Vec<f64>,
     shown: Option<Shown>,
     pub(crate) march: Option<March>,
-    pub(crate) beyond: Option<Beyond>,
+    pub(crate) beside: Option<Beside>,
     propagator: Option<Propagator>,
 }
 
@@ -167,7 +135,7 @@ impl<'p> Runner<'p> {
             observables: vec![0.0; plant.observables()],
             shown,
             march: None,
-            beyond: None,
+            beside: None,
             propagator: None,
         }
     }
@@ -205,7 +173,7 @@ impl<'p> Runner<'p> {
         let mut found = Linearised::default();
         let free = if by_state { n } else { 0 };
         let company = Company {
-            force: self.beyond.as_mut().map(|beyond| beyond as &mut dyn Force),
+            force: self.beside.as_mut().map(|beside| beside as &mut dyn Force),
             tangents: Some(&mut tangents),
         };
         march
@@ -250,7 +218,7 @@ impl<'p> Runner<'p> {
         if let Some(march) = &mut self.march {
             let mut states = Vec::with_capacity(samples.len());
             let company = Company {
-                force: self.beyond.as_mut().map(|beyond| beyond as &mut dyn Force),
+                force: self.beside.as_mut().map(|beside| beside as &mut dyn Force),
                 tangents: None,
             };
             march.run(initial, samples, inputs, company, &mut |_, state, _| {

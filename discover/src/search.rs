@@ -207,7 +207,7 @@ fn round(
                 screen,
                 is_whole: view == View::Whole,
                 most: match view {
-                    View::NoPlay => rule::FITS_AT_ONCE,
+                    View::NoPlay => 2 * rule::FITS_AT_ONCE,
                     View::Whole | View::Beginnings => rule::MOST_SKETCHES,
                 },
                 floor,

@@ -7,10 +7,13 @@
 //! through both ends and the step is made in parts. What a propagator from switch to switch
 //! does to rounding this does to a small part of any sensor's noise, several times faster, and
 //! neighbouring motions come with it. The files: `kernels` (products), `surfaces`, `regime`
-//! (matrices of a step), `crossing` (where a step meets a surface), `tangents`.
+//! (matrices of a step), `crossing` (where a step meets a surface), `parts` (steps through
+//! surfaces), `beyond` (what is not linear), `tangents`.
 
+mod beyond;
 mod crossing;
 mod kernels;
+mod parts;
 mod regime;
 mod surfaces;
 mod tangents;
@@ -20,6 +23,8 @@ use std::collections::HashMap;
 use codegen::affine::system::AffineEvaluator;
 use sim::record::HeldInputs;
 
+use beyond::Excess;
+pub use beyond::Force;
 use crossing::first_crossing;
 use regime::Regime;
 use surfaces::{Side, Surfaces, dot};
@@ -40,21 +45,6 @@ const MOST_STEPS: f64 = 256.0;
 /// times of records with rounded or jittering clocks, which err by no more than that.
 const JITTER: f64 = 1e-4;
 
-/// Crossings within a step after which the rest of it is made without looking.
-const MOST_CROSSINGS: usize = 12;
-
-/// The motion itself is right to this part of its size.
-const ROUNDING: f64 = 1e-16;
-
-/// Where a function's rate leads back by less than this part of its size, it does not.
-const LEADS_BACK: f64 = 1e-9;
-
-/// Accelerations beyond the linear ones.
-pub trait Force {
-    /// Writes them at a state.
-    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
-}
-
 /// A model at fixed parameters, ready to be marched.
 pub struct March {
     evaluator: AffineEvaluator,
@@ -64,6 +54,11 @@ pub struct March {
     states: usize,
     /// The length of a step, s.
     step: f64,
+    /// The sides on which the linear part alone would be, those for which that was asked last
+    /// with their regime, and rates there.
+    own: Vec<Side>,
+    last_own: (Vec<Side>, usize),
+    rates: Vec<f64>,
 }
 
 /// Where a motion stands.
@@ -78,10 +73,12 @@ struct Motion {
     base: Vec<f64>,
     /// Functions of the surfaces and their rates.
     watched: Vec<f64>,
-    /// Accelerations beyond the linear ones.
-    force: Vec<f64>,
-    /// A step's end.
+    /// What is not linear there.
+    excess: Excess,
+    /// A step's end, what is not linear there, and half of what that changed.
     next: Vec<f64>,
+    later: Excess,
+    change: Vec<f64>,
 }
 
 /// Who goes along.
@@ -96,9 +93,9 @@ pub struct Company<'c, 'd> {
 pub type Show<'s> = dyn FnMut(usize, &[f64], Option<&Tangents<'_>>) + 's;
 
 impl March {
-    /// A march of a model at its parameters, for samples so far apart, s; none if it is not
-    /// of a kind that can be marched.
-    pub fn new(mut evaluator: AffineEvaluator, sample: f64) -> Option<Self> {
+    /// A march of a model at its parameters, for samples so far apart, s, in so many times the
+    /// steps that its linear part needs; none if it is not of a kind that can be marched.
+    pub fn new(mut evaluator: AffineEvaluator, sample: f64, refinement: f64) -> Option<Self> {
         let surfaces = Surfaces::of(&mut evaluator)?;
         let system = evaluator.system(&vec![0.0; evaluator.guard_count()]);
         if !system.phases.is_empty()
@@ -108,7 +105,7 @@ impl March {
             return None;
         }
         let turns = sample * regime::fastest(&mut evaluator, &surfaces) / TURN;
-        let steps = turns.ceil().max(LEAST_STEPS);
+        let steps = turns.ceil().max(LEAST_STEPS) * refinement;
         (steps <= MOST_STEPS).then(|| Self {
             states: evaluator.states(),
             surfaces,
@@ -116,6 +113,9 @@ impl March {
             known: HashMap::new(),
             step: sample / steps,
             evaluator,
+            own: Vec::new(),
+            last_own: (Vec::new(), 0),
+            rates: Vec::new(),
         })
     }
 
@@ -176,27 +176,39 @@ impl March {
             given,
             base: Vec::new(),
             watched: Vec::new(),
-            force: vec![0.0; self.states / 2],
+            excess: Excess::none(self.states / 2, count),
             next: Vec::new(),
+            later: Excess::none(self.states / 2, count),
+            change: Vec::new(),
         };
         motion.regime = self.regime(&motion.sides)?;
-        let functions = self.regimes[motion.regime].functions.clone();
-        for (side, function) in motion.sides.iter_mut().zip(&functions) {
-            if function.at(&motion.state, &motion.given) > 0.0 {
-                *side = Side::Above;
-            }
+        let functions = &self.regimes[motion.regime].functions;
+        if let Some(force) = &mut company.force {
+            let surfaces = (&self.surfaces, &functions[..]);
+            let at = (t, initial, &motion.given[..]);
+            motion.later.find(&mut **force, surfaces, at);
         }
+        let functions = functions.iter().zip(&motion.later.moved);
+        let distances: Vec<f64> = functions
+            .map(|(row, moved)| row.at(initial, &motion.given) + moved)
+            .collect();
+        let sides = distances.iter().map(|distance| Side::of(*distance));
+        motion.sides = sides.collect();
         motion.regime = self.regime(&motion.sides)?;
-        for (surface, function) in functions.iter().enumerate() {
-            if function.at(&motion.state, &motion.given) == 0.0 {
-                self.cross(&mut motion, surface, &mut None)?;
+        let alone = &mut Company {
+            force: None,
+            tangents: None,
+        };
+        for (surface, distance) in distances.into_iter().enumerate() {
+            if distance == 0.0 {
+                self.cross(&mut motion, t, (surface, 0.0), alone)?;
                 if motion.sides[surface] == Side::Above {
-                    self.cross(&mut motion, surface, &mut None)?;
+                    self.cross(&mut motion, t, (surface, 0.0), alone)?;
                 }
             }
         }
         if let Some(force) = &mut company.force {
-            force.at(t, &motion.state, values, &mut motion.force);
+            self.meet(&mut motion, t, &mut **force)?;
         }
         if let Some(tangents) = &mut company.tangents {
             tangents.begin(t, &motion.state, values);
@@ -233,10 +245,11 @@ impl March {
     ) -> Result<(), String> {
         motion.given.truncate(1);
         motion.given.extend(inputs);
-        self.prepare(motion);
         if let Some(force) = &mut company.force {
-            force.at(motion.t, &motion.state, inputs, &mut motion.force);
+            let t = motion.t;
+            self.meet(motion, t, &mut **force)?;
         }
+        self.prepare(motion);
         if let Some(tangents) = &mut company.tangents {
             tangents.meet(motion.t, &motion.state, inputs);
         }
@@ -249,7 +262,7 @@ impl March {
         for place in 1..=count as usize {
             self.release(motion, begin + (place - 1) as f64 * length, company)?;
             let end = begin + place as f64 * length;
-            if !(whole && self.whole_step(motion, end, inputs, company)) {
+            if !(whole && self.whole_step(motion, end, inputs, company)?) {
                 self.parts(motion, length, end, inputs, company)?;
             }
         }
@@ -271,17 +284,18 @@ impl March {
         self.watch(motion);
     }
 
-    /// Finds the surfaces' functions and rates where the motion stands.
+    /// Finds the surfaces' functions and, but for how they are moved, their rates where the
+    /// motion stands.
     fn watch(&self, motion: &mut Motion) {
         let regime = &self.regimes[motion.regime];
         let half = self.states / 2;
         motion.watched.clear();
-        let rows = regime.functions.iter();
+        let rows = regime.functions.iter().zip(&motion.excess.moved);
         motion
             .watched
-            .extend(rows.map(|row| row.at(&motion.state, &motion.given)));
+            .extend(rows.map(|(row, moved)| row.at(&motion.state, &motion.given) + moved));
         for (row, function) in regime.rates.iter().zip(&regime.functions) {
-            let forced = dot(&function.state[half..], &motion.force);
+            let forced = dot(&function.state[half..], &motion.excess.force);
             motion
                 .watched
                 .push(row.at(&motion.state, &motion.given) + forced);
@@ -303,7 +317,7 @@ impl March {
         for (surface, side) in &regime.held {
             let side = side.at(&motion.state, &motion.given);
             if !(0.0..=1.0).contains(&side) {
-                motion.sides[*surface] = if side > 1.0 { Side::Above } else { Side::Below };
+                motion.sides[*surface] = Side::of(side - 1.0);
                 changed = true;
             }
         }
@@ -324,246 +338,64 @@ impl March {
         end: f64,
         inputs: &[f64],
         company: &mut Company<'_, '_>,
-    ) -> bool {
+    ) -> Result<bool, String> {
         let (n, half) = (self.states, self.states / 2);
         let regime = &self.regimes[motion.regime];
         motion.next.clear();
         motion.next.extend_from_slice(&motion.base);
         regime.step.add_product(&motion.state, &mut motion.next);
-        let mut later = [0.0; 32];
         if let Some(force) = &mut company.force {
+            let held = &motion.excess.force;
+            regime.step_force.add_product(held, &mut motion.next);
+            let (state, later) = (&motion.next[..n], &mut motion.later);
+            let surfaces = (&self.surfaces, &regime.functions[..]);
+            later.find(&mut **force, surfaces, (end, state, &motion.given));
+            let here = (motion.regime, &motion.sides[..]);
+            self.relate(here, state, &motion.given, later)?;
+            let pairs = motion.later.force.iter().zip(&motion.excess.force);
+            motion.change.clear();
+            motion
+                .change
+                .extend(pairs.map(|(new, old)| 0.5 * (new - old)));
+            let regime = &self.regimes[motion.regime];
             regime
                 .step_force
-                .add_product(&motion.force, &mut motion.next);
-            let later = &mut later[..half];
-            force.at(end, &motion.next[..n], inputs, later);
-            for (new, old) in later.iter().zip(&mut motion.force) {
-                *old = 0.5 * (new - *old);
-            }
-            regime
-                .step_force
-                .add_product(&motion.force, &mut motion.next);
-            // Undone, for the case that the step is made in parts.
-            for (new, old) in later.iter().zip(&mut motion.force) {
-                *old = new - 2.0 * *old;
-            }
+                .add_product(&motion.change, &mut motion.next);
         }
+        let regime = &self.regimes[motion.regime];
         let surfaces = motion.sides.len();
         let (function, rate) = motion.watched.split_at(surfaces);
         let crossed = (0..surfaces).any(|place| {
+            let later = motion.later.moved[place];
+            let slope = (later - motion.excess.moved[place]) / self.step;
             let ends = (
-                (function[place], rate[place]),
-                (motion.next[n + place], motion.next[n + surfaces + place]),
+                (function[place], rate[place] + slope),
+                (
+                    motion.next[n + place] + later,
+                    motion.next[n + surfaces + place] + slope,
+                ),
             );
             first_crossing(motion.sides[place], ends, self.step).is_some()
         });
         if crossed {
-            return false;
+            return Ok(false);
         }
         motion.state.copy_from_slice(&motion.next[..n]);
-        if company.force.is_some() {
-            motion.force.copy_from_slice(&later[..half]);
-        }
         motion
             .watched
             .copy_from_slice(&motion.next[n..n + 2 * surfaces]);
         if company.force.is_some() {
+            std::mem::swap(&mut motion.excess, &mut motion.later);
             for place in 0..surfaces {
-                let forced = dot(&regime.functions[place].state[half..], &motion.force);
-                motion.watched[surfaces + place] += forced;
+                let row = &regime.functions[place].state[half..];
+                motion.watched[place] += motion.excess.moved[place];
+                motion.watched[surfaces + place] += dot(row, &motion.excess.force);
             }
         }
         if let Some(tangents) = &mut company.tangents {
             tangents.step(regime, end, &motion.state, inputs);
         }
-        true
-    }
-
-    /// Makes a step in parts, from surface to surface.
-    fn parts(
-        &mut self,
-        motion: &mut Motion,
-        length: f64,
-        end: f64,
-        inputs: &[f64],
-        company: &mut Company<'_, '_>,
-    ) -> Result<(), String> {
-        let mut rest = length;
-        let surfaces = motion.sides.len();
-        if let Some(tangents) = &mut company.tangents {
-            let regime = &self.regimes[motion.regime];
-            tangents.catch_up(regime, end - length, &motion.state, inputs);
-        }
-        for _ in 0..MOST_CROSSINGS {
-            self.watch(motion);
-            let begin = (motion.watched.clone(), motion.state.clone());
-            self.part(motion, rest);
-            let before = std::mem::take(&mut motion.watched);
-            self.watch(motion);
-            let first = (0..surfaces)
-                .filter_map(|place| {
-                    let ends = (
-                        (begin.0[place], begin.0[surfaces + place]),
-                        (motion.watched[place], motion.watched[surfaces + place]),
-                    );
-                    let tau = first_crossing(motion.sides[place], ends, rest)?;
-                    Some((place, tau))
-                })
-                .min_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((surface, tau)) = first else {
-                return self.ended(motion, rest, end, inputs, company);
-            };
-            motion.watched = before;
-            motion.state.copy_from_slice(&begin.1);
-            let tau = self.polished(motion, surface, tau, rest, &begin.1);
-            rest -= tau;
-            let t = end - rest;
-            self.accompany(motion, tau, t, inputs, company);
-            self.cross(motion, surface, &mut company.tangents)?;
-            if rest <= 0.0 {
-                self.prepare(motion);
-                return Ok(());
-            }
-        }
-        self.part(motion, rest);
-        self.ended(motion, rest, end, inputs, company)?;
-        // Where surfaces follow each other too fast, signs decide.
-        let regime = &self.regimes[motion.regime];
-        for (side, function) in motion.sides.iter_mut().zip(&regime.functions) {
-            if *side != Side::Held {
-                let above = function.at(&motion.state, &motion.given) > 0.0;
-                *side = if above { Side::Above } else { Side::Below };
-            }
-        }
-        motion.regime = self.regime(&motion.sides)?;
-        self.prepare(motion);
-        Ok(())
-    }
-
-    /// Moves the state on by a part of a step, s.
-    fn part(&self, motion: &mut Motion, tau: f64) {
-        let regime = &self.regimes[motion.regime];
-        let mut rates = vec![0.0; regime.matrix.rows];
-        self.rates(motion, &mut rates);
-        tangents::series(&regime.matrix, &mut motion.state, &mut rates, tau, ROUNDING);
-    }
-
-    /// The rates where the motion stands.
-    fn rates(&self, motion: &Motion, out: &mut [f64]) {
-        let regime = &self.regimes[motion.regime];
-        let (n, half) = (self.states, self.states / 2);
-        out.fill(0.0);
-        for (column, value) in regime.given.column_iter().zip(&motion.given) {
-            out.iter_mut()
-                .zip(column.iter())
-                .for_each(|(o, c)| *o += c * value);
-        }
-        out[half..n]
-            .iter_mut()
-            .zip(&motion.force)
-            .for_each(|(o, f)| *o += f);
-        regime.matrix.add_product(&motion.state, out);
-    }
-
-    /// Goes to where a surface is crossed, about `tau` s from `begin`; returns when that is.
-    fn polished(
-        &self,
-        motion: &mut Motion,
-        surface: usize,
-        tau: f64,
-        most: f64,
-        begin: &[f64],
-    ) -> f64 {
-        self.part(motion, tau);
-        let regime = &self.regimes[motion.regime];
-        let value = regime.functions[surface].at(&motion.state, &motion.given);
-        let mut rates = vec![0.0; regime.matrix.rows];
-        self.rates(motion, &mut rates);
-        let rate = dot(&regime.functions[surface].state, &rates[..self.states]);
-        let better = (tau - value / rate).clamp(0.0, most);
-        if !better.is_finite() || better == tau {
-            return tau;
-        }
-        motion.state.copy_from_slice(begin);
-        self.part(motion, better);
-        better
-    }
-
-    /// After a part that reached the step's end.
-    fn ended(
-        &mut self,
-        motion: &mut Motion,
-        tau: f64,
-        end: f64,
-        inputs: &[f64],
-        company: &mut Company<'_, '_>,
-    ) -> Result<(), String> {
-        self.accompany(motion, tau, end, inputs, company);
-        self.prepare(motion);
-        Ok(())
-    }
-
-    /// Lets the others follow a part of a step.
-    fn accompany(
-        &mut self,
-        motion: &mut Motion,
-        tau: f64,
-        t: f64,
-        inputs: &[f64],
-        company: &mut Company<'_, '_>,
-    ) {
-        if let Some(force) = &mut company.force {
-            force.at(t, &motion.state, inputs, &mut motion.force);
-        }
-        if let Some(tangents) = &mut company.tangents {
-            let regime = &self.regimes[motion.regime];
-            tangents.part(regime, tau, (t, &motion.state, inputs));
-        }
-    }
-
-    /// Goes through a surface, or stays on it where forces on both sides lead back.
-    fn cross(
-        &mut self,
-        motion: &mut Motion,
-        surface: usize,
-        tangents: &mut Option<&mut Tangents<'_>>,
-    ) -> Result<(), String> {
-        let before = motion.regime;
-        let mut rates = vec![0.0; self.regimes[before].matrix.rows];
-        self.rates(motion, &mut rates);
-        let (beyond, outward) = match motion.sides[surface] {
-            Side::Above => (Side::Below, -1.0),
-            Side::Below | Side::Held => (Side::Above, 1.0),
-        };
-        let old = motion.sides[surface];
-        motion.sides[surface] = beyond;
-        motion.regime = self.regime(&motion.sides)?;
-        let mut after = rates.clone();
-        self.rates(motion, &mut after);
-        let function = &self.regimes[before].functions[surface].state;
-        let size: f64 = function
-            .iter()
-            .zip(&after)
-            .map(|(a, b)| (a * b).abs())
-            .sum();
-        let (here, there) = (dot(function, &rates), dot(function, &after));
-        if there * outward < -LEADS_BACK * size && here * outward > 0.0 {
-            motion.sides[surface] = Side::Held;
-            match self.known_regime(&motion.sides) {
-                Some(held) => motion.regime = held,
-                None => motion.sides[surface] = beyond,
-            }
-            self.rates(motion, &mut after);
-        } else if old == Side::Below && here == 0.0 && there <= 0.0 {
-            // It only touches.
-            motion.sides[surface] = old;
-            motion.regime = before;
-            return Ok(());
-        }
-        if let Some(tangents) = tangents {
-            tangents.switch(&self.regimes[before].functions[surface], &rates, &after);
-        }
-        Ok(())
+        Ok(true)
     }
 }
 

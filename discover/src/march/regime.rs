@@ -128,6 +128,19 @@ impl Regime {
     }
 }
 
+impl Regime {
+    /// Writes the rates at a state with a unit constant and the inputs; `out` has a number for
+    /// each row of the matrix.
+    pub fn rates(&self, state: &[f64], given: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        for (column, value) in self.given.column_iter().zip(given) {
+            let sums = out.iter_mut().zip(column.iter());
+            sums.for_each(|(o, c)| *o += c * value);
+        }
+        self.matrix.add_product(state, out);
+    }
+}
+
 /// The rate of a function along a motion.
 fn along(row: &Row, rates: &Rates) -> Row {
     let times = |matrix: &DMatrix<f64>| -> Vec<f64> {

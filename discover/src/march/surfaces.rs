@@ -13,6 +13,17 @@ pub enum Side {
     Held,
 }
 
+impl Side {
+    /// Where a surface's function has this value.
+    pub fn of(value: f64) -> Self {
+        if value > 0.0 {
+            Self::Above
+        } else {
+            Self::Below
+        }
+    }
+}
+
 /// Surfaces that differ: those of one function and one threshold are one.
 #[derive(Clone, Debug)]
 pub struct Surfaces {

@@ -159,12 +159,12 @@ impl<'d> Tangents<'d> {
         self.meet(t, state, inputs);
     }
 
-    /// Goes through a switch: the function that reached its surface, the rates before and
-    /// after.
-    pub fn switch(&mut self, function: &Row, before: &[f64], after: &[f64]) {
+    /// Goes through a switch: the function that reached its surface and the slope with which that
+    /// is moved, the rates before and after.
+    pub fn switch(&mut self, (function, slope): (&Row, f64), before: &[f64], after: &[f64]) {
         self.on_surface = true;
         let n = self.states;
-        let rate = dot(&function.state, &before[..n]);
+        let rate = dot(&function.state, &before[..n]) + slope;
         let size: f64 = function
             .state
             .iter()

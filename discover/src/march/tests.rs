@@ -51,7 +51,7 @@ fn a_march_follows_the_exact_motion_through_its_switches() {
         .simulate(&initial, (0.0, times[199]), &times, &inputs, &mut |_| {})
         .expect("a motion");
     assert!(wanted.switches.len() > 20);
-    let mut march = March::new(exact.evaluator(&values), 5e-4).expect("can be marched");
+    let mut march = March::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be marched");
     let found = run(&mut march, &initial, &times, &inputs);
     // Deflections of the meshes, the carrier's way and the beam's modes: of micrometres and
     // millimetres; a sensor of the rig resolves 0.7 um.
@@ -85,7 +85,7 @@ fn tangents_are_differences_of_neighbouring_motions() {
     let inputs = torque(&times);
     let mut initial = vec![0.0; 14];
     (initial[0], initial[7]) = (3e-5, 0.01);
-    let mut march = March::new(exact.evaluator(&values), 5e-4).expect("can be marched");
+    let mut march = March::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be marched");
     let mut free = Free;
     let mut tangents = Tangents::new(14, true, 0, &mut free);
     let mut found = vec![0.0; 14 * 14];
@@ -154,7 +154,7 @@ friction = { on = "x", value = "-T*sign(dot(x))" }
 fn dry_friction_holds_and_lets_go() {
     let model = sliding();
     let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
-    let mut march = March::new(exact.evaluator(&[2.0, 3.0]), 0.01).expect("can be marched");
+    let mut march = March::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0).expect("can be marched");
     // Held for a second, 1 m/s^2 for the next, slowed down by 1.5 m/s^2, held again.
     let inputs = HeldInputs::new(vec![0.0, 1.0, 2.0], vec![2.0, 5.0, 0.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=400).map(|k| f64::from(k) * 0.01).collect();
@@ -179,7 +179,7 @@ impl Drives for Push {
 fn a_driven_tangent_is_the_motion_of_what_drives_it() {
     let model = sliding();
     let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
-    let mut march = March::new(exact.evaluator(&[2.0, 3.0]), 0.01).expect("can be marched");
+    let mut march = March::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0).expect("can be marched");
     let inputs = HeldInputs::new(vec![0.0], vec![5.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=100).map(|k| f64::from(k) * 0.01).collect();
     let mut push = Push;

@@ -1,0 +1,168 @@
+//! What of a model lies beyond its linear part, as two compiled programs tell it: one of the
+//! whole model and one of that part.
+
+use codegen::evaluator::{Evaluator, Point};
+
+use crate::march::Force;
+
+/// A model beside its linear part, at fixed parameters.
+pub(crate) struct Beside {
+    whole: Evaluator,
+    linear: Evaluator,
+    rates: [Vec<f64>; 2],
+    /// For each guard of the linear part the whole model's, where some of them differ.
+    guards: Option<Vec<usize>>,
+    values: Vec<f64>,
+}
+
+impl Beside {
+    /// Both models with the same states.
+    pub fn new(whole: Evaluator, linear: Evaluator) -> Self {
+        let states = 2 * whole.program().degrees_of_freedom();
+        Self {
+            guards: guards_beside(&whole, &linear),
+            values: vec![0.0; whole.guard_count()],
+            rates: [vec![0.0; states], vec![0.0; states]],
+            whole,
+            linear,
+        }
+    }
+}
+
+/// For each guard of the linear part the whole model's: the one of the same formula, or, of
+/// those that are left, the next. None if all are the same, or what is left is not as many.
+fn guards_beside(whole: &Evaluator, linear: &Evaluator) -> Option<Vec<usize>> {
+    let formulas = |model: &Evaluator| -> Vec<String> {
+        let guards = model.program().guards.iter();
+        guards.map(|guard| guard.formula.clone()).collect()
+    };
+    let (all, own) = (formulas(whole), formulas(linear));
+    let is_single = [(whole, &all), (linear, &own)]
+        .into_iter()
+        .all(|(model, formulas)| model.guard_count() == formulas.len());
+    let left: Vec<usize> = (0..all.len()).filter(|g| !own.contains(&all[*g])).collect();
+    let changed = own.iter().filter(|formula| !all.contains(formula)).count();
+    if !is_single || changed == 0 || changed != left.len() {
+        return None;
+    }
+    let mut left = left.into_iter();
+    let places = own.iter().map(|formula| {
+        let same = all.iter().position(|known| known == formula);
+        same.or_else(|| left.next())
+    });
+    places.collect()
+}
+
+impl Force for Beside {
+    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
+        let [whole, linear] = &mut self.rates;
+        self.whole.rates(Point { t, state, inputs }, whole);
+        self.linear.rates(Point { t, state, inputs }, linear);
+        let half = out.len();
+        let pairs = whole[half..].iter().zip(&linear[half..]);
+        let differences = pairs.map(|(a, b)| a - b);
+        out.iter_mut()
+            .zip(differences)
+            .for_each(|(slot, difference)| *slot = difference);
+    }
+
+    fn at_guards(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut Vec<f64>) -> bool {
+        let Some(places) = &self.guards else {
+            return false;
+        };
+        self.whole
+            .guards(Point { t, state, inputs }, &mut self.values);
+        out.clear();
+        out.extend(places.iter().map(|place| self.values[*place]));
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::{Path, PathBuf};
+
+    use sim::record::HeldInputs;
+
+    use crate::dataset::{Channel, Quantity, Record};
+    use crate::plant::Plant;
+
+    /// The rig, and the rig with teeth that deviate by more than twice the play.
+    fn texts() -> (String, String) {
+        let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models");
+        let rig = fs::read_to_string(models.join("planetary_arm_rig.toml")).expect("the rig");
+        let seen = "seen = \"x_sp - 2.4*b_sp*cos(2*theta_s) - 0.8*b_sp*sin(2*theta_s)\"";
+        let with = rig
+            .replace("(x_sp, b_sp)", "(seen, b_sp)")
+            .replace(")*dot(x_sp)", ")*dot(seen)")
+            .replace("[definitions]", &format!("[definitions]\n{seen}"));
+        assert_eq!(with.matches("(seen, b_sp)").count(), 4);
+        (rig, with)
+    }
+
+    #[test]
+    fn teeth_touch_where_the_whole_model_says() {
+        let (rig, with) = texts();
+        let channels = [Channel {
+            name: "x_sp".to_owned(),
+            quantity: Quantity::Coordinate(0),
+            unit: "m".to_owned(),
+            noise: 1e-7,
+        }];
+        let times: Vec<f64> = (0..400).map(|k| f64::from(k) * 5e-4).collect();
+        let torque = times.iter().map(|t| 2.0 * (20.0 * t).sin() + 0.5);
+        let torque: Vec<f64> = torque.collect();
+        let inputs = HeldInputs::new(times.clone(), torque.clone(), 1).expect("inputs");
+        let record = Record {
+            name: "train[0]".to_owned(),
+            path: PathBuf::new(),
+            times,
+            inputs,
+            input_columns: vec![torque],
+            channels: Vec::new(),
+        };
+        let mut marched = Plant::of(&with, Some(&rig), "rig", Some(4), &channels).expect("a model");
+        // In the middle of the play, as the teeth see it.
+        let mut initial = vec![0.0; marched.state_count()];
+        initial[0] = 60e-6;
+        marched.choose_steps(&record, &initial, &[1e-7]);
+        let solved = Plant::equations(&with, "rig", Some(4), &channels).expect("a model");
+        let states = |plant: &Plant| {
+            let mut runner = plant.at(&plant.values).expect("a runner");
+            let found = runner.states(&initial, &record.times, &record.inputs);
+            (runner.is_marched(), found.expect("a motion"))
+        };
+        let ((is_marched, found), (_, wanted)) = (states(&marched), states(&solved));
+        assert!(is_marched);
+        {
+            let mut runner = marched.at(&marched.values).unwrap();
+            let mut free = crate::march::Free;
+            for upto in [3usize, 10, 20, 40, 80] {
+                let t = &record.times[..upto];
+                let lin = runner
+                    .linearised(&initial, t, &record.inputs, true, (0, &mut free))
+                    .unwrap();
+                let n = initial.len();
+                let last = &lin.by_state[(upto - 1) * n..upto * n];
+                for k in 0..n {
+                    let h = if k < 7 { 1e-10 } else { 1e-7 };
+                    let mut v = vec![];
+                    for s in [1.0, -1.0] {
+                        let mut st = initial.clone();
+                        st[k] += s * h;
+                        v.push(runner.states(&st, t, &record.inputs).unwrap()[upto - 1][0]);
+                    }
+                    eprintln!("{upto} {k} {:e} {:e}", last[k], (v[0] - v[1]) / (2.0 * h));
+                }
+            }
+        }
+        // The play is 25 um. At an impact a difference in time is one in place.
+        let differences = found.iter().zip(&wanted).map(|(a, b)| (a[0] - b[0]).abs());
+        let mut differences: Vec<f64> = differences.collect();
+        differences.sort_by(f64::total_cmp);
+        assert!(wanted.iter().any(|state| state[0].abs() > 5e-5));
+        assert!(differences[200] < 1e-8, "{:e}", differences[200]);
+        assert!(differences[399] < 2e-6, "{:e}", differences[399]);
+    }
+}

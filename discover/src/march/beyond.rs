@@ -1,0 +1,148 @@
+//! What of a model is not linear between its surfaces: accelerations, and how far the surfaces
+//! themselves lie beyond the linear part's. Teeth with a transmission error touch where the
+//! deflection less the error reaches the play; where that differs from the linear part's place
+//! by more than the play, a march by the linear part's sides would be in the wrong regime.
+
+use super::surfaces::{Row, Side, Surfaces};
+use super::{Company, March, Motion};
+
+/// How far from a surface that is crossed, in steps, a model is asked for its accelerations on
+/// either side: on the surface itself rounding decides on which it is.
+pub const AHEAD: f64 = 1e-4;
+
+/// Terms beyond the linear ones.
+pub trait Force {
+    /// Writes the accelerations that they add at a state, each part of the model on the sides
+    /// of its own surfaces.
+    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
+
+    /// Writes the value of each of the linear part's guards in the whole model; false where
+    /// that is the linear part's anywhere.
+    fn at_guards(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut Vec<f64>) -> bool;
+}
+
+/// What lies beyond the linear part at a state.
+#[derive(Clone, Debug, Default)]
+pub struct Excess {
+    /// Accelerations, with a regime's own taken away.
+    pub force: Vec<f64>,
+    /// What is added to the function of each surface.
+    pub moved: Vec<f64>,
+    /// Whether anything may be.
+    pub moves: bool,
+    guards: Vec<f64>,
+}
+
+impl Excess {
+    /// Nothing, so far.
+    pub fn none(accelerations: usize, surfaces: usize) -> Self {
+        Self {
+            force: vec![0.0; accelerations],
+            moved: vec![0.0; surfaces],
+            ..Self::default()
+        }
+    }
+
+    /// Finds it at a state; accelerations relative to the linear part on the sides of its own
+    /// surfaces.
+    pub fn find(
+        &mut self,
+        force: &mut dyn Force,
+        (surfaces, functions): (&Surfaces, &[Row]),
+        (t, state, given): (f64, &[f64], &[f64]),
+    ) {
+        let inputs = &given[1..];
+        force.at(t, state, inputs, &mut self.force);
+        self.moves = force.at_guards(t, state, inputs, &mut self.guards);
+        if self.moves {
+            let surfaces = surfaces.guards.iter().zip(functions);
+            for (slot, (guards, function)) in self.moved.iter_mut().zip(surfaces) {
+                *slot = self.guards[guards[0]] - function.at(state, given);
+            }
+        }
+    }
+}
+
+impl March {
+    /// Finds what lies beyond the linear part where a motion stands.
+    pub(super) fn meet(
+        &mut self,
+        motion: &mut Motion,
+        t: f64,
+        force: &mut dyn Force,
+    ) -> Result<(), String> {
+        let at = (t, &motion.state[..], &motion.given[..]);
+        let functions = &self.regimes[motion.regime].functions;
+        motion.excess.find(force, (&self.surfaces, functions), at);
+        self.relate(
+            (motion.regime, &motion.sides),
+            &motion.state,
+            &motion.given,
+            &mut motion.excess,
+        )
+    }
+
+    /// The same where a motion with these rates is so many steps later, or was so many before:
+    /// beside a surface that it crosses.
+    pub(super) fn meet_near(
+        &mut self,
+        motion: &mut Motion,
+        (t, steps): (f64, f64),
+        rates: &[f64],
+        company: &mut Company<'_, '_>,
+    ) -> Result<(), String> {
+        let Some(force) = &mut company.force else {
+            return Ok(());
+        };
+        if !motion.excess.moves {
+            return self.meet(motion, t, &mut **force);
+        }
+        let tau = steps * self.step;
+        let pairs = motion.state.iter().zip(rates);
+        let near: Vec<f64> = pairs.map(|(x, rate)| x + tau * rate).collect();
+        let at = (t + tau, &near[..], &motion.given[..]);
+        let functions = &self.regimes[motion.regime].functions;
+        let surfaces = (&self.surfaces, &functions[..]);
+        motion.excess.find(&mut **force, surfaces, at);
+        let here = (motion.regime, &motion.sides[..]);
+        self.relate(here, &near, &motion.given, &mut motion.excess)
+    }
+
+    /// Takes accelerations relative to a regime with its sides, not to the one in which the
+    /// linear part alone would be.
+    pub(super) fn relate(
+        &mut self,
+        (here, sides): (usize, &[Side]),
+        state: &[f64],
+        given: &[f64],
+        excess: &mut Excess,
+    ) -> Result<(), String> {
+        if !excess.moves {
+            return Ok(());
+        }
+        let functions = &self.regimes[here].functions;
+        self.own.clear();
+        self.own.extend_from_slice(sides);
+        for ((side, function), moved) in self.own.iter_mut().zip(functions).zip(&excess.moved) {
+            if *moved != 0.0 && *side != Side::Held {
+                *side = Side::of(function.at(state, given));
+            }
+        }
+        if self.own == sides {
+            return Ok(());
+        }
+        if self.last_own.0 != self.own {
+            let own = self.own.clone();
+            self.last_own = (own.clone(), self.regime(&own)?);
+        }
+        let (n, half) = (self.states, self.states / 2);
+        for (regime, sign) in [(self.last_own.1, 1.0), (here, -1.0)] {
+            let regime = &self.regimes[regime];
+            self.rates.resize(regime.matrix.rows, 0.0);
+            regime.rates(state, given, &mut self.rates);
+            let sums = excess.force.iter_mut().zip(&self.rates[half..n]);
+            sums.for_each(|(slot, rate)| *slot += sign * rate);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,246 @@
+//! Steps through surfaces: made in parts, from one crossing to the next.
+
+use super::beyond::AHEAD;
+use super::crossing::first_crossing;
+use super::surfaces::{Side, dot};
+use super::tangents::series;
+use super::{Company, March, Motion};
+
+/// Crossings within a step after which the rest of it is made without looking.
+const MOST_CROSSINGS: usize = 12;
+
+/// The motion itself is right to this part of its size.
+const ROUNDING: f64 = 1e-16;
+
+/// Where a function's rate leads back by less than this part of its size, it does not.
+const LEADS_BACK: f64 = 1e-9;
+
+impl March {
+    /// Makes a step in parts, from surface to surface.
+    pub(super) fn parts(
+        &mut self,
+        motion: &mut Motion,
+        length: f64,
+        end: f64,
+        inputs: &[f64],
+        company: &mut Company<'_, '_>,
+    ) -> Result<(), String> {
+        let mut rest = length;
+        let surfaces = motion.sides.len();
+        if let Some(tangents) = &mut company.tangents {
+            let regime = &self.regimes[motion.regime];
+            tangents.catch_up(regime, end - length, &motion.state, inputs);
+        }
+        for _ in 0..MOST_CROSSINGS {
+            self.watch(motion);
+            let begin = (motion.watched.clone(), motion.state.clone());
+            let excess = motion.excess.clone();
+            self.part(motion, rest);
+            let before = std::mem::take(&mut motion.watched);
+            if let Some(force) = &mut company.force {
+                let at = (end, &motion.state[..], &motion.given[..]);
+                let functions = &self.regimes[motion.regime].functions;
+                let surfaces = (&self.surfaces, &functions[..]);
+                motion.excess.find(&mut **force, surfaces, at);
+            }
+            self.watch(motion);
+            let moved = motion.excess.moved.iter().zip(&excess.moved);
+            let slopes: Vec<f64> = moved.map(|(there, here)| (there - here) / rest).collect();
+            motion.excess = excess;
+            let first = (0..surfaces)
+                .filter_map(|place| {
+                    let slope = slopes[place];
+                    let rates = surfaces + place;
+                    let ends = (
+                        (begin.0[place], begin.0[rates] + slope),
+                        (motion.watched[place], motion.watched[rates] + slope),
+                    );
+                    let tau = first_crossing(motion.sides[place], ends, rest)?;
+                    Some((place, tau))
+                })
+                .min_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((surface, tau)) = first else {
+                return self.ended(motion, rest, end, inputs, company);
+            };
+            motion.watched = before;
+            motion.state.copy_from_slice(&begin.1);
+            let slope = slopes[surface];
+            let tau = self.polished(motion, (surface, slope), tau, rest, &begin.1);
+            rest -= tau;
+            let t = end - rest;
+            self.accompany(motion, tau, t, inputs, company)?;
+            self.cross(motion, t, (surface, slope), company)?;
+            if rest <= 0.0 {
+                self.prepare(motion);
+                return Ok(());
+            }
+        }
+        self.part(motion, rest);
+        self.ended(motion, rest, end, inputs, company)?;
+        // Where surfaces follow each other too fast, signs decide.
+        let regime = &self.regimes[motion.regime];
+        let functions = regime.functions.iter().zip(&motion.excess.moved);
+        for (side, (function, moved)) in motion.sides.iter_mut().zip(functions) {
+            if *side != Side::Held {
+                *side = Side::of(function.at(&motion.state, &motion.given) + moved);
+            }
+        }
+        motion.regime = self.regime(&motion.sides)?;
+        let mut rates = vec![0.0; self.regimes[motion.regime].matrix.rows];
+        self.rates(motion, &mut rates);
+        self.meet_near(motion, (end, AHEAD), &rates, company)?;
+        self.prepare(motion);
+        Ok(())
+    }
+
+    /// Moves the state on by a part of a step, s.
+    fn part(&self, motion: &mut Motion, tau: f64) {
+        let regime = &self.regimes[motion.regime];
+        let mut rates = vec![0.0; regime.matrix.rows];
+        self.rates(motion, &mut rates);
+        series(&regime.matrix, &mut motion.state, &mut rates, tau, ROUNDING);
+    }
+
+    /// The rates where the motion stands.
+    pub(super) fn rates(&self, motion: &Motion, out: &mut [f64]) {
+        let regime = &self.regimes[motion.regime];
+        let (n, half) = (self.states, self.states / 2);
+        regime.rates(&motion.state, &motion.given, out);
+        let sums = out[half..n].iter_mut().zip(&motion.excess.force);
+        sums.for_each(|(o, f)| *o += f);
+    }
+
+    /// Goes to where a surface, moved with a slope, is crossed, about `tau` s from `begin`;
+    /// returns when that is.
+    fn polished(
+        &self,
+        motion: &mut Motion,
+        (surface, slope): (usize, f64),
+        tau: f64,
+        most: f64,
+        begin: &[f64],
+    ) -> f64 {
+        self.part(motion, tau);
+        let regime = &self.regimes[motion.regime];
+        let moved = motion.excess.moved[surface] + slope * tau;
+        let value = regime.functions[surface].at(&motion.state, &motion.given) + moved;
+        let mut rates = vec![0.0; regime.matrix.rows];
+        self.rates(motion, &mut rates);
+        let rate = dot(&regime.functions[surface].state, &rates[..self.states]) + slope;
+        let better = (tau - value / rate).clamp(0.0, most);
+        if !better.is_finite() || better == tau {
+            return tau;
+        }
+        motion.state.copy_from_slice(begin);
+        self.part(motion, better);
+        better
+    }
+
+    /// After a part that reached the step's end.
+    fn ended(
+        &mut self,
+        motion: &mut Motion,
+        tau: f64,
+        end: f64,
+        inputs: &[f64],
+        company: &mut Company<'_, '_>,
+    ) -> Result<(), String> {
+        self.accompany(motion, tau, end, inputs, company)?;
+        self.prepare(motion);
+        Ok(())
+    }
+
+    /// Lets the others follow a part of a step.
+    fn accompany(
+        &mut self,
+        motion: &mut Motion,
+        tau: f64,
+        t: f64,
+        inputs: &[f64],
+        company: &mut Company<'_, '_>,
+    ) -> Result<(), String> {
+        if company.force.is_some() {
+            self.correct(motion, tau, t, company)?;
+        }
+        if let Some(tangents) = &mut company.tangents {
+            let regime = &self.regimes[motion.regime];
+            tangents.part(regime, tau, (t, &motion.state, inputs));
+        }
+        Ok(())
+    }
+
+    /// Makes good that forces were held at what they were at the beginning of a part.
+    fn correct(
+        &mut self,
+        motion: &mut Motion,
+        tau: f64,
+        t: f64,
+        company: &mut Company<'_, '_>,
+    ) -> Result<(), String> {
+        let before = motion.excess.force.clone();
+        let mut rates = vec![0.0; self.regimes[motion.regime].matrix.rows];
+        self.rates(motion, &mut rates);
+        // On this side of a surface that was reached.
+        self.meet_near(motion, (t, -AHEAD), &rates, company)?;
+        let half = self.states / 2;
+        for (place, before) in before.iter().enumerate() {
+            let change = 0.5 * tau * (motion.excess.force[place] - before);
+            motion.state[half + place] += change;
+            motion.state[place] += change * tau / 3.0;
+        }
+        Ok(())
+    }
+
+    /// Goes through a surface, moved with a slope, or stays on it where forces on both sides
+    /// lead back.
+    pub(super) fn cross(
+        &mut self,
+        motion: &mut Motion,
+        t: f64,
+        (surface, slope): (usize, f64),
+        company: &mut Company<'_, '_>,
+    ) -> Result<(), String> {
+        let before = motion.regime;
+        let mut rates = vec![0.0; self.regimes[before].matrix.rows];
+        self.rates(motion, &mut rates);
+        self.meet_near(motion, (t, -AHEAD), &rates.clone(), company)?;
+        self.rates(motion, &mut rates);
+        let (beyond, outward) = match motion.sides[surface] {
+            Side::Above => (Side::Below, -1.0),
+            Side::Below | Side::Held => (Side::Above, 1.0),
+        };
+        let old = motion.sides[surface];
+        motion.sides[surface] = beyond;
+        motion.regime = self.regime(&motion.sides)?;
+        self.meet_near(motion, (t, AHEAD), &rates, company)?;
+        let mut after = rates.clone();
+        self.rates(motion, &mut after);
+        let function = &self.regimes[before].functions[surface].state;
+        let size: f64 = function
+            .iter()
+            .zip(&after)
+            .map(|(a, b)| (a * b).abs())
+            .sum();
+        let (here, there) = (dot(function, &rates) + slope, dot(function, &after) + slope);
+        if there * outward < -LEADS_BACK * size && here * outward > 0.0 {
+            motion.sides[surface] = Side::Held;
+            match self.known_regime(&motion.sides) {
+                Some(held) => motion.regime = held,
+                None => motion.sides[surface] = beyond,
+            }
+            self.meet_near(motion, (t, AHEAD), &rates, company)?;
+            self.rates(motion, &mut after);
+        } else if old == Side::Below && here == 0.0 && there <= 0.0 {
+            // It only touches.
+            motion.sides[surface] = old;
+            motion.regime = before;
+            self.meet_near(motion, (t, -AHEAD), &rates, company)?;
+            return Ok(());
+        }
+        if let Some(tangents) = &mut company.tangents {
+            let function = &self.regimes[before].functions[surface];
+            tangents.switch((function, slope), &rates, &after);
+        }
+        Ok(())
+    }
+}
