@@ -112,7 +112,7 @@ fn prior_of_unknowns(shooting: &Shooting<'_>, theta: &[f64]) -> f64 {
 }
 
 /// What a window's prior adds to the cost.
-fn prior_of_start(prior: &StartPrior, place: usize, start: &[f64]) -> f64 {
+pub fn prior_of_start(prior: &StartPrior, place: usize, start: &[f64]) -> f64 {
     let Some(mean) = prior.mean.get(place) else {
         return 0.0;
     };

@@ -2,12 +2,13 @@
 //! and to what is left on the records it was fitted to and on the others. What the results
 //! mean is judged in [`crate::judge`].
 
+use model_spec::source::Source;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::candidates::Candidate;
 use crate::dataset::{Dataset, Start};
-use crate::estimate::{self, Estimate, StartPrior, stacked};
+use crate::estimate::{self, Estimate, StartPrior, prior_of_start, stacked};
 use crate::plant::{Plant, is_linear};
 use crate::response::mapped;
 use crate::rule;
@@ -59,6 +60,8 @@ pub struct Setting<'d> {
     pub order: Option<usize>,
     /// The specification's path, for messages.
     pub path: String,
+    /// The states of the specification's own model; others are candidates'.
+    pub states: Vec<String>,
 }
 
 /// What is left on one set of records.
@@ -105,6 +108,11 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// What is left on all records, in noises.
+    pub fn left(&self) -> f64 {
+        (0.5 * (self.train.pooled.powi(2) + self.test.pooled.powi(2))).sqrt()
+    }
+
     /// The values of some unknowns as a specification states them, SI.
     pub fn stated(&self, places: &[usize]) -> Vec<f64> {
         let theta = &self.train.estimate.theta;
@@ -131,9 +139,15 @@ pub struct Sketch {
 }
 
 impl<'d> Setting<'d> {
-    /// The setting of a dataset.
-    pub fn new(dataset: &'d Dataset, order: Option<usize>, path: &str) -> Self {
+    /// The setting of a dataset and of a specification's text.
+    pub fn new(dataset: &'d Dataset, order: Option<usize>, path: &str, text: &str) -> Self {
+        let states = || {
+            let model = model_spec::check(Source::new(path, text)).ok()?.model;
+            Some(model.state_names(&model.orders(order).ok()?))
+        };
         Self {
+            // What is wrong with a text is said where it is derived.
+            states: states().unwrap_or_default(),
             dataset,
             noise: dataset
                 .channels
@@ -301,7 +315,7 @@ impl<'d> Setting<'d> {
         begins: &[Vec<f64>],
     ) -> Result<Sketch, String> {
         let plant = self.plant(&text, Some(&linear))?;
-        let ranges = self.ranges(&plant);
+        let ranges = self.ranges(&plant, &plant.values);
         let shooting = self.shooting(&plant, &self.train, &unknowns, &ranges);
         let (found, is_there) = if self.fits_starts() {
             let shooting = Shooting {
@@ -317,6 +331,8 @@ impl<'d> Setting<'d> {
             let found = estimate::estimate(&shooting, &prior, theta, &starts, SKETCHING_STEPS);
             (found, true)
         };
+        // How far states go may depend on what was found: a joint yields so much the more.
+        let ranges = self.ranges(&plant, &shooting.values(&found.theta));
         Ok(Sketch {
             left: found.cost,
             whole: None,
@@ -344,7 +360,8 @@ impl<'d> Setting<'d> {
         (fit, left): (&Fit, f64),
     ) -> Result<Sketch, String> {
         let plant = self.plant(&text, Some(&linear))?;
-        let ranges = self.ranges(&plant);
+        let bare = self.shooting(&plant, &self.train, &unknowns, &[]);
+        let ranges = self.ranges(&plant, &bare.values(&theta));
         let mapped = |states: &[Vec<f64>]| -> Vec<Vec<f64>> {
             states
                 .iter()
@@ -503,7 +520,9 @@ impl<'d> Setting<'d> {
         let new = estimate::evaluated(shooting, &anew, found.theta.clone(), starts);
         let mut starts = found.starts.clone();
         for (place, start) in starts.iter_mut().enumerate() {
-            if new.squares[place] < found.squares[place] {
+            let before = found.squares[place] + prior_of_start(&prior, place, start);
+            let after = new.squares[place] + prior_of_start(&anew, place, &new.starts[place]);
+            if after < before {
                 start.clone_from(&new.starts[place]);
                 prior.mean[place].clone_from(&anew.mean[place]);
             }
@@ -534,10 +553,17 @@ impl<'d> Setting<'d> {
         (prior, estimate)
     }
 
-    /// The range of each state in the training records.
-    pub fn ranges(&self, plant: &Plant) -> Vec<f64> {
+    /// The range of each state in the training records. That of a coordinate which a candidate
+    /// adds, and which nobody has seen move yet, counts several times.
+    pub fn ranges(&self, plant: &Plant, values: &[f64]) -> Vec<f64> {
         let first = self.first_state(plant, &self.dataset.train[0]);
-        starts::ranges(plant, &self.dataset.train, &first)
+        let mut ranges = starts::ranges(plant, values, &self.dataset.train, &first);
+        for (range, state) in ranges.iter_mut().zip(&plant.states) {
+            if !self.states.contains(state) {
+                *range *= rule::ADDED_STATE;
+            }
+        }
+        ranges
     }
 
     /// One standard deviation of each unknown, were the residuals white noise.

@@ -21,6 +21,10 @@ pub const LONGEST_LEAD: f64 = 2.0;
 /// does not show stays where it may be.
 pub const START_PRIOR: f64 = 0.02;
 
+/// So many times less is known of the initial state of a coordinate that a candidate adds: what
+/// it does goes with the candidate's parameter, which is not known yet.
+pub const ADDED_STATE: f64 = 10.0;
+
 /// A shape, such as the speed at which friction has fallen, is searched within these factors
 /// of its usual size, a tenth of the usual speed. What has not fallen at a third of that speed
 /// is no friction near rest: it would take over what another friction does at every speed.

@@ -131,7 +131,7 @@ pub fn search(
             note_rejected(&mut found.rejected, &candidates, &screen, &trials);
             trials.retain(|trial| trial.verdict.is_ok());
             let least = |trials: &[Trial]| {
-                let left = trials.iter().map(|trial| trial.fit.train.pooled);
+                let left = trials.iter().map(|trial| trial.fit.left());
                 left.fold(f64::INFINITY, f64::min)
             };
             let known = believed
@@ -350,7 +350,7 @@ fn released(setting: &Setting<'_>, fit: &Fit) -> Vec<Candidate> {
 /// The believed trial that leaves least; a pair only if it leaves clearly less than the best
 /// single effect.
 fn best_of(trials: &[Trial]) -> usize {
-    let left = |place: &usize| trials[*place].fit.train.pooled;
+    let left = |place: &usize| trials[*place].fit.left();
     let least = |count: fn(usize) -> bool| {
         let places = (0..trials.len()).filter(|place| count(trials[*place].responses.len()));
         places.min_by(|a, b| left(a).total_cmp(&left(b)))
@@ -488,7 +488,7 @@ fn half_way(best: &Trial, others: &[Trial]) -> Option<(usize, f64)> {
         _ => false,
     };
     let halves = others.iter().filter(is_half);
-    let left = |trial: &&Trial| trial.fit.train.pooled;
+    let left = |trial: &&Trial| trial.fit.left();
     let half = halves.min_by(|a, b| left(a).total_cmp(&left(b)))?;
     Some((half.responses[0], half.fit.test.pooled))
 }

@@ -17,12 +17,12 @@ use crate::windows::Windows;
 const FIRST_SAMPLES: usize = 12;
 
 /// How far each state ranges in the motion that the records' inputs cause, SI: the root mean
-/// square around its mean.
-pub fn ranges(plant: &Plant, records: &[Record], initial: &[f64]) -> Vec<f64> {
+/// square around its mean. `values`: the plant's parameters, on which that may depend much.
+pub fn ranges(plant: &Plant, values: &[f64], records: &[Record], initial: &[f64]) -> Vec<f64> {
     let states = plant.state_count();
     let mut sums = vec![(0.0, 0.0); states];
     let mut count = 0.0;
-    if let Ok(mut runner) = plant.at(&plant.values) {
+    if let Ok(mut runner) = plant.at(values) {
         for record in records {
             // Every tenth sample shows how far a state goes.
             let times: Vec<f64> = record.times.iter().step_by(10).copied().collect();

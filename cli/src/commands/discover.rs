@@ -31,7 +31,7 @@ pub fn discover(options: &arguments::Discover) -> Outcome {
 pub fn compared(options: &arguments::Compare) -> Outcome<Value> {
     let begin = Instant::now();
     let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
-    let setting = Setting::new(&dataset, order, &options.spec.display().to_string());
+    let setting = Setting::new(&dataset, order, &options.spec.display().to_string(), &text);
     let (fit, floor) = null(&setting, &text, options.seed)?;
     let done = at_floor(&fit, floor.pooled);
     let place = locate::located(&setting, &fit);
@@ -48,7 +48,7 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     let begin = Instant::now();
     let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
     let effects = catalogue::effects(options.effects.as_deref()).map_err(Problem::input)?;
-    let setting = Setting::new(&dataset, order, &options.spec.display().to_string());
+    let setting = Setting::new(&dataset, order, &options.spec.display().to_string(), &text);
     let (fit, floor_before) = null(&setting, &text, options.seed)?;
     let place = locate::located(&setting, &fit);
     let found =
