@@ -131,6 +131,28 @@ pub(crate) fn by_parameters(
     blocks.jacobian(name, independent.len())
 }
 
+/// A Jacobian of one row.
+pub(crate) fn one_row(graph: &Graph, name: &'static str, row: &[Id]) -> Jacobian<Id> {
+    let nonzeros = row
+        .iter()
+        .enumerate()
+        .filter(|(_, id)| !graph.is_zero(**id));
+    let entries = nonzeros.map(|(column, value)| Entry {
+        row: 0,
+        rows: 1,
+        column,
+        columns: 1,
+        diagonal: false,
+        value: *value,
+    });
+    Jacobian {
+        name,
+        rows: 1,
+        columns: row.len(),
+        entries: entries.collect(),
+    }
+}
+
 fn degrees_of_freedom(equations: &Equations) -> usize {
     mode_offset(equations, equations.graph.orders().len())
 }

@@ -4,7 +4,7 @@
 //! d(M^-1 b) = M^-1 (db - dM M^-1 b).
 
 use crate::differentiate::Direction;
-use crate::graph::{Assembly, Graph, Id, Operation};
+use crate::graph::{Assembly, Dependence, Graph, Id, Operation};
 
 impl Direction<'_> {
     /// d(matrix vector) along the direction.
@@ -120,6 +120,19 @@ impl Direction<'_> {
 /// Whether `roots` hold a matrix that moves with the state: those are differentiated by
 /// parameters alone.
 pub(crate) fn holds_moving_matrix(graph: &Graph, roots: &[Id]) -> bool {
+    holds_matrix(graph, roots, |graph, id| {
+        !graph.dependence(id).is_prepared()
+    })
+}
+
+/// Whether something in `roots` is a matrix operation on what depends on parameters.
+pub(crate) fn holds_matrix_of_parameters(graph: &Graph, roots: &[Id]) -> bool {
+    holds_matrix(graph, roots, |graph, id| {
+        graph.dependence(id).has(Dependence::PARAMETER)
+    })
+}
+
+fn holds_matrix(graph: &Graph, roots: &[Id], counts: fn(&Graph, Id) -> bool) -> bool {
     graph.reachable(roots).into_iter().any(|id| {
         matches!(
             graph.operation(id),
@@ -127,6 +140,6 @@ pub(crate) fn holds_moving_matrix(graph: &Graph, roots: &[Id]) -> bool {
                 | Operation::GramDiagonal { .. }
                 | Operation::Assemble(_)
                 | Operation::Cholesky(_)
-        ) && !graph.dependence(id).is_prepared()
+        ) && counts(graph, id)
     })
 }

@@ -6,7 +6,9 @@ use crate::adjoint;
 use crate::differentiate::Direction;
 use crate::equations::{Equations, Rows};
 use crate::graph::{Argument, Graph, Id, Operation, Space, Variable};
-use crate::jacobian::{JacobianRows, by_parameters, by_variables, observable_rows, rate_rows};
+use crate::jacobian::{
+    JacobianRows, by_parameters, by_variables, observable_rows, one_row, rate_rows,
+};
 use crate::matrix::StructuredMatrix;
 use crate::matrix_derivatives::holds_moving_matrix;
 use crate::regimes::{Switch, switches};
@@ -282,11 +284,28 @@ fn products(equations: &mut Equations) -> Products<Id, Rows> {
         .filter_map(|(leaf, node)| Some((variable_of(graph, leaf)?, node)))
         .collect();
     reverse.sort_by_key(|(_, node)| *node);
-    let sum = JacobianRows::single(weighted_sum(graph, &rows));
     Products {
         forward,
         reverse,
-        by_parameters: by_parameters(equations, &sum, "weighted_rates_by_parameters"),
+        by_parameters: weighted_by_parameters(equations, &rows, &weighted),
+    }
+}
+
+/// The gradient of the weighted rates by the independent parameters: backward where it can be,
+/// one parameter after the other where matrices hold them.
+fn weighted_by_parameters(
+    equations: &mut Equations,
+    rows: &Rows,
+    weighted: &[(Id, Id)],
+) -> Jacobian<Id> {
+    const NAME: &str = "weighted_rates_by_parameters";
+    let graph = &mut equations.graph;
+    match adjoint::gradient_by_parameters(graph, weighted, &equations.derived_parameters) {
+        Some(gradient) => one_row(graph, NAME, &gradient),
+        None => {
+            let sum = JacobianRows::single(weighted_sum(graph, rows));
+            by_parameters(equations, &sum, NAME)
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 
 mod emission;
 mod expressions;
+mod gradients;
 mod guards;
 mod modes;
 mod names;
