@@ -57,6 +57,13 @@ pub enum Axes {
     Frequency,
     /// The logarithm of a positive quantity over a number with this name.
     Count(&'static str),
+    /// A quantity over another.
+    Quantity {
+        /// The other's name.
+        symbol: &'static str,
+        /// Its SI unit; empty for a number.
+        unit: &'static str,
+    },
 }
 
 impl Axes {
@@ -66,6 +73,7 @@ impl Axes {
             Self::Growth => ("t", "s", Scale::Linear, Scale::Logarithmic),
             Self::Frequency => ("f", "Hz", Scale::Logarithmic, Scale::Logarithmic),
             Self::Count(name) => (name, "", Scale::Linear, Scale::Logarithmic),
+            Self::Quantity { symbol, unit } => (symbol, unit, Scale::Linear, Scale::Linear),
         };
         let abscissa = Abscissa {
             symbol,
