@@ -198,13 +198,12 @@ impl<'a> Crew<'a> {
         &mut self,
         place: usize,
         start: &[f64],
-        drives: &mut Differences<'_>,
+        (count, drives): (usize, &mut dyn Drives),
     ) -> Option<DMatrix<f64>> {
         let shooting = self.shooting;
         let window = &shooting.windows.list[place];
         let inputs = shooting.windows.inputs(window);
         let times = &window.times[..samples_in(window, shooting.part)];
-        let count = drives.count();
         let found = self
             .base
             .linearised(start, times, inputs, false, (count, drives))?;

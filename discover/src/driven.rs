@@ -280,7 +280,9 @@ fn marched(at: &At, setting: &Setting<'_>, fit: &Fit, ready: &[Ready]) -> Vec<DM
                     let place = places[*window];
                     let moved = evaluators.iter_mut().map(|(e, size)| (e, *size)).collect();
                     let mut drives = Differences::new(&mut own, moved);
-                    let columns = crew.driven(place, &estimate.starts[place], &mut drives);
+                    let count = drives.count();
+                    let start = &estimate.starts[place];
+                    let columns = crew.driven(place, start, (count, &mut drives));
                     columns.unwrap_or_else(none)
                 })
                 .collect()

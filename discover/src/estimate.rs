@@ -519,6 +519,7 @@ fn settle_seen(
 }
 
 /// A window's derivatives with the means to take its initial state out of any column.
+#[derive(Clone)]
 pub struct Eliminator {
     /// The residual.
     pub residual: DVector<f64>,
@@ -568,5 +569,18 @@ impl Eliminator {
         let mut last = along.column_mut(count - 1);
         last += of_prior;
         whole - along.transpose() * along
+    }
+
+    /// A residual with the initial state free: what it cannot do away with.
+    pub fn left(&self, residual: &DVector<f64>) -> DVector<f64> {
+        let (rows, states) = (residual.len(), self.by_state.ncols());
+        if states == 0 {
+            return residual.clone();
+        }
+        let q = self.by_state.clone().qr().q();
+        let (of_residual, of_prior) = (q.rows(0, rows), q.rows(rows, states));
+        let along =
+            of_residual.transpose() * residual + of_prior.transpose() * &self.prior_residual;
+        residual - of_residual * along
     }
 }

@@ -657,7 +657,7 @@ fn blocks(residuals: &[Vec<f64>]) -> Vec<f64> {
 
 /// The samples over which a residual is correlated: one plus twice the sum of its positive
 /// autocorrelations, up to the first that is not, for the channel where it is longest.
-fn correlation(residuals: &[Vec<f64>], channels: usize) -> f64 {
+pub(crate) fn correlation(residuals: &[Vec<f64>], channels: usize) -> f64 {
     let of_channel = |channel: usize| {
         let columns: Vec<Vec<f64>> = residuals
             .iter()

@@ -6,7 +6,11 @@
 //! part's initial state), [`unknowns`], [`shooting`] (residuals) and [`crew`] (derivatives),
 //! [`estimate`] (with [`bounded`]: least squares), [`fitting`] (a specification fitted),
 //! [`mod@floor`] (what a right model would leave), [`labels`] (whether columns are what they are
-//! called), [`locate`] (where the rest is);
+//! called), [`locate`] (where the rest is) by the [`mod@residual_force`]: [`equations`] in which it may
+//! act, [`shapes`] it may have, what these do ([`pushed`]; [`stepped`] where nothing is marched) and
+//! how much of each there is ([`regression`], [`force_looked`]), the equations compared
+//! ([`force_ranked`]), one of them in detail ([`force_profiles`]), words ([`force_said`]) and
+//! pictures ([`force_figures`]);
 //! [`catalogue`], [`sites`] and [`candidates`] (what may be missing), [`response`] with
 //! [`mod@driven`] and [`mod@tried`] (what each candidate does), [`mod@screen`] (what it
 //! promises), [`mod@judge`] by [`rule`] (what is believed),
@@ -22,26 +26,37 @@ pub mod crew;
 pub mod dataset;
 pub mod document;
 pub mod driven;
+pub mod equations;
 pub mod estimate;
 pub mod extend;
 pub mod fitting;
 pub mod floor;
+pub mod force_figures;
+pub mod force_looked;
+pub mod force_profiles;
+pub mod force_ranked;
+pub mod force_said;
 pub mod gate;
 pub mod judge;
 pub mod labels;
 pub mod locate;
 pub mod march;
 pub mod plant;
+pub mod pushed;
+pub mod regression;
 pub mod report;
+pub mod residual_force;
 pub mod response;
 pub mod rule;
 pub mod runner;
 pub mod screen;
 pub mod search;
+pub mod shapes;
 pub mod shooting;
 pub mod sites;
 pub mod smooth;
 pub mod starts;
+pub mod stepped;
 pub mod thinned;
 pub mod trials;
 pub mod tried;

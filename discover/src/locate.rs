@@ -4,13 +4,24 @@
 use realfft::RealFftPlanner;
 
 use crate::fitting::{Fit, Setting};
+use crate::force_said::said;
+use crate::residual_force::ResidualForce;
 use crate::smooth::sloped;
 
 /// A difference between slow and fast motion below this factor is not worth a word.
 const WORTH_SAYING: f64 = 1.5;
 
-/// The sentences.
-pub fn located(setting: &Setting<'_>, fit: &Fit) -> String {
+/// The sentences: the equation in which a force is missing first, where that could be estimated.
+pub fn located(setting: &Setting<'_>, fit: &Fit, force: Option<&ResidualForce>) -> String {
+    let channel = by_channel(setting, fit);
+    match force {
+        Some(force) => format!("{} {channel}", said(force)),
+        None => channel,
+    }
+}
+
+/// Which channel shows the difference, when, at which speed and frequency.
+fn by_channel(setting: &Setting<'_>, fit: &Fit) -> String {
     let count = setting.noise.len();
     let in_noises: Vec<f64> = fit
         .train
@@ -23,7 +34,7 @@ pub fn located(setting: &Setting<'_>, fit: &Fit) -> String {
         return String::new();
     };
     let channel = &setting.dataset.channels[worst];
-    let mut said = format!(
+    let mut text = format!(
         "The difference is largest in {}: {:.3e} {} or {:.1} times its noise.",
         channel.name, fit.train.channels[worst], channel.unit, in_noises[worst]
     );
@@ -34,20 +45,20 @@ pub fn located(setting: &Setting<'_>, fit: &Fit) -> String {
         && let Some(place) = windows.max_by(|a, b| per_sample(*a).total_cmp(&per_sample(*b)))
     {
         let window = &setting.train.list[place];
-        said += &format!(
+        text += &format!(
             " It is worst from {:.3} s to {:.3} s of {}.",
             window.times[0],
             window.times[window.times.len() - 1],
             setting.train.records[window.record].name
         );
     }
-    if let Some(text) = by_speed(setting, fit, worst) {
-        said += &text;
+    if let Some(more) = by_speed(setting, fit, worst) {
+        text += &more;
     }
     if let Some(frequency) = frequency(setting, fit, worst) {
-        said += &format!(" Its spectrum is largest at {frequency:.3} Hz.");
+        text += &format!(" Its spectrum is largest at {frequency:.3} Hz.");
     }
-    said
+    text
 }
 
 /// Whether the residual's size follows the channel's speed.
@@ -95,6 +106,13 @@ fn by_speed(setting: &Setting<'_>, fit: &Fit, channel: usize) -> Option<String> 
     } else {
         None
     }
+}
+
+/// The frequency at which the residual of the channel that shows most of it is largest, Hz.
+pub(crate) fn peak_frequency(setting: &Setting<'_>, fit: &Fit) -> Option<f64> {
+    let sizes = &fit.train.in_noises;
+    let worst = (0..sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))?;
+    frequency(setting, fit, worst)
 }
 
 /// The frequency at which the residual's spectrum, summed over windows of one length, is

@@ -6,12 +6,15 @@ use serde_json::Value;
 use sim::plot::{FrequencyAxis, Panel, Series, Spectrum, TimeHistory, spectrum, time_history};
 
 use crate::fitting::{Fit, Setting};
+use crate::force_figures::figures as figures_of_force;
+use crate::residual_force::ResidualForce;
 
-/// The page for a result. `after` is left out where nothing was changed.
+/// The page for a result. What is after is left out where nothing was changed; `forces`: the
+/// residual force, where it could be estimated.
 pub fn page(
     setting: &Setting<'_>,
-    before: &Fit,
-    after: Option<&Fit>,
+    (before, after): (&Fit, Option<&Fit>),
+    forces: Option<(&ResidualForce, Option<&ResidualForce>)>,
     document: &Value,
     texts: (&str, &str),
 ) -> String {
@@ -40,6 +43,10 @@ pub fn page(
         body += &section("Step by step", &ladder_table(document));
     }
     body += &section("The test record", &figures(setting, before, after));
+    if let Some((force, left)) = forces {
+        let heading = format!("The residual force on {}", force.looked_at());
+        body += &section(&heading, &force_section(force, left));
+    }
     body += &section(
         "Refitted",
         &format!(
@@ -178,6 +185,25 @@ fn ladder_table(document: &Value) -> String {
         rows += &format!("<tr><td>{}</td><td>{gap}</td></tr>\n", escaped(&added));
     }
     format!("<table><tr><th>model</th><th>test gap, in noises</th></tr>\n{rows}</table>\n")
+}
+
+/// How the equations compare, and what the force in one of them is like.
+fn force_section(force: &ResidualForce, left: Option<&ResidualForce>) -> String {
+    let mut rows = String::new();
+    let percent = |part: f64| format!("{:.0} %", 100.0 * part.max(0.0));
+    for ranked in &force.ranked {
+        rows += &format!(
+            "<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+            escaped(&force.equations[ranked.equation].name),
+            percent(ranked.by_state),
+            percent(ranked.by_time)
+        );
+    }
+    let told = "A force that was put into this equation, its bars one standard deviation to either side. What records do not show is left out.";
+    format!(
+        "<table><tr><th>a force on</th><th>explains of the squares over rate or place</th><th>if free in every window</th></tr>\n{rows}</table>\n<p class=\"note\">{told}</p>\n{}",
+        figures_of_force(force, left)
+    )
 }
 
 fn rejected_table(list: &[Value]) -> String {

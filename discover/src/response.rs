@@ -18,6 +18,9 @@ use crate::unknowns::{Unknown, What};
 /// Windows that are looked at, at most; they are spread evenly.
 const MOST_WINDOWS: usize = 40;
 
+/// Windows that are enough to compare a few equations.
+const FEW_WINDOWS: usize = 20;
+
 /// A candidate's parameter is tried at the size that moves the outputs by this part of the
 /// misfit.
 pub(crate) const TRIAL: f64 = 0.3;
@@ -79,6 +82,21 @@ impl At {
             estimate,
             base,
             level,
+        }
+    }
+}
+
+impl At {
+    /// Every other window where there are many.
+    pub fn thinned(&self) -> Self {
+        let every = self.places.len().div_ceil(FEW_WINDOWS).max(1);
+        let places = self.places.iter().step_by(every).copied();
+        Self {
+            part: self.part,
+            places: places.collect(),
+            estimate: self.estimate.clone(),
+            base: self.base.iter().step_by(every).cloned().collect(),
+            level: self.level,
         }
     }
 }

@@ -127,7 +127,7 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate], part: 
 
 /// Adds a prior, or takes it away where its weight is negative, to the products of a nuisance
 /// with itself and with the residual, which stands last.
-fn add_prior(products: &mut DMatrix<f64>, place: usize, (weight, off): (f64, f64)) {
+pub(crate) fn add_prior(products: &mut DMatrix<f64>, place: usize, (weight, off): (f64, f64)) {
     let last = products.ncols() - 1;
     products[(place, place)] += weight;
     products[(place, last)] += weight * off;

@@ -7,9 +7,10 @@ use std::time::Instant;
 use discover::dataset::{Dataset, read};
 use discover::fitting::{Fit, Setting};
 use discover::floor::{Floor, floor};
+use discover::residual_force::residual_force;
 use discover::search::{null_fit, search};
 use discover::trials::at_floor;
-use discover::{catalogue, document, extend, labels, locate, report};
+use discover::{catalogue, document, extend, force_said, labels, locate, report};
 use serde_json::{Value, json};
 
 use crate::arguments;
@@ -34,10 +35,12 @@ pub fn compared(options: &arguments::Compare) -> Outcome<Value> {
     let setting = Setting::new(&dataset, order, &options.spec.display().to_string(), &text);
     let (fit, floor) = null(&setting, &text, options.seed)?;
     let done = at_floor(&fit, floor.pooled);
-    let place = locate::located(&setting, &fit);
+    let force = residual_force(&setting, &fit, None);
+    let place = locate::located(&setting, &fit, force.as_ref());
     let mut result = document::compared(&setting, &fit, &floor, done, &place);
     result["seconds"] = json!(begin.elapsed().as_secs_f64());
-    let page = report::page(&setting, &fit, None, &result, (&text, &text));
+    let forces = force.as_ref().map(|force| (force, None));
+    let page = report::page(&setting, (&fit, None), forces, &result, (&text, &text));
     write_json(&options.out.join("comparison.json"), &result)?;
     write_file(&options.out.join("report.html"), page.as_bytes())?;
     Ok(result)
@@ -50,7 +53,8 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     let effects = catalogue::effects(options.effects.as_deref()).map_err(Problem::input)?;
     let setting = Setting::new(&dataset, order, &options.spec.display().to_string(), &text);
     let (fit, floor_before) = null(&setting, &text, options.seed)?;
-    let place = locate::located(&setting, &fit);
+    let force = residual_force(&setting, &fit, None);
+    let mut place = locate::located(&setting, &fit, force.as_ref());
     let found =
         search(&setting, fit, &effects, floor_before.pooled, &warn).map_err(Problem::input)?;
     let floor = match found.accepted.is_empty() {
@@ -58,14 +62,20 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
         false => floor(&setting, found.best(), options.seed),
     };
     let done = at_floor(found.best(), floor.pooled);
+    let left = force.as_ref().zip(found.last.as_ref());
+    let left =
+        left.and_then(|(force, last)| residual_force(&setting, last, Some(force.looked_at())));
+    if let Some(left) = &left {
+        place += &format!(" {}", force_said::said_after(left));
+    }
     let extended =
         extend::extended(&setting, &text, found.best(), &found.accepted).map_err(Problem::input)?;
     let mut result = document::discovered(&setting, &found, &floor, done, &place);
     result["seconds"] = json!(begin.elapsed().as_secs_f64());
     let page = report::page(
         &setting,
-        &found.null,
-        found.last.as_ref(),
+        (&found.null, found.last.as_ref()),
+        force.as_ref().map(|force| (force, left.as_ref())),
         &result,
         (&text, &extended),
     );

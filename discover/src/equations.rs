@@ -1,0 +1,245 @@
+//! The equations of motion in which a force may be missing: one for every coordinate, angle and
+//! end of a flexible body. Along a motion each tells where it stands and how a force of one unit
+//! in it accelerates the model. What forces are tried is decided elsewhere.
+
+use codegen::evaluator::{Evaluator, Point};
+use model_spec::edit::{self, Edit, NewForce, NewParameter, NewTerm, NewValue, Section};
+use model_spec::model::{Expr, ExprKind, Model};
+use model_spec::source::Source;
+
+use crate::catalogue::SiteKind;
+use crate::fitting::{Fit, Setting};
+use crate::plant::Plant;
+use crate::sites::sites;
+
+/// An equation of motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equation {
+    /// What it is called in results.
+    pub name: String,
+    /// What a force in it works on, as the specification writes it.
+    pub on: String,
+    /// The unit of what it works on, `rad` or `m`.
+    pub unit: &'static str,
+    /// Whether it is a deflection between teeth with play.
+    pub is_mesh: bool,
+}
+
+impl Equation {
+    /// The unit of a force in it.
+    pub fn force_unit(&self) -> &'static str {
+        if self.unit == "rad" { "N m" } else { "N" }
+    }
+
+    /// The unit of its rate.
+    pub fn rate_unit(&self) -> &'static str {
+        if self.unit == "rad" { "rad/s" } else { "m/s" }
+    }
+}
+
+/// Where a motion stands in an equation.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Standing {
+    /// What a force works on, m or rad.
+    pub place: f64,
+    /// Its rate, m/s or rad/s.
+    pub rate: f64,
+    /// The time from the window's beginning, s.
+    pub time: f64,
+}
+
+/// The equations of a fitted model.
+pub struct Equations {
+    /// One after the other.
+    pub list: Vec<Equation>,
+    plant: Plant,
+    values: Vec<f64>,
+    /// The parameters that are the forces, among the values.
+    forces: Vec<usize>,
+    /// The observables that are place and rate.
+    shown: Vec<(usize, usize)>,
+}
+
+/// The equations of a model, ready to be asked along a motion.
+pub struct Asked {
+    free: Evaluator,
+    forced: Vec<Evaluator>,
+    shown: Vec<(usize, usize)>,
+    observables: Vec<f64>,
+    rates: [Vec<f64>; 2],
+}
+
+impl Equations {
+    /// The equations of a fitted model; none if a force cannot be written into it.
+    pub fn of(setting: &Setting<'_>, fit: &Fit) -> Option<Self> {
+        let list = equations(&fit.plant.model);
+        let names = |word: &str, number: usize| format!("{word}_of_equation_{number}");
+        let mut edits = Vec::new();
+        for (number, equation) in list.iter().enumerate() {
+            let force = names("residual", number);
+            edits.push(Edit::AddParameter(NewParameter {
+                name: force.clone(),
+                value: NewValue::Number(0.0),
+                unit: equation.force_unit().to_owned(),
+                doc: String::new(),
+                source: String::new(),
+            }));
+            edits.push(Edit::AddForce(NewForce {
+                name: names("force", number),
+                on: equation.on.clone(),
+                value: force,
+                doc: String::new(),
+                source: String::new(),
+            }));
+            let shown = [
+                ("place", equation.on.clone()),
+                ("rate", format!("dot({})", equation.on)),
+            ];
+            for (word, value) in shown {
+                edits.push(Edit::AddTerm(NewTerm {
+                    section: Section::Observables,
+                    name: names(word, number),
+                    value,
+                    doc: String::new(),
+                    source: String::new(),
+                }));
+            }
+        }
+        let source = Source::new(setting.path.as_str(), fit.text.as_str());
+        let text = edit::apply(&source, &edits).ok()?;
+        let plant = Plant::equations(&text, &setting.path, setting.order, &[]).ok()?;
+        if plant.states != fit.plant.states {
+            return None;
+        }
+        let observable = |name: String| {
+            let mut observables = plant.model.observables.iter();
+            observables.position(|observable| observable.name == name)
+        };
+        let numbers = 0..list.len();
+        let forces = numbers.clone().map(|n| plant.place(&names("residual", n)));
+        let forces = forces.collect::<Option<Vec<usize>>>()?;
+        let shown = numbers.map(|n| {
+            Some((
+                observable(names("place", n))?,
+                observable(names("rate", n))?,
+            ))
+        });
+        let shown = shown.collect::<Option<Vec<(usize, usize)>>>()?;
+        let whole = setting.shooting(&plant, &setting.train, &fit.unknowns, &fit.ranges);
+        let values = whole.values(&fit.train.estimate.theta);
+        Some(Self {
+            list,
+            values,
+            forces,
+            shown,
+            plant,
+        })
+    }
+
+    /// Ready to be asked.
+    pub fn asked(&self) -> Asked {
+        let forced = self.forces.iter().map(|place| {
+            let mut values = self.values.clone();
+            values[*place] = 1.0;
+            self.plant.evaluator(&values).0
+        });
+        let states = self.plant.state_count();
+        Asked {
+            free: self.plant.evaluator(&self.values).0,
+            forced: forced.collect(),
+            shown: self.shown.clone(),
+            observables: vec![0.0; self.plant.observables()],
+            rates: [vec![0.0; states], vec![0.0; states]],
+        }
+    }
+}
+
+impl Asked {
+    /// Where each equation stands; time is left at 0.
+    pub fn standings(&mut self, point: Point<'_>, out: &mut Vec<Standing>) {
+        self.free.observables(point, &mut self.observables);
+        out.clear();
+        out.extend(self.shown.iter().map(|(place, rate)| Standing {
+            place: self.observables[*place],
+            rate: self.observables[*rate],
+            ..Standing::default()
+        }));
+    }
+
+    /// For each equation the accelerations by a force of one unit, one after the other.
+    pub fn accelerations(&mut self, point: Point<'_>, out: &mut Vec<f64>) {
+        let [free, forced] = &mut self.rates;
+        let half = free.len() / 2;
+        self.free.rates(point, free);
+        out.clear();
+        for evaluator in &mut self.forced {
+            evaluator.rates(point, forced);
+            let pairs = forced[half..].iter().zip(&free[half..]);
+            out.extend(pairs.map(|(a, b)| a - b));
+        }
+    }
+
+    /// The model's own rates.
+    pub fn rates(&mut self, point: Point<'_>, out: &mut [f64]) {
+        self.free.rates(point, out);
+    }
+}
+
+/// The places where effects may act along one line, and what of a flexible body is observed.
+fn equations(model: &Model) -> Vec<Equation> {
+    let unit = |text: &str| match text {
+        "rad" => Some("rad"),
+        "m" => Some("m"),
+        _ => None,
+    };
+    let mut found = Vec::new();
+    for site in sites(model) {
+        let is_mesh = site.kind == SiteKind::Mesh;
+        let unit = match site.kind {
+            SiteKind::Mesh => Some("m"),
+            _ => site.words.get("unit").and_then(|text| unit(text)),
+        };
+        if let (Some(unit), Some(on)) = (unit, site.words.get("on")) {
+            found.push(Equation {
+                name: site.name.clone(),
+                on: on.clone(),
+                unit,
+                is_mesh,
+            });
+        }
+    }
+    for observable in &model.observables {
+        let ExprKind::Definition(place) = observable.value.kind else {
+            continue;
+        };
+        let definition = &model.definitions[place];
+        if bends(model, &definition.value) == Some(true)
+            && let Some(unit) = unit(&observable.unit.text)
+        {
+            found.push(Equation {
+                name: observable.name.clone(),
+                on: definition.name.clone(),
+                unit,
+                is_mesh: false,
+            });
+        }
+    }
+    found
+}
+
+/// Whether an expression holds a field; none if it holds more than places.
+fn bends(model: &Model, expr: &Expr) -> Option<bool> {
+    let (mut bends, mut is_place) = (false, true);
+    expr.visit(&mut |part| match &part.kind {
+        ExprKind::Field(_) => bends = true,
+        ExprKind::Definition(place) => match self::bends(model, &model.definitions[*place].value) {
+            Some(inner) => bends |= inner,
+            None => is_place = false,
+        },
+        ExprKind::Dot(_) | ExprKind::Time | ExprKind::Input(_) | ExprKind::Call(..) => {
+            is_place = false;
+        }
+        _ => {}
+    });
+    is_place.then_some(bends)
+}

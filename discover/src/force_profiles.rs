@@ -1,0 +1,189 @@
+//! What the residual force in one equation is like: its profiles over rate, place, time, shaft
+//! order, frequency and amplitude, with one standard deviation each.
+
+use nalgebra::DVector;
+
+use crate::equations::Standing;
+use crate::fitting::{Fit, Setting};
+use crate::force_looked::{Looked, noise};
+use crate::regression::{Each, Sizes};
+use crate::residual_force::{Profile, ResidualForce};
+use crate::response::At;
+use crate::rule;
+use crate::shapes::{Family, Over, Range};
+
+/// What profiles are read from.
+pub(crate) struct Blocks<'b> {
+    pub at: &'b At,
+    pub setting: &'b Setting<'b>,
+    pub standings: &'b [Vec<Vec<Standing>>],
+    pub equation: usize,
+}
+
+impl Blocks<'_> {
+    /// All profiles of one equation.
+    pub fn profiles(&self, looked: &Looked, range: &Range, fit: &Fit) -> ResidualForce {
+        let gain = [0, 1].map(|family| looked.shared(family).gain);
+        let inflation = looked.inflation((self.at, self.setting), usize::from(gain[1] > gain[0]));
+        let over = |family: usize| {
+            let found = looked.shared(family);
+            Profile {
+                over: looked.families[family].bends.clone(),
+                sd: deviations(&found, inflation),
+                values: found.values.iter().copied().collect(),
+                part: looked.part(family),
+                peak: None,
+            }
+        };
+        let level = noise(looked, gain[0].max(gain[1]));
+        let mut order = Profile::default();
+        for (place, family) in looked.families.iter().enumerate() {
+            let Over::Order(number) = family.over else {
+                continue;
+            };
+            let found = looked.shared(place);
+            let sd = deviations(&found, inflation);
+            order.over.push(f64::from(number));
+            order.values.push(found.values.norm());
+            order
+                .sd
+                .push((0.5 * (sd[0] * sd[0] + sd[1] * sd[1])).sqrt());
+            let part = looked.part(place);
+            if part > order.part {
+                order.part = part;
+                order.peak = Some(order.over.len() - 1);
+            }
+        }
+        let frequency = self.over_frequency(looked, level);
+        ResidualForce {
+            equations: Vec::new(),
+            ranked: Vec::new(),
+            best: self.equation,
+            equation: self.equation,
+            kind: None,
+            part: 0.0,
+            rate: over(0),
+            place: over(1),
+            time: self.over_time(looked, level),
+            order,
+            frequency,
+            amplitude: self.by_amplitude(looked, range, (level, fit)),
+        }
+    }
+
+    /// The force over the time of the first record.
+    fn over_time(&self, looked: &Looked, level: f64) -> Profile {
+        let mut profile = Profile::default();
+        let Some(family) = looked.find(|over| over == Over::Time) else {
+            return profile;
+        };
+        let found = looked.regression.each(looked.range(family), level);
+        profile.part = found.part;
+        for (place, sizes) in self.at.places.iter().zip(&found.windows) {
+            let window = &self.setting.train.list[*place];
+            let (Some(sizes), 0) = (sizes, window.record) else {
+                continue;
+            };
+            let bends = &looked.families[family].bends;
+            profile
+                .over
+                .extend(bends.iter().map(|bend| window.times[0] + bend));
+            profile.values.extend(sizes.values.iter());
+            profile.sd.extend(deviations(sizes, level));
+            // Windows are apart from each other.
+            profile.over.push(window.times[0] + bends[bends.len() - 1]);
+            profile.values.push(f64::NAN);
+            profile.sd.push(f64::NAN);
+        }
+        profile
+    }
+
+    /// The usual size over the frequency, of waves that differ from window to window, all at once:
+    /// alone, a fast one would have to do what a slow one does. Which explains most is looked at
+    /// one by one.
+    fn over_frequency(&self, looked: &Looked, level: f64) -> Profile {
+        let mut profile = Profile::default();
+        let frequency = |family: &Family| match family.over {
+            Over::Frequency(frequency) => Some(frequency),
+            _ => None,
+        };
+        let all = looked.families.iter().enumerate();
+        let places: Vec<(usize, f64)> = all.filter_map(|(k, f)| Some((k, frequency(f)?))).collect();
+        let (Some(first), Some(last)) = (places.first(), places.last()) else {
+            return profile;
+        };
+        let whole = looked.range(first.0).start..looked.range(last.0).end;
+        let found = looked.regression.each(whole.clone(), level);
+        for (family, frequency) in places {
+            let range = looked.range(family);
+            let own = range.start - whole.start..range.end - whole.start;
+            let (size, sd) = usual(&found, own, level);
+            profile.over.push(frequency);
+            profile.values.push(size);
+            profile.sd.push(sd);
+            let part = looked.regression.each(range, level).part;
+            if part > profile.part {
+                profile.part = part;
+                profile.peak = Some(profile.over.len() - 1);
+            }
+        }
+        profile
+    }
+
+    /// What of the force goes with the rate in each window, at its root mean square there, over
+    /// the largest rate.
+    fn by_amplitude(&self, looked: &Looked, range: &Range, (level, fit): (f64, &Fit)) -> Profile {
+        let mut profile = Profile::default();
+        let Some(family) = looked.find(|over| over == Over::Rate) else {
+            return profile;
+        };
+        let bends = DVector::from_column_slice(&looked.families[family].bends);
+        let sizes = looked.regression.in_windows(looked.range(family), &bends);
+        let correlation = fit.train.correlation;
+        let mut points: Vec<(f64, f64, f64)> = Vec::new();
+        for (standings, size) in self.standings.iter().zip(sizes) {
+            let Some((size, variance)) = size else {
+                continue;
+            };
+            let rates = standings.iter().map(|all| all[self.equation].rate);
+            let largest = rates.clone().map(f64::abs).fold(0.0, f64::max);
+            let square: f64 = rates.map(|r| r * r).sum::<f64>() / standings.len().max(1) as f64;
+            let usual = square.sqrt();
+            let sd = (level * correlation * variance).sqrt() * usual;
+            points.push((largest.min(2.0 * range.rate), size * usual, sd));
+        }
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        // A window that hardly shows the force says nothing of it.
+        let mut sds: Vec<f64> = points.iter().map(|point| point.2).collect();
+        sds.sort_by(f64::total_cmp);
+        let most = 3.0 * sds.get(sds.len() / 2).copied().unwrap_or(0.0);
+        for (largest, force, sd) in points.into_iter().filter(|point| point.2 <= most) {
+            profile.over.push(largest);
+            profile.values.push(force);
+            profile.sd.push(sd);
+        }
+        profile
+    }
+}
+
+/// One standard deviation of each size.
+fn deviations(sizes: &Sizes, inflation: f64) -> Vec<f64> {
+    let variances = sizes.covariance.diagonal();
+    let pairs = variances.iter().zip(&sizes.values);
+    pairs
+        .map(|(v, size)| (inflation * v).sqrt().hypot(rule::STRAIGHT * size))
+        .collect()
+}
+
+/// The usual size of some waves that differ from window to window, and one standard deviation.
+fn usual(found: &Each, own: std::ops::Range<usize>, level: f64) -> (f64, f64) {
+    let there = || found.windows.iter().flatten();
+    let count = there().count().max(1) as f64;
+    let sum = |of: &dyn Fn(&Sizes, usize) -> f64| -> f64 {
+        let each = there().map(|sizes| own.clone().map(|k| of(sizes, k)).sum::<f64>());
+        each.sum()
+    };
+    let square = sum(&|sizes, k| sizes.values[k].powi(2));
+    let variance = sum(&|sizes, k| 0.5 * level * sizes.covariance[(k, k)]);
+    ((square / count).sqrt(), (variance / count).sqrt())
+}

@@ -1,0 +1,273 @@
+//! Residuals as a sum of unknown forces: how much of each of some shapes explains them best, once
+//! initial states and nuisances do what they can. Linear least squares, on products of columns
+//! in which each window's initial state is eliminated. Which shapes, and what they tell, is
+//! decided elsewhere.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use crate::estimate::Eliminator;
+use crate::fitting::Fit;
+use crate::response::At;
+use crate::rule;
+use crate::screen::add_prior;
+
+/// Rounds in which the size of a force that differs from window to window is found.
+const ROUNDS: usize = 12;
+
+/// Nuisances that initial states do as well are told apart by one of these parts of their
+/// squares.
+const RIDGES: [f64; 3] = [rule::RIDGE, 1e-8, 1e-5];
+
+/// Products of columns of shapes with each other and with the residual.
+pub struct Regression {
+    /// Products of the shapes' columns, nuisances taken out.
+    gram: DMatrix<f64>,
+    /// Their products with the residual, negative.
+    right: DVector<f64>,
+    /// The sum of squares that initial states and nuisances leave, in noises.
+    pub squares: f64,
+    /// How many numbers were looked at.
+    pub numbers: f64,
+    /// The nuisances' products: with themselves, factored, and with columns and residual.
+    nuisances: Option<(Cholesky<f64, Dyn>, DMatrix<f64>)>,
+    /// The sum of squares that initial states leave, nuisances held, in noises.
+    held: f64,
+    /// For each window products of the columns, the residual last, nuisances held.
+    windows: Vec<DMatrix<f64>>,
+}
+
+/// Sizes of shapes.
+#[derive(Clone, Debug)]
+pub struct Sizes {
+    /// One for each.
+    pub values: DVector<f64>,
+    /// What one squared standard deviation of each, and their products, are times that of the
+    /// residual that is left.
+    pub covariance: DMatrix<f64>,
+    /// How much they lower the sum of squares.
+    pub gain: f64,
+}
+
+/// Sizes that differ from window to window.
+pub struct Each {
+    /// Those of each window; none where it has no motion.
+    pub windows: Vec<Option<Sizes>>,
+    /// The part of the squares that they explain, beyond what as many numbers do by chance.
+    pub part: f64,
+}
+
+impl Regression {
+    /// Takes columns for each window that is looked at.
+    pub fn new(at: &At, fit: &Fit, columns: &[DMatrix<f64>]) -> Option<Self> {
+        let count = columns.iter().map(DMatrix::ncols).max()?;
+        let theta = &at.estimate.theta;
+        // One that a bound holds is free as well: a force may be what drove it there.
+        let n = fit.unknowns.len();
+        let mut products = DMatrix::zeros(n + count + 1, n + count + 1);
+        let mut windows = Vec::with_capacity(columns.len());
+        let mut numbers = 0.0;
+        for (base, block) in at.base.iter().zip(columns) {
+            let (Some(base), true) = (base, block.ncols() == count) else {
+                windows.push(DMatrix::zeros(0, 0));
+                continue;
+            };
+            let rows = base.residual.len();
+            let mut matrix = DMatrix::zeros(rows, n + count + 1);
+            matrix.columns_mut(0, n).copy_from(&base.by_unknown);
+            matrix.columns_mut(n, count).copy_from(block);
+            matrix.column_mut(n + count).copy_from(&base.residual);
+            let own = base.products(&matrix);
+            windows.push(own.view((n, n), (count + 1, count + 1)).into_owned());
+            products += own;
+            numbers += rows as f64;
+        }
+        let held = products[(n + count, n + count)];
+        for (place, unknown) in fit.unknowns.iter().enumerate() {
+            if let Some((mean, sd)) = unknown.prior {
+                let prior = (fit.prior_weight / (sd * sd), theta[place] - mean);
+                add_prior(&mut products, place, prior);
+            }
+        }
+        let mut rest = products.view((n, n), (count + 1, count + 1)).into_owned();
+        let mut nuisances = None;
+        if n > 0 {
+            let factored = |ridge: f64| {
+                let own = DMatrix::from_fn(n, n, |r, c| {
+                    let ridge = if r == c { 1.0 + ridge } else { 1.0 };
+                    ridge * products[(r, c)]
+                });
+                own.cholesky()
+            };
+            let cross = products.view((0, n), (n, count + 1)).into_owned();
+            let factor = RIDGES.into_iter().find_map(factored)?;
+            rest -= cross.transpose() * factor.solve(&cross);
+            nuisances = Some((factor, cross));
+        }
+        Some(Self {
+            gram: rest.view((0, 0), (count, count)).into_owned(),
+            right: -rest.view((0, count), (count, 1)).column(0),
+            squares: rest[(count, count)],
+            numbers,
+            nuisances,
+            held,
+            windows,
+        })
+    }
+
+    /// Sizes of some sums of columns, `of` with a row per column and one column per sum, the same
+    /// for all windows.
+    pub fn sums(&self, places: std::ops::Range<usize>, of: &DMatrix<f64>) -> Sizes {
+        let count = places.len();
+        let gram = self.gram.view((places.start, places.start), (count, count));
+        let right = self.right.rows(places.start, count);
+        sizes(
+            &(of.transpose() * gram * of),
+            &(of.transpose() * right),
+            0.0,
+        )
+    }
+
+    /// Sizes of columns, the same for all windows.
+    pub fn shared(&self, places: &[usize]) -> Sizes {
+        let gram = DMatrix::from_fn(places.len(), places.len(), |r, c| {
+            self.gram[(places[r], places[c])]
+        });
+        let right = DVector::from_fn(places.len(), |r, _| self.right[places[r]]);
+        sizes(&gram, &right, 0.0)
+    }
+
+    /// Sizes that differ from window to window, nuisances held; of one usual size, so that what a
+    /// window does not show stays small. `noise`: the mean square of what noise leaves.
+    pub fn each(&self, places: std::ops::Range<usize>, noise: f64) -> Each {
+        let (first, count) = (places.start, places.len());
+        let systems = self.windows.iter().map(|window| {
+            let last = window.ncols().checked_sub(1)?;
+            let gram = window.view((first, first), (count, count)).into_owned();
+            Some((gram, -window.view((first, last), (count, 1)).column(0)))
+        });
+        let systems: Vec<Option<(DMatrix<f64>, DVector<f64>)>> = systems.collect();
+        let there = || systems.iter().flatten();
+        let numbers = (there().count() * count).max(1) as f64;
+        let trace: f64 = there().map(|(gram, _)| gram.trace()).sum();
+        let mut ridge = 1e-3 * trace / numbers;
+        for _ in 0..ROUNDS {
+            let all = there().map(|(gram, right)| {
+                let found = sizes(gram, right, ridge);
+                found.values.norm_squared() + noise * found.covariance.trace()
+            });
+            let square = all.sum::<f64>() / numbers;
+            if square <= 0.0 {
+                break;
+            }
+            ridge = noise / square;
+        }
+        let (mut gain, mut freedom) = (0.0, 0.0);
+        let windows: Vec<Option<Sizes>> = (systems.iter())
+            .map(|system| {
+                let (gram, right) = system.as_ref()?;
+                let found = sizes(gram, right, ridge);
+                let doubled = 2.0 * found.values.dot(right);
+                gain += doubled - found.values.dot(&(gram * &found.values));
+                freedom += (gram * &found.covariance).trace();
+                Some(found)
+            })
+            .collect();
+        Each {
+            windows,
+            part: (gain - noise * freedom) / self.held,
+        }
+    }
+
+    /// The size of one sum of columns in each window, nuisances held.
+    pub fn in_windows(
+        &self,
+        places: std::ops::Range<usize>,
+        of: &DVector<f64>,
+    ) -> Vec<Option<(f64, f64)>> {
+        let (first, count) = (places.start, places.len());
+        let one = |window: &DMatrix<f64>| {
+            let last = window.ncols().checked_sub(1)?;
+            let square = of.dot(&(window.view((first, first), (count, count)) * of));
+            let right = -of.dot(&window.view((first, last), (count, 1)).column(0));
+            (square > 0.0).then(|| (right / square, 1.0 / square))
+        };
+        self.windows.iter().map(one).collect()
+    }
+
+    /// For each window the residual that sizes of all columns leave, in noises. `shared`: whether
+    /// they are the same for all windows, and nuisances give way to them.
+    pub fn left(
+        &self,
+        (at, columns): (&At, &[DMatrix<f64>]),
+        values: &dyn Fn(usize) -> DVector<f64>,
+        shared: bool,
+    ) -> Vec<Vec<f64>> {
+        let count = self.gram.ncols();
+        let nuisances = self.nuisances.as_ref().filter(|_| shared);
+        let nuisances = nuisances.map(|(factor, cross)| {
+            -factor.solve(&(cross.columns(0, count) * values(0) + cross.column(count)))
+        });
+        let windows = at.base.iter().zip(columns).enumerate();
+        let one = |(window, (base, block)): (usize, (&Option<Eliminator>, &DMatrix<f64>))| {
+            let (Some(base), true) = (base, block.ncols() == count) else {
+                return Vec::new();
+            };
+            let mut residual = &base.residual + block * values(window);
+            if let Some(nuisances) = &nuisances {
+                residual += &base.by_unknown * nuisances;
+            }
+            base.left(&residual).iter().copied().collect()
+        };
+        windows.map(one).collect()
+    }
+}
+
+/// Least squares from products; what does nothing stays 0 and is not known.
+fn sizes(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Sizes {
+    let count = right.len();
+    let largest = gram.diagonal().iter().copied().fold(0.0, f64::max);
+    let does: Vec<bool> = (0..count)
+        .map(|k| gram[(k, k)] > rule::RIDGE * largest)
+        .collect();
+    let scale: Vec<f64> = (0..count)
+        .map(|k| {
+            if does[k] {
+                (gram[(k, k)] + ridge).sqrt()
+            } else {
+                1.0
+            }
+        })
+        .collect();
+    let whole = DMatrix::from_fn(count, count, |r, c| match (r == c, does[r] && does[c]) {
+        (true, true) => 1.0 + rule::RIDGE,
+        (true, false) => 1.0,
+        (false, true) => gram[(r, c)] / (scale[r] * scale[c]),
+        (false, false) => 0.0,
+    });
+    let scaled = DVector::from_fn(
+        count,
+        |k, _| if does[k] { right[k] / scale[k] } else { 0.0 },
+    );
+    let Some(factor) = whole.cholesky() else {
+        return Sizes {
+            values: DVector::zeros(count),
+            covariance: DMatrix::zeros(count, count),
+            gain: 0.0,
+        };
+    };
+    let mut values = factor.solve(&scaled);
+    let mut covariance = factor.inverse();
+    let gain = values.dot(&scaled);
+    for r in 0..count {
+        values[r] /= scale[r];
+        for c in 0..count {
+            let known = if does[r] && does[c] { 1.0 } else { 0.0 };
+            covariance[(r, c)] *= known / (scale[r] * scale[c]);
+        }
+    }
+    Sizes {
+        values,
+        covariance,
+        gain,
+    }
+}

@@ -1,0 +1,279 @@
+//! Shapes of an unknown force: functions of where a motion stands, as sums of which a force is
+//! sought. A force over the rate may jump where the motion turns, as friction does; one over a
+//! place or over time is a line with bends; one that repeats is a wave. How much of each there is
+//! is estimated elsewhere.
+
+use std::f64::consts::TAU;
+
+use crate::equations::Standing;
+
+/// Bends of a force over the rate on either side, over a place and over the time of a window.
+const BENDS: (usize, usize, usize) = (5, 9, 8);
+
+/// Bends of a force over a whole turn.
+const BENDS_OF_A_TURN: usize = 12;
+
+/// Between both sides of a turning point lies this part of the largest rate.
+const TURNING: f64 = 1e-3;
+
+/// What a force is a function of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Over {
+    /// The rate.
+    Rate,
+    /// The place.
+    Place,
+    /// The place within a turn.
+    Turn,
+    /// The time within a window, differently in each.
+    Time,
+    /// The angle, so many times per turn.
+    Order(u32),
+    /// The time within a window, at a frequency in Hz, differently in each.
+    Frequency(f64),
+}
+
+/// A force of unknown size in an equation: a sum of shapes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Family {
+    /// The equation's place in the list.
+    pub equation: usize,
+    /// What the force is a function of.
+    pub over: Over,
+    /// Where it bends, in order; over the rate those of negative rates first, and 0 twice.
+    pub bends: Vec<f64>,
+}
+
+/// Where a motion stands in an equation, over all windows.
+#[derive(Clone, Debug, Default)]
+pub struct Range {
+    /// The usual lowest and highest place.
+    pub place: (f64, f64),
+    /// The usual largest rate either way.
+    pub rate: f64,
+    /// The root mean square of place and rate.
+    pub usual: (f64, f64),
+}
+
+impl Range {
+    /// The range of some places; one in a hundred lies outside at either end.
+    pub fn of(standings: &[Standing]) -> Self {
+        let sorted = |of: &dyn Fn(&Standing) -> f64| {
+            let mut values: Vec<f64> = standings.iter().map(of).collect();
+            values.sort_by(f64::total_cmp);
+            values
+        };
+        let places = sorted(&|s| s.place);
+        let rates = sorted(&|s| s.rate.abs());
+        let last = places.len().saturating_sub(1);
+        let at = |values: &[f64], part: f64| {
+            let place = (part * last as f64).round() as usize;
+            values.get(place).copied().unwrap_or(0.0)
+        };
+        let usual = |values: &[f64]| {
+            let sum: f64 = values.iter().map(|v| v * v).sum();
+            (sum / values.len().max(1) as f64).sqrt()
+        };
+        Self {
+            place: (at(&places, 0.01), at(&places, 0.99)),
+            rate: at(&rates, 0.99),
+            usual: (usual(&places), usual(&rates)),
+        }
+    }
+
+    /// How far it goes.
+    pub fn width(&self) -> f64 {
+        self.place.1 - self.place.0
+    }
+}
+
+impl Family {
+    /// Over the rate.
+    pub fn over_rate(equation: usize, range: &Range) -> Self {
+        // Closer near rest, where friction bends most.
+        let last = (BENDS.0 - 1) as f64;
+        let side: Vec<f64> = (0..BENDS.0)
+            .map(|k| range.rate * (k as f64 / last).powi(2))
+            .collect();
+        let bends = side.iter().rev().map(|b| -b).chain(side.iter().copied());
+        Self {
+            equation,
+            over: Over::Rate,
+            bends: bends.collect(),
+        }
+    }
+
+    /// Over the place, or over a turn where that is gone through.
+    pub fn over_place(equation: usize, range: &Range, is_angle: bool) -> Self {
+        if is_angle && range.width() > TAU {
+            let bend = |k: usize| TAU * k as f64 / BENDS_OF_A_TURN as f64;
+            return Self {
+                equation,
+                over: Over::Turn,
+                bends: (0..BENDS_OF_A_TURN).map(bend).collect(),
+            };
+        }
+        let bend = |k: usize| range.place.0 + range.width() * k as f64 / (BENDS.1 - 1) as f64;
+        Self {
+            equation,
+            over: Over::Place,
+            bends: (0..BENDS.1).map(bend).collect(),
+        }
+    }
+
+    /// Over the time of a window of this length, s.
+    pub fn over_time(equation: usize, length: f64) -> Self {
+        let bend = |k: usize| length * k as f64 / (BENDS.2 - 1) as f64;
+        Self {
+            equation,
+            over: Over::Time,
+            bends: (0..BENDS.2).map(bend).collect(),
+        }
+    }
+
+    /// A wave.
+    pub fn wave(equation: usize, over: Over) -> Self {
+        Self {
+            equation,
+            over,
+            bends: Vec::new(),
+        }
+    }
+
+    /// How many shapes it is a sum of.
+    pub fn count(&self) -> usize {
+        match self.over {
+            Over::Order(_) | Over::Frequency(_) => 2,
+            Over::Rate | Over::Place | Over::Turn | Over::Time => self.bends.len(),
+        }
+    }
+
+    /// The shapes where a motion stands.
+    pub fn at(&self, standing: &Standing, out: &mut [f64]) {
+        out.fill(0.0);
+        let mut wave = |phase: f64| {
+            let (sine, cosine) = phase.sin_cos();
+            out.copy_from_slice(&[cosine, sine]);
+        };
+        match self.over {
+            Over::Order(order) => wave(f64::from(order) * standing.place),
+            Over::Frequency(frequency) => wave(TAU * frequency * standing.time),
+            Over::Place => bent(&self.bends, standing.place, out),
+            Over::Time => bent(&self.bends, standing.time, out),
+            Over::Turn => turned(&self.bends, standing.place, out),
+            Over::Rate => {
+                let half = self.bends.len() / 2;
+                let (negative, positive) = out.split_at_mut(half);
+                bent(&self.bends[..half], standing.rate.min(0.0), negative);
+                bent(&self.bends[half..], standing.rate.max(0.0), positive);
+                let width = 2.0 * TURNING * self.bends[2 * half - 1];
+                let forwards = (0.5 + standing.rate / width).clamp(0.0, 1.0);
+                negative.iter_mut().for_each(|w| *w *= 1.0 - forwards);
+                positive.iter_mut().for_each(|w| *w *= forwards);
+            }
+        }
+    }
+}
+
+/// The weights of a line with bends; level beyond its ends.
+fn bent(bends: &[f64], at: f64, out: &mut [f64]) {
+    let next = bends.partition_point(|bend| *bend <= at);
+    if next == 0 {
+        out[0] = 1.0;
+    } else if next == bends.len() {
+        out[next - 1] = 1.0;
+    } else {
+        let part = (at - bends[next - 1]) / (bends[next] - bends[next - 1]);
+        out[next - 1] = 1.0 - part;
+        out[next] = part;
+    }
+}
+
+/// The same for one that closes after a turn.
+fn turned(bends: &[f64], at: f64, out: &mut [f64]) {
+    let step = TAU / bends.len() as f64;
+    let at = at.rem_euclid(TAU) / step;
+    let before = (at as usize).min(bends.len() - 1);
+    let part = at - before as f64;
+    out[before] += 1.0 - part;
+    out[(before + 1) % bends.len()] += part;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Family, Over, Range};
+    use crate::equations::Standing;
+
+    const RANGE: Range = Range {
+        place: (-1.0, 3.0),
+        rate: 2.0,
+        usual: (1.0, 1.0),
+    };
+
+    fn sum(family: &Family, of: &dyn Fn(f64) -> f64, standing: Standing) -> f64 {
+        let mut weights = vec![0.0; family.count()];
+        family.at(&standing, &mut weights);
+        let pairs = weights.iter().zip(&family.bends);
+        pairs.map(|(weight, bend)| weight * of(*bend)).sum()
+    }
+
+    #[test]
+    fn a_straight_line_is_itself_between_bends() {
+        let line = |x: f64| 0.3 - 0.7 * x;
+        for step in 0..40 {
+            let at = -1.0 + 0.1 * f64::from(step);
+            let standing = Standing {
+                place: at,
+                rate: 0.9 * at - 0.95,
+                time: 0.2 * (at + 1.0),
+            };
+            let place = Family::over_place(0, &RANGE, false);
+            assert!((sum(&place, &line, standing) - line(at)).abs() < 1e-12);
+            let rate = Family::over_rate(0, &RANGE);
+            assert!((sum(&rate, &line, standing) - line(standing.rate)).abs() < 1e-12);
+            let time = Family::over_time(0, 0.8);
+            assert!((sum(&time, &line, standing) - line(standing.time)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_force_over_the_rate_may_jump_where_it_turns() {
+        let rate = Family::over_rate(0, &RANGE);
+        let mut weights = vec![0.0; rate.count()];
+        for (at, forwards) in [(-0.5, 0.0), (0.5, 1.0), (0.0, 0.5)] {
+            let standing = Standing {
+                rate: at,
+                ..Standing::default()
+            };
+            rate.at(&standing, &mut weights);
+            let found: f64 = weights[rate.count() / 2..].iter().sum();
+            assert_eq!(found, forwards);
+        }
+    }
+
+    #[test]
+    fn a_turn_closes() {
+        let wide = Range {
+            place: (-10.0, 10.0),
+            ..RANGE
+        };
+        let turn = Family::over_place(0, &wide, true);
+        assert_eq!(turn.over, Over::Turn);
+        let mut weights = [vec![0.0; turn.count()], vec![0.0; turn.count()]];
+        for (weights, at) in weights
+            .iter_mut()
+            .zip([-0.1, 4.0 * std::f64::consts::PI - 0.1])
+        {
+            let standing = Standing {
+                place: at,
+                ..Standing::default()
+            };
+            turn.at(&standing, weights);
+        }
+        let pairs = weights[0].iter().zip(&weights[1]);
+        for (a, b) in pairs {
+            assert!((a - b).abs() < 1e-12);
+        }
+        assert!((weights[0].iter().sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,202 @@
+//! The residual force: a carriage that drags another by a spring, with something hidden on the
+//! second. The motion is integrated here; the model knows of nothing but springs and dampers.
+
+use std::fs;
+use std::path::Path;
+
+use discover::dataset::read;
+use discover::fitting::Setting;
+use discover::force_said::said;
+use discover::residual_force::{Kind, Profile, ResidualForce, Simple, residual_force};
+use discover::search::null_fit;
+use model_spec::source::Source;
+
+const SPECIFICATION: &str = r#"
+[model]
+name = "two_carriages"
+
+[parameters]
+m = { value = 1.5, unit = "kg", min = 0 }
+k = { value = 400, unit = "N/m", min = 0 }
+c = { value = 3, unit = "N s/m", min = 0 }
+
+[coordinates]
+p = { unit = "m", doc = "the driven carriage" }
+q = { unit = "m", doc = "the one that is dragged" }
+
+[inputs]
+force = { unit = "N" }
+
+[kinetic]
+driven = "1/2*m*dot(p)^2"
+dragged = "1/2*m*dot(q)^2"
+
+[potential]
+spring = "1/2*k*(p - q)^2"
+
+[dissipation]
+spring = "1/2*c*(dot(p) - dot(q))^2"
+guides = "1/2*c*(dot(p)^2 + dot(q)^2)"
+
+[forces]
+motor = { on = "p", value = "force" }
+"#;
+
+const DATASET: &str = r#"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+
+[time]
+column = "t"
+unit = "s"
+
+[inputs.force]
+column = "force"
+unit = "N"
+hold = "zero-order"
+
+[channels.p]
+column = "p"
+unit = "m"
+noise = 1e-5
+
+[channels.q]
+column = "q"
+unit = "m"
+noise = 1e-5
+
+[initial]
+state = "rest"
+
+[windows]
+length = 0.4
+start = "fitted"
+"#;
+
+/// A record with a hidden force on the second carriage, a function of its rate and place.
+fn record(hidden: &dyn Fn(f64, f64) -> f64, turn: f64) -> String {
+    let (m, k, c) = (1.5, 400.0, 3.0);
+    let step = 0.002;
+    let parts = 20;
+    let mut state = [0.0_f64; 4];
+    let mut noise = 0.37_f64;
+    let mut text = "t,force,p,q\n".to_owned();
+    for sample in 0..2000 {
+        let t = step * f64::from(sample);
+        let force = 25.0 * (4.0 * t + turn).sin() + 12.0 * (11.0 * t * (1.0 + 0.1 * turn)).cos();
+        let mut drawn = || {
+            // Twelve numbers of the logistic map on an angle: uniform, nearly normal once added.
+            let sum: f64 = (0..12)
+                .map(|_| {
+                    noise = (noise * 997.0 + 0.123_456_7).fract();
+                    noise
+                })
+                .sum();
+            1e-5 * (sum - 6.0)
+        };
+        let (a, b) = (state[0] + drawn(), state[1] + drawn());
+        text += &format!("{t:.3},{force:.12},{a:.9},{b:.9}\n");
+        let rates = |[p, q, v, w]: [f64; 4]| {
+            let spring = k * (p - q) + c * (v - w);
+            [
+                v,
+                w,
+                (force - spring - c * v) / m,
+                (spring - c * w + hidden(w, q)) / m,
+            ]
+        };
+        for _ in 0..parts {
+            let h = step / f64::from(parts);
+            let first = rates(state);
+            let middle = rates(std::array::from_fn(|i| state[i] + 0.5 * h * first[i]));
+            state = std::array::from_fn(|i| state[i] + h * middle[i]);
+        }
+    }
+    text
+}
+
+fn found(hidden: &dyn Fn(f64, f64) -> f64) -> ResidualForce {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("a file");
+    write("dataset.toml", DATASET);
+    write("train.csv", &record(hidden, 0.0));
+    write("test.csv", &record(hidden, 1.0));
+    found_in(folder.path())
+}
+
+fn found_in(folder: &Path) -> ResidualForce {
+    let model = model_spec::check(Source::new("two_carriages.toml", SPECIFICATION));
+    let model = model.expect("a sound specification").model;
+    let dataset = read(&folder.join("dataset.toml"), &model).expect("a sound dataset");
+    let setting = Setting::new(&dataset, None, "two_carriages.toml");
+    let fit = null_fit(&setting, SPECIFICATION).expect("a fit");
+    residual_force(&setting, &fit, None).expect("neighbouring motions")
+}
+
+/// Whether a profile is a function within four of its standard deviations, and by a tenth of the
+/// largest force that bends and a straight line's errors take, where it is known to a fifth.
+fn is(profile: &Profile, of: impl Fn(usize, f64) -> f64, largest: f64) -> usize {
+    let mut known = 0;
+    for (number, at) in profile.over.iter().enumerate() {
+        let (value, sd) = (profile.values[number], profile.sd[number]);
+        if sd > 0.0 && sd < 0.2 * largest {
+            let off = (value - of(number, *at)).abs();
+            assert!(off < 4.0 * sd + 0.1 * largest, "{value} +- {sd} at {at}");
+            known += 1;
+        }
+    }
+    known
+}
+
+#[test]
+fn dry_friction_is_seen_on_its_carriage_with_its_size() {
+    let friction = |rate: f64, _: f64| -2.0 * (rate / 1e-4).tanh();
+    let force = found(&friction);
+    println!("{}", said(&force));
+    assert_eq!(force.equations[force.best].name, "q");
+    let Some(Kind::Rate(parts)) = &force.kind else {
+        panic!("{:?}", force.kind);
+    };
+    let (_, size, sd) = parts
+        .iter()
+        .find(|part| part.0 == Simple::Sign)
+        .expect("a sign");
+    assert!((size + 2.0).abs() < 4.0 * sd && *sd < 0.2, "{size} +- {sd}");
+    assert!(said(&force).contains("a force on q: "), "{}", said(&force));
+    let bends = force.rate.over.len() / 2;
+    let side = |number: usize, _: f64| if number < bends { 2.0 } else { -2.0 };
+    assert!(is(&force.rate, side, 2.0) >= bends);
+}
+
+#[test]
+fn a_spring_is_seen_on_its_carriage_with_its_stiffness() {
+    let force = found(&|_, place| -40.0 * place);
+    println!("{}", said(&force));
+    assert_eq!(force.equations[force.best].name, "q");
+    let Some(Kind::Place(parts)) = &force.kind else {
+        panic!("{:?}", force.kind);
+    };
+    let (_, size, sd) = parts
+        .iter()
+        .find(|part| part.0 == Simple::Linear)
+        .expect("a line");
+    assert!(
+        (size + 40.0).abs() < 4.0 * sd && *sd < 4.0,
+        "{size} +- {sd}"
+    );
+    let largest = force
+        .place
+        .over
+        .iter()
+        .map(|at| 40.0 * at.abs())
+        .fold(0.0, f64::max);
+    assert!(is(&force.place, |_, at| -40.0 * at, largest) >= 5);
+}
+
+#[test]
+fn nothing_stands_out_where_nothing_is_hidden() {
+    let force = found(&|_, _| 0.0);
+    assert_eq!(force.kind, None, "{}", said(&force));
+    assert_eq!(said(&force), "No force on a single equation stands out.");
+}
