@@ -151,7 +151,7 @@ impl<'s> Stepped<'s> {
                 let begin = pair[0] + step as f64 * h;
                 let middle = begin + 0.5 * h;
                 let held = inputs.at(middle);
-                let mut points = [(); 3].map(|()| (begin, state.clone()));
+                let mut points = [const { (0.0, Vec::new()) }; 3];
                 for (stage, (part, point)) in STAGES.into_iter().enumerate() {
                     trial.copy_from_slice(&state);
                     if stage > 0 {
@@ -170,7 +170,9 @@ impl<'s> Stepped<'s> {
                         let pushed = slopes[stage][half..].iter_mut().zip(&push[first..]);
                         pushed.for_each(|(k, a)| *k += size * a);
                     }
-                    points[point] = (t, trial.clone());
+                    if visited.is_some() {
+                        points[point] = (t, trial.clone());
+                    }
                 }
                 for (place, x) in state.iter_mut().enumerate() {
                     let [a, b, c, d] = [0, 1, 2, 3].map(|stage: usize| slopes[stage][place]);

@@ -117,20 +117,24 @@ fn record(hidden: &dyn Fn(f64, f64) -> f64, turn: f64) -> String {
 }
 
 fn found(hidden: &dyn Fn(f64, f64) -> f64) -> ResidualForce {
+    found_by(hidden, SPECIFICATION)
+}
+
+fn found_by(hidden: &dyn Fn(f64, f64) -> f64, specification: &str) -> ResidualForce {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).expect("a file");
     write("dataset.toml", DATASET);
     write("train.csv", &record(hidden, 0.0));
     write("test.csv", &record(hidden, 1.0));
-    found_in(folder.path())
+    found_in(folder.path(), specification)
 }
 
-fn found_in(folder: &Path) -> ResidualForce {
-    let model = model_spec::check(Source::new("two_carriages.toml", SPECIFICATION));
+fn found_in(folder: &Path, specification: &str) -> ResidualForce {
+    let model = model_spec::check(Source::new("two_carriages.toml", specification));
     let model = model.expect("a sound specification").model;
     let dataset = read(&folder.join("dataset.toml"), &model).expect("a sound dataset");
     let setting = Setting::new(&dataset, None, "two_carriages.toml");
-    let fit = null_fit(&setting, SPECIFICATION).expect("a fit");
+    let fit = null_fit(&setting, specification).expect("a fit");
     residual_force(&setting, &fit, None).expect("neighbouring motions")
 }
 
@@ -167,6 +171,32 @@ fn dry_friction_is_seen_on_its_carriage_with_its_size() {
     let bends = force.rate.over.len() / 2;
     let side = |number: usize, _: f64| if number < bends { 2.0 } else { -2.0 };
     assert!(is(&force.rate, side, 2.0) >= bends);
+}
+
+/// A spring that is next to nothing and not linear: such a model is run by Runge-Kutta steps, and
+/// pushed by small forces beside its motion.
+#[test]
+fn a_model_that_is_not_linear_shows_the_same() {
+    let stiffening = SPECIFICATION
+        .replace(
+            "[coordinates]",
+            "b = { value = 1e-3, unit = \"N/m^3\" }\n\n[coordinates]",
+        )
+        .replace(
+            "[dissipation]",
+            "stiffening = \"1/4*b*p^4\"\n\n[dissipation]",
+        );
+    let friction = |rate: f64, _: f64| -2.0 * (rate / 1e-4).tanh();
+    let (linear, other) = (found(&friction), found_by(&friction, &stiffening));
+    assert_eq!(other.equations[other.best].name, "q");
+    let pairs = linear.rate.values.iter().zip(&other.rate.values);
+    for ((a, b), sd) in pairs.zip(&linear.rate.sd) {
+        // Both are first order; what differs is how steps end at switches.
+        assert!(
+            *sd > 0.4 || (a - b).abs() < 0.04 + 0.5 * sd,
+            "{a} {b} +- {sd}"
+        );
+    }
 }
 
 #[test]
