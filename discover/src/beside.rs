@@ -86,6 +86,7 @@ mod tests {
     use sim::record::HeldInputs;
 
     use crate::dataset::{Channel, Quantity, Record};
+    use crate::march::Free;
     use crate::plant::Plant;
 
     /// The rig, and the rig with teeth that deviate by more than twice the play.
@@ -101,8 +102,9 @@ mod tests {
         (rig, with)
     }
 
-    #[test]
-    fn teeth_touch_where_the_whole_model_says() {
+    /// The rig with such teeth, marched, and its text, a record of its torque, its channels and
+    /// a state in the middle of the play, as the teeth see it.
+    fn marched() -> (Plant, String, Record, [Channel; 1], Vec<f64>) {
         let (rig, with) = texts();
         let channels = [Channel {
             name: "x_sp".to_owned(),
@@ -123,10 +125,15 @@ mod tests {
             channels: Vec::new(),
         };
         let mut marched = Plant::of(&with, Some(&rig), "rig", Some(4), &channels).expect("a model");
-        // In the middle of the play, as the teeth see it.
         let mut initial = vec![0.0; marched.state_count()];
         initial[0] = 60e-6;
         marched.choose_steps(&record, &initial, &[1e-7]);
+        (marched, with, record, channels, initial)
+    }
+
+    #[test]
+    fn teeth_touch_where_the_whole_model_says() {
+        let (marched, with, record, channels, initial) = marched();
         let solved = Plant::equations(&with, "rig", Some(4), &channels).expect("a model");
         let states = |plant: &Plant| {
             let mut runner = plant.at(&plant.values).expect("a runner");
@@ -135,28 +142,6 @@ mod tests {
         };
         let ((is_marched, found), (_, wanted)) = (states(&marched), states(&solved));
         assert!(is_marched);
-        {
-            let mut runner = marched.at(&marched.values).unwrap();
-            let mut free = crate::march::Free;
-            for upto in [3usize, 10, 20, 40, 80] {
-                let t = &record.times[..upto];
-                let lin = runner
-                    .linearised(&initial, t, &record.inputs, true, (0, &mut free))
-                    .unwrap();
-                let n = initial.len();
-                let last = &lin.by_state[(upto - 1) * n..upto * n];
-                for k in 0..n {
-                    let h = if k < 7 { 1e-10 } else { 1e-7 };
-                    let mut v = vec![];
-                    for s in [1.0, -1.0] {
-                        let mut st = initial.clone();
-                        st[k] += s * h;
-                        v.push(runner.states(&st, t, &record.inputs).unwrap()[upto - 1][0]);
-                    }
-                    eprintln!("{upto} {k} {:e} {:e}", last[k], (v[0] - v[1]) / (2.0 * h));
-                }
-            }
-        }
         // The play is 25 um. At an impact a difference in time is one in place.
         let differences = found.iter().zip(&wanted).map(|(a, b)| (a[0] - b[0]).abs());
         let mut differences: Vec<f64> = differences.collect();
@@ -164,5 +149,30 @@ mod tests {
         assert!(wanted.iter().any(|state| state[0].abs() > 5e-5));
         assert!(differences[200] < 1e-8, "{:e}", differences[200]);
         assert!(differences[399] < 2e-6, "{:e}", differences[399]);
+    }
+
+    #[test]
+    fn neighbours_feel_what_is_beyond_the_linear_part() {
+        let (marched, _, record, _, initial) = marched();
+        let mut runner = marched.at(&marched.values).expect("a runner");
+        // The teeth touch once and part before the third sample.
+        let times = &record.times[..4];
+        let found = runner
+            .linearised(&initial, times, &record.inputs, true, (0, &mut Free))
+            .expect("tangents");
+        let count = initial.len();
+        for (place, tangent) in found.by_state[3 * count..].iter().enumerate() {
+            let size = if place < count / 2 { 1e-10 } else { 1e-7 };
+            let [more, less] = [size, -size].map(|change| {
+                let mut moved = initial.clone();
+                moved[place] += change;
+                let states = runner.states(&moved, times, &record.inputs);
+                states.expect("a motion")[3][0]
+            });
+            let quotient = (more - less) / (2.0 * size);
+            // What is felt is held over two steps, three of which the contact lasts.
+            let is_near = (tangent - quotient).abs() < 3e-2 * quotient.abs();
+            assert!(is_near, "{place}: {tangent:e} for {quotient:e}");
+        }
     }
 }

@@ -7,13 +7,13 @@ use codegen::evaluator::Point;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use crate::stepped::Stepped;
 use crate::crew::Crew;
 use crate::equations::{Asked, Equations, Standing};
 use crate::fitting::{Fit, Setting};
 use crate::march::Drives;
 use crate::response::At;
 use crate::shooting::{Shooting, samples_in};
+use crate::stepped::Stepped;
 
 /// Weights of shapes in the equations: where each equation stands, and a weight per column.
 pub type Weights<'w> = dyn Fn(&[Standing], &[f64], &mut [f64]) + Sync + 'w;

@@ -8,13 +8,14 @@
 //! does to rounding this does to a small part of any sensor's noise, several times faster, and
 //! neighbouring motions come with it. The files: `kernels` (products), `surfaces`, `regime`
 //! (matrices of a step), `crossing` (where a step meets a surface), `parts` (steps through
-//! surfaces), `beyond` (what is not linear), `tangents`.
+//! surfaces), `beyond` (what is not linear), `tangents`, `slopes` (what these feel of that).
 
 mod beyond;
 mod crossing;
 mod kernels;
 mod parts;
 mod regime;
+mod slopes;
 mod surfaces;
 mod tangents;
 
@@ -27,6 +28,7 @@ use beyond::Excess;
 pub use beyond::Force;
 use crossing::first_crossing;
 use regime::Regime;
+use slopes::Slopes;
 use surfaces::{Side, Surfaces, dot};
 pub use tangents::{Drives, Free, Tangents};
 
@@ -212,6 +214,9 @@ impl March {
         }
         if let Some(tangents) = &mut company.tangents {
             tangents.begin(t, &motion.state, values);
+            if company.force.is_some() {
+                tangents.slopes = Some(Slopes::new(self.states, count));
+            }
         }
         Ok(motion)
     }
@@ -262,15 +267,11 @@ impl March {
         for place in 1..=count as usize {
             self.release(motion, begin + (place - 1) as f64 * length, company)?;
             let end = begin + place as f64 * length;
-            if !(whole && self.whole_step(motion, end, inputs, company)?) {
+            if !(whole && self.whole_step(motion, end, company)?) {
                 self.parts(motion, length, end, inputs, company)?;
             }
         }
-        if let Some(tangents) = &mut company.tangents {
-            let regime = &self.regimes[motion.regime];
-            tangents.catch_up(regime, until, &motion.state, inputs);
-        }
-        Ok(())
+        self.bring(motion, until, company)
     }
 
     /// Prepares for steps in the present regime with the present inputs.
@@ -322,8 +323,9 @@ impl March {
             }
         }
         if changed {
+            self.bring(motion, t, company)?;
             if let Some(tangents) = &mut company.tangents {
-                tangents.catch_up(regime, t, &motion.state, &motion.given[1..]);
+                tangents.forget_slopes();
             }
             motion.regime = self.regime(&motion.sides)?;
             self.prepare(motion);
@@ -336,7 +338,6 @@ impl March {
         &mut self,
         motion: &mut Motion,
         end: f64,
-        inputs: &[f64],
         company: &mut Company<'_, '_>,
     ) -> Result<bool, String> {
         let (n, half) = (self.states, self.states / 2);
@@ -392,8 +393,8 @@ impl March {
                 motion.watched[surfaces + place] += dot(row, &motion.excess.force);
             }
         }
-        if let Some(tangents) = &mut company.tangents {
-            tangents.step(regime, end, &motion.state, inputs);
+        if company.tangents.as_deref_mut().is_some_and(Tangents::step) {
+            self.bring(motion, end, company)?;
         }
         Ok(true)
     }

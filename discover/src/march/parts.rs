@@ -27,10 +27,7 @@ impl March {
     ) -> Result<(), String> {
         let mut rest = length;
         let surfaces = motion.sides.len();
-        if let Some(tangents) = &mut company.tangents {
-            let regime = &self.regimes[motion.regime];
-            tangents.catch_up(regime, end - length, &motion.state, inputs);
-        }
+        self.bring(motion, end - length, company)?;
         for _ in 0..MOST_CROSSINGS {
             self.watch(motion);
             let begin = (motion.watched.clone(), motion.state.clone());
@@ -68,7 +65,7 @@ impl March {
             let tau = self.polished(motion, (surface, slope), tau, rest, &begin.1);
             rest -= tau;
             let t = end - rest;
-            self.accompany(motion, tau, t, inputs, company)?;
+            self.accompany(motion, tau, (t, true), inputs, company)?;
             self.cross(motion, t, (surface, slope), company)?;
             if rest <= 0.0 {
                 self.prepare(motion);
@@ -145,27 +142,33 @@ impl March {
         inputs: &[f64],
         company: &mut Company<'_, '_>,
     ) -> Result<(), String> {
-        self.accompany(motion, tau, end, inputs, company)?;
+        self.accompany(motion, tau, (end, false), inputs, company)?;
         self.prepare(motion);
         Ok(())
     }
 
-    /// Lets the others follow a part of a step.
+    /// Lets the others follow a part of a step, to a time and whether on a surface.
     fn accompany(
         &mut self,
         motion: &mut Motion,
         tau: f64,
-        t: f64,
+        (t, on_surface): (f64, bool),
         inputs: &[f64],
         company: &mut Company<'_, '_>,
     ) -> Result<(), String> {
         if company.force.is_some() {
             self.correct(motion, tau, t, company)?;
         }
-        if let Some(tangents) = &mut company.tangents {
-            let regime = &self.regimes[motion.regime];
-            tangents.part(regime, tau, (t, &motion.state, inputs));
+        let Some(tangents) = company.tangents.as_deref_mut() else {
+            return Ok(());
+        };
+        if let (Some(force), Some(slopes), false) =
+            (&mut company.force, &mut tangents.slopes, on_surface)
+        {
+            self.differentiate(motion, t, &mut **force, slopes)?;
         }
+        let regime = &self.regimes[motion.regime];
+        tangents.part(regime, tau, (t, &motion.state, inputs));
         Ok(())
     }
 
@@ -238,8 +241,12 @@ impl March {
             return Ok(());
         }
         if let Some(tangents) = &mut company.tangents {
-            let function = &self.regimes[before].functions[surface];
-            tangents.switch((function, slope), &rates, &after);
+            let mut function = self.regimes[before].functions[surface].clone();
+            let rate = dot(&function.state, &rates[..self.states]) + slope;
+            if let Some(force) = &mut company.force {
+                function = self.gradient(motion, (surface, t), &mut **force, &rates);
+            }
+            tangents.switch((&function.state, rate), &rates, &after);
         }
         Ok(())
     }

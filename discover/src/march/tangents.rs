@@ -3,7 +3,8 @@
 
 use super::kernels::{self, Columns};
 use super::regime::{Regime, TERMS};
-use super::surfaces::{Row, dot};
+use super::slopes::Slopes;
+use super::surfaces::dot;
 
 /// A switch whose function has less than this part of its usual rate divides by nothing.
 const GRAZING: f64 = 1e-9;
@@ -47,6 +48,9 @@ pub struct Tangents<'d> {
     /// The drives where the motion stands, and a step later.
     here: Vec<f64>,
     there: Vec<f64>,
+    /// What forces beyond the linear ones do to neighbours, where there are such.
+    pub(super) slopes: Option<Slopes>,
+    felt: Vec<f64>,
 }
 
 impl<'d> Tangents<'d> {
@@ -65,6 +69,8 @@ impl<'d> Tangents<'d> {
             drives,
             here: vec![0.0; driven * (states / 2)],
             there: vec![0.0; driven * (states / 2)],
+            slopes: None,
+            felt: vec![0.0; states / 2],
         }
     }
 
@@ -93,11 +99,21 @@ impl<'d> Tangents<'d> {
         self.free + self.driven
     }
 
-    /// The motion went on by a whole step, to a state.
-    pub fn step(&mut self, regime: &Regime, t: f64, state: &[f64], inputs: &[f64]) {
+    /// The motion went on by a whole step; whether the vectors have to follow.
+    pub fn step(&mut self) -> bool {
         self.pending += 1;
-        if self.driven > 0 && self.pending == DRIVEN_STEPS {
-            self.catch_up(regime, t, state, inputs);
+        (self.driven > 0 || self.slopes.is_some()) && self.pending >= DRIVEN_STEPS
+    }
+
+    /// Whether there are steps that the vectors have not made.
+    pub fn is_behind(&self) -> bool {
+        self.pending > 0
+    }
+
+    /// What is felt of forces that change with the state is not known where the motion stands.
+    pub fn forget_slopes(&mut self) {
+        if let Some(slopes) = &mut self.slopes {
+            slopes.forget();
         }
     }
 
@@ -119,9 +135,13 @@ impl<'d> Tangents<'d> {
             self.several(&regime.doubled[doubling]);
         }
         std::mem::swap(&mut self.here, &mut self.there);
+        if let Some(slopes) = &mut self.slopes {
+            slopes.arrive();
+        }
     }
 
-    /// Makes several steps at once, with the drives held.
+    /// Makes several steps at once, with the drives held, and corrected at the end what is felt
+    /// of the forces that change with the state.
     fn several(&mut self, (state, force): &(Columns, Columns)) {
         let half = self.states / 2;
         self.next.fill(0.0);
@@ -131,6 +151,18 @@ impl<'d> Tangents<'d> {
             force.add_product(&self.here[place * half..(place + 1) * half], out);
         }
         state.add_products(self.states, &self.vectors, &mut self.next);
+        if let Some(slopes) = &self.slopes {
+            let (old, new) = (&self.vectors, &mut self.next);
+            let vectors = old.chunks_exact(self.stride);
+            for (vector, next) in vectors.zip(new.chunks_exact_mut(self.stride)) {
+                self.felt.fill(0.0);
+                slopes.add_begin(vector, 1.0, &mut self.felt);
+                force.add_product(&self.felt, next);
+                self.felt.iter_mut().for_each(|felt| *felt *= -0.5);
+                slopes.add_end(next, 0.5, &mut self.felt);
+                force.add_product(&self.felt, next);
+            }
+        }
         std::mem::swap(&mut self.vectors, &mut self.next);
     }
 
@@ -146,6 +178,9 @@ impl<'d> Tangents<'d> {
             let vector = &mut self.vectors[place * self.stride..place * self.stride + n];
             rates.fill(0.0);
             regime.matrix.add_product(vector, &mut rates);
+            if let Some(slopes) = &self.slopes {
+                slopes.add_begin(vector, 1.0, &mut rates[half..n]);
+            }
             if place >= self.free {
                 let first = (place - self.free) * half;
                 let drives = &self.here[first..first + half];
@@ -157,25 +192,24 @@ impl<'d> Tangents<'d> {
             series(&regime.matrix, vector, &mut rates, tau, PART_ERROR);
         }
         self.meet(t, state, inputs);
+        if let Some(slopes) = &mut self.slopes {
+            slopes.arrive();
+        }
     }
 
-    /// Goes through a switch: the function that reached its surface and the slope with which that
-    /// is moved, the rates before and after.
-    pub fn switch(&mut self, (function, slope): (&Row, f64), before: &[f64], after: &[f64]) {
+    /// Goes through a switch: the gradient of the function that reached its surface and its
+    /// rate, the rates before and after.
+    pub fn switch(&mut self, (gradient, rate): (&[f64], f64), before: &[f64], after: &[f64]) {
         self.on_surface = true;
+        self.forget_slopes();
         let n = self.states;
-        let rate = dot(&function.state, &before[..n]) + slope;
-        let size: f64 = function
-            .state
-            .iter()
-            .zip(before)
-            .map(|(a, b)| (a * b).abs())
-            .sum();
+        let terms = gradient.iter().zip(before);
+        let size: f64 = terms.map(|(a, b)| (a * b).abs()).sum();
         if rate.abs() <= GRAZING * size {
             return;
         }
         for vector in self.vectors.chunks_exact_mut(self.stride.max(1)) {
-            let delay = dot(&function.state, &vector[..n]) / rate;
+            let delay = dot(gradient, &vector[..n]) / rate;
             for ((slot, a), b) in vector[..n].iter_mut().zip(after).zip(before) {
                 *slot += (a - b) * delay;
             }

@@ -1,0 +1,235 @@
+//! How what lies beyond the linear part changes with the state: the part of their forces that
+//! neighbouring motions feel and the linear part's matrix does not hold. By differences, for
+//! the model tells no more of itself than its accelerations.
+
+use super::beyond::{Excess, Force};
+use super::surfaces::{Row, Side};
+use super::{Company, March, Motion};
+
+/// All states are differentiated by after each switch and once in so many times, those that
+/// mattered before always.
+const ALL: usize = 8;
+
+/// A state is changed by this part of what it moves in a step, or of itself, whichever is more.
+const OF_MOVE: f64 = 1e-3;
+const OF_ITSELF: f64 = 1e-8;
+
+/// And by no less, SI: states at rest at 0.
+const LEAST: f64 = 1e-10;
+
+/// Accelerations that change by less than this part of the largest do so by rounding.
+const ROUNDING: f64 = 1e-10;
+
+/// Derivatives of the accelerations beyond the linear ones by each state, at the two ends of
+/// what neighbouring motions go on by.
+#[derive(Debug, Default)]
+pub struct Slopes {
+    /// For each state the accelerations' derivatives, one after the other.
+    here: Vec<f64>,
+    there: Vec<f64>,
+    /// States by which some are not 0, in the order in which that was seen.
+    active: Vec<usize>,
+    /// Whether each is known.
+    is_known: [bool; 2],
+    asked: usize,
+    base: Excess,
+    moved: Excess,
+    rates: Vec<f64>,
+    state: Vec<f64>,
+}
+
+impl Slopes {
+    /// Of a model with so many states and surfaces.
+    pub fn new(states: usize, surfaces: usize) -> Self {
+        let half = states / 2;
+        Self {
+            here: vec![0.0; states * half],
+            there: vec![0.0; states * half],
+            base: Excess::none(half, surfaces),
+            moved: Excess::none(half, surfaces),
+            ..Self::default()
+        }
+    }
+
+    /// Where the motion stands nothing is known any more.
+    pub fn forget(&mut self) {
+        self.is_known = [false; 2];
+        self.asked = 0;
+    }
+
+    /// The neighbours have come where the motion stands.
+    pub fn arrive(&mut self) {
+        std::mem::swap(&mut self.here, &mut self.there);
+        self.is_known = [self.is_known[1], false];
+    }
+
+    /// Adds what a neighbour feels where it set out, or if that is not known, will feel; nothing
+    /// if neither is.
+    pub fn add_begin(&self, vector: &[f64], factor: f64, out: &mut [f64]) {
+        let derivatives = match self.is_known {
+            [true, _] => &self.here,
+            [false, true] => &self.there,
+            [false, false] => return,
+        };
+        self.add(derivatives, vector, factor, out);
+    }
+
+    /// Adds what a neighbour feels where it goes to.
+    pub fn add_end(&self, vector: &[f64], factor: f64, out: &mut [f64]) {
+        self.add(&self.there, vector, factor, out);
+    }
+
+    fn add(&self, derivatives: &[f64], vector: &[f64], factor: f64, out: &mut [f64]) {
+        let half = out.len();
+        for state in &self.active {
+            let column = &derivatives[state * half..(state + 1) * half];
+            let size = factor * vector[*state];
+            out.iter_mut().zip(column).for_each(|(o, d)| *o += size * d);
+        }
+    }
+}
+
+impl March {
+    /// Lets the neighbours make the steps that they have not made, up to where the motion stands.
+    pub(super) fn bring(
+        &mut self,
+        motion: &Motion,
+        t: f64,
+        company: &mut Company<'_, '_>,
+    ) -> Result<(), String> {
+        let Some(tangents) = company.tangents.as_deref_mut() else {
+            return Ok(());
+        };
+        if tangents.is_behind() {
+            if let (Some(force), Some(slopes)) = (&mut company.force, &mut tangents.slopes) {
+                self.differentiate(motion, t, &mut **force, slopes)?;
+            }
+            let regime = &self.regimes[motion.regime];
+            tangents.catch_up(regime, t, &motion.state, &motion.given[1..]);
+        }
+        Ok(())
+    }
+
+    /// Finds the derivatives where the motion stands; not on a surface, where rounding decides
+    /// on which side the model is.
+    pub(super) fn differentiate(
+        &mut self,
+        motion: &Motion,
+        t: f64,
+        force: &mut dyn Force,
+        slopes: &mut Slopes,
+    ) -> Result<(), String> {
+        let (n, half) = (self.states, self.states / 2);
+        let rows = self.regimes[motion.regime].matrix.rows;
+        slopes.rates.resize(rows, 0.0);
+        self.rates(motion, &mut slopes.rates);
+        let accelerations = slopes.rates[half..n].iter();
+        let largest = accelerations.fold(0.0f64, |most, a| most.max(a.abs()));
+        let (mut base, mut moved) = (
+            std::mem::take(&mut slopes.base),
+            std::mem::take(&mut slopes.moved),
+        );
+        slopes.state.clone_from(&motion.state);
+        self.beyond_at(motion, (t, &slopes.state), force, &mut base)?;
+        let all = slopes.asked.is_multiple_of(ALL);
+        slopes.asked += 1;
+        let places: Vec<usize> = match all {
+            true => (0..n).collect(),
+            false => slopes.active.clone(),
+        };
+        for place in places {
+            let x = motion.state[place];
+            slopes.state[place] = x + self.difference(x, slopes.rates[place]);
+            let size = slopes.state[place] - x;
+            self.beyond_at(motion, (t, &slopes.state), force, &mut moved)?;
+            slopes.state[place] = x;
+            if self.sides_differ(motion, place, size, (&base, &moved)) {
+                continue;
+            }
+            let mut matters = false;
+            let column = &mut slopes.there[place * half..(place + 1) * half];
+            for (slot, (after, before)) in column.iter_mut().zip(pairs(&moved, &base)) {
+                matters |= (after - before).abs() > ROUNDING * largest;
+                *slot = (after - before) / size;
+            }
+            if matters && !slopes.active.contains(&place) {
+                slopes.active.push(place);
+            }
+        }
+        (slopes.base, slopes.moved) = (base, moved);
+        slopes.is_known[1] = true;
+        Ok(())
+    }
+
+    /// The function of a surface at a state, with how it changes with each state as the whole
+    /// model says; rates tell how far the states may be moved.
+    pub(super) fn gradient(
+        &self,
+        motion: &Motion,
+        (surface, t): (usize, f64),
+        force: &mut dyn Force,
+        rates: &[f64],
+    ) -> Row {
+        let mut function = self.regimes[motion.regime].functions[surface].clone();
+        let inputs = &motion.given[1..];
+        let guard = self.surfaces.guards[surface][0];
+        let (mut state, mut values) = (motion.state.clone(), Vec::new());
+        if !force.at_guards(t, &state, inputs, &mut values) {
+            return function;
+        }
+        let here = values[guard];
+        for (place, slot) in function.state.iter_mut().enumerate() {
+            let x = state[place];
+            state[place] = x + self.difference(x, rates[place]);
+            force.at_guards(t, &state, inputs, &mut values);
+            *slot = (values[guard] - here) / (state[place] - x);
+            state[place] = x;
+        }
+        function
+    }
+
+    /// By how much a state with a rate is changed.
+    fn difference(&self, x: f64, rate: f64) -> f64 {
+        let size = (OF_MOVE * (rate * self.step).abs()).max(OF_ITSELF * x.abs());
+        size.max(LEAST)
+    }
+
+    /// What lies beyond the linear part at a state, relative to the regime in which a motion is.
+    fn beyond_at(
+        &mut self,
+        motion: &Motion,
+        (t, state): (f64, &[f64]),
+        force: &mut dyn Force,
+        out: &mut Excess,
+    ) -> Result<(), String> {
+        let functions = &self.regimes[motion.regime].functions;
+        out.find(
+            force,
+            (&self.surfaces, functions),
+            (t, state, &motion.given),
+        );
+        self.relate((motion.regime, &motion.sides), state, &motion.given, out)
+    }
+
+    /// Whether a surface lies between a motion's state and the same with one state changed.
+    fn sides_differ(
+        &self,
+        motion: &Motion,
+        place: usize,
+        size: f64,
+        (base, moved): (&Excess, &Excess),
+    ) -> bool {
+        let functions = self.regimes[motion.regime].functions.iter();
+        let both = base.moved.iter().zip(&moved.moved);
+        functions.zip(both).any(|(function, (before, after))| {
+            let here = function.at(&motion.state, &motion.given);
+            let there = here + size * function.state[place];
+            Side::of(here + before) != Side::of(there + after)
+        })
+    }
+}
+
+/// The accelerations of both.
+fn pairs<'e>(a: &'e Excess, b: &'e Excess) -> impl Iterator<Item = (&'e f64, &'e f64)> {
+    a.force.iter().zip(&b.force)
+}
