@@ -88,6 +88,10 @@ pub const PROMISE_FAR: f64 = 0.005;
 /// Much more than noise are so many noises.
 pub const FAR: f64 = 3.0;
 
+/// There a candidate that leaves no less than this part of the beginnings of windows, or of
+/// what was looked at, is not fitted in earnest.
+pub const HELPS: f64 = 0.99;
+
 /// So many candidates are fitted side by side before it is decided whether more are worth it:
 /// one per core of a small machine.
 pub const FITS_AT_ONCE: usize = 2;

@@ -65,6 +65,10 @@ impl Round<'_> {
             (self.said)(&format!("{count} promise enough to be fitted, {best} most"));
         }
         let mut sketches = self.sketched(self.chosen(&ranked));
+        if self.is_far() {
+            let most = rule::HELPS * self.screen.left(&[]).0;
+            sketches.retain(|(_, sketch)| sketch.left < most);
+        }
         let mut trials: Vec<Trial> = Vec::new();
         let (mut fits, mut best) = (0, f64::INFINITY);
         while !sketches.is_empty() && fits < rule::MOST_FITS {
@@ -91,6 +95,11 @@ impl Round<'_> {
             trials.extend(self.completed(wanted));
         }
         trials
+    }
+
+    /// Whether much more than noise is left.
+    fn is_far(&self) -> bool {
+        self.screen.left(&[]).0 > rule::FAR * rule::FAR * self.screen.numbers
     }
 
     /// Those of the ranked that are begun: of what repeats with an angle, of which there is so
@@ -126,7 +135,7 @@ impl Round<'_> {
     fn ranked(&self) -> Vec<usize> {
         let screen = self.screen;
         let alone = screen.left(&[]).0;
-        let promise = match alone > rule::FAR * rule::FAR * screen.numbers {
+        let promise = match self.is_far() {
             true => rule::PROMISE_FAR,
             false => rule::PROMISE,
         };

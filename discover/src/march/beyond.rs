@@ -3,6 +3,7 @@
 //! deflection less the error reaches the play; where that differs from the linear part's place
 //! by more than the play, a march by the linear part's sides would be in the wrong regime.
 
+use super::regime::Regime;
 use super::surfaces::{Row, Side, Surfaces};
 use super::{Company, March, Motion};
 
@@ -135,14 +136,58 @@ impl March {
             let own = self.own.clone();
             self.last_own = (own.clone(), self.regime(&own)?);
         }
-        let (n, half) = (self.states, self.states / 2);
-        for (regime, sign) in [(self.last_own.1, 1.0), (here, -1.0)] {
-            let regime = &self.regimes[regime];
-            self.rates.resize(regime.matrix.rows, 0.0);
-            regime.rates(state, given, &mut self.rates);
-            let sums = excess.force.iter_mut().zip(&self.rates[half..n]);
-            sums.for_each(|(slot, rate)| *slot += sign * rate);
+        let pair = (self.last_own.1, here);
+        if self.apart.pair != pair {
+            self.apart = Apart::of(
+                &self.regimes[pair.0],
+                &self.regimes[pair.1],
+                self.states,
+                pair,
+            );
         }
+        self.apart.add(state, given, &mut excess.force);
         Ok(())
+    }
+}
+
+/// How much the accelerations of one regime are above those of another.
+#[derive(Debug, Default)]
+pub struct Apart {
+    pair: (usize, usize),
+    /// By each state that they differ by, one per acceleration.
+    by_state: Vec<(usize, Vec<f64>)>,
+    /// The same by a unit constant and the inputs.
+    by_given: Vec<(usize, Vec<f64>)>,
+}
+
+impl Apart {
+    fn of(a: &Regime, b: &Regime, states: usize, pair: (usize, usize)) -> Self {
+        let differing = |columns: usize, entry: &dyn Fn(&Regime, usize, usize) -> f64| {
+            let column = |column: usize| -> Vec<f64> {
+                let rows = states / 2..states;
+                rows.map(|row| entry(a, row, column) - entry(b, row, column))
+                    .collect()
+            };
+            let columns = (0..columns).map(|place| (place, column(place)));
+            columns
+                .filter(|(_, column)| column.iter().any(|entry| *entry != 0.0))
+                .collect()
+        };
+        Self {
+            by_state: differing(states, &|regime, row, column| regime.matrix.at(row, column)),
+            by_given: differing(a.given.ncols(), &|regime, row, column| {
+                regime.given[(row, column)]
+            }),
+            pair,
+        }
+    }
+
+    fn add(&self, state: &[f64], given: &[f64], out: &mut [f64]) {
+        for (columns, values) in [(&self.by_state, state), (&self.by_given, given)] {
+            for (place, column) in columns {
+                let sums = out.iter_mut().zip(column);
+                sums.for_each(|(slot, entry)| *slot += values[*place] * entry);
+            }
+        }
     }
 }

@@ -29,6 +29,11 @@ impl Columns {
         }
     }
 
+    /// One of its numbers.
+    pub fn at(&self, row: usize, column: usize) -> f64 {
+        self.entries[column * self.rows + row]
+    }
+
     /// Adds the product with a vector; `out` has as many numbers as there are rows.
     pub fn add_product(&self, vector: &[f64], out: &mut [f64]) {
         let (rows, entries) = (self.rows, &self.entries[..]);

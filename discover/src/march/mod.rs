@@ -24,8 +24,8 @@ use std::collections::HashMap;
 use codegen::affine::system::AffineEvaluator;
 use sim::record::HeldInputs;
 
-use beyond::Excess;
 pub use beyond::Force;
+use beyond::{Apart, Excess};
 use crossing::first_crossing;
 use regime::Regime;
 use slopes::Slopes;
@@ -57,10 +57,10 @@ pub struct March {
     /// The length of a step, s.
     step: f64,
     /// The sides on which the linear part alone would be, those for which that was asked last
-    /// with their regime, and rates there.
+    /// with their regime, and how that differs from the one where the motion is.
     own: Vec<Side>,
     last_own: (Vec<Side>, usize),
-    rates: Vec<f64>,
+    apart: Apart,
 }
 
 /// Where a motion stands.
@@ -117,7 +117,7 @@ impl March {
             evaluator,
             own: Vec::new(),
             last_own: (Vec::new(), 0),
-            rates: Vec::new(),
+            apart: Apart::default(),
         })
     }
 
