@@ -76,6 +76,10 @@ pub const MOST_FITS: usize = 4;
 /// floors: what one view shows may stand in for what another shows better.
 pub const CLOSE: f64 = 1.5;
 
+/// Or less than this part of the noises that were left: it is most of the answer, and what is
+/// still to come shows better once it is in.
+pub const MOST_OF: f64 = 0.3;
+
 /// A candidate is fitted if screening promises that it takes this part of the squares away: a
 /// fifth of what a fall of the held-out gap by `HELD_OUT` comes to, because a straight line
 /// promises less of what saturates, such as damping.
@@ -88,8 +92,8 @@ pub const PROMISE_FAR: f64 = 0.005;
 /// Much more than noise are so many noises.
 pub const FAR: f64 = 3.0;
 
-/// There a candidate that leaves no less than this part of the beginnings of windows, or of
-/// what was looked at, is not fitted in earnest.
+/// Where more than `CLOSE` floors are left, a candidate that, begun, leaves no less than this part
+/// is not fitted in earnest.
 pub const HELPS: f64 = 0.99;
 
 /// So many candidates are fitted side by side before it is decided whether more are worth it:

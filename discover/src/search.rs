@@ -14,7 +14,7 @@ use crate::rule;
 use crate::screen::{Screen, screen};
 use crate::sites::{plays, sites};
 use crate::thinned::thin;
-use crate::trials::{Round, Trial, at_floor, leaves_less};
+use crate::trials::{PARTS, Round, Trial, at_floor, leaves_less};
 use crate::unknowns::{Unknown, What, of_null_model};
 
 /// An effect that was believed.
@@ -210,6 +210,11 @@ fn round(
                     View::NoPlay => 2 * rule::FITS_AT_ONCE,
                     View::Whole | View::Beginnings => rule::MOST_SKETCHES,
                 },
+                // Without play a straight line is right.
+                parts: match view {
+                    View::NoPlay => &PARTS[..2],
+                    View::Whole | View::Beginnings => &PARTS,
+                },
                 floor,
                 said,
             };
@@ -219,8 +224,8 @@ fn round(
             }
         };
     let is_believed = |(_, _, trials): &Searched| trials.iter().any(|trial| trial.verdict.is_ok());
-    let leaves_little =
-        |trial: &Trial| trial.verdict.is_ok() && leaves_less(&trial.fit, rule::CLOSE * floor);
+    let little = (rule::CLOSE * floor).max(rule::MOST_OF * fit.left());
+    let leaves_little = |trial: &Trial| trial.verdict.is_ok() && leaves_less(&trial.fit, little);
     let is_close = |(_, _, trials): &Searched| trials.iter().any(leaves_little);
     let mut searched: Vec<Searched> = Vec::new();
     let mut seen: Vec<View> = Vec::new();

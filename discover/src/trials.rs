@@ -14,7 +14,7 @@ use crate::unknowns::{Unknown, What};
 /// Parts of the size that screening promises among which a fit begins with the best: a straight
 /// line leads far beyond where impacts fold the outputs, and not far enough where an effect
 /// that grows does less and less.
-const PARTS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
+pub const PARTS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
 
 /// A set of candidates fitted in earnest.
 pub struct Trial {
@@ -50,6 +50,8 @@ pub struct Round<'r> {
     pub is_whole: bool,
     /// The most candidates that are begun.
     pub most: usize,
+    /// Parts of the promised sizes among which they begin with the best.
+    pub parts: &'r [f64],
     /// What a right model would leave, in noises.
     pub floor: f64,
     /// Is told what is done.
@@ -65,7 +67,7 @@ impl Round<'_> {
             (self.said)(&format!("{count} promise enough to be fitted, {best} most"));
         }
         let mut sketches = self.sketched(self.chosen(&ranked));
-        if self.is_far() {
+        if !leaves_less(self.fit, rule::CLOSE * self.floor) {
             let most = rule::HELPS * self.screen.left(&[]).0;
             sketches.retain(|(_, sketch)| sketch.left < most);
         }
@@ -340,7 +342,7 @@ impl Round<'_> {
     /// A sketch with a set's candidates.
     fn sketch(&self, set: &Set) -> Result<Sketch, String> {
         let (setting, fit) = (self.setting, self.fit);
-        let (unknowns, theta) = self.unknowns(set, PARTS[0]);
+        let (unknowns, theta) = self.unknowns(set, self.parts[0]);
         let mut texts = (fit.text.clone(), fit.linear.clone());
         let mut next = fit.unknowns.len();
         for response in &set.responses {
@@ -360,7 +362,9 @@ impl Round<'_> {
             let left = self.screen.left(&set.responses).0;
             return setting.expected(texts, unknowns, theta, (fit, left));
         }
-        let others = PARTS[1..].iter().map(|part| self.unknowns(set, *part).1);
+        let others = self.parts[1..]
+            .iter()
+            .map(|part| self.unknowns(set, *part).1);
         let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
         setting.sketch(texts, unknowns, &begins)
     }
