@@ -93,7 +93,7 @@ fn pivot_reciprocal<T: Scalar>(pivot: T) -> T {
 }
 ";
 
-/// Cholesky factors and their solutions.
+/// Cholesky factors and their solutions. Rates solve with a prepared factor, lanes of them too.
 const CHOLESKY: &str = "\
 /// Lower factor L of a symmetric matrix L L^T; NaN where it is not positive definite.
 fn cholesky<T: Scalar, const N: usize>(matrix: &[[T; N]; N]) -> [[T; N]; N] {
@@ -116,7 +116,7 @@ fn cholesky<T: Scalar, const N: usize>(matrix: &[[T; N]; N]) -> [[T; N]; N] {
 }
 
 /// Solution of L L^T x = right.
-#[inline]
+#[inline(always)]
 fn cholesky_solve<T: Scalar, const N: usize>(
     factor: &[[T; N]; N],
     right: &[T; N],
@@ -246,27 +246,31 @@ fn sum_of_few<const N: usize, T: Scalar, F: Fn(usize) -> T>(
 ";
 
 /// Sums of more elements. Not inlined for single numbers: with the loops around it unrolled into
-/// one piece the compiler vectorises across them, and spills. Their number is a constant of the
-/// type, so that no bound is left to be checked.
+/// one piece the compiler vectorises across them, and spills. Inlined in every place for lanes,
+/// where the compiler would stop after some places if it were left to it. Their number is a
+/// constant of the type, so that no bound is left to be checked.
 const SUM: &str = "\
 /// The sum of elements in eight partial sums, number k of elements k, k + 8, k + 16, ...
 #[inline(always)]
 fn sum<const N: usize, T: Scalar, F: Fn(usize) -> T>(_: [(); N], element: F) -> T {
-    T::long_loop(move || {
-        let mut s = [T::number(0.0); 8];
-        for k in 0..8 {
-            s[k] = element(k);
-        }
-        for block in 1..N / 8 {
+    T::long_loop(
+        #[inline(always)]
+        move || {
+            let mut s = [T::number(0.0); 8];
             for k in 0..8 {
-                s[k] = s[k] + element(8 * block + k);
+                s[k] = element(k);
             }
-        }
-        for i in N / 8 * 8..N {
-            s[i % 8] = s[i % 8] + element(i);
-        }
-        paired::<N, T>(&s)
-    })
+            for block in 1..N / 8 {
+                for k in 0..8 {
+                    s[k] = s[k] + element(8 * block + k);
+                }
+            }
+            for i in N / 8 * 8..N {
+                s[i % 8] = s[i % 8] + element(i);
+            }
+            paired::<N, T>(&s)
+        },
+    )
 }
 ";
 

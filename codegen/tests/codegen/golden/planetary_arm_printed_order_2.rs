@@ -1008,7 +1008,7 @@ fn cholesky<T: Scalar, const N: usize>(matrix: &[[T; N]; N]) -> [[T; N]; N] {
 
 
 /// Solution of L L^T x = right.
-#[inline]
+#[inline(always)]
 fn cholesky_solve<T: Scalar, const N: usize>(
     factor: &[[T; N]; N],
     right: &[T; N],
