@@ -37,7 +37,7 @@ pub struct Candidate {
     pub says: String,
     /// What would show it best.
     pub experiment: String,
-    changes: Vec<Edit>,
+    pub(crate) changes: Vec<Edit>,
     /// The line that says most of the change.
     pub term: String,
     /// The unknown of the null model that gives up its prior, if that is the effect.
@@ -59,7 +59,7 @@ pub struct CandidateParameter {
     pub shape: Option<f64>,
     /// What a parameter that the model has already is shifted from.
     pub shifts: Option<Shifts>,
-    doc: String,
+    pub(crate) doc: String,
 }
 
 /// What is known of a parameter of the model that may be off.
@@ -304,7 +304,7 @@ pub fn shift(parameter: &Parameter) -> Option<Candidate> {
 }
 
 /// Names that a new one must not have.
-fn names(model: &Model) -> Vec<String> {
+pub(crate) fn names(model: &Model) -> Vec<String> {
     let lists = [
         model
             .parameters
@@ -337,7 +337,7 @@ fn terms(model: &Model) -> Vec<String> {
         .collect()
 }
 
-fn free_name(wanted: &str, site: &str, taken: &mut Vec<String>) -> String {
+pub(crate) fn free_name(wanted: &str, site: &str, taken: &mut Vec<String>) -> String {
     let mut name = wanted.to_owned();
     if taken.contains(&name) {
         name = format!("{wanted}_{site}");

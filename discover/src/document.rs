@@ -3,6 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use crate::dataset::Channel;
+use crate::empirical::EMPIRICAL;
 use crate::fitting::{Fit, Setting};
 use crate::floor::Floor;
 use crate::search::{Accepted, Found, Rejected};
@@ -169,10 +170,15 @@ fn effect_entry(setting: &Setting<'_>, fit: &Fit, effect: &Accepted) -> Value {
         .iter()
         .map(|other| json!({"effect": other.effect, "on": other.on}))
         .collect();
+    let status = match (effect.candidate.effect.as_str(), equivalent.is_empty()) {
+        (EMPIRICAL, _) => "empirical",
+        (_, true) => "named",
+        (_, false) => "class",
+    };
     let mut entry = json!({
         "effect": effect.candidate.effect,
         "on": effect.candidate.on,
-        "status": if equivalent.is_empty() { "named" } else { "class" },
+        "status": status,
         "equivalent": equivalent,
         "parameters": parameters,
         "term": term,

@@ -15,6 +15,7 @@
 //! [`mod@driven`] and [`mod@tried`] (what each candidate does), [`mod@screen`] (what it
 //! promises), [`mod@judge`] by [`rule`] (what is believed),
 //! [`trials`] (fits in earnest), [`thinned`] (what is needed no more), [`mod@search`] (all of it in turn);
+//! [`empirical`] (what is left and has no name) of [`expressions`], the best of them [`mod@chosen`];
 //! [`extend`] (the specification changed), [`document`] and [`report`] (for programs and for
 //! people).
 
@@ -22,12 +23,15 @@ mod beside;
 pub mod bounded;
 pub mod candidates;
 pub mod catalogue;
+pub mod chosen;
 pub mod crew;
 pub mod dataset;
 pub mod document;
 pub mod driven;
+pub mod empirical;
 pub mod equations;
 pub mod estimate;
+pub mod expressions;
 pub mod extend;
 pub mod fitting;
 pub mod floor;

@@ -149,3 +149,21 @@ pub const AS_WELL: f64 = 0.9;
 /// A straight line at a motion that is off is right to about this part of the force that is
 /// sought: springs and friction that were hidden on purpose came out 1 to 5 % off.
 pub const STRAIGHT: f64 = 0.05;
+
+/// An expression that has no name is sought only where so many floors are left, on training and
+/// on test records: less may be what fits of what has a name did not reach.
+pub const UNNAMED_FROM: f64 = 2.0;
+
+/// It is believed only if it closes this part of the gap to the floor, on both: what is missing
+/// and is a function of rates, places and inputs can be closed, what is none cannot.
+pub const UNNAMED_CLOSES: f64 = 0.5;
+
+/// The most terms that it has: more are read by nobody.
+pub const UNNAMED_TERMS: usize = 3;
+
+/// A term more must take this part of the squares that are left without it.
+pub const TERM_TAKES: f64 = 0.25;
+
+/// The most equations of motion in which an expression is sought, of those in which a force
+/// explains nearly as much: what hangs together stiffly cannot be told apart anyway.
+pub const UNNAMED_EQUATIONS: usize = 3;

@@ -1,5 +1,6 @@
 //! The search: screen, fit the most promising in earnest, believe or reject, and again, until
-//! the floor is reached or nothing more is believed.
+//! the floor is reached or nothing more is believed. What is left then may be an expression without
+//! a name.
 
 use std::collections::BTreeMap;
 
@@ -8,6 +9,7 @@ use model_spec::source::Source;
 
 use crate::candidates::{self, Candidate, candidates};
 use crate::catalogue::Effect;
+use crate::empirical::add_empirical;
 use crate::fitting::{FIRST_PART, Fit, Setting};
 use crate::judge::{Evidence, evidence};
 use crate::rule;
@@ -153,6 +155,9 @@ pub fn search(
         let half = half_way(&best, &trials);
         accept(&mut found, (&candidates, &screen), best, (half, equivalent));
         thin(setting, &mut found, said);
+    }
+    if found.accepted.len() < rule::MOST_EFFECTS {
+        add_empirical(setting, &mut found, floor, said);
     }
     Ok(found)
 }

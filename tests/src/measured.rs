@@ -48,8 +48,31 @@ F_v = { relative = 0.05 }
 length = 0.25
 "#;
 
+/// Where a stage is: time in s, position in m, velocity in m/s, and the motor's force in N.
+#[derive(Clone, Copy)]
+pub struct Moment {
+    /// s.
+    pub t: f64,
+    /// m.
+    pub q: f64,
+    /// m/s.
+    pub v: f64,
+    /// N.
+    pub force: f64,
+}
+
 /// A record: t, force, q. `friction`: dry friction in N; `turn` makes another record.
 pub fn record(friction: f64, turn: f64) -> String {
+    record_of(&dry(friction), turn)
+}
+
+/// Dry friction that the smallest speed turns.
+fn dry(friction: f64) -> impl Fn(Moment) -> f64 {
+    move |at| -friction * (at.v / 1e-4).tanh()
+}
+
+/// A record of a stage on which something else acts, in N.
+pub fn record_of(other: &dyn Fn(Moment) -> f64, turn: f64) -> String {
     let (mass, viscous) = (95.0, 210.0);
     let (mut q, mut v): (f64, f64) = (0.0, 0.0);
     let mut text = "t,force,q\n".to_owned();
@@ -65,12 +88,18 @@ pub fn record(friction: f64, turn: f64) -> String {
         );
         // Small steps in each of which friction has one direction.
         let parts = 50;
-        for _ in 0..parts {
-            let dry = friction * (v / 1e-4).tanh();
-            let middle = v + 0.5 * STEP / parts as f64 * (force - dry - viscous * v) / mass;
-            let dry = friction * (middle / 1e-4).tanh();
-            v += STEP / parts as f64 * (force - dry - viscous * middle) / mass;
-            q += STEP / parts as f64 * middle;
+        let h = STEP / f64::from(parts);
+        let slope = |at: Moment| (force + other(at) - viscous * at.v) / mass;
+        for part in 0..parts {
+            let t = t + f64::from(part) * h;
+            let middle = v + 0.5 * h * slope(Moment { t, q, v, force });
+            v += h * slope(Moment {
+                t: t + 0.5 * h,
+                q,
+                v: middle,
+                force,
+            });
+            q += h * middle;
         }
     }
     text
@@ -79,12 +108,17 @@ pub fn record(friction: f64, turn: f64) -> String {
 impl Measured {
     /// Two sound records of a stage with this dry friction, N.
     pub fn stage(friction: f64) -> Self {
+        Self::stage_with(&dry(friction))
+    }
+
+    /// Two sound records of a stage on which something else acts, in N.
+    pub fn stage_with(other: &dyn Fn(Moment) -> f64) -> Self {
         let measured = Self {
             folder: tempfile::tempdir().expect("a folder"),
         };
         measured.write("dataset.toml", DESCRIPTION.as_bytes());
-        measured.write("train.csv", record(friction, 0.0).as_bytes());
-        measured.write("test.csv", record(friction, 1.0).as_bytes());
+        measured.write("train.csv", record_of(other, 0.0).as_bytes());
+        measured.write("test.csv", record_of(other, 1.0).as_bytes());
         measured
     }
 

@@ -133,7 +133,7 @@ fn found_in(folder: &Path, specification: &str) -> ResidualForce {
     let model = model_spec::check(Source::new("two_carriages.toml", specification));
     let model = model.expect("a sound specification").model;
     let dataset = read(&folder.join("dataset.toml"), &model).expect("a sound dataset");
-    let setting = Setting::new(&dataset, None, "two_carriages.toml");
+    let setting = Setting::new(&dataset, None, "two_carriages.toml", specification);
     let fit = null_fit(&setting, specification).expect("a fit");
     residual_force(&setting, &fit, None).expect("neighbouring motions")
 }

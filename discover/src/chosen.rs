@@ -1,0 +1,159 @@
+//! Which few terms of an unnamed expression explain the residual best: all sets of one, two and
+//! three of them, to first order along the fitted motion. Whether they are believed is decided
+//! where they are fitted in earnest.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::equations::{Equation, Equations, Standing};
+use crate::expressions::{Scales, Term, terms};
+use crate::fitting::{Fit, Setting, correlation};
+use crate::pushed::{Columns, pushed, stood};
+use crate::regression::{Regression, Sizes};
+use crate::response::At;
+use crate::rule;
+use crate::shapes::Range;
+
+/// A sum of terms in an equation.
+pub struct Expression {
+    /// The equation.
+    pub equation: Equation,
+    /// What its quantities are divided by.
+    pub scales: Scales,
+    /// Its terms.
+    pub terms: Vec<Term>,
+    /// How much of each, N or N m.
+    pub sizes: Vec<f64>,
+    /// The part of the squares that it is expected to explain.
+    pub part: f64,
+}
+
+/// A set of terms with what it is expected to do.
+struct Set {
+    places: Vec<usize>,
+    sizes: Sizes,
+}
+
+/// The best expression in one of some equations, by their places in the list; none where no set
+/// of terms stands out, or neighbouring motions cannot be followed.
+pub fn chosen(setting: &Setting<'_>, fit: &Fit, among: &[usize]) -> Option<Expression> {
+    let equations = Equations::of(setting, fit)?;
+    let at = At::of(setting, fit, 1.0);
+    let standings = stood((&at, setting, fit), &equations);
+    let inputs = largest_inputs(setting);
+    let of = |equation: &usize| {
+        let own = standings.iter().flatten().map(|all| all[*equation]);
+        let range = Range::of(&own.collect::<Vec<Standing>>());
+        let scales = Scales {
+            rate: rounded(range.rate),
+            place: rounded(range.place.0.abs().max(range.place.1.abs())),
+            inputs: inputs.clone(),
+        };
+        in_equation((&at, setting, fit), &equations, (*equation, &range), scales)
+    };
+    let found = among.iter().filter_map(of);
+    found.max_by(|a, b| a.part.total_cmp(&b.part))
+}
+
+fn in_equation(
+    of: (&At, &Setting<'_>, &Fit),
+    equations: &Equations,
+    (equation, range): (usize, &Range),
+    scales: Scales,
+) -> Option<Expression> {
+    let own = &equations.list[equation];
+    let terms = terms(&scales, own.unit == "rad", range.width());
+    let weights = |standings: &[Standing], inputs: &[f64], out: &mut [f64]| {
+        for (slot, term) in out.iter_mut().zip(&terms) {
+            *slot = term.at(&standings[equation], inputs, &scales);
+        }
+    };
+    let columns = Columns {
+        equations: vec![equation; terms.len()],
+        weights: &weights,
+    };
+    let blocks = pushed(of, equations, &columns)?;
+    let regression = Regression::new(of.0, of.2, &blocks)?;
+    let best = best(&regression, (of.0, of.1), &blocks)?;
+    Some(Expression {
+        equation: own.clone(),
+        terms: best.places.iter().map(|p| terms[*p].clone()).collect(),
+        sizes: best.sizes.values.iter().copied().collect(),
+        part: best.sizes.gain / regression.squares,
+        scales,
+    })
+}
+
+/// The best set of one term, or of more where that takes much of what fewer leave.
+fn best(
+    regression: &Regression,
+    (at, setting): (&At, &Setting<'_>),
+    blocks: &[DMatrix<f64>],
+) -> Option<Set> {
+    let count = blocks.iter().map(DMatrix::ncols).max()?;
+    let mut known: Option<Set> = None;
+    for size in 1..=rule::UNNAMED_TERMS {
+        let sets = subsets(count, size).into_iter();
+        let sizes = sets.map(|places| (regression.shared(&places), places));
+        let Some((sizes, places)) = sizes.max_by(|a, b| a.0.gain.total_cmp(&b.0.gain)) else {
+            break;
+        };
+        let mut values = DVector::zeros(count);
+        for (place, value) in places.iter().zip(sizes.values.iter()) {
+            values[*place] = *value;
+        }
+        let left = regression.left((at, blocks), &|_| values.clone(), true);
+        let over = correlation(&left, setting.noise.len());
+        let gain_before = known.as_ref().map_or(0.0, |set| set.sizes.gain);
+        let squares = regression.squares - sizes.gain;
+        let level = (squares / regression.numbers).max(1.0);
+        let taken = sizes.gain - gain_before;
+        let is_enough = taken > 2.0 * rule::INFORMATION * level * over
+            && taken > rule::TERM_TAKES * (regression.squares - gain_before);
+        if is_enough {
+            known = Some(Set { places, sizes });
+        }
+    }
+    known
+}
+
+/// All sets of so many of so many places.
+fn subsets(count: usize, size: usize) -> Vec<Vec<usize>> {
+    let mut found: Vec<Vec<usize>> = vec![Vec::new()];
+    for _ in 0..size {
+        let longer = found.iter().flat_map(|set| {
+            let from = set.last().map_or(0, |last| last + 1);
+            (from..count).map(move |place| [&set[..], &[place]].concat())
+        });
+        found = longer.collect();
+    }
+    found
+}
+
+/// The largest value of each input in the training records.
+fn largest_inputs(setting: &Setting<'_>) -> Vec<f64> {
+    let records = &setting.dataset.train;
+    let count = records.iter().map(|r| r.input_columns.len()).max();
+    let largest = |input: usize| {
+        let columns = records.iter().filter_map(|r| r.input_columns.get(input));
+        let sizes = columns.flatten().map(|value| value.abs());
+        rounded(sizes.filter(|size| size.is_finite()).fold(0.0, f64::max))
+    };
+    (0..count.unwrap_or(0)).map(largest).collect()
+}
+
+/// Two significant digits, for reading.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn every_set_is_there_once() {
+        let sets = super::subsets(6, 3);
+        assert_eq!(sets.len(), 20);
+        for (number, set) in sets.iter().enumerate() {
+            assert!(set.is_sorted() && !sets[..number].contains(set));
+        }
+    }
+}

@@ -1,0 +1,266 @@
+//! What nothing in the catalogue explains: an expression of few terms in the equation of motion
+//! where the residual force sits. It is fitted as any effect is and must hold on the held-out
+//! records by more than any effect; it is called empirical and gets no other name. Which terms
+//! there are, and which are promising, is decided elsewhere.
+
+use model_spec::edit::{Edit, NewForce, NewParameter, NewValue};
+use model_spec::model::Model;
+
+use crate::candidates::{Candidate, CandidateParameter, free_name, names};
+use crate::chosen::{Expression, chosen};
+use crate::expressions::{Of, Words};
+use crate::fitting::{Fit, Setting};
+use crate::judge::{Evidence, Own, judge};
+use crate::residual_force::{Ranked, residual_force};
+use crate::response::trial;
+use crate::rule;
+use crate::search::{Accepted, Found, Rejected};
+use crate::unknowns::Unknown;
+
+/// The name of what has none.
+pub const EMPIRICAL: &str = "empirical";
+
+/// Adds an expression to what was found, if a real gap is left and one closes it. `floor`: what a
+/// right model would leave, in noises; `said` is told what is done.
+pub fn add_empirical(setting: &Setting<'_>, found: &mut Found, floor: f64, said: &dyn Fn(&str)) {
+    let before = found.best();
+    let is_wide = |left: f64| left > rule::UNNAMED_FROM * floor;
+    if !(is_wide(before.train.pooled) && is_wide(before.test.pooled)) {
+        return;
+    }
+    said("nothing in the catalogue explains what is left; looking for an expression");
+    let Some(expression) = sought(setting, before) else {
+        said("  no force of few terms in one equation stands out");
+        return;
+    };
+    let (candidate, fit) = match simplest(setting, before, expression) {
+        Ok(found) => found,
+        Err(error) => {
+            said(&format!("  {error}"));
+            return;
+        }
+    };
+    let label = candidate.label();
+    let unknowns: Vec<usize> = (before.unknowns.len()..fit.unknowns.len()).collect();
+    let verdict = believed((before, &fit), &unknowns, floor);
+    let outcome = verdict.as_ref().err().map_or("believed", String::as_str);
+    let (train, test) = (fit.train.pooled, fit.test.pooled);
+    said(&format!(
+        "  {label}, {}: {train:.2} noises are left in training, {test:.2} in test; {outcome}",
+        candidate.term
+    ));
+    match verdict {
+        Ok(evidence) => {
+            found.accepted.push(Accepted {
+                candidate,
+                unknowns,
+                equivalent: Vec::new(),
+                evidence,
+                test_gap: (before.test.pooled, test),
+            });
+            found.last = Some(fit);
+        }
+        Err(reason) => found.rejected.push(Rejected {
+            reason: format!("{}: {reason}", candidate.term),
+            candidate,
+            not_testable: false,
+        }),
+    }
+}
+
+/// The best expression in the equations where the residual force may sit.
+fn sought(setting: &Setting<'_>, fit: &Fit) -> Option<Expression> {
+    let force = residual_force(setting, fit, None)?;
+    force.kind.as_ref()?;
+    let explains = |ranked: &Ranked| ranked.by_state.max(ranked.by_time);
+    let most = force.ranked.iter().map(explains).fold(0.0, f64::max);
+    let mut as_well: Vec<&Ranked> = (force.ranked.iter())
+        .filter(|ranked| explains(ranked) >= rule::AS_WELL * most)
+        .collect();
+    as_well.sort_by(|a, b| explains(b).total_cmp(&explains(a)));
+    let best = as_well.iter().take(rule::UNNAMED_EQUATIONS);
+    let among: Vec<usize> = best.map(|ranked| ranked.equation).collect();
+    chosen(setting, fit, &among)
+}
+
+/// An expression as an effect that can be written into a specification: a parameter with the
+/// unit of the force for each term, and one for each scale.
+fn written(model: &Model, expression: &Expression) -> Candidate {
+    let equation = &expression.equation;
+    let mut taken = names(model);
+    let mut name = |wanted: &str| free_name(wanted, &equation.name, &mut taken);
+    let mut changes = Vec::new();
+    let mut scale = |of: Of, (wanted, value, unit): (&str, f64, &str), what: &str| {
+        let name = name(wanted);
+        if expression.terms.iter().any(|term| term.scales(of)) {
+            changes.push(Edit::AddParameter(NewParameter {
+                name: name.clone(),
+                value: NewValue::Number(value),
+                unit: unit.to_owned(),
+                doc: format!("scale of the {what} in an empirical force"),
+                source: "the largest in the training records".to_owned(),
+            }));
+        }
+        name
+    };
+    let (scales, per_second) = (
+        &expression.scales,
+        match equation.unit {
+            "rad" => "1/s",
+            _ => "m/s",
+        },
+    );
+    let words = Words {
+        on: equation.on.clone(),
+        scales: [
+            scale(Of::Rate, ("e_rate", scales.rate, per_second), "rate"),
+            scale(
+                Of::Place,
+                (
+                    "e_place",
+                    scales.place,
+                    if equation.unit == "rad" { "1" } else { "m" },
+                ),
+                "place",
+            ),
+        ],
+        inputs: (model.inputs.iter().zip(&scales.inputs).enumerate())
+            .map(|(place, (input, size))| {
+                let wanted = format!("e_{}", input.name);
+                let of = (wanted.as_str(), *size, input.unit.text.as_str());
+                (input.name.clone(), scale(Of::Input(place), of, "input"))
+            })
+            .collect(),
+    };
+    let parameters: Vec<CandidateParameter> = (1..=expression.terms.len())
+        .map(|number| CandidateParameter {
+            name: name(&format!("e_{number}")),
+            unit: equation.force_unit().to_owned(),
+            positive: false,
+            inverse: false,
+            shape: None,
+            shifts: None,
+            doc: "size of a term of an empirical force".to_owned(),
+        })
+        .collect();
+    let terms = expression.terms.iter().zip(&parameters);
+    let terms = terms.map(|(term, parameter)| term.text(&parameter.name, &words));
+    let value = terms.collect::<Vec<String>>().join(" + ");
+    changes.push(Edit::AddForce(NewForce {
+        name: name(EMPIRICAL),
+        on: equation.on.clone(),
+        value: value.clone(),
+        doc: "fitted; it says nothing of the cause".to_owned(),
+        source: String::new(),
+    }));
+    Candidate {
+        effect: EMPIRICAL.to_owned(),
+        on: equation.name.clone(),
+        order: None,
+        on_mesh: equation.is_mesh,
+        parameters,
+        says: "an expression that fits what is left".to_owned(),
+        experiment: "the same rates, places and inputs in other combinations".to_owned(),
+        changes,
+        term: value,
+        released: None,
+    }
+}
+
+/// An expression fitted, without the terms that are not needed: some stand for what parameters
+/// and sensors do once they are free again.
+fn simplest(
+    setting: &Setting<'_>,
+    before: &Fit,
+    mut expression: Expression,
+) -> Result<(Candidate, Fit), String> {
+    loop {
+        let candidate = written(&before.plant.model, &expression);
+        let fit = fitted(setting, before, &candidate, &expression)?;
+        let known = before.unknowns.len();
+        let own = &fit.train.estimate.theta[known..];
+        let sizes = own.iter().zip(&fit.sd[known..]);
+        let t: Vec<f64> = sizes.map(|(value, sd)| (value / sd).abs()).collect();
+        let weakest = (0..t.len()).min_by(|a, b| t[*a].total_cmp(&t[*b]));
+        match weakest.filter(|term| t.len() > 1 && t[*term] < rule::SIGNIFICANCE) {
+            Some(term) => {
+                expression.sizes = own.to_vec();
+                expression.sizes.remove(term);
+                expression.terms.remove(term);
+            }
+            None => return Ok((candidate, fit)),
+        }
+    }
+}
+
+/// The fit with an expression: begun close to the one without, and anew from the beginnings of
+/// the windows; the better of both.
+fn fitted(
+    setting: &Setting<'_>,
+    fit: &Fit,
+    candidate: &Candidate,
+    expression: &Expression,
+) -> Result<Fit, String> {
+    let sizes = &expression.sizes;
+    let mut unknowns = fit.unknowns.clone();
+    // Parameters and sensors that took up what is missing begin anew.
+    let known = unknowns.iter().zip(&fit.train.estimate.theta);
+    let anew = |(unknown, value): (&Unknown, &f64)| unknown.prior.map_or(*value, |prior| prior.0);
+    let mut theta: Vec<f64> = known.map(anew).collect();
+    for (parameter, size) in candidate.parameters.iter().zip(sizes) {
+        let mut unknown = trial(parameter).unknown;
+        unknown.scale = size.abs();
+        unknowns.push(unknown);
+        theta.push(*size);
+    }
+    let texts = setting.with((&fit.text, &fit.linear), candidate, sizes)?;
+    let near = || {
+        let left = (fit, fit.train.estimate.cost);
+        let sketch = setting.expected(texts.clone(), unknowns.clone(), theta.clone(), left)?;
+        setting.complete(sketch)
+    };
+    let anew = || setting.fit(texts.clone(), unknowns.clone(), &theta);
+    match rayon::join(near, anew) {
+        (Ok(near), Ok(anew)) if anew.train.pooled < near.train.pooled => Ok(anew),
+        (Ok(fit), _) | (Err(_), Ok(fit)) => Ok(fit),
+        (Err(error), Err(_)) => Err(error),
+    }
+}
+
+/// Whether an expression is believed: by all that is asked of an effect, each of its terms by
+/// itself, and by how much of the gap it closes.
+fn believed(
+    (before, after): (&Fit, &Fit),
+    unknowns: &[usize],
+    floor: f64,
+) -> Result<Evidence, String> {
+    let own: Vec<Own> = (unknowns.iter().enumerate())
+        .map(|(effect, place)| Own {
+            place: *place,
+            effect,
+            base: 0.0,
+            is_shape: false,
+            prior: None,
+        })
+        .collect();
+    let evidence = judge(before, after, &own)?;
+    let asked = rule::INFORMATION * (1 + own.len()) as f64;
+    if evidence.information < asked {
+        return Err(format!(
+            "too little evidence in the training records: a gain of {:.1}, {asked} are asked for",
+            evidence.information
+        ));
+    }
+    let closes = |before: f64, after: f64| (before - after) / (before - floor);
+    let train = closes(before.train.pooled, after.train.pooled);
+    let test = closes(before.test.pooled, after.test.pooled);
+    if train.min(test) < rule::UNNAMED_CLOSES {
+        return Err(format!(
+            "it closes {:.0} % of the gap in training and {:.0} % in test, {:.0} % are asked for",
+            100.0 * train,
+            100.0 * test,
+            100.0 * rule::UNNAMED_CLOSES
+        ));
+    }
+    Ok(evidence)
+}

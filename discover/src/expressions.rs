@@ -1,0 +1,253 @@
+//! Expressions that have no name: products of few functions of a rate, a place and the inputs,
+//! each divided by how large it becomes in the training records. They can be computed along a
+//! motion and written into a specification. Which of them a force is made of is decided
+//! elsewhere.
+
+use std::f64::consts::TAU;
+
+use crate::equations::Standing;
+
+/// A step over the rate is made within this part of the largest rate: as steep as friction near
+/// rest is seldom seen to be otherwise, and no jump, so that it can be multiplied.
+const STEEP: f64 = 0.03;
+
+/// The highest degree of a product: with more, expressions differ in little but their ends.
+const DEGREE: u32 = 3;
+
+/// What a factor is a function of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Of {
+    /// The rate.
+    Rate,
+    /// The place.
+    Place,
+    /// An input, by its place in the model.
+    Input(usize),
+}
+
+/// A function of one quantity, in parts of its scale; waves are functions of an angle itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Function {
+    /// A power.
+    Power(u32),
+    /// The size.
+    Size,
+    /// The square with the sign.
+    Signed,
+    /// The sign, made steep.
+    Step,
+    /// A cosine, so many times per turn.
+    Cosine(u32),
+    /// A sine.
+    Sine(u32),
+}
+
+/// A product of functions; none is 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    /// Its factors.
+    pub factors: Vec<(Of, Function)>,
+}
+
+/// What quantities are divided by, SI; one that is 0 does not move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scales {
+    /// The rate.
+    pub rate: f64,
+    /// The place.
+    pub place: f64,
+    /// Each input.
+    pub inputs: Vec<f64>,
+}
+
+/// What a specification calls the quantities and their scales.
+pub struct Words {
+    /// What a force works on.
+    pub on: String,
+    /// The scales of rate and place.
+    pub scales: [String; 2],
+    /// Each input with its scale.
+    pub inputs: Vec<(String, String)>,
+}
+
+impl Function {
+    fn at(self, scaled: f64, plain: f64) -> f64 {
+        match self {
+            Self::Power(power) => scaled.powi(power as i32),
+            Self::Size => scaled.abs(),
+            Self::Signed => scaled * scaled.abs(),
+            Self::Step => (scaled / STEEP).tanh(),
+            Self::Cosine(order) => (f64::from(order) * plain).cos(),
+            Self::Sine(order) => (f64::from(order) * plain).sin(),
+        }
+    }
+
+    fn degree(self) -> u32 {
+        match self {
+            Self::Power(power) => power,
+            Self::Size | Self::Step | Self::Cosine(_) | Self::Sine(_) => 1,
+            Self::Signed => 2,
+        }
+    }
+
+    /// As a specification writes it, of a quantity over its scale.
+    fn text(self, quantity: &str, scale: &str) -> String {
+        let times = |order: u32| match order {
+            1 => quantity.to_owned(),
+            order => format!("{order}*{quantity}"),
+        };
+        match self {
+            Self::Power(1) => format!("({quantity}/{scale})"),
+            Self::Power(power) => format!("({quantity}/{scale})^{power}"),
+            Self::Size => format!("abs({quantity}/{scale})"),
+            Self::Signed => format!("({quantity}/{scale})*abs({quantity}/{scale})"),
+            Self::Step => format!("tanh({quantity}/({STEEP}*{scale}))"),
+            Self::Cosine(order) => format!("cos({})", times(order)),
+            Self::Sine(order) => format!("sin({})", times(order)),
+        }
+    }
+
+    fn is_scaled(self) -> bool {
+        !matches!(self, Self::Cosine(_) | Self::Sine(_))
+    }
+}
+
+impl Term {
+    /// Its value where a motion stands.
+    pub fn at(&self, standing: &Standing, inputs: &[f64], scales: &Scales) -> f64 {
+        let factor = |(of, function): &(Of, Function)| {
+            let (value, scale) = match of {
+                Of::Rate => (standing.rate, scales.rate),
+                Of::Place => (standing.place, scales.place),
+                Of::Input(input) => (inputs[*input], scales.inputs[*input]),
+            };
+            function.at(value / scale, value)
+        };
+        self.factors.iter().map(factor).product()
+    }
+
+    /// As a specification writes it, times a parameter.
+    pub fn text(&self, parameter: &str, words: &Words) -> String {
+        let mut text = parameter.to_owned();
+        for (of, function) in &self.factors {
+            let factor = match of {
+                Of::Rate => function.text(&format!("dot({})", words.on), &words.scales[0]),
+                Of::Place => function.text(&words.on, &words.scales[1]),
+                Of::Input(input) => {
+                    let (quantity, scale) = &words.inputs[*input];
+                    function.text(quantity, scale)
+                }
+            };
+            text += &format!("*{factor}");
+        }
+        text
+    }
+
+    /// Whether it takes a quantity in parts of its scale.
+    pub fn scales(&self, wanted: Of) -> bool {
+        let takes = |(of, function): &(Of, Function)| *of == wanted && function.is_scaled();
+        self.factors.iter().any(takes)
+    }
+
+    fn degree(&self) -> u32 {
+        self.factors.iter().map(|factor| factor.1.degree()).sum()
+    }
+}
+
+/// All terms that are tried where a force works on an angle, or not, that goes so far.
+pub fn terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
+    use Function::{Cosine, Power, Signed, Sine, Size, Step};
+    let rates = [Power(1), Size, Power(2), Signed, Power(3), Step].map(|f| (Of::Rate, f));
+    let rates = if scales.rate > 0.0 { &rates[..] } else { &[] };
+    let mut places = Vec::new();
+    if scales.place > 0.0 && !(is_angle && width > TAU) {
+        places.extend([Power(1), Power(2), Power(3)].map(|f| (Of::Place, f)));
+    }
+    if is_angle {
+        places.extend([Cosine(1), Sine(1), Cosine(2), Sine(2)].map(|f| (Of::Place, f)));
+    }
+    let mut inputs = Vec::new();
+    for (input, scale) in scales.inputs.iter().enumerate() {
+        if *scale > 0.0 {
+            inputs.extend([Power(1), Size, Signed, Power(3)].map(|f| (Of::Input(input), f)));
+        }
+    }
+    let mut found = vec![Term {
+        factors: Vec::new(),
+    }];
+    let alone = rates.iter().chain(&places).chain(&inputs);
+    found.extend(alone.map(|factor| Term {
+        factors: vec![*factor],
+    }));
+    // What an input does may change with the motion; it goes in with its first power.
+    let drives = inputs.iter().filter(|factor| factor.1 == Power(1));
+    let motion = rates.iter().chain(&places);
+    let driven = drives.flat_map(|drive| motion.clone().map(move |factor| [*drive, *factor]));
+    let both = rates
+        .iter()
+        .flat_map(|rate| places.iter().map(move |place| [*rate, *place]));
+    let products = driven.chain(both).map(|factors| Term {
+        factors: factors.to_vec(),
+    });
+    found.extend(products.filter(|term| term.degree() <= DEGREE));
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Function, Of, Scales, Term, Words, terms};
+    use crate::equations::Standing;
+
+    #[test]
+    fn a_term_is_what_it_writes() {
+        let words = Words {
+            on: "theta".to_owned(),
+            scales: ["w_0", "theta_0"].map(str::to_owned),
+            inputs: vec![("u".to_owned(), "u_0".to_owned())],
+        };
+        let term = |factors: &[(Of, Function)]| Term {
+            factors: factors.to_vec(),
+        };
+        let standing = Standing {
+            place: 0.5,
+            rate: -2.0,
+            time: 0.0,
+        };
+        let scales = Scales {
+            rate: 4.0,
+            place: 1.0,
+            inputs: vec![10.0],
+        };
+        let product = term(&[(Of::Rate, Function::Signed), (Of::Place, Function::Sine(2))]);
+        assert_eq!(
+            product.text("e_1", &words),
+            "e_1*(dot(theta)/w_0)*abs(dot(theta)/w_0)*sin(2*theta)"
+        );
+        let value = product.at(&standing, &[3.0], &scales);
+        assert!((value + 0.25 * 1.0_f64.sin()).abs() < 1e-15);
+        let driven = term(&[
+            (Of::Input(0), Function::Power(1)),
+            (Of::Place, Function::Power(2)),
+        ]);
+        assert_eq!(driven.text("e_2", &words), "e_2*(u/u_0)*(theta/theta_0)^2");
+        assert!((driven.at(&standing, &[3.0], &scales) - 0.3 * 0.25).abs() < 1e-15);
+        assert!(driven.scales(Of::Input(0)) && !product.scales(Of::Place));
+        assert_eq!(term(&[]).text("e_3", &words), "e_3");
+    }
+
+    #[test]
+    fn what_does_not_move_is_in_no_term() {
+        let scales = Scales {
+            rate: 1.0,
+            place: 0.0,
+            inputs: vec![0.0, 2.0],
+        };
+        let all = terms(&scales, false, 0.0);
+        let still = |term: &&Term| term.scales(Of::Place) || term.scales(Of::Input(0));
+        assert_eq!(all.iter().filter(still).count(), 0);
+        assert!(all.iter().any(|term| term.scales(Of::Input(1))));
+        for (number, term) in all.iter().enumerate() {
+            assert!(!all[..number].contains(term), "{term:?} is there twice");
+        }
+    }
+}

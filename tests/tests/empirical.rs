@@ -1,0 +1,112 @@
+//! What no catalogue holds, on a stage: a force that is a function of rate and place becomes an
+//! expression that has no name; one that is not stays unexplained.
+
+use std::f64::consts::TAU;
+
+use eomgen_tests::measured::Measured;
+use eomgen_tests::program;
+use serde_json::Value;
+
+/// What is said where an expression is looked for.
+const LOOKED_FOR: &str = "looking for an expression";
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
+}
+
+/// The value of a parameter of a specification, as it is written there.
+fn parameter(text: &str, name: &str) -> f64 {
+    let lines = text.lines().map(str::trim_start);
+    let mut own = lines.filter(|line| line.starts_with(&format!("{name} = {{")));
+    let line = own.next().expect("the parameter");
+    let (_, rest) = line.split_once("value = ").expect("a value");
+    let (value, _) = rest.split_once(',').expect("more after it");
+    value.parse().expect("a number")
+}
+
+#[test]
+fn a_force_that_no_catalogue_holds_becomes_an_expression() {
+    // Guides that are the tighter the farther the carriage is out on one side, N s/m^2.
+    let tighter = 60.0;
+    let measured = Measured::stage_with(&|at| -tighter * at.q * at.v);
+    let (found, _) = measured.answered("discover", "found");
+    assert_eq!(found["verdict"], "effects_found", "{found:#}");
+    let effects = found["effects"].as_array().expect("a list");
+    assert_eq!(effects.len(), 1, "{effects:#?}");
+    let effect = &effects[0];
+    for (key, value) in [
+        ("effect", "empirical"),
+        ("on", "q"),
+        ("status", "empirical"),
+    ] {
+        assert_eq!(effect[key], value, "{effect:#}");
+    }
+    assert_eq!(effect["term"], "e_1*(dot(q)/e_rate)*(q/e_place)");
+
+    let extended = measured.read("found/extended.toml");
+    let size = &effect["parameters"]["e_1"];
+    let scale = parameter(&extended, "e_rate") * parameter(&extended, "e_place");
+    let (value, sd) = (number(&size["value"]) / scale, number(&size["sd"]) / scale);
+    assert_eq!(size["unit"], "N");
+    // The 90 % interval is 1.645 sd; one record in fifteen thousand is outside 4.
+    assert!((value + tighter).abs() < 4.0 * sd, "{value} +- {sd}");
+    assert!(sd < 0.05 * tighter, "{value} +- {sd}");
+
+    let gap = &found["gap"]["q"];
+    let (before, after) = (
+        number(&gap["before"]["test"]),
+        number(&gap["after"]["test"]),
+    );
+    // A right model leaves the floor; what is asked of every effect is half of the way there.
+    assert!(
+        after < 1.2 * number(&gap["floor"]) && before > 3.0 * after,
+        "{gap:#}"
+    );
+    assert!(
+        number(&found["closure"]["test"]) > 0.9,
+        "{}",
+        found["closure"]
+    );
+    let ladder = found["ladder"].as_array().expect("a list");
+    assert_eq!(ladder[1]["added"][0], "empirical on q");
+    assert!(number(&ladder[1]["test_in_noises"]) < number(&ladder[0]["test_in_noises"]));
+
+    // What was written is a model that explains both records.
+    assert!(extended.contains("source = \"fitted to "), "{extended}");
+    let [specification, dataset, out] = ["found/extended.toml", "dataset.toml", "again"]
+        .map(|name| measured.file(name).display().to_string());
+    let again = program::run(&["compare", &specification, &dataset, "--out", &out]);
+    assert_eq!(
+        again.status.code(),
+        Some(0),
+        "{}",
+        program::text(&again.stderr)
+    );
+    let again: Value = serde_json::from_str(&measured.read("again/comparison.json")).expect("JSON");
+    assert_eq!(again["verdict"], "no_significant_gap", "{again:#}");
+}
+
+#[test]
+fn a_force_from_elsewhere_stays_unexplained() {
+    let measured = Measured::stage_with(&|at| 6.0 * (TAU * 17.3 * at.t).sin());
+    let (found, message) = measured.answered("discover", "found");
+    assert_eq!(found["verdict"], "unexplained", "{found:#}");
+    assert_eq!(found["effects"], serde_json::json!([]));
+    assert!(message.contains(LOOKED_FOR), "{message}");
+    assert!(!measured.read("found/extended.toml").contains("empirical"));
+    let gap = &found["gap"]["q"];
+    assert!(
+        number(&gap["after"]["test"]) > 3.0 * number(&gap["floor"]),
+        "{gap:#}"
+    );
+}
+
+#[test]
+fn no_expression_is_looked_for_where_nothing_is_missing_or_it_has_a_name() {
+    for (friction, verdict) in [(0.0, "no_significant_gap"), (3.0, "effects_found")] {
+        let measured = Measured::stage(friction);
+        let (found, message) = measured.answered("discover", "found");
+        assert_eq!(found["verdict"], verdict, "{found:#}");
+        assert!(!message.contains(LOOKED_FOR), "{message}");
+    }
+}
