@@ -5,9 +5,21 @@ use sim::plot::{Axes, Frame, Panel, Plate, Series, plate};
 
 use crate::equations::Equation;
 use crate::residual_force::{Profile, ResidualForce};
+use crate::rule;
 
 /// What is not known to this many times the largest force is not drawn.
 const KNOWN: f64 = 0.5;
+
+/// Half the width of the tick that marks a point, and what is left free at both ends, in parts of
+/// the range.
+const TICK: f64 = 0.008;
+const MARGIN: f64 = 0.02;
+
+/// Ticks keep from each other by twice this part of the range.
+const APART: f64 = 0.003;
+
+/// Points that are known, at least, of the force before.
+const ENOUGH: usize = 2;
 
 /// What a profile is drawn over, how bars are set, and which of a force's it is.
 struct View {
@@ -15,6 +27,8 @@ struct View {
     axes: Axes,
     /// Whether points belong to a line.
     is_line: bool,
+    /// Whether the force is free in every window, and small where they do not show it.
+    by_window: bool,
     of: fn(&ResidualForce) -> &Profile,
 }
 
@@ -33,10 +47,14 @@ pub fn figures(before: &ResidualForce, after: Option<&ResidualForce>) -> String 
             };
             (view, forces.iter().map(of).collect::<Vec<_>>())
         })
-        .filter(|(_, series)| {
-            series
-                .iter()
-                .any(|(_, points)| points.1.iter().any(|v| v.is_finite()))
+        // What is left says nothing where nobody knows what was there.
+        .filter(|(view, _)| {
+            let profile = (view.of)(before);
+            let most = most(profile);
+            let known = profile.sd.iter().filter(|sd| is_known(**sd, most));
+            let is_drawn = known.count() >= ENOUGH;
+            let is_told = !view.by_window || profile.part > rule::STANDS_OUT;
+            is_drawn && is_told && (view.axes != Axes::Time || is_resolved(before))
         })
         .collect();
     let frames = drawn.iter().map(|(view, series)| Frame {
@@ -77,36 +95,42 @@ fn views(equation: &Equation) -> [View; 6] {
             title: "over the rate",
             axes: over("rate", equation.rate_unit()),
             is_line: true,
+            by_window: false,
             of: |force| &force.rate,
         },
         View {
             title: name,
             axes: over(place, equation.unit),
             is_line: true,
+            by_window: false,
             of: |force| &force.place,
         },
         View {
             title: "over time, first record",
             axes: Axes::Time,
             is_line: true,
+            by_window: true,
             of: |force| &force.time,
         },
         View {
             title: "along the rate, by a window's largest",
             axes: over("rate", equation.rate_unit()),
             is_line: false,
+            by_window: false,
             of: |force| &force.amplitude,
         },
         View {
             title: "size over the frequency",
             axes: over("f", "Hz"),
             is_line: true,
+            by_window: true,
             of: |force| &force.frequency,
         },
         View {
             title: "size over the order, per turn",
             axes: over("order", ""),
             is_line: false,
+            by_window: false,
             of: |force| &force.order,
         },
     ]
@@ -129,18 +153,74 @@ fn most(profile: &Profile) -> f64 {
     }
 }
 
-/// A profile with its bars as one curve that goes up and down at each point.
+/// Whether lines with bends over the time of a window follow what the force does fastest.
+fn is_resolved(force: &ResidualForce) -> bool {
+    let gap = match force.time.over[..] {
+        [first, second, ..] => second - first,
+        _ => return false,
+    };
+    let peak = force.frequency.peak.map(|peak| force.frequency.over[peak]);
+    gap * peak.unwrap_or(0.0) < 0.5
+}
+
+fn is_known(sd: f64, most: f64) -> bool {
+    sd > 0.0 && sd < most
+}
+
+/// A profile with its bars as one curve that goes up and down at each point, or as crosses.
 fn points(profile: &Profile, is_line: bool, most: f64) -> Points {
-    let (mut over, mut values) = (Vec::new(), Vec::new());
+    let (Some(first), Some(last)) = (profile.over.first(), profile.over.last()) else {
+        return Points::default();
+    };
+    let width = last - first;
+    let (mut over, mut values) = (vec![first - MARGIN * width], vec![f64::NAN]);
+    let gap = |pair: &[f64]| match pair {
+        // A plot closes gaps that are narrower than its lines.
+        [before, after] => (0.5 * (after - before) - APART * width).clamp(0.0, TICK * width),
+        _ => TICK * width,
+    };
     for (number, at) in profile.over.iter().enumerate() {
         let (value, sd) = (profile.values[number], profile.sd[number]);
-        let drawn = match sd > 0.0 && sd < most {
-            true if is_line => vec![value, value - sd, value + sd, value],
-            true => vec![value - sd, value + sd, f64::NAN],
-            false => vec![f64::NAN],
+        let bar = [value, value - sd, value + sd, value].map(|value| (0.0, value));
+        let drawn = match is_known(sd, most) {
+            true if is_line => bar.to_vec(),
+            true => {
+                let before = gap(&profile.over[number.saturating_sub(1)..=number]);
+                let after = gap(&profile.over[number..(number + 2).min(profile.over.len())]);
+                let ends = [(after, value), (after, f64::NAN)];
+                [&[(-before, value)], &bar[..], &ends].concat()
+            }
+            false => vec![(0.0, f64::NAN)],
         };
-        over.extend(vec![*at; drawn.len()]);
-        values.extend(drawn);
+        over.extend(drawn.iter().map(|(aside, _)| at + aside));
+        values.extend(drawn.iter().map(|(_, value)| value));
     }
+    over.push(last + MARGIN * width);
+    values.push(f64::NAN);
     (over, values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::points;
+    use crate::residual_force::Profile;
+
+    /// A plot takes no abscissa that is smaller than the one before.
+    #[test]
+    fn crosses_that_are_close_do_not_overlap() {
+        let profile = Profile {
+            over: vec![0.0, 1.0, 1.0, 1.001, 5.0],
+            values: vec![1.0, 2.0, 3.0, 4.0, 5.0],
+            sd: vec![0.1, 0.1, f64::NAN, 0.1, 0.1],
+            ..Profile::default()
+        };
+        for is_line in [true, false] {
+            let (over, values) = points(&profile, is_line, 1.0);
+            assert!(over.is_sorted(), "{over:?}");
+            assert_eq!(over.len(), values.len());
+            let drawn = |wanted: f64| values.iter().filter(|v| **v == wanted).count();
+            assert_eq!((drawn(2.0), drawn(3.0)), (if is_line { 2 } else { 4 }, 0));
+            assert!(values[0].is_nan() && over[0] < 0.0 && over[over.len() - 1] > 5.0);
+        }
+    }
 }

@@ -40,7 +40,8 @@ pub fn page(
     body += &section("The gap", &gap_table(document));
     if document.get("effects").is_some() {
         body += &section("What was found", &effects_table(document));
-        body += &section("Step by step", &ladder_table(document));
+        let steps = ladder_table(document) + &validation_line(document);
+        body += &section("Step by step", &steps);
     }
     body += &section("The test record", &figures(setting, before, after));
     if let Some((force, left)) = forces {
@@ -185,6 +186,30 @@ fn ladder_table(document: &Value) -> String {
         rows += &format!("<tr><td>{}</td><td>{gap}</td></tr>\n", escaped(&added));
     }
     format!("<table><tr><th>model</th><th>test gap, in noises</th></tr>\n{rows}</table>\n")
+}
+
+/// Whether the equations of the specification that was written are right.
+fn validation_line(document: &Value) -> String {
+    let validation = &document["validation"];
+    let names = |key: &str| -> Vec<&str> {
+        let list = validation[key].as_array();
+        list.into_iter()
+            .flatten()
+            .filter_map(Value::as_str)
+            .collect()
+    };
+    let text = match validation["passed"].as_bool() {
+        Some(true) => format!(
+            "The specification that was written was derived anew; its equations pass all {} checks of eomgen validate.",
+            names("checks").len()
+        ),
+        Some(false) => format!(
+            "The specification that was written was derived anew; its equations FAIL {}.",
+            names("failed").join(", ")
+        ),
+        None => return String::new(),
+    };
+    format!("<p>{}</p>\n", escaped(&text))
 }
 
 /// How the equations compare, and what the force in one of them is like.

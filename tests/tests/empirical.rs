@@ -71,7 +71,13 @@ fn a_force_that_no_catalogue_holds_becomes_an_expression() {
     assert_eq!(ladder[1]["added"][0], "empirical on q");
     assert!(number(&ladder[1]["test_in_noises"]) < number(&ladder[0]["test_in_noises"]));
 
-    // What was written is a model that explains both records.
+    // What was written is a sound model that explains both records.
+    assert_eq!(
+        found["validation"]["passed"], true,
+        "{}",
+        found["validation"]
+    );
+    assert_eq!(ladder[1]["validated"], true);
     assert!(extended.contains("source = \"fitted to "), "{extended}");
     let [specification, dataset, out] = ["found/extended.toml", "dataset.toml", "again"]
         .map(|name| measured.file(name).display().to_string());

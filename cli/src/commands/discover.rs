@@ -11,8 +11,11 @@ use discover::residual_force::residual_force;
 use discover::search::{null_fit, search};
 use discover::trials::at_floor;
 use discover::{catalogue, document, extend, force_said, labels, locate, report};
+use model_spec::source::Source;
 use serde_json::{Value, json};
+use sim::validate::certificate::Check;
 
+use super::validate;
 use crate::arguments;
 use crate::output::write_file;
 use crate::problem::{Outcome, Problem, say, warn};
@@ -71,6 +74,12 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     let extended =
         extend::extended(&setting, &text, found.best(), &found.accepted).map_err(Problem::input)?;
     let mut result = document::discovered(&setting, &found, &floor, done, &place);
+    let validation = validated(&setting.path, &extended, order)?;
+    let ladder = result["ladder"].as_array_mut();
+    if let Some(last) = ladder.and_then(|steps| steps.last_mut()) {
+        last["validated"] = validation["passed"].clone();
+    }
+    result["validation"] = validation;
     result["seconds"] = json!(begin.elapsed().as_secs_f64());
     let page = report::page(
         &setting,
@@ -83,6 +92,29 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     write_file(&options.out.join("report.html"), page.as_bytes())?;
     write_json(&options.out.join("discovery.json"), &result)?;
     Ok(result)
+}
+
+/// What the checks of `validate` say of the specification that was written: its equations are
+/// derived anew and set beside the independent oracle and the emitted source. Null where fields
+/// have different orders, for which there are no such checks.
+fn validated(path: &str, text: &str, order: Option<usize>) -> Outcome<Value> {
+    let checked = model_spec::check(Source::new(path, text));
+    let model = checked.map_err(Problem::Specification)?.model;
+    let orders = model.orders(order);
+    let orders = orders.map_err(|error| Problem::model(&model.source, error))?;
+    if orders.iter().any(|other| *other != orders[0]) {
+        return Ok(Value::Null);
+    }
+    let certificate = validate::of(&model, &orders)?;
+    let names = |wanted: fn(&Check) -> bool| -> Vec<&str> {
+        let checks = certificate.checks.iter().filter(|check| wanted(check));
+        checks.map(|check| check.name.as_str()).collect()
+    };
+    Ok(json!({
+        "passed": certificate.passed,
+        "checks": names(|check| !check.skipped),
+        "failed": names(|check| !check.passed && !check.skipped),
+    }))
 }
 
 /// The specification's text, the order asked for, and the dataset.
