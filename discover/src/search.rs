@@ -156,7 +156,8 @@ pub fn search(
         accept(&mut found, (&candidates, &screen), best, (half, equivalent));
         thin(setting, &mut found, said);
     }
-    if found.accepted.len() < rule::MOST_EFFECTS {
+    // What something named leaves may be its own misfit.
+    if found.accepted.is_empty() {
         add_empirical(setting, &mut found, floor, said);
     }
     Ok(found)
