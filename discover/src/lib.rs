@@ -6,16 +6,12 @@
 //! part's initial state), [`unknowns`], [`shooting`] (residuals) and [`crew`] (derivatives),
 //! [`estimate`] (with [`bounded`]: least squares), [`fitting`] (a specification fitted),
 //! [`mod@floor`] (what a right model would leave), [`labels`] (whether columns are what they are
-//! called), [`locate`] (where the rest is) by the [`mod@residual_force`]: [`equations`] in which it may
-//! act, [`shapes`] it may have, what these do ([`pushed`]; [`stepped`] where nothing is marched) and
-//! how much of each there is ([`regression`], [`force_looked`]), the equations compared
-//! ([`force_ranked`]), one of them in detail ([`force_profiles`]), words ([`force_said`]) and
-//! pictures ([`force_figures`]);
+//! called), [`locate`] (where the rest is) by the [`residual_force`];
 //! [`catalogue`], [`sites`] and [`candidates`] (what may be missing), [`response`] with
 //! [`mod@driven`] and [`mod@tried`] (what each candidate does), [`mod@screen`] (what it
 //! promises), [`mod@judge`] by [`rule`] (what is believed),
 //! [`trials`] (fits in earnest), [`thinned`] (what is needed no more), [`mod@search`] (all of it in turn);
-//! [`empirical`] (what is left and has no name) of [`expressions`], the best of them [`mod@chosen`];
+//! [`mod@empirical`] (what is left and has no name);
 //! [`extend`] (the specification changed), [`document`] and [`report`] (for programs and for
 //! people).
 
@@ -23,31 +19,21 @@ mod beside;
 pub mod bounded;
 pub mod candidates;
 pub mod catalogue;
-pub mod chosen;
 pub mod crew;
 pub mod dataset;
 pub mod document;
 pub mod driven;
 pub mod empirical;
-pub mod equations;
 pub mod estimate;
-pub mod expressions;
 pub mod extend;
 pub mod fitting;
 pub mod floor;
-pub mod force_figures;
-pub mod force_looked;
-pub mod force_profiles;
-pub mod force_ranked;
-pub mod force_said;
 pub mod gate;
 pub mod judge;
 pub mod labels;
 pub mod locate;
 pub mod march;
 pub mod plant;
-pub mod pushed;
-pub mod regression;
 pub mod report;
 pub mod residual_force;
 pub mod response;
@@ -55,12 +41,10 @@ pub mod rule;
 pub mod runner;
 pub mod screen;
 pub mod search;
-pub mod shapes;
 pub mod shooting;
 pub mod sites;
 pub mod smooth;
 pub mod starts;
-pub mod stepped;
 pub mod thinned;
 pub mod trials;
 pub mod tried;

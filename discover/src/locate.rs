@@ -4,8 +4,8 @@
 use realfft::RealFftPlanner;
 
 use crate::fitting::{Fit, Setting};
-use crate::force_said::said;
 use crate::residual_force::ResidualForce;
+use crate::residual_force::said::said;
 use crate::smooth::sloped;
 
 /// A difference between slow and fast motion below this factor is not worth a word.

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use discover::dataset::read;
 use discover::fitting::Setting;
-use discover::force_said::said;
+use discover::residual_force::said::said;
 use discover::residual_force::{Kind, Profile, ResidualForce, Simple, residual_force};
 use discover::search::null_fit;
 use model_spec::source::Source;

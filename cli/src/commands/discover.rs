@@ -8,9 +8,10 @@ use discover::dataset::{Dataset, read};
 use discover::fitting::{Fit, Setting};
 use discover::floor::{Floor, floor};
 use discover::residual_force::residual_force;
+use discover::residual_force::said::said_after;
 use discover::search::{null_fit, search};
 use discover::trials::at_floor;
-use discover::{catalogue, document, extend, force_said, labels, locate, report};
+use discover::{catalogue, document, extend, labels, locate, report};
 use model_spec::source::Source;
 use serde_json::{Value, json};
 use sim::validate::certificate::Check;
@@ -69,7 +70,7 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     let left =
         left.and_then(|(force, last)| residual_force(&setting, last, Some(force.looked_at())));
     if let Some(left) = &left {
-        place += &format!(" {}", force_said::said_after(left));
+        place += &format!(" {}", said_after(left));
     }
     let extended =
         extend::extended(&setting, &text, found.best(), &found.accepted).map_err(Problem::input)?;

@@ -8,12 +8,12 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::crew::Crew;
-use crate::equations::{Asked, Equations, Standing};
 use crate::fitting::{Fit, Setting};
 use crate::march::Drives;
+use crate::residual_force::equations::{Asked, Equations, Standing};
+use crate::residual_force::stepped::Stepped;
 use crate::response::At;
 use crate::shooting::{Shooting, samples_in};
-use crate::stepped::Stepped;
 
 /// Weights of shapes in the equations: where each equation stands, and a weight per column.
 pub type Weights<'w> = dyn Fn(&[Standing], &[f64], &mut [f64]) + Sync + 'w;

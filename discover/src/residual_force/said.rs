@@ -1,7 +1,7 @@
 //! The residual force in plain words: on which equation, what it is like, and how much of the
 //! squares it explains. No more is said than its numbers support.
 
-use crate::equations::Equation;
+use crate::residual_force::equations::Equation;
 use crate::residual_force::{Kind, Profile, ResidualForce, Simple};
 use crate::rule;
 

@@ -3,7 +3,7 @@
 
 use sim::plot::{Axes, Frame, Panel, Plate, Series, plate};
 
-use crate::equations::Equation;
+use crate::residual_force::equations::Equation;
 use crate::residual_force::{Profile, ResidualForce};
 use crate::rule;
 

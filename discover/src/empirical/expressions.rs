@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::equations::Standing;
+use crate::residual_force::equations::Standing;
 
 /// A step over the rate is made within this part of the largest rate: as steep as friction near
 /// rest is seldom seen to be otherwise, and no jump, so that it can be multiplied.
@@ -196,7 +196,7 @@ pub fn terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
 #[cfg(test)]
 mod tests {
     use super::{Function, Of, Scales, Term, Words, terms};
-    use crate::equations::Standing;
+    use crate::residual_force::equations::Standing;
 
     #[test]
     fn a_term_is_what_it_writes() {

@@ -4,14 +4,14 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::equations::{Equation, Equations, Standing};
-use crate::expressions::{Scales, Term, terms};
+use crate::empirical::expressions::{Scales, Term, terms};
 use crate::fitting::{Fit, Setting, correlation};
-use crate::pushed::{Columns, pushed, stood};
-use crate::regression::{Regression, Sizes};
+use crate::residual_force::equations::{Equation, Equations, Standing};
+use crate::residual_force::pushed::{Columns, pushed, stood};
+use crate::residual_force::regression::{Regression, Sizes};
+use crate::residual_force::shapes::Range;
 use crate::response::At;
 use crate::rule;
-use crate::shapes::Range;
 
 /// A sum of terms in an equation.
 pub struct Expression {

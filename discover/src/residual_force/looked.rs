@@ -3,13 +3,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::equations::{Equations, Standing};
 use crate::fitting::{Fit, Setting, correlation};
-use crate::pushed::{Columns, pushed};
-use crate::regression::{Regression, Sizes};
+use crate::residual_force::equations::{Equations, Standing};
+use crate::residual_force::pushed::{Columns, pushed};
+use crate::residual_force::regression::{Regression, Sizes};
+use crate::residual_force::shapes::{Family, Over};
 use crate::response::At;
 use crate::rule;
-use crate::shapes::{Family, Over};
 
 /// Columns of families with where each family's stand.
 pub(crate) struct Looked {

@@ -3,14 +3,14 @@
 
 use nalgebra::DVector;
 
-use crate::equations::Standing;
 use crate::fitting::{Fit, Setting};
-use crate::force_looked::{Looked, noise};
-use crate::regression::{Each, Sizes};
+use crate::residual_force::equations::Standing;
+use crate::residual_force::looked::{Looked, noise};
+use crate::residual_force::regression::{Each, Sizes};
+use crate::residual_force::shapes::{Family, Over, Range};
 use crate::residual_force::{Profile, ResidualForce};
 use crate::response::At;
 use crate::rule;
-use crate::shapes::{Family, Over, Range};
 
 /// What profiles are read from.
 pub(crate) struct Blocks<'b> {

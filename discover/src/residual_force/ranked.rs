@@ -4,11 +4,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::fitting::Setting;
-use crate::force_looked::{Looked, noise};
+use crate::residual_force::looked::{Looked, noise};
+use crate::residual_force::shapes::Over;
 use crate::residual_force::{Kind, Ranked, Simple};
 use crate::response::At;
 use crate::rule;
-use crate::shapes::Over;
 
 /// How the equations compare.
 pub(crate) struct Judged {

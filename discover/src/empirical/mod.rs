@@ -1,14 +1,17 @@
 //! What nothing in the catalogue explains: an expression of few terms in the equation of motion
 //! where the residual force sits. It is fitted as any effect is and must hold on the held-out
 //! records by more than any effect; it is called empirical and gets no other name. Which terms
-//! there are, and which are promising, is decided elsewhere.
+//! there are is in `expressions`, which are promising in `chosen`.
+
+pub mod chosen;
+pub mod expressions;
 
 use model_spec::edit::{Edit, NewForce, NewParameter, NewValue};
 use model_spec::model::Model;
 
 use crate::candidates::{Candidate, CandidateParameter, free_name, names};
-use crate::chosen::{Expression, chosen};
-use crate::expressions::{Of, Words};
+use crate::empirical::chosen::{Expression, chosen};
+use crate::empirical::expressions::{Of, Words};
 use crate::fitting::{Fit, Setting};
 use crate::judge::{Evidence, Own, judge};
 use crate::residual_force::{Ranked, residual_force};

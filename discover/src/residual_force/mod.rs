@@ -1,19 +1,33 @@
 //! The residual force: which equation of motion a missing force acts in, and what it looks like
 //! over time, rate, angle, shaft order, frequency and amplitude. It says where to look; which
-//! effects are believed is decided without it.
+//! effects are believed is decided without it. The files: `equations` in which a force may act,
+//! `shapes` that it may have, `pushed` (what these do to the outputs; `stepped`, where nothing is
+//! marched) and `regression` (how much of each there is), `looked` (families of shapes),
+//! `ranked` (equations compared), `profiles` (one of them in detail), `said` (words) and `figures`.
+
+pub mod equations;
+pub mod figures;
+pub mod looked;
+pub mod profiles;
+pub mod pushed;
+pub mod ranked;
+pub mod regression;
+pub mod said;
+pub mod shapes;
+mod stepped;
 
 use std::f64::consts::TAU;
 
-use crate::equations::{Equation, Equations, Standing};
 use crate::fitting::{Fit, Setting};
-use crate::force_looked::Looked;
-use crate::force_profiles::Blocks;
-use crate::force_ranked::{Judged, simple};
 use crate::locate::peak_frequency;
-use crate::pushed::stood;
+use crate::residual_force::equations::{Equation, Equations, Standing};
+use crate::residual_force::looked::Looked;
+use crate::residual_force::profiles::Blocks;
+use crate::residual_force::pushed::stood;
+use crate::residual_force::ranked::{Judged, simple};
+use crate::residual_force::shapes::{Family, Over, Range};
 use crate::response::At;
 use crate::rule;
-use crate::shapes::{Family, Over, Range};
 
 /// Shaft orders that are looked at.
 const ORDERS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 36];

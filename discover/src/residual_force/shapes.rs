@@ -5,7 +5,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::equations::Standing;
+use crate::residual_force::equations::Standing;
 
 /// Bends of a force over the rate on either side, over a place and over the time of a window.
 const BENDS: (usize, usize, usize) = (5, 9, 8);
@@ -202,7 +202,7 @@ fn turned(bends: &[f64], at: f64, out: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::{Family, Over, Range};
-    use crate::equations::Standing;
+    use crate::residual_force::equations::Standing;
 
     const RANGE: Range = Range {
         place: (-1.0, 3.0),
