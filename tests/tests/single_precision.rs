@@ -27,7 +27,7 @@ macro_rules! agrees {
 
         impl $module::Scalar for Single {
             fn number(value: f64) -> Self {
-                Self::rounded(value, 0.0)
+                Self::result(value, 0.0)
             }
             fn select_greater(a: Self, b: Self, then: Self, otherwise: Self) -> Self {
                 if a.number > b.number { then } else { otherwise }
@@ -37,12 +37,12 @@ macro_rules! agrees {
             }
             fn function<F: $module::Function>(self) -> Self {
                 let value = F::value(self.number);
-                Self::rounded(value, F::slope(self.number, value).abs() * self.error)
+                Self::result(value, F::slope(self.number, value).abs() * self.error)
             }
             fn function_of_two<F: $module::FunctionOfTwo>(self, other: Self) -> Self {
                 let value = F::value(self.number, other.number);
                 let [first, second] = F::slopes(self.number, other.number, value);
-                Self::rounded(value, first.abs() * self.error + second.abs() * other.error)
+                Self::result(value, first.abs() * self.error + second.abs() * other.error)
             }
         }
 

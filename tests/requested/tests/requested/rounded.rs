@@ -25,7 +25,7 @@ impl<const DIGITS: u32> Rounded<DIGITS> {
     }
 
     /// A result whose operands left it this error.
-    pub fn rounded(number: f64, error: f64) -> Self {
+    pub fn result(number: f64, error: f64) -> Self {
         Self {
             number,
             error: error + Self::UNIT * number.abs(),
@@ -36,14 +36,14 @@ impl<const DIGITS: u32> Rounded<DIGITS> {
 impl<const DIGITS: u32> Add for Rounded<DIGITS> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self::rounded(self.number + other.number, self.error + other.error)
+        Self::result(self.number + other.number, self.error + other.error)
     }
 }
 
 impl<const DIGITS: u32> Sub for Rounded<DIGITS> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Self::rounded(self.number - other.number, self.error + other.error)
+        Self::result(self.number - other.number, self.error + other.error)
     }
 }
 
@@ -51,7 +51,7 @@ impl<const DIGITS: u32> Mul for Rounded<DIGITS> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let error = self.number.abs() * other.error + other.number.abs() * self.error;
-        Self::rounded(self.number * other.number, error)
+        Self::result(self.number * other.number, error)
     }
 }
 
@@ -60,7 +60,7 @@ impl<const DIGITS: u32> Div for Rounded<DIGITS> {
     fn div(self, other: Self) -> Self {
         let quotient = self.number / other.number;
         let error = (self.error + quotient.abs() * other.error) / other.number.abs();
-        Self::rounded(quotient, error)
+        Self::result(quotient, error)
     }
 }
 

@@ -22,13 +22,13 @@ macro_rules! tracked_scalar_of {
             fn function<F: $module::Function>(self) -> Self {
                 let value = F::value(self.number);
                 let slope = F::slope(self.number, value);
-                Self::rounded(value, slope.abs() * self.error + f64::EPSILON * value.abs())
+                Self::result(value, slope.abs() * self.error + f64::EPSILON * value.abs())
             }
             fn function_of_two<F: $module::FunctionOfTwo>(self, other: Self) -> Self {
                 let value = F::value(self.number, other.number);
                 let [first, second] = F::slopes(self.number, other.number, value);
                 let error = first.abs() * self.error + second.abs() * other.error;
-                Self::rounded(value, error + f64::EPSILON * value.abs())
+                Self::result(value, error + f64::EPSILON * value.abs())
             }
         }
     )*};
