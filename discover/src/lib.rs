@@ -2,7 +2,7 @@
 //!
 //! The pipeline, one file each: [`dataset`] (records with their description) and [`gate`]
 //! (whether they can be believed); [`plant`] (a model that can be run), [`runner`] and
-//! [`march`] (how it runs; `beside`: what is not linear), [`windows`] (records in parts), [`smooth`] and [`starts`] (each
+//! [`march`] (how it runs; `beside`: what is not linear; `runge_kutta`: a step), [`windows`] (records in parts), [`smooth`] and [`starts`] (each
 //! part's initial state), [`unknowns`], [`shooting`] (residuals) and [`crew`] (derivatives),
 //! [`estimate`] (with [`bounded`]: least squares), [`fitting`] (a specification fitted),
 //! [`mod@floor`] (what a right model would leave), [`labels`] (whether columns are what they are
@@ -38,6 +38,7 @@ pub mod report;
 pub mod residual_force;
 pub mod response;
 pub mod rule;
+mod runge_kutta;
 pub mod runner;
 pub mod screen;
 pub mod search;

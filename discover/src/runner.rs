@@ -13,6 +13,7 @@ use sim::solve::{Settings, System, simulate};
 use crate::beside::Beside;
 use crate::march::{Company, Drives, Force, March, Tangents};
 use crate::plant::{Output, Plant};
+use crate::runge_kutta::RungeKutta;
 
 /// Relative error of one step of the general solver: far below any sensor's noise.
 const TOLERANCE: f64 = 1e-7;
@@ -263,11 +264,7 @@ impl<'p> Runner<'p> {
         let mut state = initial.to_vec();
         let mut states = Vec::with_capacity(samples.len());
         states.push(state.clone());
-        let mut slopes = [const { Vec::new() }; 4];
-        slopes
-            .iter_mut()
-            .for_each(|slope| slope.resize(state.len(), 0.0));
-        let mut trial = state.clone();
+        let mut method = RungeKutta::new(state.len());
         let evaluator = self.evaluator.get_mut();
         for pair in samples.windows(2) {
             let h = (pair[1] - pair[0]) / steps as f64;
@@ -275,26 +272,9 @@ impl<'p> Runner<'p> {
                 let begin = pair[0] + step as f64 * h;
                 // Half a step on, so that rounding of a sample's time does not decide.
                 let inputs = inputs.at(begin + 0.5 * h);
-                for (stage, at) in [0.0, 0.5, 0.5, 1.0].into_iter().enumerate() {
-                    trial.copy_from_slice(&state);
-                    if stage > 0 {
-                        let slope = &slopes[stage - 1];
-                        trial
-                            .iter_mut()
-                            .zip(slope)
-                            .for_each(|(x, k)| *x += at * h * k);
-                    }
-                    let point = Point {
-                        t: begin + at * h,
-                        state: &trial,
-                        inputs,
-                    };
-                    evaluator.rates(point, &mut slopes[stage]);
-                }
-                for (place, x) in state.iter_mut().enumerate() {
-                    let [a, b, c, d] = [0, 1, 2, 3].map(|stage: usize| slopes[stage][place]);
-                    *x += h / 6.0 * (a + 2.0 * (b + c) + d);
-                }
+                method.step(&mut state, (begin, h), |_, t, state, rates| {
+                    evaluator.rates(Point { t, state, inputs }, rates);
+                });
             }
             if state.iter().any(|x| !x.is_finite()) {
                 return None;

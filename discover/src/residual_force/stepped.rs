@@ -6,6 +6,7 @@ use nalgebra::DMatrix;
 
 use crate::march::Drives;
 use crate::plant::Output;
+use crate::runge_kutta::RungeKutta;
 use crate::shooting::{Sensors, Shooting, samples_in};
 
 /// A force is taken that moves the outputs by this part of the misfit.
@@ -17,9 +18,8 @@ const FIRST: f64 = 1e-4;
 /// It need not be nearer to that than by this factor.
 const NEAR: f64 = 10.0;
 
-/// At each of a step's four slopes: the part of the step that has passed, and whether that is its
-/// beginning, its middle or its end.
-const STAGES: [(f64, usize); 4] = [(0.0, 0), (0.5, 1), (0.5, 1), (1.0, 2)];
+/// Whether each of a step's four slopes is at its beginning, its middle or its end.
+const POINTS: [usize; 4] = [0, 1, 1, 2];
 
 /// A window of a model that is run by Runge-Kutta steps.
 pub(crate) struct Stepped<'s> {
@@ -140,8 +140,7 @@ impl<'s> Stepped<'s> {
         let windows = self.shooting.windows;
         let inputs = windows.inputs(&windows.list[self.place]);
         let mut state = start.to_vec();
-        let mut slopes = [(); 4].map(|()| vec![0.0; start.len()]);
-        let mut trial = state.clone();
+        let mut method = RungeKutta::new(start.len());
         let mut shown = Vec::with_capacity(times.len() * self.shooting.channels());
         self.show((*times.first()?, &state), inputs.at(times[0]), &mut shown);
         let mut number = 0;
@@ -152,32 +151,23 @@ impl<'s> Stepped<'s> {
                 let middle = begin + 0.5 * h;
                 let held = inputs.at(middle);
                 let mut points = [const { (0.0, Vec::new()) }; 3];
-                for (stage, (part, point)) in STAGES.into_iter().enumerate() {
-                    trial.copy_from_slice(&state);
-                    if stage > 0 {
-                        let slope = trial.iter_mut().zip(&slopes[stage - 1]);
-                        slope.for_each(|(x, k)| *x += part * h * k);
-                    }
-                    let t = begin + part * h;
+                method.step(&mut state, (begin, h), |stage, t, state, rates| {
+                    let point = POINTS[stage];
                     let at = Point {
                         t,
-                        state: &trial,
+                        state,
                         inputs: held,
                     };
-                    self.evaluator.rates(at, &mut slopes[stage]);
+                    self.evaluator.rates(at, rates);
                     if let Some((size, push)) = push {
                         let first = (3 * number + point) * half;
-                        let pushed = slopes[stage][half..].iter_mut().zip(&push[first..]);
+                        let pushed = rates[half..].iter_mut().zip(&push[first..]);
                         pushed.for_each(|(k, a)| *k += size * a);
                     }
                     if visited.is_some() {
-                        points[point] = (t, trial.clone());
+                        points[point] = (t, state.to_vec());
                     }
-                }
-                for (place, x) in state.iter_mut().enumerate() {
-                    let [a, b, c, d] = [0, 1, 2, 3].map(|stage: usize| slopes[stage][place]);
-                    *x += h / 6.0 * (a + 2.0 * (b + c) + d);
-                }
+                });
                 number += 1;
                 if let Some(visited) = &mut visited {
                     visited.push(Step { middle, points });
