@@ -113,6 +113,15 @@ impl Fit {
         (0.5 * (self.train.pooled.powi(2) + self.test.pooled.powi(2))).sqrt()
     }
 
+    /// Unknowns to begin with where something is added: parameters and sensors that took up what
+    /// it does begin anew.
+    pub fn anew(&self) -> Vec<f64> {
+        let known = self.unknowns.iter().zip(&self.train.estimate.theta);
+        known
+            .map(|(unknown, value)| unknown.prior.map_or(*value, |(mean, _)| mean))
+            .collect()
+    }
+
     /// The values of some unknowns as a specification states them, SI.
     pub fn stated(&self, places: &[usize]) -> Vec<f64> {
         let theta = &self.train.estimate.theta;

@@ -99,11 +99,6 @@ impl Round<'_> {
         trials
     }
 
-    /// Whether much more than noise is left.
-    fn is_far(&self) -> bool {
-        self.screen.left(&[]).0 > rule::FAR * rule::FAR * self.screen.numbers
-    }
-
     /// Those of the ranked that are begun: of what repeats with an angle, of which there is so
     /// much that some is lucky, half as many, and of the orders of one effect at one place the
     /// two best.
@@ -137,7 +132,7 @@ impl Round<'_> {
     fn ranked(&self) -> Vec<usize> {
         let screen = self.screen;
         let alone = screen.left(&[]).0;
-        let promise = match self.is_far() {
+        let promise = match alone > rule::FAR * rule::FAR * screen.numbers {
             true => rule::PROMISE_FAR,
             false => rule::PROMISE,
         };
@@ -374,11 +369,7 @@ impl Round<'_> {
     fn unknowns(&self, set: &Set, part: f64) -> (Vec<Unknown>, Vec<f64>) {
         let fit = self.fit;
         let mut unknowns = fit.unknowns.clone();
-        // Parameters and sensors that took up what the effect does begin anew.
-        let known = unknowns.iter().zip(&fit.train.estimate.theta);
-        let mut theta: Vec<f64> = known
-            .map(|(unknown, value)| unknown.prior.map_or(*value, |(mean, _)| mean))
-            .collect();
+        let mut theta = fit.anew();
         if let Some(place) = set.deleted {
             unknowns[place].bounds = (0.0, 0.0);
             theta[place] = 0.0;

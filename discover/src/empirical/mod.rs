@@ -18,7 +18,6 @@ use crate::residual_force::{Ranked, residual_force};
 use crate::response::trial;
 use crate::rule;
 use crate::search::{Accepted, Found, Rejected};
-use crate::unknowns::Unknown;
 
 /// The name of what has none.
 pub const EMPIRICAL: &str = "empirical";
@@ -206,10 +205,7 @@ fn fitted(
 ) -> Result<Fit, String> {
     let sizes = &expression.sizes;
     let mut unknowns = fit.unknowns.clone();
-    // Parameters and sensors that took up what is missing begin anew.
-    let known = unknowns.iter().zip(&fit.train.estimate.theta);
-    let anew = |(unknown, value): (&Unknown, &f64)| unknown.prior.map_or(*value, |prior| prior.0);
-    let mut theta: Vec<f64> = known.map(anew).collect();
+    let mut theta = fit.anew();
     for (parameter, size) in candidate.parameters.iter().zip(sizes) {
         let mut unknown = trial(parameter).unknown;
         unknown.scale = size.abs();
