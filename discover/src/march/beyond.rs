@@ -72,15 +72,22 @@ impl March {
         t: f64,
         force: &mut dyn Force,
     ) -> Result<(), String> {
+        let here = (motion.regime, &motion.sides[..]);
         let at = (t, &motion.state[..], &motion.given[..]);
-        let functions = &self.regimes[motion.regime].functions;
-        motion.excess.find(force, (&self.surfaces, functions), at);
-        self.relate(
-            (motion.regime, &motion.sides),
-            &motion.state,
-            &motion.given,
-            &mut motion.excess,
-        )
+        self.beyond(here, at, force, &mut motion.excess)
+    }
+
+    /// The same at any state, relative to a regime with its sides.
+    pub(super) fn beyond(
+        &mut self,
+        (here, sides): (usize, &[Side]),
+        (t, state, given): (f64, &[f64], &[f64]),
+        force: &mut dyn Force,
+        out: &mut Excess,
+    ) -> Result<(), String> {
+        let functions = &self.regimes[here].functions;
+        out.find(force, (&self.surfaces, functions), (t, state, given));
+        self.relate((here, sides), state, given, out)
     }
 
     /// The same where a motion with these rates is so many steps later, or was so many before:
@@ -101,17 +108,14 @@ impl March {
         let tau = steps * self.step;
         let pairs = motion.state.iter().zip(rates);
         let near: Vec<f64> = pairs.map(|(x, rate)| x + tau * rate).collect();
-        let at = (t + tau, &near[..], &motion.given[..]);
-        let functions = &self.regimes[motion.regime].functions;
-        let surfaces = (&self.surfaces, &functions[..]);
-        motion.excess.find(&mut **force, surfaces, at);
         let here = (motion.regime, &motion.sides[..]);
-        self.relate(here, &near, &motion.given, &mut motion.excess)
+        let at = (t + tau, &near[..], &motion.given[..]);
+        self.beyond(here, at, &mut **force, &mut motion.excess)
     }
 
     /// Takes accelerations relative to a regime with its sides, not to the one in which the
     /// linear part alone would be.
-    pub(super) fn relate(
+    fn relate(
         &mut self,
         (here, sides): (usize, &[Side]),
         state: &[f64],

@@ -348,11 +348,9 @@ impl March {
         if let Some(force) = &mut company.force {
             let held = &motion.excess.force;
             regime.step_force.add_product(held, &mut motion.next);
-            let (state, later) = (&motion.next[..n], &mut motion.later);
-            let surfaces = (&self.surfaces, &regime.functions[..]);
-            later.find(&mut **force, surfaces, (end, state, &motion.given));
             let here = (motion.regime, &motion.sides[..]);
-            self.relate(here, state, &motion.given, later)?;
+            let at = (end, &motion.next[..n], &motion.given[..]);
+            self.beyond(here, at, &mut **force, &mut motion.later)?;
             let pairs = motion.later.force.iter().zip(&motion.excess.force);
             motion.change.clear();
             motion

@@ -206,7 +206,7 @@ impl March {
         let before = motion.regime;
         let mut rates = vec![0.0; self.regimes[before].matrix.rows];
         self.rates(motion, &mut rates);
-        self.meet_near(motion, (t, -AHEAD), &rates.clone(), company)?;
+        self.meet_near(motion, (t, -AHEAD), &rates, company)?;
         self.rates(motion, &mut rates);
         let (beyond, outward) = match motion.sides[surface] {
             Side::Above => (Side::Below, -1.0),
@@ -218,13 +218,16 @@ impl March {
         self.meet_near(motion, (t, AHEAD), &rates, company)?;
         let mut after = rates.clone();
         self.rates(motion, &mut after);
-        let function = &self.regimes[before].functions[surface].state;
+        let function = self.regimes[before].functions[surface].state.clone();
         let size: f64 = function
             .iter()
             .zip(&after)
             .map(|(a, b)| (a * b).abs())
             .sum();
-        let (here, there) = (dot(function, &rates) + slope, dot(function, &after) + slope);
+        let (here, there) = (
+            dot(&function, &rates) + slope,
+            dot(&function, &after) + slope,
+        );
         if there * outward < -LEADS_BACK * size && here * outward > 0.0 {
             motion.sides[surface] = Side::Held;
             match self.known_regime(&motion.sides) {
@@ -241,12 +244,11 @@ impl March {
             return Ok(());
         }
         if let Some(tangents) = &mut company.tangents {
-            let mut function = self.regimes[before].functions[surface].clone();
-            let rate = dot(&function.state, &rates[..self.states]) + slope;
-            if let Some(force) = &mut company.force {
-                function = self.gradient(motion, (surface, t), &mut **force, &rates);
-            }
-            tangents.switch((&function.state, rate), &rates, &after);
+            let gradient = match &mut company.force {
+                Some(force) => self.gradient(motion, (surface, t), &mut **force, &rates),
+                None => function,
+            };
+            tangents.switch((&gradient, here), &rates, &after);
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 //! the model tells no more of itself than its accelerations.
 
 use super::beyond::{Excess, Force};
-use super::surfaces::{Row, Side};
+use super::surfaces::Side;
 use super::{Company, March, Motion};
 
 /// Derivatives are found anew after each switch and once in so many times: they change with the
@@ -71,16 +71,16 @@ impl Slopes {
 
     /// Adds what a neighbour feels where it set out, or if that is not known, will feel; nothing
     /// if neither is.
-    pub fn add_begin(&self, vector: &[f64], factor: f64, out: &mut [f64]) {
+    pub fn add_begin(&self, vector: &[f64], out: &mut [f64]) {
         let derivatives = match self.is_known {
             [true, _] => &self.here,
             [false, true] => &self.there,
             [false, false] => return,
         };
-        self.add(derivatives, vector, factor, out);
+        self.add(derivatives, vector, 1.0, out);
     }
 
-    /// Adds what a neighbour feels where it goes to.
+    /// Adds what a neighbour feels where it goes to, times a factor.
     pub fn add_end(&self, vector: &[f64], factor: f64, out: &mut [f64]) {
         self.add(&self.there, vector, factor, out);
     }
@@ -142,12 +142,13 @@ impl March {
             std::mem::take(&mut slopes.moved),
         );
         slopes.state.clone_from(&motion.state);
-        self.beyond_at(motion, (t, &slopes.state), force, &mut base)?;
+        let here = (motion.regime, &motion.sides[..]);
+        self.beyond(here, (t, &slopes.state, &motion.given), force, &mut base)?;
         for place in 0..n {
             let x = motion.state[place];
             slopes.state[place] = x + self.difference(x, slopes.rates[place]);
             let size = slopes.state[place] - x;
-            self.beyond_at(motion, (t, &slopes.state), force, &mut moved)?;
+            self.beyond(here, (t, &slopes.state, &motion.given), force, &mut moved)?;
             slopes.state[place] = x;
             if self.sides_differ(motion, place, size, (&base, &moved)) {
                 continue;
@@ -167,54 +168,37 @@ impl March {
         Ok(())
     }
 
-    /// The function of a surface at a state, with how it changes with each state as the whole
-    /// model says; rates tell how far the states may be moved.
+    /// How the function of a surface changes with each state, as the whole model says; rates tell
+    /// how far the states may be moved.
     pub(super) fn gradient(
         &self,
         motion: &Motion,
         (surface, t): (usize, f64),
         force: &mut dyn Force,
         rates: &[f64],
-    ) -> Row {
-        let mut function = self.regimes[motion.regime].functions[surface].clone();
+    ) -> Vec<f64> {
+        let mut gradient = self.regimes[motion.regime].functions[surface].state.clone();
         let inputs = &motion.given[1..];
         let guard = self.surfaces.guards[surface][0];
         let (mut state, mut values) = (motion.state.clone(), Vec::new());
         if !force.at_guards(t, &state, inputs, &mut values) {
-            return function;
+            return gradient;
         }
         let here = values[guard];
-        for (place, slot) in function.state.iter_mut().enumerate() {
+        for (place, slot) in gradient.iter_mut().enumerate() {
             let x = state[place];
             state[place] = x + self.difference(x, rates[place]);
             force.at_guards(t, &state, inputs, &mut values);
             *slot = (values[guard] - here) / (state[place] - x);
             state[place] = x;
         }
-        function
+        gradient
     }
 
     /// By how much a state with a rate is changed.
     fn difference(&self, x: f64, rate: f64) -> f64 {
         let size = (OF_MOVE * (rate * self.step).abs()).max(OF_ITSELF * x.abs());
         size.max(LEAST)
-    }
-
-    /// What lies beyond the linear part at a state, relative to the regime in which a motion is.
-    fn beyond_at(
-        &mut self,
-        motion: &Motion,
-        (t, state): (f64, &[f64]),
-        force: &mut dyn Force,
-        out: &mut Excess,
-    ) -> Result<(), String> {
-        let functions = &self.regimes[motion.regime].functions;
-        out.find(
-            force,
-            (&self.surfaces, functions),
-            (t, state, &motion.given),
-        );
-        self.relate((motion.regime, &motion.sides), state, &motion.given, out)
     }
 
     /// Whether a surface lies between a motion's state and the same with one state changed.

@@ -156,7 +156,7 @@ impl<'d> Tangents<'d> {
             let vectors = old.chunks_exact(self.stride);
             for (vector, next) in vectors.zip(new.chunks_exact_mut(self.stride)) {
                 self.felt.fill(0.0);
-                slopes.add_begin(vector, 1.0, &mut self.felt);
+                slopes.add_begin(vector, &mut self.felt);
                 force.add_product(&self.felt, next);
                 self.felt.iter_mut().for_each(|felt| *felt *= -0.5);
                 slopes.add_end(next, 0.5, &mut self.felt);
@@ -179,7 +179,7 @@ impl<'d> Tangents<'d> {
             rates.fill(0.0);
             regime.matrix.add_product(vector, &mut rates);
             if let Some(slopes) = &self.slopes {
-                slopes.add_begin(vector, 1.0, &mut rates[half..n]);
+                slopes.add_begin(vector, &mut rates[half..n]);
             }
             if place >= self.free {
                 let first = (place - self.free) * half;
