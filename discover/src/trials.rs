@@ -138,7 +138,9 @@ impl Round<'_> {
         };
         let enough = |r: &usize| {
             let response = &screen.responses[*r];
-            response.visible > rule::OWN_PART && response.gain > promise * alone
+            // What a nuisance gains without its prior, the others did not do within theirs.
+            let is_own = response.released.is_some() || response.visible > rule::OWN_PART;
+            is_own && response.gain > promise * alone
         };
         let mut ranked: Vec<usize> = (0..screen.responses.len()).filter(enough).collect();
         let gain = |r: &usize| screen.responses[*r].gain;
