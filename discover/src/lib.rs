@@ -10,7 +10,7 @@
 //! [`catalogue`], [`sites`] and [`candidates`] (what may be missing), [`response`] with
 //! [`mod@driven`] and [`mod@tried`] (what each candidate does), [`mod@screen`] (what it
 //! promises), [`mod@judge`] by [`rule`] (what is believed),
-//! [`trials`] (fits in earnest), [`thinned`] (what is needed no more), [`mod@search`] (all of it in turn);
+//! [`trials`] (fits in earnest; `swaps`: others in an answer's place), [`thinned`] (what is needed no more), [`mod@search`] (all of it in turn);
 //! [`mod@empirical`] (what is left and has no name);
 //! [`extend`] (the specification changed), [`document`] and [`report`] (for programs and for
 //! people).
@@ -46,6 +46,7 @@ pub mod shooting;
 pub mod sites;
 pub mod smooth;
 pub mod starts;
+mod swaps;
 pub mod thinned;
 pub mod trials;
 pub mod tried;

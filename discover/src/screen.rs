@@ -259,6 +259,12 @@ impl Screen {
         })
     }
 
+    /// The same with a nuisance held where it is.
+    pub fn held(mut self, nuisance: usize) -> Self {
+        self.bounds[nuisance] = (0.0, 0.0);
+        self
+    }
+
     /// The part of a response's square that the nuisances cannot do as well.
     fn visible(&self, place: usize) -> f64 {
         let (products, released) = self.released(&[place]);

@@ -146,6 +146,20 @@ pub fn search(
         let Some((candidates, screen, mut trials)) = believed else {
             break;
         };
+        let answer = best_of(&trials);
+        Round {
+            setting,
+            fit: found.best(),
+            candidates: &candidates,
+            screen: &screen,
+            is_whole: true,
+            most: rule::MOST_SKETCHES,
+            parts: &PARTS,
+            floor,
+            said,
+        }
+        .swap(&mut trials, answer, effects);
+        trials.retain(|trial| trial.verdict.is_ok());
         let best = trials.remove(best_of(&trials));
         let equivalent = indistinct(&best, &trials, &screen);
         let equivalent = equivalent.map(|place| candidates[place].clone());
@@ -439,7 +453,7 @@ fn screened(
 
 /// The usual rate of every channel that is measured, by name: the root mean square of its
 /// slope.
-fn usual_rates(setting: &Setting<'_>) -> BTreeMap<String, f64> {
+pub(crate) fn usual_rates(setting: &Setting<'_>) -> BTreeMap<String, f64> {
     let record = &setting.dataset.train[0];
     let channels = setting.dataset.channels.iter().zip(&record.channels);
     channels

@@ -30,10 +30,13 @@ pub struct Trial {
 
 /// Candidates to be fitted together, and a parameter whose term they replace.
 #[derive(Clone)]
-struct Set {
-    responses: Vec<usize>,
-    deleted: Option<usize>,
-    sizes: Vec<f64>,
+pub(crate) struct Set {
+    /// The candidates' places among the screened.
+    pub responses: Vec<usize>,
+    /// The place of the parameter.
+    pub deleted: Option<usize>,
+    /// The candidates' promised sizes, in order.
+    pub sizes: Vec<f64>,
 }
 
 /// What a round of fits works with.
@@ -148,7 +151,7 @@ impl Round<'_> {
         ranked
     }
 
-    fn candidate(&self, response: usize) -> &Candidate {
+    pub(crate) fn candidate(&self, response: usize) -> &Candidate {
         &self.candidates[self.screen.responses[response].candidate]
     }
 
@@ -185,7 +188,7 @@ impl Round<'_> {
     }
 
     /// Sketches fitted in earnest, side by side.
-    fn completed(&self, sketches: Vec<(Set, Sketch)>) -> Vec<Trial> {
+    pub(crate) fn completed(&self, sketches: Vec<(Set, Sketch)>) -> Vec<Trial> {
         let fits: Vec<(Set, Result<Fit, String>)> = sketches
             .into_par_iter()
             .map(|(set, sketch)| (set, self.setting.complete(sketch)))
@@ -340,6 +343,26 @@ impl Round<'_> {
     fn sketch(&self, set: &Set) -> Result<Sketch, String> {
         let (setting, fit) = (self.setting, self.fit);
         let (unknowns, theta) = self.unknowns(set, self.parts[0]);
+        let texts = self.texts(set, &unknowns, &theta)?;
+        if self.is_whole && set.deleted.is_none() {
+            let left = self.screen.left(&set.responses).0;
+            return setting.expected(texts, unknowns, theta, (fit, left));
+        }
+        let others = self.parts[1..]
+            .iter()
+            .map(|part| self.unknowns(set, *part).1);
+        let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
+        setting.sketch(texts, unknowns, &begins)
+    }
+
+    /// The specification's texts with a set's candidates, at these values of the unknowns.
+    fn texts(
+        &self,
+        set: &Set,
+        unknowns: &[Unknown],
+        theta: &[f64],
+    ) -> Result<(String, String), String> {
+        let fit = self.fit;
         let mut texts = (fit.text.clone(), fit.linear.clone());
         let mut next = fit.unknowns.len();
         for response in &set.responses {
@@ -353,17 +376,28 @@ impl Round<'_> {
                 .map(|place| unknowns[place].what.stated(theta[place]))
                 .collect();
             let candidate = &self.candidates[response.candidate];
-            texts = setting.with((&texts.0, &texts.1), candidate, &values)?;
+            texts = self.setting.with((&texts.0, &texts.1), candidate, &values)?;
         }
-        if self.is_whole && set.deleted.is_none() {
-            let left = self.screen.left(&set.responses).0;
-            return setting.expected(texts, unknowns, theta, (fit, left));
+        Ok(texts)
+    }
+
+    /// A set of one candidate, begun with the motions of a trial of another. `left`: what that
+    /// promises to leave; `shaped`: how many times its usual size a shape is.
+    pub(crate) fn begun_at(
+        &self,
+        set: &Set,
+        (trial, left): (&Trial, f64),
+        shaped: f64,
+    ) -> Result<Sketch, String> {
+        let (unknowns, mut theta) = self.unknowns(set, 1.0);
+        let count = self.fit.unknowns.len();
+        theta[..count].copy_from_slice(&trial.fit.train.estimate.theta[..count]);
+        for own in self.own(set).iter().filter(|own| own.is_shape) {
+            theta[own.place] = unknowns[own.place].admissible(shaped * theta[own.place]);
         }
-        let others = self.parts[1..]
-            .iter()
-            .map(|part| self.unknowns(set, *part).1);
-        let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
-        setting.sketch(texts, unknowns, &begins)
+        let texts = self.texts(set, &unknowns, &theta)?;
+        self.setting
+            .expected(texts, unknowns, theta, (&trial.fit, left))
     }
 
     /// The unknowns with a set's candidates and their values, so much of the promised sizes from

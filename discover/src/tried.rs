@@ -61,10 +61,8 @@ fn response(
         part,
     } = at;
     let start: Vec<f64> = candidate.parameters.iter().map(absent).collect();
-    let text = candidate
-        .written(&fit.text, &setting.path, &start, "")
-        .map_err(|e| e.to_string())?;
-    let plant = setting.plant(&text, None)?;
+    let (text, linear) = setting.with((&fit.text, &fit.linear), candidate, &start)?;
+    let plant = setting.plant(&text, Some(&linear))?;
     let mut trials: Vec<Trial> = candidate.parameters.iter().map(trial).collect();
     for (trial, size) in trials.iter_mut().zip(sizes) {
         trial.unknown.scale = *size;

@@ -1,0 +1,128 @@
+//! Others in the place of a round's answer: an effect on one shaft of a gear looks like the same
+//! effect on the next, and which of them is fitted better may be chance of where it began. What may
+//! be meant instead is fitted once more from where the answer ended.
+
+use crate::candidates::{Candidate, candidates};
+use crate::catalogue::Effect;
+use crate::fitting::Sketch;
+use crate::rule;
+use crate::screen::screen;
+use crate::search::usual_rates;
+use crate::sites::sites;
+use crate::trials::{Round, Set, Trial};
+
+impl Round<'_> {
+    /// Fits what may stand in the place of a trial from where that ended, and takes over what
+    /// leaves less than it did before.
+    pub fn swap(&self, trials: &mut Vec<Trial>, answer: usize, effects: &[Effect]) {
+        let sketches = self.in_place_of(trials, answer, effects).unwrap_or_default();
+        for new in self.completed(sketches) {
+            let known = trials
+                .iter_mut()
+                .find(|trial| trial.responses == new.responses);
+            match known {
+                Some(known) if new.fit.left() < known.fit.left() => *known = new,
+                Some(_) => {}
+                None => trials.push(new),
+            }
+        }
+    }
+
+    /// The best of those that may stand in the place of a trial, begun where that ended; none if
+    /// it is not one effect with terms of its own.
+    fn in_place_of(
+        &self,
+        trials: &[Trial],
+        answer: usize,
+        effects: &[Effect],
+    ) -> Option<Vec<(Set, Sketch)>> {
+        let trial = &trials[answer];
+        let fit = &trial.fit;
+        let [response] = &trial.responses[..] else {
+            return None;
+        };
+        let rivals = self.rivals(trials, answer, *response);
+        if rivals.is_empty() || self.screen.responses[*response].released.is_some() {
+            return None;
+        }
+        // Names that the answer took are not free in its model.
+        let model = &fit.plant.model;
+        let known = candidates(model, effects, &sites(model), &usual_rates(self.setting));
+        let shaped = self.shaped(trial);
+        let again = |rival: &usize| {
+            let label = self.candidate(*rival).label();
+            let found = known.iter().find(|candidate| candidate.label() == label)?;
+            let mut found = found.clone();
+            if let Some(factor) = shaped {
+                let shapes = found.parameters.iter_mut().map(|p| &mut p.shape);
+                shapes.flatten().for_each(|shape| *shape *= factor);
+            }
+            Some((*rival, found))
+        };
+        let (rivals, there): (Vec<usize>, Vec<Candidate>) =
+            rivals.iter().filter_map(again).unzip();
+        (self.said)(&format!(
+            "screening {} in the place of {}",
+            there.len(),
+            self.candidate(*response).label()
+        ));
+        let mut screen = screen(self.setting, fit, &there, 1.0);
+        let left = screen.left(&[]).0;
+        let theta = &fit.train.estimate.theta;
+        for own in &trial.own {
+            screen = match own.is_shape {
+                true => screen.held(own.place),
+                false => screen.without(own.place, theta[own.place])?,
+            };
+        }
+        let places = (0..screen.responses.len()).map(|place| (place, screen.left(&[place])));
+        let mut found: Vec<(usize, f64, Vec<f64>)> = places
+            .map(|(place, (left, sizes))| {
+                (rivals[screen.responses[place].candidate], left, sizes)
+            })
+            .filter(|(_, promised, _)| *promised < rule::RIVAL * left)
+            .collect();
+        found.sort_by(|a, b| a.1.total_cmp(&b.1));
+        found.truncate(rule::FITS_AT_ONCE);
+        let sketches = found.into_iter().filter_map(|(rival, left, sizes)| {
+            let set = Set {
+                responses: vec![rival],
+                deleted: None,
+                sizes,
+            };
+            let sketch = self.begun_at(&set, (trial, left), shaped.unwrap_or(1.0)).ok()?;
+            Some((set, sketch))
+        });
+        Some(sketches.collect())
+    }
+
+    /// How a trial's shape ended, in what it began with: a speed that friction falls with is so
+    /// many times the usual one wherever the friction sits.
+    fn shaped(&self, trial: &Trial) -> Option<f64> {
+        let shape = trial.own.iter().find(|own| own.is_shape)?;
+        let began = self.screen.responses[trial.responses[0]]
+            .trials
+            .iter()
+            .find(|trial| trial.is_shape)?;
+        Some(trial.fit.train.estimate.theta[shape.place] / began.unknown.start)
+    }
+
+    /// The same effect elsewhere, and what the record hardly tells from it, unless it leaves as
+    /// little already.
+    fn rivals(&self, trials: &[Trial], answer: usize, response: usize) -> Vec<usize> {
+        let named = self.candidate(response);
+        let enough = (1.0 + rule::TOLD_APART) * trials[answer].fit.left();
+        let is_rival = |place: &usize| {
+            let of = self.candidate(*place);
+            let done = trials
+                .iter()
+                .any(|trial| trial.responses == [*place] && trial.fit.left() < enough);
+            let turns = |c: &Candidate| c.order.as_ref().map(|(_, order)| *order);
+            let same = of.effect == named.effect && turns(of) == turns(named);
+            let is_own = self.screen.responses[*place].released.is_none();
+            let alike = || self.screen.similarity(*place, response) > rule::ALIKE;
+            *place != response && is_own && !done && (same || alike())
+        };
+        (0..self.screen.responses.len()).filter(is_rival).collect()
+    }
+}
