@@ -10,7 +10,9 @@
 //! [`catalogue`], [`sites`] and [`candidates`] (what may be missing), [`response`] with
 //! [`mod@driven`] and [`mod@tried`] (what each candidate does), [`mod@screen`] (what it
 //! promises), [`mod@judge`] by [`rule`] (what is believed),
-//! [`trials`] (fits in earnest; `swaps`: others in an answer's place), [`thinned`] (what is needed no more), [`mod@search`] (all of it in turn);
+//! [`trials`] (fits in earnest; `swaps`: others in an answer's place), [`thinned`] (what is needed
+//! no more), [`mod@named`] (which of them is the answer, and which are one), [`undeclared`]
+//! (parameters that nobody doubts), [`mod@search`] (all of it in turn);
 //! [`mod@empirical`] (what is left and has no name);
 //! [`extend`] (the specification changed), [`document`] and [`report`] (for programs and for
 //! people).
@@ -33,6 +35,7 @@ pub mod judge;
 pub mod labels;
 pub mod locate;
 pub mod march;
+pub mod named;
 pub mod plant;
 pub mod report;
 pub mod residual_force;
@@ -50,5 +53,6 @@ mod swaps;
 pub mod thinned;
 pub mod trials;
 pub mod tried;
+pub mod undeclared;
 pub mod unknowns;
 pub mod windows;

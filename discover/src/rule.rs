@@ -63,6 +63,11 @@ pub const ALIKE: f64 = 0.95;
 /// fitted.
 pub const TOLD_APART: f64 = 0.01;
 
+/// Candidates whose responses agree by more than this are two names of one thing: they are one
+/// class unless what they leave differs by `HELD_OUT`, because windows with impacts may end in
+/// different folds.
+pub const SAME: f64 = 1.0 - 1e-6;
+
 /// A response of which less than this part is its own cannot be told from the nuisances.
 pub const OWN_PART: f64 = 0.01;
 

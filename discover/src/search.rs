@@ -12,11 +12,13 @@ use crate::catalogue::Effect;
 use crate::empirical::add_empirical;
 use crate::fitting::{FIRST_PART, Fit, Setting};
 use crate::judge::{Evidence, evidence};
+use crate::named::{Named, Searched, best_of, named};
 use crate::rule;
 use crate::screen::{Screen, screen};
 use crate::sites::{plays, sites};
 use crate::thinned::thin;
 use crate::trials::{PARTS, Round, Trial, at_floor, leaves_less};
+use crate::undeclared::shifts;
 use crate::unknowns::{Unknown, What, of_null_model};
 
 /// An effect that was believed.
@@ -146,28 +148,26 @@ pub fn search(
         let Some((candidates, screen, mut trials)) = believed else {
             break;
         };
-        let answer = best_of(&trials);
-        Round {
-            setting,
-            fit: found.best(),
-            candidates: &candidates,
-            screen: &screen,
-            is_whole: true,
-            most: rule::MOST_SKETCHES,
-            parts: &PARTS,
-            floor,
-            said,
+        if let Some(answer) = best_of(&trials) {
+            Round {
+                setting,
+                fit: found.best(),
+                candidates: &candidates,
+                screen: &screen,
+                is_whole: true,
+                most: rule::MOST_SKETCHES,
+                parts: &PARTS,
+                floor,
+                said,
+            }
+            .swap(&mut trials, answer, effects);
         }
-        .swap(&mut trials, answer, effects);
         trials.retain(|trial| trial.verdict.is_ok());
-        let best = trials.remove(best_of(&trials));
-        let equivalent = indistinct(&best, &trials, &screen);
-        let equivalent = equivalent.map(|place| candidates[place].clone());
-        let named = &candidates[screen.responses[best.responses[0]].candidate];
-        let is_other = |other: &Candidate| (&other.effect, &other.on) != (&named.effect, &named.on);
-        let equivalent = equivalent.filter(is_other).collect();
-        let half = half_way(&best, &trials);
-        accept(&mut found, (&candidates, &screen), best, (half, equivalent));
+        let searched = (candidates, screen, trials);
+        let Some(named) = named(setting, found.best(), searched, floor, said) else {
+            break;
+        };
+        accept(&mut found, named);
         thin(setting, &mut found, said);
     }
     // What something named leaves may be its own misfit.
@@ -176,9 +176,6 @@ pub fn search(
     }
     Ok(found)
 }
-
-/// Candidates, what they promise, and those of them that were fitted in earnest.
-type Searched = (Vec<Candidate>, Screen, Vec<Trial>);
 
 /// How motions are looked at while candidates are screened.
 #[derive(Clone, Copy, PartialEq)]
@@ -320,20 +317,6 @@ fn without_play(setting: &Setting<'_>, fit: &Fit) -> Option<Fit> {
     setting.fit(texts, fit.unknowns.clone(), theta).ok()
 }
 
-/// The parameters of a model that no unknown moves.
-fn shifts(fit: &Fit) -> Vec<Candidate> {
-    let is_known = |name: &str| {
-        let of = |unknown: &Unknown| match &unknown.what {
-            What::Parameter(known) | What::Inverse(known) => known == name,
-            What::Gain(_) | What::Bias(_) | What::Delay(_) => false,
-        };
-        fit.unknowns.iter().any(of)
-    };
-    let parameters = fit.plant.model.parameters.iter();
-    let free = parameters.filter(|parameter| !is_known(&parameter.name));
-    free.filter_map(candidates::shift).collect()
-}
-
 /// Declared parameters and sensors that may be off by more than their priors allow.
 fn released(setting: &Setting<'_>, fit: &Fit) -> Vec<Candidate> {
     let unknowns = fit
@@ -370,50 +353,6 @@ fn released(setting: &Setting<'_>, fit: &Fit) -> Vec<Candidate> {
         candidates::released(effect, &on, says, experiment, &unknown.what)
     };
     unknowns.map(candidate).collect()
-}
-
-/// The believed trial that leaves least; a pair only if it leaves clearly less than the best
-/// single effect.
-fn best_of(trials: &[Trial]) -> usize {
-    let left = |place: &usize| trials[*place].fit.left();
-    let least = |count: fn(usize) -> bool| {
-        let places = (0..trials.len()).filter(|place| count(trials[*place].responses.len()));
-        places.min_by(|a, b| left(a).total_cmp(&left(b)))
-    };
-    match (least(|n| n == 1), least(|n| n > 1)) {
-        (Some(single), Some(pair)) => {
-            let (one, two) = (&trials[single].fit, &trials[pair].fit);
-            let better = 1.0 - rule::HELD_OUT;
-            let is_clear = two.train.pooled < better * one.train.pooled
-                && two.test.pooled < better * one.test.pooled;
-            if is_clear { pair } else { single }
-        }
-        (one, two) => one.or(two).unwrap_or(0),
-    }
-}
-
-/// Which candidates the record does not tell from the best one: their responses are alike, and
-/// so is what they leave of the test records.
-fn indistinct<'t>(
-    best: &'t Trial,
-    others: &'t [Trial],
-    screen: &'t Screen,
-) -> impl Iterator<Item = usize> + 't {
-    let single = |trial: &Trial| match trial.responses[..] {
-        [response] => Some(response),
-        _ => None,
-    };
-    others.iter().filter_map(move |other| {
-        let (a, b) = (single(best)?, single(other)?);
-        let told = evidence(&best.fit, &other.fit, &[]);
-        let alike = screen.similarity(a, b) > rule::ALIKE;
-        // Fits that leave the same to the last digit have no error to be judged by.
-        let errors = told.held_out_errors;
-        let as_good = errors.is_nan()
-            || errors.abs() < rule::STANDARD_ERRORS
-            || told.held_out.abs() < rule::TOLD_APART;
-        (alike && as_good).then(|| screen.responses[b].candidate)
-    })
 }
 
 /// The candidates and their responses: those that repeat with an angle, which are many, only
@@ -506,47 +445,30 @@ fn note_rejected(
     }
 }
 
-/// The half of a pair that was believed alone, and the test gap that it left: a step of the way.
-fn half_way(best: &Trial, others: &[Trial]) -> Option<(usize, f64)> {
-    let is_half = |trial: &&Trial| match trial.responses[..] {
-        [response] => best.responses.len() > 1 && best.responses.contains(&response),
-        _ => false,
-    };
-    let halves = others.iter().filter(is_half);
-    let left = |trial: &&Trial| trial.fit.left();
-    let half = halves.min_by(|a, b| left(a).total_cmp(&left(b)))?;
-    Some((half.responses[0], half.fit.test.pooled))
-}
-
-/// Takes a trial over, with the candidates that cannot be told from it.
-fn accept(
-    found: &mut Found,
-    (candidates, screen): (&[Candidate], &Screen),
-    best: Trial,
-    (half, equivalent): (Option<(usize, f64)>, Vec<Candidate>),
-) {
-    let before = found.best();
+/// Takes what is named over, with the candidates that cannot be told from it.
+fn accept(found: &mut Found, named: Named) {
+    let (before, best) = (found.best(), named.trial);
     let gap = (before.test.pooled, best.fit.test.pooled);
     let evidence = best
         .verdict
-        .clone()
         .unwrap_or_else(|_| evidence(before, &best.fit, &best.own));
-    let accepted = best.responses.iter().enumerate().map(|(number, response)| {
+    let accepted = named.candidates.into_iter().enumerate();
+    let accepted = accepted.map(|(number, candidate)| {
         let own = best.own.iter().filter(|own| own.effect == number);
         Accepted {
-            candidate: candidates[screen.responses[*response].candidate].clone(),
+            candidate,
             unknowns: own.map(|own| own.place).collect(),
-            equivalent: equivalent.clone(),
+            equivalent: named.equivalent.clone(),
             evidence: evidence.clone(),
-            test_gap: match half {
-                Some((first, between)) if first == *response => (gap.0, between),
+            test_gap: match named.half {
+                Some((first, between)) if first == number => (gap.0, between),
                 Some((_, between)) => (between, gap.1),
                 None => gap,
             },
         }
     });
     let mut accepted: Vec<Accepted> = accepted.collect();
-    if half.is_some_and(|(first, _)| first != best.responses[0]) {
+    if named.half.is_some_and(|(first, _)| first != 0) {
         accepted.reverse();
     }
     found.accepted.extend(accepted);

@@ -15,7 +15,9 @@ impl Round<'_> {
     /// Fits what may stand in the place of a trial from where that ended, and takes over what
     /// leaves less than it did before.
     pub fn swap(&self, trials: &mut Vec<Trial>, answer: usize, effects: &[Effect]) {
-        let sketches = self.in_place_of(trials, answer, effects).unwrap_or_default();
+        let sketches = self
+            .in_place_of(trials, answer, effects)
+            .unwrap_or_default();
         for new in self.completed(sketches) {
             let known = trials
                 .iter_mut()
@@ -59,8 +61,7 @@ impl Round<'_> {
             }
             Some((*rival, found))
         };
-        let (rivals, there): (Vec<usize>, Vec<Candidate>) =
-            rivals.iter().filter_map(again).unzip();
+        let (rivals, there): (Vec<usize>, Vec<Candidate>) = rivals.iter().filter_map(again).unzip();
         (self.said)(&format!(
             "screening {} in the place of {}",
             there.len(),
@@ -77,9 +78,7 @@ impl Round<'_> {
         }
         let places = (0..screen.responses.len()).map(|place| (place, screen.left(&[place])));
         let mut found: Vec<(usize, f64, Vec<f64>)> = places
-            .map(|(place, (left, sizes))| {
-                (rivals[screen.responses[place].candidate], left, sizes)
-            })
+            .map(|(place, (left, sizes))| (rivals[screen.responses[place].candidate], left, sizes))
             .filter(|(_, promised, _)| *promised < rule::RIVAL * left)
             .collect();
         found.sort_by(|a, b| a.1.total_cmp(&b.1));
@@ -90,7 +89,9 @@ impl Round<'_> {
                 deleted: None,
                 sizes,
             };
-            let sketch = self.begun_at(&set, (trial, left), shaped.unwrap_or(1.0)).ok()?;
+            let sketch = self
+                .begun_at(&set, (trial, left), shaped.unwrap_or(1.0))
+                .ok()?;
             Some((set, sketch))
         });
         Some(sketches.collect())

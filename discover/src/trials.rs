@@ -102,6 +102,17 @@ impl Round<'_> {
         trials
     }
 
+    /// The candidates that look like one of them, as far as they promise enough, the most alike
+    /// first; at most [`rule::MOST_FITS`].
+    pub fn alike(&self, response: usize) -> Vec<Trial> {
+        let similar = |other: &usize| self.screen.similarity(response, *other);
+        let mut alike = self.ranked();
+        alike.retain(|other| *other != response && similar(other) > rule::ALIKE);
+        alike.sort_by(|a, b| similar(b).total_cmp(&similar(a)));
+        alike.truncate(rule::MOST_FITS);
+        self.completed(self.sketched(self.chosen(&alike)))
+    }
+
     /// Those of the ranked that are begun: of what repeats with an angle, of which there is so
     /// much that some is lucky, half as many, and of the orders of one effect at one place the
     /// two best.
@@ -376,7 +387,9 @@ impl Round<'_> {
                 .map(|place| unknowns[place].what.stated(theta[place]))
                 .collect();
             let candidate = &self.candidates[response.candidate];
-            texts = self.setting.with((&texts.0, &texts.1), candidate, &values)?;
+            texts = self
+                .setting
+                .with((&texts.0, &texts.1), candidate, &values)?;
         }
         Ok(texts)
     }
