@@ -10,7 +10,8 @@
 //! [`catalogue`], [`sites`] and [`candidates`] (what may be missing), [`response`] with
 //! [`mod@driven`] and [`mod@tried`] (what each candidate does), [`mod@screen`] (what it
 //! promises), [`mod@judge`] by [`rule`] (what is believed),
-//! [`trials`] (fits in earnest; `swaps`: others in an answer's place), [`thinned`] (what is needed
+//! [`trials`] (fits in earnest; `swaps` and `halves`: others in the place of an answer,
+//! or of one of two), [`thinned`] (what is needed
 //! no more), [`mod@named`] (which of them is the answer, and which are one), [`undeclared`]
 //! (parameters that nobody doubts), [`mod@search`] (all of it in turn);
 //! [`mod@empirical`] (what is left and has no name);
@@ -31,6 +32,7 @@ pub mod extend;
 pub mod fitting;
 pub mod floor;
 pub mod gate;
+mod halves;
 pub mod judge;
 pub mod labels;
 pub mod locate;

@@ -6,7 +6,7 @@ use crate::fitting::{Fit, Setting};
 use crate::judge::evidence;
 use crate::rule;
 use crate::screen::Screen;
-use crate::trials::Trial;
+use crate::trials::{PARTS, Round, Trial};
 use crate::undeclared;
 
 /// Candidates, what they promise, and those of them that were fitted in earnest.
@@ -18,8 +18,8 @@ pub struct Named {
     pub candidates: Vec<Candidate>,
     /// The trial.
     pub trial: Trial,
-    /// What cannot be told from it.
-    pub equivalent: Vec<Candidate>,
+    /// What cannot be told from each of them.
+    pub equivalent: Vec<Vec<Candidate>>,
     /// Of a pair the half that was believed alone, by its number, and the test gap that it left.
     pub half: Option<(usize, f64)>,
 }
@@ -34,7 +34,7 @@ pub fn named(
     floor: f64,
     said: &(dyn Fn(&str) + Sync),
 ) -> Option<Named> {
-    let named = best(searched)?;
+    let named = best(with_other_halves(setting, fit, searched, floor, said))?;
     let [candidate] = &named.candidates[..] else {
         return Some(named);
     };
@@ -59,27 +59,71 @@ pub fn named(
         )
     });
     let undeclared: Vec<Candidate> = untold.map(|trial| of(trial).clone()).collect();
+    let equivalent = [&named.equivalent[0][..], &undeclared].concat();
     Some(Named {
-        equivalent: [named.equivalent, undeclared].concat(),
+        equivalent: vec![equivalent],
         ..named
     })
 }
 
-/// The believed trial that is best, with what cannot be told from it among the others.
+/// The trials of a round with, if a pair is best, further pairs with what looks like one of its
+/// halves.
+fn with_other_halves(
+    setting: &Setting<'_>,
+    fit: &Fit,
+    (candidates, screen, mut trials): Searched,
+    floor: f64,
+    said: &(dyn Fn(&str) + Sync),
+) -> Searched {
+    let round = Round {
+        setting,
+        fit,
+        candidates: &candidates,
+        screen: &screen,
+        is_whole: fit.train.pooled < rule::FAR || !setting.fits_starts(),
+        most: rule::MOST_SKETCHES,
+        parts: &PARTS,
+        floor,
+        said,
+    };
+    if let Some(best) = best_of(&trials) {
+        let mut further = round.other_halves(&trials, best);
+        further.retain(|trial| trial.verdict.is_ok());
+        trials.extend(further);
+    }
+    (candidates, screen, trials)
+}
+
+/// The believed trial that is best, with what cannot be told from it among the others. Of those
+/// that cannot, the one with fewest unknowns is the answer: what more of them do, these do not
+/// need.
 fn best((candidates, screen, mut trials): Searched) -> Option<Named> {
-    let trial = trials.remove(best_of(&trials)?);
+    let least = best_of(&trials)?;
+    let is_simpler = |place: &usize| {
+        let (other, least) = (&trials[*place], &trials[least]);
+        other.own.len() < least.own.len() && untold_half(least, other, &screen).is_some()
+    };
+    let simpler = (0..trials.len()).filter(is_simpler);
+    let best = simpler
+        .min_by_key(|place| trials[*place].own.len())
+        .unwrap_or(least);
+    let trial = trials.remove(best);
     let candidate = |response: usize| &candidates[screen.responses[response].candidate];
-    let own: Vec<Candidate> = trial
-        .responses
-        .iter()
+    let own: Vec<Candidate> = (trial.responses.iter())
         .map(|response| candidate(*response).clone())
         .collect();
-    let is_other = |other: &Candidate| (&other.effect, &other.on) != (&own[0].effect, &own[0].on);
-    let equivalent = indistinct(&trial, &trials, &screen)
-        .into_iter()
-        .map(|response| candidate(response).clone());
+    let mut equivalent = vec![Vec::new(); own.len()];
+    for other in &trials {
+        let Some((half, response)) = untold_half(&trial, other, &screen) else {
+            continue;
+        };
+        let (other, own) = (candidate(response), &own[half]);
+        if (&other.effect, &other.on) != (&own.effect, &own.on) {
+            equivalent[half].push(other.clone());
+        }
+    }
     Some(Named {
-        equivalent: equivalent.filter(is_other).collect(),
+        equivalent,
         half: half_way(&trial, &trials),
         candidates: own,
         trial,
@@ -110,20 +154,22 @@ fn leaves_clearly_less(one: &Fit, other: &Fit) -> bool {
     one.train.pooled < better * other.train.pooled && one.test.pooled < better * other.test.pooled
 }
 
-/// Of the others, those single ones that the records do not tell from the best one: their
-/// responses.
-fn indistinct(best: &Trial, others: &[Trial], screen: &Screen) -> Vec<usize> {
-    let [own] = best.responses[..] else {
-        return Vec::new();
-    };
-    let untold = |other: &Trial| match other.responses[..] {
-        [response] => {
-            let similarity = screen.similarity(own, response);
-            is_untold(&best.fit, &other.fit, similarity).then_some(response)
-        }
-        _ => None,
-    };
-    others.iter().filter_map(untold).collect()
+/// What of a trial the records do not tell from another's, if that is as large and differs in
+/// nothing else: its number, and the other's response.
+fn untold_half(trial: &Trial, other: &Trial, screen: &Screen) -> Option<(usize, usize)> {
+    if trial.responses.len() != other.responses.len() {
+        return None;
+    }
+    let differ = |a: &[usize], b: &[usize]| a.iter().position(|response| !b.contains(response));
+    let half = differ(&trial.responses, &other.responses)?;
+    let response = other.responses[differ(&other.responses, &trial.responses)?];
+    let shared = trial
+        .responses
+        .iter()
+        .filter(|own| other.responses.contains(own));
+    let is_rest = shared.count() + 1 == trial.responses.len();
+    let similarity = screen.similarity(trial.responses[half], response);
+    (is_rest && is_untold(&trial.fit, &other.fit, similarity)).then_some((half, response))
 }
 
 /// Whether records do not tell what led to two fits: the responses are alike, and so is what the

@@ -278,16 +278,21 @@ impl Screen {
         }
     }
 
+    /// Where a response's columns stand, if only as those of a nuisance that it releases.
+    fn columns(&self, place: usize) -> std::ops::Range<usize> {
+        let response = &self.responses[place];
+        match response.released {
+            Some(place) => place..place + 1,
+            None => response.columns.clone(),
+        }
+    }
+
     /// A response at its best size as a combination of columns.
     fn direction(&self, products: &DMatrix<f64>, place: usize) -> DVector<f64> {
         let response = &self.responses[place];
         let mut direction = DVector::zeros(products.ncols());
         let all_zero = response.values.iter().all(|v| *v == 0.0);
-        let columns = match response.released {
-            Some(place) => place..place + 1,
-            None => response.columns.clone(),
-        };
-        for (number, column) in columns.enumerate() {
+        for (number, column) in self.columns(place).enumerate() {
             direction[column] = if all_zero || response.values.is_empty() {
                 1.0 / products[(column, column)].sqrt().max(f64::MIN_POSITIVE)
             } else {
@@ -320,16 +325,42 @@ impl Screen {
         }
     }
 
-    /// How much two responses look alike, 0 to 1, once the nuisances are taken out.
+    /// How much two responses look alike, 0 to 1, once the nuisances are taken out: how well
+    /// either can do what the other does. One of several parameters can do what one of few does
+    /// even where its own best size is another.
     pub fn similarity(&self, a: usize, b: usize) -> f64 {
         let (products, released) = self.released(&[a, b]);
         let at = (&*products, &released[..]);
-        let (a, b) = (self.direction(&products, a), self.direction(&products, b));
-        let sizes = self.without_nuisances(at, &a, &a) * self.without_nuisances(at, &b, &b);
-        if sizes > 0.0 {
-            (self.without_nuisances(at, &a, &b) / sizes.sqrt()).abs()
-        } else {
-            0.0
+        self.done_by(at, a, b).max(self.done_by(at, b, a))
+    }
+
+    /// The cosine between what a response does at its best size and the nearest of all that
+    /// another can do.
+    fn done_by(&self, at: (&DMatrix<f64>, &[usize]), response: usize, other: usize) -> f64 {
+        let wanted = self.direction(at.0, response);
+        let columns: Vec<DVector<f64>> = (self.columns(other))
+            .map(|column| {
+                let size = at.0[(column, column)].sqrt().max(f64::MIN_POSITIVE);
+                let mut unit = DVector::zeros(at.0.ncols());
+                unit[column] = 1.0 / size;
+                unit
+            })
+            .collect();
+        let count = columns.len();
+        let gram = DMatrix::from_fn(count, count, |r, c| {
+            let ridge = if r == c { rule::RIDGE } else { 0.0 };
+            self.without_nuisances(at, &columns[r], &columns[c]) + ridge
+        });
+        let right = DVector::from_fn(count, |r, _| {
+            self.without_nuisances(at, &columns[r], &wanted)
+        });
+        let size = self.without_nuisances(at, &wanted, &wanted);
+        match gram.cholesky() {
+            Some(factor) if size > 0.0 => {
+                let done = right.dot(&factor.solve(&right));
+                (done / size).max(0.0).sqrt().min(1.0)
+            }
+            _ => 0.0,
         }
     }
 }
@@ -360,4 +391,63 @@ fn system(products: &DMatrix<f64>, places: &[usize]) -> (DMatrix<f64>, DVector<f
         .unwrap_or_else(|| DVector::zeros(count));
     let a = DMatrix::from_fn(count, count, |r, c| lower[(c, r)] * scale[c]);
     (a, b)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::{Response, Screen};
+
+    /// Responses with these columns, the last of which is the residual, and their best sizes.
+    fn screen(columns: &DMatrix<f64>, of: &[(std::ops::Range<usize>, &[f64])]) -> Screen {
+        let response =
+            |(candidate, (columns, values)): (usize, &(std::ops::Range<usize>, &[f64]))| Response {
+                candidate,
+                trials: Vec::new(),
+                columns: columns.clone(),
+                released: None,
+                visible: 1.0,
+                gain: 0.0,
+                values: values.to_vec(),
+            };
+        Screen {
+            products: columns.transpose() * columns,
+            nuisances: 0,
+            priors: Vec::new(),
+            bounds: Vec::new(),
+            limits: Vec::new(),
+            responses: of.iter().enumerate().map(response).collect(),
+            silent: Vec::new(),
+            numbers: columns.nrows() as f64,
+        }
+    }
+
+    #[test]
+    fn what_of_many_parameters_holds_what_of_one_looks_like_it() {
+        // Two parameters that do x and y, at their best size x alone; one does 3 x + 4 y, one z.
+        let columns = DMatrix::from_row_slice(
+            3,
+            5,
+            &[
+                1.0, 0.0, 3.0, 0.0, 1.0, //
+                0.0, 1.0, 4.0, 0.0, 0.0, //
+                0.0, 0.0, 0.0, 2.0, 0.0,
+            ],
+        );
+        let of: [(std::ops::Range<usize>, &[f64]); 3] =
+            [(0..2, &[1.0, 0.0]), (2..3, &[0.2]), (3..4, &[1.0])];
+        let screen = screen(&columns, &of);
+        assert!((screen.similarity(0, 1) - 1.0).abs() < 1e-6);
+        assert!((screen.similarity(1, 0) - 1.0).abs() < 1e-6);
+        assert!(screen.similarity(0, 2) < 1e-6 && screen.similarity(1, 2) < 1e-6);
+    }
+
+    #[test]
+    fn single_responses_look_alike_by_the_angle_between_them() {
+        let columns = DMatrix::from_row_slice(2, 3, &[1.0, 3.0, 1.0, 0.0, 4.0, 1.0]);
+        let of: [(std::ops::Range<usize>, &[f64]); 2] = [(0..1, &[-2.0]), (1..2, &[5.0])];
+        // The cosine of the angle in a triangle of sides 3, 4 and 5.
+        assert!((screen(&columns, &of).similarity(0, 1) - 0.6).abs() < 1e-6);
+    }
 }

@@ -458,7 +458,7 @@ fn accept(found: &mut Found, named: Named) {
         Accepted {
             candidate,
             unknowns: own.map(|own| own.place).collect(),
-            equivalent: named.equivalent.clone(),
+            equivalent: named.equivalent[number].clone(),
             evidence: evidence.clone(),
             test_gap: match named.half {
                 Some((first, between)) if first == number => (gap.0, between),

@@ -173,7 +173,7 @@ impl Round<'_> {
     }
 
     /// Sets of candidates begun, side by side; the best first.
-    fn sketched(&self, sets: Vec<Set>) -> Vec<(Set, Sketch)> {
+    pub(crate) fn sketched(&self, sets: Vec<Set>) -> Vec<(Set, Sketch)> {
         let alone = self.screen.left(&[]).0;
         let sketches: Vec<Result<Sketch, String>> =
             sets.par_iter().map(|set| self.sketch(set)).collect();
@@ -344,7 +344,7 @@ impl Round<'_> {
 
     /// Whether two candidates call a parameter alike: one effect at two places. Of these the next
     /// round may add the other.
-    fn share_a_name(&self, a: usize, b: usize) -> bool {
+    pub(crate) fn share_a_name(&self, a: usize, b: usize) -> bool {
         let (a, b) = (self.candidate(a), self.candidate(b));
         let has = |name: &str| b.parameters.iter().any(|other| other.name == name);
         a.parameters.iter().any(|parameter| has(&parameter.name))
