@@ -149,7 +149,7 @@ pub fn best_of(trials: &[Trial]) -> Option<usize> {
 
 /// Whether a fit leaves less than another by what is asked of an effect, on both sets of
 /// records.
-fn leaves_clearly_less(one: &Fit, other: &Fit) -> bool {
+pub fn leaves_clearly_less(one: &Fit, other: &Fit) -> bool {
     let better = 1.0 - rule::HELD_OUT;
     one.train.pooled < better * other.train.pooled && one.test.pooled < better * other.test.pooled
 }

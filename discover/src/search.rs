@@ -12,7 +12,7 @@ use crate::catalogue::Effect;
 use crate::empirical::add_empirical;
 use crate::fitting::{FIRST_PART, Fit, Setting};
 use crate::judge::{Evidence, evidence};
-use crate::named::{Named, Searched, best_of, named};
+use crate::named::{Named, Searched, best_of, leaves_clearly_less, named};
 use crate::rule;
 use crate::screen::{Screen, screen};
 use crate::sites::{plays, sites};
@@ -170,11 +170,31 @@ pub fn search(
         accept(&mut found, named);
         thin(setting, &mut found, said);
     }
-    // What something named leaves may be its own misfit.
-    if found.accepted.is_empty() {
-        add_empirical(setting, &mut found, floor, said);
-    }
+    unnamed(setting, &mut found, floor, said);
     Ok(found)
+}
+
+/// Adds an expression without a name where nothing is named: what something named leaves may be
+/// its own misfit. A number that is off, and leaves much, stands in for something that varies: an
+/// expression that leaves clearly less takes its place.
+fn unnamed(setting: &Setting<'_>, found: &mut Found, floor: f64, said: &(dyn Fn(&str) + Sync)) {
+    let is_shift = |effect: &Accepted| {
+        effect.candidate.released.is_some()
+            || effect.candidate.effect == candidates::PARAMETER_SHIFT
+    };
+    let leaves_little = leaves_less(found.best(), rule::UNNAMED_FROM * floor);
+    if !found.accepted.iter().all(is_shift) || (leaves_little && found.last.is_some()) {
+        return;
+    }
+    let (shifts, with_shifts) = (std::mem::take(&mut found.accepted), found.last.take());
+    add_empirical(setting, found, floor, said);
+    if let Some(with_shifts) = with_shifts {
+        let is_better =
+            (found.last.as_ref()).is_some_and(|last| leaves_clearly_less(last, &with_shifts));
+        if !is_better {
+            (found.accepted, found.last) = (shifts, Some(with_shifts));
+        }
+    }
 }
 
 /// How motions are looked at while candidates are screened.
