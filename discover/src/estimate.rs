@@ -12,11 +12,8 @@ use crate::shooting::{Residual, Shooting};
 /// A step that lowers the sum of squares by less than this part is the last.
 const SETTLED: f64 = 1e-3;
 
-/// The same for a step with all windows followed anew, which costs much more.
-const WORTH_A_STEP: f64 = 0.02;
-
 /// Parts of a step that are tried.
-const PARTS: [f64; 3] = [1.0, 0.3, 0.05];
+pub(crate) const PARTS: [f64; 3] = [1.0, 0.3, 0.05];
 
 /// How the damping of a step grows where it does not help, and shrinks where it does.
 const DAMPING: [f64; 4] = [0.0, 0.03, 1.0, 30.0];
@@ -212,66 +209,8 @@ impl Reduced {
     }
 }
 
-/// How initial states are found at given unknowns, from those at others if they are known:
-/// what is known before, and the states.
-pub type Follow<'f> = dyn Fn(&[f64], Option<&[Vec<f64>]>) -> (StartPrior, Vec<Vec<f64>>) + 'f;
-
-/// Where an approach ended.
-pub struct Approached {
-    /// What is known of the windows' initial states.
-    pub prior: StartPrior,
-    /// The estimate.
-    pub estimate: Estimate,
-    /// Whether further steps would help little.
-    pub is_there: bool,
-}
-
-/// Estimates the unknowns from far away: for every trial of them the initial states are
-/// followed anew through the records, because those that were fitted at wrong unknowns hold
-/// on to what impacts folded. It begins with the best of some.
-pub fn approach(
-    shooting: &Shooting<'_>,
-    begins: &[Vec<f64>],
-    follow: &Follow<'_>,
-    steps: usize,
-) -> Approached {
-    let at = |theta: Vec<f64>, before: Option<&[Vec<f64>]>| {
-        let (prior, starts) = follow(&theta, before);
-        let estimate = evaluated(shooting, &prior, theta, starts);
-        (prior, estimate)
-    };
-    let tried = begins.iter().map(|theta| at(theta.clone(), None));
-    let best = tried.min_by(|a, b| a.1.cost.total_cmp(&b.1.cost));
-    let (mut prior, mut present) = best.unwrap_or_default();
-    let mut is_there = false;
-    for _ in 0..steps {
-        let level = level(shooting, &present);
-        let linear = shooting.linear(&present.theta, &present.starts, level);
-        let windows = eliminated(&prior, &present, &linear);
-        let change = change_of_unknowns(shooting, &present, &windows, 0.0);
-        let better = PARTS.iter().find_map(|part| {
-            let theta = moved_unknowns(shooting, &present, &change, *part);
-            let (prior, next) = at(theta, Some(&present.starts));
-            (next.cost < present.cost).then_some((prior, next))
-        });
-        let Some((new_prior, next)) = better else {
-            is_there = true;
-            break;
-        };
-        is_there = present.cost - next.cost < WORTH_A_STEP * present.cost;
-        (prior, present) = (new_prior, next);
-        if is_there {
-            break;
-        }
-    }
-    Approached {
-        prior,
-        estimate: present,
-        is_there,
-    }
-}
-
-fn moved_unknowns(
+/// The unknowns a part of a change further, as far as that is admissible.
+pub(crate) fn moved_unknowns(
     shooting: &Shooting<'_>,
     present: &Estimate,
     change: &DVector<f64>,
@@ -287,7 +226,8 @@ fn moved_unknowns(
         .collect()
 }
 
-fn eliminated(
+/// The windows' derivatives once their initial states are free.
+pub(crate) fn eliminated(
     prior: &StartPrior,
     present: &Estimate,
     linear: &[Option<Linear>],
@@ -330,7 +270,7 @@ fn step(
 }
 
 /// The bounded least-squares step of the unknowns.
-fn change_of_unknowns(
+pub(crate) fn change_of_unknowns(
     shooting: &Shooting<'_>,
     present: &Estimate,
     windows: &[Option<Reduced>],

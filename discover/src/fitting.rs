@@ -6,6 +6,7 @@ use model_spec::source::Source;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use crate::approach::{Follow, approach, approach_by_secants};
 use crate::candidates::Candidate;
 use crate::dataset::{Dataset, Start};
 use crate::estimate::{self, Estimate, StartPrior, prior_of_start, stacked};
@@ -332,7 +333,7 @@ impl<'d> Setting<'d> {
                 ..shooting
             };
             let follow = self.follow(&shooting, &ranges, FIRST_PART.1);
-            let found = estimate::approach(&shooting, begins, &follow, STEPS.0);
+            let found = approach(&shooting, begins, &follow, STEPS.0);
             (found.estimate, found.is_there)
         } else {
             let theta = begins.first().map_or(&[][..], Vec::as_slice);
@@ -404,7 +405,7 @@ impl<'d> Setting<'d> {
         shooting: &'f Shooting<'f>,
         ranges: &'f [f64],
         horizons: usize,
-    ) -> Box<estimate::Follow<'f>> {
+    ) -> Box<Follow<'f>> {
         Box::new(move |theta, before| {
             let horizons = &HORIZONS[..horizons];
             self.starts(shooting, theta, ranges, horizons, before)
@@ -427,25 +428,19 @@ impl<'d> Setting<'d> {
             starts,
             whole,
             is_there,
-            ..
+            left,
         } = sketch;
         let mut all = self.shooting(&plant, &self.train, &unknowns, &ranges);
         let begins_whole = whole.is_some();
         let (mut prior, near) = match whole {
             None if self.fits_starts() => {
-                let mut theta = theta;
-                if !is_there {
-                    // As far as the beginnings lead; longer windows are folded until it is near.
-                    let first = Shooting {
-                        part: FIRST_PART.0,
-                        ..all
-                    };
-                    let follow = self.follow(&first, &ranges, FIRST_PART.1);
-                    let begun = estimate::approach(&first, &[theta], &follow, FURTHER_STEPS);
-                    theta = begun.estimate.theta;
-                }
+                let first = Shooting {
+                    part: FIRST_PART.0,
+                    ..all
+                };
+                let theta = self.begun(&first, (theta, left), &ranges, is_there);
                 let follow = self.follow(&all, &ranges, HORIZONS.len());
-                let near = estimate::approach(&all, &[theta], &follow, STEPS.0);
+                let near = approach(&all, &[theta], &follow, STEPS.0);
                 (near.prior, near.estimate)
             }
             whole => {
@@ -509,6 +504,27 @@ impl<'d> Setting<'d> {
             test,
             plant,
         })
+    }
+
+    /// Unknowns from a sketch of the beginnings of windows, as far as these lead: longer windows are
+    /// folded until it is near. `left`: what the sketch leaves.
+    fn begun(
+        &self,
+        first: &Shooting<'_>,
+        (theta, left): (Vec<f64>, f64),
+        ranges: &[f64],
+        is_there: bool,
+    ) -> Vec<f64> {
+        let numbers: usize = self.train.list.iter().map(|w| w.measured.len()).sum();
+        let near = rule::CLOSE * rule::CLOSE * first.part * numbers as f64;
+        if is_there && left < near {
+            return theta;
+        }
+        let follow = self.follow(first, ranges, FIRST_PART.1);
+        let steps = if is_there { 0 } else { FURTHER_STEPS };
+        let mut begun = approach(first, &[theta], &follow, steps);
+        approach_by_secants(first, &mut begun, &follow);
+        begun.estimate.theta
     }
 
     /// The windows followed anew at an estimate: those that are better for it begin there.

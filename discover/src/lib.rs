@@ -4,7 +4,7 @@
 //! (whether they can be believed); [`plant`] (a model that can be run), [`runner`] and
 //! [`march`] (how it runs; `beside`: what is not linear; `runge_kutta`: a step), [`windows`] (records in parts), [`smooth`] and [`starts`] (each
 //! part's initial state), [`unknowns`], [`shooting`] (residuals) and [`crew`] (derivatives),
-//! [`estimate`] (with [`bounded`]: least squares), [`fitting`] (a specification fitted),
+//! [`estimate`] (with [`bounded`]: least squares; [`mod@approach`]: from far away), [`fitting`] (a specification fitted),
 //! [`mod@floor`] (what a right model would leave), [`labels`] (whether columns are what they are
 //! called), [`locate`] (where the rest is) by the [`residual_force`];
 //! [`catalogue`], [`sites`] and [`candidates`] (what may be missing), [`response`] with
@@ -18,6 +18,7 @@
 //! [`extend`] (the specification changed), [`document`] and [`report`] (for programs and for
 //! people).
 
+pub mod approach;
 mod beside;
 pub mod bounded;
 pub mod candidates;
