@@ -197,11 +197,14 @@ impl<'d> Setting<'d> {
     ) -> Result<(String, String), String> {
         let written = |text| candidate.written(text, &self.path, values, "");
         let extended = written(text).map_err(|error| error.to_string())?;
-        // What is linear between switches itself belongs to the linear part.
-        let linear = match written(linear) {
-            Ok(extended) if is_linear(&extended, &self.path, self.order) => extended,
-            _ => linear.to_owned(),
+        // What is linear between switches itself belongs to the linear part, or what of it is.
+        let is_linear = |text: &String| is_linear(text, &self.path, self.order);
+        let part = || {
+            let part = candidate.written_linear(linear, &self.path, values)?;
+            part.ok().filter(is_linear)
         };
+        let whole = written(linear).ok().filter(is_linear);
+        let linear = whole.or_else(part).unwrap_or_else(|| linear.to_owned());
         Ok((extended, linear))
     }
 

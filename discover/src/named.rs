@@ -173,16 +173,17 @@ fn untold_half(trial: &Trial, other: &Trial, screen: &Screen) -> Option<(usize, 
 }
 
 /// Whether records do not tell what led to two fits: the responses are alike, and so is what the
-/// fits leave of the test records.
+/// fits leave of the test records and, but for two names of one thing, of the training records.
 fn is_untold(one: &Fit, other: &Fit, similarity: f64) -> bool {
     let told = evidence(one, other, &[]);
     let (part, errors) = (told.held_out.abs(), told.held_out_errors);
     // Fits that leave the same to the last digit have no error to be judged by.
-    let as_good = errors.is_nan()
-        || errors.abs() < rule::STANDARD_ERRORS
-        || part < rule::TOLD_APART
-        || (similarity > rule::SAME && part < rule::HELD_OUT);
-    similarity > rule::ALIKE && as_good
+    let as_good =
+        errors.is_nan() || errors.abs() < rule::STANDARD_ERRORS || part < rule::TOLD_APART;
+    let trained = 1.0 - other.train.pooled / one.train.pooled;
+    let is_told = trained.abs() > rule::TOLD_APART && told.information.abs() > rule::INFORMATION;
+    let is_same = similarity > rule::SAME && part < rule::HELD_OUT;
+    similarity > rule::ALIKE && (is_same || (as_good && !is_told))
 }
 
 /// The half of a pair that was believed alone, and the test gap that it left: a step of the way.

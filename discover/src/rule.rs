@@ -59,8 +59,8 @@ pub const AT_FLOOR: f64 = 1.1;
 pub const ALIKE: f64 = 0.95;
 
 /// And they are one class if the held-out gaps that they leave differ by less than
-/// `STANDARD_ERRORS`, or by less than this part: what is so small may come from how they were
-/// fitted.
+/// `STANDARD_ERRORS`, or by less than this part, and the training gaps by less than this part or
+/// `INFORMATION`: what is so small may come from how they were fitted.
 pub const TOLD_APART: f64 = 0.01;
 
 /// Candidates whose responses agree by more than this are two names of one thing: they are one

@@ -302,7 +302,11 @@ fn round(
             }
         }
     }
-    if !searched.iter().any(is_believed) && (is_first || !is_near) {
+    let is_open = match searched.iter().any(is_believed) {
+        true => is_first && !searched.iter().any(is_close),
+        false => is_first || !is_near,
+    };
+    if is_open {
         let shifts = shifts(fit);
         said(&format!(
             "screening {} parameters of the model",
@@ -310,7 +314,15 @@ fn round(
         ));
         let view = views[0];
         let screen = screen(setting, fit, &shifts, view.part());
-        let trials = round(view, &shifts, &screen, None);
+        let mut trials = round(view, &shifts, &screen, None);
+        // What nobody doubts is off only if nothing else comes near.
+        let others = searched.iter().flat_map(|(_, _, trials)| trials);
+        let others: Vec<&Trial> = others.filter(|trial| trial.verdict.is_ok()).collect();
+        let is_clear = |trial: &Trial| {
+            let clear = |other: &&Trial| leaves_clearly_less(&trial.fit, &other.fit);
+            trial.verdict.is_err() || others.iter().all(clear)
+        };
+        trials.retain(is_clear);
         searched.push((shifts, screen, trials));
     }
     searched
