@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::linear::{Step, along, step};
+use super::linear::{Nudges, SECANTS, SLOPES, Step, along, step};
 use super::windows::{Span, deviated, outputs, run, spans, states};
 use crate::hidden::{Hidden, Sensors};
 use crate::inputs::Drive;
@@ -17,7 +17,7 @@ const GROWING: [f64; 3] = [0.1, 0.3, 1.0];
 const MOST_STEPS: usize = 6;
 
 /// Steps end where the cost falls by less than this part.
-const ENOUGH: f64 = 0.02;
+const ENOUGH: f64 = 0.05;
 
 /// The parts of a step that are tried until one lowers the cost.
 const PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
@@ -129,30 +129,36 @@ impl<'a> Fit<'a> {
         }
     }
 
-    /// What a fit leaves of an effect, in floors: from beginnings of windows, and from whole
-    /// windows at once; the better one. `steps`: of the records.
-    pub fn floors(&self, hidden: &Hidden, steps: usize) -> f64 {
-        let records = self.records(hidden, steps);
+    /// What a fit leaves of an effect, in floors, or not a number where the records are none.
+    /// The better one of a fit of whole windows by slopes, which is right where motion is smooth,
+    /// and of a fit by secants that begins with beginnings of windows, where there are impacts.
+    pub fn floors(&self, hidden: &Hidden) -> f64 {
+        let records = self.records(hidden);
         let begin = self.begin(&records);
-        let mut grown = begin.clone();
+        if !begin.floors().is_finite() {
+            return f64::NAN;
+        }
+        let whole = self.fitted(&records, begin.clone(), SLOPES);
+        let grown = self.grown(&records, begin, SECANTS);
+        whole.floors().min(grown.floors())
+    }
+
+    /// Fits longer and longer beginnings of windows.
+    fn grown(&self, records: &Records, mut estimate: Estimate, nudges: Nudges) -> Estimate {
         for part in GROWING {
             let beginnings = records.beginnings(part);
-            grown = self.fitted(&beginnings, self.continued(&beginnings, grown));
+            estimate = self.fitted(&beginnings, self.continued(&beginnings, estimate), nudges);
         }
-        grown.floors().min(self.fitted(&records, begin).floors())
+        estimate
     }
 
     /// The records of the machine with an effect.
-    fn records(&self, hidden: &Hidden, steps: usize) -> Records {
-        let setup = Setup {
-            steps,
-            ..self.setup.clone()
-        };
+    fn records(&self, hidden: &Hidden) -> Records {
         let mut machine = self.plain.clone();
         let mut sensors = Sensors::right(self.setup.channels.len());
         hidden.hide(&mut machine, self.setup, &mut sensors);
         let all: Vec<_> = (self.drives.iter())
-            .map(|drive| states(&machine, &setup, drive))
+            .map(|drive| states(&machine, self.setup, drive))
             .collect();
         let window = |span: Span| {
             let samples = &all[span.record][span.first..span.first + span.count];
@@ -212,10 +218,10 @@ impl<'a> Fit<'a> {
     }
 
     /// Takes steps until they do not help any more.
-    fn fitted(&self, records: &Records, mut estimate: Estimate) -> Estimate {
+    fn fitted(&self, records: &Records, mut estimate: Estimate, nudges: Nudges) -> Estimate {
         for _ in 0..MOST_STEPS {
             let before = estimate.cost();
-            let mut step = step(self, records, &estimate);
+            let mut step = step(self, records, &estimate, nudges);
             let better = |step: &Step, part: f64| {
                 let moved = self.moved(records, &estimate, step, part);
                 (moved.cost() < before).then_some(moved)

@@ -12,11 +12,26 @@ const REACH: f64 = 3.0;
 /// How far a step takes an initial state that the window does not show, in ranges of its motion.
 const UNSEEN: f64 = 0.02;
 
-/// Nudge of an initial state in ranges of its motion: impacts make much of it.
-const NUDGE: f64 = 1e-6;
+/// How far unknowns are nudged to see what they do.
+#[derive(Clone, Copy)]
+pub struct Nudges {
+    /// Initial states, in ranges of their motion.
+    start: f64,
+    /// Shared unknowns, standard deviations.
+    shared: f64,
+}
 
-/// Nudge of a shared unknown, standard deviations.
-const PART: f64 = 1e-4;
+/// For slopes.
+pub const SLOPES: Nudges = Nudges {
+    start: 1e-6,
+    shared: 1e-4,
+};
+
+/// For secants over about a step: where there are impacts, slopes say nothing of a whole step.
+pub const SECANTS: Nudges = Nudges {
+    start: 1e-2,
+    shared: 0.3,
+};
 
 /// A step of all unknowns.
 pub struct Step {
@@ -35,14 +50,14 @@ struct Linear {
 }
 
 /// The step from an estimate to where a straight line has the least cost.
-pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate) -> Step {
+pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> Step {
     let unknowns = at.shared.len();
     // One for each unknown is its prior.
     let mut normal = DMatrix::identity(unknowns, unknowns);
     let mut right = -&at.shared;
     let mut parts = Vec::new();
     for (window, fitted) in records.windows.iter().zip(&at.windows) {
-        let part = linear(fit, records, window, fitted, &at.shared);
+        let part = linear(fit, records, window, fitted, &at.shared, nudges);
         normal += part.shared.transpose() * &part.shared;
         right += part.shared.transpose() * &part.residual;
         parts.push(part);
@@ -61,16 +76,17 @@ fn linear(
     window: &Window,
     at: &Fitted,
     shared: &DVector<f64>,
+    nudges: Nudges,
 ) -> Linear {
     let (samples, size) = (at.residual.len(), records.ranges.len());
     let longer = |seen: DVector<f64>| seen.resize_vertically(samples + size, 0.0);
     let residual = longer(at.residual.clone());
-    let columns: Vec<DVector<f64>> = of_shared(fit, window, at, shared)
+    let columns: Vec<DVector<f64>> = of_shared(fit, window, at, shared, nudges)
         .into_iter()
         .map(longer)
         .collect();
     let directions = DMatrix::from_columns(&columns);
-    let factors = of_start(fit, records, window, at, shared).qr();
+    let factors = of_start(fit, records, window, at, shared, nudges).qr();
     let (q, r) = (factors.q(), factors.r());
     let taken = (q.transpose() * &residual, q.transpose() * &directions);
     let residual = residual - &q * &taken.0;
@@ -96,15 +112,16 @@ fn of_start(
     window: &Window,
     at: &Fitted,
     shared: &DVector<f64>,
+    nudges: Nudges,
 ) -> DMatrix<f64> {
     let (machine, sensors) = fit.with(shared);
     let directions = machine.directions();
     let samples = at.residual.len();
     let mut starts = DMatrix::zeros(samples + directions.len(), directions.len());
     for (column, direction) in directions.iter().enumerate() {
-        let moved = along(&at.start, direction, NUDGE * records.ranges[column]);
+        let moved = along(&at.start, direction, nudges.start * records.ranges[column]);
         let residual = fit.residual(&machine, &sensors, window, &moved);
-        let change = (&at.residual - residual) * (UNSEEN / NUDGE);
+        let change = (&at.residual - residual) * (UNSEEN / nudges.start);
         starts
             .view_mut((0, column), (samples, 1))
             .copy_from(&change);
@@ -119,19 +136,20 @@ fn of_shared(
     window: &Window,
     at: &Fitted,
     shared: &DVector<f64>,
+    nudges: Nudges,
 ) -> Vec<DVector<f64>> {
     let (machine, _) = fit.with(shared);
     let base = run(&machine, fit.setup, fit.drives, &at.start, window.span);
     let column = |unknown: usize| {
         let mut other = shared.clone();
-        other[unknown] += PART;
+        other[unknown] += nudges.shared;
         let (machine, sensors) = fit.with(&other);
         let residual = if unknown < fit.parameters() {
             fit.residual(&machine, &sensors, window, &at.start)
         } else {
             &window.seen - deviated(&base, fit.setup, &sensors)
         };
-        (&at.residual - residual) / PART
+        (&at.residual - residual) / nudges.shared
     };
     (0..shared.len()).map(column).collect()
 }

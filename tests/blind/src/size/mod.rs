@@ -30,7 +30,10 @@ const MOST_LOOKS: usize = 13;
 const NEAR: f64 = 0.05;
 
 /// The most fits for a size.
-const MOST_FITS: usize = 4;
+const MOST_FITS: usize = 3;
+
+/// Parts of the steps that do for fits; later ones where steps so long are not stable.
+const COARSENESS: [usize; 3] = [8, 4, 2];
 
 /// An effect with its size found.
 pub struct Sized {
@@ -52,14 +55,17 @@ pub fn sized(
     mut hidden: Hidden,
     level: f64,
 ) -> Sized {
-    // Half the steps do for records, and a quarter of these for a fit: it is smoother.
     let coarse = |part: usize| Setup {
         steps: setup.steps / part,
         ..setup.clone()
     };
-    let (records, fits) = (coarse(2), coarse(8));
-    let fit = Fit::new(machine, &fits, drives, declared);
-    let left = |hidden: &Hidden| fit.floors(hidden, records.steps);
+    // Fits have the records of the same steps, or what longer steps do wrong would be left.
+    let left = |hidden: &Hidden| {
+        let of = |part: &usize| Fit::new(machine, &coarse(*part), drives, declared).floors(hidden);
+        let mut all = COARSENESS.iter().map(of);
+        all.find(|floors| floors.is_finite()).unwrap_or(f64::NAN)
+    };
+    let halved = coarse(2);
     if let Some(deviation) = hidden.prior(setup) {
         hidden.amount = deviation * (level.min(10.0) + 2.0);
         let floors = left(&hidden);
@@ -68,8 +74,8 @@ pub fn sized(
     let (begin, largest) = range(&hidden, machine);
     hidden.amount = begin;
     let training = &drives[..setup.records.0];
-    let basis = Basis::new(machine, &records, training, &hidden);
-    let projected = |hidden: &Hidden| basis.floors(machine, &records, training, hidden);
+    let basis = Basis::new(machine, &halved, training, &hidden);
+    let projected = |hidden: &Hidden| basis.floors(machine, &halved, training, hidden);
     let search = Search::new(level, RIGHT);
     (hidden.amount, _) = search.run(hidden.clone(), largest, MOST_LOOKS, projected);
     let search = Search::new(level, NEAR);
@@ -143,13 +149,13 @@ mod tests {
         let friction = hidden(Effect::ViscousFriction, 0.6 * 2.239e-4);
         let projected = Basis::new(&machine, &setup, &drives, &friction)
             .floors(&machine, &setup, &drives, &friction);
-        let fitted = fit.floors(&friction, setup.steps);
+        let fitted = fit.floors(&friction);
         println!("projected {projected}, fitted {fitted}");
         assert!(projected > 1.0, "{projected}");
         assert!(fitted < 0.02, "{fitted}");
         // Four standard deviations: the fourth cannot be fitted.
         let beyond = hidden(Effect::ViscousFriction, 1.2 * 2.239e-4);
-        let fitted = fit.floors(&beyond, setup.steps);
+        let fitted = fit.floors(&beyond);
         println!("beyond {fitted}");
         assert!(fitted > 1.0, "{fitted}");
     }
@@ -168,7 +174,7 @@ mod tests {
         );
         let fit = Fit::new(&machine, &setup, &drives, &[]);
         // Steps half as long change next to nothing.
-        let floors = fit.floors(&found.hidden, setup.steps);
+        let floors = fit.floors(&found.hidden);
         println!("{} {floors}", found.floors);
         assert!(
             (found.floors / 6.0).ln().abs() < super::NEAR,
