@@ -263,3 +263,46 @@ fn figures_add_up() {
     assert!((score.seconds.0 - 7.5).abs() < 1e-12);
     assert!(score::table(&score).contains("false alarms"));
 }
+
+#[test]
+fn a_closure_counts_where_there_was_a_gap_or_no_answer() {
+    let answered = |closure: Value| {
+        let mut answer = answer("effects_found", &[("coulomb_friction", 2.0, None)]);
+        let discovery = answer.discovery.as_mut().expect("an answer");
+        discovery["closure"]["test"] = closure;
+        answer
+    };
+    let late = Outcome {
+        ending: Ending::Timeout,
+        discovery: None,
+        ..answered(Value::Null)
+    };
+    let unexplained = {
+        let mut answer = answer("unexplained", &[]);
+        let discovery = answer.discovery.as_mut().expect("an answer");
+        discovery["closure"]["test"] = json!(0.0);
+        answer
+    };
+    for (group, hidden) in [
+        (Group::Single, vec!["coulomb_friction"]),
+        (Group::Pair, vec!["coulomb_friction", "force_offset"]),
+    ] {
+        let outcomes = [
+            answered(json!(0.9)),
+            answered(Value::Null),
+            late.clone(),
+            unexplained.clone(),
+        ];
+        let judged = |outcome: &Outcome| score::judge(&label(group, &hidden), outcome);
+        let score = score::summed(outcomes.iter().map(judged).collect());
+        let closure = match group {
+            Group::Single => score.single_closure,
+            _ => score.pair_closure,
+        };
+        assert!((closure.mean - 0.3).abs() < 1e-12, "{closure:?}");
+        let counts = (closure.reached, closure.of, closure.without_gap);
+        assert_eq!(counts, (1, 3, 1));
+        assert!(score::table(&score).contains("1 of 3 reach"));
+        assert!(score::table(&score).contains("1 had no gap to close"));
+    }
+}

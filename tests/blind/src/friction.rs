@@ -94,10 +94,8 @@ impl AxisForces {
             - self.asymmetric * v.abs()
             - self.drag * v * v.abs()
             - self.restraint * x
-            - self.gravity.0 * x.sin()
-            - self.gravity.1 * x.cos()
-            + self.ripple.1 * per_turn.cos()
-            + self.ripple.2 * per_turn.sin();
+            - wave((self.gravity.1, self.gravity.0), x)
+            + wave((self.ripple.1, self.ripple.2), per_turn);
         (smooth + strange - dry, bending)
     }
 
@@ -124,6 +122,15 @@ impl AxisForces {
             }
         }
     }
+}
+
+/// A cosine and a sine together; most axes have none, and sines are dear.
+fn wave((cosine, sine): (f64, f64), angle: f64) -> f64 {
+    if cosine == 0.0 && sine == 0.0 {
+        return 0.0;
+    }
+    let (s, c) = angle.sin_cos();
+    cosine * c + sine * s
 }
 
 #[cfg(test)]

@@ -77,7 +77,28 @@ impl Sensors {
             delay: vec![0.0; channels],
         }
     }
+
+    /// What is unknown of each channel, in this order.
+    pub const UNKNOWNS: [Effect; 3] = [Effect::SensorGain, Effect::SensorBias, Effect::SensorDelay];
+
+    /// Off by these, per channel gain, bias and delay, in standard deviations of their priors.
+    pub fn within_priors(setup: &Setup, deviations: &[f64]) -> Self {
+        let mut sensors = Self::right(setup.channels.len());
+        for (place, channel) in setup.channels.iter().enumerate() {
+            let of = &deviations[3 * place..3 * place + 3];
+            sensors.gain[place] = GAIN_PRIOR * of[0];
+            sensors.bias[place] = BIAS_PRIOR * channel.noise * of[1];
+            sensors.delay[place] = DELAY_PRIOR * setup.sample * of[2];
+        }
+        sensors
+    }
 }
+
+/// Standard deviations of the priors of every sensor: of its gain, of its bias in noises, of
+/// its delay in samples.
+const GAIN_PRIOR: f64 = 0.01;
+const BIAS_PRIOR: f64 = 10.0;
+const DELAY_PRIOR: f64 = 0.5;
 
 /// Fall of the Stribeck friction, as a part of the axis' usual speed.
 fn stribeck_speed(machine: &Machine) -> f64 {
@@ -176,9 +197,9 @@ impl Hidden {
     pub fn prior(&self, setup: &Setup) -> Option<f64> {
         let channel = || setup.channels.iter().find(|c| c.name == self.on);
         match self.effect {
-            Effect::SensorDelay => Some(0.5 * setup.sample),
-            Effect::SensorGain => Some(0.01),
-            Effect::SensorBias => channel().map(|c| 10.0 * c.noise),
+            Effect::SensorDelay => Some(DELAY_PRIOR * setup.sample),
+            Effect::SensorGain => Some(GAIN_PRIOR),
+            Effect::SensorBias => channel().map(|c| BIAS_PRIOR * c.noise),
             Effect::ParameterShift => {
                 let declared = setup.uncertain.iter().find(|(name, _)| *name == self.on);
                 declared.map(|(_, relative)| *relative)

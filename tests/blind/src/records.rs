@@ -39,8 +39,8 @@ pub struct Truth {
     pub effect: String,
     /// True values of its parameters, SI, in the order of their names.
     pub parameters: Vec<f64>,
-    /// Root mean square of what it does to the outputs, in noises, with initial states and
-    /// nuisances taken out.
+    /// Root mean square of what is left of it in the outputs, in noises, once initial states and
+    /// nuisances are fitted.
     pub floors: f64,
     /// What the record cannot tell from it: effects and places.
     pub alike: Vec<(String, String)>,
@@ -103,11 +103,16 @@ pub fn make(case: &Case, seed: u64, specifications: &Path, out: &Path) -> std::i
     let drives: Vec<Drive> = (0..count)
         .map(|place| drive(case.machine, &setup, case.manner, place, &mut draw))
         .collect();
-    let training = &drives[..setup.records.0];
     let mut truths = Vec::new();
     for planned in &case.hidden {
-        let hidden = planned.hidden.clone();
-        let sized = size::sized(&machine, &setup, training, hidden, planned.level);
+        let sized = size::sized(
+            &machine,
+            &setup,
+            &drives,
+            &declared,
+            planned.hidden.clone(),
+            planned.level,
+        );
         truths.push(Truth {
             effect: sized.hidden.name(),
             parameters: sized.hidden.parameters(&machine),

@@ -78,7 +78,9 @@ pub struct Arm {
     pub cubic: f64,
     /// Compliance of the joint, rad per N m.
     pub compliance: f64,
-    inverse: Vec<f64>,
+    inverse: [[f64; MODES + 2]; MODES + 2],
+    /// Stiffness of each mode, N/m.
+    bending: [f64; MODES],
 }
 
 /// What does not change between cases.
@@ -127,13 +129,14 @@ impl Arm {
             tip_mass: 0.0,
             cubic: 0.0,
             compliance: 0.0,
-            inverse: Vec::new(),
+            inverse: [[0.0; MODES + 2]; MODES + 2],
+            bending: [0.0; MODES],
         };
         arm.prepare();
         arm
     }
 
-    /// To be called after masses or the number of modes have changed.
+    /// To be called after masses, the modulus or the number of modes have changed.
     pub fn prepare(&mut self) {
         let (_, r_c) = radii();
         let length = given::LENGTH;
@@ -166,7 +169,15 @@ impl Arm {
         let inverse = whole
             .try_inverse()
             .expect("the masses are positive, so the matrix has an inverse");
-        self.inverse = inverse.transpose().as_slice().to_vec();
+        self.inverse = [[0.0; MODES + 2]; MODES + 2];
+        for row in 0..inverse.nrows() {
+            for column in 0..inverse.ncols() {
+                self.inverse[row][column] = inverse[(row, column)];
+            }
+        }
+        let length_cubed = given::LENGTH.powi(3);
+        self.bending =
+            ROOTS.map(|root| self.modulus * given::SECTION * root.powi(4) / length_cubed);
     }
 
     /// Kinetic and potential energy, J, where nothing repeats with an angle.
@@ -183,7 +194,7 @@ impl Arm {
         for i in 0..self.modes {
             energy += 0.5 * mass * rates[4 + i] * rates[4 + i]
                 + 2.0 * mass * length / (ROOTS[i] * ROOTS[i]) * rates[4 + i] * root
-                + 0.5 * self.bending(i) * state[4 + i] * state[4 + i];
+                + 0.5 * self.bending[i] * state[4 + i] * state[4 + i];
         }
         let tip_rate = length * root
             + (0..self.modes)
@@ -203,11 +214,6 @@ impl Arm {
             energy += 1.5 * mesh.stiffness * (1.0 + mesh.at(mesh.variation, sun).0) * dead * dead;
         }
         energy
-    }
-
-    /// Stiffness of a mode, N/m.
-    fn bending(&self, mode: usize) -> f64 {
-        self.modulus * given::SECTION * ROOTS[mode].powi(4) / given::LENGTH.powi(3)
     }
 
     fn tip(&self, state: &[f64]) -> f64 {
@@ -230,6 +236,28 @@ impl Arm {
         state[3] = 0.0;
         state[COORDINATES + 3] = 0.0;
         state
+    }
+
+    /// Directions in which initial states of a model with this many modes can be moved: first
+    /// everything turning together, then what deflects the meshes. Derivatives of the latter are
+    /// huge, and would drown the former if coordinates were moved one by one.
+    pub fn directions(modes: usize) -> Vec<Vec<f64>> {
+        let lever = radii().1 * given::PRESSURE_ANGLE.cos();
+        let of = |parts: &[(usize, f64)]| {
+            let mut direction = vec![0.0; STATE];
+            for (place, part) in parts {
+                direction[*place] = *part;
+            }
+            direction
+        };
+        let mut directions = Vec::new();
+        for of_rates in [0, COORDINATES] {
+            let together = [(0, 2.0 * lever), (1, lever), (2, 1.0)];
+            directions.push(of(&together.map(|(place, part)| (of_rates + place, part))));
+            let single = [0, 1].into_iter().chain(4..4 + modes);
+            directions.extend(single.map(|place| of(&[(of_rates + place, 1.0)])));
+        }
+        directions
     }
 
     /// Places of the states that a model with this many modes has, without bristles.
@@ -317,12 +345,12 @@ impl Motion for Arm {
         let cubic = self.cubic * self.tip(at).powi(3);
         for i in 0..self.modes {
             let bent = at[4 + i] + self.loss * moving[4 + i];
-            forces[1 + yields + i] = -self.bending(i) * bent - cubic * end_value(i);
+            forces[1 + yields + i] = -self.bending[i] * bent - cubic * end_value(i);
         }
-        let size = 1 + yields + self.modes;
+        // Rows and columns that there are not are zero.
         let acceleration = |row: usize| -> f64 {
-            let row = &self.inverse[row * size..(row + 1) * size];
-            row.iter().zip(&forces).map(|(a, b)| a * b).sum()
+            let row = self.inverse[row].iter().zip(&forces);
+            row.map(|(a, b)| a * b).sum()
         };
         let turned = acceleration(0);
         rates[COORDINATES + 2] = turned;

@@ -161,6 +161,17 @@ impl Machine {
         }
     }
 
+    /// Directions in which the initial states of the model can be moved: they span
+    /// [`Machine::states_of_model`], what moves together first.
+    pub fn directions(&self) -> Vec<Vec<f64>> {
+        match self {
+            Machine::Arm(_) => Arm::directions(2),
+            Machine::Stage(_) | Machine::Pendulum(_) => {
+                vec![vec![1.0, 0.0, 0.0], vec![0.0, 1.0, 0.0]]
+            }
+        }
+    }
+
     /// A state as a machine with nothing hidden has it.
     pub fn plain_state(&self, state: &[f64]) -> Vec<f64> {
         match self {
@@ -193,9 +204,12 @@ impl Machine {
     pub fn scale(&mut self, parameter: &str, factor: f64) -> bool {
         let value = match (self, parameter) {
             (Machine::Arm(arm), "b_m") => &mut arm.b_m,
-            (Machine::Arm(arm), "E") => &mut arm.modulus,
-            (Machine::Arm(arm), "m_c") => {
-                arm.carrier_mass *= factor;
+            (Machine::Arm(arm), "E" | "m_c") => {
+                let value = match parameter {
+                    "E" => &mut arm.modulus,
+                    _ => &mut arm.carrier_mass,
+                };
+                *value *= factor;
                 arm.prepare();
                 return true;
             }

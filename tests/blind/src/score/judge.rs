@@ -32,7 +32,7 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
         wrong_signs: 0,
         intervals: (0, 0),
         refitted: (0, 0),
-        closure: discovery.and_then(|d| d["closure"]["test"].as_f64()),
+        closure: closure(outcome),
         seconds: outcome.seconds,
     };
     for found in effects {
@@ -53,6 +53,14 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
         judged.refitted = refitted(label, discovery);
     }
     judged
+}
+
+/// Closure on held-out records; nothing is closed where there is no answer.
+fn closure(outcome: &Outcome) -> Option<f64> {
+    match (outcome.ending, &outcome.discovery) {
+        (Ending::Answered, Some(discovery)) => discovery["closure"]["test"].as_f64(),
+        _ => Some(0.0),
+    }
 }
 
 fn judgement(label: &Label, outcome: &Outcome, effects: &[Value]) -> Judgement {

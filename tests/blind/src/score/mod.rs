@@ -37,7 +37,8 @@ pub struct Judged {
     pub intervals: (usize, usize),
     /// The same for refitted parameters.
     pub refitted: (usize, usize),
-    /// Closure on held-out records.
+    /// Closure on held-out records: none where an answer says that there was no gap to close,
+    /// nothing where there is no answer.
     pub closure: Option<f64>,
     /// How long it took, s.
     pub seconds: f64,
@@ -81,8 +82,8 @@ pub struct Score {
     pub intervals: (usize, usize),
     /// Intervals of refitted parameters.
     pub refitted: (usize, usize),
-    /// Single effects of 3 floors or more: mean closure of the answered, those of 0.8 or more,
-    /// and all of them.
+    /// Single effects of 3 floors or more: mean closure, those of 0.8 or more, all that had a
+    /// gap, and those that had none.
     pub single_closure: Closure,
     /// Pairs: the same with 0.6.
     pub pair_closure: Closure,
@@ -103,12 +104,14 @@ pub struct Score {
 /// Closures of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Closure {
-    /// Their mean, an absent one counted as 0.
+    /// Their mean where there is one.
     pub mean: f64,
     /// How many reach what they should.
     pub reached: usize,
-    /// Of how many.
+    /// Of how many that have one.
     pub of: usize,
+    /// How many have none: there was no gap to close.
+    pub without_gap: usize,
 }
 
 /// Scores the cases of a folder.
@@ -184,10 +187,11 @@ pub fn summed(cases: Vec<Judged>) -> Score {
 }
 
 fn closure(of: &[&Judged], enough: f64) -> Closure {
-    let values = || of.iter().map(|judged| judged.closure.unwrap_or(0.0));
+    let values: Vec<f64> = of.iter().filter_map(|judged| judged.closure).collect();
     Closure {
-        mean: values().sum::<f64>() / of.len().max(1) as f64,
-        reached: values().filter(|value| *value >= enough).count(),
-        of: of.len(),
+        mean: values.iter().sum::<f64>() / values.len().max(1) as f64,
+        reached: values.iter().filter(|value| **value >= enough).count(),
+        of: values.len(),
+        without_gap: of.len() - values.len(),
     }
 }

@@ -25,8 +25,8 @@ pub fn table(score: &Score) -> String {
     };
     let closed = |closure: &Closure, enough: f64| {
         format!(
-            "mean {:.2}, {} of {} reach {enough}",
-            closure.mean, closure.reached, closure.of
+            "mean {:.2}, {} of {} reach {enough}, {} had no gap to close",
+            closure.mean, closure.reached, closure.of, closure.without_gap
         )
     };
     for (name, figure) in [

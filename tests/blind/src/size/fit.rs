@@ -1,0 +1,308 @@
+//! The measure that counts: what a fit of the machine without the effect leaves. Initial states
+//! of all windows are free, declared parameters and sensors have priors and a reach (see
+//! `linear`). Impacts give a window many minima, so fits begin with the beginnings of windows.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::linear::{Nudges, SECANTS, SLOPES, Step, along, step};
+use super::windows::{Span, deviated, outputs, run, spans, states};
+use crate::hidden::{Hidden, Sensors};
+use crate::inputs::Drive;
+use crate::machines::{Machine, Setup};
+
+/// Parts of the windows that are fitted one after the other.
+const GROWING: [f64; 3] = [0.1, 0.3, 1.0];
+
+/// The most steps for each of them.
+const MOST_STEPS: usize = 6;
+
+/// Steps end where the cost falls by less than this part.
+const ENOUGH: f64 = 0.05;
+
+/// The parts of a step that are tried until one lowers the cost.
+const PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+
+/// Parts of these parts for a window that is better off with less.
+const LESS: [f64; 3] = [0.5, 0.2, 0.0];
+
+/// A fit of the machine without the effect.
+pub struct Fit<'a> {
+    plain: &'a Machine,
+    pub(super) setup: &'a Setup,
+    pub(super) drives: &'a [Drive],
+    /// True values of the declared parameters, in standard deviations from what is declared.
+    truth: DVector<f64>,
+}
+
+/// Records of a machine with an effect, window by window.
+pub struct Records {
+    pub(super) windows: Vec<Window>,
+    /// How far the states go along each of [`Machine::directions`].
+    pub(super) ranges: Vec<f64>,
+}
+
+/// A window of the records.
+pub struct Window {
+    pub(super) span: Span,
+    start: Vec<f64>,
+    /// In noises.
+    pub(super) seen: DVector<f64>,
+}
+
+/// What was fitted.
+#[derive(Clone)]
+pub struct Estimate {
+    /// Declared parameters, then gain, bias and delay of each sensor, in standard deviations.
+    pub(super) shared: DVector<f64>,
+    pub(super) windows: Vec<Fitted>,
+}
+
+/// An initial state and what it leaves, in noises.
+#[derive(Clone)]
+pub struct Fitted {
+    pub(super) start: Vec<f64>,
+    pub(super) residual: DVector<f64>,
+}
+
+impl Window {
+    fn beginning(&self, part: f64) -> Self {
+        let count = (self.span.count as f64 * part).ceil() as usize;
+        let channels = self.seen.len() / self.span.count;
+        Self {
+            span: Span { count, ..self.span },
+            start: self.start.clone(),
+            seen: self.seen.rows(0, count * channels).into_owned(),
+        }
+    }
+}
+
+impl Records {
+    fn beginnings(&self, part: f64) -> Self {
+        let beginning = |window: &Window| window.beginning(part);
+        Self {
+            windows: self.windows.iter().map(beginning).collect(),
+            ranges: self.ranges.clone(),
+        }
+    }
+}
+
+impl Fitted {
+    fn squares(&self) -> f64 {
+        self.residual.norm_squared()
+    }
+}
+
+impl Estimate {
+    /// Root mean square of what is left, in noises.
+    pub fn floors(&self) -> f64 {
+        let count: usize = self.windows.iter().map(|w| w.residual.len()).sum();
+        (self.squares() / count as f64).sqrt()
+    }
+
+    fn squares(&self) -> f64 {
+        self.windows.iter().map(Fitted::squares).sum()
+    }
+
+    fn cost(&self) -> f64 {
+        self.squares() + self.shared.norm_squared()
+    }
+}
+
+impl<'a> Fit<'a> {
+    /// Of a machine whose declared parameters are these factors of what is declared.
+    pub fn new(
+        plain: &'a Machine,
+        setup: &'a Setup,
+        drives: &'a [Drive],
+        declared: &[(String, f64)],
+    ) -> Self {
+        let deviation = |(name, relative): &(&str, f64)| {
+            let known = declared.iter().find(|(other, _)| other == name);
+            known.map_or(0.0, |(_, factor)| (factor - 1.0) / relative)
+        };
+        let truth: Vec<f64> = setup.uncertain.iter().map(deviation).collect();
+        Self {
+            plain,
+            setup,
+            drives,
+            truth: truth.into(),
+        }
+    }
+
+    /// What a fit leaves of an effect, in floors, or not a number where the records are none.
+    /// The better one of a fit of whole windows by slopes, which is right where motion is smooth,
+    /// and of a fit by secants that begins with beginnings of windows, where there are impacts.
+    pub fn floors(&self, hidden: &Hidden) -> f64 {
+        let records = self.records(hidden);
+        let begin = self.begin(&records);
+        if !begin.floors().is_finite() {
+            return f64::NAN;
+        }
+        let whole = self.fitted(&records, begin.clone(), SLOPES);
+        let grown = self.grown(&records, begin, SECANTS);
+        whole.floors().min(grown.floors())
+    }
+
+    /// Fits longer and longer beginnings of windows.
+    fn grown(&self, records: &Records, mut estimate: Estimate, nudges: Nudges) -> Estimate {
+        for part in GROWING {
+            let beginnings = records.beginnings(part);
+            estimate = self.fitted(&beginnings, self.continued(&beginnings, estimate), nudges);
+        }
+        estimate
+    }
+
+    /// The records of the machine with an effect.
+    fn records(&self, hidden: &Hidden) -> Records {
+        let mut machine = self.plain.clone();
+        let mut sensors = Sensors::right(self.setup.channels.len());
+        hidden.hide(&mut machine, self.setup, &mut sensors);
+        let all: Vec<_> = (self.drives.iter())
+            .map(|drive| states(&machine, self.setup, drive))
+            .collect();
+        let window = |span: Span| {
+            let samples = &all[span.record][span.first..span.first + span.count];
+            let seen = outputs(&machine, self.setup, samples);
+            Window {
+                span,
+                start: self.plain.plain_state(&samples[0]),
+                seen: deviated(&seen, self.setup, &sensors),
+            }
+        };
+        Records {
+            windows: spans(self.setup, self.drives)
+                .into_iter()
+                .map(window)
+                .collect(),
+            ranges: self.ranges(all.iter().flatten()),
+        }
+    }
+
+    fn ranges<'s>(&self, states: impl Iterator<Item = &'s Vec<f64>>) -> Vec<f64> {
+        let directions: Vec<DVector<f64>> =
+            (self.plain.directions().into_iter().map(DVector::from)).collect();
+        let of = DMatrix::from_columns(&directions)
+            .pseudo_inverse(1e-12)
+            .expect("the tolerance is positive");
+        let mut ends = vec![(f64::MAX, f64::MIN); directions.len()];
+        for state in states {
+            let parts = &of * DVector::from_column_slice(state);
+            for (end, part) in ends.iter_mut().zip(parts.iter()) {
+                *end = (end.0.min(*part), end.1.max(*part));
+            }
+        }
+        ends.into_iter().map(|(low, high)| high - low).collect()
+    }
+
+    /// Before any step: parameters and initial states are the true ones.
+    fn begin(&self, records: &Records) -> Estimate {
+        let unknowns = self.truth.len() + 3 * self.setup.channels.len();
+        let begin = |window: &Window| Fitted {
+            start: window.start.clone(),
+            residual: window.seen.clone(),
+        };
+        let estimate = Estimate {
+            windows: records.windows.iter().map(begin).collect(),
+            shared: self.truth.clone().resize_vertically(unknowns, 0.0),
+        };
+        self.continued(records, estimate)
+    }
+
+    /// An estimate with what it leaves of other parts of the windows.
+    fn continued(&self, records: &Records, mut estimate: Estimate) -> Estimate {
+        let (machine, sensors) = self.with(&estimate.shared);
+        for (window, fitted) in records.windows.iter().zip(&mut estimate.windows) {
+            fitted.residual = self.residual(&machine, &sensors, window, &fitted.start);
+        }
+        estimate
+    }
+
+    /// Takes steps until they do not help any more.
+    fn fitted(&self, records: &Records, mut estimate: Estimate, nudges: Nudges) -> Estimate {
+        for _ in 0..MOST_STEPS {
+            let before = estimate.cost();
+            let mut step = step(self, records, &estimate, nudges);
+            let better = |step: &Step, part: f64| {
+                let moved = self.moved(records, &estimate, step, part);
+                (moved.cost() < before).then_some(moved)
+            };
+            let moved = PARTS.iter().find_map(|part| better(&step, *part));
+            let moved = moved.or_else(|| {
+                step.shared.fill(0.0);
+                better(&step, 1.0)
+            });
+            let Some(moved) = moved else {
+                break;
+            };
+            estimate = moved;
+            if estimate.cost() > (1.0 - ENOUGH) * before {
+                break;
+            }
+        }
+        estimate
+    }
+
+    /// The machine and sensors at values of the shared unknowns.
+    pub(super) fn with(&self, shared: &DVector<f64>) -> (Machine, Sensors) {
+        let mut machine = self.plain.clone();
+        for (place, (name, relative)) in self.setup.uncertain.iter().enumerate() {
+            let factor = |deviations: f64| 1.0 + relative * deviations;
+            machine.scale(name, factor(shared[place]) / factor(self.truth[place]));
+        }
+        let of_sensors = &shared.as_slice()[self.truth.len()..];
+        (machine, Sensors::within_priors(self.setup, of_sensors))
+    }
+
+    /// How many of the shared unknowns are parameters.
+    pub(super) fn parameters(&self) -> usize {
+        self.truth.len()
+    }
+
+    /// What a machine leaves of a window, in noises.
+    pub(super) fn residual(
+        &self,
+        machine: &Machine,
+        sensors: &Sensors,
+        window: &Window,
+        start: &[f64],
+    ) -> DVector<f64> {
+        let run = run(machine, self.setup, self.drives, start, window.span);
+        &window.seen - deviated(&run, self.setup, sensors)
+    }
+
+    /// An estimate moved by a part of a step; a window that is better off with less of it has
+    /// less.
+    fn moved(&self, records: &Records, from: &Estimate, step: &Step, part: f64) -> Estimate {
+        let shared = &from.shared + part * &step.shared;
+        let (machine, sensors) = self.with(&shared);
+        let directions = self.plain.directions();
+        let list = records.windows.iter().zip(&from.windows).zip(&step.starts);
+        let windows = list.map(|((window, old), start)| {
+            let trial = |part: f64| {
+                let moves = directions.iter().zip(start.iter());
+                let start = moves.fold(old.start.clone(), |state, (direction, by)| {
+                    along(&state, direction, part * by)
+                });
+                Fitted {
+                    residual: self.residual(&machine, &sensors, window, &start),
+                    start,
+                }
+            };
+            let mut best = trial(part);
+            for less in LESS {
+                if best.squares() < old.squares() {
+                    break;
+                }
+                let other = trial(part * less);
+                if other.squares() < best.squares() {
+                    best = other;
+                }
+            }
+            best
+        });
+        Estimate {
+            windows: windows.collect(),
+            shared,
+        }
+    }
+}

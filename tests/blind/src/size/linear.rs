@@ -1,0 +1,207 @@
+//! Steps of Gauss and Newton: windows to first order around an estimate, initial states
+//! eliminated window by window, and the shared unknowns within their reach.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::fit::{Estimate, Fit, Fitted, Records, Window};
+use super::windows::{deviated, run};
+
+/// Unknowns with priors stay within so many standard deviations: beyond is an effect.
+const REACH: f64 = 3.0;
+
+/// How far a step takes an initial state that the window does not show, in ranges of its motion.
+const UNSEEN: f64 = 0.02;
+
+/// How far unknowns are nudged to see what they do.
+#[derive(Clone, Copy)]
+pub struct Nudges {
+    /// Initial states, in ranges of their motion.
+    start: f64,
+    /// Shared unknowns, standard deviations.
+    shared: f64,
+}
+
+/// For slopes.
+pub const SLOPES: Nudges = Nudges {
+    start: 1e-6,
+    shared: 1e-4,
+};
+
+/// For secants over about a step: where there are impacts, slopes say nothing of a whole step.
+pub const SECANTS: Nudges = Nudges {
+    start: 1e-2,
+    shared: 0.3,
+};
+
+/// A step of all unknowns.
+pub struct Step {
+    /// Standard deviations.
+    pub shared: DVector<f64>,
+    /// Of each window, along [`crate::machines::Machine::directions`].
+    pub starts: Vec<DVector<f64>>,
+}
+
+/// A window to first order, with what its initial state can do taken out.
+struct Linear {
+    residual: DVector<f64>,
+    shared: DMatrix<f64>,
+    /// The step of the initial state: this much, less this much per shared unknown.
+    start: (DVector<f64>, DMatrix<f64>),
+}
+
+/// The step from an estimate to where a straight line has the least cost.
+pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> Step {
+    let unknowns = at.shared.len();
+    // One for each unknown is its prior.
+    let mut normal = DMatrix::identity(unknowns, unknowns);
+    let mut right = -&at.shared;
+    let mut parts = Vec::new();
+    for (window, fitted) in records.windows.iter().zip(&at.windows) {
+        let part = linear(fit, records, window, fitted, &at.shared, nudges);
+        normal += part.shared.transpose() * &part.shared;
+        right += part.shared.transpose() * &part.residual;
+        parts.push(part);
+    }
+    let shared = within(&normal, &right, &at.shared);
+    let start = |part: &Linear| &part.start.0 - &part.start.1 * &shared;
+    Step {
+        starts: parts.iter().map(start).collect(),
+        shared,
+    }
+}
+
+fn linear(
+    fit: &Fit<'_>,
+    records: &Records,
+    window: &Window,
+    at: &Fitted,
+    shared: &DVector<f64>,
+    nudges: Nudges,
+) -> Linear {
+    let (samples, size) = (at.residual.len(), records.ranges.len());
+    let longer = |seen: DVector<f64>| seen.resize_vertically(samples + size, 0.0);
+    let residual = longer(at.residual.clone());
+    let columns: Vec<DVector<f64>> = of_shared(fit, window, at, shared, nudges)
+        .into_iter()
+        .map(longer)
+        .collect();
+    let directions = DMatrix::from_columns(&columns);
+    let factors = of_start(fit, records, window, at, shared, nudges).qr();
+    let (q, r) = (factors.q(), factors.r());
+    let taken = (q.transpose() * &residual, q.transpose() * &directions);
+    let residual = residual - &q * &taken.0;
+    let directions = directions - &q * &taken.1;
+    // The rows of ones keep the triangle from being singular.
+    let inverse = r
+        .try_inverse()
+        .unwrap_or_else(|| DMatrix::zeros(size, size));
+    let scale = DVector::from_column_slice(&records.ranges) * UNSEEN;
+    let inverse = DMatrix::from_diagonal(&scale) * inverse;
+    Linear {
+        residual,
+        shared: directions,
+        start: (&inverse * taken.0, inverse * taken.1),
+    }
+}
+
+/// What a step of the initial state takes from a residual, and below it a row for each
+/// direction that holds it where the window does not show it.
+fn of_start(
+    fit: &Fit<'_>,
+    records: &Records,
+    window: &Window,
+    at: &Fitted,
+    shared: &DVector<f64>,
+    nudges: Nudges,
+) -> DMatrix<f64> {
+    let (machine, sensors) = fit.with(shared);
+    let directions = machine.directions();
+    let samples = at.residual.len();
+    let mut starts = DMatrix::zeros(samples + directions.len(), directions.len());
+    for (column, direction) in directions.iter().enumerate() {
+        let moved = along(&at.start, direction, nudges.start * records.ranges[column]);
+        let residual = fit.residual(&machine, &sensors, window, &moved);
+        let change = (&at.residual - residual) * (UNSEEN / nudges.start);
+        starts
+            .view_mut((0, column), (samples, 1))
+            .copy_from(&change);
+        starts[(samples + column, column)] = 1.0;
+    }
+    starts
+}
+
+/// What a standard deviation of each shared unknown takes from a residual.
+fn of_shared(
+    fit: &Fit<'_>,
+    window: &Window,
+    at: &Fitted,
+    shared: &DVector<f64>,
+    nudges: Nudges,
+) -> Vec<DVector<f64>> {
+    let (machine, _) = fit.with(shared);
+    let base = run(&machine, fit.setup, fit.drives, &at.start, window.span);
+    let column = |unknown: usize| {
+        let mut other = shared.clone();
+        other[unknown] += nudges.shared;
+        let (machine, sensors) = fit.with(&other);
+        let residual = if unknown < fit.parameters() {
+            fit.residual(&machine, &sensors, window, &at.start)
+        } else {
+            &window.seen - deviated(&base, fit.setup, &sensors)
+        };
+        (&at.residual - residual) / nudges.shared
+    };
+    (0..shared.len()).map(column).collect()
+}
+
+/// The step that solves normal equations, with what would leave the reach held at its end.
+fn within(normal: &DMatrix<f64>, right: &DVector<f64>, at: &DVector<f64>) -> DVector<f64> {
+    let mut step = DVector::zeros(at.len());
+    let mut free: Vec<usize> = (0..at.len()).collect();
+    loop {
+        let rest = (right - normal * &step).select_rows(&free);
+        let matrix = normal.select_rows(&free).select_columns(&free);
+        let Some(factor) = matrix.cholesky() else {
+            return step;
+        };
+        let solved = factor.solve(&rest);
+        let outside: Vec<usize> = (free.iter().zip(solved.iter()))
+            .filter(|(place, by)| (at[**place] + **by).abs() > REACH)
+            .map(|(place, by)| {
+                step[*place] = REACH.copysign(at[*place] + by) - at[*place];
+                *place
+            })
+            .collect();
+        if outside.is_empty() {
+            for (place, by) in free.iter().zip(solved.iter()) {
+                step[*place] = *by;
+            }
+            return step;
+        }
+        free.retain(|place| !outside.contains(place));
+    }
+}
+
+/// A state moved along a direction.
+pub fn along(state: &[f64], direction: &[f64], by: f64) -> Vec<f64> {
+    let moved = state.iter().zip(direction);
+    moved.map(|(value, part)| value + by * part).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::within;
+
+    #[test]
+    fn a_step_ends_at_the_reach_and_the_rest_makes_the_best_of_it() {
+        let normal = DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 2.0]);
+        let at = DVector::from_vec(vec![1.0, 0.0]);
+        let free = within(&normal, &DVector::from_vec(vec![1.0, 2.0]), &at);
+        assert!((free - DVector::from_vec(vec![0.0, 1.0])).norm() < 1e-12);
+        // Free it would go to 5; held at 3 it has gone by 2, and 2 x + 2 = 1 is left.
+        let held = within(&normal, &DVector::from_vec(vec![7.75, 1.0]), &at);
+        assert!((held - DVector::from_vec(vec![2.0, -0.5])).norm() < 1e-12);
+    }
+}

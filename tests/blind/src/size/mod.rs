@@ -1,0 +1,186 @@
+//! How large a hidden effect is: the root mean square over the windows of what is left of it, in
+//! noises, once the machine without it has been fitted to the outputs - initial states freely,
+//! declared parameters and sensors within three standard deviations of their priors. Sizes are
+//! sought so that this is a given number of floors: first with one linear projection (see
+//! `projection`), which is quick, then with fits (`fit`), which count.
+
+mod fit;
+mod linear;
+mod projection;
+mod search;
+mod windows;
+
+use crate::hidden::{Effect, Hidden};
+use crate::inputs::Drive;
+use crate::machines::{Machine, Setup};
+pub use fit::Fit;
+use projection::Basis;
+use search::Search;
+
+pub use projection::floors_of_missing_modes;
+pub use windows::window;
+
+/// Sizes by projection are right to this part.
+const RIGHT: f64 = 0.02;
+
+/// The most looks at a size by projection.
+const MOST_LOOKS: usize = 13;
+
+/// Sizes by fits are right to this part.
+const NEAR: f64 = 0.05;
+
+/// The most fits for a size.
+const MOST_FITS: usize = 3;
+
+/// Parts of the steps that do for fits; later ones where steps so long are not stable.
+const COARSENESS: [usize; 3] = [8, 4, 2];
+
+/// An effect with its size found.
+pub struct Sized {
+    /// The effect.
+    pub hidden: Hidden,
+    /// What was reached, in floors.
+    pub floors: f64,
+}
+
+/// Finds the size at which an effect stands `level` times above the floor; for a sensor's
+/// fault or a declared parameter, the size is `level + 2` standard deviations of its prior
+/// (beyond three it is an effect) and the floors are what that comes to. `declared`: true
+/// values of the declared parameters, as factors.
+pub fn sized(
+    machine: &Machine,
+    setup: &Setup,
+    drives: &[Drive],
+    declared: &[(String, f64)],
+    mut hidden: Hidden,
+    level: f64,
+) -> Sized {
+    let coarse = |part: usize| Setup {
+        steps: setup.steps / part,
+        ..setup.clone()
+    };
+    // Fits have the records of the same steps, or what longer steps do wrong would be left.
+    let left = |hidden: &Hidden| {
+        let of = |part: &usize| Fit::new(machine, &coarse(*part), drives, declared).floors(hidden);
+        let mut all = COARSENESS.iter().map(of);
+        all.find(|floors| floors.is_finite()).unwrap_or(f64::NAN)
+    };
+    let halved = coarse(2);
+    if let Some(deviation) = hidden.prior(setup) {
+        hidden.amount = deviation * (level.min(10.0) + 2.0);
+        let floors = left(&hidden);
+        return Sized { hidden, floors };
+    }
+    let (begin, largest) = range(&hidden, machine);
+    hidden.amount = begin;
+    let training = &drives[..setup.records.0];
+    let basis = Basis::new(machine, &halved, training, &hidden);
+    let projected = |hidden: &Hidden| basis.floors(machine, &halved, training, hidden);
+    let search = Search::new(level, RIGHT);
+    (hidden.amount, _) = search.run(hidden.clone(), largest, MOST_LOOKS, projected);
+    let search = Search::new(level, NEAR);
+    let (amount, floors) = search.run(hidden.clone(), largest, MOST_FITS, left);
+    hidden.amount = amount;
+    Sized { hidden, floors }
+}
+
+/// A size to begin with, and the largest that makes sense, SI.
+fn range(hidden: &Hidden, machine: &Machine) -> (f64, f64) {
+    let free = f64::INFINITY;
+    let of_axis = |arm: f64, stage: f64, pendulum: f64| match machine {
+        Machine::Arm(_) => (arm, free),
+        Machine::Stage(_) => (stage, free),
+        Machine::Pendulum(_) => (pendulum, free),
+    };
+    match hidden.effect {
+        // Half of the critical damping of the first mode.
+        Effect::StructuralDamping => (1e-4, 5e-3),
+        Effect::TipMass => (0.01, 1.0),
+        // A softening that leaves a stiffness at the largest deflections.
+        Effect::StiffnessNonlinearity if hidden.sign < 0.0 => (3e7, 1e8),
+        Effect::StiffnessNonlinearity => (1e8, 1e11),
+        Effect::JointCompliance => (1e-4, 0.01),
+        Effect::TransmissionError => (3e-6, 1e-4),
+        Effect::StiffnessVariation => (0.2, 0.6),
+        Effect::AsymmetricBacklash => (1e-5, 2e-5),
+        Effect::ParameterShift => (0.02, 0.5),
+        Effect::QuadraticDrag | Effect::WornFriction => of_axis(1e-4, 10.0, 1e-5),
+        Effect::WeakeningDrive => of_axis(0.01, 0.1, 0.0),
+        _ => of_axis(0.05, 1.0, 1e-4),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Basis, Fit, sized};
+    use crate::hidden::{Effect, Hidden};
+    use crate::inputs::{Drive, Manner, drive};
+    use crate::machines::{Kind, Setup};
+    use crate::random::Draw;
+
+    fn pendulum() -> (Setup, Vec<Drive>) {
+        let setup = Setup {
+            steps: 25,
+            ..Kind::Pendulum.setup()
+        };
+        let mut draw = Draw::new(11, 0);
+        let drives = (0..5).map(|p| drive(Kind::Pendulum, &setup, Manner::Usual, p, &mut draw));
+        let drives = drives.collect();
+        (setup, drives)
+    }
+
+    fn hidden(effect: Effect, amount: f64) -> Hidden {
+        Hidden {
+            effect,
+            on: "theta".to_owned(),
+            order: 0.0,
+            sign: 1.0,
+            phase: 0.0,
+            amount,
+        }
+    }
+
+    #[test]
+    fn nothing_is_left_of_what_a_declared_parameter_does_however_far_from_a_straight_line() {
+        let (setup, drives) = pendulum();
+        let machine = Kind::Pendulum.nominal();
+        let fit = Fit::new(&machine, &setup, &drives, &[]);
+        // 0.6 of the declared friction: two standard deviations.
+        let friction = hidden(Effect::ViscousFriction, 0.6 * 2.239e-4);
+        let projected = Basis::new(&machine, &setup, &drives, &friction)
+            .floors(&machine, &setup, &drives, &friction);
+        let fitted = fit.floors(&friction);
+        println!("projected {projected}, fitted {fitted}");
+        assert!(projected > 1.0, "{projected}");
+        assert!(fitted < 0.02, "{fitted}");
+        // Four standard deviations: the fourth cannot be fitted.
+        let beyond = hidden(Effect::ViscousFriction, 1.2 * 2.239e-4);
+        let fitted = fit.floors(&beyond);
+        println!("beyond {fitted}");
+        assert!(fitted > 1.0, "{fitted}");
+    }
+
+    #[test]
+    fn an_effect_is_left_as_high_as_it_should_stand() {
+        let (setup, drives) = pendulum();
+        let machine = Kind::Pendulum.nominal();
+        let found = sized(
+            &machine,
+            &setup,
+            &drives,
+            &[],
+            hidden(Effect::QuadraticDrag, 0.0),
+            6.0,
+        );
+        let fit = Fit::new(&machine, &setup, &drives, &[]);
+        // Steps half as long change next to nothing.
+        let floors = fit.floors(&found.hidden);
+        println!("{} {floors}", found.floors);
+        assert!(
+            (found.floors / 6.0).ln().abs() < super::NEAR,
+            "{}",
+            found.floors
+        );
+        assert!((floors / found.floors).ln().abs() < 0.02, "{floors}");
+    }
+}

@@ -1,0 +1,179 @@
+//! The quick measure: what an effect does to the outputs less what initial states (freely),
+//! declared parameters and sensors (within their priors) do to first order along the motion of
+//! the machine without it.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::windows::{Span, deviated, outputs, run, spans, states, window};
+use crate::hidden::{Effect, Hidden, Sensors};
+use crate::inputs::Drive;
+use crate::machines::{Machine, Setup};
+
+/// What the null model may fit, as directions of the outputs, in noises.
+pub struct Basis {
+    windows: Vec<Part>,
+}
+
+/// Of one window: orthonormal directions of initial states, and the directions of the declared
+/// unknowns with those taken out.
+struct Part {
+    span: Span,
+    starts: DMatrix<f64>,
+    declared: DMatrix<f64>,
+}
+
+impl Basis {
+    /// Along the motion of a machine; what the effect itself would be is no direction.
+    pub fn new(machine: &Machine, setup: &Setup, drives: &[Drive], hidden: &Hidden) -> Self {
+        let all: Vec<_> = drives
+            .iter()
+            .map(|drive| states(machine, setup, drive))
+            .collect();
+        let part = |span: Span| {
+            let start = &all[span.record][span.first];
+            part(machine, setup, drives, start, span, hidden)
+        };
+        let windows = spans(setup, drives).into_iter().map(part).collect();
+        Self { windows }
+    }
+
+    /// Root mean square of what the effect does, in noises.
+    pub fn floors(&self, plain: &Machine, setup: &Setup, drives: &[Drive], hidden: &Hidden) -> f64 {
+        let mut machine = plain.clone();
+        let mut sensors = Sensors::right(setup.channels.len());
+        hidden.hide(&mut machine, setup, &mut sensors);
+        let runs: Vec<Vec<Vec<f64>>> = drives
+            .iter()
+            .map(|drive| states(&machine, setup, drive))
+            .collect();
+        let mut differences = Vec::new();
+        for part in &self.windows {
+            let span = part.span;
+            let with = &runs[span.record][span.first..span.first + span.count];
+            let start = plain.plain_state(&with[0]);
+            let without = run(plain, setup, drives, &start, span);
+            let deviating = deviated(&outputs(&machine, setup, with), setup, &sensors);
+            differences.push(deviating - without);
+        }
+        self.left(differences)
+    }
+
+    /// Root mean square of what is left of differences in all windows.
+    fn left(&self, mut differences: Vec<DVector<f64>>) -> f64 {
+        let unknowns = self.windows.first().map_or(0, |part| part.declared.ncols());
+        // One for each unknown is its prior: unknowns count in standard deviations.
+        let mut normal = DMatrix::identity(unknowns, unknowns);
+        let mut right = DVector::zeros(unknowns);
+        for (part, difference) in self.windows.iter().zip(&mut differences) {
+            let inside = &part.starts * (part.starts.transpose() * &*difference);
+            *difference -= inside;
+            normal += part.declared.transpose() * &part.declared;
+            right += part.declared.transpose() * &*difference;
+        }
+        let taken = normal
+            .cholesky()
+            .map_or_else(|| DVector::zeros(unknowns), |factor| factor.solve(&right));
+        let (mut sum, mut count) = (0.0, 0);
+        for (part, difference) in self.windows.iter().zip(differences) {
+            count += difference.len();
+            sum += (difference - &part.declared * &taken).norm_squared();
+        }
+        (sum / count as f64).sqrt()
+    }
+}
+
+fn part(
+    machine: &Machine,
+    setup: &Setup,
+    drives: &[Drive],
+    start: &[f64],
+    span: Span,
+    hidden: &Hidden,
+) -> Part {
+    let seen = run(machine, setup, drives, start, span);
+    let mut starts = Vec::new();
+    for place in machine.states_of_model() {
+        let mut moved = start.to_vec();
+        let nudge = 1e-7;
+        moved[place] += nudge;
+        starts.push((run(machine, setup, drives, &moved, span) - &seen) / nudge);
+    }
+    let scaled: Vec<DVector<f64>> = starts
+        .into_iter()
+        .filter(|column| column.norm() > 0.0)
+        .map(|column| column.normalize())
+        .collect();
+    let svd = DMatrix::from_columns(&scaled).svd(true, false);
+    let kept = svd.singular_values.iter().filter(|s| **s > 1e-6).count();
+    let starts = svd.u.map_or_else(
+        || DMatrix::zeros(seen.len(), 0),
+        |u| u.columns(0, kept).into_owned(),
+    );
+    let mut declared = Vec::new();
+    for (name, relative) in &setup.uncertain {
+        if hidden.effect == Effect::ParameterShift && hidden.on == *name {
+            continue;
+        }
+        let mut other = machine.clone();
+        other.scale(name, 1.0 + 1e-2 * relative);
+        declared.push((run(&other, setup, drives, start, span) - &seen) / 1e-2);
+    }
+    declared.extend(of_sensors(&seen, setup, hidden));
+    let declared = DMatrix::from_columns(&declared);
+    let inside = &starts * (starts.transpose() * &declared);
+    Part {
+        span,
+        starts,
+        declared: declared - inside,
+    }
+}
+
+/// One standard deviation of each sensor's gain, bias and delay, except the hidden one's own.
+fn of_sensors(seen: &DVector<f64>, setup: &Setup, hidden: &Hidden) -> Vec<DVector<f64>> {
+    let channels = setup.channels.len();
+    let mut columns = Vec::new();
+    for unknown in 0..3 * channels {
+        let mut one = DVector::zeros(3 * channels);
+        one[unknown] = 1.0;
+        let effect = Sensors::UNKNOWNS[unknown % 3];
+        if hidden.effect == effect && hidden.on == setup.channels[unknown / 3].name {
+            continue;
+        }
+        let sensors = Sensors::within_priors(setup, one.as_slice());
+        columns.push(deviated(seen, setup, &sensors) - seen);
+    }
+    columns
+}
+
+/// What a model with as many modes as it is given leaves of the arm's motion, in floors: what
+/// the truth has beyond it.
+pub fn floors_of_missing_modes(machine: &Machine, setup: &Setup, drives: &[Drive]) -> f64 {
+    let Machine::Arm(arm) = machine else {
+        return 0.0;
+    };
+    let mut model = arm.clone();
+    model.modes = setup.order.unwrap_or(model.modes);
+    model.prepare();
+    let model = Machine::Arm(model);
+    let none = Hidden {
+        effect: Effect::CoulombFriction,
+        on: "theta_s".to_owned(),
+        order: 0.0,
+        sign: 1.0,
+        phase: 0.0,
+        amount: 0.0,
+    };
+    let basis = Basis::new(&model, setup, drives, &none);
+    let differences = basis.windows.iter().map(|part| {
+        let Span {
+            record,
+            first,
+            count,
+        } = part.span;
+        let drive = &drives[record];
+        let truth = &states(machine, setup, drive)[first..first + count];
+        let run = window(&model, setup, drive, &truth[0], first, count);
+        outputs(machine, setup, truth) - outputs(&model, setup, &run)
+    });
+    basis.left(differences.collect())
+}
