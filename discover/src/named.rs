@@ -172,16 +172,17 @@ fn untold_half(trial: &Trial, other: &Trial, screen: &Screen) -> Option<(usize, 
     (is_rest && is_untold(&trial.fit, &other.fit, similarity)).then_some((half, response))
 }
 
-/// Whether records do not tell what led to two fits: the responses are alike, and so is what the
-/// fits leave of the test records and, but for two names of one thing, of the training records.
+/// Whether records do not tell what led to a fit from what led to another: the responses are alike,
+/// and so is what the fits leave of the test records; and, but for two names of one thing, the
+/// other explains the training records as well.
 fn is_untold(one: &Fit, other: &Fit, similarity: f64) -> bool {
     let told = evidence(one, other, &[]);
     let (part, errors) = (told.held_out.abs(), told.held_out_errors);
     // Fits that leave the same to the last digit have no error to be judged by.
     let as_good =
         errors.is_nan() || errors.abs() < rule::STANDARD_ERRORS || part < rule::TOLD_APART;
-    let trained = 1.0 - other.train.pooled / one.train.pooled;
-    let is_told = trained.abs() > rule::TOLD_APART && told.information.abs() > rule::INFORMATION;
+    let is_told = other.train.pooled > (1.0 + rule::TOLD_APART) * one.train.pooled
+        && told.information < -rule::INFORMATION;
     let is_same = similarity > rule::SAME && part < rule::HELD_OUT;
     similarity > rule::ALIKE && (is_same || (as_good && !is_told))
 }
