@@ -13,8 +13,8 @@ use crate::plan::Group;
 pub use judge::judge;
 pub use table::table;
 
-/// Effects below so many floors need not be found.
-pub const FLOORS: f64 = 2.9;
+/// Effects below so many floors need not be found: three, as near as sizes are sought.
+pub const FLOORS: f64 = 2.85;
 
 /// How a case was judged.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -27,7 +27,7 @@ const RIGHT: f64 = 0.02;
 const MOST_LOOKS: usize = 13;
 
 /// Sizes by fits are right to this part.
-const NEAR: f64 = 0.03;
+const NEAR: f64 = 0.05;
 
 /// The most fits for a size.
 const MOST_FITS: usize = 3;
