@@ -13,9 +13,9 @@
 //! [`trials`] (fits in earnest; `swaps` and `halves`: others in the place of an answer,
 //! or of one of two), [`thinned`] (what is needed
 //! no more), [`mod@named`] (which of them is the answer, and which are one), [`undeclared`]
-//! (parameters that nobody doubts), [`mod@search`] (all of it in turn);
+//! (parameters that nobody doubts), [`mod@search`] (all of it in turn; `views`: one round);
 //! [`mod@empirical`] (what is left and has no name);
-//! [`extend`] (the specification changed), [`document`] and [`report`] (for programs and for
+//! [`extend`] (the specification changed), [`mod@rerun`] (run again), [`document`] and [`report`] (for programs and for
 //! people).
 
 pub mod approach;
@@ -41,6 +41,7 @@ pub mod march;
 pub mod named;
 pub mod plant;
 pub mod report;
+pub mod rerun;
 pub mod residual_force;
 pub mod response;
 pub mod rule;
@@ -58,4 +59,5 @@ pub mod trials;
 pub mod tried;
 pub mod undeclared;
 pub mod unknowns;
+mod views;
 pub mod windows;

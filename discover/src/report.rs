@@ -198,10 +198,16 @@ fn validation_line(document: &Value) -> String {
             .filter_map(Value::as_str)
             .collect()
     };
+    let noises = |key: &str| {
+        let left = validation[key].as_f64();
+        left.map_or_else(|| "?".to_owned(), |left| format!("{left:.2}"))
+    };
     let text = match validation["passed"].as_bool() {
         Some(true) => format!(
-            "The specification that was written was derived anew; its equations pass all {} checks of eomgen validate.",
-            names("checks").len()
+            "The specification that was written was derived anew; its equations pass all {} checks of eomgen validate. Run on the records it leaves {} noises in training and {} in test.",
+            names("checks").len(),
+            noises("train_in_noises"),
+            noises("test_in_noises")
         ),
         Some(false) => format!(
             "The specification that was written was derived anew; its equations FAIL {}.",

@@ -2,24 +2,18 @@
 //! the floor is reached or nothing more is believed. What is left then may be an expression without
 //! a name.
 
-use std::collections::BTreeMap;
-
-use model_spec::edit::{self, Edit, SetParameter};
-use model_spec::source::Source;
-
-use crate::candidates::{self, Candidate, candidates};
+use crate::candidates::{self, Candidate};
 use crate::catalogue::Effect;
 use crate::empirical::add_empirical;
-use crate::fitting::{FIRST_PART, Fit, Setting};
+use crate::fitting::{Fit, Setting};
 use crate::judge::{Evidence, evidence};
 use crate::named::{Named, Searched, best_of, leaves_clearly_less, named};
 use crate::rule;
-use crate::screen::{Screen, screen};
-use crate::sites::{plays, sites};
+use crate::screen::Screen;
 use crate::thinned::thin;
 use crate::trials::{PARTS, Round, Trial, at_floor, leaves_less};
-use crate::undeclared::shifts;
 use crate::unknowns::{Unknown, What, of_null_model};
+use crate::views::Look;
 
 /// An effect that was believed.
 #[derive(Clone, Debug)]
@@ -129,7 +123,15 @@ pub fn search(
             break;
         }
         let is_first = found.accepted.is_empty();
-        let searched = round(setting, (fit, is_first), effects, floor, said);
+        let look = Look {
+            setting,
+            fit,
+            is_first,
+            effects,
+            floor,
+            said,
+        };
+        let searched = look.round();
         let mut believed: Option<Searched> = None;
         for (candidates, screen, mut trials) in searched {
             note_rejected(&mut found.rejected, &candidates, &screen, &trials);
@@ -195,246 +197,6 @@ fn unnamed(setting: &Setting<'_>, found: &mut Found, floor: f64, said: &(dyn Fn(
             (found.accepted, found.last) = (shifts, Some(with_shifts));
         }
     }
-}
-
-/// How motions are looked at while candidates are screened.
-#[derive(Clone, Copy, PartialEq)]
-enum View {
-    /// The beginnings of windows, where a motion is nearly linear in whatever changes it.
-    Beginnings,
-    /// Whole windows, which show more of what is slow.
-    Whole,
-    /// Whole windows of the model with all play closed: linear in what moves teeth by much more
-    /// than their play, and blind for what is smaller.
-    NoPlay,
-}
-
-impl View {
-    /// The part of each window that is looked at.
-    fn part(self) -> f64 {
-        match self {
-            Self::Beginnings => FIRST_PART.0,
-            Self::Whole | Self::NoPlay => 1.0,
-        }
-    }
-}
-
-/// One round: view after view until what is believed leaves little, pairs if that leaves much; then
-/// whether a parameter may be off that nobody called uncertain.
-fn round(
-    setting: &Setting<'_>,
-    (fit, is_first): (&Fit, bool),
-    effects: &[Effect],
-    floor: f64,
-    said: &(dyn Fn(&str) + Sync),
-) -> Vec<Searched> {
-    let is_near = fit.train.pooled < rule::FAR;
-    let views: &[View] = match (setting.fits_starts(), is_near, is_first) {
-        // What is small beside what was found already is seen over whole windows or not at all.
-        (false, _, _) | (true, true, false) => &[View::Whole],
-        (true, true, true) => &[View::Whole, View::Beginnings, View::NoPlay],
-        (true, false, _) => &[View::Beginnings, View::NoPlay, View::Whole],
-    };
-    let round =
-        |view: View, candidates: &[Candidate], screen: &Screen, singles: Option<&[Trial]>| {
-            let round = Round {
-                setting,
-                fit,
-                candidates,
-                screen,
-                is_whole: view == View::Whole,
-                most: match view {
-                    View::NoPlay => 2 * rule::FITS_AT_ONCE,
-                    View::Whole | View::Beginnings => rule::MOST_SKETCHES,
-                },
-                // Without play a straight line is right.
-                parts: match view {
-                    View::NoPlay => &PARTS[..2],
-                    View::Whole | View::Beginnings => &PARTS,
-                },
-                floor,
-                said,
-            };
-            match singles {
-                Some(singles) => round.pairs(singles),
-                None => round.singles(),
-            }
-        };
-    let is_believed = |(_, _, trials): &Searched| trials.iter().any(|trial| trial.verdict.is_ok());
-    let little = (rule::CLOSE * floor).max(rule::MOST_OF * fit.left());
-    let leaves_little = |trial: &Trial| trial.verdict.is_ok() && leaves_less(&trial.fit, little);
-    let is_close = |(_, _, trials): &Searched| trials.iter().any(leaves_little);
-    let mut searched: Vec<Searched> = Vec::new();
-    let mut seen: Vec<View> = Vec::new();
-    for view in views {
-        // Without play everything but teeth is seen worse: it is for what nothing else explains.
-        if *view == View::NoPlay && searched.iter().any(is_believed) {
-            continue;
-        }
-        let closed = match view {
-            View::NoPlay => match without_play(setting, fit) {
-                Some(closed) => Some(closed),
-                None => continue,
-            },
-            View::Whole | View::Beginnings => None,
-        };
-        if closed.is_some() {
-            said("looking at the model without play");
-        }
-        let at = (closed.as_ref().unwrap_or(fit), view.part());
-        let has_play = *view != View::NoPlay;
-        let (candidates, screen) = screened(setting, at, (effects, has_play), floor, said);
-        let trials = round(*view, &candidates, &screen, None);
-        searched.push((candidates, screen, trials));
-        seen.push(*view);
-        if searched.iter().any(is_close) {
-            break;
-        }
-    }
-    let is_enough = |trial: &Trial| trial.verdict.is_ok() && at_floor(&trial.fit, floor);
-    let is_done = |(_, _, trials): &Searched| trials.iter().any(is_enough);
-    if !searched.iter().any(is_done) {
-        for (view, (candidates, screen, trials)) in seen.iter().zip(&mut searched) {
-            let pairs = round(*view, candidates, screen, Some(trials));
-            trials.extend(pairs);
-            if trials.iter().any(|trial| trial.verdict.is_ok()) {
-                break;
-            }
-        }
-    }
-    let is_open = match searched.iter().any(is_believed) {
-        true => is_first && !searched.iter().any(is_close),
-        false => is_first || !is_near,
-    };
-    if is_open {
-        let shifts = shifts(fit);
-        said(&format!(
-            "screening {} parameters of the model",
-            shifts.len()
-        ));
-        let view = views[0];
-        let screen = screen(setting, fit, &shifts, view.part());
-        let mut trials = round(view, &shifts, &screen, None);
-        // What nobody doubts is off only if nothing else comes near.
-        let others = searched.iter().flat_map(|(_, _, trials)| trials);
-        let others: Vec<&Trial> = others.filter(|trial| trial.verdict.is_ok()).collect();
-        let is_clear = |trial: &Trial| {
-            let clear = |other: &&Trial| leaves_clearly_less(&trial.fit, &other.fit);
-            trial.verdict.is_err() || others.iter().all(clear)
-        };
-        trials.retain(is_clear);
-        searched.push((shifts, screen, trials));
-    }
-    searched
-}
-
-/// The model with all play closed, fitted; none if there is no play.
-fn without_play(setting: &Setting<'_>, fit: &Fit) -> Option<Fit> {
-    let edits: Vec<Edit> = plays(&fit.plant.model)
-        .into_iter()
-        .map(|name| {
-            Edit::SetParameter(SetParameter {
-                name,
-                value: 0.0,
-                source: String::new(),
-            })
-        })
-        .collect();
-    if edits.is_empty() {
-        return None;
-    }
-    let closed = |text: &str| edit::apply(&Source::new(setting.path.as_str(), text), &edits).ok();
-    let texts = (closed(&fit.text)?, closed(&fit.linear)?);
-    let theta = &fit.train.estimate.theta;
-    setting.fit(texts, fit.unknowns.clone(), theta).ok()
-}
-
-/// Declared parameters and sensors that may be off by more than their priors allow.
-fn released(setting: &Setting<'_>, fit: &Fit) -> Vec<Candidate> {
-    let unknowns = fit
-        .unknowns
-        .iter()
-        .filter(|unknown| unknown.prior.is_some());
-    let candidate = |unknown: &Unknown| {
-        let (effect, on, says, experiment) = match &unknown.what {
-            What::Parameter(name) | What::Inverse(name) => (
-                candidates::PARAMETER_SHIFT,
-                name.clone(),
-                "a parameter is off by more than was declared",
-                "measure it by itself",
-            ),
-            What::Gain(place) => (
-                "sensor_gain",
-                setting.dataset.channels[*place].name.clone(),
-                "a sensor shows too much or too little",
-                "calibrate it over its range",
-            ),
-            What::Bias(place) => (
-                "sensor_bias",
-                setting.dataset.channels[*place].name.clone(),
-                "a sensor is off by a constant",
-                "read it where its quantity is known",
-            ),
-            What::Delay(place) => (
-                "sensor_delay",
-                setting.dataset.channels[*place].name.clone(),
-                "a sensor is late",
-                "excite it with a step that is recorded itself",
-            ),
-        };
-        candidates::released(effect, &on, says, experiment, &unknown.what)
-    };
-    unknowns.map(candidate).collect()
-}
-
-/// The candidates and their responses: those that repeat with an angle, which are many, only
-/// if the others leave much of the gap. Teeth that move with an angle do so by much more than
-/// they deflect, and often than their play: they are looked at where all play is closed, and
-/// nothing else is there.
-fn screened(
-    setting: &Setting<'_>,
-    (fit, part): (&Fit, f64),
-    (effects, has_play): (&[Effect], bool),
-    floor: f64,
-    said: &dyn Fn(&str),
-) -> (Vec<Candidate>, Screen) {
-    let model = &fit.plant.model;
-    let mut all = candidates(model, effects, &sites(model), &usual_rates(setting));
-    all.extend(released(setting, fit));
-    all.retain(|c| (c.order.is_none() || c.on_mesh != has_play) && (has_play || c.on_mesh));
-    let plain: Vec<Candidate> = all
-        .iter()
-        .filter(|c| c.order.is_none() || !has_play)
-        .cloned()
-        .collect();
-    said(&format!("screening {} candidates", plain.len()));
-    let found = screen(setting, fit, &plain, part);
-    let best = found.responses.iter().map(|r| r.gain).fold(0.0, f64::max);
-    let above = found.left(&[]).0 - floor * floor * found.numbers;
-    if plain.len() == all.len() || best > rule::ENOUGH * above {
-        return (plain, found);
-    }
-    said(&format!(
-        "screening {} candidates that repeat with an angle",
-        all.len() - plain.len()
-    ));
-    let found = screen(setting, fit, &all, part);
-    (all, found)
-}
-
-/// The usual rate of every channel that is measured, by name: the root mean square of its
-/// slope.
-pub(crate) fn usual_rates(setting: &Setting<'_>) -> BTreeMap<String, f64> {
-    let record = &setting.dataset.train[0];
-    let channels = setting.dataset.channels.iter().zip(&record.channels);
-    channels
-        .map(|(channel, column)| {
-            let smooth = crate::smooth::smoothed(&record.times, column);
-            let slopes = crate::smooth::sloped(&record.times, &smooth);
-            let square = slopes.iter().map(|s| s * s).sum::<f64>() / slopes.len() as f64;
-            (channel.name.clone(), square.sqrt())
-        })
-        .collect()
 }
 
 fn note_rejected(

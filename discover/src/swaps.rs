@@ -7,9 +7,9 @@ use crate::catalogue::Effect;
 use crate::fitting::Sketch;
 use crate::rule;
 use crate::screen::screen;
-use crate::search::usual_rates;
 use crate::sites::sites;
 use crate::trials::{Round, Set, Trial};
+use crate::views::usual_rates;
 
 impl Round<'_> {
     /// Fits what may stand in the place of a trial from where that ended, and takes over what
@@ -39,62 +39,79 @@ impl Round<'_> {
         effects: &[Effect],
     ) -> Option<Vec<(Set, Sketch)>> {
         let trial = &trials[answer];
-        let fit = &trial.fit;
-        let [response] = &trial.responses[..] else {
+        let [response] = trial.responses[..] else {
             return None;
         };
-        let rivals = self.rivals(trials, answer, *response);
-        if rivals.is_empty() || self.screen.responses[*response].released.is_some() {
+        let is_own = self.screen.responses[response].released.is_none();
+        let rivals = self.rivals(trials, answer, response);
+        let (rivals, there) = self.there(trial, &rivals, effects);
+        if there.is_empty() || !is_own {
             return None;
         }
-        // Names that the answer took are not free in its model.
-        let model = &fit.plant.model;
+        (self.said)(&format!(
+            "screening {} in the place of {}",
+            there.len(),
+            self.candidate(response).label()
+        ));
+        let mut promised = self.promised(trial, &there)?;
+        promised.sort_by(|a, b| a.1.total_cmp(&b.1));
+        promised.truncate(rule::FITS_AT_ONCE);
+        let shaped = self.shaped(trial).unwrap_or(1.0);
+        let sketches = promised.into_iter().filter_map(|(place, left, sizes)| {
+            let set = Set {
+                responses: vec![rivals[place]],
+                deleted: None,
+                sizes,
+            };
+            let sketch = self.begun_at(&set, (trial, left), shaped).ok()?;
+            Some((set, sketch))
+        });
+        Some(sketches.collect())
+    }
+
+    /// Those of the rivals that there are in a trial's model, as candidates for that: names that
+    /// the trial took are not free there, and shapes go with the trial's.
+    fn there(
+        &self,
+        trial: &Trial,
+        rivals: &[usize],
+        effects: &[Effect],
+    ) -> (Vec<usize>, Vec<Candidate>) {
+        let model = &trial.fit.plant.model;
         let known = candidates(model, effects, &sites(model), &usual_rates(self.setting));
-        let shaped = self.shaped(trial);
+        let shaped = self.shaped(trial).unwrap_or(1.0);
         let again = |rival: &usize| {
             let label = self.candidate(*rival).label();
             let found = known.iter().find(|candidate| candidate.label() == label)?;
             let mut found = found.clone();
-            if let Some(factor) = shaped {
-                let shapes = found.parameters.iter_mut().map(|p| &mut p.shape);
-                shapes.flatten().for_each(|shape| *shape *= factor);
-            }
+            let shapes = found.parameters.iter_mut().map(|p| &mut p.shape);
+            shapes.flatten().for_each(|shape| *shape *= shaped);
             Some((*rival, found))
         };
-        let (rivals, there): (Vec<usize>, Vec<Candidate>) = rivals.iter().filter_map(again).unzip();
-        (self.said)(&format!(
-            "screening {} in the place of {}",
-            there.len(),
-            self.candidate(*response).label()
-        ));
-        let mut screen = screen(self.setting, fit, &there, 1.0);
+        rivals.iter().filter_map(again).unzip()
+    }
+
+    /// Which candidates promise to leave little without a trial's own terms, what they leave and
+    /// their sizes.
+    fn promised(&self, trial: &Trial, there: &[Candidate]) -> Option<Vec<(usize, f64, Vec<f64>)>> {
+        let mut screen = screen(self.setting, &trial.fit, there, 1.0);
         let left = screen.left(&[]).0;
-        let theta = &fit.train.estimate.theta;
+        let theta = &trial.fit.train.estimate.theta;
         for own in &trial.own {
             screen = match own.is_shape {
                 true => screen.held(own.place),
                 false => screen.without(own.place, theta[own.place])?,
             };
         }
-        let places = (0..screen.responses.len()).map(|place| (place, screen.left(&[place])));
-        let mut found: Vec<(usize, f64, Vec<f64>)> = places
-            .map(|(place, (left, sizes))| (rivals[screen.responses[place].candidate], left, sizes))
-            .filter(|(_, promised, _)| *promised < rule::RIVAL * left)
-            .collect();
-        found.sort_by(|a, b| a.1.total_cmp(&b.1));
-        found.truncate(rule::FITS_AT_ONCE);
-        let sketches = found.into_iter().filter_map(|(rival, left, sizes)| {
-            let set = Set {
-                responses: vec![rival],
-                deleted: None,
-                sizes,
-            };
-            let sketch = self
-                .begun_at(&set, (trial, left), shaped.unwrap_or(1.0))
-                .ok()?;
-            Some((set, sketch))
+        let promised = (0..screen.responses.len()).map(|place| {
+            let (left, sizes) = screen.left(&[place]);
+            (screen.responses[place].candidate, left, sizes)
         });
-        Some(sketches.collect())
+        Some(
+            promised
+                .filter(|(_, promised, _)| *promised < rule::RIVAL * left)
+                .collect(),
+        )
     }
 
     /// How a trial's shape ended, in what it began with: a speed that friction falls with is so

@@ -7,6 +7,7 @@ use std::time::Instant;
 use discover::dataset::{Dataset, read};
 use discover::fitting::{Fit, Setting};
 use discover::floor::{Floor, floor};
+use discover::rerun::rerun;
 use discover::residual_force::residual_force;
 use discover::residual_force::said::said_after;
 use discover::search::{null_fit, search};
@@ -75,7 +76,12 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     let extended =
         extend::extended(&setting, &text, found.best(), &found.accepted).map_err(Problem::input)?;
     let mut result = document::discovered(&setting, &found, &floor, done, &place);
-    let validation = validated(&setting.path, &extended, order)?;
+    let mut validation = validated(&setting.path, &extended, order)?;
+    if !validation.is_null() {
+        let left = rerun(&setting, found.best(), &extended).map_err(Problem::input)?;
+        validation["train_in_noises"] = json!(left.train);
+        validation["test_in_noises"] = json!(left.test);
+    }
     let ladder = result["ladder"].as_array_mut();
     if let Some(last) = ladder.and_then(|steps| steps.last_mut()) {
         last["validated"] = validation["passed"].clone();

@@ -71,7 +71,7 @@ pub fn sized(
         let floors = left(&hidden);
         return Sized { hidden, floors };
     }
-    let (begin, largest) = range(&hidden, machine);
+    let (begin, largest) = range(&hidden, machine, drives);
     hidden.amount = begin;
     let training = &drives[..setup.records.0];
     let basis = Basis::new(machine, &halved, training, &hidden);
@@ -85,8 +85,10 @@ pub fn sized(
 }
 
 /// A size to begin with, and the largest that makes sense, SI.
-fn range(hidden: &Hidden, machine: &Machine) -> (f64, f64) {
+fn range(hidden: &Hidden, machine: &Machine, drives: &[Drive]) -> (f64, f64) {
     let free = f64::INFINITY;
+    let inputs = drives.iter().flat_map(|drive| &drive.input);
+    let strongest = inputs.fold(0.0f64, |most, input| most.max(input.abs()));
     let of_axis = |arm: f64, stage: f64, pendulum: f64| match machine {
         Machine::Arm(_) => (arm, free),
         Machine::Stage(_) => (stage, free),
@@ -104,6 +106,12 @@ fn range(hidden: &Hidden, machine: &Machine) -> (f64, f64) {
         Effect::StiffnessVariation => (0.2, 0.6),
         Effect::AsymmetricBacklash => (1e-5, 2e-5),
         Effect::ParameterShift => (0.02, 0.5),
+        // What the drive cannot move stands still whatever the friction.
+        Effect::CoulombFriction | Effect::StribeckFriction
+            if matches!(machine, Machine::Stage(_)) =>
+        {
+            (1.0, 0.5 * strongest)
+        }
         Effect::QuadraticDrag | Effect::WornFriction => of_axis(1e-4, 10.0, 1e-5),
         Effect::WeakeningDrive => of_axis(0.01, 0.1, 0.0),
         _ => of_axis(0.05, 1.0, 1e-4),

@@ -1,0 +1,320 @@
+//! One round of the search: motions looked at in one view after the other until what is believed
+//! leaves little, pairs if that leaves much, and parameters that nobody called uncertain. What is
+//! taken over is decided in [`mod@crate::search`].
+
+use std::collections::BTreeMap;
+
+use model_spec::edit::{self, Edit, SetParameter};
+use model_spec::source::Source;
+
+use crate::candidates::{self, Candidate, candidates};
+use crate::catalogue::Effect;
+use crate::fitting::{FIRST_PART, Fit, Setting};
+use crate::named::{Searched, leaves_clearly_less};
+use crate::rule;
+use crate::screen::{Screen, screen};
+use crate::sites::{plays, sites};
+use crate::trials::{PARTS, Round, Trial, at_floor, leaves_less};
+use crate::undeclared::shifts;
+use crate::unknowns::{Unknown, What};
+
+/// How motions are looked at while candidates are screened.
+#[derive(Clone, Copy, PartialEq)]
+enum View {
+    /// The beginnings of windows, where a motion is nearly linear in whatever changes it.
+    Beginnings,
+    /// Whole windows, which show more of what is slow.
+    Whole,
+    /// Whole windows of the model with all play closed: linear in what moves teeth by much more
+    /// than their play, and blind for what is smaller.
+    NoPlay,
+}
+
+impl View {
+    /// The part of each window that is looked at.
+    fn part(self) -> f64 {
+        match self {
+            Self::Beginnings => FIRST_PART.0,
+            Self::Whole | Self::NoPlay => 1.0,
+        }
+    }
+}
+
+/// What a round works with.
+pub struct Look<'l> {
+    /// The dataset.
+    pub setting: &'l Setting<'l>,
+    /// The fit to be bettered.
+    pub fit: &'l Fit,
+    /// Whether nothing was found yet.
+    pub is_first: bool,
+    /// The catalogue.
+    pub effects: &'l [Effect],
+    /// What a right model would leave, in noises.
+    pub floor: f64,
+    /// Is told what is done.
+    pub said: &'l (dyn Fn(&str) + Sync),
+}
+
+impl Look<'_> {
+    /// All that was looked at.
+    pub fn round(&self) -> Vec<Searched> {
+        let mut searched: Vec<Searched> = Vec::new();
+        let mut seen: Vec<View> = Vec::new();
+        let mut has_shifts = false;
+        for view in self.views() {
+            if *view == View::NoPlay {
+                // Without play everything but teeth is seen worse: it is for what nothing else
+                // explains.
+                if is_any(&searched, &|trial| trial.verdict.is_ok()) {
+                    continue;
+                }
+                // Teeth are fitted slowly: a parameter that explains all saves that.
+                if self.is_first && !self.is_near() {
+                    searched.push(self.shifts());
+                    has_shifts = true;
+                    if is_any(&searched, &|trial| self.is_enough(trial)) {
+                        break;
+                    }
+                }
+            }
+            let Some(found) = self.looked(*view) else {
+                continue;
+            };
+            let place = seen.len();
+            searched.insert(place, found);
+            seen.push(*view);
+            if is_any(&searched, &|trial| self.is_close(trial)) {
+                break;
+            }
+        }
+        if !is_any(&searched, &|trial| self.is_enough(trial)) {
+            self.add_pairs(&seen, &mut searched);
+        }
+        let is_open = match is_any(&searched, &|trial| trial.verdict.is_ok()) {
+            true => self.is_first && !is_any(&searched, &|trial| self.is_close(trial)),
+            false => self.is_first || !self.is_near(),
+        };
+        if is_open && !has_shifts {
+            searched.push(self.shifts());
+            has_shifts = true;
+        }
+        if has_shifts {
+            keep_clear(&mut searched);
+        }
+        searched
+    }
+
+    fn is_near(&self) -> bool {
+        self.fit.train.pooled < rule::FAR
+    }
+
+    fn views(&self) -> &'static [View] {
+        match (self.setting.fits_starts(), self.is_near(), self.is_first) {
+            // What is small beside what was found already is seen over whole windows or not at
+            // all.
+            (false, _, _) | (true, true, false) => &[View::Whole],
+            (true, true, true) => &[View::Whole, View::Beginnings, View::NoPlay],
+            (true, false, _) => &[View::Beginnings, View::NoPlay, View::Whole],
+        }
+    }
+
+    /// Whether a trial is believed and leaves little.
+    fn is_close(&self, trial: &Trial) -> bool {
+        let little = (rule::CLOSE * self.floor).max(rule::MOST_OF * self.fit.left());
+        trial.verdict.is_ok() && leaves_less(&trial.fit, little)
+    }
+
+    /// Whether a trial is believed and leaves no more than a right model would.
+    fn is_enough(&self, trial: &Trial) -> bool {
+        trial.verdict.is_ok() && at_floor(&trial.fit, self.floor)
+    }
+
+    /// Candidates screened in a view and fitted one by one; none if the model has no play to be
+    /// closed.
+    fn looked(&self, view: View) -> Option<Searched> {
+        let closed = match view {
+            View::NoPlay => Some(without_play(self.setting, self.fit)?),
+            View::Whole | View::Beginnings => None,
+        };
+        if closed.is_some() {
+            (self.said)("looking at the model without play");
+        }
+        let (candidates, screen) = self.screened(closed.as_ref().unwrap_or(self.fit), view);
+        let trials = self.begun(view, &candidates, &screen).singles();
+        Some((candidates, screen, trials))
+    }
+
+    /// Fits of candidates in a view.
+    fn begun<'r>(
+        &'r self,
+        view: View,
+        candidates: &'r [Candidate],
+        screen: &'r Screen,
+    ) -> Round<'r> {
+        Round {
+            setting: self.setting,
+            fit: self.fit,
+            candidates,
+            screen,
+            is_whole: view == View::Whole,
+            most: match view {
+                View::NoPlay => 2 * rule::FITS_AT_ONCE,
+                View::Whole | View::Beginnings => rule::MOST_SKETCHES,
+            },
+            // Without play a straight line is right.
+            parts: match view {
+                View::NoPlay => &PARTS[..2],
+                View::Whole | View::Beginnings => &PARTS,
+            },
+            floor: self.floor,
+            said: self.said,
+        }
+    }
+
+    /// Adds pairs, view after view until some are believed.
+    fn add_pairs(&self, seen: &[View], searched: &mut [Searched]) {
+        for (view, (candidates, screen, trials)) in seen.iter().zip(searched) {
+            let pairs = self.begun(*view, candidates, screen).pairs(trials);
+            trials.extend(pairs);
+            if trials.iter().any(|trial| trial.verdict.is_ok()) {
+                break;
+            }
+        }
+    }
+
+    /// Parameters that nobody called uncertain.
+    fn shifts(&self) -> Searched {
+        let shifts = shifts(self.fit);
+        (self.said)(&format!(
+            "screening {} parameters of the model",
+            shifts.len()
+        ));
+        let view = self.views()[0];
+        let screen = screen(self.setting, self.fit, &shifts, view.part());
+        let trials = self.begun(view, &shifts, &screen).singles();
+        (shifts, screen, trials)
+    }
+
+    /// The candidates and their responses: those that repeat with an angle, which are many, only
+    /// if the others leave much of the gap. Teeth that move with an angle do so by much more than
+    /// they deflect, and often than their play: they are looked at where all play is closed, and
+    /// nothing else is there.
+    fn screened(&self, fit: &Fit, view: View) -> (Vec<Candidate>, Screen) {
+        let (setting, has_play) = (self.setting, view != View::NoPlay);
+        let model = &fit.plant.model;
+        let mut all = candidates(model, self.effects, &sites(model), &usual_rates(setting));
+        all.extend(released(setting, fit));
+        all.retain(|c| (c.order.is_none() || c.on_mesh != has_play) && (has_play || c.on_mesh));
+        let plain: Vec<Candidate> = all
+            .iter()
+            .filter(|c| c.order.is_none() || !has_play)
+            .cloned()
+            .collect();
+        (self.said)(&format!("screening {} candidates", plain.len()));
+        let found = screen(setting, fit, &plain, view.part());
+        let best = found.responses.iter().map(|r| r.gain).fold(0.0, f64::max);
+        let above = found.left(&[]).0 - self.floor * self.floor * found.numbers;
+        if plain.len() == all.len() || best > rule::ENOUGH * above {
+            return (plain, found);
+        }
+        (self.said)(&format!(
+            "screening {} candidates that repeat with an angle",
+            all.len() - plain.len()
+        ));
+        let found = screen(setting, fit, &all, view.part());
+        (all, found)
+    }
+}
+
+/// What nobody doubts, which stands last, is off only if nothing else that is believed comes near.
+fn keep_clear(searched: &mut [Searched]) {
+    let Some(((_, _, shifts), searched)) = searched.split_last_mut() else {
+        return;
+    };
+    let others = searched.iter().flat_map(|(_, _, trials)| trials);
+    let others: Vec<&Trial> = others.filter(|trial| trial.verdict.is_ok()).collect();
+    shifts.retain(|trial| {
+        let is_clear = |other: &&Trial| leaves_clearly_less(&trial.fit, &other.fit);
+        trial.verdict.is_err() || others.iter().all(is_clear)
+    });
+}
+
+/// Whether any trial is such.
+fn is_any(searched: &[Searched], is: &dyn Fn(&Trial) -> bool) -> bool {
+    searched.iter().any(|(_, _, trials)| trials.iter().any(is))
+}
+
+/// The model with all play closed, fitted; none if there is no play.
+fn without_play(setting: &Setting<'_>, fit: &Fit) -> Option<Fit> {
+    let edits: Vec<Edit> = plays(&fit.plant.model)
+        .into_iter()
+        .map(|name| {
+            Edit::SetParameter(SetParameter {
+                name,
+                value: 0.0,
+                source: String::new(),
+            })
+        })
+        .collect();
+    if edits.is_empty() {
+        return None;
+    }
+    let closed = |text: &str| edit::apply(&Source::new(setting.path.as_str(), text), &edits).ok();
+    let texts = (closed(&fit.text)?, closed(&fit.linear)?);
+    let theta = &fit.train.estimate.theta;
+    setting.fit(texts, fit.unknowns.clone(), theta).ok()
+}
+
+/// Declared parameters and sensors that may be off by more than their priors allow.
+fn released(setting: &Setting<'_>, fit: &Fit) -> Vec<Candidate> {
+    let unknowns = fit
+        .unknowns
+        .iter()
+        .filter(|unknown| unknown.prior.is_some());
+    let candidate = |unknown: &Unknown| {
+        let (effect, on, says, experiment) = match &unknown.what {
+            What::Parameter(name) | What::Inverse(name) => (
+                candidates::PARAMETER_SHIFT,
+                name.clone(),
+                "a parameter is off by more than was declared",
+                "measure it by itself",
+            ),
+            What::Gain(place) => (
+                "sensor_gain",
+                setting.dataset.channels[*place].name.clone(),
+                "a sensor shows too much or too little",
+                "calibrate it over its range",
+            ),
+            What::Bias(place) => (
+                "sensor_bias",
+                setting.dataset.channels[*place].name.clone(),
+                "a sensor is off by a constant",
+                "read it where its quantity is known",
+            ),
+            What::Delay(place) => (
+                "sensor_delay",
+                setting.dataset.channels[*place].name.clone(),
+                "a sensor is late",
+                "excite it with a step that is recorded itself",
+            ),
+        };
+        candidates::released(effect, &on, says, experiment, &unknown.what)
+    };
+    unknowns.map(candidate).collect()
+}
+
+/// The usual rate of every channel that is measured, by name: the root mean square of its
+/// slope.
+pub(crate) fn usual_rates(setting: &Setting<'_>) -> BTreeMap<String, f64> {
+    let record = &setting.dataset.train[0];
+    let channels = setting.dataset.channels.iter().zip(&record.channels);
+    channels
+        .map(|(channel, column)| {
+            let smooth = crate::smooth::smoothed(&record.times, column);
+            let slopes = crate::smooth::sloped(&record.times, &smooth);
+            let square = slopes.iter().map(|s| s * s).sum::<f64>() / slopes.len() as f64;
+            (channel.name.clone(), square.sqrt())
+        })
+        .collect()
+}
