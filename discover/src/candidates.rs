@@ -38,8 +38,6 @@ pub struct Candidate {
     /// What would show it best.
     pub experiment: String,
     pub(crate) changes: Vec<Edit>,
-    /// The same of what is linear between switches; empty where that is the whole or nothing.
-    pub(crate) linear: Vec<Edit>,
     /// The line that says most of the change.
     pub term: String,
     /// The unknown of the null model that gives up its prior, if that is the effect.
@@ -127,32 +125,11 @@ impl Candidate {
         values: &[f64],
         source: &str,
     ) -> Result<String, EditError> {
-        self.edited(text, name, (values, source), &self.changes)
-    }
-
-    /// The same with what of the effect is linear between switches, where it is not itself; none
-    /// where nothing is.
-    pub fn written_linear(
-        &self,
-        text: &str,
-        name: &str,
-        values: &[f64],
-    ) -> Option<Result<String, EditError>> {
-        (!self.linear.is_empty()).then(|| self.edited(text, name, (values, ""), &self.linear))
-    }
-
-    fn edited(
-        &self,
-        text: &str,
-        name: &str,
-        (values, source): (&[f64], &str),
-        changes: &[Edit],
-    ) -> Result<String, EditError> {
         let pairs = self.parameters.iter().zip(values);
         let mut edits: Vec<Edit> = pairs
             .map(|(parameter, value)| parameter.edit(*value, source))
             .collect();
-        edits.extend(changes.iter().cloned());
+        edits.extend(self.changes.iter().cloned());
         edit::apply(&Source::new(name, text), &edits)
     }
 }
@@ -250,18 +227,10 @@ fn candidate(
             words.insert(change.name.clone(), name);
         }
     }
-    let (mut changes, mut linear) = (Vec::new(), Vec::new());
-    let has_linear = effect.edits.iter().any(|change| !change.linear.is_empty());
+    let mut changes = Vec::new();
     let mut term = String::new();
     for change in &effect.edits {
         changes.extend(edits(model, change, site, &words)?);
-        if has_linear {
-            let mut part = change.clone();
-            if !part.linear.is_empty() {
-                part.value.clone_from(&change.linear);
-            }
-            linear.extend(edits(model, &part, site, &words)?);
-        }
         let said = filled(&change.value, &words)?;
         if !said.is_empty() {
             term = said;
@@ -276,7 +245,6 @@ fn candidate(
         says: effect.says.clone(),
         experiment: effect.experiment.clone(),
         changes,
-        linear,
         term,
         released: None,
     })
@@ -293,7 +261,6 @@ pub fn released(effect: &str, on: &str, says: &str, experiment: &str, what: &Wha
         says: says.to_owned(),
         experiment: experiment.to_owned(),
         changes: Vec::new(),
-        linear: Vec::new(),
         term: String::new(),
         released: Some(what.clone()),
     }

@@ -93,9 +93,6 @@ pub struct Change {
     /// The expression added.
     #[serde(default)]
     pub value: String,
-    /// What of it is linear between switches, where it is not itself: a march goes by that.
-    #[serde(default)]
-    pub linear: String,
     /// The unit of a coordinate.
     #[serde(default)]
     pub unit: String,

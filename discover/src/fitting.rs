@@ -197,14 +197,11 @@ impl<'d> Setting<'d> {
     ) -> Result<(String, String), String> {
         let written = |text| candidate.written(text, &self.path, values, "");
         let extended = written(text).map_err(|error| error.to_string())?;
-        // What is linear between switches itself belongs to the linear part, or what of it is.
-        let is_linear = |text: &String| is_linear(text, &self.path, self.order);
-        let part = || {
-            let part = candidate.written_linear(linear, &self.path, values)?;
-            part.ok().filter(is_linear)
+        // What is linear between switches itself belongs to the linear part.
+        let linear = match written(linear) {
+            Ok(extended) if is_linear(&extended, &self.path, self.order) => extended,
+            _ => linear.to_owned(),
         };
-        let whole = written(linear).ok().filter(is_linear);
-        let linear = whole.or_else(part).unwrap_or_else(|| linear.to_owned());
         Ok((extended, linear))
     }
 
@@ -443,7 +440,11 @@ impl<'d> Setting<'d> {
                 };
                 let theta = self.begun(&first, (theta, left), &ranges, is_there);
                 let follow = self.follow(&all, &ranges, HORIZONS.len());
-                let near = approach(&all, &[theta], &follow, STEPS.0);
+                let mut near = approach(&all, &[theta], &follow, STEPS.0);
+                // What is not linear costs ten times as much.
+                if plant.is_linear() {
+                    approach_by_secants(&all, &mut near, &follow);
+                }
                 (near.prior, near.estimate)
             }
             whole => {
@@ -519,7 +520,7 @@ impl<'d> Setting<'d> {
         is_there: bool,
     ) -> Vec<f64> {
         let numbers: usize = self.train.list.iter().map(|w| w.measured.len()).sum();
-        let near = rule::CLOSE * rule::CLOSE * first.part * numbers as f64;
+        let near = rule::AT_FLOOR * rule::AT_FLOOR * first.part * numbers as f64;
         if is_there && left < near {
             return theta;
         }

@@ -355,7 +355,12 @@ impl Round<'_> {
         let (setting, fit) = (self.setting, self.fit);
         let (unknowns, theta) = self.unknowns(set, self.parts[0]);
         let texts = self.texts(set, &unknowns, &theta)?;
-        if self.is_whole && set.deleted.is_none() {
+        // What swings in coordinates of its own is far from the fit however little it does.
+        let adds_states = set.responses.iter().any(|response| {
+            let parameters = &self.candidate(*response).parameters;
+            parameters.iter().any(|parameter| parameter.inverse)
+        });
+        if self.is_whole && set.deleted.is_none() && !adds_states {
             let left = self.screen.left(&set.responses).0;
             return setting.expected(texts, unknowns, theta, (fit, left));
         }
@@ -363,7 +368,12 @@ impl Round<'_> {
             .iter()
             .map(|part| self.unknowns(set, *part).1);
         let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
-        setting.sketch(texts, unknowns, &begins)
+        let mut sketch = setting.sketch(texts, unknowns, &begins)?;
+        if self.is_whole {
+            // Beside others that are promised and not begun.
+            sketch.left = self.screen.left(&set.responses).0;
+        }
+        Ok(sketch)
     }
 
     /// The specification's texts with a set's candidates, at these values of the unknowns.

@@ -164,7 +164,6 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
         says: "an expression that fits what is left".to_owned(),
         experiment: "the same rates, places and inputs in other combinations".to_owned(),
         changes,
-        linear: Vec::new(),
         term: value,
         released: None,
     }
