@@ -78,13 +78,12 @@ fn a_force_that_no_catalogue_holds_becomes_an_expression() {
         found["validation"]
     );
     assert_eq!(ladder[1]["validated"], true);
-    // Run as written it leaves what the fit left, but for numbers that moved by less than half of
-    // their uncertainty, which are not written.
-    let (run, fit) = (
-        number(&found["validation"]["test_in_noises"]),
-        number(&ladder[1]["test_in_noises"]),
-    );
-    assert!((run / fit - 1.0).abs() < 0.01, "{run} {fit}");
+    // Run as written it leaves the noise, within the tenth by which discovery calls that the floor:
+    // numbers that moved by less than half of their uncertainty are not written.
+    for set in ["train_in_noises", "test_in_noises"] {
+        let left = number(&found["validation"][set]);
+        assert!(left < 1.1, "{set}: {left}");
+    }
     assert!(extended.contains("source = \"fitted to "), "{extended}");
     let [specification, dataset, out] = ["found/extended.toml", "dataset.toml", "again"]
         .map(|name| measured.file(name).display().to_string());
