@@ -10,7 +10,6 @@ use crate::estimate::{
 };
 use crate::rule;
 use crate::shooting::{Residual, Shooting};
-use crate::windows::Window;
 
 /// A step that lowers the cost by less than this part is the last: it costs much.
 const WORTH_A_STEP: f64 = 0.02;
@@ -99,13 +98,8 @@ impl<'a> Way<'a> {
 
     /// How many noises are left.
     fn left(&self, present: &Estimate) -> f64 {
-        let windows = self.shooting.windows.list.iter().zip(&present.squares);
-        let of = |(sum, count): (f64, f64), (window, square): (&Window, &f64)| {
-            let seen = self.shooting.part * window.measured.len() as f64;
-            (sum + square, count + seen)
-        };
-        let (sum, count) = windows.fold((0.0, 0.0), of);
-        (sum / count).sqrt()
+        let count = self.shooting.part * self.shooting.windows.numbers();
+        (present.squares.iter().sum::<f64>() / count).sqrt()
     }
 
     /// So many steps at most, while they are worth it.
@@ -186,8 +180,8 @@ impl<'a> Way<'a> {
         let ends = [value + size, value - size].map(|end| unknown.admissible(end));
         theta[place] = ends.into_iter().find(|end| *end != value).unwrap_or(value);
         let size = theta[place] - value;
-        let Approached { estimate, .. } = self.at(theta, Some(&estimate.starts));
-        let residuals = self.shooting.residuals(&estimate.theta, &estimate.starts);
+        let (_, starts) = (self.follow)(&theta, Some(&estimate.starts));
+        let residuals = self.shooting.residuals(&theta, &starts);
         let of = |(residual, linear): (Option<Residual>, &Option<Linear>)| {
             let (residual, linear) = (residual?, linear.as_ref()?);
             let change = DVector::from_vec(residual.values) - &linear.residual;

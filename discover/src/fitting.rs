@@ -453,8 +453,7 @@ impl<'d> Setting<'d> {
                 (prior, near)
             }
         };
-        let numbers: usize = self.train.list.iter().map(|w| w.measured.len()).sum();
-        let is_far = !begins_whole && near.cost > FAR * FAR * numbers as f64;
+        let is_far = !begins_whole && near.cost > FAR * FAR * self.train.numbers();
         let free = match is_far {
             true => near,
             false => estimate::estimate(&all, &prior, &near.theta, &near.starts, STEPS.1),
@@ -519,8 +518,7 @@ impl<'d> Setting<'d> {
         ranges: &[f64],
         is_there: bool,
     ) -> Vec<f64> {
-        let numbers: usize = self.train.list.iter().map(|w| w.measured.len()).sum();
-        let near = rule::AT_FLOOR * rule::AT_FLOOR * first.part * numbers as f64;
+        let near = rule::AT_FLOOR * rule::AT_FLOOR * first.part * self.train.numbers();
         if is_there && left < near {
             return theta;
         }

@@ -2,11 +2,11 @@
 //! not tell from it.
 
 use crate::candidates::Candidate;
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::judge::evidence;
 use crate::rule;
 use crate::screen::Screen;
-use crate::trials::{PARTS, Round, Trial};
+use crate::trials::{Task, Trial};
 use crate::undeclared;
 
 /// Candidates, what they promise, and those of them that were fitted in earnest.
@@ -26,22 +26,14 @@ pub struct Named {
 
 /// What is named of the believed trials of a round; none if nothing is believed. A parameter that
 /// nobody called uncertain is the less plausible answer: it is named only if it leaves clearly
-/// less than what looks like it. `fit`: what the round began with.
-pub fn named(
-    setting: &Setting<'_>,
-    fit: &Fit,
-    searched: Searched,
-    floor: f64,
-    said: &(dyn Fn(&str) + Sync),
-) -> Option<Named> {
-    let named = best(with_other_halves(setting, fit, searched, floor, said))?;
+/// less than what looks like it.
+pub fn named(task: Task<'_>, searched: Searched) -> Option<Named> {
+    let named = best(with_other_halves(task, searched))?;
     let [candidate] = &named.candidates[..] else {
         return Some(named);
     };
     let with = (candidate, &named.trial.fit);
-    let Some(((candidates, screen, trials), own)) =
-        undeclared::beside(setting, fit, candidate, floor, said)
-    else {
+    let Some(((candidates, screen, trials), own)) = undeclared::beside(task, candidate) else {
         return Some(named);
     };
     let (better, others): (Vec<Trial>, Vec<Trial>) = trials
@@ -68,24 +60,8 @@ pub fn named(
 
 /// The trials of a round with, if a pair is best, further pairs with what looks like one of its
 /// halves.
-fn with_other_halves(
-    setting: &Setting<'_>,
-    fit: &Fit,
-    (candidates, screen, mut trials): Searched,
-    floor: f64,
-    said: &(dyn Fn(&str) + Sync),
-) -> Searched {
-    let round = Round {
-        setting,
-        fit,
-        candidates: &candidates,
-        screen: &screen,
-        is_whole: fit.train.pooled < rule::FAR || !setting.fits_starts(),
-        most: rule::MOST_SKETCHES,
-        parts: &PARTS,
-        floor,
-        said,
-    };
+fn with_other_halves(task: Task<'_>, (candidates, screen, mut trials): Searched) -> Searched {
+    let round = task.round(&candidates, &screen, task.is_whole());
     if let Some(best) = best_of(&trials) {
         let mut further = round.other_halves(&trials, best);
         further.retain(|trial| trial.verdict.is_ok());

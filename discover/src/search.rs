@@ -11,7 +11,7 @@ use crate::named::{Named, Searched, best_of, leaves_clearly_less, named};
 use crate::rule;
 use crate::screen::Screen;
 use crate::thinned::thin;
-use crate::trials::{PARTS, Round, Trial, at_floor, leaves_less};
+use crate::trials::{Task, Trial, at_floor, leaves_less};
 use crate::unknowns::{Unknown, What, of_null_model};
 use crate::views::Look;
 
@@ -122,14 +122,15 @@ pub fn search(
         if at_floor(fit, floor) {
             break;
         }
-        let is_first = found.accepted.is_empty();
         let look = Look {
-            setting,
-            fit,
-            is_first,
+            task: Task {
+                setting,
+                fit,
+                floor,
+                said,
+            },
+            is_first: found.accepted.is_empty(),
             effects,
-            floor,
-            said,
         };
         let searched = look.round();
         let mut believed: Option<Searched> = None;
@@ -150,23 +151,19 @@ pub fn search(
         let Some((candidates, screen, mut trials)) = believed else {
             break;
         };
+        let task = Task {
+            setting,
+            fit: found.best(),
+            floor,
+            said,
+        };
         if let Some(answer) = best_of(&trials) {
-            Round {
-                setting,
-                fit: found.best(),
-                candidates: &candidates,
-                screen: &screen,
-                is_whole: true,
-                most: rule::MOST_SKETCHES,
-                parts: &PARTS,
-                floor,
-                said,
-            }
-            .swap(&mut trials, answer, effects);
+            let round = task.round(&candidates, &screen, true);
+            round.swap(&mut trials, answer, effects);
         }
         trials.retain(|trial| trial.verdict.is_ok());
         let searched = (candidates, screen, trials);
-        let Some(named) = named(setting, found.best(), searched, floor, said) else {
+        let Some(named) = named(task, searched) else {
             break;
         };
         accept(&mut found, named);

@@ -42,13 +42,15 @@ impl Round<'_> {
         let [response] = trial.responses[..] else {
             return None;
         };
-        let is_own = self.screen.responses[response].released.is_none();
-        let rivals = self.rivals(trials, answer, response);
-        let (rivals, there) = self.there(trial, &rivals, effects);
-        if there.is_empty() || !is_own {
+        if self.screen.responses[response].released.is_some() {
             return None;
         }
-        (self.said)(&format!(
+        let rivals = self.rivals(trials, answer, response);
+        let (rivals, there) = self.there(trial, &rivals, effects);
+        if there.is_empty() {
+            return None;
+        }
+        (self.task.said)(&format!(
             "screening {} in the place of {}",
             there.len(),
             self.candidate(response).label()
@@ -77,8 +79,16 @@ impl Round<'_> {
         rivals: &[usize],
         effects: &[Effect],
     ) -> (Vec<usize>, Vec<Candidate>) {
+        if rivals.is_empty() {
+            return Default::default();
+        }
         let model = &trial.fit.plant.model;
-        let known = candidates(model, effects, &sites(model), &usual_rates(self.setting));
+        let known = candidates(
+            model,
+            effects,
+            &sites(model),
+            &usual_rates(self.task.setting),
+        );
         let shaped = self.shaped(trial).unwrap_or(1.0);
         let again = |rival: &usize| {
             let label = self.candidate(*rival).label();
@@ -94,7 +104,7 @@ impl Round<'_> {
     /// Which candidates promise to leave little without a trial's own terms, what they leave and
     /// their sizes.
     fn promised(&self, trial: &Trial, there: &[Candidate]) -> Option<Vec<(usize, f64, Vec<f64>)>> {
-        let mut screen = screen(self.setting, &trial.fit, there, 1.0);
+        let mut screen = screen(self.task.setting, &trial.fit, there, 1.0);
         let left = screen.left(&[]).0;
         let theta = &trial.fit.train.estimate.theta;
         for own in &trial.own {

@@ -39,12 +39,23 @@ pub(crate) struct Set {
     pub sizes: Vec<f64>,
 }
 
-/// What a round of fits works with.
-pub struct Round<'r> {
+/// What a round of the search is about.
+#[derive(Clone, Copy)]
+pub struct Task<'r> {
     /// The dataset.
     pub setting: &'r Setting<'r>,
     /// The fit to be bettered.
     pub fit: &'r Fit,
+    /// What a right model would leave, in noises.
+    pub floor: f64,
+    /// Is told what is done.
+    pub said: &'r (dyn Fn(&str) + Sync),
+}
+
+/// Candidates to be fitted.
+pub struct Round<'r> {
+    /// What it is about.
+    pub task: Task<'r>,
     /// The candidates.
     pub candidates: &'r [Candidate],
     /// What they promise.
@@ -55,10 +66,35 @@ pub struct Round<'r> {
     pub most: usize,
     /// Parts of the promised sizes among which they begin with the best.
     pub parts: &'r [f64],
-    /// What a right model would leave, in noises.
-    pub floor: f64,
-    /// Is told what is done.
-    pub said: &'r (dyn Fn(&str) + Sync),
+}
+
+impl<'r> Task<'r> {
+    /// Whether little more than noise is left.
+    pub fn is_near(&self) -> bool {
+        self.fit.train.pooled < rule::FAR
+    }
+
+    /// Whether candidates are seen over whole windows first.
+    pub fn is_whole(&self) -> bool {
+        self.is_near() || !self.setting.fits_starts()
+    }
+
+    /// Candidates to be fitted, begun as most are.
+    pub fn round(
+        self,
+        candidates: &'r [Candidate],
+        screen: &'r Screen,
+        is_whole: bool,
+    ) -> Round<'r> {
+        Round {
+            task: self,
+            candidates,
+            screen,
+            is_whole,
+            most: rule::MOST_SKETCHES,
+            parts: &PARTS,
+        }
+    }
 }
 
 impl Round<'_> {
@@ -67,10 +103,10 @@ impl Round<'_> {
         let ranked = self.ranked();
         if let Some(best) = ranked.first() {
             let (count, best) = (ranked.len(), self.candidate(*best).label());
-            (self.said)(&format!("{count} promise enough to be fitted, {best} most"));
+            (self.task.said)(&format!("{count} promise enough to be fitted, {best} most"));
         }
         let mut sketches = self.sketched(self.chosen(&ranked));
-        if !leaves_less(self.fit, rule::CLOSE * self.floor) {
+        if !leaves_less(self.task.fit, rule::CLOSE * self.task.floor) {
             let most = rule::HELPS * self.screen.left(&[]).0;
             sketches.retain(|(_, sketch)| sketch.left < most);
         }
@@ -90,7 +126,7 @@ impl Round<'_> {
                 match believed {
                     Some(trial) => {
                         let alike = self.screen.similarity(trial.responses[0], set.responses[0]);
-                        alike > rule::ALIKE || (near && !at_floor(&trial.fit, self.floor))
+                        alike > rule::ALIKE || (near && !at_floor(&trial.fit, self.task.floor))
                     }
                     None => near,
                 }
@@ -188,10 +224,10 @@ impl Round<'_> {
                     } else {
                         "beginnings of windows"
                     };
-                    (self.said)(&format!("  {label}: {part:.1} % left of the {of}"));
+                    (self.task.said)(&format!("  {label}: {part:.1} % left of the {of}"));
                     found.push((set, sketch));
                 }
-                Err(error) => (self.said)(&format!("  {label}: {error}")),
+                Err(error) => (self.task.said)(&format!("  {label}: {error}")),
             }
         }
         found.sort_by(|a, b| a.1.left.total_cmp(&b.1.left));
@@ -202,7 +238,7 @@ impl Round<'_> {
     pub(crate) fn completed(&self, sketches: Vec<(Set, Sketch)>) -> Vec<Trial> {
         let fits: Vec<(Set, Result<Fit, String>)> = sketches
             .into_par_iter()
-            .map(|(set, sketch)| (set, self.setting.complete(sketch)))
+            .map(|(set, sketch)| (set, self.task.setting.complete(sketch)))
             .collect();
         let mut trials = Vec::new();
         for (set, new) in fits {
@@ -210,10 +246,10 @@ impl Round<'_> {
             match new {
                 Ok(new) => {
                     let own = self.own(&set);
-                    let verdict = judge(self.fit, &new, &own);
+                    let verdict = judge(self.task.fit, &new, &own);
                     let outcome = verdict.as_ref().err().map_or("believed", String::as_str);
                     let (train, test) = (new.train.pooled, new.test.pooled);
-                    (self.said)(&format!(
+                    (self.task.said)(&format!(
                         "  {label}: {train:.2} noises are left in training, {test:.2} in test; {outcome}"
                     ));
                     trials.push(Trial {
@@ -223,7 +259,7 @@ impl Round<'_> {
                         verdict,
                     });
                 }
-                Err(error) => (self.said)(&format!("  {label}: {error}")),
+                Err(error) => (self.task.said)(&format!("  {label}: {error}")),
             }
         }
         trials
@@ -231,12 +267,12 @@ impl Round<'_> {
 
     /// The unknowns of a set's effects in a fit with them.
     fn own(&self, set: &Set) -> Vec<Own> {
-        let mut next = self.fit.unknowns.len();
+        let mut next = self.task.fit.unknowns.len();
         let mut own = Vec::new();
         for (effect, response) in set.responses.iter().enumerate() {
             let response = &self.screen.responses[*response];
             if let Some(place) = response.released
-                && let Some((mean, sd)) = self.fit.unknowns[place].prior
+                && let Some((mean, sd)) = self.task.fit.unknowns[place].prior
             {
                 own.push(Own {
                     place,
@@ -327,8 +363,8 @@ impl Round<'_> {
                 .collect::<Vec<Set>>()
         };
         let mut sets = best_of(None, screen);
-        for (place, unknown) in self.fit.unknowns.iter().enumerate() {
-            let value = self.fit.train.estimate.theta[place];
+        for (place, unknown) in self.task.fit.unknowns.iter().enumerate() {
+            let value = self.task.fit.train.estimate.theta[place];
             let near = unknown
                 .prior
                 .is_some_and(|(mean, sd)| mean.abs() < rule::PRIOR_REACH * sd);
@@ -352,7 +388,7 @@ impl Round<'_> {
 
     /// A sketch with a set's candidates.
     fn sketch(&self, set: &Set) -> Result<Sketch, String> {
-        let (setting, fit) = (self.setting, self.fit);
+        let (setting, fit) = (self.task.setting, self.task.fit);
         let (unknowns, theta) = self.unknowns(set, self.parts[0]);
         let texts = self.texts(set, &unknowns, &theta)?;
         // What swings in coordinates of its own is far from the fit however little it does.
@@ -383,7 +419,7 @@ impl Round<'_> {
         unknowns: &[Unknown],
         theta: &[f64],
     ) -> Result<(String, String), String> {
-        let fit = self.fit;
+        let fit = self.task.fit;
         let mut texts = (fit.text.clone(), fit.linear.clone());
         let mut next = fit.unknowns.len();
         for response in &set.responses {
@@ -398,6 +434,7 @@ impl Round<'_> {
                 .collect();
             let candidate = &self.candidates[response.candidate];
             texts = self
+                .task
                 .setting
                 .with((&texts.0, &texts.1), candidate, &values)?;
         }
@@ -413,20 +450,21 @@ impl Round<'_> {
         shaped: f64,
     ) -> Result<Sketch, String> {
         let (unknowns, mut theta) = self.unknowns(set, 1.0);
-        let count = self.fit.unknowns.len();
+        let count = self.task.fit.unknowns.len();
         theta[..count].copy_from_slice(&trial.fit.train.estimate.theta[..count]);
         for own in self.own(set).iter().filter(|own| own.is_shape) {
             theta[own.place] = unknowns[own.place].admissible(shaped * theta[own.place]);
         }
         let texts = self.texts(set, &unknowns, &theta)?;
-        self.setting
+        self.task
+            .setting
             .expected(texts, unknowns, theta, (&trial.fit, left))
     }
 
     /// The unknowns with a set's candidates and their values, so much of the promised sizes from
     /// absent.
     fn unknowns(&self, set: &Set, part: f64) -> (Vec<Unknown>, Vec<f64>) {
-        let fit = self.fit;
+        let fit = self.task.fit;
         let mut unknowns = fit.unknowns.clone();
         let mut theta = fit.anew();
         if let Some(place) = set.deleted {

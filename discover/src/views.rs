@@ -14,7 +14,7 @@ use crate::named::{Searched, leaves_clearly_less};
 use crate::rule;
 use crate::screen::{Screen, screen};
 use crate::sites::{plays, sites};
-use crate::trials::{PARTS, Round, Trial, at_floor, leaves_less};
+use crate::trials::{PARTS, Round, Task, Trial, at_floor, leaves_less};
 use crate::undeclared::shifts;
 use crate::unknowns::{Unknown, What};
 
@@ -42,18 +42,12 @@ impl View {
 
 /// What a round works with.
 pub struct Look<'l> {
-    /// The dataset.
-    pub setting: &'l Setting<'l>,
-    /// The fit to be bettered.
-    pub fit: &'l Fit,
+    /// What the round is about.
+    pub task: Task<'l>,
     /// Whether nothing was found yet.
     pub is_first: bool,
     /// The catalogue.
     pub effects: &'l [Effect],
-    /// What a right model would leave, in noises.
-    pub floor: f64,
-    /// Is told what is done.
-    pub said: &'l (dyn Fn(&str) + Sync),
 }
 
 impl Look<'_> {
@@ -70,7 +64,7 @@ impl Look<'_> {
                     continue;
                 }
                 // Teeth are fitted slowly: a parameter that explains all saves that.
-                if self.is_first && !self.is_near() {
+                if self.is_first && !self.task.is_near() {
                     searched.push(self.shifts());
                     has_shifts = true;
                     if is_any(&searched, &|trial| self.is_enough(trial)) {
@@ -93,7 +87,7 @@ impl Look<'_> {
         }
         let is_open = match is_any(&searched, &|trial| trial.verdict.is_ok()) {
             true => self.is_first && !is_any(&searched, &|trial| self.is_close(trial)),
-            false => self.is_first || !self.is_near(),
+            false => self.is_first || !self.task.is_near(),
         };
         if is_open && !has_shifts {
             searched.push(self.shifts());
@@ -105,12 +99,12 @@ impl Look<'_> {
         searched
     }
 
-    fn is_near(&self) -> bool {
-        self.fit.train.pooled < rule::FAR
-    }
-
     fn views(&self) -> &'static [View] {
-        match (self.setting.fits_starts(), self.is_near(), self.is_first) {
+        match (
+            self.task.setting.fits_starts(),
+            self.task.is_near(),
+            self.is_first,
+        ) {
             // What is small beside what was found already is seen over whole windows or not at
             // all.
             (false, _, _) | (true, true, false) => &[View::Whole],
@@ -121,26 +115,26 @@ impl Look<'_> {
 
     /// Whether a trial is believed and leaves little.
     fn is_close(&self, trial: &Trial) -> bool {
-        let little = (rule::CLOSE * self.floor).max(rule::MOST_OF * self.fit.left());
+        let little = (rule::CLOSE * self.task.floor).max(rule::MOST_OF * self.task.fit.left());
         trial.verdict.is_ok() && leaves_less(&trial.fit, little)
     }
 
     /// Whether a trial is believed and leaves no more than a right model would.
     fn is_enough(&self, trial: &Trial) -> bool {
-        trial.verdict.is_ok() && at_floor(&trial.fit, self.floor)
+        trial.verdict.is_ok() && at_floor(&trial.fit, self.task.floor)
     }
 
     /// Candidates screened in a view and fitted one by one; none if the model has no play to be
     /// closed.
     fn looked(&self, view: View) -> Option<Searched> {
         let closed = match view {
-            View::NoPlay => Some(without_play(self.setting, self.fit)?),
+            View::NoPlay => Some(without_play(self.task.setting, self.task.fit)?),
             View::Whole | View::Beginnings => None,
         };
         if closed.is_some() {
-            (self.said)("looking at the model without play");
+            (self.task.said)("looking at the model without play");
         }
-        let (candidates, screen) = self.screened(closed.as_ref().unwrap_or(self.fit), view);
+        let (candidates, screen) = self.screened(closed.as_ref().unwrap_or(self.task.fit), view);
         let trials = self.begun(view, &candidates, &screen).singles();
         Some((candidates, screen, trials))
     }
@@ -152,23 +146,15 @@ impl Look<'_> {
         candidates: &'r [Candidate],
         screen: &'r Screen,
     ) -> Round<'r> {
-        Round {
-            setting: self.setting,
-            fit: self.fit,
-            candidates,
-            screen,
-            is_whole: view == View::Whole,
-            most: match view {
-                View::NoPlay => 2 * rule::FITS_AT_ONCE,
-                View::Whole | View::Beginnings => rule::MOST_SKETCHES,
-            },
+        let round = self.task.round(candidates, screen, view == View::Whole);
+        match view {
             // Without play a straight line is right.
-            parts: match view {
-                View::NoPlay => &PARTS[..2],
-                View::Whole | View::Beginnings => &PARTS,
+            View::NoPlay => Round {
+                most: 2 * rule::FITS_AT_ONCE,
+                parts: &PARTS[..2],
+                ..round
             },
-            floor: self.floor,
-            said: self.said,
+            View::Whole | View::Beginnings => round,
         }
     }
 
@@ -185,13 +171,13 @@ impl Look<'_> {
 
     /// Parameters that nobody called uncertain.
     fn shifts(&self) -> Searched {
-        let shifts = shifts(self.fit);
-        (self.said)(&format!(
+        let shifts = shifts(self.task.fit);
+        (self.task.said)(&format!(
             "screening {} parameters of the model",
             shifts.len()
         ));
         let view = self.views()[0];
-        let screen = screen(self.setting, self.fit, &shifts, view.part());
+        let screen = screen(self.task.setting, self.task.fit, &shifts, view.part());
         let trials = self.begun(view, &shifts, &screen).singles();
         (shifts, screen, trials)
     }
@@ -201,7 +187,7 @@ impl Look<'_> {
     /// they deflect, and often than their play: they are looked at where all play is closed, and
     /// nothing else is there.
     fn screened(&self, fit: &Fit, view: View) -> (Vec<Candidate>, Screen) {
-        let (setting, has_play) = (self.setting, view != View::NoPlay);
+        let (setting, has_play) = (self.task.setting, view != View::NoPlay);
         let model = &fit.plant.model;
         let mut all = candidates(model, self.effects, &sites(model), &usual_rates(setting));
         all.extend(released(setting, fit));
@@ -211,14 +197,14 @@ impl Look<'_> {
             .filter(|c| c.order.is_none() || !has_play)
             .cloned()
             .collect();
-        (self.said)(&format!("screening {} candidates", plain.len()));
+        (self.task.said)(&format!("screening {} candidates", plain.len()));
         let found = screen(setting, fit, &plain, view.part());
         let best = found.responses.iter().map(|r| r.gain).fold(0.0, f64::max);
-        let above = found.left(&[]).0 - self.floor * self.floor * found.numbers;
+        let above = found.left(&[]).0 - self.task.floor * self.task.floor * found.numbers;
         if plain.len() == all.len() || best > rule::ENOUGH * above {
             return (plain, found);
         }
-        (self.said)(&format!(
+        (self.task.said)(&format!(
             "screening {} candidates that repeat with an angle",
             all.len() - plain.len()
         ));

@@ -78,6 +78,12 @@ impl<'d> Windows<'d> {
         Self { records, list }
     }
 
+    /// How many numbers all windows hold, one per sample and channel.
+    pub fn numbers(&self) -> f64 {
+        let counts = self.list.iter().map(|window| window.measured.len());
+        counts.sum::<usize>() as f64
+    }
+
     /// The inputs of a window's record.
     pub fn inputs(&self, window: &Window) -> &HeldInputs {
         &self.records[window.record].inputs

@@ -5,6 +5,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::fit::{Estimate, Fit, Fitted, Records, Window};
 use super::windows::{deviated, run};
+use crate::hidden::Sensors;
+use crate::machines::Machine;
 
 /// Unknowns with priors stay within so many standard deviations: beyond is an effect.
 const REACH: f64 = 3.0;
@@ -52,12 +54,13 @@ struct Linear {
 /// The step from an estimate to where a straight line has the least cost.
 pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> Step {
     let unknowns = at.shared.len();
+    let around = Around::new(fit, records, &at.shared, nudges);
     // One for each unknown is its prior.
     let mut normal = DMatrix::identity(unknowns, unknowns);
     let mut right = -&at.shared;
     let mut parts = Vec::new();
     for (window, fitted) in records.windows.iter().zip(&at.windows) {
-        let part = linear(fit, records, window, fitted, &at.shared, nudges);
+        let part = around.linear(window, fitted);
         normal += part.shared.transpose() * &part.shared;
         right += part.shared.transpose() * &part.residual;
         parts.push(part);
@@ -70,88 +73,91 @@ pub fn step(fit: &Fit<'_>, records: &Records, at: &Estimate, nudges: Nudges) -> 
     }
 }
 
-fn linear(
-    fit: &Fit<'_>,
-    records: &Records,
-    window: &Window,
-    at: &Fitted,
-    shared: &DVector<f64>,
+/// Machines and sensors around shared unknowns, which serve all windows.
+struct Around<'a> {
+    fit: &'a Fit<'a>,
+    ranges: &'a [f64],
     nudges: Nudges,
-) -> Linear {
-    let (samples, size) = (at.residual.len(), records.ranges.len());
-    let longer = |seen: DVector<f64>| seen.resize_vertically(samples + size, 0.0);
-    let residual = longer(at.residual.clone());
-    let columns: Vec<DVector<f64>> = of_shared(fit, window, at, shared, nudges)
-        .into_iter()
-        .map(longer)
-        .collect();
-    let directions = DMatrix::from_columns(&columns);
-    let factors = of_start(fit, records, window, at, shared, nudges).qr();
-    let (q, r) = (factors.q(), factors.r());
-    let taken = (q.transpose() * &residual, q.transpose() * &directions);
-    let residual = residual - &q * &taken.0;
-    let directions = directions - &q * &taken.1;
-    // The rows of ones keep the triangle from being singular.
-    let inverse = r
-        .try_inverse()
-        .unwrap_or_else(|| DMatrix::zeros(size, size));
-    let scale = DVector::from_column_slice(&records.ranges) * UNSEEN;
-    let inverse = DMatrix::from_diagonal(&scale) * inverse;
-    Linear {
-        residual,
-        shared: directions,
-        start: (&inverse * taken.0, inverse * taken.1),
-    }
+    here: (Machine, Sensors),
+    /// With one shared unknown nudged each.
+    nudged: Vec<(Machine, Sensors)>,
 }
 
-/// What a step of the initial state takes from a residual, and below it a row for each
-/// direction that holds it where the window does not show it.
-fn of_start(
-    fit: &Fit<'_>,
-    records: &Records,
-    window: &Window,
-    at: &Fitted,
-    shared: &DVector<f64>,
-    nudges: Nudges,
-) -> DMatrix<f64> {
-    let (machine, sensors) = fit.with(shared);
-    let directions = machine.directions();
-    let samples = at.residual.len();
-    let mut starts = DMatrix::zeros(samples + directions.len(), directions.len());
-    for (column, direction) in directions.iter().enumerate() {
-        let moved = along(&at.start, direction, nudges.start * records.ranges[column]);
-        let residual = fit.residual(&machine, &sensors, window, &moved);
-        let change = (&at.residual - residual) * (UNSEEN / nudges.start);
+impl<'a> Around<'a> {
+    fn new(fit: &'a Fit<'a>, records: &'a Records, shared: &DVector<f64>, nudges: Nudges) -> Self {
+        let nudged = (0..shared.len()).map(|unknown| {
+            let mut other = shared.clone();
+            other[unknown] += nudges.shared;
+            fit.with(&other)
+        });
+        Self {
+            fit,
+            ranges: &records.ranges,
+            nudges,
+            here: fit.with(shared),
+            nudged: nudged.collect(),
+        }
+    }
+
+    fn linear(&self, window: &Window, at: &Fitted) -> Linear {
+        let (samples, size) = (at.residual.len(), self.ranges.len());
+        let longer = |seen: DVector<f64>| seen.resize_vertically(samples + size, 0.0);
+        let residual = longer(at.residual.clone());
+        let columns: Vec<DVector<f64>> =
+            (self.of_shared(window, at).into_iter().map(longer)).collect();
+        let directions = DMatrix::from_columns(&columns);
+        let factors = self.of_start(window, at).qr();
+        let (q, r) = (factors.q(), factors.r());
+        let taken = (q.transpose() * &residual, q.transpose() * &directions);
+        let residual = residual - &q * &taken.0;
+        let directions = directions - &q * &taken.1;
+        // The rows of ones keep the triangle from being singular.
+        let inverse = r
+            .try_inverse()
+            .unwrap_or_else(|| DMatrix::zeros(size, size));
+        let scale = DVector::from_column_slice(self.ranges) * UNSEEN;
+        let inverse = DMatrix::from_diagonal(&scale) * inverse;
+        Linear {
+            residual,
+            shared: directions,
+            start: (&inverse * taken.0, inverse * taken.1),
+        }
+    }
+
+    /// What a step of the initial state takes from a residual, and below it a row for each
+    /// direction that holds it where the window does not show it.
+    fn of_start(&self, window: &Window, at: &Fitted) -> DMatrix<f64> {
+        let (machine, sensors) = &self.here;
+        let directions = machine.directions();
+        let samples = at.residual.len();
+        let mut starts = DMatrix::zeros(samples + directions.len(), directions.len());
+        for (column, direction) in directions.iter().enumerate() {
+            let nudge = self.nudges.start * self.ranges[column];
+            let moved = along(&at.start, direction, nudge);
+            let residual = self.fit.residual(machine, sensors, window, &moved);
+            let change = (&at.residual - residual) * (UNSEEN / self.nudges.start);
+            starts
+                .view_mut((0, column), (samples, 1))
+                .copy_from(&change);
+            starts[(samples + column, column)] = 1.0;
+        }
         starts
-            .view_mut((0, column), (samples, 1))
-            .copy_from(&change);
-        starts[(samples + column, column)] = 1.0;
     }
-    starts
-}
 
-/// What a standard deviation of each shared unknown takes from a residual.
-fn of_shared(
-    fit: &Fit<'_>,
-    window: &Window,
-    at: &Fitted,
-    shared: &DVector<f64>,
-    nudges: Nudges,
-) -> Vec<DVector<f64>> {
-    let (machine, _) = fit.with(shared);
-    let base = run(&machine, fit.setup, fit.drives, &at.start, window.span);
-    let column = |unknown: usize| {
-        let mut other = shared.clone();
-        other[unknown] += nudges.shared;
-        let (machine, sensors) = fit.with(&other);
-        let residual = if unknown < fit.parameters() {
-            fit.residual(&machine, &sensors, window, &at.start)
-        } else {
-            &window.seen - deviated(&base, fit.setup, &sensors)
+    /// What a standard deviation of each shared unknown takes from a residual.
+    fn of_shared(&self, window: &Window, at: &Fitted) -> Vec<DVector<f64>> {
+        let fit = self.fit;
+        let base = run(&self.here.0, fit.setup, fit.drives, &at.start, window.span);
+        let column = |(unknown, (machine, sensors)): (usize, &(Machine, Sensors))| {
+            let residual = if unknown < fit.parameters() {
+                fit.residual(machine, sensors, window, &at.start)
+            } else {
+                &window.seen - deviated(&base, fit.setup, sensors)
+            };
+            (&at.residual - residual) / self.nudges.shared
         };
-        (&at.residual - residual) / nudges.shared
-    };
-    (0..shared.len()).map(column).collect()
+        self.nudged.iter().enumerate().map(column).collect()
+    }
 }
 
 /// The step that solves normal equations, with what would leave the reach held at its end.

@@ -4,7 +4,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::windows::{Span, deviated, outputs, run, spans, states, window};
+use super::windows::{Span, deviated, outputs, run, spans, states};
 use crate::hidden::{Effect, Hidden, Sensors};
 use crate::inputs::Drive;
 use crate::machines::{Machine, Setup};
@@ -164,16 +164,14 @@ pub fn floors_of_missing_modes(machine: &Machine, setup: &Setup, drives: &[Drive
         amount: 0.0,
     };
     let basis = Basis::new(&model, setup, drives, &none);
+    let all: Vec<_> = drives
+        .iter()
+        .map(|drive| states(machine, setup, drive))
+        .collect();
     let differences = basis.windows.iter().map(|part| {
-        let Span {
-            record,
-            first,
-            count,
-        } = part.span;
-        let drive = &drives[record];
-        let truth = &states(machine, setup, drive)[first..first + count];
-        let run = window(&model, setup, drive, &truth[0], first, count);
-        outputs(machine, setup, truth) - outputs(&model, setup, &run)
+        let span = part.span;
+        let truth = &all[span.record][span.first..span.first + span.count];
+        outputs(machine, setup, truth) - run(&model, setup, drives, &truth[0], span)
     });
     basis.left(differences.collect())
 }
