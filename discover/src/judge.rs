@@ -135,10 +135,10 @@ fn significance(fit: &Fit, own: &[Own]) -> f64 {
 /// What is said of a parameter that a bound holds.
 fn at_bound(fit: &Fit, own: &[Own]) -> Option<String> {
     let held = own.iter().find(|own| !own.is_shape && is_held(fit, own))?;
-    let name = crate::unknowns::name(&fit.unknowns[held.place].what);
+    let name = &fit.unknowns[held.place].label;
     Some(match held.prior {
-        Some(_) => format!("the {name} runs to the end of what is admitted"),
-        None => format!("`{name}` has the wrong sign: held to it, the effect vanishes"),
+        Some(_) => format!("{name} runs to the end of what is admitted"),
+        None => format!("{name} has the wrong sign: held to it, the effect vanishes"),
     })
 }
 
@@ -157,6 +157,6 @@ fn within_prior(fit: &Fit, own: &[Own]) -> Option<(String, f64)> {
         // Beyond its prior for certain, not by what the record leaves open.
         let sure = off - rule::STANDARD_ERRORS * fit.sd[own.place] / prior;
         let is_off = sure > rule::SHIFTED;
-        (!is_off).then(|| (crate::unknowns::name(&fit.unknowns[own.place].what), off))
+        (!is_off).then(|| (fit.unknowns[own.place].label.clone(), off))
     })
 }

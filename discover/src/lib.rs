@@ -55,6 +55,7 @@ pub mod smooth;
 pub mod starts;
 mod swaps;
 pub mod thinned;
+mod together;
 pub mod trials;
 pub mod tried;
 pub mod undeclared;

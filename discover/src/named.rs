@@ -38,7 +38,7 @@ pub fn named(task: Task<'_>, searched: Searched) -> Option<Named> {
     };
     let (better, others): (Vec<Trial>, Vec<Trial>) = trials
         .into_iter()
-        .partition(|trial| leaves_clearly_less(&trial.fit, with.1));
+        .partition(|trial| is_clearly_better(&trial.fit, with.1));
     if !better.is_empty() {
         return best((candidates, screen, better));
     }
@@ -128,6 +128,14 @@ pub fn best_of(trials: &[Trial]) -> Option<usize> {
 pub fn leaves_clearly_less(one: &Fit, other: &Fit) -> bool {
     let better = 1.0 - rule::HELD_OUT;
     one.train.pooled < better * other.train.pooled && one.test.pooled < better * other.test.pooled
+}
+
+/// Whether a fit leaves clearly less than another: on both sets of records, or of the test records
+/// for certain and of the training records no more, where the other's further unknowns help it.
+fn is_clearly_better(one: &Fit, other: &Fit) -> bool {
+    let told = evidence(other, one, &[]);
+    let is_certain = told.held_out > rule::HELD_OUT && told.held_out_errors > rule::STANDARD_ERRORS;
+    leaves_clearly_less(one, other) || (is_certain && one.train.pooled < other.train.pooled)
 }
 
 /// What of a trial the records do not tell from another's, if that is as large and differs in

@@ -152,6 +152,7 @@ pub(crate) fn trial(parameter: &CandidateParameter) -> Trial {
         (None, None) => (low, f64::INFINITY),
     };
     let unknown = Unknown {
+        label: format!("`{name}`"),
         what: if parameter.inverse {
             What::Inverse(name)
         } else {

@@ -98,8 +98,8 @@ pub const PROMISE_FAR: f64 = 0.005;
 pub const FAR: f64 = 3.0;
 
 /// Where more than `CLOSE` floors are left, a candidate that, begun, leaves no less than this part
-/// is not fitted in earnest.
-pub const HELPS: f64 = 0.99;
+/// of the squares is not fitted in earnest: of a hundred such that were, none was believed.
+pub const HELPS: f64 = 0.95;
 
 /// So many candidates are fitted side by side before it is decided whether more are worth it:
 /// one per core of a small machine.

@@ -7,7 +7,7 @@ use crate::catalogue::Effect;
 use crate::empirical::add_empirical;
 use crate::fitting::{Fit, Setting};
 use crate::judge::{Evidence, evidence};
-use crate::named::{Named, Searched, best_of, leaves_clearly_less, named};
+use crate::named::{Named, leaves_clearly_less};
 use crate::rule;
 use crate::screen::Screen;
 use crate::thinned::thin;
@@ -118,7 +118,7 @@ pub fn search(
         rejected: Vec::new(),
     };
     while found.accepted.len() < rule::MOST_EFFECTS {
-        let fit = found.best();
+        let fit = found.last.as_ref().unwrap_or(&found.null);
         if at_floor(fit, floor) {
             break;
         }
@@ -133,37 +133,10 @@ pub fn search(
             effects,
         };
         let searched = look.round();
-        let mut believed: Option<Searched> = None;
-        for (candidates, screen, mut trials) in searched {
-            note_rejected(&mut found.rejected, &candidates, &screen, &trials);
-            trials.retain(|trial| trial.verdict.is_ok());
-            let least = |trials: &[Trial]| {
-                let left = trials.iter().map(|trial| trial.fit.left());
-                left.fold(f64::INFINITY, f64::min)
-            };
-            let known = believed
-                .as_ref()
-                .map_or(f64::INFINITY, |(_, _, known)| least(known));
-            if least(&trials) < known {
-                believed = Some((candidates, screen, trials));
-            }
+        for (candidates, screen, trials) in &searched {
+            note_rejected(&mut found.rejected, candidates, screen, trials);
         }
-        let Some((candidates, screen, mut trials)) = believed else {
-            break;
-        };
-        let task = Task {
-            setting,
-            fit: found.best(),
-            floor,
-            said,
-        };
-        if let Some(answer) = best_of(&trials) {
-            let round = task.round(&candidates, &screen, true);
-            round.swap(&mut trials, answer, effects);
-        }
-        trials.retain(|trial| trial.verdict.is_ok());
-        let searched = (candidates, screen, trials);
-        let Some(named) = named(task, searched) else {
+        let Some(named) = look.answer(searched) else {
             break;
         };
         accept(&mut found, named);

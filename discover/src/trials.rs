@@ -79,6 +79,12 @@ impl<'r> Task<'r> {
         self.is_near() || !self.setting.fits_starts()
     }
 
+    /// Whether what was left is most of the way to what a right model would leave.
+    pub fn explains_most(&self, fit: &Fit) -> bool {
+        let little = (rule::CLOSE * self.floor).max(rule::MOST_OF * self.fit.left());
+        leaves_less(fit, little)
+    }
+
     /// Candidates to be fitted, begun as most are.
     pub fn round(
         self,
@@ -98,9 +104,10 @@ impl<'r> Task<'r> {
 }
 
 impl Round<'_> {
-    /// The best candidates alone and those that look like them.
-    pub fn singles(&self) -> Vec<Trial> {
-        let ranked = self.ranked();
+    /// The best candidates alone and those that look like them, of those from this one on.
+    pub fn singles(&self, from: usize) -> Vec<Trial> {
+        let mut ranked = self.ranked();
+        ranked.retain(|response| self.screen.responses[*response].candidate >= from);
         if let Some(best) = ranked.first() {
             let (count, best) = (ranked.len(), self.candidate(*best).label());
             (self.task.said)(&format!("{count} promise enough to be fitted, {best} most"));
@@ -313,29 +320,43 @@ impl Round<'_> {
             added += usize::from(set.deleted.is_none());
             set.deleted.is_some() || added <= rule::FITS_AT_ONCE
         });
-        self.completed(sketches)
+        let mut trials = self.completed(sketches);
+        for trial in &mut trials {
+            let mut own = trial.responses.iter();
+            let repeats = own.any(|response| self.candidate(*response).order.is_some());
+            if repeats && trial.verdict.is_ok() && !self.task.explains_most(&trial.fit) {
+                trial.verdict = Err("beside another it leaves much, which may be luck".to_owned());
+            }
+        }
+        trials
     }
 
     /// The pairs that promise to leave clearly less than the best single candidate, and for each term of
-    /// the model that may go the pair that takes its place best. What repeats with an angle is
-    /// not paired: of that there is so much that two of it are lucky.
+    /// the model that may go the pair that takes its place best. Of what repeats with an angle the
+    /// best alone are paired, and with something else: of that there is so much that some of it is
+    /// lucky.
     fn best_pairs(&self, ranked: &[usize], away: &[usize]) -> Vec<Set> {
         let screen = self.screen;
         let best = ranked.first().map_or(0.0, |r| screen.responses[*r].gain);
         let single = screen.left(&[]).0 - best;
         // What is nothing alone may be half of a pair: friction of two kinds in place of a third.
+        let repeats = |r: &usize| self.candidate(*r).order.is_some();
+        let repeating: Vec<usize> = (ranked.iter().copied().filter(repeats))
+            .take(rule::MOST_FITS)
+            .collect();
         let few: Vec<usize> = (0..screen.responses.len())
             .filter(|r| {
                 let response = &screen.responses[*r];
-                let is_plain = self.candidate(*r).order.is_none() && !away.contains(r);
-                is_plain && response.visible > rule::OWN_PART
+                let is_one = !repeats(r) || repeating.contains(r);
+                is_one && !away.contains(r) && response.visible > rule::OWN_PART
             })
             .collect();
+        let apart = |a: usize, b: usize| !self.share_a_name(a, b) && !(repeats(&a) && repeats(&b));
         let best_of = |deleted: Option<usize>, screen: &Screen| {
             let mut found: Vec<(f64, Set)> = Vec::new();
             for (number, a) in few.iter().enumerate() {
                 let others = few[number + 1..].iter();
-                for b in others.filter(|b| !self.share_a_name(*a, **b)) {
+                for b in others.filter(|b| apart(*a, **b)) {
                     let responses = vec![*a, *b];
                     let (left, sizes) = screen.left(&responses);
                     // What replaces a term is far from where it was linearised: it is not held

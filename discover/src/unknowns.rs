@@ -37,6 +37,8 @@ impl What {
 pub struct Unknown {
     /// What it is.
     pub what: What,
+    /// What it is called in messages.
+    pub label: String,
     /// Where the estimate begins, SI.
     pub start: f64,
     /// Mean and standard deviation of what is known before, SI.
@@ -66,10 +68,11 @@ impl Unknown {
 
     /// One of the null model: within so many standard deviations of what was declared, because
     /// beyond it is an effect.
-    fn declared(what: What, (mean, sd): (f64, f64), limits: (f64, f64)) -> Self {
+    fn declared((what, label): (What, String), (mean, sd): (f64, f64), limits: (f64, f64)) -> Self {
         let reach = rule::SHIFTED * sd;
         Self {
             what,
+            label,
             start: mean,
             prior: Some((mean, sd)),
             bounds: (limits.0.max(mean - reach), limits.1.min(mean + reach)),
@@ -90,7 +93,8 @@ pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)])
             continue;
         };
         let sd = uncertain.relative * value.abs();
-        let what = What::Parameter(uncertain.name.clone());
+        let name = &uncertain.name;
+        let what = (What::Parameter(name.clone()), format!("`{name}`"));
         let limits = sign_bounds(parameter, *value);
         unknowns.push(Unknown::declared(what, (*value, sd), limits));
     }
@@ -111,13 +115,14 @@ pub fn of_sensor(place: usize, channel: &Channel, step: f64) -> [Unknown; 3] {
     let delay = rule::DELAY_PRIOR * step;
     let free = (f64::NEG_INFINITY, f64::INFINITY);
     let late = (-rule::LONGEST_LEAD * step, rule::LONGEST_DELAY * step);
+    let called = |what: What, fault: &str| (what, format!("the {fault} of `{}`", channel.name));
     [
-        Unknown::declared(What::Gain(place), (1.0, gain), free),
-        Unknown::declared(What::Bias(place), (0.0, bias), free),
+        Unknown::declared(called(What::Gain(place), "gain"), (1.0, gain), free),
+        Unknown::declared(called(What::Bias(place), "bias"), (0.0, bias), free),
         // What no prior holds is late: no sensor sees ahead.
         Unknown {
             limits: (0.0, late.1),
-            ..Unknown::declared(What::Delay(place), (0.0, delay), late)
+            ..Unknown::declared(called(What::Delay(place), "delay"), (0.0, delay), late)
         },
     ]
 }
@@ -133,14 +138,4 @@ pub fn sign_bounds(parameter: &Parameter, value: f64) -> (f64, f64) {
         parameter.min.map_or(low, |min| min.max(low)),
         parameter.max.map_or(high, |max| max.min(high)),
     )
-}
-
-/// What an unknown is called in messages.
-pub fn name(what: &What) -> String {
-    match what {
-        What::Parameter(name) | What::Inverse(name) => name.clone(),
-        What::Gain(place) => format!("gain of channel {place}"),
-        What::Bias(place) => format!("bias of channel {place}"),
-        What::Delay(place) => format!("delay of channel {place}"),
-    }
 }

@@ -1,6 +1,6 @@
 //! One round of the search: motions looked at in one view after the other until what is believed
-//! leaves little, pairs if that leaves much, and parameters that nobody called uncertain. What is
-//! taken over is decided in [`mod@crate::search`].
+//! leaves little, pairs if that leaves much, and parameters that nobody called uncertain; and what
+//! is named of all that.
 
 use std::collections::BTreeMap;
 
@@ -10,17 +10,17 @@ use model_spec::source::Source;
 use crate::candidates::{self, Candidate, candidates};
 use crate::catalogue::Effect;
 use crate::fitting::{FIRST_PART, Fit, Setting};
-use crate::named::{Searched, leaves_clearly_less};
+use crate::named::{Named, Searched, best_of, leaves_clearly_less, named};
 use crate::rule;
 use crate::screen::{Screen, screen};
 use crate::sites::{plays, sites};
-use crate::trials::{PARTS, Round, Task, Trial, at_floor, leaves_less};
+use crate::trials::{PARTS, Round, Task, Trial, at_floor};
 use crate::undeclared::shifts;
 use crate::unknowns::{Unknown, What};
 
 /// How motions are looked at while candidates are screened.
 #[derive(Clone, Copy, PartialEq)]
-enum View {
+pub(crate) enum View {
     /// The beginnings of windows, where a motion is nearly linear in whatever changes it.
     Beginnings,
     /// Whole windows, which show more of what is slow.
@@ -99,6 +99,29 @@ impl Look<'_> {
         searched
     }
 
+    /// What is named of all that was looked at; none if nothing is believed, alone or together.
+    pub fn answer(&self, mut searched: Vec<Searched>) -> Option<Named> {
+        let least = |searched: &Searched| {
+            let believed = searched.2.iter().filter(|trial| trial.verdict.is_ok());
+            let left = believed.map(|trial| trial.fit.left());
+            left.fold(f64::INFINITY, f64::min)
+        };
+        let best = (0..searched.len())
+            .filter(|place| least(&searched[*place]).is_finite())
+            .min_by(|a, b| least(&searched[*a]).total_cmp(&least(&searched[*b])));
+        let Some(best) = best else {
+            return self.together(&searched);
+        };
+        let (candidates, screen, mut trials) = searched.swap_remove(best);
+        trials.retain(|trial| trial.verdict.is_ok());
+        if let Some(answer) = best_of(&trials) {
+            let round = self.task.round(&candidates, &screen, true);
+            round.swap(&mut trials, answer, self.effects);
+        }
+        trials.retain(|trial| trial.verdict.is_ok());
+        named(self.task, (candidates, screen, trials))
+    }
+
     fn views(&self) -> &'static [View] {
         match (
             self.task.setting.fits_starts(),
@@ -115,8 +138,7 @@ impl Look<'_> {
 
     /// Whether a trial is believed and leaves little.
     fn is_close(&self, trial: &Trial) -> bool {
-        let little = (rule::CLOSE * self.task.floor).max(rule::MOST_OF * self.task.fit.left());
-        trial.verdict.is_ok() && leaves_less(&trial.fit, little)
+        trial.verdict.is_ok() && self.task.explains_most(&trial.fit)
     }
 
     /// Whether a trial is believed and leaves no more than a right model would.
@@ -124,9 +146,9 @@ impl Look<'_> {
         trial.verdict.is_ok() && at_floor(&trial.fit, self.task.floor)
     }
 
-    /// Candidates screened in a view and fitted one by one; none if the model has no play to be
-    /// closed.
-    fn looked(&self, view: View) -> Option<Searched> {
+    /// Candidates screened in a view and fitted one by one: what repeats with an angle only if the
+    /// others promise little, or come to little. None if the model has no play to be closed.
+    pub(crate) fn looked(&self, view: View) -> Option<Searched> {
         let closed = match view {
             View::NoPlay => Some(without_play(self.task.setting, self.task.fit)?),
             View::Whole | View::Beginnings => None,
@@ -134,8 +156,27 @@ impl Look<'_> {
         if closed.is_some() {
             (self.task.said)("looking at the model without play");
         }
-        let (candidates, screen) = self.screened(closed.as_ref().unwrap_or(self.task.fit), view);
-        let trials = self.begun(view, &candidates, &screen).singles();
+        let fit = closed.as_ref().unwrap_or(self.task.fit);
+        let (plain, repeating) = self.candidates(fit, view);
+        (self.task.said)(&format!("screening {} candidates", plain.len()));
+        let mut screen = screen(self.task.setting, fit, &plain, view.part());
+        let mut candidates = plain;
+        let mut from = 0;
+        let mut trials = Vec::new();
+        if repeating.is_empty() || self.promises_enough(&screen) {
+            trials = self.begun(view, &candidates, &screen).singles(0);
+            if repeating.is_empty() || trials.iter().any(|trial| self.is_close(trial)) {
+                return Some((candidates, screen, trials));
+            }
+            from = candidates.len();
+        }
+        (self.task.said)(&format!(
+            "screening {} candidates that repeat with an angle",
+            repeating.len()
+        ));
+        candidates.extend(repeating);
+        screen = crate::screen::screen(self.task.setting, fit, &candidates, view.part());
+        trials.extend(self.begun(view, &candidates, &screen).singles(from));
         Some((candidates, screen, trials))
     }
 
@@ -178,38 +219,28 @@ impl Look<'_> {
         ));
         let view = self.views()[0];
         let screen = screen(self.task.setting, self.task.fit, &shifts, view.part());
-        let trials = self.begun(view, &shifts, &screen).singles();
+        let trials = self.begun(view, &shifts, &screen).singles(0);
         (shifts, screen, trials)
     }
 
-    /// The candidates and their responses: those that repeat with an angle, which are many, only
-    /// if the others leave much of the gap. Teeth that move with an angle do so by much more than
-    /// they deflect, and often than their play: they are looked at where all play is closed, and
-    /// nothing else is there.
-    fn screened(&self, fit: &Fit, view: View) -> (Vec<Candidate>, Screen) {
+    /// The candidates of a view, and those that repeat with an angle, which are many. Teeth that
+    /// move with an angle do so by much more than they deflect, and often than their play: they are
+    /// looked at where all play is closed, and nothing else is there.
+    fn candidates(&self, fit: &Fit, view: View) -> (Vec<Candidate>, Vec<Candidate>) {
         let (setting, has_play) = (self.task.setting, view != View::NoPlay);
         let model = &fit.plant.model;
         let mut all = candidates(model, self.effects, &sites(model), &usual_rates(setting));
         all.extend(released(setting, fit));
         all.retain(|c| (c.order.is_none() || c.on_mesh != has_play) && (has_play || c.on_mesh));
-        let plain: Vec<Candidate> = all
-            .iter()
-            .filter(|c| c.order.is_none() || !has_play)
-            .cloned()
-            .collect();
-        (self.task.said)(&format!("screening {} candidates", plain.len()));
-        let found = screen(setting, fit, &plain, view.part());
-        let best = found.responses.iter().map(|r| r.gain).fold(0.0, f64::max);
-        let above = found.left(&[]).0 - self.task.floor * self.task.floor * found.numbers;
-        if plain.len() == all.len() || best > rule::ENOUGH * above {
-            return (plain, found);
-        }
-        (self.task.said)(&format!(
-            "screening {} candidates that repeat with an angle",
-            all.len() - plain.len()
-        ));
-        let found = screen(setting, fit, &all, view.part());
-        (all, found)
+        all.into_iter()
+            .partition(|c| c.order.is_none() || !has_play)
+    }
+
+    /// Whether one of the screened promises most of the gap.
+    fn promises_enough(&self, screen: &Screen) -> bool {
+        let best = screen.responses.iter().map(|r| r.gain).fold(0.0, f64::max);
+        let floor = self.task.floor * self.task.floor * screen.numbers;
+        best > rule::ENOUGH * (screen.left(&[]).0 - floor)
     }
 }
 
