@@ -70,9 +70,28 @@ pub fn approach(
     present
 }
 
-/// Goes on where tangents lead nowhere though much more than noise is left.
-pub fn approach_by_secants(shooting: &Shooting<'_>, present: &mut Approached, follow: &Follow<'_>) {
-    Way::new(shooting, follow).go(present, SECANT_STEPS, By::Secants);
+/// Goes on where tangents lead nowhere though much more than noise is left; whether it is.
+pub fn approach_by_secants(
+    shooting: &Shooting<'_>,
+    present: &mut Approached,
+    follow: &Follow<'_>,
+) -> bool {
+    let mut way = Way::new(shooting, follow);
+    let is_needed = !way.is_near(&present.estimate);
+    way.go(present, SECANT_STEPS, By::Secants);
+    is_needed
+}
+
+/// The derivatives at an estimate, secants in the place of tangents for what has no prior.
+pub fn secants(
+    shooting: &Shooting<'_>,
+    estimate: &Estimate,
+    follow: &Follow<'_>,
+) -> Vec<Option<Linear>> {
+    let level = level(shooting, estimate);
+    let mut linear = shooting.linear(&estimate.theta, &estimate.starts, level);
+    Way::new(shooting, follow).take_secants(estimate, &mut linear);
+    linear
 }
 
 impl<'a> Way<'a> {
@@ -102,10 +121,15 @@ impl<'a> Way<'a> {
         (present.squares.iter().sum::<f64>() / count).sqrt()
     }
 
+    /// Whether next to nothing but noise is left.
+    fn is_near(&self, present: &Estimate) -> bool {
+        self.left(present) < rule::AT_FLOOR
+    }
+
     /// So many steps at most, while they are worth it.
     fn go(&mut self, present: &mut Approached, steps: usize, by: By) {
         for _ in 0..steps {
-            if by == By::Secants && self.left(&present.estimate) < rule::AT_FLOOR {
+            if by == By::Secants && self.is_near(&present.estimate) {
                 return;
             }
             let before = present.estimate.cost;

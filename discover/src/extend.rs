@@ -8,7 +8,8 @@ use crate::fitting::{Fit, Setting};
 use crate::search::Accepted;
 use crate::unknowns::What;
 
-/// A parameter or a sensor is set where its estimate moved by this part of its uncertainty.
+/// Where nothing was found, a parameter or a sensor is set if its estimate moved by this part of its
+/// uncertainty. With an effect all are set: they were estimated together.
 const MOVED: f64 = 0.5;
 
 /// The text with effects and numbers of a fit.
@@ -41,9 +42,8 @@ pub fn extended(
         .collect();
     let mut edits = Vec::new();
     for (place, unknown) in fit.unknowns.iter().enumerate() {
-        let moved = (theta[place] - unknown.start).abs() > MOVED * fit.sd[place];
         if let What::Parameter(name) = &unknown.what
-            && moved
+            && has_moved(fit, place, !accepted.is_empty())
             && !added.contains(&place)
             && let Some(parameter) = fit.plant.model.parameters.iter().find(|p| p.name == *name)
         {
@@ -54,7 +54,7 @@ pub fn extended(
             }));
         }
     }
-    edits.extend(sensors(setting, fit));
+    edits.extend(sensors(setting, fit, !accepted.is_empty()));
     edit::apply(&Source::new(setting.path.as_str(), text.as_str()), &edits)
         .map_err(|error| error.to_string())
 }
@@ -76,14 +76,21 @@ fn provenance(setting: &Setting<'_>) -> String {
     }
 }
 
-/// The sensors that differ from true ones by more than their uncertainty.
-fn sensors(setting: &Setting<'_>, fit: &Fit) -> Vec<Edit> {
+/// Whether an unknown's estimate differs from where it began, at all or by more than its uncertainty
+/// makes of it.
+fn has_moved(fit: &Fit, place: usize, at_all: bool) -> bool {
+    let least = if at_all { 0.0 } else { MOVED * fit.sd[place] };
+    (fit.train.estimate.theta[place] - fit.unknowns[place].start).abs() > least
+}
+
+/// The sensors that differ from true ones, at all or by more than their uncertainty.
+fn sensors(setting: &Setting<'_>, fit: &Fit, at_all: bool) -> Vec<Edit> {
     let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
     let sensors = shooting.sensors(&fit.train.estimate.theta);
     let moved = |channel: usize| {
         fit.unknowns.iter().enumerate().any(|(place, unknown)| {
             let own = matches!(unknown.what, What::Gain(c) | What::Bias(c) | What::Delay(c) if c == channel);
-            own && (fit.train.estimate.theta[place] - unknown.start).abs() > MOVED * fit.sd[place]
+            own && has_moved(fit, place, at_all)
         })
     };
     let channels = setting.dataset.channels.iter().enumerate();

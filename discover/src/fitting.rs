@@ -6,8 +6,9 @@ use model_spec::source::Source;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::approach::{Follow, approach, approach_by_secants};
+use crate::approach::{Follow, approach, approach_by_secants, secants};
 use crate::candidates::Candidate;
+use crate::crew::Linear;
 use crate::dataset::{Dataset, Start};
 use crate::estimate::{self, Estimate, StartPrior, prior_of_start, stacked};
 use crate::plant::{Plant, is_linear};
@@ -432,6 +433,7 @@ impl<'d> Setting<'d> {
         } = sketch;
         let mut all = self.shooting(&plant, &self.train, &unknowns, &ranges);
         let begins_whole = whole.is_some();
+        let mut by_secants = false;
         let (mut prior, near) = match whole {
             None if self.fits_starts() => {
                 let first = Shooting {
@@ -445,6 +447,7 @@ impl<'d> Setting<'d> {
                 if plant.is_linear() {
                     approach_by_secants(&all, &mut near, &follow);
                 }
+                by_secants = true;
                 (near.prior, near.estimate)
             }
             whole => {
@@ -479,7 +482,18 @@ impl<'d> Setting<'d> {
             }
         }
         let prior_weight = all.prior_weight;
-        let sd = self.uncertainty(&all, &prior, &rest.estimate);
+        // Tangents that led nowhere know nothing of uncertainties either.
+        let derivatives = match by_secants {
+            true => {
+                let follow = self.follow(&all, &ranges, HORIZONS.len());
+                secants(&all, &rest.estimate, &follow)
+            }
+            false => {
+                let level = estimate::level(&all, &rest.estimate);
+                all.linear(&rest.estimate.theta, &rest.estimate.starts, level)
+            }
+        };
+        let sd = self.uncertainty(&all, &prior, &rest.estimate, &derivatives);
         let train = rest;
         let held_out = self.shooting(&plant, &self.test, &unknowns, &ranges);
         let starts = self.all_starts(&held_out, &train.estimate.theta, &ranges)?;
@@ -599,10 +613,9 @@ impl<'d> Setting<'d> {
         shooting: &Shooting<'_>,
         prior: &StartPrior,
         found: &Estimate,
+        linear: &[Option<Linear>],
     ) -> Vec<f64> {
         let count = shooting.unknowns.len();
-        let level = estimate::level(shooting, found);
-        let linear = shooting.linear(&found.theta, &found.starts, level);
         let mut factor = DMatrix::zeros(count + 1, count + 1);
         for (place, linear) in linear.iter().enumerate() {
             if let Some(linear) = linear {

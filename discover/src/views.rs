@@ -157,16 +157,14 @@ impl Look<'_> {
             (self.task.said)("looking at the model without play");
         }
         let fit = closed.as_ref().unwrap_or(self.task.fit);
-        let (plain, repeating) = self.candidates(fit, view);
-        (self.task.said)(&format!("screening {} candidates", plain.len()));
-        let mut screen = screen(self.task.setting, fit, &plain, view.part());
-        let mut candidates = plain;
-        let mut from = 0;
-        let mut trials = Vec::new();
-        if repeating.is_empty() || self.promises_enough(&screen) {
-            trials = self.begun(view, &candidates, &screen).singles(0);
+        let (mut candidates, repeating) = self.candidates(fit, view);
+        (self.task.said)(&format!("screening {} candidates", candidates.len()));
+        let screened = screen(self.task.setting, fit, &candidates, view.part());
+        let (mut from, mut trials) = (0, Vec::new());
+        if repeating.is_empty() || self.promises_enough(&screened) {
+            trials = self.begun(view, &candidates, &screened).singles(0);
             if repeating.is_empty() || trials.iter().any(|trial| self.is_close(trial)) {
-                return Some((candidates, screen, trials));
+                return Some((candidates, screened, trials));
             }
             from = candidates.len();
         }
@@ -174,10 +172,11 @@ impl Look<'_> {
             "screening {} candidates that repeat with an angle",
             repeating.len()
         ));
+        // Behind the others, so that what was fitted keeps its place.
         candidates.extend(repeating);
-        screen = crate::screen::screen(self.task.setting, fit, &candidates, view.part());
-        trials.extend(self.begun(view, &candidates, &screen).singles(from));
-        Some((candidates, screen, trials))
+        let screened = screen(self.task.setting, fit, &candidates, view.part());
+        trials.extend(self.begun(view, &candidates, &screened).singles(from));
+        Some((candidates, screened, trials))
     }
 
     /// Fits of candidates in a view.
