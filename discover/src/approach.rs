@@ -70,16 +70,9 @@ pub fn approach(
     present
 }
 
-/// Goes on where tangents lead nowhere though much more than noise is left; whether it is.
-pub fn approach_by_secants(
-    shooting: &Shooting<'_>,
-    present: &mut Approached,
-    follow: &Follow<'_>,
-) -> bool {
-    let mut way = Way::new(shooting, follow);
-    let is_needed = !way.is_near(&present.estimate);
-    way.go(present, SECANT_STEPS, By::Secants);
-    is_needed
+/// Goes on where tangents lead nowhere though much more than noise is left.
+pub fn approach_by_secants(shooting: &Shooting<'_>, present: &mut Approached, follow: &Follow<'_>) {
+    Way::new(shooting, follow).go(present, SECANT_STEPS, By::Secants);
 }
 
 /// The derivatives at an estimate, secants in the place of tangents for what has no prior.
@@ -121,15 +114,10 @@ impl<'a> Way<'a> {
         (present.squares.iter().sum::<f64>() / count).sqrt()
     }
 
-    /// Whether next to nothing but noise is left.
-    fn is_near(&self, present: &Estimate) -> bool {
-        self.left(present) < rule::AT_FLOOR
-    }
-
     /// So many steps at most, while they are worth it.
     fn go(&mut self, present: &mut Approached, steps: usize, by: By) {
         for _ in 0..steps {
-            if by == By::Secants && self.is_near(&present.estimate) {
+            if by == By::Secants && self.left(&present.estimate) < rule::AT_FLOOR {
                 return;
             }
             let before = present.estimate.cost;

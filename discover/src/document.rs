@@ -4,9 +4,10 @@ use serde_json::{Map, Value, json};
 
 use crate::dataset::Channel;
 use crate::empirical::EMPIRICAL;
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::floor::Floor;
 use crate::search::{Accepted, Found, Rejected};
+use crate::setting::Setting;
 use crate::unknowns::What;
 
 /// The verdict of a comparison.

@@ -8,9 +8,10 @@ use rayon::prelude::*;
 
 use crate::candidates::Candidate;
 use crate::crew::{Crew, Differences};
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::plant::Plant;
 use crate::response::{At, Columns, TRIAL, Trial, absent, silent, trial};
+use crate::setting::Setting;
 use crate::shooting::Shooting;
 
 /// A candidate is taken at a size that changes accelerations by this part of their own size,

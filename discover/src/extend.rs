@@ -4,8 +4,9 @@
 use model_spec::edit::{self, Edit, SetParameter, SetSensor};
 use model_spec::source::Source;
 
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::search::Accepted;
+use crate::setting::Setting;
 use crate::unknowns::What;
 
 /// Where nothing was found, a parameter or a sensor is set if its estimate moved by this part of its

@@ -5,7 +5,8 @@
 
 use crate::dataset::Record;
 use crate::estimate::{self, StartPrior};
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
+use crate::setting::Setting;
 use crate::windows::Windows;
 
 /// What a right model would leave.

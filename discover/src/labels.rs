@@ -4,7 +4,7 @@
 //! model that lacks something makes none of these.
 
 use crate::dataset::Refusal;
-use crate::fitting::Setting;
+use crate::setting::Setting;
 
 /// The beginning of a record that is looked at, in samples.
 const SAMPLES: usize = 1000;

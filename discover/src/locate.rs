@@ -3,9 +3,10 @@
 
 use realfft::RealFftPlanner;
 
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::residual_force::ResidualForce;
 use crate::residual_force::said::said;
+use crate::setting::Setting;
 use crate::smooth::sloped;
 
 /// A difference between slow and fast motion below this factor is not worth a word.

@@ -5,9 +5,10 @@
 use serde_json::Value;
 use sim::plot::{FrequencyAxis, Panel, Series, Spectrum, TimeHistory, spectrum, time_history};
 
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::residual_force::ResidualForce;
 use crate::residual_force::figures::figures as figures_of_force;
+use crate::setting::Setting;
 
 /// The page for a result. What is after is left out where nothing was changed; `forces`: the
 /// residual force, where it could be estimated.

@@ -2,8 +2,9 @@
 //! fit from which it was written.
 
 use crate::estimate::{Estimate, StartPrior, evaluated};
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::response::mapped;
+use crate::setting::Setting;
 use crate::unknowns::{Unknown, What};
 use crate::windows::Windows;
 

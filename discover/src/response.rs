@@ -7,10 +7,12 @@ use nalgebra::DMatrix;
 use crate::candidates::{Candidate, CandidateParameter};
 use crate::crew::Crew;
 use crate::driven::driven;
+use crate::eliminated::Eliminator;
 use crate::estimate;
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::plant::Plant;
 use crate::rule;
+use crate::setting::Setting;
 use crate::shooting::Shooting;
 use crate::tried::tried;
 use crate::unknowns::{Unknown, What};
@@ -40,7 +42,7 @@ pub struct Trial {
 pub type Columns = (Vec<Trial>, Vec<DMatrix<f64>>);
 
 /// A window at the fit: residual, derivatives by state and by unknowns.
-pub type Base = Vec<Option<estimate::Eliminator>>;
+pub type Base = Vec<Option<Eliminator>>;
 
 /// Where candidates are looked at: beginnings of windows, over which a motion is nearly linear
 /// in whatever changes it, with initial states that suit these parts.
@@ -73,7 +75,7 @@ impl At {
             .map(|place| {
                 let start = &estimate.starts[*place];
                 let linear = crew.as_mut()?.linear(*place, start)?;
-                Some(estimate::Eliminator::new(&linear, &prior, *place, start))
+                Some(Eliminator::new(&linear, &prior, *place, start))
             })
             .collect();
         Self {

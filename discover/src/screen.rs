@@ -9,9 +9,10 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::bounded::least_squares;
 use crate::candidates::Candidate;
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::response::{At, Base, Trial, responses};
 use crate::rule;
+use crate::setting::Setting;
 
 /// A screened candidate.
 #[derive(Clone, Debug)]

@@ -5,11 +5,12 @@
 use crate::candidates::{self, Candidate};
 use crate::catalogue::Effect;
 use crate::empirical::add_empirical;
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::judge::{Evidence, evidence};
 use crate::named::{Named, leaves_clearly_less};
 use crate::rule;
 use crate::screen::Screen;
+use crate::setting::Setting;
 use crate::thinned::thin;
 use crate::trials::{Task, Trial, at_floor, leaves_less};
 use crate::unknowns::{Unknown, What, of_null_model};

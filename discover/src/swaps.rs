@@ -4,11 +4,12 @@
 
 use crate::candidates::{Candidate, candidates};
 use crate::catalogue::Effect;
-use crate::fitting::Sketch;
 use crate::rule;
 use crate::screen::screen;
+use crate::sets::Set;
 use crate::sites::sites;
-use crate::trials::{Round, Set, Trial};
+use crate::sketch::Sketch;
+use crate::trials::{Round, Trial};
 use crate::views::usual_rates;
 
 impl Round<'_> {

@@ -1,8 +1,9 @@
 //! What was believed, one effect less: a later effect may do what an earlier one was taken for.
 
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::rule;
 use crate::search::{Accepted, Found};
+use crate::setting::Setting;
 
 /// Takes away effects without which the records are explained as well, the least needed first.
 /// `said` is told which.

@@ -5,11 +5,13 @@
 use rayon::prelude::*;
 
 use crate::candidates::Candidate;
-use crate::fitting::{Fit, Setting, Sketch};
-use crate::judge::{Evidence, Own, is_held, judge};
+use crate::fitting::Fit;
+use crate::judge::{Evidence, Own, judge};
 use crate::rule;
 use crate::screen::Screen;
-use crate::unknowns::{Unknown, What};
+use crate::sets::Set;
+use crate::setting::Setting;
+use crate::sketch::Sketch;
 
 /// Parts of the size that screening promises among which a fit begins with the best: a straight
 /// line leads far beyond where impacts fold the outputs, and not far enough where an effect
@@ -26,17 +28,6 @@ pub struct Trial {
     pub fit: Fit,
     /// Whether they are believed.
     pub verdict: Result<Evidence, String>,
-}
-
-/// Candidates to be fitted together, and a parameter whose term they replace.
-#[derive(Clone)]
-pub(crate) struct Set {
-    /// The candidates' places among the screened.
-    pub responses: Vec<usize>,
-    /// The place of the parameter.
-    pub deleted: Option<usize>,
-    /// The candidates' promised sizes, in order.
-    pub sizes: Vec<f64>,
 }
 
 /// What a round of the search is about.
@@ -186,7 +177,7 @@ impl Round<'_> {
     }
 
     /// Candidates that promise enough, the best first.
-    fn ranked(&self) -> Vec<usize> {
+    pub(crate) fn ranked(&self) -> Vec<usize> {
         let screen = self.screen;
         let alone = screen.left(&[]).0;
         let promise = match alone > rule::FAR * rule::FAR * screen.numbers {
@@ -270,254 +261,6 @@ impl Round<'_> {
             }
         }
         trials
-    }
-
-    /// The unknowns of a set's effects in a fit with them.
-    fn own(&self, set: &Set) -> Vec<Own> {
-        let mut next = self.task.fit.unknowns.len();
-        let mut own = Vec::new();
-        for (effect, response) in set.responses.iter().enumerate() {
-            let response = &self.screen.responses[*response];
-            if let Some(place) = response.released
-                && let Some((mean, sd)) = self.task.fit.unknowns[place].prior
-            {
-                own.push(Own {
-                    place,
-                    effect,
-                    base: mean,
-                    is_shape: false,
-                    prior: Some(sd),
-                });
-            }
-            for trial in &response.trials {
-                own.push(Own {
-                    place: next,
-                    effect,
-                    base: trial.base,
-                    is_shape: trial.is_shape,
-                    prior: None,
-                });
-                next += 1;
-            }
-        }
-        own
-    }
-
-    /// Pairs, and pairs in place of a term of the model. `singles`: what was fitted alone.
-    pub fn pairs(&self, singles: &[Trial]) -> Vec<Trial> {
-        // A sensor that runs to the end of what is admitted stands in for something else.
-        let ran_away = |trial: &&Trial| {
-            let of = |own: &Own| own.prior.is_some() && is_held(&trial.fit, own);
-            trial.own.iter().any(of)
-        };
-        let away = singles.iter().filter(ran_away);
-        let away: Vec<usize> = away.flat_map(|trial| trial.responses.clone()).collect();
-        let is_there = |response: &usize| !away.contains(response);
-        let ranked: Vec<usize> = self.ranked().into_iter().filter(is_there).collect();
-        let mut added = 0;
-        let mut sketches = self.sketched(self.best_pairs(&ranked, &away));
-        sketches.retain(|(set, _)| {
-            added += usize::from(set.deleted.is_none());
-            set.deleted.is_some() || added <= rule::FITS_AT_ONCE
-        });
-        let mut trials = self.completed(sketches);
-        for trial in &mut trials {
-            let mut own = trial.responses.iter();
-            let repeats = own.any(|response| self.candidate(*response).order.is_some());
-            if repeats && trial.verdict.is_ok() && !self.task.explains_most(&trial.fit) {
-                trial.verdict = Err("beside another it leaves much, which may be luck".to_owned());
-            }
-        }
-        trials
-    }
-
-    /// The pairs that promise to leave clearly less than the best single candidate, and for each term of
-    /// the model that may go the pair that takes its place best. Of what repeats with an angle the
-    /// best alone are paired, and with something else: of that there is so much that some of it is
-    /// lucky.
-    fn best_pairs(&self, ranked: &[usize], away: &[usize]) -> Vec<Set> {
-        let screen = self.screen;
-        let best = ranked.first().map_or(0.0, |r| screen.responses[*r].gain);
-        let single = screen.left(&[]).0 - best;
-        // What is nothing alone may be half of a pair: friction of two kinds in place of a third.
-        let repeats = |r: &usize| self.candidate(*r).order.is_some();
-        let repeating: Vec<usize> = (ranked.iter().copied().filter(repeats))
-            .take(rule::MOST_FITS)
-            .collect();
-        let few: Vec<usize> = (0..screen.responses.len())
-            .filter(|r| {
-                let response = &screen.responses[*r];
-                let is_one = !repeats(r) || repeating.contains(r);
-                is_one && !away.contains(r) && response.visible > rule::OWN_PART
-            })
-            .collect();
-        let apart = |a: usize, b: usize| !self.share_a_name(a, b) && !(repeats(&a) && repeats(&b));
-        let best_of = |deleted: Option<usize>, screen: &Screen| {
-            let mut found: Vec<(f64, Set)> = Vec::new();
-            for (number, a) in few.iter().enumerate() {
-                let others = few[number + 1..].iter();
-                for b in others.filter(|b| apart(*a, **b)) {
-                    let responses = vec![*a, *b];
-                    let (left, sizes) = screen.left(&responses);
-                    // What replaces a term is far from where it was linearised: it is not held
-                    // to a promise.
-                    let promising = deleted.is_some() || left < rule::PAIR_PROMISE * single;
-                    if promising && sizes.iter().all(|v| *v != 0.0) {
-                        let set = Set {
-                            responses,
-                            deleted,
-                            sizes,
-                        };
-                        found.push((left, set));
-                    }
-                }
-            }
-            found.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let count = match deleted {
-                Some(_) => 1,
-                None => rule::MOST_SKETCHES,
-            };
-            found
-                .into_iter()
-                .take(count)
-                .map(|(_, set)| set)
-                .collect::<Vec<Set>>()
-        };
-        let mut sets = best_of(None, screen);
-        for (place, unknown) in self.task.fit.unknowns.iter().enumerate() {
-            let value = self.task.fit.train.estimate.theta[place];
-            let near = unknown
-                .prior
-                .is_some_and(|(mean, sd)| mean.abs() < rule::PRIOR_REACH * sd);
-            if matches!(unknown.what, What::Parameter(_))
-                && near
-                && let Some(screen) = screen.without(place, value)
-            {
-                sets.extend(best_of(Some(place), &screen));
-            }
-        }
-        sets
-    }
-
-    /// Whether two candidates call a parameter alike: one effect at two places. Of these the next
-    /// round may add the other.
-    pub(crate) fn share_a_name(&self, a: usize, b: usize) -> bool {
-        let (a, b) = (self.candidate(a), self.candidate(b));
-        let has = |name: &str| b.parameters.iter().any(|other| other.name == name);
-        a.parameters.iter().any(|parameter| has(&parameter.name))
-    }
-
-    /// A sketch with a set's candidates.
-    fn sketch(&self, set: &Set) -> Result<Sketch, String> {
-        let (setting, fit) = (self.task.setting, self.task.fit);
-        let (unknowns, theta) = self.unknowns(set, self.parts[0]);
-        let texts = self.texts(set, &unknowns, &theta)?;
-        // What swings in coordinates of its own is far from the fit however little it does.
-        let adds_states = set.responses.iter().any(|response| {
-            let parameters = &self.candidate(*response).parameters;
-            parameters.iter().any(|parameter| parameter.inverse)
-        });
-        if self.is_whole && set.deleted.is_none() && !adds_states {
-            let left = self.screen.left(&set.responses).0;
-            return setting.expected(texts, unknowns, theta, (fit, left));
-        }
-        let others = self.parts[1..]
-            .iter()
-            .map(|part| self.unknowns(set, *part).1);
-        let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
-        let mut sketch = setting.sketch(texts, unknowns, &begins)?;
-        if self.is_whole {
-            // Beside others that are promised and not begun.
-            sketch.left = self.screen.left(&set.responses).0;
-        }
-        Ok(sketch)
-    }
-
-    /// The specification's texts with a set's candidates, at these values of the unknowns.
-    fn texts(
-        &self,
-        set: &Set,
-        unknowns: &[Unknown],
-        theta: &[f64],
-    ) -> Result<(String, String), String> {
-        let fit = self.task.fit;
-        let mut texts = (fit.text.clone(), fit.linear.clone());
-        let mut next = fit.unknowns.len();
-        for response in &set.responses {
-            let response = &self.screen.responses[*response];
-            if response.released.is_some() {
-                continue;
-            }
-            let own = next..next + response.trials.len();
-            next = own.end;
-            let values: Vec<f64> = own
-                .map(|place| unknowns[place].what.stated(theta[place]))
-                .collect();
-            let candidate = &self.candidates[response.candidate];
-            texts = self
-                .task
-                .setting
-                .with((&texts.0, &texts.1), candidate, &values)?;
-        }
-        Ok(texts)
-    }
-
-    /// A set of one candidate, begun with the motions of a trial of another. `left`: what that
-    /// promises to leave; `shaped`: how many times its usual size a shape is.
-    pub(crate) fn begun_at(
-        &self,
-        set: &Set,
-        (trial, left): (&Trial, f64),
-        shaped: f64,
-    ) -> Result<Sketch, String> {
-        let (unknowns, mut theta) = self.unknowns(set, 1.0);
-        let count = self.task.fit.unknowns.len();
-        theta[..count].copy_from_slice(&trial.fit.train.estimate.theta[..count]);
-        for own in self.own(set).iter().filter(|own| own.is_shape) {
-            theta[own.place] = unknowns[own.place].admissible(shaped * theta[own.place]);
-        }
-        let texts = self.texts(set, &unknowns, &theta)?;
-        self.task
-            .setting
-            .expected(texts, unknowns, theta, (&trial.fit, left))
-    }
-
-    /// The unknowns with a set's candidates and their values, so much of the promised sizes from
-    /// absent.
-    fn unknowns(&self, set: &Set, part: f64) -> (Vec<Unknown>, Vec<f64>) {
-        let fit = self.task.fit;
-        let mut unknowns = fit.unknowns.clone();
-        let mut theta = fit.anew();
-        if let Some(place) = set.deleted {
-            unknowns[place].bounds = (0.0, 0.0);
-            theta[place] = 0.0;
-        }
-        let mut sizes = set.sizes.iter().map(|size| part * size);
-        for response in &set.responses {
-            let response = &self.screen.responses[*response];
-            if let Some(place) = response.released {
-                let size = sizes.next().unwrap_or(0.0);
-                unknowns[place] = unknowns[place].released();
-                theta[place] = unknowns[place].admissible(fit.train.estimate.theta[place] + size);
-                continue;
-            }
-            for trial in &response.trials {
-                let size = match trial.is_shape {
-                    true => trial.unknown.start - trial.base,
-                    false => sizes.next().unwrap_or(0.0),
-                };
-                let size = if size == 0.0 {
-                    part * trial.unknown.scale
-                } else {
-                    size
-                };
-                theta.push(trial.unknown.admissible(trial.base + size));
-                let mut unknown = trial.unknown.clone();
-                unknown.scale = size.abs().max(1e-3 * unknown.scale);
-                unknowns.push(unknown);
-            }
-        }
-        (unknowns, theta)
     }
 }
 

@@ -6,9 +6,11 @@ use rayon::prelude::*;
 
 use crate::candidates::Candidate;
 use crate::crew::Crew;
-use crate::estimate::{self, Estimate};
-use crate::fitting::{Fit, Setting};
+use crate::eliminated::Eliminator;
+use crate::estimate::Estimate;
+use crate::fitting::Fit;
 use crate::response::{At, Columns, TRIAL, Trial, absent, mapped, silent, trial};
+use crate::setting::Setting;
 use crate::shooting::Shooting;
 use crate::unknowns::Unknown;
 
@@ -127,7 +129,7 @@ fn changes<'b>(
     shooting: &Shooting<'_>,
     (fit, estimate): (&Fit, &Estimate),
     theta: &[f64],
-    windows: impl Iterator<Item = (usize, &'b Option<estimate::Eliminator>)>,
+    windows: impl Iterator<Item = (usize, &'b Option<Eliminator>)>,
 ) -> Option<Vec<DVector<f64>>> {
     let mut crew = Crew::frozen(shooting, theta, 1.0)?;
     let mut changes = Vec::new();

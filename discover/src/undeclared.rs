@@ -2,9 +2,10 @@
 //! else is believed, and beside what is believed where they look like it.
 
 use crate::candidates::{self, Candidate};
-use crate::fitting::{FIRST_PART, Fit};
+use crate::fitting::Fit;
 use crate::named::Searched;
 use crate::screen::screen;
+use crate::setting::FIRST_PART;
 use crate::trials::Task;
 use crate::unknowns::{Unknown, What};
 

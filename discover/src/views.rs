@@ -9,10 +9,11 @@ use model_spec::source::Source;
 
 use crate::candidates::{self, Candidate, candidates};
 use crate::catalogue::Effect;
-use crate::fitting::{FIRST_PART, Fit, Setting};
+use crate::fitting::Fit;
 use crate::named::{Named, Searched, best_of, leaves_clearly_less, named};
 use crate::rule;
 use crate::screen::{Screen, screen};
+use crate::setting::{FIRST_PART, Setting};
 use crate::sites::{plays, sites};
 use crate::trials::{PARTS, Round, Task, Trial, at_floor};
 use crate::undeclared::shifts;

@@ -5,10 +5,10 @@ use std::fs;
 use std::path::Path;
 
 use discover::dataset::read;
-use discover::fitting::Setting;
 use discover::residual_force::said::said;
 use discover::residual_force::{Kind, Profile, ResidualForce, Simple, residual_force};
 use discover::search::null_fit;
+use discover::setting::Setting;
 use model_spec::source::Source;
 
 const SPECIFICATION: &str = r#"

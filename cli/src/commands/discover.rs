@@ -5,12 +5,13 @@ use std::path::Path;
 use std::time::Instant;
 
 use discover::dataset::{Dataset, read};
-use discover::fitting::{Fit, Setting};
+use discover::fitting::Fit;
 use discover::floor::{Floor, floor};
 use discover::rerun::rerun;
 use discover::residual_force::residual_force;
 use discover::residual_force::said::said_after;
 use discover::search::{null_fit, search};
+use discover::setting::Setting;
 use discover::trials::at_floor;
 use discover::{catalogue, document, extend, labels, locate, report};
 use model_spec::source::Source;

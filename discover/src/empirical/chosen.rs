@@ -5,13 +5,15 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::empirical::expressions::{Scales, Term, terms};
-use crate::fitting::{Fit, Setting, correlation};
+use crate::fitting::Fit;
 use crate::residual_force::equations::{Equation, Equations, Standing};
 use crate::residual_force::pushed::{Columns, pushed, stood};
 use crate::residual_force::regression::{Regression, Sizes};
 use crate::residual_force::shapes::Range;
 use crate::response::At;
+use crate::rest::correlation;
 use crate::rule;
+use crate::setting::Setting;
 
 /// A sum of terms in an equation.
 pub struct Expression {

@@ -9,15 +9,17 @@ pub mod expressions;
 use model_spec::edit::{Edit, NewForce, NewParameter, NewValue};
 use model_spec::model::Model;
 
-use crate::candidates::{Candidate, CandidateParameter, free_name, names};
+use crate::candidates::{Candidate, CandidateParameter, names};
 use crate::empirical::chosen::{Expression, chosen};
 use crate::empirical::expressions::{Of, Words};
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::judge::{Evidence, Own, judge};
+use crate::placed::free_name;
 use crate::residual_force::{Ranked, residual_force};
 use crate::response::trial;
 use crate::rule;
 use crate::search::{Accepted, Found, Rejected};
+use crate::setting::Setting;
 
 /// The name of what has none.
 pub const EMPIRICAL: &str = "empirical";

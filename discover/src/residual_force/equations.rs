@@ -8,8 +8,9 @@ use model_spec::model::{Expr, ExprKind, Model};
 use model_spec::source::Source;
 
 use crate::catalogue::SiteKind;
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::plant::Plant;
+use crate::setting::Setting;
 use crate::sites::sites;
 
 /// An equation of motion.

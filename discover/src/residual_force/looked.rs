@@ -3,13 +3,15 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::fitting::{Fit, Setting, correlation};
+use crate::fitting::Fit;
 use crate::residual_force::equations::{Equations, Standing};
 use crate::residual_force::pushed::{Columns, pushed};
 use crate::residual_force::regression::{Regression, Sizes};
 use crate::residual_force::shapes::{Family, Over};
 use crate::response::At;
+use crate::rest::correlation;
 use crate::rule;
+use crate::setting::Setting;
 
 /// Columns of families with where each family's stand.
 pub(crate) struct Looked {

@@ -18,7 +18,7 @@ mod stepped;
 
 use std::f64::consts::TAU;
 
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::locate::peak_frequency;
 use crate::residual_force::equations::{Equation, Equations, Standing};
 use crate::residual_force::looked::Looked;
@@ -28,6 +28,7 @@ use crate::residual_force::ranked::{Judged, simple};
 use crate::residual_force::shapes::{Family, Over, Range};
 use crate::response::At;
 use crate::rule;
+use crate::setting::Setting;
 
 /// Shaft orders that are looked at.
 const ORDERS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 36];

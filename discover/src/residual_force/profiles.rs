@@ -3,7 +3,7 @@
 
 use nalgebra::DVector;
 
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::residual_force::equations::Standing;
 use crate::residual_force::looked::{Looked, noise};
 use crate::residual_force::regression::{Each, Sizes};
@@ -11,6 +11,7 @@ use crate::residual_force::shapes::{Family, Over, Range};
 use crate::residual_force::{Profile, ResidualForce};
 use crate::response::At;
 use crate::rule;
+use crate::setting::Setting;
 
 /// What profiles are read from.
 pub(crate) struct Blocks<'b> {

@@ -8,11 +8,12 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::crew::Crew;
-use crate::fitting::{Fit, Setting};
+use crate::fitting::Fit;
 use crate::march::Drives;
 use crate::residual_force::equations::{Asked, Equations, Standing};
 use crate::residual_force::stepped::Stepped;
 use crate::response::At;
+use crate::setting::Setting;
 use crate::shooting::{Shooting, samples_in};
 
 /// Weights of shapes in the equations: where each equation stands, and a weight per column.

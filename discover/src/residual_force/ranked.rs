@@ -3,12 +3,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::fitting::Setting;
 use crate::residual_force::looked::{Looked, noise};
 use crate::residual_force::shapes::Over;
 use crate::residual_force::{Kind, Ranked, Simple};
 use crate::response::At;
 use crate::rule;
+use crate::setting::Setting;
 
 /// How the equations compare.
 pub(crate) struct Judged {

@@ -5,7 +5,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::estimate::Eliminator;
+use crate::eliminated::Eliminator;
 use crate::fitting::Fit;
 use crate::response::At;
 use crate::rule;
