@@ -75,16 +75,15 @@ pub fn approach_by_secants(shooting: &Shooting<'_>, present: &mut Approached, fo
     Way::new(shooting, follow).go(present, SECANT_STEPS, By::Secants);
 }
 
-/// The derivatives at an estimate, secants in the place of tangents for what has no prior.
+/// Derivatives at an estimate with secants in the place of tangents for what has no prior.
 pub fn secants(
     shooting: &Shooting<'_>,
     estimate: &Estimate,
+    mut tangents: Vec<Option<Linear>>,
     follow: &Follow<'_>,
 ) -> Vec<Option<Linear>> {
-    let level = level(shooting, estimate);
-    let mut linear = shooting.linear(&estimate.theta, &estimate.starts, level);
-    Way::new(shooting, follow).take_secants(estimate, &mut linear);
-    linear
+    Way::new(shooting, follow).take_secants(estimate, &mut tangents);
+    tangents
 }
 
 impl<'a> Way<'a> {

@@ -113,18 +113,20 @@ impl Setting<'_> {
         let is_followed = near.is_followed;
         let (prior, train) = self.settled(&mut all, near);
         let prior_weight = all.prior_weight;
-        // Tangents through impacts grow without bound: of uncertainties they know nothing.
-        let derivatives = match is_followed {
-            true => {
-                let follow = self.follow(&all, &sketch.ranges, HORIZONS.len());
-                secants(&all, &train.estimate, &follow)
+        let estimate = &train.estimate;
+        let level = estimate::level(&all, estimate);
+        let tangents = all.linear(&estimate.theta, &estimate.starts, level);
+        let mut sd = self.uncertainty(&all, &prior, estimate, &tangents);
+        if is_followed {
+            // Tangents through impacts grow without bound, secants of motions that ended in other
+            // folds are too steep: either would make unknowns too certain.
+            let follow = self.follow(&all, &sketch.ranges, HORIZONS.len());
+            let secants = secants(&all, estimate, tangents, &follow);
+            let others = self.uncertainty(&all, &prior, estimate, &secants);
+            for (sd, other) in sd.iter_mut().zip(others) {
+                *sd = sd.max(other);
             }
-            false => {
-                let level = estimate::level(&all, &train.estimate);
-                all.linear(&train.estimate.theta, &train.estimate.starts, level)
-            }
-        };
-        let sd = self.uncertainty(&all, &prior, &train.estimate, &derivatives);
+        }
         let held_out = Shooting {
             windows: &self.test,
             prior_weight: 1.0,

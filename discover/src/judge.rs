@@ -109,11 +109,12 @@ pub fn evidence(before: &Fit, after: &Fit, own: &[Own]) -> Evidence {
     }
 }
 
-/// What the effect does to the channel that shows it best, in noises: of the root mean square
-/// that is left the part that goes.
+/// What the effect does to the channel that shows it best, on the records that do, in noises: of
+/// the root mean square that is left the part that goes.
 fn size(before: &Fit, after: &Fit) -> f64 {
-    let pairs = before.train.in_noises.iter().zip(&after.train.in_noises);
-    let sizes = pairs.map(|(old, new)| (old * old - new * new).max(0.0).sqrt());
+    let channels = |of: fn(&Fit) -> &Vec<f64>| of(before).iter().zip(of(after));
+    let both = channels(|fit| &fit.train.in_noises).chain(channels(|fit| &fit.test.in_noises));
+    let sizes = both.map(|(old, new)| (old * old - new * new).max(0.0).sqrt());
     sizes.fold(0.0, f64::max)
 }
 

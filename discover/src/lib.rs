@@ -12,7 +12,7 @@
 //! [`catalogue`], [`sites`] and [`candidates`] (what may be missing; `placed`: a change at a place),
 //! [`response`] with [`mod@driven`] and [`mod@tried`] (what each candidate does), [`mod@screen`]
 //! (what it promises), [`mod@judge`] by [`rule`] (what is believed), [`trials`] (fits in earnest;
-//! `sets`: how they begin; `pairs`: two at once; `swaps`: others in the place of an answer;
+//! `sets`: how they begin; `shapes`: from elsewhere; `pairs`: two at once; `swaps`: others in the place of an answer;
 //! `together`: two that are believed only with each other), [`thinned`] (what is needed no more),
 //! [`mod@named`] (which of them is the answer, and which are one), [`undeclared`] (parameters that
 //! nobody doubts), [`mod@search`] (all of it in turn; `views`: one round);
@@ -55,6 +55,7 @@ pub mod screen;
 pub mod search;
 mod sets;
 pub mod setting;
+mod shapes;
 pub mod shooting;
 pub mod sites;
 pub mod sketch;

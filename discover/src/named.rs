@@ -1,9 +1,11 @@
 //! What is named of a round: the believed trial that leaves least, and whatever the records do
 //! not tell from it.
 
+use std::cmp::Ordering;
+
 use crate::candidates::Candidate;
 use crate::fitting::Fit;
-use crate::judge::evidence;
+use crate::judge::{Own, evidence};
 use crate::rule;
 use crate::screen::Screen;
 use crate::trials::{Task, Trial};
@@ -72,16 +74,27 @@ fn with_other_halves(task: Task<'_>, (candidates, screen, mut trials): Searched)
 
 /// The believed trial that is best, with what cannot be told from it among the others. Of those
 /// that cannot, the one with fewest unknowns is the answer: what more of them do, these do not
-/// need.
+/// need; and of what was declared, what is least off.
 fn best((candidates, screen, mut trials): Searched) -> Option<Named> {
     let least = best_of(&trials)?;
     let is_simpler = |place: &usize| {
         let (other, least) = (&trials[*place], &trials[least]);
-        other.own.len() < least.own.len() && untold_half(least, other, &screen).is_some()
+        let is_less_off = match (off(other), off(least)) {
+            (Some(other), Some(least)) => other < least,
+            _ => false,
+        };
+        (other.own.len() < least.own.len() || is_less_off)
+            && untold_half(least, other, &screen).is_some()
     };
     let simpler = (0..trials.len()).filter(is_simpler);
+    let order = |place: &usize| {
+        (
+            trials[*place].own.len(),
+            off(&trials[*place]).unwrap_or(0.0),
+        )
+    };
     let best = simpler
-        .min_by_key(|place| trials[*place].own.len())
+        .min_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(Ordering::Equal))
         .unwrap_or(least);
     let trial = trials.remove(best);
     let candidate = |response: usize| &candidates[screen.responses[response].candidate];
@@ -104,6 +117,15 @@ fn best((candidates, screen, mut trials): Searched) -> Option<Named> {
         candidates: own,
         trial,
     })
+}
+
+/// How far off what was declared is, in standard deviations of its prior; none if something was
+/// not.
+fn off(trial: &Trial) -> Option<f64> {
+    let theta = &trial.fit.train.estimate.theta;
+    let of = |own: &Own| Some((theta[own.place] - own.base).abs() / own.prior?);
+    let all: Option<Vec<f64>> = trial.own.iter().map(of).collect();
+    all.map(|all| all.into_iter().fold(0.0, f64::max))
 }
 
 /// The trial that leaves least; a pair only if it leaves clearly less than the best single

@@ -75,6 +75,16 @@ impl Round<'_> {
         Ok(sketch)
     }
 
+    /// A sketch with a set's candidates, shapes so many times their usual sizes.
+    pub(crate) fn shaped_as(&self, set: &Set, times: f64) -> Result<Sketch, String> {
+        let (unknowns, mut theta) = self.unknowns(set, 1.0);
+        for own in self.own(set).iter().filter(|own| own.is_shape) {
+            theta[own.place] = unknowns[own.place].admissible(times * theta[own.place]);
+        }
+        let texts = self.texts(set, &unknowns, &theta)?;
+        self.task.setting.sketch(texts, unknowns, &[theta])
+    }
+
     /// The specification's texts with a set's candidates, at these values of the unknowns.
     fn texts(
         &self,

@@ -133,6 +133,7 @@ impl Round<'_> {
             fits += wanted.len();
             trials.extend(self.completed(wanted));
         }
+        self.reshape(&mut trials);
         trials
     }
 

@@ -79,7 +79,12 @@ impl Look<'_> {
             let place = seen.len();
             searched.insert(place, found);
             seen.push(*view);
-            if is_any(&searched, &|trial| self.is_close(trial)) {
+            // Near the floor another look is quick, and what is nearly as good may be the answer.
+            let is_done = match self.task.is_near() {
+                true => is_any(&searched, &|trial| self.is_enough(trial)),
+                false => is_any(&searched, &|trial| self.is_close(trial)),
+            };
+            if is_done {
                 break;
             }
         }
@@ -111,7 +116,7 @@ impl Look<'_> {
             .filter(|place| least(&searched[*place]).is_finite())
             .min_by(|a, b| least(&searched[*a]).total_cmp(&least(&searched[*b])));
         let Some(best) = best else {
-            return self.together(&searched);
+            return self.is_first.then(|| self.together(&searched)).flatten();
         };
         let (candidates, screen, mut trials) = searched.swap_remove(best);
         trials.retain(|trial| trial.verdict.is_ok());

@@ -107,8 +107,9 @@ impl AxisForces {
         let level = self.coulomb + near_rest * (-(v / fall) * (v / fall)).exp();
         match self.dry {
             Dry::Steep { speed } => (level * (v / speed).tanh(), 0.0),
-            // Bristles whose friction dies away at speed would have to turn infinitely fast.
-            Dry::Bristles { .. } if self.coulomb == 0.0 => {
+            // Bristles whose friction falls by much at speed would have to turn faster than steps are
+            // short.
+            Dry::Bristles { .. } if self.coulomb < near_rest => {
                 (level * (v / (0.01 * fall)).tanh(), 0.0)
             }
             Dry::Bristles { reach, inertia } => {
@@ -164,6 +165,21 @@ mod tests {
             assert!((bristles - expected).abs() < 1e-6, "{bristles} {expected}");
             assert!((steep - expected).abs() < 1e-6, "{steep} {expected}");
         }
+    }
+
+    #[test]
+    fn friction_that_falls_by_much_is_not_that_of_bristles() {
+        let force = |dry| {
+            let mut forces = AxisForces::none(dry);
+            forces.coulomb = 2.0;
+            forces.stribeck = (8.0, 0.02);
+            forces.force(0.0, 0.0, 0.5, 0.0, 0.0)
+        };
+        let bristles = force(Dry::Bristles {
+            reach: 5e-6,
+            inertia: 95.0,
+        });
+        assert_eq!(bristles, force(Dry::Steep { speed: 2e-4 }));
     }
 
     #[test]

@@ -167,13 +167,8 @@ impl Hidden {
         }
     }
 
-    /// The true values of the effect's parameters, SI, in the order of the parameters' names. What
-    /// a sensor had before adds to its fault. `machine`, `sensors`: before it is hidden.
-    pub fn parameters(&self, machine: &Machine, setup: &Setup, sensors: &Sensors) -> Vec<f64> {
-        let mut off = sensors.clone();
-        self.hide(&mut machine.clone(), setup, &mut off);
-        let channel = setup.channels.iter().position(|c| c.name == self.on);
-        let of_sensor = |values: &[f64]| channel.map_or(f64::NAN, |place| values[place]);
+    /// The true values of the effect's parameters, SI, in the order of the parameters' names.
+    pub fn parameters(&self, machine: &Machine) -> Vec<f64> {
         let amount = self.amount * self.sign;
         let (sine, cosine) = self.phase.sin_cos();
         match self.effect {
@@ -183,9 +178,7 @@ impl Hidden {
             | Effect::TransmissionError
             | Effect::StiffnessVariation => vec![self.amount * cosine, self.amount * sine],
             Effect::JointCompliance => vec![1.0 / amount],
-            Effect::SensorGain => vec![1.0 + of_sensor(&off.gain)],
-            Effect::SensorBias => vec![of_sensor(&off.bias)],
-            Effect::SensorDelay => vec![of_sensor(&off.delay)],
+            Effect::SensorGain => vec![1.0 + amount],
             Effect::ParameterShift => Vec::new(),
             _ => vec![amount],
         }
@@ -221,37 +214,5 @@ impl Hidden {
             .ok()
             .and_then(|value| value.as_str().map(str::to_owned))
             .unwrap_or_default()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{Effect, Hidden, Sensors};
-    use crate::machines::Kind;
-
-    #[test]
-    fn a_fault_adds_to_what_a_sensor_had() {
-        let (machine, setup) = (Kind::Stage.nominal(), Kind::Stage.setup());
-        let hidden = |effect, sign| Hidden {
-            effect,
-            on: setup.channels[0].name.to_owned(),
-            order: 0.0,
-            sign,
-            phase: 0.0,
-            amount: 0.25,
-        };
-        let had = Sensors {
-            gain: vec![0.5],
-            bias: vec![2.0],
-            delay: vec![0.125],
-        };
-        for (effect, sign, expected) in [
-            (Effect::SensorGain, -1.0, 1.25),
-            (Effect::SensorBias, -1.0, 1.75),
-            (Effect::SensorDelay, 1.0, 0.375),
-        ] {
-            let parameters = hidden(effect, sign).parameters(&machine, &setup, &had);
-            assert_eq!(parameters, [expected]);
-        }
     }
 }

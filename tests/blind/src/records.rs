@@ -115,7 +115,7 @@ pub fn make(case: &Case, seed: u64, specifications: &Path, out: &Path) -> std::i
         );
         truths.push(Truth {
             effect: sized.hidden.name(),
-            parameters: sized.hidden.parameters(&machine, &setup, &sensors),
+            parameters: sized.hidden.parameters(&machine),
             floors: sized.floors,
             alike: planned.alike.clone(),
             hidden: sized.hidden,
