@@ -39,6 +39,32 @@ pub struct Own {
 /// # Errors
 /// Why they are not believed, in words.
 pub fn judge(before: &Fit, after: &Fit, own: &[Own]) -> Result<Evidence, String> {
+    let evidence = explains(before, after, own)?;
+    if evidence.t < rule::SIGNIFICANCE {
+        return Err(format!(
+            "its size is {:.1} standard deviations, {} are asked for",
+            evidence.t,
+            rule::SIGNIFICANCE
+        ));
+    }
+    // The null model does what is within a prior itself: what is beyond may be small beside it.
+    let has_prior = own.iter().all(|own| own.prior.is_some());
+    if !has_prior && evidence.size < rule::SIZE {
+        return Err(format!(
+            "what it does is {:.2} of the noise, {} are asked for",
+            evidence.size,
+            rule::SIZE
+        ));
+    }
+    Ok(evidence)
+}
+
+/// Judges whether the records are explained better, however uncertain the sizes are: something
+/// declared that does the same makes them so.
+///
+/// # Errors
+/// Why they are not, in words.
+pub fn explains(before: &Fit, after: &Fit, own: &[Own]) -> Result<Evidence, String> {
     let evidence = evidence(before, after, own);
     if let Some(reason) = at_bound(after, own) {
         return Err(reason);
@@ -68,22 +94,6 @@ pub fn judge(before: &Fit, after: &Fit, own: &[Own]) -> Result<Evidence, String>
             "too little evidence in the training records: a gain of {:.1}, {} are asked for",
             evidence.information,
             rule::INFORMATION
-        ));
-    }
-    if evidence.t < rule::SIGNIFICANCE {
-        return Err(format!(
-            "its size is {:.1} standard deviations, {} are asked for",
-            evidence.t,
-            rule::SIGNIFICANCE
-        ));
-    }
-    // The null model does what is within a prior itself: what is beyond may be small beside it.
-    let has_prior = own.iter().all(|own| own.prior.is_some());
-    if !has_prior && evidence.size < rule::SIZE {
-        return Err(format!(
-            "what it does is {:.2} of the noise, {} are asked for",
-            evidence.size,
-            rule::SIZE
         ));
     }
     Ok(evidence)

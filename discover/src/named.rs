@@ -26,7 +26,7 @@ pub struct Named {
     pub half: Option<(usize, f64)>,
 }
 
-/// What is named of the believed trials of a round; none if nothing is believed. A parameter that
+/// What is named of the trials of a round that explain the records; none if nothing is believed. A parameter that
 /// nobody called uncertain is the less plausible answer: it is named only if it leaves clearly
 /// less than what looks like it.
 pub fn named(task: Task<'_>, searched: Searched) -> Option<Named> {
@@ -40,7 +40,7 @@ pub fn named(task: Task<'_>, searched: Searched) -> Option<Named> {
     };
     let (better, others): (Vec<Trial>, Vec<Trial>) = trials
         .into_iter()
-        .partition(|trial| is_clearly_better(&trial.fit, with.1));
+        .partition(|trial| trial.verdict.is_ok() && is_clearly_better(&trial.fit, with.1));
     if !better.is_empty() {
         return best((candidates, screen, better));
     }
@@ -66,7 +66,7 @@ fn with_other_halves(task: Task<'_>, (candidates, screen, mut trials): Searched)
     let round = task.round(&candidates, &screen, task.is_whole());
     if let Some(best) = best_of(&trials) {
         let mut further = round.other_halves(&trials, best);
-        further.retain(|trial| trial.verdict.is_ok());
+        further.retain(|trial| trial.explains);
         trials.extend(further);
     }
     (candidates, screen, trials)
@@ -84,6 +84,7 @@ fn best((candidates, screen, mut trials): Searched) -> Option<Named> {
             _ => false,
         };
         (other.own.len() < least.own.len() || is_less_off)
+            && other.verdict.is_ok()
             && untold_half(least, other, &screen).is_some()
     };
     let simpler = (0..trials.len()).filter(is_simpler);
@@ -128,12 +129,13 @@ fn off(trial: &Trial) -> Option<f64> {
     all.map(|all| all.into_iter().fold(0.0, f64::max))
 }
 
-/// The trial that leaves least; a pair only if it leaves clearly less than the best single
+/// The believed trial that leaves least; a pair only if it leaves clearly less than the best single
 /// effect.
 pub fn best_of(trials: &[Trial]) -> Option<usize> {
     let left = |place: &usize| trials[*place].fit.left();
     let least = |count: fn(usize) -> bool| {
-        let places = (0..trials.len()).filter(|place| count(trials[*place].responses.len()));
+        let is_such = |trial: &Trial| trial.verdict.is_ok() && count(trial.responses.len());
+        let places = (0..trials.len()).filter(|place| is_such(&trials[*place]));
         places.min_by(|a, b| left(a).total_cmp(&left(b)))
     };
     match (least(|n| n == 1), least(|n| n > 1)) {
@@ -199,7 +201,7 @@ fn half_way(best: &Trial, others: &[Trial]) -> Option<(usize, f64)> {
         return None;
     }
     let halves = others.iter().filter_map(|trial| match trial.responses[..] {
-        [response] => {
+        [response] if trial.verdict.is_ok() => {
             let half = best.responses.iter().position(|own| *own == response)?;
             Some((half, trial))
         }

@@ -32,6 +32,7 @@ impl Round<'_> {
             let repeats = own.any(|response| self.candidate(*response).order.is_some());
             if repeats && trial.verdict.is_ok() && !self.task.explains_most(&trial.fit) {
                 trial.verdict = Err("beside another it leaves much, which may be luck".to_owned());
+                trial.explains = false;
             }
         }
         trials

@@ -68,7 +68,8 @@ pub const TOLD_APART: f64 = 0.01;
 /// different folds.
 pub const SAME: f64 = 1.0 - 1e-6;
 
-/// A response of which less than this part is its own cannot be told from the nuisances.
+/// A response of which less than this part is its own cannot be told from the nuisances, unless
+/// that part explains `ENOUGH`.
 pub const OWN_PART: f64 = 0.01;
 
 /// The most effects that are added.
@@ -110,7 +111,8 @@ pub const FITS_AT_ONCE: usize = 2;
 pub const PAIR_PROMISE: f64 = 0.8;
 
 /// Effects that repeat with an angle, a dozen for every angle, are screened only where no
-/// other promises this part of the gap.
+/// other promises this part of the gap. What promises so much is fitted, however little of it is
+/// its own.
 pub const ENOUGH: f64 = 0.5;
 
 /// The most candidates, or pairs of them, that are fitted to the beginnings of the windows in

@@ -27,7 +27,7 @@ impl Look<'_> {
             effects: self.effects,
         };
         let (candidates, screen, mut trials) = beside.looked(View::Whole)?;
-        trials.retain(|trial| trial.verdict.is_ok());
+        trials.retain(|trial| trial.explains);
         let mut found = named(beside.task, (candidates, screen, trials))?;
         let second = found.trial.own.into_iter().map(|own| Own {
             effect: own.effect + 1,

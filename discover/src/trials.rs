@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use crate::candidates::Candidate;
 use crate::fitting::Fit;
-use crate::judge::{Evidence, Own, judge};
+use crate::judge::{Evidence, Own, explains, judge};
 use crate::rule;
 use crate::screen::Screen;
 use crate::sets::Set;
@@ -28,6 +28,9 @@ pub struct Trial {
     pub fit: Fit,
     /// Whether they are believed.
     pub verdict: Result<Evidence, String>,
+    /// Whether they explain the records, though their sizes may be uncertain: another name of what
+    /// is believed.
+    pub explains: bool,
 }
 
 /// What a round of the search is about.
@@ -188,7 +191,9 @@ impl Round<'_> {
         let enough = |r: &usize| {
             let response = &screen.responses[*r];
             // What a nuisance gains without its prior, the others did not do within theirs.
-            let is_own = response.released.is_some() || response.visible > rule::OWN_PART;
+            let is_own = response.released.is_some()
+                || response.visible > rule::OWN_PART
+                || response.gain > rule::ENOUGH * alone;
             is_own && response.gain > promise * alone
         };
         let mut ranked: Vec<usize> = (0..screen.responses.len()).filter(enough).collect();
@@ -246,6 +251,7 @@ impl Round<'_> {
                 Ok(new) => {
                     let own = self.own(&set);
                     let verdict = judge(self.task.fit, &new, &own);
+                    let explains = explains(self.task.fit, &new, &own).is_ok();
                     let outcome = verdict.as_ref().err().map_or("believed", String::as_str);
                     let (train, test) = (new.train.pooled, new.test.pooled);
                     (self.task.said)(&format!(
@@ -256,6 +262,7 @@ impl Round<'_> {
                         own,
                         fit: new,
                         verdict,
+                        explains,
                     });
                 }
                 Err(error) => (self.task.said)(&format!("  {label}: {error}")),

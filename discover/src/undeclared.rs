@@ -23,7 +23,7 @@ pub fn shifts(fit: &Fit) -> Vec<Candidate> {
     free.filter_map(candidates::shift).collect()
 }
 
-/// Parameters that look like what was named, fitted in its place: those that are believed, and
+/// Parameters that look like what was named, fitted in its place: those that explain the records, and
 /// the response of what was named, beside which they were screened. None where nothing looks like
 /// it, and where what was named is such a parameter: it had all others beside it. The task's fit is
 /// what was fitted before anything was named.
@@ -44,6 +44,6 @@ pub fn beside(task: Task<'_>, named: &Candidate) -> Option<(Searched, usize)> {
     let screen = screen(task.setting, task.fit, &candidates, part);
     let own = screen.responses.iter().position(|r| r.candidate == 0)?;
     let mut trials = task.round(&candidates, &screen, is_whole).alike(own);
-    trials.retain(|trial| trial.verdict.is_ok());
+    trials.retain(|trial| trial.explains);
     Some(((candidates, screen, trials), own))
 }

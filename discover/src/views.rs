@@ -119,12 +119,12 @@ impl Look<'_> {
             return self.is_first.then(|| self.together(&searched)).flatten();
         };
         let (candidates, screen, mut trials) = searched.swap_remove(best);
-        trials.retain(|trial| trial.verdict.is_ok());
+        trials.retain(|trial| trial.explains);
         if let Some(answer) = best_of(&trials) {
             let round = self.task.round(&candidates, &screen, true);
             round.swap(&mut trials, answer, self.effects);
         }
-        trials.retain(|trial| trial.verdict.is_ok());
+        trials.retain(|trial| trial.explains);
         named(self.task, (candidates, screen, trials))
     }
 
