@@ -27,8 +27,8 @@ struct Options {
     /// Only cases of this kind: single, nothing, pair, outside or untellable
     #[arg(long, value_parser = group)]
     only: Option<Group>,
-    /// The longest a case may take, s
-    #[arg(long, default_value_t = 60.0)]
+    /// The longest a case may take on its core, s; a record may take half of that on two
+    #[arg(long, default_value_t = 240.0)]
     limit: f64,
 }
 
