@@ -58,12 +58,12 @@ impl Round<'_> {
                 is_one && !away.contains(r) && response.visible > rule::OWN_PART
             })
             .collect();
-        let apart = |a: usize, b: usize| !self.share_a_name(a, b) && !(repeats(&a) && repeats(&b));
+        let never = |a: usize, b: usize| self.share_a_name(a, b) || (repeats(&a) && repeats(&b));
         let best_of = |deleted: Option<usize>, screen: &Screen| {
             let mut found: Vec<(f64, Set)> = Vec::new();
             for (number, a) in few.iter().enumerate() {
                 let others = few[number + 1..].iter();
-                for b in others.filter(|b| apart(*a, **b)) {
+                for b in others.filter(|b| !never(*a, **b)) {
                     let responses = vec![*a, *b];
                     let (left, sizes) = screen.left(&responses);
                     // What replaces a term is far from where it was linearised: it is not held
