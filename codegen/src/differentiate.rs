@@ -7,6 +7,7 @@ use std::collections::HashMap;
 
 use model_spec::model::Function;
 
+use crate::arguments::Arguments;
 use crate::graph::{Graph, Id, Operation, Shape, Space};
 use crate::matrix::StructuredMatrix;
 
@@ -214,7 +215,7 @@ pub(crate) fn partial_derivatives(
             .collect(),
         Operation::Power(base, exponent) => power_derivatives(graph, id, base, exponent),
         Operation::Call(function, arguments) => {
-            function_derivatives(graph, id, function, &arguments)
+            function_derivatives(graph, id, function, arguments)
         }
         Operation::PivotReciprocal(pivot) => {
             let square = graph.integer_power(id, 2);
@@ -238,9 +239,9 @@ fn function_derivatives(
     graph: &mut Graph,
     id: Id,
     function: Function,
-    arguments: &[Id],
+    arguments: Arguments<Id>,
 ) -> Vec<(Id, Id)> {
-    match (function, arguments) {
+    match (function, &*arguments) {
         (Function::Atan2, &[y, x]) => {
             let squares = [graph.integer_power(y, 2), graph.integer_power(x, 2)];
             let radius = graph.add(squares[0], squares[1]);

@@ -11,6 +11,7 @@
 use model_spec::ast::BinaryOperator;
 use model_spec::model::Function;
 
+use crate::arguments::Arguments;
 use crate::graph::{Graph, Id, Operation, Space};
 use crate::moments::{integral_of_term, shapes_at};
 use crate::tables::TableKind;
@@ -153,15 +154,16 @@ impl FieldFunction {
         function: Function,
         arguments: &[Self],
     ) -> Outcome<Self> {
+        let operands = |all| Arguments::of(all).ok_or("a function takes one or two arguments");
         let scalars: Option<Vec<Id>> = arguments.iter().map(Self::as_scalar).collect();
         if let Some(scalars) = scalars {
-            return Ok(Self::constant(graph.call(function, &scalars)));
+            return Ok(Self::constant(graph.call(function, operands(scalars)?)));
         }
         let values = arguments
             .iter()
             .map(|a| a.values(graph, domain))
             .collect::<Outcome<Vec<Id>>>()?;
-        let result = graph.call(function, &values);
+        let result = graph.call(function, operands(values)?);
         Ok(Self::weight(graph, result))
     }
 

@@ -1,7 +1,7 @@
 //! From a checked model to equations of motion, and from these to programs and source.
 //!
 //! The pipeline, one file each: `translate`, `field_function` and `moments` (expressions to
-//! the hash-consed `graph` of `operation`s, whose constructors in `simplify` apply the
+//! the hash-consed `graph` of `operation`s (of `arguments`), whose constructors in `simplify` apply the
 //! algebraic laws), `modes`, `tables` and `quadrature` (constants of a basis),
 //! `differentiate` and `matrix` (derivatives that keep their structure), `lagrange`,
 //! `forces` and `equations` (the equations of motion), `solve` (the accelerations),
@@ -16,6 +16,7 @@
 
 mod adjoint;
 pub mod affine;
+mod arguments;
 pub mod coefficients;
 mod degree;
 pub mod describe;

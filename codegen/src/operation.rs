@@ -2,6 +2,8 @@
 
 use model_spec::model::Function;
 
+use crate::arguments::Arguments;
+
 /// A node of a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Id(pub(crate) u32);
@@ -98,7 +100,7 @@ pub enum Operation {
     /// A product of integer powers, in the order of the nodes.
     Product(Box<[(Id, i32)]>),
     /// A function applied element by element.
-    Call(Function, Box<[Id]>),
+    Call(Function, Arguments<Id>),
     /// A real power `base^exponent` with an exponent that is no integer literal.
     Power(Id, Id),
     /// `if a > b { then } else { otherwise }`.

@@ -10,6 +10,7 @@
 
 use model_spec::model::Function;
 
+pub use crate::arguments::Arguments;
 pub use crate::operation::{Argument, Variable};
 pub use crate::regimes::{Decided, SURFACES_OF_A_REGIME, Switch};
 pub use crate::request::Request;
@@ -44,6 +45,14 @@ impl Extent {
             Self::Scalar => 1,
             Self::Vector(n) => n,
             Self::Matrix(rows, columns) => rows * columns,
+        }
+    }
+
+    /// How many numbers stand in a row: one, but for a matrix.
+    pub fn columns(self) -> usize {
+        match self {
+            Self::Scalar | Self::Vector(_) => 1,
+            Self::Matrix(_, columns) => columns,
         }
     }
 }
@@ -88,7 +97,7 @@ pub enum Op {
     /// a^b
     Power(ValueId, ValueId),
     /// A function of one or two arguments.
-    Call(Function, Vec<ValueId>),
+    Call(Function, Arguments<ValueId>),
     /// `if a > b { then } else { otherwise }`
     Select {
         /// Compared.
@@ -188,7 +197,7 @@ impl Op {
             | Self::Divide(a, b)
             | Self::Power(a, b)
             | Self::CholeskySolve(a, b) => vec![*a, *b],
-            Self::Call(_, arguments) => arguments.clone(),
+            Self::Call(_, arguments) => arguments.to_vec(),
             Self::Select {
                 a,
                 b,

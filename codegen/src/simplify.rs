@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use model_spec::model::Function;
 
+use crate::arguments::Arguments;
 use crate::graph::{Bits, Graph, Id, Operation, Shape};
 
 /// Factors of a product with their exponents.
@@ -137,13 +138,13 @@ impl Graph {
         let position = factors.iter().position(|(factor, exponent)| {
             *exponent == 2 && matches!(self.operation(*factor), Operation::Call(Function::Sin, _))
         })?;
-        let Operation::Call(_, argument) = self.operation(factors[position].0).clone() else {
+        let Operation::Call(_, argument) = *self.operation(factors[position].0) else {
             return None;
         };
         let mut others = factors.to_vec();
         others.remove(position);
         let rest = self.product(&others);
-        let cosine = self.call(Function::Cos, &argument);
+        let cosine = self.call(Function::Cos, argument);
         let partner = self.product(&[(rest, 1), (cosine, 2)]);
         Some((rest, partner))
     }
@@ -231,10 +232,10 @@ impl Graph {
     /// Laws: contact^n = contact for n > 0, and deadzone(p, b)^n contact(p, b) =
     /// deadzone(p, b)^n, since the force of Eq. (7) vanishes where the contact does.
     fn apply_piecewise_laws(&mut self, factors: &mut BTreeMap<Id, i32>) {
-        let contacts: Vec<(Id, Box<[Id]>)> = factors
+        let contacts: Vec<(Id, Arguments<Id>)> = factors
             .keys()
             .filter_map(|id| match self.operation(*id) {
-                Operation::Call(Function::Contact, arguments) => Some((*id, arguments.clone())),
+                Operation::Call(Function::Contact, arguments) => Some((*id, *arguments)),
                 _ => None,
             })
             .collect();
@@ -267,8 +268,9 @@ impl Graph {
 
     /// A function of scalars or vectors. Laws: sin, cos, exp and sqrt of their simplest
     /// numbers; odd functions take a minus sign out, even ones drop it.
-    pub fn call(&mut self, function: Function, arguments: &[Id]) -> Id {
-        if let [a] = *arguments {
+    pub fn call(&mut self, function: Function, arguments: impl Into<Arguments<Id>>) -> Id {
+        let arguments = arguments.into();
+        if let Arguments::One([a]) = arguments {
             if let Some(value) = self.as_constant(a).and_then(|x| exact_value(function, x)) {
                 return self.constant(value);
             }
@@ -291,7 +293,7 @@ impl Graph {
                 }
             }
         }
-        self.intern(Operation::Call(function, arguments.into()))
+        self.intern(Operation::Call(function, arguments))
     }
 
     /// The node a in -a.

@@ -47,8 +47,8 @@ fn rebuild(
             graph.product(&factors)
         }
         Operation::Call(function, arguments) => {
-            let arguments: Vec<Id> = arguments.iter().map(|a| inner(graph, *a)).collect();
-            graph.call(function, &arguments)
+            let arguments = arguments.map(|a| inner(graph, a));
+            graph.call(function, arguments)
         }
         Operation::Power(base, exponent) => {
             let (base, exponent) = (inner(graph, base), inner(graph, exponent));

@@ -8,6 +8,7 @@ use model_spec::diagnostic::Diagnostic;
 use model_spec::model::{Expr, ExprKind, Model};
 use model_spec::span::Span;
 
+use crate::arguments::Arguments;
 use crate::differentiate::Direction;
 use crate::field_function::{Atom, FieldFunction};
 use crate::graph::{Graph, Id, Operation, Space};
@@ -111,8 +112,9 @@ impl<'m> Translator<'m> {
                 Ok(self.binary(*operator, left, right))
             }
             ExprKind::Call(function, arguments) => {
-                let arguments = self.nodes(arguments)?;
-                Ok(self.graph.call(*function, &arguments))
+                let arguments = Arguments::of(self.nodes(arguments)?)
+                    .ok_or_else(|| error(expr, "a function takes one or two arguments"))?;
+                Ok(self.graph.call(*function, arguments))
             }
             ExprKind::Integral { field, integrand } => self.integral(*field, integrand),
             ExprKind::At {

@@ -121,29 +121,62 @@ impl Writer<'_, '_, '_> {
 
     /// An element from those of the operands.
     pub fn computed(&mut self, id: ValueId, at: At) -> Value {
-        let op = self.program.value(id).op.clone();
-        let operands: Vec<Value> = op
-            .operands()
-            .into_iter()
-            .map(|operand| self.element(operand, at))
-            .collect();
-        self.operation(&op, &operands, at.lanes)
+        let lanes = at.lanes;
+        let of = |writer: &mut Self, operand: ValueId| writer.element(operand, at);
+        let both = |writer: &mut Self, operands: [ValueId; 2]| operands.map(|id| of(writer, id));
+        match self.program.value(id).op.clone() {
+            Op::Negate(a) => {
+                let a = of(self, a);
+                self.negate(a, lanes)
+            }
+            Op::Add(a, b) => {
+                let [a, b] = both(self, [a, b]);
+                self.add(a, b)
+            }
+            Op::Subtract(a, b) => {
+                let [a, b] = both(self, [a, b]);
+                self.ins().fsub(a, b)
+            }
+            Op::Multiply(a, b) => {
+                let [a, b] = both(self, [a, b]);
+                self.multiply(a, b)
+            }
+            Op::Divide(a, b) => {
+                let [a, b] = both(self, [a, b]);
+                self.ins().fdiv(a, b)
+            }
+            Op::Power(a, b) => {
+                let operands = both(self, [a, b]);
+                self.power(operands, lanes)
+            }
+            Op::Call(function, arguments) => {
+                let arguments = arguments.map(|argument| of(self, argument));
+                self.call(function, arguments, lanes)
+            }
+            Op::Select {
+                a,
+                b,
+                then,
+                otherwise,
+            } => {
+                let operands = [a, b, then, otherwise].map(|operand| of(self, operand));
+                self.select(operands, lanes)
+            }
+            Op::PivotReciprocal(a) => {
+                let a = of(self, a);
+                self.pivot_reciprocal(a, lanes)
+            }
+            // Leaves and matrix operations, which `stage` binds.
+            other => self.misplaced(id, &other, lanes),
+        }
     }
 
-    fn operation(&mut self, op: &Op, operands: &[Value], lanes: Lanes) -> Value {
-        match (op, operands) {
-            (Op::Negate(_), &[a]) => self.negate(a, lanes),
-            (Op::Add(..), &[a, b]) => self.add(a, b),
-            (Op::Subtract(..), &[a, b]) => self.ins().fsub(a, b),
-            (Op::Multiply(..), &[a, b]) => self.multiply(a, b),
-            (Op::Divide(..), &[a, b]) => self.ins().fdiv(a, b),
-            (Op::Power(..), _) => self.power(operands, lanes),
-            (Op::Call(function, _), _) => self.call(*function, operands, lanes),
-            (Op::Select { .. }, _) => self.select(operands, lanes),
-            (Op::PivotReciprocal(_), &[a]) => self.pivot_reciprocal(a, lanes),
-            // What is left are leaves and matrix operations, which `stage` binds.
-            _ => self.literal(f64::NAN, lanes),
-        }
+    /// Notes a value that cannot be computed where it is asked for, so that the function is
+    /// not compiled.
+    fn misplaced(&mut self, id: ValueId, op: &Op, lanes: Lanes) -> Value {
+        let place = id.index();
+        self.defect = Some(format!("value {place}, {op:?}, is asked for by elements"));
+        self.literal(0.0, lanes)
     }
 
     /// a + b

@@ -6,7 +6,8 @@
 
 use std::rc::Rc;
 
-use codegen::evaluator::elementary_function;
+use codegen::evaluator::{Law, law};
+use codegen::program::Arguments;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Value, types};
 use elementary::{Function as Elementary, Kernel, Operation};
@@ -27,49 +28,61 @@ const ALIGNER: f64 = (1_u64 << 52) as f64;
 
 impl Writer<'_, '_, '_> {
     /// A function of the expression language.
-    pub fn call(&mut self, function: Function, arguments: &[Value], lanes: Lanes) -> Value {
-        self.in_two_lanes(arguments, lanes, |writer, arguments| {
-            match (function, elementary_function(function), arguments) {
-                (_, Some(elementary), _) => writer.elementary(elementary, arguments, lanes),
-                (Function::Deadzone, None, &[p, b]) => writer.deadzone(p, b),
-                (Function::Contact, None, &[p, b]) => writer.contact(p, b),
-                _ => writer.literal(f64::NAN, Lanes::Two),
-            }
-        })
+    pub fn call(&mut self, function: Function, arguments: Arguments<Value>, lanes: Lanes) -> Value {
+        match arguments {
+            Arguments::One(one) => self.in_two_lanes(one, lanes, |writer, [a]| {
+                writer.law(function, [a, a], &[a], lanes)
+            }),
+            Arguments::Two(two) => self.in_two_lanes(two, lanes, |writer, two| {
+                writer.law(function, two, &two, lanes)
+            }),
+        }
+    }
+
+    /// The same in both lanes: of two numbers, which are one for a function of one.
+    fn law(
+        &mut self,
+        function: Function,
+        [p, b]: [Value; 2],
+        arguments: &[Value],
+        lanes: Lanes,
+    ) -> Value {
+        match law(function) {
+            Law::Elementary(elementary) => self.elementary(elementary, arguments, lanes),
+            Law::Deadzone => self.deadzone(p, b),
+            Law::Contact => self.contact(p, b),
+        }
     }
 
     /// a^b
-    pub fn power(&mut self, arguments: &[Value], lanes: Lanes) -> Value {
-        self.in_two_lanes(arguments, lanes, |writer, arguments| {
-            writer.elementary(Elementary::Pow, arguments, lanes)
+    pub fn power(&mut self, base_and_exponent: [Value; 2], lanes: Lanes) -> Value {
+        self.in_two_lanes(base_and_exponent, lanes, |writer, both| {
+            writer.elementary(Elementary::Pow, &both, lanes)
         })
     }
 
     /// The square root where a > 0, NaN elsewhere; one number.
     pub fn positive_root(&mut self, a: Value) -> Value {
-        self.in_two_lanes(&[a], Lanes::One, |writer, arguments| {
-            let root = writer.elementary(Elementary::Sqrt, arguments, Lanes::One);
-            writer.where_positive(arguments[0], root)
+        self.in_two_lanes([a], Lanes::One, |writer, [a]| {
+            let root = writer.elementary(Elementary::Sqrt, &[a], Lanes::One);
+            writer.where_positive(a, root)
         })
     }
 
     /// 1/a where a > 0, NaN elsewhere.
     pub fn pivot_reciprocal(&mut self, a: Value, lanes: Lanes) -> Value {
-        self.in_two_lanes(&[a], lanes, |writer, arguments| {
+        self.in_two_lanes([a], lanes, |writer, [a]| {
             let one = writer.literal(1.0, Lanes::Two);
-            let reciprocal = writer.ins().fdiv(one, arguments[0]);
-            writer.where_positive(arguments[0], reciprocal)
+            let reciprocal = writer.ins().fdiv(one, a);
+            writer.where_positive(a, reciprocal)
         })
     }
 
     /// `if a > b { then } else { otherwise }`
-    pub fn select(&mut self, operands: &[Value], lanes: Lanes) -> Value {
-        self.in_two_lanes(operands, lanes, |writer, operands| match *operands {
-            [a, b, then, otherwise] => {
-                let mask = writer.compare(FloatCC::GreaterThan, a, b);
-                writer.ins().bitselect(mask, then, otherwise)
-            }
-            _ => writer.literal(f64::NAN, Lanes::Two),
+    pub fn select(&mut self, operands: [Value; 4], lanes: Lanes) -> Value {
+        self.in_two_lanes(operands, lanes, |writer, [a, b, then, otherwise]| {
+            let mask = writer.compare(FloatCC::GreaterThan, a, b);
+            writer.ins().bitselect(mask, then, otherwise)
         })
     }
 
@@ -81,20 +94,17 @@ impl Writer<'_, '_, '_> {
     }
 
     /// Runs `body` on two lanes; a single number is in both.
-    fn in_two_lanes(
+    fn in_two_lanes<const N: usize>(
         &mut self,
-        arguments: &[Value],
+        arguments: [Value; N],
         lanes: Lanes,
-        body: impl FnOnce(&mut Self, &[Value]) -> Value,
+        body: impl FnOnce(&mut Self, [Value; N]) -> Value,
     ) -> Value {
         if lanes == Lanes::Two {
             return body(self, arguments);
         }
-        let both: Vec<Value> = arguments
-            .iter()
-            .map(|argument| self.ins().splat(types::F64X2, *argument))
-            .collect();
-        let value = body(self, &both);
+        let both = arguments.map(|argument| self.ins().splat(types::F64X2, argument));
+        let value = body(self, both);
         self.ins().extractlane(value, 0)
     }
 

@@ -61,7 +61,8 @@ pub struct Machine {
 /// Compiles every stage of a program.
 ///
 /// # Errors
-/// If this machine's kind is not known to Cranelift.
+/// If this machine's kind is not known to Cranelift, or a value of the program does not stand
+/// where it can be computed.
 pub fn compile(program: &Program) -> Result<Machine, CompileError> {
     let places = Places::of(program);
     let mut shared = Shared {
@@ -158,6 +159,9 @@ fn define(
     };
     let mut writer = Writer::new(builder, shared, call, task);
     writer.write();
+    if let Some(defect) = writer.defect {
+        return Err(CompileError::new(defect));
+    }
     let mut builder = writer.builder;
     builder.ins().return_(&[]);
     builder.seal_all_blocks();

@@ -44,7 +44,7 @@ impl Writer<'_, '_, '_> {
             Op::Cholesky(matrix) => self.cholesky(out, *matrix),
             Op::CholeskySolve(factor, right) => self.cholesky_solve(out, *factor, *right),
             // All others are written element by element.
-            _ => {}
+            other => self.defect = Some(format!("{other:?} is no matrix operation")),
         }
     }
 

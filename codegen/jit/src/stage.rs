@@ -84,6 +84,8 @@ pub struct Writer<'a, 'p, 'f> {
     /// Values that something reads from memory.
     wanted: HashSet<ValueId>,
     uses: HashMap<ValueId, usize>,
+    /// What of the program makes no sense, if anything does not.
+    pub(crate) defect: Option<String>,
 }
 
 impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
@@ -106,6 +108,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             stored: HashSet::new(),
             wanted: HashSet::new(),
             uses: HashMap::new(),
+            defect: None,
         }
     }
 

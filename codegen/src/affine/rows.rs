@@ -67,7 +67,7 @@ impl Sinusoids {
             .iter()
             .map(|&phase| {
                 let functions = [Function::Sin, Function::Cos];
-                functions.map(|function| graph.intern(Operation::Call(function, Box::new([phase]))))
+                functions.map(|function| graph.intern(Operation::Call(function, (&[phase]).into())))
             })
             .collect();
         Self { phases, calls }

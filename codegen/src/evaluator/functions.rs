@@ -8,15 +8,23 @@ pub(super) fn pivot_reciprocal(a: f64) -> f64 {
     if a > 0.0 { 1.0 / a } else { f64::NAN }
 }
 
+/// How a function of the expression language is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// As the elementary function of the same name.
+    Elementary(Elementary),
+    /// f_k of Eq. (7).
+    Deadzone,
+    /// 1 where |p| > b, 0 elsewhere, Eq. (8).
+    Contact,
+}
+
 /// A function of the expression language; `b` is read by those of two arguments.
 pub fn call(function: Function, a: f64, b: f64) -> f64 {
-    match function {
-        Function::Deadzone => deadzone(a, b),
-        Function::Contact => contact(a, b),
-        other => match elementary_function(other) {
-            Some(elementary) => elementary.apply(&[a, b]),
-            None => f64::NAN,
-        },
+    match law(function) {
+        Law::Elementary(elementary) => elementary.apply(&[a, b]),
+        Law::Deadzone => deadzone(a, b),
+        Law::Contact => contact(a, b),
     }
 }
 
@@ -31,9 +39,9 @@ fn contact(p: f64, b: f64) -> f64 {
     if p > b || p < -b { 1.0 } else { 0.0 }
 }
 
-/// The elementary function of the same name; `None` for the mesh laws.
-pub fn elementary_function(function: Function) -> Option<Elementary> {
-    Some(match function {
+/// How a function is computed.
+pub fn law(function: Function) -> Law {
+    Law::Elementary(match function {
         Function::Sin => Elementary::Sin,
         Function::Cos => Elementary::Cos,
         Function::Tan => Elementary::Tan,
@@ -51,6 +59,7 @@ pub fn elementary_function(function: Function) -> Option<Elementary> {
         Function::Sign => Elementary::Sign,
         Function::Min => Elementary::Min,
         Function::Max => Elementary::Max,
-        Function::Deadzone | Function::Contact => return None,
+        Function::Deadzone => return Law::Deadzone,
+        Function::Contact => return Law::Contact,
     })
 }

@@ -4,88 +4,40 @@
 use elementary::Function as Elementary;
 
 use super::step::Operands;
-use crate::program::{Extent, Op, ScaledValue, ValueId};
+use crate::program::{ScaledValue, ValueId};
 
-/// Computes a matrix operation into `out`.
-pub(super) fn matrix_step(out: &mut [f64], extent: Extent, operands: &Operands<'_>, op: &Op) {
-    match op {
-        Op::Apply {
-            matrix,
-            transposed,
-            vector,
-        } => apply(
-            out,
-            operands.matrix(*matrix),
-            *transposed,
-            operands.strided(*vector),
-        ),
-        Op::Gram {
-            left,
-            weight,
-            right,
-        } => {
-            let (left, nodes, rows) = operands.matrix(*left);
-            let (right, _, columns) = operands.matrix(*right);
-            let (weight, stride) = operands.strided(*weight);
-            for r in 0..rows {
-                for c in 0..columns {
-                    out[r * columns + c] = (0..nodes).fold(0.0, |total, g| {
-                        total + left[g * rows + r] * weight[g * stride] * right[g * columns + c]
-                    });
-                }
-            }
+/// left^T diag(weight) right.
+pub(super) fn gram(out: &mut [f64], operands: &Operands<'_>, [left, weight, right]: [ValueId; 3]) {
+    let (left, nodes, rows) = operands.matrix(left);
+    let (right, _, columns) = operands.matrix(right);
+    let (weight, stride) = operands.strided(weight);
+    for r in 0..rows {
+        for c in 0..columns {
+            out[r * columns + c] = (0..nodes).fold(0.0, |total, g| {
+                total + left[g * rows + r] * weight[g * stride] * right[g * columns + c]
+            });
         }
-        Op::GramDiagonal {
-            left,
-            weight,
-            right,
-        } => {
-            let (left, nodes, modes) = operands.matrix(*left);
-            let (right, ..) = operands.matrix(*right);
-            let (weight, stride) = operands.strided(*weight);
-            for (r, slot) in out.iter_mut().enumerate() {
-                *slot = (0..nodes).fold(0.0, |total, g| {
-                    total + left[g * modes + r] * weight[g * stride] * right[g * modes + r]
-                });
-            }
-        }
-        Op::Assemble {
-            diagonal,
-            outer,
-            matrices,
-        } => {
-            let Extent::Matrix(_, columns) = extent else {
-                return;
-            };
-            assemble(out, columns, operands, *diagonal, outer, matrices);
-        }
-        Op::Cholesky(matrix) => {
-            let (matrix, size, _) = operands.matrix(*matrix);
-            cholesky(out, matrix, size);
-        }
-        Op::CholeskySolve(factor, vector) => {
-            let (factor, size, _) = operands.matrix(*factor);
-            let (right, stride) = operands.strided(*vector);
-            let columns = if let Extent::Matrix(_, columns) = extent {
-                columns
-            } else {
-                1
-            };
-            for column in 0..columns {
-                cholesky_solve(
-                    out,
-                    (column, columns),
-                    factor,
-                    size,
-                    (right, stride * columns),
-                );
-            }
-        }
-        _ => out.fill(f64::NAN),
     }
 }
 
-fn apply(
+/// The diagonal of the same.
+pub(super) fn gram_diagonal(
+    out: &mut [f64],
+    operands: &Operands<'_>,
+    [left, weight, right]: [ValueId; 3],
+) {
+    let (left, nodes, modes) = operands.matrix(left);
+    let (right, ..) = operands.matrix(right);
+    let (weight, stride) = operands.strided(weight);
+    for (r, slot) in out.iter_mut().enumerate() {
+        *slot = (0..nodes).fold(0.0, |total, g| {
+            total + left[g * modes + r] * weight[g * stride] * right[g * modes + r]
+        });
+    }
+}
+
+/// A matrix, or its transpose, times a vector.
+pub(super) fn apply(
     out: &mut [f64],
     (matrix, rows, columns): (&[f64], usize, usize),
     transposed: bool,
@@ -104,13 +56,12 @@ fn apply(
     }
 }
 
-fn assemble(
+/// A matrix of so many columns from its diagonal, outer products and scaled matrices.
+pub(super) fn assemble(
     out: &mut [f64],
     columns: usize,
     operands: &Operands<'_>,
-    diagonal: Option<ValueId>,
-    outer: &[(ValueId, ValueId)],
-    matrices: &[ScaledValue],
+    (diagonal, outer, matrices): (Option<ValueId>, &[(ValueId, ValueId)], &[ScaledValue]),
 ) {
     out.fill(0.0);
     if let Some(diagonal) = diagonal {
@@ -144,7 +95,7 @@ fn assemble(
 }
 
 /// Row by row, L L^T = matrix; the upper part of `out` becomes 0.
-fn cholesky(out: &mut [f64], matrix: &[f64], size: usize) {
+pub(super) fn cholesky(out: &mut [f64], matrix: &[f64], size: usize) {
     out.fill(0.0);
     for r in 0..size {
         for c in 0..=r {
@@ -164,9 +115,22 @@ fn cholesky(out: &mut [f64], matrix: &[f64], size: usize) {
     }
 }
 
+/// The right side of so many columns, possibly one number for all rows, solved into `out`.
+pub(super) fn cholesky_solve(
+    out: &mut [f64],
+    columns: usize,
+    (factor, size, _): (&[f64], usize, usize),
+    (right, stride): (&[f64], usize),
+) {
+    for column in 0..columns {
+        let right = (right, stride * columns);
+        solve_column(out, (column, columns), factor, size, right);
+    }
+}
+
 /// Column `column` of the right side, solved into the same column of `out`; both hold
 /// `columns` numbers in a row, the right side possibly one number for all rows.
-fn cholesky_solve(
+fn solve_column(
     out: &mut [f64],
     (column, columns): (usize, usize),
     factor: &[f64],

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use crate::program::{Extent, Op, Program, ValueId};
 pub use code::{MachineCode, Stage};
-pub use functions::{call, elementary_function};
+pub use functions::{Law, call, law};
 use step::step;
 
 /// A program with memory to run it in. Nothing is allocated after construction.
@@ -90,11 +90,11 @@ impl Evaluator {
 
     /// Computes everything that depends on the parameters alone.
     ///
-    /// `parameters`: the independent parameters in SI, in the order of the program.
+    /// `parameters`: the independent parameters in SI, in the order of the program, as many
+    /// as it has.
     pub fn prepare(&mut self, parameters: &[f64]) {
         for (id, place) in &self.parameters {
-            let value = parameters.get(*place).copied().unwrap_or(f64::NAN);
-            self.memory[self.places.offset(*id)] = value;
+            self.memory[self.places.offset(*id)] = parameters[*place];
         }
         if let Some(code) = &self.code {
             code.prepare(&mut self.memory);

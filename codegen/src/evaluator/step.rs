@@ -3,9 +3,9 @@
 use elementary::Function as Elementary;
 
 use super::functions::{call, pivot_reciprocal};
-use super::matrices::matrix_step;
+use super::matrices::{apply, assemble, cholesky, cholesky_solve, gram, gram_diagonal};
 use super::{Places, Point};
-use crate::program::{Extent, Op, PARTIAL_SUMS, Program, ValueId};
+use crate::program::{Arguments, Extent, Op, PARTIAL_SUMS, Program, ValueId};
 
 /// Read access to operands while a value is computed: operands stand before it.
 pub(super) struct Operands<'a> {
@@ -77,10 +77,11 @@ pub(super) fn step(
         Op::Power(a, b) => binary(out, &operands, *a, *b, |a, b| {
             Elementary::Pow.apply(&[a, b])
         }),
-        Op::Call(function, arguments) => match *arguments.as_slice() {
-            [a] => unary(out, &operands, a, |a| call(*function, a, f64::NAN)),
-            [a, b] => binary(out, &operands, a, b, |a, b| call(*function, a, b)),
-            _ => out.fill(f64::NAN),
+        Op::Call(function, arguments) => match *arguments {
+            Arguments::One([a]) => unary(out, &operands, a, |a| call(*function, a, a)),
+            Arguments::Two([a, b]) => {
+                binary(out, &operands, a, b, |a, b| call(*function, a, b));
+            }
         },
         Op::Select {
             a,
@@ -100,7 +101,49 @@ pub(super) fn step(
             }
         }
         Op::Total(a) => out[0] = total(operands.slice(*a)),
-        other => matrix_step(out, value.extent, &operands, other),
+        Op::Apply {
+            matrix,
+            transposed,
+            vector,
+        } => apply(
+            out,
+            operands.matrix(*matrix),
+            *transposed,
+            operands.strided(*vector),
+        ),
+        Op::Gram {
+            left,
+            weight,
+            right,
+        } => gram(out, &operands, [*left, *weight, *right]),
+        Op::GramDiagonal {
+            left,
+            weight,
+            right,
+        } => gram_diagonal(out, &operands, [*left, *weight, *right]),
+        Op::Assemble {
+            diagonal,
+            outer,
+            matrices,
+        } => assemble(
+            out,
+            value.extent.columns(),
+            &operands,
+            (*diagonal, outer, matrices),
+        ),
+        Op::Cholesky(matrix) => {
+            let (matrix, size, _) = operands.matrix(*matrix);
+            cholesky(out, matrix, size);
+        }
+        Op::CholeskySolve(factor, right) => {
+            let columns = value.extent.columns();
+            cholesky_solve(
+                out,
+                columns,
+                operands.matrix(*factor),
+                operands.strided(*right),
+            );
+        }
     }
 }
 

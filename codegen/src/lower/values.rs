@@ -196,50 +196,35 @@ impl<'g> Lowering<'g> {
 
     fn lower_node(&mut self, id: Id) -> ValueId {
         let graph = self.graph;
-        let extent = self.extent(graph.shape(id));
-        match graph.operation(id) {
-            Operation::Constant(bits) => self.constant(bits.value()),
-            Operation::Parameter(index) => self.parameter(*index),
-            Operation::Coordinate(index) => self.emit(Op::Coordinate(*index), extent),
-            Operation::Rate(index) => self.emit(Op::Rate(*index), extent),
-            Operation::Input(index) => self.emit(Op::Input(*index), extent),
-            Operation::Time => self.emit(Op::Time, extent),
-            Operation::Argument(argument, variable) => {
-                self.emit(Op::Argument(*argument, *variable), extent)
-            }
-            Operation::ModeCoordinates(field) => self.emit(Op::ModeCoordinates(*field), extent),
-            Operation::ModeRates(field) => self.emit(Op::ModeRates(*field), extent),
-            Operation::Table(index) => self.table(*index),
-            Operation::Sum(terms) => self.sum(terms),
-            Operation::Product(_) => self.term(1.0, id).1,
+        let op = match graph.operation(id) {
+            Operation::Constant(bits) => return self.constant(bits.value()),
+            Operation::Parameter(index) => return self.parameter(*index),
+            Operation::Table(index) => return self.table(*index),
+            Operation::Sum(terms) => return self.sum(terms),
+            Operation::Product(_) => return self.term(1.0, id).1,
+            Operation::Assemble(assembly) => return self.assembly(assembly),
+            Operation::Coordinate(index) => Op::Coordinate(*index),
+            Operation::Rate(index) => Op::Rate(*index),
+            Operation::Input(index) => Op::Input(*index),
+            Operation::Time => Op::Time,
+            Operation::Argument(argument, variable) => Op::Argument(*argument, *variable),
+            Operation::ModeCoordinates(field) => Op::ModeCoordinates(*field),
+            Operation::ModeRates(field) => Op::ModeRates(*field),
             Operation::Call(function, arguments) => {
-                let arguments = arguments.iter().map(|a| self.value(*a)).collect();
-                self.emit(Op::Call(*function, arguments), extent)
+                Op::Call(*function, arguments.map(|a| self.value(a)))
             }
-            Operation::Power(base, exponent) => {
-                let op = Op::Power(self.value(*base), self.value(*exponent));
-                self.emit(op, extent)
-            }
+            Operation::Power(base, exponent) => Op::Power(self.value(*base), self.value(*exponent)),
             Operation::Select {
                 a,
                 b,
                 then,
                 otherwise,
-            } => {
-                let op = Op::Select {
-                    a: self.value(*a),
-                    b: self.value(*b),
-                    then: self.value(*then),
-                    otherwise: self.value(*otherwise),
-                };
-                self.emit(op, extent)
-            }
-            other => self.matrix_operation(other, extent),
-        }
-    }
-
-    fn matrix_operation(&mut self, operation: &Operation, extent: Extent) -> ValueId {
-        let op = match operation {
+            } => Op::Select {
+                a: self.value(*a),
+                b: self.value(*b),
+                then: self.value(*then),
+                otherwise: self.value(*otherwise),
+            },
             Operation::Total(a) => Op::Total(self.value(*a)),
             Operation::Apply {
                 matrix,
@@ -268,15 +253,13 @@ impl<'g> Lowering<'g> {
                 weight: self.value(*weight),
                 right: self.value(*right),
             },
-            Operation::Assemble(assembly) => return self.assembly(assembly),
             Operation::Cholesky(matrix) => Op::Cholesky(self.value(*matrix)),
-            Operation::CholeskySolve(factor, vector) => {
-                Op::CholeskySolve(self.value(*factor), self.value(*vector))
+            Operation::CholeskySolve(factor, right) => {
+                Op::CholeskySolve(self.value(*factor), self.value(*right))
             }
             Operation::PivotReciprocal(pivot) => Op::PivotReciprocal(self.value(*pivot)),
-            // Scalars and leaves are lowered by the caller.
-            _ => Op::Constant(f64::NAN),
         };
+        let extent = self.extent(graph.shape(id));
         self.emit(op, extent)
     }
 

@@ -1,6 +1,7 @@
 //! Statements for matrices: products, Gram matrices, assembled blocks and Cholesky factors,
 //! as loops in the order that the program defines.
 
+use super::EmitError;
 use super::body::{Body, Emitted, looped, reference};
 use super::expression::{Expression, assignment};
 use crate::program::{Extent, Op, ValueId};
@@ -37,7 +38,7 @@ impl Body<'_> {
                 let weighted = Expression::multiply(&left, &weight);
                 (Expression::multiply(&weighted, &right), nodes)
             }
-            _ => (Expression::number(f64::NAN), 1),
+            _ => return Err(EmitError::misplaced(id, "is no sum of products")),
         };
         let added = add_to(&format!("{name}[i]"), &summand);
         Ok((looped("k", length, &format!("{added}\n")), name))
@@ -109,7 +110,9 @@ impl Body<'_> {
             matrices,
         } = block
         else {
-            return Ok(String::new());
+            return Err(EmitError::Value(format!(
+                "{block:?} is no block of a matrix"
+            )));
         };
         let mut statements = String::new();
         if let Some(diagonal) = diagonal {

@@ -12,7 +12,7 @@ use super::functions::Needed;
 use super::literals::{block, identifier};
 use super::names::Names;
 use super::regimes::{Switches, of_side};
-use crate::evaluator::elementary_function;
+use crate::evaluator::{Law, law};
 use crate::program::{Argument, Extent, Op, PARTIAL_SUMS, Program, Request, ValueId, Variable};
 use elementary::Function as Elementary;
 use model_spec::model::Function;
@@ -299,13 +299,15 @@ impl<'a> Body<'a> {
                 self.expression(operand, if scalar { None } else { index })
             })
             .collect::<Emitted<Vec<_>>>()?;
-        let decided = of_side(self.program, &self.switches, id, &operands, self.needed);
-        Ok(decided.unwrap_or_else(|| self.operation(&op, &operands)))
+        match of_side(self.program, &self.switches, id, &operands, self.needed) {
+            Some(decided) => Ok(decided),
+            None => self.operation(id, &op, &operands),
+        }
     }
 
     /// An operation of scalars or elements.
-    fn operation(&mut self, op: &Op, operands: &[Expression]) -> Expression {
-        match (op, operands) {
+    fn operation(&mut self, id: ValueId, op: &Op, operands: &[Expression]) -> Emitted<Expression> {
+        Ok(match (op, operands) {
             (Op::Negate(_), [a]) => Expression::negate(a),
             (Op::Add(..), [a, b]) => Expression::add(a, b),
             (Op::Subtract(..), [a, b]) => Expression::subtract(a, b),
@@ -321,21 +323,21 @@ impl<'a> Body<'a> {
             }
             (Op::Select { .. }, _) => Expression::call("T::select_greater", operands),
             (Op::Call(function, _), _) => self.call(*function, operands),
-            _ => Expression::number(f64::NAN),
-        }
+            _ => return Err(EmitError::misplaced(id, "is no operation of elements")),
+        })
     }
 
     fn call(&mut self, function: Function, arguments: &[Expression]) -> Expression {
-        let name = match (function, elementary_function(function)) {
-            (_, Some(elementary)) => {
+        let name = match law(function) {
+            Law::Elementary(elementary) => {
                 self.needed.elementary.insert(elementary);
                 elementary.name()
             }
-            (Function::Deadzone, None) => {
+            Law::Deadzone => {
                 self.needed.deadzone = true;
                 "deadzone"
             }
-            (_, None) => {
+            Law::Contact => {
                 self.needed.contact = true;
                 "contact"
             }
@@ -424,7 +426,7 @@ impl<'a> Body<'a> {
                 let place = program.variable_place(variable);
                 Expression::atom(format!("{}[{place}]", argument_name(argument)))
             }
-            _ => Expression::number(f64::NAN),
+            _ => return Err(EmitError::misplaced(id, "is nothing that is given")),
         })
     }
 

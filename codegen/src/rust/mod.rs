@@ -23,6 +23,7 @@ mod slopes;
 mod stages;
 mod types;
 
+use crate::program::ValueId;
 pub use file::{ITEMS_MODULE, Packaging, emit};
 
 /// Why a program could not be emitted.
@@ -32,6 +33,13 @@ pub enum EmitError {
     Name(String),
     /// A value does not stand where a stage needs it: a defect of the generator.
     Value(String),
+}
+
+impl EmitError {
+    /// A value that stands where a value of its kind has no source.
+    fn misplaced(id: ValueId, kind: &str) -> Self {
+        Self::Value(format!("value {} {kind} where it stands", id.index()))
+    }
 }
 
 impl std::fmt::Display for EmitError {

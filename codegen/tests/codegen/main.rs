@@ -6,6 +6,7 @@ mod emission;
 mod expressions;
 mod gradients;
 mod guards;
+mod misplaced;
 mod modes;
 mod names;
 mod operations;

@@ -1,0 +1,33 @@
+//! A program that makes no sense has no machine code, instead of code that gives NaN.
+#![cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+
+use std::path::Path;
+
+use codegen::program::{Extent, Op};
+use codegen::variant::Variant;
+
+#[test]
+fn a_leaf_that_is_asked_for_by_elements_is_refused() {
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../model-spec/models");
+    let checked = model_spec::load(&models.join("hub_beam_tip_mass.toml"));
+    let model = checked
+        .unwrap_or_else(|e| panic!("{}", e.render(false)))
+        .model;
+    let variant = Variant::derive(&model, &[2]);
+    let mut program = variant
+        .unwrap_or_else(|e| panic!("{}", e.render(false)))
+        .program;
+    assert!(jit::compile(&program).is_ok());
+    let vector = program.ids().find(|id| {
+        let value = program.value(*id);
+        let is_vector = matches!(value.extent, Extent::Vector(_));
+        is_vector && !value.prepared && matches!(value.op, Op::Multiply(..) | Op::Subtract(..))
+    });
+    let vector = vector.expect("a vector that is computed per call");
+    program.values[vector.index()].op = Op::Coordinate(0);
+    let refused = jit::compile(&program)
+        .map(|_| ())
+        .expect_err("a misplaced leaf");
+    let message = refused.to_string();
+    assert!(message.contains("Coordinate(0)"), "{message}");
+}

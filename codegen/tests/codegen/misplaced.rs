@@ -1,0 +1,50 @@
+//! Programs that make no sense are refused, not emitted as NaN or as a matrix of zeros.
+
+use codegen::program::{Extent, Op, Program, ValueId};
+use codegen::rust::{EmitError, Packaging, emit};
+
+use crate::support::{program, shipped};
+
+/// The beam's program with the operation of one value per call replaced: the first that is
+/// `wanted`.
+fn with(wanted: impl Fn(&Op, Extent) -> bool, op: impl Fn(ValueId) -> Op) -> Program {
+    let mut program = program(&shipped("hub_beam_tip_mass"), 2);
+    let found = program.ids().find(|id| {
+        let value = program.value(*id);
+        wanted(&value.op, value.extent)
+    });
+    let id = found.expect("a value of this kind");
+    let operand = program.value(id).op.operands()[0];
+    program.values[id.index()].op = op(operand);
+    program
+}
+
+fn refused(program: &Program) -> String {
+    match emit(program, Packaging::Crate) {
+        Err(EmitError::Value(message)) => message,
+        Err(other) => panic!("{other}"),
+        Ok(_) => panic!("emitted"),
+    }
+}
+
+#[test]
+fn a_matrix_operation_in_the_place_of_a_number_is_refused() {
+    let number = |op: &Op, extent| matches!(op, Op::Multiply(..)) && extent == Extent::Scalar;
+    let message = refused(&with(number, Op::Cholesky));
+    assert!(message.contains("no operation of elements"), "{message}");
+}
+
+#[test]
+fn a_factor_in_the_place_of_a_vector_is_refused() {
+    let vector =
+        |op: &Op, extent| matches!(op, Op::Multiply(..)) && matches!(extent, Extent::Vector(_));
+    let message = refused(&with(vector, Op::Cholesky));
+    assert!(message.contains("no sum of products"), "{message}");
+}
+
+#[test]
+fn an_operation_of_elements_in_the_place_of_a_matrix_is_refused() {
+    let block = |op: &Op, _| matches!(op, Op::Assemble { .. });
+    let message = refused(&with(block, Op::Negate));
+    assert!(message.contains("no block of a matrix"), "{message}");
+}
