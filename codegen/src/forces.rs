@@ -46,8 +46,8 @@ pub(crate) fn applied_forces(
     Ok(layout.combine(&mut translator.graph, &rows))
 }
 
-/// d(T + V)/dt for the forces and explicit times: Q q' + dV/dt, and, if T is not a
-/// quadratic form of the rates alone, d(2 T - p q')/dt - dT/dt on top.
+/// d(T + V)/dt for the forces and explicit times: Q q' + dV/dt - dT/dt (partial derivatives by
+/// the time), and, if T is no quadratic form of the rates, d(2 T - p q')/dt on top.
 pub(crate) fn power(
     graph: &mut Graph,
     layout: &Layout,
@@ -61,8 +61,8 @@ pub(crate) fn power(
     let work = layout.dot_rates(graph, applied);
     let potential_rate = by_scalar(graph, potential, time);
     let mut terms = vec![(1.0, work), (1.0, potential_rate)];
+    let kinetic_rate = by_scalar(graph, kinetic, time);
     if !crate::degree::is_quadratic_in_rates(graph, kinetic) {
-        let kinetic_rate = by_scalar(graph, kinetic, time);
         let twice = layout.dot_rates(graph, momenta);
         let rest = graph.combine_flat(&[(2.0, kinetic), (-1.0, twice)]);
         let tangent = |graph: &mut Graph, leaf: Id| match *graph.operation(leaf) {
@@ -71,8 +71,9 @@ pub(crate) fn power(
             _ => along_motion(graph, leaf),
         };
         let rest_rate = Direction::new(&tangent).derivative(graph, rest);
-        terms.extend([(1.0, rest_rate), (-1.0, kinetic_rate)]);
+        terms.push((1.0, rest_rate));
     }
+    terms.push((-1.0, kinetic_rate));
     graph.combine(&terms)
 }
 

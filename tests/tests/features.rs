@@ -73,6 +73,7 @@ features! {
     // differences of the energy.
     also_by_differences {
         rheonomic: [0, 1, 4];
+        mass_of_time: [0];
         nonquadratic_kinetic: [0];
         gyroscopic: [0];
     }
