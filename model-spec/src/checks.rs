@@ -101,6 +101,12 @@ fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
         let initial = coordinate.initial.iter();
         initial.chain(&coordinate.initial_rate).for_each(&mut *see);
     }
+    let coordinates = model.coordinates.iter().map(|c| &c.range);
+    let inputs = model.inputs.iter().map(|input| &input.range);
+    for range in coordinates.chain(inputs).flatten() {
+        see(&range.low);
+        see(&range.high);
+    }
     for field in &model.fields {
         see(&field.from);
         see(&field.to);

@@ -4,8 +4,8 @@
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::model::Basis;
 use crate::raw::{
-    RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawInput, RawParameter, RawSensor,
-    RawTerm,
+    RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawInput, RawParameter, RawRange,
+    RawSensor, RawTerm,
 };
 use crate::table::{Entry, Name, Quantity, Record, Written, unknown_key};
 
@@ -42,7 +42,7 @@ pub fn parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParame
 
 /// An entry of `[coordinates]`.
 pub fn coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoordinate> {
-    let known = ["unit", "doc", "initial", "initial_rate"];
+    let known = ["unit", "doc", "initial", "initial_rate", "range"];
     let record = entry.record(&known, COORDINATE_EXAMPLE, found)?;
     Some(RawCoordinate {
         name: entry.name.clone(),
@@ -50,7 +50,16 @@ pub fn coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoord
         doc: record.text("doc", found),
         initial: record.quantity("initial", found),
         initial_rate: record.quantity("initial_rate", found),
+        range: range(&record, found),
     })
+}
+
+/// The `range` of a coordinate or an input, if it has one.
+fn range(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawRange> {
+    let entry = record.get("range")?;
+    let [low, high] = found.keep(entry.pair())?;
+    let span = entry.span();
+    Some(RawRange { low, high, span })
 }
 
 fn required_unit(record: &Record<'_>, found: &mut Diagnostics) -> Option<Written> {
@@ -61,11 +70,13 @@ fn required_unit(record: &Record<'_>, found: &mut Diagnostics) -> Option<Written
 
 /// An entry of `[inputs]`.
 pub fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
-    let record = entry.record(&["unit", "doc"], "{ unit = \"N m\" }", found)?;
+    let known = ["unit", "doc", "range"];
+    let record = entry.record(&known, "{ unit = \"N m\" }", found)?;
     Some(RawInput {
         name: entry.name.clone(),
         unit: required_unit(&record, found),
         doc: record.text("doc", found),
+        range: range(&record, found),
     })
 }
 

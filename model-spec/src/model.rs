@@ -98,7 +98,20 @@ pub struct Coordinate {
     pub initial: Option<Expr>,
     /// Initial rate (parameters only), 0 if absent.
     pub initial_rate: Option<Expr>,
+    /// Where it lives, if the specification says so.
+    pub range: Option<Range>,
     /// Where its name stands.
+    pub span: Span,
+}
+
+/// Where a coordinate or an input lives: nothing is said of the model outside.
+#[derive(Clone, Debug)]
+pub struct Range {
+    /// The lower end (parameters only).
+    pub low: Expr,
+    /// The upper end (parameters only), above the lower one.
+    pub high: Expr,
+    /// Where both stand.
     pub span: Span,
 }
 
@@ -111,6 +124,8 @@ pub struct Input {
     pub unit: Unit,
     /// What it is.
     pub doc: String,
+    /// Where it lives, if the specification says so.
+    pub range: Option<Range>,
     /// Where its name stands.
     pub span: Span,
 }

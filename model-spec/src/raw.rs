@@ -71,6 +71,19 @@ pub struct RawCoordinate {
     pub initial: Option<Quantity>,
     /// `initial_rate`
     pub initial_rate: Option<Quantity>,
+    /// `range`
+    pub range: Option<RawRange>,
+}
+
+/// A `range`: where a coordinate or an input lives.
+#[derive(Debug)]
+pub struct RawRange {
+    /// The lower end.
+    pub low: Quantity,
+    /// The upper end.
+    pub high: Quantity,
+    /// Where both stand.
+    pub span: Span,
 }
 
 /// An entry of `[inputs]`.
@@ -82,6 +95,8 @@ pub struct RawInput {
     pub unit: Option<Written>,
     /// `doc`
     pub doc: String,
+    /// `range`
+    pub range: Option<RawRange>,
 }
 
 /// A `[fields.NAME]`.

@@ -169,17 +169,10 @@ impl<'d> Entry<'d> {
     /// # Errors
     /// If it is no string.
     pub fn written(&self) -> Result<Written, Diagnostic> {
-        match self.item.as_value() {
-            Some(Value::String(string)) => {
-                let span = self.span();
-                Ok(Written {
-                    text: string.value().clone(),
-                    span,
-                    first: first_character(self.text, span, string.value()),
-                })
-            }
-            _ => Err(self.mismatch("a string", "\"...\"")),
-        }
+        let value = self.item.as_value();
+        value
+            .and_then(|value| self.written_in(value))
+            .ok_or_else(|| self.mismatch("a string", "\"...\""))
     }
 
     /// The finite number that is this entry's value.
@@ -187,20 +180,10 @@ impl<'d> Entry<'d> {
     /// # Errors
     /// If it is no number, or not finite.
     pub fn number(&self) -> Result<Number, Diagnostic> {
-        let span = self.span();
-        let value = match self.item.as_value() {
-            Some(Value::Integer(integer)) => *integer.value() as f64,
-            Some(Value::Float(float)) => *float.value(),
-            _ => return Err(self.mismatch("a number", "0.5")),
-        };
-        if value.is_finite() {
-            return Ok(Number { value, span });
-        }
-        let shown = self.text.get(span.start..span.end).unwrap_or("this");
-        Err(
-            Diagnostic::error(format!("{} is not a finite number", quoted(shown)))
-                .at(span, "expected a finite number"),
-        )
+        let value = self.item.as_value();
+        value
+            .and_then(|value| self.number_in(value))
+            .unwrap_or_else(|| Err(self.mismatch("a number", "0.5")))
     }
 
     /// The number or expression that is this entry's value.
@@ -208,10 +191,84 @@ impl<'d> Entry<'d> {
     /// # Errors
     /// If it is neither.
     pub fn quantity(&self) -> Result<Quantity, Diagnostic> {
-        match self.item.as_value() {
-            Some(Value::String(_)) => self.written().map(Quantity::Expression),
-            Some(Value::Integer(_) | Value::Float(_)) => self.number().map(Quantity::Number),
-            _ => Err(self.mismatch("a number or an expression in quotes", "\"m*g*a\"")),
+        let value = self.item.as_value();
+        value
+            .and_then(|value| self.quantity_in(value))
+            .unwrap_or_else(|| {
+                Err(self.mismatch("a number or an expression in quotes", "\"m*g*a\""))
+            })
+    }
+
+    /// The two numbers or expressions of the array that is this entry's value.
+    ///
+    /// # Errors
+    /// If it is no array of two numbers or expressions.
+    pub fn pair(&self) -> Result<[Quantity; 2], Diagnostic> {
+        let example = "[-0.1, 0.1]";
+        let Some(array) = self.item.as_array() else {
+            return Err(self.mismatch("a pair of ends", example));
+        };
+        let elements: Vec<&Value> = array.iter().collect();
+        let [low, high] = elements[..] else {
+            let name = &self.name.text;
+            let message = format!("{} has two ends, not {}", quoted(name), array.len());
+            return Err(Diagnostic::error(message)
+                .at(self.span(), "give the lower and the upper end")
+                .help(format!("write {name} = {example}")));
+        };
+        let end = |value: &Value| {
+            self.quantity_in(value).unwrap_or_else(|| {
+                let message = "an end is a number or an expression in quotes";
+                Err(Diagnostic::error(message)
+                    .at(self.place(value), "this is neither")
+                    .help(format!("write {} = {example}", self.name.text)))
+            })
+        };
+        Ok([end(low)?, end(high)?])
+    }
+
+    /// The place of a value of this entry; the entry's own where the value has none.
+    fn place(&self, value: &Value) -> Span {
+        let range = value.span();
+        range.map_or_else(|| self.span(), |range| Span::new(range.start, range.end))
+    }
+
+    /// A string; none if it is none.
+    fn written_in(&self, value: &Value) -> Option<Written> {
+        let Value::String(string) = value else {
+            return None;
+        };
+        let span = self.place(value);
+        Some(Written {
+            text: string.value().clone(),
+            span,
+            first: first_character(self.text, span, string.value()),
+        })
+    }
+
+    /// A finite number; none if it is no number.
+    fn number_in(&self, value: &Value) -> Option<Result<Number, Diagnostic>> {
+        let span = self.place(value);
+        let value = match value {
+            Value::Integer(integer) => *integer.value() as f64,
+            Value::Float(float) => *float.value(),
+            _ => return None,
+        };
+        if value.is_finite() {
+            return Some(Ok(Number { value, span }));
+        }
+        let shown = self.text.get(span.start..span.end).unwrap_or("this");
+        let message = format!("{} is not a finite number", quoted(shown));
+        Some(Err(
+            Diagnostic::error(message).at(span, "expected a finite number")
+        ))
+    }
+
+    /// A number or an expression; none if it is neither.
+    fn quantity_in(&self, value: &Value) -> Option<Result<Quantity, Diagnostic>> {
+        match self.written_in(value) {
+            Some(written) => Some(Ok(Quantity::Expression(written))),
+            None => Some(self.number_in(value)?.map(Quantity::Number)),
         }
     }
 

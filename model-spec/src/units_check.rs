@@ -5,7 +5,7 @@
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
 use crate::infer::{Inference, Words, difference};
-use crate::model::{CoefficientKind, Expr, ExprKind, Model, ParameterValue, Term};
+use crate::model::{CoefficientKind, Expr, ExprKind, Model, ParameterValue, Range, Term};
 use crate::resolve::Resolved;
 use crate::unit::Unit;
 
@@ -22,6 +22,7 @@ pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
     };
     units.parameters();
     units.coordinates();
+    units.inputs();
     units.fields();
     if units.definitions() {
         units.energies();
@@ -67,6 +68,20 @@ impl Units<'_, '_> {
                 let subject = format!("the initial rate of `{}`", coordinate.name);
                 self.expect_quantity(expr, rate, &subject);
             }
+            self.range(coordinate.range.as_ref(), own, &coordinate.name);
+        }
+    }
+
+    fn inputs(&mut self) {
+        for input in &self.model.inputs {
+            self.range(input.range.as_ref(), input.unit.dimension, &input.name);
+        }
+    }
+
+    fn range(&mut self, range: Option<&Range>, expected: Dimension, name: &str) {
+        let ends = range.map(|range| [("lower", &range.low), ("upper", &range.high)]);
+        for (end, expr) in ends.into_iter().flatten() {
+            self.expect_quantity(expr, expected, &format!("the {end} end of `{name}`"));
         }
     }
 

@@ -3,7 +3,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::evaluate::evaluate;
-use crate::model::{MAX_ORDER, Model, Parameter, ParameterValue};
+use crate::model::{MAX_ORDER, Model, Parameter, ParameterValue, Range};
 use crate::span::Span;
 use crate::suggest::did_you_mean;
 
@@ -104,6 +104,30 @@ impl Model {
         Ok(state)
     }
 
+    /// Where each coordinate lives, in SI; none for one that may be anywhere.
+    ///
+    /// # Errors
+    /// As [`Model::parameter_values`].
+    pub fn coordinate_ranges(&self) -> Result<Vec<Option<(f64, f64)>>, ModelError> {
+        let values = self.parameter_values()?;
+        let ranges = self.coordinates.iter().map(|c| c.range.as_ref());
+        Ok(ranges
+            .map(|range| range.map(|range| range.ends(&values)))
+            .collect())
+    }
+
+    /// Where each input lives, in SI; none for one that may be anything.
+    ///
+    /// # Errors
+    /// As [`Model::parameter_values`].
+    pub fn input_ranges(&self) -> Result<Vec<Option<(f64, f64)>>, ModelError> {
+        let values = self.parameter_values()?;
+        let ranges = self.inputs.iter().map(|input| input.range.as_ref());
+        Ok(ranges
+            .map(|range| range.map(|range| range.ends(&values)))
+            .collect())
+    }
+
     /// The same model with one parameter set to a number in its declared unit; what is
     /// computed from it follows.
     ///
@@ -187,7 +211,19 @@ impl Model {
     /// Whether all numbers of the model have finite, admissible values.
     pub(crate) fn check_numbers(&self) -> Result<(), ModelError> {
         let values = self.parameter_values()?;
-        self.initial_state(&vec![0; self.fields.len()])?;
+        let state = self.initial_state(&vec![0; self.fields.len()])?;
+        for (coordinate, initial) in self.coordinates.iter().zip(&state) {
+            let name = &coordinate.name;
+            if let Some(range) = &coordinate.range {
+                check_range(name, range, &values)?;
+                check_inside(name, range, &values, *initial)?;
+            }
+        }
+        for input in &self.inputs {
+            if let Some(range) = &input.range {
+                check_range(&input.name, range, &values)?;
+            }
+        }
         for field in &self.fields {
             let (from, to) = (evaluate(&field.from, &values), evaluate(&field.to, &values));
             let length = to - from;
@@ -200,6 +236,38 @@ impl Model {
         }
         Ok(())
     }
+}
+
+impl Range {
+    /// Both ends in SI, with the values of all parameters in SI, in the order of the model.
+    pub fn ends(&self, parameters: &[f64]) -> (f64, f64) {
+        let end = |expr| evaluate(expr, parameters);
+        (end(&self.low), end(&self.high))
+    }
+}
+
+/// Whether a range is one: finite, the lower end below the upper one.
+fn check_range(name: &str, range: &Range, values: &[f64]) -> Result<(), ModelError> {
+    let (low, high) = range.ends(values);
+    if low.is_finite() && high.is_finite() && low < high {
+        return Ok(());
+    }
+    let message = format!("the range of `{name}` comes out as {low} to {high}");
+    Err(ModelError::new(message)
+        .at(range.span)
+        .help("give two finite ends, the lower one first"))
+}
+
+/// Whether a coordinate begins where it lives.
+fn check_inside(name: &str, range: &Range, values: &[f64], initial: f64) -> Result<(), ModelError> {
+    let (low, high) = range.ends(values);
+    if (low..=high).contains(&initial) {
+        return Ok(());
+    }
+    let message = format!("`{name}` begins at {initial}, outside its range {low} to {high}");
+    Err(ModelError::new(message)
+        .at(range.span)
+        .help("give an initial value inside, or a wider range"))
 }
 
 fn check_value(parameter: &Parameter, value: f64) -> Result<(), ModelError> {

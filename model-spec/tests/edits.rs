@@ -212,3 +212,14 @@ fn carriage_returns_and_byte_order_marks_survive() {
     let plain = edited.replace('\r', "");
     assert_eq!(added_lines(plain.trim_start_matches('\u{feff}')).len(), 4);
 }
+
+#[test]
+fn a_range_stays_as_it_is_written() {
+    let text = SPRING.replace(
+        "y = { unit = \"m\" }",
+        "y = { unit = \"m\", range = [ \"-2*b\", 0.02 ] }   # the stops",
+    );
+    let source = Source::new("spring.toml", text.clone());
+    let edited = apply(&source, &[parameter(), force()]).expect("valid");
+    assert!(edited.contains("range = [ \"-2*b\", 0.02 ] }   # the stops"));
+}

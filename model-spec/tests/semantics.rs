@@ -274,3 +274,51 @@ fn places_hold_in_files_with_carriage_returns_and_byte_order_marks() {
         );
     }
 }
+
+const SPEAKER: &str = r#"[model]
+name = "speaker"
+
+[parameters]
+m = { value = 10, unit = "g" }
+b = { value = 5, unit = "mm" }
+F = { value = 8, unit = "N" }
+
+[coordinates]
+y = { unit = "m" }
+x = { unit = "m", initial = 0.001, range = ["-b", 0.004] }
+
+[inputs]
+u = { unit = "N", range = ["-2*F", "F*sqrt(2)"] }
+
+[kinetic]
+masses = "1/2*m*(dot(x)^2 + dot(y)^2)"
+
+[forces]
+coil = { on = "x", value = "u" }
+"#;
+
+#[test]
+fn coordinates_and_inputs_say_where_they_live() {
+    let model = checked(SPEAKER).model;
+    let ranges = model.coordinate_ranges().expect("values");
+    assert_eq!(ranges, [None, Some((-0.005, 0.004))]);
+    let ranges = model.input_ranges().expect("values");
+    assert_eq!(ranges, [Some((-16.0, 8.0 * 2.0_f64.sqrt()))]);
+}
+
+#[test]
+fn a_parameter_that_moves_a_range_off_the_beginning_is_refused() {
+    let text = SPEAKER.replace("[\"-b\", 0.004]", "[0, \"b\"]");
+    let model = checked(&text).model;
+    let error = model.with_parameter("b", 0.5).expect_err("0.5 mm");
+    assert_eq!(
+        error.message,
+        "`x` begins at 0.001, outside its range 0 to 0.0005"
+    );
+    assert!(error.span.is_some());
+    let error = model.with_parameter("b", -5.0).expect_err("upside down");
+    assert!(
+        error.message.contains("comes out as 0 to -0.005"),
+        "{error}"
+    );
+}

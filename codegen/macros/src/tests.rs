@@ -54,6 +54,14 @@ fn the_text_is_a_specification_whatever_the_spacing() {
     assert_eq!(placed(text).expect("sections").text, expected);
 }
 
+#[test]
+fn a_range_is_written_with_its_two_ends() {
+    let text = "coordinates { x: { unit: m, range: [ -0.005, 2*b ] } } inputs { u: { range: [min(a, b),3,] } }";
+    let expected = "[coordinates]\nx = { unit = \"m\", range = [-0.005, \"2*b\"] }\n\
+        \n[inputs]\nu = { range = [\"min(a, b)\", 3] }\n";
+    assert_eq!(placed(text).expect("sections").text, expected);
+}
+
 /// A specification of a file as one writes it in place: prose in quotes, and the text `1`,
 /// which would be a number; nothing else.
 fn in_place(table: &dyn TableLike) -> String {

@@ -1,7 +1,7 @@
 //! From the tables of a macro to the text of a specification. The text is the same however
 //! the tokens were spaced, and so is its hash.
 
-use proc_macro2::{Delimiter, Ident, Span, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenTree};
 use syn::Error;
 
 use crate::places::Placed;
@@ -37,8 +37,39 @@ fn entry(placed: &mut Placed, entry: &Entry) -> syn::Result<()> {
             placed.mark(&format!("\"{}\"", escaped(&text.value())), text.span());
             Ok(())
         }
-        Value::Tokens(tokens) => expression(placed, tokens),
+        Value::Tokens(tokens) => match tokens.as_slice() {
+            [TokenTree::Group(group)] if is_array(group) => array(placed, group),
+            tokens => expression(placed, tokens),
+        },
     }
+}
+
+fn is_comma(token: &TokenTree) -> bool {
+    matches!(token, TokenTree::Punct(mark) if mark.as_char() == ',')
+}
+
+/// Whether brackets hold several values. With one alone they are part of an expression,
+/// which says what is wrong with them.
+fn is_array(group: &Group) -> bool {
+    let several = || group.stream().into_iter().any(|token| is_comma(&token));
+    group.delimiter() == Delimiter::Bracket && several()
+}
+
+/// Values between brackets, such as the ends of a range.
+fn array(placed: &mut Placed, group: &Group) -> syn::Result<()> {
+    placed.mark("[", group.span_open());
+    let tokens: Vec<TokenTree> = group.stream().into_iter().collect();
+    let mut elements: Vec<&[TokenTree]> = tokens.split(is_comma).collect();
+    // The last comma may have nothing behind it.
+    if elements.last().is_some_and(|element| element.is_empty()) {
+        elements.pop();
+    }
+    for (index, element) in elements.into_iter().enumerate() {
+        placed.add(if index == 0 { "" } else { ", " });
+        expression(placed, element)?;
+    }
+    placed.mark("]", group.span_close());
+    Ok(())
 }
 
 fn table(placed: &mut Placed, table: &Table) -> syn::Result<()> {

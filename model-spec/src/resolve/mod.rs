@@ -9,11 +9,13 @@ use crate::dimension::Dimension;
 use crate::expression::{Resolver, Scope};
 use crate::model::{
     Coordinate, Definition, Expr, ExprKind, Field, Force, Input, MAX_ORDER, Model, Observable,
-    Parameter, ParameterValue, Sensor, Term,
+    Parameter, ParameterValue, Range, Sensor, Term,
 };
 use crate::names::Names;
 use crate::order::{Reference, order};
-use crate::raw::{Document, RawCoordinate, RawField, RawInput, RawParameter, RawSensor, RawTerm};
+use crate::raw::{
+    Document, RawCoordinate, RawField, RawInput, RawParameter, RawRange, RawSensor, RawTerm,
+};
 use crate::source::Source;
 use crate::span::Span;
 use crate::table::{Number, Quantity, Written};
@@ -207,19 +209,36 @@ impl Builder {
             None => Some(None),
         };
         let (value, rate) = (initial(raw.initial), initial(raw.initial_rate));
+        let range = self.range(raw.range);
         Some(Coordinate {
             name: raw.name.text,
             unit: unit?,
             doc: raw.doc,
             initial: value?,
             initial_rate: rate?,
+            range: range?,
             span: raw.name.span,
         })
+    }
+
+    /// A range where there is one; none if it cannot be read.
+    fn range(&mut self, raw: Option<RawRange>) -> Option<Option<Range>> {
+        let Some(raw) = raw else {
+            return Some(None);
+        };
+        let low = self.expression(&raw.low, Scope::Parameters);
+        let high = self.expression(&raw.high, Scope::Parameters);
+        Some(Some(Range {
+            low: low?,
+            high: high?,
+            span: raw.span,
+        }))
     }
 
     fn input(&mut self, raw: RawInput) -> Option<Input> {
         Some(Input {
             unit: self.coherent_unit(raw.unit)?,
+            range: self.range(raw.range)?,
             name: raw.name.text,
             doc: raw.doc,
             span: raw.name.span,
