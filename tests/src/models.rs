@@ -79,7 +79,7 @@ pub fn samples(model: &Model, order: usize, seed: u64, count: usize) -> Vec<Samp
             let drawn = sampler
                 .draw_in(&regime)
                 .expect("the oracle knows the model");
-            samples.push(drawn.expect("every regime can be reached"));
+            samples.push(drawn.expect("every regime can be reached").sample);
         }
     }
     samples

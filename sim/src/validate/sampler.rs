@@ -1,10 +1,13 @@
-//! Random states in every regime of a model, as large as `sizes` says. Nothing here knows
-//! the equations under test.
+//! Random states in every regime of a model, as large as `sizes` says, within the ranges it
+//! states. Nothing here knows the equations under test.
+//!
+//! States outside the model's domain (a root of something negative, an inductance below 0)
+//! are drawn again and counted; where most are, they are drawn nearer to the initial state.
 //!
 //! No entry is drawn smaller than a quarter of its size: a row all of whose terms happen
 //! to be small measures the rounding of the others.
 
-use super::oracle::{Oracle, OracleError, Side, SwitchValue};
+use super::oracle::{Equations, Oracle, OracleError, Side, SwitchValue};
 use super::random::Random;
 use super::sizes;
 
@@ -14,6 +17,11 @@ const MAX_REGIMES: usize = 81;
 const ATTEMPTS: usize = 60;
 /// Corrections of one drawn state.
 const SWEEPS: usize = 6;
+/// States outside the domain, one after another, after which they are drawn nearer to the
+/// initial state.
+const MISSES: usize = 8;
+/// How much larger than its size an entry may become when it is moved into a regime.
+const LARGEST: f64 = 1e6;
 
 /// A state with its time and inputs.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +32,15 @@ pub struct Sample {
     pub state: Vec<f64>,
     /// Inputs in the order of the model.
     pub inputs: Vec<f64>,
+}
+
+/// A state of the model's domain with the equations of motion there.
+#[derive(Clone, Debug)]
+pub struct Drawn {
+    /// The state.
+    pub sample: Sample,
+    /// The oracle's equations.
+    pub equations: Equations,
 }
 
 /// One side for every switch of the model.
@@ -53,6 +70,12 @@ pub struct Sampler<'o> {
     random: Random,
     /// Size of every entry of the state.
     sizes: Vec<f64>,
+    /// How much of the way from the initial state to a drawn one is gone, 1 at first.
+    reach: f64,
+    /// States outside the domain, one after another.
+    missed: usize,
+    /// States outside the domain in all.
+    redrawn: usize,
 }
 
 impl<'o> Sampler<'o> {
@@ -65,7 +88,20 @@ impl<'o> Sampler<'o> {
             oracle,
             random: Random::new(seed),
             sizes: sizes::of_state(oracle)?,
+            reach: 1.0,
+            missed: 0,
+            redrawn: 0,
         })
+    }
+
+    /// How many states were drawn again because they lie outside the model's domain.
+    pub fn redrawn(&self) -> usize {
+        self.redrawn
+    }
+
+    /// How large the entries of a state are.
+    pub fn sizes(&self) -> &[f64] {
+        &self.sizes
     }
 
     /// The highest frequency of a coordinate by itself with every dead zone closed, in
@@ -115,20 +151,45 @@ impl<'o> Sampler<'o> {
         regimes
     }
 
-    /// A random state, whatever its regime.
+    /// A random state, whatever its regime, in the model's domain or not.
     pub fn draw(&mut self) -> Sample {
-        let random = &mut self.random;
+        let (random, reach, ranges) = (&mut self.random, self.reach, self.oracle.ranges());
+        let time = random.unit();
+        let entries = self.sizes.iter().zip(self.oracle.initial()).enumerate();
+        let state = entries.map(|(row, (size, initial))| {
+            let range = ranges.coordinates.get(row).copied().flatten();
+            let middle = range.map_or(0.0, |(low, high)| 0.5 * (low + high));
+            let drawn = middle + size * random.away_from_zero();
+            if reach < 1.0 {
+                initial + reach * (drawn - initial)
+            } else {
+                drawn
+            }
+        });
+        let state = state.collect();
+        let inputs = ranges.inputs.iter().map(|range| {
+            let (low, high) = range.unwrap_or((-1.0, 1.0));
+            0.5 * (low + high) + 0.5 * (high - low) * random.symmetric()
+        });
         Sample {
-            time: random.unit(),
-            state: self
-                .sizes
-                .iter()
-                .map(|size| size * random.away_from_zero())
-                .collect(),
-            inputs: (0..self.oracle.input_count())
-                .map(|_| random.symmetric())
-                .collect(),
+            time,
+            state,
+            inputs: inputs.collect(),
         }
+    }
+
+    /// A random state of the model's domain, whatever its regime; none if none was found.
+    ///
+    /// # Errors
+    /// [`OracleError`] as from [`Oracle::equations`].
+    pub fn draw_inside(&mut self) -> Result<Option<Drawn>, OracleError> {
+        for _ in 0..ATTEMPTS * MISSES {
+            let sample = self.draw();
+            if let Some(drawn) = self.admit(sample)? {
+                return Ok(Some(drawn));
+            }
+        }
+        Ok(None)
     }
 
     /// A random state in `regime`; none if it was not reached, which for combinations
@@ -136,16 +197,54 @@ impl<'o> Sampler<'o> {
     ///
     /// # Errors
     /// [`OracleError`] as from [`Oracle::equations`].
-    pub fn draw_in(&mut self, regime: &Regime) -> Result<Option<Sample>, OracleError> {
+    pub fn draw_in(&mut self, regime: &Regime) -> Result<Option<Drawn>, OracleError> {
+        let reach = self.reach;
         for _ in 0..ATTEMPTS {
             let mut sample = self.draw();
             for _ in 0..SWEEPS {
                 if self.correct(&mut sample, regime)? {
-                    return Ok(Some(sample));
+                    match self.admit(sample)? {
+                        Some(drawn) => return Ok(Some(drawn)),
+                        None => break,
+                    }
                 }
             }
         }
+        // A regime outside the domain says nothing of the others.
+        self.reach = reach;
         Ok(None)
+    }
+
+    /// The state with its equations if it lies in the model's domain; counts it if not.
+    fn admit(&mut self, sample: Sample) -> Result<Option<Drawn>, OracleError> {
+        if !self.is_within(&sample) {
+            return Ok(None);
+        }
+        let (state, inputs) = (&sample.state, &sample.inputs);
+        let equations = self.oracle.equations_inside(sample.time, state, inputs)?;
+        if let Some(equations) = equations {
+            self.missed = 0;
+            return Ok(Some(Drawn { sample, equations }));
+        }
+        self.redrawn += 1;
+        self.missed += 1;
+        if self.missed == MISSES {
+            self.missed = 0;
+            self.reach *= 0.5;
+        }
+        Ok(None)
+    }
+
+    /// Whether every coordinate is where it lives, and no entry is out of all proportion:
+    /// moved into its regime, it may be anywhere.
+    fn is_within(&self, sample: &Sample) -> bool {
+        let ranges = self.oracle.ranges().coordinates.iter();
+        let ranged = ranges
+            .zip(&sample.state)
+            .all(|(range, entry)| range.is_none_or(|(low, high)| (low..=high).contains(entry)));
+        let entries = sample.state.iter().zip(&self.sizes);
+        let mut sized = entries.map(|(entry, size)| entry.abs() <= LARGEST * size);
+        ranged && sized.all(|sized| sized)
     }
 
     /// Moves one entry of the state for every switch on the wrong side, by the linear

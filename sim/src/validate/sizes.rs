@@ -1,5 +1,5 @@
-//! How large the entries of a random state are, taken from the model: a coordinate in a
-//! dead zone twice the dead zone, other coordinates 1 in SI, the first mode of a field a
+//! How large the entries of a random state are, taken from the model: a coordinate with a
+//! range half of that, one in a dead zone twice the dead zone, others 1 in SI, the first mode of a field a
 //! twentieth of its length, rates by the stiffness and the inertia of each coordinate.
 //!
 //! Amplitudes of modes fall like 1/beta^3, between equal elastic energies (1/beta^2) and
@@ -16,6 +16,10 @@ pub(super) fn of_state(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
     let mut sizes = of_coordinates(oracle, &inputs)?;
     let mut state = sizes.clone();
     state.resize(2 * size, 0.0);
+    // Where the sizes are no state of the model's domain, the initial state is one.
+    if oracle.equations_inside(0.0, &state, &inputs)?.is_none() {
+        state = oracle.initial().to_vec();
+    }
     let stiffness = oracle.stiffness_diagonal(0.0, &state, &inputs)?;
     let mass = oracle.equations(0.0, &state, &inputs)?.mass;
     for (modes, length) in oracle.modes().zip(oracle.lengths()) {
@@ -55,6 +59,11 @@ fn of_coordinates(oracle: &Oracle, inputs: &[f64]) -> Result<Vec<f64>, OracleErr
             && let Some(entry) = sizes.get_mut(row)
         {
             *entry = 2.0 * value.half_width;
+        }
+    }
+    for (entry, range) in sizes.iter_mut().zip(&oracle.ranges().coordinates) {
+        if let Some((low, high)) = range {
+            *entry = 0.5 * (high - low);
         }
     }
     Ok(sizes)

@@ -121,3 +121,63 @@ bending = "1/2*integral(E*I*diff(w, x, 2)^2, w)"
 bearing = { on = "theta", value = "-d*dot(theta)" }
 torque = { on = "theta", value = "u" }
 "#;
+
+/// A free rotor written by its point: everything cancels in its only row.
+pub(super) const ROTOR: &str = r#"
+[model]
+name = "rotor"
+
+[parameters]
+m = { value = 2.0, unit = "kg" }
+l = { value = 0.5, unit = "m" }
+
+[coordinates]
+theta = { unit = "rad", initial_rate = 1 }
+
+[definitions]
+x = "l*sin(theta)"
+y = "-l*cos(theta)"
+
+[kinetic]
+point = "1/2*m*(dot(x)^2 + dot(y)^2)"
+"#;
+
+/// A mass on a spring whose mass changes with time.
+pub(super) const TANK: &str = r#"
+[model]
+name = "tank"
+
+[parameters]
+m = { value = 2.0, unit = "kg" }
+k = { value = 30, unit = "N/m" }
+tau = { value = 1, unit = "s" }
+
+[coordinates]
+x = { unit = "m" }
+
+[kinetic]
+tank = "1/2*m*dot(x)^2*(2 + sin(t/tau))"
+
+[potential]
+spring = "1/2*k*x^2"
+"#;
+
+/// A mass in a logarithmic potential, which has a value on one side only.
+pub(super) const LOGARITHM: &str = r#"
+[model]
+name = "logarithm"
+
+[parameters]
+m = { value = 2.0, unit = "kg" }
+e = { value = 3, unit = "J" }
+L = { value = 1, unit = "m" }
+
+[coordinates]
+x = { unit = "m", initial = 0.5 }
+
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+
+[potential]
+well = "-e*ln(x/L) + e*x/L"
+"#;

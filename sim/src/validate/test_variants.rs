@@ -213,6 +213,92 @@ impl Variant for Spring {
     }
 }
 
+/// A model of one coordinate without inputs, by functions of time, coordinate and rate.
+pub(super) struct Single {
+    pub name: &'static str,
+    pub mass: fn(f64, f64, f64) -> f64,
+    pub acceleration: fn(f64, f64, f64) -> f64,
+    pub energy: fn(f64, f64, f64) -> f64,
+    pub power: fn(f64, f64, f64) -> f64,
+}
+
+/// The rotor of 2 kg at half a metre.
+pub(super) const FREE_ROTOR: Single = Single {
+    name: "theta",
+    mass: |_, _, _| 0.5,
+    acceleration: |_, _, _| 0.0,
+    energy: |_, _, rate| 0.25 * rate * rate,
+    power: |_, _, _| 0.0,
+};
+
+/// The tank of 2 kg and more on a spring of 30 N/m.
+pub(super) const TIMED_TANK: Single = Single {
+    name: "x",
+    mass: |t, _, _| 2.0 * (2.0 + t.sin()),
+    acceleration: |t, x, rate| -(30.0 * x + 2.0 * t.cos() * rate) / (2.0 * (2.0 + t.sin())),
+    energy: |t, x, rate| rate * rate * (2.0 + t.sin()) + 15.0 * x * x,
+    power: |t, _, rate| -rate * rate * t.cos(),
+};
+
+/// The mass of 2 kg in a logarithmic potential of 3 J.
+pub(super) const LOGARITHMIC: Single = Single {
+    name: "x",
+    mass: |_, _, _| 2.0,
+    acceleration: |_, x, _| (3.0 / x - 3.0) / 2.0,
+    energy: |_, x, rate| rate * rate - 3.0 * x.ln() + 3.0 * x,
+    power: |_, _, _| 0.0,
+};
+
+impl Variant for Single {
+    fn coordinate_names(&self) -> Vec<String> {
+        vec![self.name.into()]
+    }
+
+    fn rates(&mut self, t: f64, state: &[f64], _: &[f64], rates: &mut [f64]) -> Result<(), String> {
+        rates.copy_from_slice(&[state[1], (self.acceleration)(t, state[0], state[1])]);
+        Ok(())
+    }
+
+    fn mass_matrix(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        _: &[f64],
+        mass: &mut [f64],
+    ) -> Result<(), String> {
+        mass.copy_from_slice(&[(self.mass)(t, state[0], state[1])]);
+        Ok(())
+    }
+
+    /// No certificate of a model without a field asks.
+    fn bias_and_forces(
+        &mut self,
+        _: f64,
+        _: &[f64],
+        _: &[f64],
+        _: &mut [f64],
+        _: &mut [f64],
+    ) -> Result<(), String> {
+        Err("not asked for".into())
+    }
+
+    fn energy(&mut self, t: f64, state: &[f64], _: &[f64]) -> Result<f64, String> {
+        Ok((self.energy)(t, state[0], state[1]))
+    }
+
+    fn power(&mut self, t: f64, state: &[f64], _: &[f64]) -> Result<f64, String> {
+        Ok((self.power)(t, state[0], state[1]))
+    }
+
+    fn guards(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
+        Ok(Vec::new())
+    }
+
+    fn observables(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
+        Ok(Vec::new())
+    }
+}
+
 /// The beam by the oracle's own equations: no judge of the equations, but a subject for
 /// what compares two orders.
 pub(super) struct Beam {

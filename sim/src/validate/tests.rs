@@ -5,8 +5,10 @@ use super::certificate::{Certificate, Check};
 use super::certify::{Emitted, EmittedFunction, Reference, Subject, certify};
 use super::compiler::Compiler;
 use super::oracle::Oracle;
-use super::test_models::{BEAM, DOUBLE_PENDULUM, SPRING, model};
-use super::test_variants::{Beam, DoublePendulum, EMITTED, Fault, Spring};
+use super::test_models::{BEAM, DOUBLE_PENDULUM, LOGARITHM, ROTOR, SPRING, TANK, model};
+use super::test_variants::{
+    Beam, DoublePendulum, EMITTED, FREE_ROTOR, Fault, LOGARITHMIC, Single, Spring, TIMED_TANK,
+};
 use super::variant::Variant;
 
 /// The certificate of what `variants` makes of the model in `text`.
@@ -43,6 +45,12 @@ fn pendulum(fault: Fault) -> Certificate {
 fn spring(fault: Fault, emitted: Result<Emitted, String>) -> Certificate {
     let variants = move |_| Ok(Box::new(Spring(fault)) as Box<dyn Variant>);
     certificate(SPRING, 0, &variants, &[], emitted)
+}
+
+/// The certificate of a model of one coordinate; `make` makes the subject.
+fn single(text: &str, make: fn() -> Single) -> Certificate {
+    let variants = move |_| Ok(Box::new(make()) as Box<dyn Variant>);
+    certificate(text, 0, &variants, &[], Err("not emitted".into()))
 }
 
 fn beam(order: usize, coupled: bool) -> Certificate {
@@ -115,6 +123,95 @@ fn every_fault_fails_the_check_that_is_there_for_it() {
     );
     let spring = spring(Fault::Guard, Err("not emitted".into()));
     assert_eq!(failures(&spring), ["guards"]);
+}
+
+#[test]
+fn a_row_in_which_everything_cancels_still_judges() {
+    let good = single(ROTOR, || FREE_ROTOR);
+    assert!(good.passed, "{:?}", failures(&good));
+    let bad = single(ROTOR, || Single {
+        acceleration: |_, _, rate| 1e-10 * rate * rate,
+        ..FREE_ROTOR
+    });
+    assert_eq!(
+        failures(&bad),
+        ["accelerations", "dense_solve", "power_balance"]
+    );
+    let bad = single(ROTOR, || Single {
+        power: |_, _, rate| 1e-9 * rate * rate * rate,
+        ..FREE_ROTOR
+    });
+    assert_eq!(failures(&bad), ["power", "power_balance"]);
+}
+
+#[test]
+fn the_power_of_a_mass_that_changes_with_time_is_judged_twice() {
+    let good = single(TANK, || TIMED_TANK);
+    assert!(good.passed, "{:?}", failures(&good));
+    assert!(find(&good, "power_balance").passed);
+    for power in [(|_, _, _| 0.0) as fn(f64, f64, f64) -> f64, |t, _, rate| {
+        -rate * rate * t.cos() * (1.0 + 1e-9)
+    }] {
+        let variants = move |_| {
+            Ok(Box::new(Single {
+                power,
+                ..TIMED_TANK
+            }) as Box<dyn Variant>)
+        };
+        let bad = certificate(TANK, 0, &variants, &[], Err("not emitted".into()));
+        assert_eq!(failures(&bad), ["power", "power_balance"]);
+    }
+}
+
+#[test]
+fn states_outside_the_domain_are_drawn_again_and_counted() {
+    let good = single(LOGARITHM, || LOGARITHMIC);
+    assert!(good.passed, "{:?}", failures(&good));
+    let detail = &find(&good, "accelerations").detail;
+    assert!(
+        detail.contains("drawn again, outside the model's domain"),
+        "{detail}"
+    );
+    let bad = single(LOGARITHM, || Single {
+        acceleration: |_, x, _| (3.0 / x - 3.0 * (1.0 + 1e-10)) / 2.0,
+        ..LOGARITHMIC
+    });
+    assert!(failures(&bad).contains(&"accelerations"));
+    let bad = single(LOGARITHM, || Single {
+        acceleration: |_, x, _| if x < 0.1 { 0.0 } else { (3.0 / x - 3.0) / 2.0 },
+        energy: |_, x, rate| rate * rate - 3.0 * x.ln() + 3.0 * x * (1.0 + 1e-10),
+        ..LOGARITHMIC
+    });
+    assert!(failures(&bad).contains(&"energy"));
+}
+
+#[test]
+fn where_no_state_is_in_the_domain_the_certificate_fails_and_says_so() {
+    let text = LOGARITHM.replace("ln(x/L)", "ln(-1 - (x/L)^2)");
+    let nowhere = single(&text, || LOGARITHMIC);
+    assert!(!nowhere.passed);
+    assert!(!find(&nowhere, "domain").passed);
+    assert!(find(&nowhere, "accelerations").skipped);
+}
+
+#[test]
+fn a_range_keeps_the_states_where_the_model_lives() {
+    let text = LOGARITHM.replace("initial = 0.5", "initial = 0.5, range = [0.2, \"2*L\"]");
+    let good = single(&text, || LOGARITHMIC);
+    assert!(good.passed, "{:?}", failures(&good));
+    let detail = &find(&good, "accelerations").detail;
+    assert!(detail.starts_with("200 states, "), "{detail}");
+    // What is wrong outside only is not the model's.
+    let outside = single(&text, || Single {
+        acceleration: |_, x, _| if x < 0.2 { 9.0 } else { (3.0 / x - 3.0) / 2.0 },
+        ..LOGARITHMIC
+    });
+    assert!(find(&outside, "accelerations").passed);
+    let inside = single(&text, || Single {
+        acceleration: |_, x, _| if x > 1.5 { 9.0 } else { (3.0 / x - 3.0) / 2.0 },
+        ..LOGARITHMIC
+    });
+    assert!(!find(&inside, "accelerations").passed);
 }
 
 #[test]

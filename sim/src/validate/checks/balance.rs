@@ -1,90 +1,147 @@
-//! The power balance d(T + V)/dt = power along a trajectory of the subject. At every
-//! step the change of the energies along the subject's own motion is formed by automatic
-//! differentiation, so the balance holds to rounding and does not depend on how well the
-//! trajectory was integrated.
+//! The power balance d(T + V)/dt = power along trajectories of the subject. At every step
+//! the change of the energies along the subject's own motion is formed by automatic
+//! differentiation, explicit time included, so the balance holds to rounding and does not
+//! depend on how well the trajectory was integrated.
 
 use super::super::certificate::{Check, Worst};
-use super::super::oracle::{Oracle, OracleError};
+use super::super::oracle::{Conditioned, Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
 use super::{ROW_TOLERANCE, accelerations};
 
 /// Name of the check.
 const NAME: &str = "power_balance";
-/// Steps of the trajectory.
+/// Steps looked at, along as many trajectories as they take.
 const STEPS: usize = 200;
-/// How often the step is divided by four.
-const REFINEMENTS: usize = 8;
-/// The growth of the energy that no trajectory this short has by itself.
-const RUNAWAY: f64 = 1e3;
-/// The seed of the initial state.
+/// The most trajectories. One ends where the motion leaves the model's domain or has come
+/// to rest.
+const TRAJECTORIES: usize = 20;
+/// How often a step is halved until it is accepted; a jump of the rates never is otherwise.
+const HALVINGS: usize = 10;
+/// How far two half steps may end from a whole one, relative to the state and its size.
+const ACCURACY: f64 = 1e-3;
+/// Below this magnitude, in W, products of terms are subnormal and their rounding is no
+/// longer relative.
+const REST: f64 = 1e-280;
+/// The seed of the initial states.
 const SEED: u64 = 0xba1a_4ce5;
 
-/// The power balance along a trajectory from a random state, with classical Runge-Kutta
-/// steps of a twelfth of the shortest period a coordinate has by itself. Coupled modes
-/// may be faster: if the energy runs away, shorter steps are tried.
+/// The power balance along trajectories from random states, with classical Runge-Kutta
+/// steps of at most a twelfth of the shortest period a coordinate has by itself. Shorter ones are
+/// taken where coupled modes are faster; how the energy grows or falls is the model's.
 ///
 /// # Errors
 /// [`OracleError`] as from [`Oracle::equations`].
 pub fn check(oracle: &Oracle, variant: &mut dyn Variant) -> Result<Check, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
-    let start = sampler.draw();
-    if !oracle.is_scleronomic(start.time, &start.state, &start.inputs)? {
-        let reason = "an energy depends on time or inputs, or the kinetic energy is no \
-                      quadratic form of the rates: T + V is not what the forces change";
-        return Ok(Check::skipped(NAME, ROW_TOLERANCE, reason));
-    }
-    let mut step = 0.5 / sampler.highest_frequency();
-    for _ in 0..REFINEMENTS {
-        if let Some(worst) = along(oracle, variant, start.clone(), step)? {
-            return Ok(Check::made(NAME, worst, ROW_TOLERANCE));
+    let mut motion = Motion {
+        sizes: sampler.sizes().to_vec(),
+        longest: 0.5 / sampler.highest_frequency(),
+        looked: 0,
+        worst: Worst::default(),
+    };
+    for _ in 0..TRAJECTORIES {
+        if motion.looked >= STEPS {
+            break;
         }
-        step *= 0.25;
+        let Some(drawn) = sampler.draw_inside()? else {
+            break;
+        };
+        motion.follow(oracle, variant, drawn.sample)?;
     }
-    let worst = Worst::of(f64::INFINITY, "the energy runs away at any step");
+    let worst = motion.worst.among(motion.looked, "steps");
     Ok(Check::made(NAME, worst, ROW_TOLERANCE))
 }
 
-/// The largest imbalance along a trajectory; none if its energy runs away.
-fn along(
-    oracle: &Oracle,
-    variant: &mut dyn Variant,
-    mut sample: Sample,
-    step: f64,
-) -> Result<Option<Worst>, OracleError> {
-    let energy = |sample: &Sample| oracle.energy(sample.time, &sample.state, &sample.inputs);
-    let bound = RUNAWAY * energy(&sample)?.scale;
-    let mut worst = Worst::default();
-    for count in 0..=STEPS {
-        match imbalance(oracle, variant, &sample)? {
-            Ok(value) => worst.include(Worst::of(value, format!("step {count} of {STEPS}"))),
-            Err(message) => worst.include(Worst::of(f64::INFINITY, message)),
-        }
-        if worst.value() == f64::INFINITY {
-            break;
-        }
-        if let Err(message) = advance(variant, &mut sample, step) {
-            worst.include(Worst::of(f64::INFINITY, message));
-            break;
-        }
-        if sample.state.iter().any(|value| !value.is_finite()) {
-            // The motion left the domain of a function such as asin: the steps so far count.
-            break;
-        }
-        let scale = energy(&sample)?.scale;
-        if scale.is_nan() || scale > bound {
-            return Ok(None);
-        }
-    }
-    Ok(Some(worst))
+/// What trajectories have shown.
+struct Motion {
+    /// How large the entries of a state are.
+    sizes: Vec<f64>,
+    /// The longest step, in s.
+    longest: f64,
+    /// Steps looked at.
+    looked: usize,
+    worst: Worst,
 }
 
-/// |d(T + V)/dt - power| relative to the largest addend of both.
+impl Motion {
+    /// Looks at a trajectory step by step until it ends or enough was seen.
+    fn follow(
+        &mut self,
+        oracle: &Oracle,
+        variant: &mut dyn Variant,
+        mut sample: Sample,
+    ) -> Result<(), OracleError> {
+        let mut step = self.longest;
+        while self.looked < STEPS {
+            let Sample {
+                time,
+                state,
+                inputs,
+            } = &sample;
+            if oracle.equations_inside(*time, state, inputs)?.is_none() {
+                return Ok(());
+            }
+            let place = format!("step {}", self.looked + 1);
+            let balance = imbalance(oracle, variant, &sample)?;
+            if matches!(&balance, Ok((value, size)) if *value > 0.0 && *size < REST) {
+                return Ok(());
+            }
+            self.looked += 1;
+            let next = match balance {
+                Ok((deviation, _)) => {
+                    self.worst.include(Worst::of(deviation, place));
+                    self.advance(variant, &sample, &mut step)
+                }
+                Err(message) => Err(message),
+            };
+            match next {
+                Ok(next) => sample = next,
+                Err(message) => {
+                    self.worst.include(Worst::of(f64::INFINITY, message));
+                    return Ok(());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The state after a step, or after the half of it that is short enough. The next one is
+    /// twice as long.
+    fn advance(
+        &self,
+        variant: &mut dyn Variant,
+        sample: &Sample,
+        step: &mut f64,
+    ) -> Result<Sample, String> {
+        for _ in 0..HALVINGS {
+            let whole = moved(variant, sample, *step)?;
+            let half = moved(variant, sample, 0.5 * *step)?;
+            let halves = moved(variant, &half, 0.5 * *step)?;
+            if self.is_near(&whole, &halves) {
+                *step = (2.0 * *step).min(self.longest);
+                return Ok(halves);
+            }
+            *step *= 0.5;
+        }
+        moved(variant, sample, *step)
+    }
+
+    fn is_near(&self, first: &Sample, second: &Sample) -> bool {
+        let states = first.state.iter().zip(&second.state);
+        let mut entries = states.zip(&self.sizes);
+        entries.all(|((first, second), size)| {
+            (first - second).abs() <= ACCURACY * (size + second.abs())
+        })
+    }
+}
+
+/// |d(T + V)/dt - power| relative to the terms of both, and the magnitude of these.
 fn imbalance(
     oracle: &Oracle,
     variant: &mut dyn Variant,
     sample: &Sample,
-) -> Result<Result<f64, String>, OracleError> {
+) -> Result<Result<(f64, f64), String>, OracleError> {
     let Sample {
         time,
         state,
@@ -99,32 +156,29 @@ fn imbalance(
         Err(message) => return Ok(Err(message)),
     };
     let rate = oracle.energy_rate(*time, state, &accelerations, inputs)?;
-    let expected = oracle.power(*time, state, inputs)?;
-    let difference = (rate.value - power).abs();
-    let scale = rate.scale.max(expected.scale);
-    Ok(Ok(if difference == 0.0 {
-        0.0
-    } else {
-        difference / scale
-    }))
+    let forces = oracle.power(*time, state, inputs)?;
+    let rate = Conditioned::new(rate.value, rate.magnitude.max(forces.magnitude));
+    Ok(Ok((rate.deviation(power), rate.magnitude)))
 }
 
 /// One classical Runge-Kutta step.
-fn advance(variant: &mut dyn Variant, sample: &mut Sample, step: f64) -> Result<(), String> {
-    let start = sample.state.clone();
+fn moved(variant: &mut dyn Variant, sample: &Sample, step: f64) -> Result<Sample, String> {
+    let start = &sample.state;
     let mut slope = vec![0.0; start.len()];
     let mut sum = vec![0.0; start.len()];
     for (share, weight) in [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
-        let stage = shifted(&start, &slope, share * step);
+        let stage = shifted(start, &slope, share * step);
         let time = sample.time + share * step;
         variant.rates(time, &stage, &sample.inputs, &mut slope)?;
         for (sum, slope) in sum.iter_mut().zip(&slope) {
             *sum += weight * slope;
         }
     }
-    sample.state = shifted(&start, &sum, step / 6.0);
-    sample.time += step;
-    Ok(())
+    Ok(Sample {
+        time: sample.time + step,
+        state: shifted(start, &sum, step / 6.0),
+        inputs: sample.inputs.clone(),
+    })
 }
 
 fn shifted(state: &[f64], slope: &[f64], step: f64) -> Vec<f64> {

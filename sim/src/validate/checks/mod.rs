@@ -10,13 +10,16 @@ pub mod emitted;
 pub mod nesting;
 pub mod states;
 
+use super::oracle::Equations;
 use super::variant::Variant;
 use nalgebra::DMatrix;
 
-/// Deviation from the oracle that passes, relative to the largest term summed in a row.
+/// Deviation from the oracle that passes, relative to the largest term summed in a row,
+/// before anything cancels in it.
 pub const ROW_TOLERANCE: f64 = 1e-12;
 /// Deviation of entries of the mass matrix that passes, relative to the geometric mean
-/// of the two diagonal entries: a thousand roundings.
+/// of the two diagonal entries or to the terms that cancel in the entry: a thousand
+/// roundings.
 pub const MASS_TOLERANCE: f64 = 2e-13;
 /// Asymmetry of the mass matrix that passes, relative as above: an entry is a product of
 /// a few factors, which may be formed in another order on the other side.
@@ -52,19 +55,17 @@ fn mass_matrix(
     Ok(DMatrix::from_row_slice(size, size, &mass))
 }
 
-/// The largest |first - second| relative to the geometric mean of the diagonal entries
-/// of `scale`.
-fn matrix_distance(first: &DMatrix<f64>, second: &DMatrix<f64>, scale: &DMatrix<f64>) -> f64 {
+/// The largest |first - second| relative to the scale of each entry.
+fn matrix_distance(first: &DMatrix<f64>, second: &DMatrix<f64>, scale: &Equations) -> f64 {
     let mut worst: f64 = 0.0;
     for row in 0..first.nrows() {
         for column in 0..first.ncols() {
-            let mean = (scale[(row, row)] * scale[(column, column)]).sqrt();
             let difference = (first[(row, column)] - second[(row, column)]).abs();
             if difference.is_nan() {
                 return f64::INFINITY;
             }
             if difference > 0.0 {
-                worst = worst.max(difference / mean);
+                worst = worst.max(difference / scale.mass_scale(row, column));
             }
         }
     }

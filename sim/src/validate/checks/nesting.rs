@@ -4,7 +4,7 @@
 
 use super::super::certificate::{Check, Worst};
 use super::super::oracle::{Oracle, OracleError, Residual};
-use super::super::sampler::{Sample, Sampler};
+use super::super::sampler::{Drawn, Sample, Sampler};
 use super::super::variant::Variant;
 use super::{MASS_TOLERANCE, ROW_TOLERANCE, accelerations, mass_matrix, matrix_distance};
 use nalgebra::DMatrix;
@@ -30,9 +30,11 @@ pub fn check(
     let mut sampler = Sampler::new(oracle, SEED)?;
     let kept = kept_rows(oracle.names(), &large.coordinate_names());
     for count in 1..=STATES {
-        let sample = sampler.draw();
+        let Some(drawn) = sampler.draw_inside()? else {
+            break;
+        };
         let place = format!("state {count} of {STATES}");
-        let deviations = compare(oracle, small, large, &kept, &sample)?;
+        let deviations = compare(&drawn, small, large, &kept);
         for (index, worst) in worst.iter_mut().enumerate() {
             worst.include(match &deviations {
                 Ok(deviations) => Worst::of(deviations[index], place.clone()),
@@ -56,38 +58,34 @@ fn kept_rows(small: &[String], large: &[String]) -> Vec<Option<usize>> {
 
 /// How far mass matrices, velocity terms and forces are apart at one state.
 fn compare(
-    oracle: &Oracle,
+    Drawn { sample, equations }: &Drawn,
     small: &mut dyn Variant,
     large: &mut dyn Variant,
     kept: &[Option<usize>],
-    sample: &Sample,
-) -> Result<Result<[f64; 3], String>, OracleError> {
-    let equations = oracle.equations(sample.time, &sample.state, &sample.inputs)?;
-    Ok((|| {
-        let kept: Option<Vec<usize>> = kept.iter().copied().collect();
-        let kept = kept.ok_or("a coordinate of the smaller order is missing")?;
-        let embedded = Sample {
-            state: embed(&sample.state, &kept, large.coordinate_names().len()),
-            ..sample.clone()
-        };
-        let own = sides(small, sample)?;
-        let other = sides(large, &embedded)?.restricted(&kept);
-        let found = accelerations(small, sample.time, &sample.state, &sample.inputs)?;
-        let scales = equations.residuals(&found);
-        let rows = |own: &[f64], other: &[f64]| {
-            let pairs = own.iter().zip(other).zip(&scales);
-            let deviations = pairs.map(|((own, other), residual)| {
-                let value = own - other;
-                Residual { value, ..*residual }.relative()
-            });
-            deviations.fold(0.0, f64::max)
-        };
-        Ok([
-            matrix_distance(&own.mass, &other.mass, &equations.mass),
-            rows(&own.bias, &other.bias),
-            rows(&own.forces, &other.forces),
-        ])
-    })())
+) -> Result<[f64; 3], String> {
+    let kept: Option<Vec<usize>> = kept.iter().copied().collect();
+    let kept = kept.ok_or("a coordinate of the smaller order is missing")?;
+    let embedded = Sample {
+        state: embed(&sample.state, &kept, large.coordinate_names().len()),
+        ..sample.clone()
+    };
+    let own = sides(small, sample)?;
+    let other = sides(large, &embedded)?.restricted(&kept);
+    let found = accelerations(small, sample.time, &sample.state, &sample.inputs)?;
+    let scales = equations.residuals(&found);
+    let rows = |own: &[f64], other: &[f64]| {
+        let pairs = own.iter().zip(other).zip(&scales);
+        let deviations = pairs.map(|((own, other), residual)| {
+            let value = own - other;
+            Residual { value, ..*residual }.relative()
+        });
+        deviations.fold(0.0, f64::max)
+    };
+    Ok([
+        matrix_distance(&own.mass, &other.mass, equations),
+        rows(&own.bias, &other.bias),
+        rows(&own.forces, &other.forces),
+    ])
 }
 
 /// The state of the larger variant with the added modes at zero.

@@ -2,8 +2,8 @@
 //! and switching functions against the oracle, accelerations against references.
 
 use super::super::certificate::{Check, Worst};
-use super::super::oracle::{Equations, Oracle, OracleError, Total};
-use super::super::sampler::{Regime, Sample, Sampler};
+use super::super::oracle::{Conditioned, Equations, Oracle, OracleError};
+use super::super::sampler::{Drawn, Regime, Sample, Sampler};
 use super::super::variant::Variant;
 use super::{
     MASS_TOLERANCE, ROW_TOLERANCE, SYMMETRY_TOLERANCE, accelerations, mass_matrix, matrix_distance,
@@ -13,6 +13,8 @@ use std::collections::HashMap;
 
 /// States drawn in every regime.
 const STATES_PER_REGIME: usize = 200;
+/// The fewest states of a regime that say anything about it.
+const FEWEST: usize = 20;
 /// The seed of the states.
 const SEED: u64 = 0x0dd5_eed5;
 
@@ -39,6 +41,8 @@ struct Findings<'f> {
     power: Worst,
     by_reference: Vec<Worst>,
     guards: Guards,
+    /// States that were compared, in all regimes.
+    examined: usize,
 }
 
 /// All checks at random states.
@@ -62,10 +66,22 @@ pub fn check(
         power: Worst::default(),
         by_reference: vec![Worst::default(); references.len()],
         guards: Guards::default(),
+        examined: 0,
     };
     let mut sampler = Sampler::new(oracle, SEED)?;
     for regime in sampler.regimes() {
         findings.visit(&mut sampler, &regime, variant)?;
+    }
+    if findings.examined == 0 {
+        let redrawn = sampler.redrawn();
+        let message = format!(
+            "no state of the model's domain was found: at {redrawn} states a term is no number \
+             or the mass matrix is not positive definite; a `range` may say where it lives"
+        );
+        let worst = Worst::of(f64::INFINITY, message);
+        findings
+            .checks
+            .push(Check::made("domain", worst, ROW_TOLERANCE));
     }
     Ok(findings.into_checks())
 }
@@ -99,27 +115,42 @@ impl Findings<'_> {
         };
         let mut worst = Worst::default();
         let mut examined = 0;
+        let before = sampler.redrawn();
         for count in 1..=STATES_PER_REGIME {
-            let Some(sample) = sampler.draw_in(regime)? else {
-                if count == 1 {
-                    let reason = "no state of this regime was found";
-                    self.checks
-                        .push(Check::skipped(name, ROW_TOLERANCE, reason));
-                    return Ok(());
+            let Some(drawn) = sampler.draw_in(regime)? else {
+                if examined == 0 {
+                    break;
                 }
                 continue;
             };
             let place = format!("state {count} of {label}");
             let place = place.trim_end_matches(" of ");
             examined += 1;
-            self.guards.record(variant, &sample, &label);
-            match self.compare(variant, &sample, place)? {
+            self.guards
+                .record(self.oracle, variant, &drawn, regime, &label)?;
+            match self.compare(variant, &drawn, place)? {
                 Ok(deviation) => worst.include(Worst::of(deviation, place)),
                 Err(message) => worst.include(Worst::of(f64::INFINITY, message)),
             }
         }
-        let worst = worst.among(examined, "states");
-        self.checks.push(Check::made(name, worst, ROW_TOLERANCE));
+        self.examined += examined;
+        let redrawn = sampler.redrawn() - before;
+        self.checks.push(match (examined, redrawn) {
+            (0, 0) => Check::skipped(name, ROW_TOLERANCE, "no state of this regime was found"),
+            (0, _) => {
+                let reason = "no state of this regime was found in the model's domain";
+                Check::skipped(name, ROW_TOLERANCE, reason)
+            }
+            (1..FEWEST, _) if worst.value() <= ROW_TOLERANCE => {
+                let reason = format!("too few states of this regime were found: {examined}");
+                Check::skipped(name, ROW_TOLERANCE, reason)
+            }
+            (_, 0) => Check::made(name, worst.among(examined, "states"), ROW_TOLERANCE),
+            _ => {
+                let what = format!("states ({redrawn} drawn again, outside the model's domain)");
+                Check::made(name, worst.among(examined, &what), ROW_TOLERANCE)
+            }
+        });
         Ok(())
     }
 
@@ -127,7 +158,7 @@ impl Findings<'_> {
     fn compare(
         &mut self,
         variant: &mut dyn Variant,
-        sample: &Sample,
+        Drawn { sample, equations }: &Drawn,
         place: &str,
     ) -> Result<Result<f64, String>, OracleError> {
         let Sample {
@@ -135,26 +166,25 @@ impl Findings<'_> {
             state,
             inputs,
         } = sample;
-        let equations = self.oracle.equations(*time, state, inputs)?;
         let energy = self.oracle.energy(*time, state, inputs)?;
-        let power = self.power(sample, &equations)?;
+        let power = self.power(sample, equations)?;
         Ok((|| {
             let mass = mass_matrix(variant, *time, state, inputs)?;
-            self.compare_mass(&mass, &equations, place);
+            self.compare_mass(&mass, equations, place);
             let found = variant.energy(*time, state, inputs)?;
             self.energy
-                .include(Worst::of(relative(found, energy), place));
+                .include(Worst::of(energy.deviation(found), place));
             let found = variant.power(*time, state, inputs)?;
-            self.power.include(Worst::of(relative(found, power), place));
+            self.power.include(Worst::of(power.deviation(found), place));
             let found = accelerations(variant, *time, state, inputs)?;
-            self.compare_accelerations(&found, &equations, sample, place);
+            self.compare_accelerations(&found, equations, sample, place);
             Ok(equations.worst_residual(&found))
         })())
     }
 
     /// What the power is to be: the rate of T + V. Where no energy depends on time this is
     /// the power of the forces, elsewhere the rate is taken along the oracle's own motion.
-    fn power(&self, sample: &Sample, equations: &Equations) -> Result<Total, OracleError> {
+    fn power(&self, sample: &Sample, equations: &Equations) -> Result<Conditioned, OracleError> {
         let Sample {
             time,
             state,
@@ -171,7 +201,7 @@ impl Findings<'_> {
     }
 
     fn compare_mass(&mut self, mass: &DMatrix<f64>, equations: &Equations, place: &str) {
-        let distance = |other| matrix_distance(mass, other, &equations.mass);
+        let distance = |other| matrix_distance(mass, other, equations);
         self.mass
             .include(Worst::of(distance(&equations.mass), place));
         self.symmetry
@@ -226,43 +256,44 @@ fn scaled(mass: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
-/// The deviation of a sum relative to its largest addend.
-fn relative(found: f64, expected: Total) -> f64 {
-    let difference = (found - expected.value).abs();
-    if difference == 0.0 {
-        0.0
-    } else {
-        difference / expected.scale
-    }
-}
-
 /// Whether the signs of the subject's switching functions tell the regime: no pattern of
-/// signs may occur in two regimes.
+/// signs may occur in two regimes whose equations differ. Where a switch drops out of the
+/// equations, nothing needs to tell its sides.
 #[derive(Default)]
 struct Guards {
-    regimes: HashMap<Vec<bool>, String>,
+    regimes: HashMap<Vec<bool>, (Regime, String)>,
     worst: Worst,
 }
 
 impl Guards {
-    fn record(&mut self, variant: &mut dyn Variant, sample: &Sample, label: &str) {
+    fn record(
+        &mut self,
+        oracle: &Oracle,
+        variant: &mut dyn Variant,
+        drawn: &Drawn,
+        regime: &Regime,
+        label: &str,
+    ) -> Result<(), OracleError> {
+        let sample = &drawn.sample;
         let values = match variant.guards(sample.time, &sample.state, &sample.inputs) {
             Ok(values) => values,
             Err(message) => {
                 self.worst.include(Worst::of(f64::INFINITY, message));
-                return;
+                return Ok(());
             }
         };
         let signs = values.iter().map(|value| *value > 0.0).collect();
-        let known = self
+        let (known, its_label) = self
             .regimes
             .entry(signs)
-            .or_insert_with(|| label.to_owned());
-        self.worst.include(if known == label {
-            Worst::of(0.0, "every pattern of signs belongs to one regime")
-        } else {
-            Worst::of(1.0, format!("the same signs in {known} and {label}"))
-        });
+            .or_insert_with(|| (regime.clone(), label.to_owned()));
+        self.worst
+            .include(if known == regime || is_same(oracle, drawn, known)? {
+                Worst::of(0.0, "every pattern of signs belongs to one regime")
+            } else {
+                Worst::of(1.0, format!("the same signs in {its_label} and {label}"))
+            });
+        Ok(())
     }
 
     fn into_check(self, oracle: &Oracle) -> Check {
@@ -271,4 +302,17 @@ impl Guards {
         }
         Check::made("guards", self.worst, 0.0)
     }
+}
+
+/// Whether the equations at a state are also those of another regime.
+fn is_same(oracle: &Oracle, drawn: &Drawn, regime: &Regime) -> Result<bool, OracleError> {
+    let Drawn { sample, equations } = drawn;
+    let (state, inputs) = (&sample.state, &sample.inputs);
+    let other = oracle.equations_on(&regime.sides, sample.time, state, inputs)?;
+    let Some(accelerations) = equations.accelerations() else {
+        return Ok(false);
+    };
+    let mass = matrix_distance(&equations.mass, &other.mass, equations);
+    let rows = other.worst_residual(accelerations.as_slice());
+    Ok(mass <= MASS_TOLERANCE && rows <= ROW_TOLERANCE)
 }

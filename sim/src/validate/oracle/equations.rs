@@ -1,5 +1,7 @@
 //! The equations of motion at one state, term by term: what the oracle answers.
 
+use super::conditioned::Conditioned;
+
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// The equations of motion at one state: for every row j
@@ -13,6 +15,8 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 pub struct Equations {
     /// The mass matrix, n by n.
     pub mass: DMatrix<f64>,
+    /// The magnitudes of what its entries are made of, before anything cancels.
+    pub mass_magnitude: DMatrix<f64>,
     /// All that does not hold an acceleration, sums within a term addend by addend.
     pub terms: Vec<RowTerm>,
 }
@@ -26,6 +30,23 @@ pub struct RowTerm {
     pub kind: RowTermKind,
     /// Its value in every row, on the side of the accelerations.
     pub rows: DVector<f64>,
+    /// The magnitudes of what these are made of, before anything cancels.
+    pub magnitudes: DVector<f64>,
+}
+
+impl RowTerm {
+    /// A term with its value in every row.
+    pub(super) fn new(name: &str, kind: RowTermKind, rows: Vec<Conditioned>) -> Self {
+        let part = |part: fn(&Conditioned) -> f64| {
+            DVector::from_iterator(rows.len(), rows.iter().map(part))
+        };
+        Self {
+            name: name.to_owned(),
+            kind,
+            rows: part(|row| row.value),
+            magnitudes: part(|row| row.magnitude),
+        }
+    }
 }
 
 /// How a term of the specification enters the equations of motion.
@@ -48,7 +69,8 @@ pub enum RowTermKind {
 pub struct Residual {
     /// The sum of the row.
     pub value: f64,
-    /// The largest magnitude among `mass[j, k] q_k''` for every k and every term.
+    /// The largest magnitude among `mass[j, k] q_k''` for every k and every term, and of
+    /// what these are made of before anything cancels.
     pub scale: f64,
 }
 
@@ -66,7 +88,47 @@ impl Residual {
     }
 }
 
+/// The square of the smallest pivot that a mass matrix scaled to a unit diagonal may have;
+/// below, rounding decides whether it is positive definite.
+const SMALLEST_PIVOT: f64 = 1e-13;
+
 impl Equations {
+    /// Whether everything in them is a number.
+    pub fn is_finite(&self) -> bool {
+        let terms = self
+            .terms
+            .iter()
+            .flat_map(|t| t.rows.iter().chain(&t.magnitudes));
+        let mass = self.mass.iter().chain(&self.mass_magnitude);
+        terms.chain(mass).all(|number| number.is_finite())
+    }
+
+    /// Whether the mass matrix is positive definite, and not by rounding alone.
+    pub fn is_definite(&self) -> bool {
+        let factor = Cholesky::new(self.scaled_mass().1);
+        factor.is_some_and(|factor| {
+            let pivots = factor.l_dirty().diagonal();
+            pivots.iter().all(|pivot| pivot * pivot > SMALLEST_PIVOT)
+        })
+    }
+
+    /// The factors that scale rows and columns of the mass matrix to a unit diagonal, and
+    /// the matrix so scaled.
+    fn scaled_mass(&self) -> (DVector<f64>, DMatrix<f64>) {
+        let scale = self.mass.diagonal().map(|entry| entry.sqrt().recip());
+        let scaled = DMatrix::from_fn(self.size(), self.size(), |row, column| {
+            scale[row] * self.mass[(row, column)] * scale[column]
+        });
+        (scale, scaled)
+    }
+
+    /// The size by which a deviation of an entry of the mass matrix is judged: the geometric
+    /// mean of the diagonal entries, or the magnitude of what the entry is made of.
+    pub fn mass_scale(&self, row: usize, column: usize) -> f64 {
+        let mean = (self.mass[(row, row)] * self.mass[(column, column)]).sqrt();
+        mean.max(self.mass_magnitude[(row, column)])
+    }
+
     /// Number of rows.
     pub fn size(&self) -> usize {
         self.mass.nrows()
@@ -84,10 +146,7 @@ impl Equations {
     /// The accelerations by a dense Cholesky factorisation with rows and columns scaled
     /// to a unit diagonal; none if the mass matrix is not positive definite.
     pub fn accelerations(&self) -> Option<DVector<f64>> {
-        let scale = self.mass.diagonal().map(|entry| entry.sqrt().recip());
-        let scaled = DMatrix::from_fn(self.size(), self.size(), |row, column| {
-            scale[row] * self.mass[(row, column)] * scale[column]
-        });
+        let (scale, scaled) = self.scaled_mass();
         let right = self.right_side().component_mul(&scale);
         Some(Cholesky::new(scaled)?.solve(&right).component_mul(&scale))
     }
@@ -97,9 +156,14 @@ impl Equations {
         (0..self.size())
             .map(|row| {
                 let masses = self.mass.row(row);
-                let inertia = masses.iter().zip(accelerations);
-                let inertia = inertia.map(|(mass, acceleration)| mass * acceleration);
-                residual(inertia.chain(self.terms.iter().map(|term| term.rows[row])))
+                let magnitudes = self.mass_magnitude.row(row);
+                let inertia = masses.iter().zip(magnitudes.iter()).zip(accelerations);
+                let inertia = inertia.map(|((mass, magnitude), acceleration)| {
+                    Conditioned::new(mass * acceleration, magnitude * acceleration.abs())
+                });
+                let terms = self.terms.iter();
+                let terms = terms.map(|t| Conditioned::new(t.rows[row], t.magnitudes[row]));
+                residual(inertia.chain(terms))
             })
             .collect()
     }
@@ -141,11 +205,15 @@ impl Equations {
     }
 }
 
-/// The sum of a row and its largest addend. The sum is compensated (Neumaier), so what
+/// The sum of a row and its largest magnitude. The sum is compensated (Neumaier), so what
 /// is left is not the rounding of this summation.
-fn residual(addends: impl Iterator<Item = f64>) -> Residual {
+fn residual(addends: impl Iterator<Item = Conditioned>) -> Residual {
     let (mut sum, mut rest, mut scale) = (0.0_f64, 0.0_f64, 0.0_f64);
-    for addend in addends {
+    for Conditioned {
+        value: addend,
+        magnitude,
+    } in addends
+    {
         let next = sum + addend;
         rest += if sum.abs() >= addend.abs() {
             (sum - next) + addend
@@ -156,7 +224,7 @@ fn residual(addends: impl Iterator<Item = f64>) -> Residual {
         scale = if addend.is_nan() {
             f64::NAN
         } else {
-            scale.max(addend.abs())
+            scale.max(magnitude)
         };
     }
     Residual {
@@ -172,11 +240,12 @@ mod tests {
     fn equations() -> Equations {
         Equations {
             mass: DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 4.0]),
-            terms: vec![RowTerm {
-                name: "load".into(),
-                kind: RowTermKind::Force,
-                rows: DVector::from_vec(vec![-3.0, 1.0]),
-            }],
+            mass_magnitude: DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 4.0]),
+            terms: vec![RowTerm::new(
+                "load",
+                RowTermKind::Force,
+                vec![(-3.0).into(), 1.0.into()],
+            )],
         }
     }
 
@@ -188,6 +257,17 @@ mod tests {
         assert_eq!(solution.len(), 2);
         assert!(equations.worst_residual(&solution) < 1e-15);
         assert!(equations.distance(&solution, &[13.0 / 7.0, -5.0 / 7.0]) < 1e-15);
+    }
+
+    #[test]
+    fn a_row_is_measured_by_what_cancels_in_its_terms() {
+        let mut equations = equations();
+        equations.terms[0].magnitudes[1] = 1e4;
+        let solution = equations.accelerations().map(|a| a.as_slice().to_vec());
+        let solution = solution.unwrap_or_default();
+        let scales = equations.residuals(&solution);
+        assert_eq!(scales[1].scale, 1e4);
+        assert!(scales[0].scale < 10.0);
     }
 
     #[test]

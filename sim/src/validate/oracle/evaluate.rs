@@ -2,12 +2,16 @@
 //! inside an expression is one more dual part along the motion; accelerations never
 //! appear, so one such part is enough and a second one is refused by `lower`.
 
+use super::conditioned::Conditioned;
 use super::functions;
 use super::scene::{Direction, Motion, Scene};
 use super::tree::Tree;
 use model_spec::ast::BinaryOperator;
-use num_dual::{Dual, DualNum, HyperDual64};
+use num_dual::{Dual, DualNum, HyperDual};
 use std::cell::Cell;
+
+/// A value with its derivatives in two directions.
+pub(super) type Number = HyperDual<Conditioned>;
 
 /// The two number types of an evaluation: a value with its derivatives in two
 /// directions, and the same with the time derivative beside it.
@@ -22,13 +26,13 @@ pub(super) trait Level: DualNum<Primitive = f64> + Copy {
     fn integral(pass: &Pass<'_>, index: usize) -> Option<Self>;
 }
 
-impl Level for HyperDual64 {
+impl Level for Number {
     fn of(motion: Motion) -> Self {
         motion.value
     }
 
     fn dot(pass: &Pass<'_>, tree: &Tree, frame: &Frame<'_>) -> Self {
-        pass.evaluate::<Dual<HyperDual64>>(tree, frame).eps
+        pass.evaluate::<Dual<Number>>(tree, frame).eps
     }
 
     fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>> {
@@ -40,7 +44,7 @@ impl Level for HyperDual64 {
     }
 }
 
-impl Level for Dual<HyperDual64> {
+impl Level for Dual<Number> {
     fn of(motion: Motion) -> Self {
         Dual::new(motion.value, motion.rate)
     }
@@ -101,7 +105,7 @@ impl Frame<'_> {
 }
 
 /// A definition's value, alone and with its rate, once formed.
-type KeptDefinition = (Cell<Option<HyperDual64>>, Cell<Option<Dual<HyperDual64>>>);
+type KeptDefinition = (Cell<Option<Number>>, Cell<Option<Dual<Number>>>);
 
 /// One evaluation: a scene and two directions.
 #[derive(Debug)]
@@ -122,7 +126,7 @@ impl<'s> Pass<'s> {
     }
 
     /// The value of `tree` outside every sum.
-    pub fn value(&self, tree: &Tree) -> HyperDual64 {
+    pub fn value(&self, tree: &Tree) -> Number {
         self.evaluate(tree, &Frame::Outside)
     }
 
@@ -133,7 +137,7 @@ impl<'s> Pass<'s> {
             mode,
             outer: &Frame::Outside,
         };
-        self.evaluate::<HyperDual64>(tree, &frame).re
+        self.evaluate::<Number>(tree, &frame).re.value
     }
 
     /// The value of `tree` where `frame` says.
@@ -189,11 +193,10 @@ impl<'s> Pass<'s> {
     }
 
     fn time(&self) -> Motion {
-        let [first, second] = self.directions.map(Scene::time_seed);
-        Motion {
-            value: HyperDual64::new(self.scene.time, first, second, 0.0),
-            rate: HyperDual64::from_re(1.0),
-        }
+        let seeds = self
+            .directions
+            .map(|direction| (Scene::time_seed(direction), 0.0));
+        Motion::new((self.scene.time, 1.0), seeds)
     }
 
     fn mode(&self, field: usize, frame: &Frame<'_>) -> Motion {
@@ -242,15 +245,20 @@ impl<'s> Pass<'s> {
         arguments: &[Tree],
         frame: &Frame<'_>,
     ) -> N {
+        let side = self
+            .scene
+            .imposed
+            .and_then(|imposed| imposed.side(function, arguments));
+        let value = |values: &[N]| {
+            side.and_then(|side| functions::on_side(function, side, values))
+                .unwrap_or_else(|| functions::apply(function, values))
+        };
         match arguments {
-            [only] => functions::apply(function, &[self.evaluate::<N>(only, frame)]),
-            [first, second] => functions::apply(
-                function,
-                &[
-                    self.evaluate::<N>(first, frame),
-                    self.evaluate::<N>(second, frame),
-                ],
-            ),
+            [only] => value(&[self.evaluate::<N>(only, frame)]),
+            [first, second] => value(&[
+                self.evaluate::<N>(first, frame),
+                self.evaluate::<N>(second, frame),
+            ]),
             _ => N::from(f64::NAN),
         }
     }

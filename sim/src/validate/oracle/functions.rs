@@ -2,6 +2,7 @@
 //! differentiation. Piecewise functions take the side of the real part and the
 //! derivative of that side; the derivative of a step is 0 and sign(0) = 0.
 
+use super::switches::Side;
 use model_spec::model::Function;
 use num_dual::DualNum;
 
@@ -16,6 +17,24 @@ where
         [first, second] => binary(function, *first, *second),
         _ => N::from(f64::NAN),
     }
+}
+
+/// The value of a piecewise function on a given side of its switch, wherever its
+/// arguments stand; none for a function that has no sides.
+pub(super) fn on_side<N>(function: Function, side: Side, arguments: &[N]) -> Option<N>
+where
+    N: DualNum<Primitive = f64> + Copy,
+{
+    let sign = side.sign();
+    Some(match (function, arguments) {
+        (Function::Abs, [x]) => *x * sign,
+        (Function::Sign, [_]) => N::from(sign),
+        (Function::Deadzone, [p, b]) => (*p - *b * sign) * sign.abs(),
+        (Function::Contact, [_, _]) => N::from(sign.abs()),
+        (Function::Min, [x, y]) => *(if sign < 0.0 { x } else { y }),
+        (Function::Max, [x, y]) => *(if sign > 0.0 { x } else { y }),
+        _ => return None,
+    })
 }
 
 fn unary<N>(function: Function, x: N) -> N
@@ -108,20 +127,19 @@ where
     }
 }
 
-/// The hyperbolic tangent. The quotient of sinh and cosh overflows for large arguments,
-/// where the function is 1 with derivatives below the smallest rounding of anything else.
+/// The hyperbolic tangent as the quotient of sinh and cosh. Where that would overflow, it
+/// has long been 1 with derivatives 0. Its derivative (cosh^2 - sinh^2)/cosh^2 cancels like
+/// the textbook's 1 - tanh^2, and so is judged like it: a force that is nothing but the
+/// last digits of this difference is known no better.
 fn tanh<N>(x: N) -> N
 where
     N: DualNum<Primitive = f64> + Copy,
 {
-    let side = sign(x.re());
-    match x.re().abs() {
-        magnitude if magnitude < 1.0 => x.tanh(),
-        magnitude if magnitude < 40.0 => {
-            let growing = (x * (2.0 * side)).exp();
-            (N::one() - (growing + 1.0).recip() * 2.0) * side
-        }
-        _ => N::from(side),
+    const SATURATED: f64 = 60.0;
+    if x.re().abs() > SATURATED {
+        N::from(sign(x.re()))
+    } else {
+        x.tanh()
     }
 }
 

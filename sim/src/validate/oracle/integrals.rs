@@ -2,31 +2,108 @@
 //! modes only through field values at its own place, so its derivative by mode j is the
 //! derivative by each field value times phi_j there: a handful of evaluations per node
 //! and one product with the table of shapes, instead of one evaluation per node and row.
+//!
+//! The magnitude of an integral is that of its largest addend, weight and shape included.
+//! Of second derivatives by two modes it is the value's own: what cancels there by
+//! orthogonality is the rule's, not the model's.
 
-use super::evaluate::{Frame, Pass};
+use super::conditioned::Conditioned;
+use super::evaluate::{Frame, Number, Pass};
 use super::scene::{Direction, Scene};
 use super::system::Integral;
 use super::tree::Leaf;
 use nalgebra::{DMatrix, DVector};
-use num_dual::HyperDual64;
 use std::cell::OnceCell;
 
 /// What is kept of one integral at one state.
 #[derive(Debug, Default)]
 pub(super) struct IntegralTable {
-    value: OnceCell<f64>,
+    value: OnceCell<Conditioned>,
     by_position: OnceCell<Rows>,
     by_rate: OnceCell<Rows>,
-    by_two_rates: OnceCell<DMatrix<f64>>,
+    by_two_rates: OnceCell<Hessian>,
 }
 
 /// First derivatives by every generalised coordinate or rate, and their change along
 /// the motion.
 #[derive(Debug)]
 struct Rows {
-    along_motion: f64,
-    by_row: DVector<f64>,
-    along_motion_by_row: DVector<f64>,
+    along_motion: Conditioned,
+    by_row: Entries,
+    along_motion_by_row: Entries,
+}
+
+/// A number for each of many places or rows, with its magnitude.
+#[derive(Clone, Debug)]
+struct Entries {
+    value: DVector<f64>,
+    magnitude: DVector<f64>,
+}
+
+impl Entries {
+    fn zeros(count: usize) -> Self {
+        Self {
+            value: DVector::zeros(count),
+            magnitude: DVector::zeros(count),
+        }
+    }
+
+    /// One derivative part of every addend.
+    fn part(addends: &[Number], part: impl Fn(&Number) -> Conditioned) -> Self {
+        let parts: Vec<Conditioned> = addends.iter().map(part).collect();
+        let entries = |entry: fn(&Conditioned) -> f64| {
+            DVector::from_iterator(parts.len(), parts.iter().map(entry))
+        };
+        Self {
+            value: entries(|part| part.value),
+            magnitude: entries(|part| part.magnitude),
+        }
+    }
+
+    fn get(&self, row: usize) -> Option<Conditioned> {
+        let value = self.value.get(row)?;
+        Some(Conditioned::new(*value, *self.magnitude.get(row)?))
+    }
+
+    /// The sum over all of them.
+    fn total(&self) -> Conditioned {
+        Conditioned::new(self.value.sum(), self.magnitude.max())
+    }
+
+    fn add(&mut self, row: usize, addend: Conditioned) {
+        if let Some(sum) = self.get(row) {
+            let sum = sum + addend;
+            self.value[row] = sum.value;
+            self.magnitude[row] = sum.magnitude;
+        }
+    }
+}
+
+/// Second derivatives by pairs of rates.
+#[derive(Debug)]
+struct Hessian {
+    value: DMatrix<f64>,
+    magnitude: DMatrix<f64>,
+}
+
+impl Hessian {
+    fn zeros(size: usize) -> Self {
+        Self {
+            value: DMatrix::zeros(size, size),
+            magnitude: DMatrix::zeros(size, size),
+        }
+    }
+
+    fn get(&self, place: (usize, usize)) -> Option<Conditioned> {
+        let value = self.value.get(place)?;
+        Some(Conditioned::new(*value, *self.magnitude.get(place)?))
+    }
+
+    fn add(&mut self, value: &DMatrix<f64>, magnitude: &DMatrix<f64>) {
+        self.value += value;
+        self.magnitude
+            .zip_apply(magnitude, |own, other| *own = own.max(other));
+    }
 }
 
 /// What an integrand can change with.
@@ -55,7 +132,7 @@ impl Channel {
 impl Scene<'_> {
     /// Integral `index` with its derivatives in two directions, or none if these are not
     /// among those kept (two positions, a value of another field).
-    pub fn integral(&self, index: usize, directions: [Direction; 2]) -> Option<HyperDual64> {
+    pub fn integral(&self, index: usize, directions: [Direction; 2]) -> Option<Number> {
         let integral = self.system.integrals.get(index)?;
         let table = self.integrals.get(index)?;
         let [first, second] = directions;
@@ -65,20 +142,20 @@ impl Scene<'_> {
             (second, first)
         };
         let mixed = match (lesser, greater) {
-            (Direction::Still, _) => 0.0,
-            (Direction::Time, Direction::Position(row)) => *self
+            (Direction::Still, _) => Conditioned::default(),
+            (Direction::Time, Direction::Position(row)) => self
                 .by_position(table, integral)
                 .along_motion_by_row
                 .get(row)?,
             (Direction::Time, Direction::Rate(row)) => {
-                *self.by_rate(table, integral).along_motion_by_row.get(row)?
+                self.by_rate(table, integral).along_motion_by_row.get(row)?
             }
             (Direction::Rate(row), Direction::Rate(column)) => {
-                *self.by_two_rates(table, integral).get((row, column))?
+                self.by_two_rates(table, integral).get((row, column))?
             }
             _ => return None,
         };
-        Some(HyperDual64::new(
+        Some(Number::new(
             *table.value.get_or_init(|| self.plain(integral)),
             self.first(table, integral, first)?,
             self.first(table, integral, second)?,
@@ -91,12 +168,12 @@ impl Scene<'_> {
         table: &IntegralTable,
         integral: &Integral,
         direction: Direction,
-    ) -> Option<f64> {
+    ) -> Option<Conditioned> {
         match direction {
-            Direction::Still => Some(0.0),
+            Direction::Still => Some(Conditioned::default()),
             Direction::Time => Some(self.by_rate(table, integral).along_motion),
-            Direction::Position(row) => self.by_position(table, integral).by_row.get(row).copied(),
-            Direction::Rate(row) => self.by_rate(table, integral).by_row.get(row).copied(),
+            Direction::Position(row) => self.by_position(table, integral).by_row.get(row),
+            Direction::Rate(row) => self.by_rate(table, integral).by_row.get(row),
             Direction::LeafPosition(_) | Direction::LeafRate(_) => None,
         }
     }
@@ -113,18 +190,18 @@ impl Scene<'_> {
             .get_or_init(|| self.rows(integral, Channel::rate))
     }
 
-    fn by_two_rates<'t>(&self, table: &'t IntegralTable, integral: &Integral) -> &'t DMatrix<f64> {
+    fn by_two_rates<'t>(&self, table: &'t IntegralTable, integral: &Integral) -> &'t Hessian {
         table.by_two_rates.get_or_init(|| self.hessian(integral))
     }
 
-    fn plain(&self, integral: &Integral) -> f64 {
+    fn plain(&self, integral: &Integral) -> Conditioned {
         let pass = Pass::new(self, Direction::Still, Direction::Still);
         let addends = self.addends(integral, &pass);
         addends.iter().map(|addend| addend.re).sum()
     }
 
     /// Weight times integrand at each place.
-    fn addends(&self, integral: &Integral, pass: &Pass<'_>) -> Vec<HyperDual64> {
+    fn addends(&self, integral: &Integral, pass: &Pass<'_>) -> Vec<Number> {
         let weights = self
             .system
             .places
@@ -136,7 +213,7 @@ impl Scene<'_> {
             .enumerate()
             .map(|(node, weight)| {
                 let frame = Frame::At { node, outer };
-                pass.evaluate::<HyperDual64>(&integral.body, &frame) * *weight
+                pass.evaluate::<Number>(&integral.body, &frame) * *weight
             })
             .collect()
     }
@@ -146,14 +223,14 @@ impl Scene<'_> {
         let addends = self.addends(integral, &still);
         let mut rows = Rows {
             along_motion: addends.iter().map(|addend| addend.eps1).sum(),
-            by_row: DVector::zeros(self.system.size),
-            along_motion_by_row: DVector::zeros(self.system.size),
+            by_row: Entries::zeros(self.system.size),
+            along_motion_by_row: Entries::zeros(self.system.size),
         };
         for channel in integral.channels() {
             let pass = Pass::new(self, Direction::Time, direction(channel));
             let addends = self.addends(integral, &pass);
-            let first = part(&addends, |addend| addend.eps2);
-            let mixed = part(&addends, |addend| addend.eps1eps2);
+            let first = Entries::part(&addends, |addend| addend.eps2);
+            let mixed = Entries::part(&addends, |addend| addend.eps1eps2);
             self.spread(integral, channel, &first, &mut rows.by_row);
             self.spread(integral, channel, &mixed, &mut rows.along_motion_by_row);
         }
@@ -165,20 +242,22 @@ impl Scene<'_> {
         &self,
         integral: &Integral,
         channel: Channel,
-        by_place: &DVector<f64>,
-        rows: &mut DVector<f64>,
+        by_place: &Entries,
+        rows: &mut Entries,
     ) {
         match channel {
-            Channel::Coordinate(row) => {
-                if let Some(entry) = rows.get_mut(row) {
-                    *entry += by_place.sum();
-                }
-            }
+            Channel::Coordinate(row) => rows.add(row, by_place.total()),
             Channel::Leaf(leaf) => {
                 if let Some(shapes) = self.shapes(integral, leaf) {
                     let start = self.system.modes(leaf.field).start;
-                    let mut part = rows.rows_mut(start, shapes.nrows());
-                    part.gemv(1.0, shapes, by_place, 1.0);
+                    let mut part = rows.value.rows_mut(start, shapes.nrows());
+                    part.gemv(1.0, shapes, &by_place.value, 1.0);
+                    let mut part = rows.magnitude.rows_mut(start, shapes.nrows());
+                    for (shapes, magnitude) in shapes.column_iter().zip(&by_place.magnitude) {
+                        part.zip_apply(&shapes, |own, shape| {
+                            *own = own.max(shape.abs() * magnitude);
+                        });
+                    }
                 }
             }
         }
@@ -191,19 +270,19 @@ impl Scene<'_> {
             .shapes(leaf.derivative)
     }
 
-    fn hessian(&self, integral: &Integral) -> DMatrix<f64> {
-        let size = self.system.size;
-        let mut hessian = DMatrix::zeros(size, size);
+    fn hessian(&self, integral: &Integral) -> Hessian {
+        let mut hessian = Hessian::zeros(self.system.size);
         let channels: Vec<Channel> = integral.channels().collect();
         for (index, row) in channels.iter().enumerate() {
             for (number, column) in channels.iter().enumerate().skip(index) {
                 let pass = Pass::new(self, row.rate(), column.rate());
-                let by_place = part(&self.addends(integral, &pass), |addend| addend.eps1eps2);
+                let by_place =
+                    Entries::part(&self.addends(integral, &pass), |addend| addend.eps1eps2);
                 let block = self.block(integral, [*row, *column], &by_place);
                 if number > index {
-                    hessian += block.transpose();
+                    hessian.add(&block.value.transpose(), &block.magnitude.transpose());
                 }
-                hessian += block;
+                hessian.add(&block.value, &block.magnitude);
             }
         }
         hessian
@@ -214,10 +293,10 @@ impl Scene<'_> {
         &self,
         integral: &Integral,
         [row, column]: [Channel; 2],
-        by_place: &DVector<f64>,
-    ) -> DMatrix<f64> {
+        by_place: &Entries,
+    ) -> Hessian {
         let size = self.system.size;
-        let mut block = DMatrix::zeros(size, size);
+        let mut block = Hessian::zeros(size);
         match (row, column) {
             (Channel::Leaf(left), Channel::Leaf(right)) => {
                 let tables = self
@@ -225,20 +304,22 @@ impl Scene<'_> {
                     .zip(self.shapes(integral, right));
                 if let Some((left_shapes, right_shapes)) = tables {
                     let mut weighted = right_shapes.transpose();
-                    for (mut place, weight) in weighted.row_iter_mut().zip(by_place) {
+                    for (mut place, weight) in weighted.row_iter_mut().zip(&by_place.value) {
                         place *= *weight;
                     }
                     let start = self.system.modes(left.field).start;
                     block
+                        .value
                         .view_mut((start, start), (left_shapes.nrows(), right_shapes.nrows()))
                         .gemm(1.0, left_shapes, &weighted, 0.0);
                 }
             }
             (Channel::Coordinate(index), other) | (other, Channel::Coordinate(index)) => {
-                let mut rows = DVector::zeros(size);
+                let mut rows = Entries::zeros(size);
                 self.spread(integral, other, by_place, &mut rows);
                 if index < size {
-                    block.set_column(index, &rows);
+                    block.value.set_column(index, &rows.value);
+                    block.magnitude.set_column(index, &rows.magnitude);
                 }
             }
         }
@@ -251,11 +332,6 @@ impl Integral {
         let coordinates = self.coordinates.iter().copied().map(Channel::Coordinate);
         coordinates.chain(self.leaves.iter().copied().map(Channel::Leaf))
     }
-}
-
-/// One derivative part of every addend.
-fn part(addends: &[HyperDual64], part: impl Fn(&HyperDual64) -> f64) -> DVector<f64> {
-    DVector::from_iterator(addends.len(), addends.iter().map(part))
 }
 
 fn rank(direction: Direction) -> u8 {

@@ -319,6 +319,7 @@ impl<'m> Lowering<'m> {
         Pass::new(&scene, Direction::Still, Direction::Still)
             .value(tree)
             .re
+            .value
     }
 
     fn evaluate_at_mode(&self, tree: &Tree, field: usize, mode: usize) -> f64 {

@@ -5,7 +5,8 @@
 //!
 //! The pipeline, one file each: `lower` (expressions to `tree`, with `places` for fields
 //! on `legendre` nodes with `shapes`), `scene` (a state and directions in it),
-//! `evaluate` (any number type, with `functions`), `integrals` (what all rows share),
+//! `evaluate` (any number type, with `functions`; [`Conditioned`] numbers tell how far they
+//! can be known), `integrals` (what all rows share),
 //! `terms` (rows of one named term), [`Oracle`] (all rows), `energy` (energies and powers),
 //! `switches` (where piecewise functions change side).
 //!
@@ -18,6 +19,7 @@
 //! where d/dt dT/dq_j' = sum over k of M_jk q_k'' + (the derivative of dT/dq_j' along
 //! the motion with the rates held).
 
+mod conditioned;
 mod double_double;
 mod energy;
 mod equations;
@@ -39,16 +41,18 @@ mod tree;
 #[cfg(test)]
 mod tests;
 
-pub use energy::Total;
+pub use conditioned::Conditioned;
 pub use equations::{Equations, Residual, RowTerm, RowTermKind};
 pub use error::OracleError;
 pub use switches::{Side, Switch, SwitchValue};
 
 use evaluate::Pass;
 use lower::Lowering;
-use model_spec::model::Model;
+use model_spec::evaluate::evaluate as evaluate_constant;
+use model_spec::model::{Expr, Model, Range};
 use nalgebra::DMatrix;
 use scene::{Direction, Scene};
+use switches::Imposed;
 use system::System;
 use terms::{Lowered, LoweredForce, lower_force, lower_terms};
 
@@ -58,6 +62,8 @@ pub struct Oracle {
     system: System,
     names: Vec<String>,
     inputs: usize,
+    initial: Vec<f64>,
+    ranges: Ranges,
     kinetic: Vec<Lowered>,
     potential: Vec<Lowered>,
     dissipation: Vec<Lowered>,
@@ -88,6 +94,8 @@ impl Oracle {
             system: lowering.system,
             names: coordinate_names(model, order),
             inputs: model.inputs.len(),
+            initial: initial_state(model, order, parameters),
+            ranges: Ranges::of(model, parameters),
             kinetic,
             potential,
             dissipation,
@@ -111,6 +119,16 @@ impl Oracle {
     /// Number of inputs.
     pub fn input_count(&self) -> usize {
         self.inputs
+    }
+
+    /// The initial state of the specification: coordinates, then rates.
+    pub fn initial(&self) -> &[f64] {
+        &self.initial
+    }
+
+    /// Where coordinates and inputs live.
+    pub fn ranges(&self) -> &Ranges {
+        &self.ranges
     }
 
     /// The switching functions of all piecewise functions that act on the motion.
@@ -138,25 +156,71 @@ impl Oracle {
         state: &[f64],
         inputs: &[f64],
     ) -> Result<Equations, OracleError> {
-        let scene = self.scene(time, state, None, inputs)?;
+        Ok(self.equations_of(&self.scene(time, state, None, inputs)?))
+    }
+
+    /// The equations of motion with every piecewise function on the side that `sides` gives
+    /// its switch, in the order of [`Oracle::switches`], whatever the state says.
+    ///
+    /// # Errors
+    /// [`OracleError::Length`] if the state, the inputs or the sides do not fit.
+    pub fn equations_on(
+        &self,
+        sides: &[Side],
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Equations, OracleError> {
+        expect_length("sides", self.switches.len(), sides.len())?;
+        let mut scene = self.scene(time, state, None, inputs)?;
+        scene.imposed = Some(Imposed {
+            switches: &self.switches,
+            sides,
+        });
+        Ok(self.equations_of(&scene))
+    }
+
+    /// The equations of motion at a state of the model's domain: every term and both
+    /// energies are numbers and the mass matrix is positive definite. None elsewhere.
+    ///
+    /// # Errors
+    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    pub fn equations_inside(
+        &self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Option<Equations>, OracleError> {
+        let equations = self.equations(time, state, inputs)?;
+        let totals = [
+            self.energy(time, state, inputs)?,
+            self.power(time, state, inputs)?,
+        ];
+        let finite = totals.iter().all(|total| total.is_finite()) && equations.is_finite();
+        Ok((finite && equations.is_definite()).then_some(equations))
+    }
+
+    fn equations_of(&self, scene: &Scene<'_>) -> Equations {
         let mut terms = Vec::new();
         for term in &self.kinetic {
-            terms.push(term.rows(&scene, RowTermKind::Momentum));
-            terms.push(term.rows(&scene, RowTermKind::KineticGradient));
+            terms.push(term.rows(scene, RowTermKind::Momentum));
+            terms.push(term.rows(scene, RowTermKind::KineticGradient));
         }
         for term in &self.potential {
-            terms.push(term.rows(&scene, RowTermKind::PotentialGradient));
+            terms.push(term.rows(scene, RowTermKind::PotentialGradient));
         }
         for term in &self.dissipation {
-            terms.push(term.rows(&scene, RowTermKind::Dissipation));
+            terms.push(term.rows(scene, RowTermKind::Dissipation));
         }
         for force in &self.forces {
-            terms.push(force.rows(&scene));
+            terms.push(force.rows(scene));
         }
-        Ok(Equations {
-            mass: self.mass(&scene),
+        let (mass, mass_magnitude) = self.mass(scene);
+        Equations {
+            mass,
+            mass_magnitude,
             terms,
-        })
+        }
     }
 
     /// Second derivatives of the potential energy by each generalised coordinate alone.
@@ -175,7 +239,7 @@ impl Oracle {
             let terms = self.potential.iter();
             terms
                 .filter(|term| self.system.concerns(&term.dependence, row))
-                .map(|term| pass.value(&term.tree).eps1eps2)
+                .map(|term| pass.value(&term.tree).eps1eps2.value)
                 .sum()
         };
         Ok((0..self.size()).map(entry).collect())
@@ -193,10 +257,12 @@ impl Oracle {
         Ok(Scene::new(&self.system, time, state, accelerations, inputs))
     }
 
-    /// M_jk = d^2 T/dq_j' dq_k', the upper half computed and mirrored.
-    fn mass(&self, scene: &Scene<'_>) -> DMatrix<f64> {
+    /// M_jk = d^2 T/dq_j' dq_k' and the magnitudes of its entries, the upper half computed
+    /// and mirrored.
+    fn mass(&self, scene: &Scene<'_>) -> (DMatrix<f64>, DMatrix<f64>) {
         let size = self.size();
         let mut mass = DMatrix::zeros(size, size);
+        let mut magnitude = DMatrix::zeros(size, size);
         for row in 0..size {
             for column in row..size {
                 let mut terms = self
@@ -211,13 +277,52 @@ impl Oracle {
                     continue;
                 }
                 let pass = Pass::new(scene, Direction::Rate(row), Direction::Rate(column));
-                let entry = terms.map(|term| pass.value(&term.tree).eps1eps2).sum();
-                mass[(row, column)] = entry;
-                mass[(column, row)] = entry;
+                let entry: Conditioned = terms.map(|term| pass.value(&term.tree).eps1eps2).sum();
+                for place in [(row, column), (column, row)] {
+                    mass[place] = entry.value;
+                    magnitude[place] = entry.magnitude;
+                }
             }
         }
-        mass
+        (mass, magnitude)
     }
+}
+
+/// Where a model lives, in SI.
+#[derive(Clone, Debug)]
+pub struct Ranges {
+    /// For each coordinate that is no mode; none for one that may be anywhere.
+    pub coordinates: Vec<Option<(f64, f64)>>,
+    /// For each input.
+    pub inputs: Vec<Option<(f64, f64)>>,
+}
+
+impl Ranges {
+    fn of(model: &Model, parameters: &[f64]) -> Self {
+        let ends = |range: &Range| range.ends(parameters);
+        let coordinates = model.coordinates.iter().map(|c| c.range.as_ref());
+        let inputs = model.inputs.iter().map(|input| input.range.as_ref());
+        Self {
+            coordinates: coordinates.map(|range| range.map(ends)).collect(),
+            inputs: inputs.map(|range| range.map(ends)).collect(),
+        }
+    }
+}
+
+/// Coordinates, modes at 0, then their rates.
+fn initial_state(model: &Model, order: usize, parameters: &[f64]) -> Vec<f64> {
+    let modes = vec![0.0; order * model.fields.len()];
+    let given = |expr: &Option<Expr>| {
+        let value = expr
+            .as_ref()
+            .map(|expr| evaluate_constant(expr, parameters));
+        value.unwrap_or(0.0)
+    };
+    let values = model.coordinates.iter().map(|c| given(&c.initial));
+    let rates = model.coordinates.iter().map(|c| given(&c.initial_rate));
+    let mut state: Vec<f64> = values.chain(modes.iter().copied()).collect();
+    state.extend(rates.chain(modes.iter().copied()));
+    state
 }
 
 /// Coordinates in the order of the model, then each field's modes `q_1 ..`.

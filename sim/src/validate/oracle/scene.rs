@@ -2,11 +2,12 @@
 //! differentiated there. Field values at all places are formed once per state: w is
 //! linear in the modes, so neither w nor its rate depends on the row under test.
 
+use super::evaluate::Number;
 use super::integrals::IntegralTable;
+use super::switches::Imposed;
 use super::system::System;
 use super::tree::Leaf;
 use nalgebra::{DVector, DVectorView};
-use num_dual::HyperDual64;
 
 /// A direction of differentiation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,9 +31,22 @@ pub(super) enum Direction {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     /// The value.
-    pub value: HyperDual64,
+    pub value: Number,
     /// The time derivative.
-    pub rate: HyperDual64,
+    pub rate: Number,
+}
+
+impl Motion {
+    /// A value with its rate, and how fast each changes in two directions.
+    pub fn new((value, rate): (f64, f64), [first, second]: [(f64, f64); 2]) -> Self {
+        let number = |re: f64, first: f64, second: f64| {
+            Number::new(re.into(), first.into(), second.into(), 0.0.into())
+        };
+        Self {
+            value: number(value, first.0, second.0),
+            rate: number(rate, first.1, second.1),
+        }
+    }
 }
 
 /// Field values of one order of derivative at all positions of a place set.
@@ -55,6 +69,8 @@ pub(super) struct Scene<'s> {
     pub inputs: &'s [f64],
     /// Derivatives of integrals, formed when first asked for.
     pub integrals: Vec<IntegralTable>,
+    /// Sides that piecewise functions take whatever the state says, if any.
+    pub imposed: Option<Imposed<'s>>,
     position: &'s [f64],
     rate: &'s [f64],
     acceleration: Option<&'s [f64]>,
@@ -76,6 +92,7 @@ impl<'s> Scene<'s> {
             time,
             inputs,
             integrals: Vec::new(),
+            imposed: None,
             position,
             rate,
             acceleration,
@@ -120,10 +137,7 @@ impl<'s> Scene<'s> {
     pub fn coordinate(&self, index: usize, directions: [Direction; 2]) -> Motion {
         let [first, second] = directions.map(|direction| self.seed(index, direction));
         let at = |values: &[f64]| values.get(index).copied().unwrap_or(f64::NAN);
-        Motion {
-            value: HyperDual64::new(at(self.position), first.0, second.0, 0.0),
-            rate: HyperDual64::new(at(self.rate), first.1, second.1, 0.0),
-        }
+        Motion::new((at(self.position), at(self.rate)), [first, second])
     }
 
     /// How fast a coordinate and its rate change in a direction.
@@ -160,10 +174,9 @@ impl<'s> Scene<'s> {
             Direction::LeafRate(other) if other == leaf => (0.0, 1.0),
             _ => (0.0, 0.0),
         });
-        Motion {
-            value: HyperDual64::new(at(values.map(|v| &v.value)), first.0, second.0, 0.0),
-            rate: HyperDual64::new(at(values.map(|v| &v.rate)), first.1, second.1, 0.0),
-        }
+        let value = at(values.map(|values| &values.value));
+        let rate = at(values.map(|values| &values.rate));
+        Motion::new((value, rate), [first, second])
     }
 
     /// The shape that multiplies generalised coordinate `row` in a field value: 0 unless

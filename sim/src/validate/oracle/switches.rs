@@ -61,6 +61,37 @@ impl Switch {
     }
 }
 
+/// Sides that piecewise functions are to take, whatever the state says.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Imposed<'s> {
+    /// The switches of the model.
+    pub switches: &'s [Switch],
+    /// A side for each.
+    pub sides: &'s [Side],
+}
+
+impl Imposed<'_> {
+    /// The side a function of these arguments is to take, if it is one of the switches.
+    pub fn side(&self, function: Function, arguments: &[Tree]) -> Option<Side> {
+        let (quantity, half_width) = switched_by(function, arguments)?;
+        let known =
+            |switch: &Switch| switch.quantity == quantity && switch.half_width == half_width;
+        let index = self.switches.iter().position(known)?;
+        self.sides.get(index).copied()
+    }
+}
+
+/// The quantity at whose zero, or at plus and minus the half-width beside it, a function
+/// switches; none for a smooth one.
+fn switched_by(function: Function, arguments: &[Tree]) -> Option<(Tree, Option<Tree>)> {
+    match (function, arguments) {
+        (Function::Abs | Function::Sign, [argument]) => Some((argument.clone(), None)),
+        (Function::Deadzone | Function::Contact, [p, b]) => Some((p.clone(), Some(b.clone()))),
+        (Function::Min | Function::Max, [left, right]) => Some((difference(left, right), None)),
+        _ => None,
+    }
+}
+
 impl Oracle {
     /// All switches at a state.
     ///
@@ -75,11 +106,11 @@ impl Oracle {
         let scene = self.scene(time, state, None, inputs)?;
         let pass = Pass::new(&scene, Direction::Still, Direction::Still);
         let value = |switch: &Switch| SwitchValue {
-            quantity: pass.value(&switch.quantity).re,
+            quantity: pass.value(&switch.quantity).re.value,
             half_width: switch
                 .half_width
                 .as_ref()
-                .map_or(0.0, |width| pass.value(width).re),
+                .map_or(0.0, |width| pass.value(width).re.value),
         };
         Ok(self.switches.iter().map(value).collect())
     }
@@ -107,7 +138,7 @@ impl Oracle {
         Ok(directions
             .map(|direction| {
                 let pass = Pass::new(&scene, Direction::Still, direction);
-                pass.value(&switch.quantity).eps2
+                pass.value(&switch.quantity).eps2.value
             })
             .collect())
     }
@@ -159,11 +190,8 @@ impl Search<'_> {
     }
 
     fn add(&mut self, function: Function, arguments: &[Tree]) {
-        let (quantity, half_width) = match (function, arguments) {
-            (Function::Abs | Function::Sign, [argument]) => (argument.clone(), None),
-            (Function::Deadzone | Function::Contact, [p, b]) => (p.clone(), Some(b.clone())),
-            (Function::Min | Function::Max, [left, right]) => (difference(left, right), None),
-            _ => return,
+        let Some((quantity, half_width)) = switched_by(function, arguments) else {
+            return;
         };
         let dependence = self.oracle.system.dependence(&quantity);
         let inside =

@@ -1,14 +1,13 @@
 //! One term of the specification as it enters every row of the equations.
 
 use super::OracleError;
+use super::conditioned::Conditioned;
 use super::equations::{RowTerm, RowTermKind};
-use super::evaluate::Pass;
+use super::evaluate::{Number, Pass};
 use super::lower::Lowering;
 use super::scene::{Direction, Scene};
 use super::tree::{Dependence, Tree};
 use model_spec::model::{Force, Term};
-use nalgebra::DVector;
-use num_dual::HyperDual64;
 
 /// An addend of a named term.
 #[derive(Debug)]
@@ -41,14 +40,11 @@ impl Lowered {
             }
             RowTermKind::Dissipation => self.derivative(scene, row, Direction::Rate(row)),
         };
-        RowTerm {
-            name: self.name.clone(),
-            kind,
-            rows: DVector::from_fn(scene.system.size, |row, _| entry(row)),
-        }
+        let rows = (0..scene.system.size).map(entry).collect();
+        RowTerm::new(&self.name, kind, rows)
     }
 
-    pub fn derivative(&self, scene: &Scene<'_>, row: usize, direction: Direction) -> f64 {
+    pub fn derivative(&self, scene: &Scene<'_>, row: usize, direction: Direction) -> Conditioned {
         self.part(scene, row, Direction::Still, direction, |value| value.eps2)
     }
 
@@ -58,12 +54,12 @@ impl Lowered {
         row: usize,
         first: Direction,
         second: Direction,
-        part: impl Fn(HyperDual64) -> f64,
-    ) -> f64 {
+        part: impl Fn(Number) -> Conditioned,
+    ) -> Conditioned {
         if scene.system.concerns(&self.dependence, row) {
             part(Pass::new(scene, first, second).value(&self.tree))
         } else {
-            0.0
+            Conditioned::default()
         }
     }
 }
@@ -74,18 +70,16 @@ impl LoweredForce {
         let value = Pass::new(scene, Direction::Still, Direction::Still)
             .value(&self.value)
             .re;
-        RowTerm {
-            name: self.name.clone(),
-            kind: RowTermKind::Force,
-            rows: DVector::from_fn(scene.system.size, |row, _| {
-                if scene.system.concerns(&self.dependence, row) {
-                    let pass = Pass::new(scene, Direction::Still, Direction::Position(row));
-                    -value * pass.value(&self.on).eps2
-                } else {
-                    0.0
-                }
-            }),
-        }
+        let entry = |row: usize| {
+            if scene.system.concerns(&self.dependence, row) {
+                let pass = Pass::new(scene, Direction::Still, Direction::Position(row));
+                -value * pass.value(&self.on).eps2
+            } else {
+                Conditioned::default()
+            }
+        };
+        let rows = (0..scene.system.size).map(entry).collect();
+        RowTerm::new(&self.name, RowTermKind::Force, rows)
     }
 }
 

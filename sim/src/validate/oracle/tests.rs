@@ -236,7 +236,7 @@ fn energy_changes_by_the_power_of_the_forces() {
                 .unwrap();
             let power = oracle.power(sample.time, state, inputs).unwrap();
             assert!(oracle.is_scleronomic(sample.time, state, inputs).unwrap());
-            assert!((rate.value - power.value).abs() < 1e-13 * rate.scale.max(power.scale));
+            assert!((rate.value - power.value).abs() < 1e-13 * rate.magnitude.max(power.magnitude));
         }
     }
 }

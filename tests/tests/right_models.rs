@@ -1,0 +1,256 @@
+//! Right models that are hard to judge: everything cancels in a row, functions have a domain,
+//! the energy grows by honest work, the motion comes to rest, switches drop out. Their
+//! certificates pass, and say how much was looked at.
+
+use eomgen_tests::certified::{certificate, checked};
+use sim::validate::certificate::{Certificate, Check};
+
+/// Asserts that the model of a text passes; its certificate.
+fn passes(text: &str) -> Certificate {
+    let model = checked(text);
+    let certificate = certificate(&model, &model);
+    let failures: Vec<_> = certificate.failures().collect();
+    assert!(certificate.passed, "{failures:#?}\n{text}");
+    certificate
+}
+
+/// Asserts that the equations of a changed text fail where those of the text pass.
+fn differs(text: &str, part: &str, changed: &str) {
+    assert!(text.contains(part), "{part} in\n{text}");
+    let (model, subject) = (checked(text), checked(&text.replace(part, changed)));
+    let certificate = certificate(&model, &subject);
+    assert!(!certificate.passed, "{changed} in\n{text}");
+}
+
+fn find<'c>(certificate: &'c Certificate, name: &str) -> &'c Check {
+    let mut checks = certificate.checks.iter();
+    checks.find(|check| check.name == name).expect(name)
+}
+
+const ROTOR: &str = r#"
+[model]
+name = "rotor"
+[parameters]
+m = { value = 1.2, unit = "kg" }
+l = { value = 0.3, unit = "m" }
+k = { value = 2, unit = "N m" }
+[coordinates]
+theta = { unit = "rad", initial_rate = 1 }
+[definitions]
+x = "l*sin(theta)"
+y = "-l*cos(theta)"
+[kinetic]
+point = "1/2*m*(dot(x)^2 + dot(y)^2)"
+"#;
+
+#[test]
+fn a_free_rotor_written_by_its_point_passes() {
+    passes(ROTOR);
+    differs(ROTOR, "sin(theta)", "sin(1.0000001*theta)");
+}
+
+#[test]
+fn a_rotor_in_play_passes_in_and_out_of_it() {
+    let text = ROTOR.to_owned() + "[potential]\nstops = \"1/2*k*deadzone(theta, 0.5)^2\"\n";
+    let certificate = passes(&text);
+    for side in ["-", "0", "+"] {
+        assert!(find(&certificate, &format!("accelerations theta{side}")).passed);
+    }
+    differs(&text, "deadzone(theta, 0.5)", "deadzone(theta, 0.5000001)");
+}
+
+#[test]
+fn one_sided_springs_pass() {
+    let text = ROTOR.to_owned()
+        + "[potential]\nupper = \"1/2*k*max(theta - 0.1, 0)^2\"\n\
+           lower = \"1/2*k*min(x/l + 0.2, 0)^2\"\n";
+    passes(&text);
+    differs(&text, "theta - 0.1", "theta - 0.1000001");
+}
+
+/// Two masses with a potential of `x` to be given.
+fn masses(potential: &str) -> String {
+    format!(
+        r#"
+[model]
+name = "masses"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+k = {{ value = 3, unit = "N/m" }}
+L = {{ value = 0.7, unit = "m" }}
+[coordinates]
+x = {{ unit = "m", initial = 0.3, initial_rate = 0.1 }}
+y = {{ unit = "m", initial = 0.2 }}
+[kinetic]
+masses = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+of_x = "{potential}"
+of_y = "1/2*k*(y - x)^2"
+"#
+    )
+}
+
+#[test]
+fn functions_with_a_domain_are_judged_inside_it() {
+    for potential in [
+        "k*L^2*ln(x/L)",
+        "k*L^2*(x/L)^1.5",
+        "k*L^2*sqrt(0.5 - x/L)",
+        // The domain is narrow: a twentieth of what states are drawn from.
+        "k*L^2*asin(20*(x/L - 0.42))",
+    ] {
+        let text = masses(potential);
+        let certificate = passes(&text);
+        let detail = &find(&certificate, "accelerations").detail;
+        assert!(detail.starts_with("200 states ("), "{detail}");
+        assert!(detail.contains("drawn again"), "{detail}");
+        differs(&text, "k*L^2*", "1.0000001*k*L^2*");
+    }
+}
+
+#[test]
+fn a_model_without_a_domain_fails_and_says_so() {
+    let text = masses("k*L^2*ln(-1 - (x/L)^2)");
+    let model = checked(&text);
+    let certificate = certificate(&model, &model);
+    assert!(!certificate.passed);
+    let domain = find(&certificate, "domain");
+    assert!(!domain.passed && !domain.skipped);
+    assert!(
+        domain
+            .detail
+            .contains("no state of the model's domain was found")
+    );
+}
+
+const SPEAKER: &str = r#"
+[model]
+name = "speaker"
+[parameters]
+R = { value = 6, unit = "ohm" }
+L_0 = { value = 0.5, unit = "mH" }
+L_1 = { value = -20, unit = "mH/m" }
+Bl = { value = 7, unit = "N/A" }
+Bl_2 = { value = -5e4, unit = "N/(A m^2)" }
+m = { value = 12, unit = "g" }
+k = { value = 1500, unit = "N/m" }
+k_3 = { value = 2e7, unit = "N/m^3" }
+r = { value = 1.2, unit = "N s/m" }
+U = { value = 8, unit = "V" }
+omega = { value = 377, unit = "rad/s" }
+[coordinates]
+q = { unit = "C" }
+x = { unit = "m" }
+[definitions]
+flux = "Bl*x + 1/3*Bl_2*x^3"
+[kinetic]
+coil = "1/2*(L_0 + L_1*x)*dot(q)^2 + flux*dot(q)"
+cone = "1/2*m*dot(x)^2"
+[potential]
+suspension = "1/2*k*x^2 + 1/4*k_3*x^4"
+[dissipation]
+losses = "1/2*R*dot(q)^2 + 1/2*r*dot(x)^2"
+[forces]
+amplifier = { on = "q", value = "U*sin(omega*t)" }
+"#;
+
+#[test]
+fn a_loudspeaker_passes_with_and_without_saying_where_its_cone_lives() {
+    passes(SPEAKER);
+    differs(SPEAKER, "L_1*x)", "1.000001*L_1*x)");
+    let ranged = SPEAKER.replace(
+        "x = { unit = \"m\" }",
+        "x = { unit = \"m\", range = [-0.005, 0.005] }",
+    );
+    let certificate = passes(&ranged);
+    let detail = &find(&certificate, "accelerations").detail;
+    assert!(
+        detail.starts_with("200 states, "),
+        "none drawn again: {detail}"
+    );
+    differs(&ranged, "L_1*x)", "1.000001*L_1*x)");
+}
+
+#[test]
+fn a_slider_crank_with_gas_force_passes() {
+    let text = r#"
+[model]
+name = "slider"
+[parameters]
+r = { value = 40, unit = "mm" }
+l = { value = 140, unit = "mm" }
+J = { value = 0.01, unit = "kg m^2" }
+m = { value = 0.5, unit = "kg" }
+p_0 = { value = 100, unit = "kPa" }
+A = { value = 50, unit = "cm^2" }
+V_0 = { value = 40, unit = "cm^3" }
+[coordinates]
+phi = { unit = "rad", initial_rate = 100 }
+[definitions]
+beta = "asin(r*sin(phi)/l)"
+x = "r*cos(phi) + l*cos(beta)"
+volume = "V_0 + A*(r + l - x)"
+[kinetic]
+crank = "1/2*J*dot(phi)^2"
+piston = "1/2*m*dot(x)^2"
+[forces]
+gas = { on = "x", value = "-p_0*(((V_0 + 2*A*r)/volume)^1.35 - 1)*A" }
+"#;
+    passes(text);
+    differs(text, "^1.35", "^1.3500001");
+}
+
+#[test]
+fn a_damped_model_that_has_come_to_rest_passes() {
+    let text = r#"
+[model]
+name = "damped"
+[parameters]
+m = { value = 1.4, unit = "kg" }
+L = { value = 0.8, unit = "m" }
+E = { value = 1.2, unit = "J" }
+tau = { value = 0.3, unit = "s" }
+[coordinates]
+x = { unit = "rad", initial = -0.4 }
+y = { unit = "rad", initial = 0.6, initial_rate = -0.4 }
+[kinetic]
+both = "1/2*m*(L*dot(x))^2 + 1/2*m*(L*dot(y))^2 + 0.2*m*L^2*dot(x)*dot(y)"
+[potential]
+spring = "E*asin(0.7*tanh(asin(0.7*tanh(pi*x))))"
+[dissipation]
+y = "90*E/tau*(1.1 + sin(y))*(dot(y)*tau)^2"
+x = "0.2*E/tau*(dot(x)*tau)^2"
+"#;
+    let certificate = passes(text);
+    let detail = &find(&certificate, "power_balance").detail;
+    assert!(detail.starts_with("200 steps"), "{detail}");
+    differs(text, "0.2*E/tau", "0.2000001*E/tau");
+}
+
+#[test]
+fn switches_that_drop_out_of_the_equations_need_no_guard() {
+    let text = masses("k*L^2*contact(x, L/2)*sin(sqrt(k/m)*t)");
+    passes(&text);
+    // In the equations a switch must be told: the same text as a force.
+    let force =
+        masses("k*x^2") + "[forces]\nstep = { on = \"x\", value = \"k*L*contact(x, L/2)\" }\n";
+    passes(&force);
+    differs(&force, "contact(x, L/2)", "1");
+}
+
+#[test]
+fn energies_of_time_and_terms_linear_in_the_rates_have_the_power_they_should() {
+    let gyroscopic = masses("k*x^2*(1 + m/(m + m))").replace(
+        "[potential]",
+        "gyro = \"m*L*sqrt(k/m)*dot(y)*max(0.5, x/L)\"\nfar = \"m*L*sqrt(k/m)*dot(x)*exp(tanh(y/L))\"\n[potential]",
+    );
+    let certificate = passes(&gyroscopic);
+    assert!(find(&certificate, "power_balance").passed);
+    let timed = masses("k*x^2*(2 + sin(sqrt(k/m)*t))").replace(
+        "(dot(x)^2 + dot(y)^2)",
+        "(dot(x)^2 + dot(y)^2)*(2 + sin(sqrt(k/m)*t))",
+    );
+    let certificate = passes(&timed);
+    assert!(find(&certificate, "power_balance").passed);
+    assert!(find(&certificate, "power").passed);
+}

@@ -1,0 +1,104 @@
+//! Random smooth models that are right: their certificates must say so, and must not say so
+//! of models that differ in a single term by a ten-millionth.
+//!
+//! A few models each time; more of another seed by
+//!
+//! ```console
+//! $ EOMGEN_SMOOTH_MODELS=300 EOMGEN_SMOOTH_SEED=7 \
+//!       cargo test --release -p eomgen-tests --test smooth_models -- --nocapture
+//! ```
+
+use codegen::evaluator::Point;
+use eomgen_tests::certified::{certificate, checked};
+use eomgen_tests::models::variant;
+use eomgen_tests::smooth_models::{SmoothModel, SmoothModels};
+use model_spec::model::Model;
+
+fn number(name: &str, absent: u64) -> u64 {
+    let given = std::env::var(name).ok();
+    given.map_or(absent, |text| text.parse().expect("a whole number"))
+}
+
+/// Whether the motion can begin: of a model that is no machine at its own initial state
+/// nothing is asked.
+fn begins(model: &Model) -> bool {
+    let mut evaluator = variant(model, 0).evaluator;
+    let state = model.initial_state(&[]).expect("a state");
+    let inputs = vec![0.0; model.inputs.len()];
+    let mut rates = vec![0.0; state.len()];
+    let point = Point {
+        t: 0.0,
+        state: &state,
+        inputs: &inputs,
+    };
+    evaluator.rates(point, &mut rates);
+    evaluator.pivots_are_positive() && rates.iter().all(|rate| rate.is_finite())
+}
+
+/// The next model of which something can be asked.
+fn next(models: &mut SmoothModels) -> (SmoothModel, Model) {
+    loop {
+        let written = models.model();
+        let model = checked(&written.text);
+        if begins(&model) {
+            return (written, model);
+        }
+    }
+}
+
+#[test]
+fn right_models_are_not_called_wrong() {
+    let (count, seed) = (
+        number("EOMGEN_SMOOTH_MODELS", 12),
+        number("EOMGEN_SMOOTH_SEED", 1),
+    );
+    let mut models = SmoothModels::new(seed);
+    let mut alarms = Vec::new();
+    for place in 0..count {
+        let (written, model) = next(&mut models);
+        let certificate = certificate(&model, &model);
+        if !certificate.passed {
+            let failures: Vec<_> = certificate.failures().collect();
+            alarms.push(format!("# {place}\n{}{failures:#?}", written.text));
+        }
+    }
+    println!(
+        "{} false alarms of {count} right models, seed {seed}",
+        alarms.len()
+    );
+    assert!(
+        alarms.len() as u64 <= count / 300,
+        "{} of {count}:\n{}",
+        alarms.len(),
+        alarms.join("\n\n")
+    );
+}
+
+#[test]
+fn a_term_that_differs_by_a_ten_millionth_is_seen() {
+    let (count, seed) = (
+        number("EOMGEN_SMOOTH_MODELS", 12) / 3,
+        number("EOMGEN_SMOOTH_SEED", 1),
+    );
+    let mut models = SmoothModels::new(seed);
+    let (mut faults, mut unseen) = (0, Vec::new());
+    for _ in 0..count {
+        let (written, model) = next(&mut models);
+        for (section, name, term) in &written.terms {
+            let right = format!("\"{term}\"");
+            let line = written
+                .text
+                .lines()
+                .find(|line| line.starts_with(&format!("{name} = ")))
+                .expect("the term's line");
+            let wrong = line.replace(&right, &format!("\"({term})*1.0000001\""));
+            let subject = checked(&written.text.replace(line, &wrong));
+            faults += 1;
+            if certificate(&model, &subject).passed {
+                unseen.push(format!("[{section}] {line}\n{}", written.text));
+            }
+        }
+    }
+    println!("{} of {faults} faults not seen, seed {seed}", unseen.len());
+    assert!(unseen.is_empty(), "{}", unseen.join("\n\n"));
+}
