@@ -15,6 +15,7 @@ mod page;
 mod parquet_file;
 mod problem;
 mod progress;
+mod ranges;
 mod table;
 mod variant;
 

@@ -88,6 +88,11 @@ impl Run {
         &self.columns
     }
 
+    /// The inputs that drive it.
+    pub fn inputs(&self) -> &HeldInputs {
+        &self.inputs
+    }
+
     /// The states at the given times, with a progress bar for a run that takes long.
     pub fn simulate(&self, times: &[f64]) -> Outcome<Simulated> {
         let Some((equations, model)) = &self.exact else {

@@ -51,6 +51,11 @@ enum Neighbour<'a> {
 }
 
 impl<'a> Crew<'a> {
+    /// A state moved to where the model lives.
+    pub fn admissible(&self, state: Vec<f64>) -> Vec<f64> {
+        self.shooting.plant.admissible(state)
+    }
+
     /// The crew at these unknowns, if there is a motion.
     pub fn new(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
         let values = shooting.values(theta);

@@ -255,7 +255,8 @@ fn followed(
                     .and_then(|w| w.start_step(&change, damping, prior));
                 match step {
                     Some(step) if shooting.ranges.is_some() => {
-                        start.iter().zip(step.iter()).map(|(x, d)| x + d).collect()
+                        let moved = start.iter().zip(step.iter()).map(|(x, d)| x + d);
+                        shooting.plant.admissible(moved.collect())
                     }
                     _ => start.clone(),
                 }
@@ -359,11 +360,8 @@ fn settle_seen(
         let held = DVector::zeros(linear.by_unknown.ncols());
         let better = START_DAMPING.iter().find_map(|damping| {
             let step = window.start_step(&held, *damping, prior)?;
-            let moved: Vec<f64> = present
-                .iter()
-                .zip(step.iter())
-                .map(|(x, d)| x + d)
-                .collect();
+            let moved = present.iter().zip(step.iter()).map(|(x, d)| x + d);
+            let moved = crew.admissible(moved.collect());
             let total = total(&crew.residual(place, &moved)?, &moved);
             (total < cost).then_some((moved, total))
         });

@@ -41,6 +41,8 @@ pub struct Plant {
     pub values: Vec<f64>,
     /// The names of the states.
     pub states: Vec<String>,
+    /// Where each coordinate lives, for those of which the specification says so.
+    ranges: Vec<Option<(f64, f64)>>,
     code: Code,
     linear: Option<LinearPart>,
     pub(crate) outputs: Vec<Output>,
@@ -133,6 +135,9 @@ impl Plant {
         let orders = model.orders(order).map_err(|error| error.to_string())?;
         let variant = Variant::derive(&model, &orders).map_err(|d| d.render(false))?;
         let states = model.state_names(&orders);
+        let ranges = model
+            .coordinate_ranges()
+            .map_err(|error| error.to_string())?;
         let program = variant.program;
         let independent =
             |p: &&model_spec::model::Parameter| matches!(p.value, ParameterValue::Number(_));
@@ -156,6 +161,7 @@ impl Plant {
             parameters,
             values: program.default_parameters(),
             states,
+            ranges,
             code: Code::of(program),
             linear: None,
             steps: None,
@@ -164,6 +170,16 @@ impl Plant {
             model,
             orders,
         })
+    }
+
+    /// A state moved to where the model lives.
+    pub fn admissible(&self, mut state: Vec<f64>) -> Vec<f64> {
+        for (entry, range) in state.iter_mut().zip(&self.ranges) {
+            if let Some((low, high)) = range {
+                *entry = entry.clamp(*low, *high);
+            }
+        }
+        state
     }
 
     /// The place of an independent parameter among the values.
@@ -330,4 +346,30 @@ fn linear_part(text: &str, name: &str, order: Option<usize>, plant: &Plant) -> O
         exact,
         beside: Some((Code::of(program), places)),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SPEAKER: &str = r#"[model]
+name = "speaker"
+[parameters]
+m = { value = 10, unit = "g" }
+b = { value = 5, unit = "mm" }
+[coordinates]
+y = { unit = "m" }
+x = { unit = "m", range = ["-b", "b"] }
+[kinetic]
+masses = "1/2*m*(dot(x)^2 + dot(y)^2)"
+"#;
+
+    #[test]
+    fn an_initial_state_stays_where_the_model_lives() {
+        let plant = Plant::equations(SPEAKER, "speaker", None, &[]).expect("a plant");
+        let moved = |x: f64| plant.admissible(vec![9.0, x, 9.0, 9.0]);
+        assert_eq!(moved(0.02), [9.0, 0.005, 9.0, 9.0]);
+        assert_eq!(moved(-0.02), [9.0, -0.005, 9.0, 9.0]);
+        assert_eq!(moved(0.002), [9.0, 0.002, 9.0, 9.0]);
+    }
 }

@@ -86,6 +86,8 @@ pub fn first_state(
                     Quantity::Observable(_) => {}
                 }
             }
+            // Noise may put what is measured beyond where the model lives.
+            state = plant.admissible(state);
         }
     }
     state

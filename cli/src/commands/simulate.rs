@@ -8,6 +8,7 @@ use crate::arguments::{Simulate, Solver};
 use crate::motion::{Run, Simulated};
 use crate::output::{file_place, write_file};
 use crate::problem::{Outcome, Problem, say, warn};
+use crate::ranges::warn_of_ranges;
 use crate::table::Table;
 use crate::variant::{derive_variant, load, orders};
 
@@ -39,6 +40,7 @@ pub fn run(options: &Simulate) -> Outcome {
     let run = Run::new(&variant, inputs, options.solver, tolerance)?;
     check_size(times.len(), run.columns().len())?;
     let simulated = run.simulate(&times)?;
+    warn_of_ranges(&variant.model, &simulated.trajectory, run.inputs())?;
     let table = run.table(&simulated.trajectory);
     write_file(&options.out, &table.encode(&options.out)?)?;
     say(&summary(options, &table, &simulated))

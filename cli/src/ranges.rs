@@ -1,0 +1,45 @@
+//! Whether a motion stays where its model lives: what is said when a coordinate or an input
+//! leaves its range.
+
+use model_spec::model::Model;
+use sim::record::HeldInputs;
+use sim::solve::Trajectory;
+
+use crate::problem::{Outcome, Problem, warn};
+
+/// Warns of every coordinate and input that leaves its range, with the first time at which a
+/// sample shows it.
+pub fn warn_of_ranges(model: &Model, trajectory: &Trajectory, inputs: &HeldInputs) -> Outcome {
+    let problem = |error| Problem::model(&model.source, error);
+    let coordinates = model.coordinate_ranges().map_err(problem)?;
+    for (place, coordinate) in model.coordinates.iter().enumerate() {
+        let samples = trajectory.times.iter().zip(&trajectory.states);
+        let values = samples.map(|(t, state)| (*t, state[place]));
+        let unit = coordinate.unit.to_string();
+        say_first(&coordinate.name, &unit, coordinates[place], values);
+    }
+    let ranges = model.input_ranges().map_err(problem)?;
+    for (place, input) in model.inputs.iter().enumerate() {
+        let times = trajectory.times.iter();
+        let values = times.map(|t| (*t, inputs.at(*t)[place]));
+        say_first(&input.name, &input.unit.to_string(), ranges[place], values);
+    }
+    Ok(())
+}
+
+/// Warns of the first of the values that lies outside the range.
+fn say_first(
+    name: &str,
+    unit: &str,
+    range: Option<(f64, f64)>,
+    mut values: impl Iterator<Item = (f64, f64)>,
+) {
+    let Some((low, high)) = range else { return };
+    let outside = |(_, value): &(f64, f64)| !(low..=high).contains(value);
+    if let Some((t, value)) = values.find(outside) {
+        warn(&format!(
+            "warning: `{name}` leaves its range {low} to {high} {unit}: it is {value} at t = {t} s; \
+             the model says nothing of what comes after"
+        ));
+    }
+}
