@@ -246,6 +246,12 @@ fn energies_of_time_and_terms_linear_in_the_rates_have_the_power_they_should() {
     );
     let certificate = passes(&gyroscopic);
     assert!(find(&certificate, "power_balance").passed);
+    // Where x is small the term is nothing beside the others, and its rate is not.
+    let steep = masses("k*x^2").replace(
+        "[potential]",
+        "gyro = \"m*L*sqrt(k/m)*dot(y)*(x/L)^21\"\n[potential]",
+    );
+    passes(&steep);
     let timed = masses("k*x^2*(2 + sin(sqrt(k/m)*t))").replace(
         "(dot(x)^2 + dot(y)^2)",
         "(dot(x)^2 + dot(y)^2)*(2 + sin(sqrt(k/m)*t))",
