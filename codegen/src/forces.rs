@@ -21,7 +21,10 @@ pub(crate) fn applied_forces(
     let mut rows: Vec<(f64, Rows)> = vec![(-1.0, drag)];
     for force in &translator.model.forces {
         let value = translator.node(&force.value)?;
-        translator.graph.suggest_name(value, &force.name);
+        // A force may be called what means something else in a formula.
+        if model_spec::reserved(&force.name).is_none() {
+            translator.graph.suggest_name(value, &force.name);
+        }
         named.push(value);
         let on = translator.node(&force.on)?;
         if translator

@@ -50,13 +50,7 @@ pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
     let parameters = model.parameters.iter().map(|p| (&p.name, p.span));
     let inputs = model.inputs.iter().map(|i| (&i.name, i.span));
     let definitions = model.definitions.iter().map(|d| (&d.name, d.span));
-    let mut warn = |kind: &str, name: &str, span| {
-        warnings.push(
-            Diagnostic::warning(format!("the {kind} `{name}` is not used"))
-                .at(span, "nothing refers to it")
-                .help("remove it, or use it where it was meant"),
-        );
-    };
+    let mut warn = |kind, name: &str, span| warnings.push(Diagnostic::unused(kind, name, span));
     for ((name, span), used) in parameters.zip(used.parameters) {
         if !used {
             warn("parameter", name, span);

@@ -43,6 +43,9 @@ pub struct Diagnostic {
     pub secondary: Vec<Label>,
     /// What would be right, if known.
     pub help: Option<String>,
+    /// For something declared that nothing refers to: what kind of thing, and its name.
+    /// People read all of a kind in one line.
+    pub unused: Option<(&'static str, String)>,
 }
 
 impl Diagnostic {
@@ -54,7 +57,18 @@ impl Diagnostic {
             primary: None,
             secondary: Vec::new(),
             help: None,
+            unused: None,
         }
+    }
+
+    /// A warning of something declared that nothing refers to.
+    pub fn unused(kind: &'static str, name: &str, span: Span) -> Self {
+        Self {
+            unused: Some((kind, name.to_owned())),
+            ..Self::warning(format!("the {kind} `{name}` is not used"))
+        }
+        .at(span, "nothing refers to it")
+        .help("remove it, or use it where it was meant")
     }
 
     /// A warning, so far without a place.
@@ -191,7 +205,8 @@ impl Diagnostics {
     }
 
     /// All findings for people: file, line and column, the text underlined, what is wrong
-    /// and what would be right. With `colour`, with terminal escapes.
+    /// and what would be right; what is not used in one line. With `colour`, with terminal
+    /// escapes.
     pub fn render(&self, colour: bool) -> String {
         let renderer = if colour {
             Renderer::styled()
@@ -201,12 +216,58 @@ impl Diagnostics {
         let mut parts: Vec<String> = self
             .list
             .iter()
+            .filter(|diagnostic| diagnostic.unused.is_none())
             .map(|diagnostic| renderer.render(&[self.group(diagnostic)]))
             .collect();
+        let unused = self.unused_lines();
+        let lines = unused.iter().map(|line| {
+            renderer.render(&[Group::with_title(
+                Level::WARNING.primary_title(line.as_str()),
+            )])
+        });
+        parts.extend(lines);
         if self.omitted > 0 {
             parts.push(format!("and {} more", self.omitted));
         }
         parts.join("\n\n")
+    }
+
+    /// For each kind of thing of which any is not used, their names and places.
+    fn unused_lines(&self) -> Vec<String> {
+        let mut kinds: Vec<(&str, Vec<&str>, Vec<String>)> = Vec::new();
+        for diagnostic in &self.list {
+            let Some((kind, name)) = &diagnostic.unused else {
+                continue;
+            };
+            let record = self.record(diagnostic);
+            let place = record.line.zip(record.column);
+            let place = place.map_or_else(String::new, |(line, column)| format!("{line}:{column}"));
+            match kinds.iter_mut().find(|(known, ..)| known == kind) {
+                Some((_, names, places)) => {
+                    names.push(name);
+                    places.push(place);
+                }
+                None => kinds.push((kind, vec![name], vec![place])),
+            }
+        }
+        let kinds = kinds.iter();
+        kinds
+            .map(|(kind, names, places)| self.unused_line(kind, names, places))
+            .collect()
+    }
+
+    fn unused_line(&self, kind: &str, names: &[&str], places: &[String]) -> String {
+        let (ending, verb) = if names.len() == 1 {
+            ("", "is")
+        } else {
+            ("s", "are")
+        };
+        format!(
+            "the {kind}{ending} `{}` {verb} not used ({}:{})",
+            names.join("`, `"),
+            self.source.path,
+            places.join(", ")
+        )
     }
 
     /// All findings for programs.

@@ -36,4 +36,5 @@ pub mod unit;
 mod units_check;
 pub mod variant;
 
+pub use functions::reserved;
 pub use load::{Checked, MAX_SIZE, check, load, load_from};

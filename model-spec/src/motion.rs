@@ -206,8 +206,8 @@ impl Checker<'_, '_> {
         }
         motion.rate = motion.rate.or(Some(operand.span));
         motion.rates.extend(inner.values.iter().copied());
-        // The rate of a definition depends on the coordinates too.
-        if matches!(operand.kind, ExprKind::Definition(_)) {
+        // The rate of a definition, or of a field's function, depends on the coordinates too.
+        if matches!(operand.kind, ExprKind::Definition(_) | ExprKind::At { .. }) {
             motion.values.extend(inner.values);
         }
         motion.time |= inner.time;

@@ -152,14 +152,14 @@ impl Names {
         self.symbols.insert(name.text.clone(), (symbol, name.span));
     }
 
-    /// Terms and forces have names of their own that no expression uses.
+    /// Terms and forces have names of their own that no expression uses: any word will do.
     fn check_terms(&self, document: &Document, found: &mut Diagnostics) {
         let terms = document.kinetic.iter();
         let terms = terms
             .chain(&document.potential)
             .chain(&document.dissipation);
         for term in terms.chain(document.forces.iter().map(|(term, _)| term)) {
-            found.keep(identifier(&term.name));
+            found.keep(word(&term.name));
         }
     }
 
@@ -226,21 +226,31 @@ fn taken(name: &Name, owner: &str) -> Diagnostic {
 
 /// Checks that a name is an identifier in every language that code is emitted in.
 fn identifier(name: &Name) -> Result<(), Diagnostic> {
+    word(name)?;
     let text = name.text.as_str();
-    let error = |message: String| Diagnostic::error(message).at(name.span, "this name");
+    match reserved(text) {
+        Some(why) => Err(unfit(name, format!("`{text}` cannot be a name: it {why}"))
+            .help(format!("for example `{text}_1`"))),
+        None => Ok(()),
+    }
+}
+
+fn unfit(name: &Name, message: String) -> Diagnostic {
+    Diagnostic::error(message).at(name.span, "this name")
+}
+
+/// Checks that a name is made of letters, digits and underscores, whatever it means elsewhere.
+fn word(name: &Name) -> Result<(), Diagnostic> {
+    let text = name.text.as_str();
     let fit = text.starts_with(|first: char| first.is_ascii_alphabetic())
         && text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_');
     if !fit {
-        return Err(error(format!("{} cannot be a name", quoted(text)))
+        return Err(unfit(name, format!("{} cannot be a name", quoted(text)))
             .help("a name is a letter a-z or A-Z, then letters, digits and `_`"));
     }
     if text.len() > MAX_NAME {
         let message = format!("the name {} is too long", quoted(text));
-        return Err(error(message).help(format!("at most {MAX_NAME} characters")));
+        return Err(unfit(name, message).help(format!("at most {MAX_NAME} characters")));
     }
-    match reserved(text) {
-        Some(why) => Err(error(format!("`{text}` cannot be a name: it {why}"))
-            .help(format!("for example `{text}_1`"))),
-        None => Ok(()),
-    }
+    Ok(())
 }

@@ -7,6 +7,9 @@ use crate::model::{MAX_ORDER, Model, Parameter, ParameterValue, Range};
 use crate::span::Span;
 use crate::suggest::did_you_mean;
 
+/// The most names that a message suggests.
+const MOST_NAMES: usize = 12;
+
 /// Why a model cannot be had with these numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ModelError {
@@ -153,15 +156,8 @@ impl Model {
 
     fn set(&mut self, name: &str, value: f64) -> Result<(), ModelError> {
         let Some(index) = self.parameters.iter().position(|known| known.name == name) else {
-            let known = self
-                .parameters
-                .iter()
-                .map(|parameter| parameter.name.as_str());
             let error = ModelError::new(format!("the model has no parameter `{name}`"));
-            return Err(match did_you_mean(name, known) {
-                Some(help) => error.help(help),
-                None => error.help("the parameters are the entries of the section [parameters]"),
-            });
+            return Err(error.help(self.parameters_like(name)));
         };
         if !value.is_finite() {
             let message = format!("`{name}` cannot be {value}");
@@ -170,6 +166,36 @@ impl Model {
         let parameter = &mut self.parameters[index];
         parameter.value = ParameterValue::Number(parameter.unit.to_si(value));
         Ok(())
+    }
+
+    /// Which parameters may have been meant by a name: the nearest, those that share a part of
+    /// it, or the first of all.
+    fn parameters_like(&self, name: &str) -> String {
+        let known = || self.parameters.iter().map(|known| known.name.as_str());
+        if let Some(help) = did_you_mean(name, known()) {
+            return help;
+        }
+        if self.coordinates.iter().any(|known| known.name == name) {
+            return format!("`{name}` is a coordinate: its `initial` says where it begins");
+        }
+        let alike: Vec<&str> = known().filter(|known| share_a_part(name, known)).collect();
+        let (intro, names) = match alike.len() {
+            0 => ("the parameters are", known().collect()),
+            _ => ("did you mean one of", alike),
+        };
+        let more = match names.len().saturating_sub(MOST_NAMES) {
+            0 => "",
+            _ => ", ...",
+        };
+        let names: Vec<String> = names
+            .iter()
+            .take(MOST_NAMES)
+            .map(|name| format!("`{name}`"))
+            .collect();
+        match names.as_slice() {
+            [] => "the model has none".to_owned(),
+            names => format!("{intro} {}{more}", names.join(", ")),
+        }
     }
 
     /// The order of each field: its own, or `order` for all of them.
@@ -268,6 +294,14 @@ fn check_inside(name: &str, range: &Range, values: &[f64], initial: f64) -> Resu
     Err(ModelError::new(message)
         .at(range.span)
         .help("give an initial value inside, or a wider range"))
+}
+
+/// Whether two names have a part in common, as `backlash_sp` and `b_sp`: one of two letters or
+/// more, or the whole of either.
+fn share_a_part(one: &str, other: &str) -> bool {
+    let (one, other) = (one.to_lowercase(), other.to_lowercase());
+    let mut parts = one.split('_');
+    parts.any(|part| part.len() > 1 && other.split('_').any(|known| known == part))
 }
 
 fn check_value(parameter: &Parameter, value: f64) -> Result<(), ModelError> {

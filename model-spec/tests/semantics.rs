@@ -179,6 +179,97 @@ fn rates_and_derivatives_of_fields_have_one_form() {
     assert_eq!(second, 1, "a derivative of a derivative is one of order 2");
 }
 
+/// The rate of what a field is at a place is what its rate is there.
+#[test]
+fn the_rate_at_a_place_has_one_form() {
+    let observables = |value: &str| {
+        let text = BEAM.replace(
+            "slope_rate = \"at(dot(diff(w, x)), l)\"",
+            &format!("slope_rate = \"{value}\""),
+        );
+        checked(&text).model.observables[1].clone()
+    };
+    let kind = |value: &str| {
+        let observable = observables(value);
+        let mut kinds = Vec::new();
+        observable
+            .value
+            .visit(&mut |part| kinds.push(format!("{:?}", std::mem::discriminant(&part.kind))));
+        (observable.unit.to_string(), kinds)
+    };
+    assert_eq!(kind("dot(at(w, l))"), kind("at(dot(w), l)"));
+    assert_eq!(
+        kind("dot(at(diff(w, x, 1), l))"),
+        kind("at(dot(diff(w, x)), l)")
+    );
+    assert_eq!(kind("dot(at(x*w, l))").0, "m^2/s");
+    for (value, wrong) in [
+        ("dot(at(dot(w), l))", "acceleration"),
+        ("dot(at(x, l))", "no rate"),
+    ] {
+        let found = refused(&BEAM.replace("at(dot(diff(w, x)), l)", value));
+        assert!(found.contains(wrong), "{value}: {found}");
+    }
+}
+
+/// Terms and forces have names of their own; quantities have not.
+#[test]
+fn terms_may_be_called_anything() {
+    for name in [
+        "t", "energy", "loop", "power", "fn", "sin", "pi", "dot", "theta", "q_1",
+    ] {
+        let text = BEAM
+            .replace("beam = \"1/2", &format!("{name} = \"1/2"))
+            .replace("bending = {", &format!("{name} = {{"))
+            .replace("motor = {", &format!("{name} = {{"));
+        let model = checked(&text).model;
+        assert_eq!(
+            (&*model.kinetic[0].name, &*model.forces[0].name),
+            (name, name)
+        );
+    }
+    assert!(refused(&BEAM.replace("motor = {", "\"mo tor\" = {")).contains("cannot be a name"));
+    assert!(
+        refused(&BEAM.replace("torque = \"u - 0\"", "loop = \"u - 0\""))
+            .contains("cannot be a name")
+    );
+}
+
+#[test]
+fn what_is_not_used_takes_one_line() {
+    let more = "[parameters]\ng = { value = 9.81, unit = \"m/s^2\" }\nh_2 = { value = 1 }\n";
+    let warnings = checked(&BEAM.replace("[parameters]\n", more)).warnings;
+    let shown = warnings.render(false);
+    assert_eq!(shown.lines().count(), 1, "{shown}");
+    assert!(
+        shown.starts_with("warning: the parameters `g`, `h_2` are not used ("),
+        "{shown}"
+    );
+    assert!(shown.ends_with(":5:1, 6:1)"), "{shown}");
+    let places: Vec<_> = warnings
+        .records()
+        .iter()
+        .map(|record| record.line)
+        .collect();
+    assert_eq!(places, [Some(5), Some(6)]);
+}
+
+#[test]
+fn parameters_near_to_a_name_are_suggested() {
+    let model = checked(BEAM).model;
+    for (name, help) in [
+        ("Ei", "did you mean `EI`?"),
+        ("beam_mu", "did you mean one of `mu`"),
+        ("theta", "`theta` is a coordinate"),
+        ("stiffness", "the parameters are `EI`, `E`, `I`, `mu`, `l`"),
+    ] {
+        let error = model
+            .with_parameter(name, 1.0)
+            .expect_err("no such parameter");
+        assert!(error.to_string().contains(help), "{name}: {error}");
+    }
+}
+
 #[test]
 fn coefficients_know_the_modes_they_are_given_for() {
     let model = checked(BEAM).model;

@@ -164,6 +164,24 @@ fn names_that_emitted_code_uses_itself() {
     );
 }
 
+/// Terms and forces may be called what Rust, or a formula, gives another meaning.
+#[test]
+fn names_of_terms_that_mean_something_else() {
+    for name in [
+        "loop", "t", "energy", "fn", "sin", "pi", "state", "self", "rates",
+    ] {
+        let text = spec("kappa", "chi", "zeta", "eta", "xi")
+            .replace("hub  =", &format!("{name} ="))
+            .replace("stop    =", &format!("{name} ="))
+            .replace("motor =", &format!("{name} ="))
+            .replace(
+                "zeta*contact(chi, 0.2)",
+                "zeta*contact(chi, 0.2) - 0.1*zeta",
+            );
+        compiles("terms", &text);
+    }
+}
+
 /// The tables' own names, as names of quantities.
 #[test]
 fn names_of_tables() {

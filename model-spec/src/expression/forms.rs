@@ -64,9 +64,11 @@ impl Resolver<'_> {
                 Err(Diagnostic::error("the rate of an input is not known")
                     .at(span, "this is an input"))
             }
-            ExprKind::At { .. } => {
-                Err(not_moving(span, "an expression").help("write the rate inside: at(dot(w), l)"))
-            }
+            ExprKind::At {
+                field,
+                value,
+                position,
+            } => Ok(rate_at(field, *value, position, span)),
             ExprKind::Parameter(_)
             | ExprKind::Number(_)
             | ExprKind::Pi
@@ -242,6 +244,24 @@ fn field_of(expr: &Expr) -> Option<usize> {
     }
 }
 
+/// The rate of what a field is at a place: dot(at(w, l)) = at(dot(w), l), because the place is
+/// fixed. Of anything but the field or its derivative it stays the rate of the whole.
+fn rate_at(field: usize, value: Expr, position: Box<Expr>, span: Span) -> ExprKind {
+    let expr = |kind| Box::new(Expr { kind, span });
+    let at = |value| ExprKind::At {
+        field,
+        value,
+        position,
+    };
+    match value.kind {
+        ExprKind::Field(_) => at(expr(ExprKind::Dot(Box::new(value)))),
+        ExprKind::Diff(inner, times) if matches!(inner.kind, ExprKind::Field(_)) => {
+            at(expr(ExprKind::Diff(expr(ExprKind::Dot(inner)), times)))
+        }
+        _ => ExprKind::Dot(expr(at(Box::new(value)))),
+    }
+}
+
 fn derivative_order(syntax: &Syntax) -> Result<u8, Diagnostic> {
     match syntax.kind {
         SyntaxKind::Number(value)
@@ -259,6 +279,6 @@ fn derivative_range(span: Span) -> Diagnostic {
 }
 
 fn not_moving(span: Span, what: &str) -> Diagnostic {
-    Diagnostic::error("dot() takes a coordinate, a definition or a field")
+    Diagnostic::error("dot() takes a coordinate, a definition, a field or at(...) of one")
         .at(span, format!("this is {what}, it has no rate of its own"))
 }
