@@ -58,11 +58,17 @@ pub fn derive_variant(model: Model, orders: &[usize]) -> Outcome<Variant> {
 }
 
 impl Variant {
-    /// Loads, checks and derives.
-    pub fn load(path: &Path, order: Option<&str>) -> Outcome<Self> {
-        let checked = load(path)?;
-        let orders = orders(&checked.model, order)?;
-        derive_variant(checked.model, &orders)
+    /// Loads, checks and derives for readers: also what has no inertia somewhere.
+    pub fn load_to_read(path: &Path, order: Option<&str>) -> Outcome<Self> {
+        let model = load(path)?.model;
+        let orders = orders(&model, order)?;
+        let derived = codegen::variant::Variant::derive_to_read(&model, &orders, &[])
+            .map_err(Problem::Specification)?;
+        Ok(Self {
+            model,
+            equations: derived.equations,
+            program: derived.program,
+        })
     }
 
     /// An evaluator of the program, at the specification's parameters.

@@ -51,6 +51,11 @@ impl Graph {
         self.taken.extend(names.cloned());
     }
 
+    /// The names in use, of nodes and of quantities.
+    pub fn taken_names(&self) -> impl Iterator<Item = &str> {
+        self.taken.iter().map(String::as_str)
+    }
+
     /// The order of each field.
     pub fn orders(&self) -> &[usize] {
         &self.orders
@@ -325,23 +330,23 @@ impl Graph {
         uses
     }
 
-    /// Every node that `roots` are computed from, operands first.
+    /// Every node that `roots` are computed from, operands first. Takes as long as there are
+    /// such nodes, however large the graph is.
     pub fn reachable(&self, roots: &[Id]) -> Vec<Id> {
-        let mut needed = vec![false; self.entries.len()];
-        for root in roots {
-            needed[root.0 as usize] = true;
-        }
-        for index in (0..self.entries.len()).rev() {
-            if needed[index] {
-                for operand in self.operands(&self.entries[index].operation) {
-                    needed[operand.0 as usize] = true;
-                }
+        let size = roots.iter().map(|root| root.0 as usize + 1).max();
+        let mut seen = vec![false; size.unwrap_or(0)];
+        let mut found = Vec::new();
+        let mut waiting = roots.to_vec();
+        while let Some(id) = waiting.pop() {
+            let is_new = !std::mem::replace(&mut seen[id.0 as usize], true);
+            if is_new {
+                found.push(id);
+                waiting.extend(self.operands(self.operation(id)));
             }
         }
-        (0..self.entries.len())
-            .filter(|&index| needed[index])
-            .map(|index| Id(index as u32))
-            .collect()
+        // An operand is older than what is computed from it.
+        found.sort_unstable();
+        found
     }
 }
 

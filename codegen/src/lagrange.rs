@@ -62,19 +62,16 @@ impl Layout {
         let rates: Vec<Id> = (0..self.coordinates)
             .map(|index| graph.intern(Operation::Rate(index)))
             .collect();
-        // By symmetry the entry comes from the momentum of the smaller index, so that both
-        // halves are the same nodes.
-        let scalars = (0..self.coordinates)
-            .map(|row| {
-                (0..self.coordinates)
-                    .map(|column| {
-                        let (low, high) = (row.min(column), row.max(column));
-                        let entry = by_scalar(graph, momenta.scalars[low], rates[high]);
-                        cheaper_expansion(graph, entry)
-                    })
-                    .collect()
-            })
-            .collect();
+        // By symmetry an entry comes from the momentum of the smaller index.
+        let mut scalars: Vec<Vec<Id>> = Vec::with_capacity(self.coordinates);
+        for row in 0..self.coordinates {
+            let mut entries: Vec<Id> = scalars.iter().map(|above| above[row]).collect();
+            for &rate in &rates[row..] {
+                let entry = by_scalar(graph, momenta.scalars[row], rate);
+                entries.push(cheaper_expansion(graph, entry));
+            }
+            scalars.push(entries);
+        }
         let mut coupling = vec![Vec::new(); self.coordinates];
         let mut modal = vec![Vec::new(); self.fields];
         for field in 0..self.fields {

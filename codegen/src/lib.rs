@@ -7,8 +7,8 @@
 //! `forces` and `equations` (the equations of motion), `solve` (the accelerations),
 //! `coefficients` (names as in Eq. (22)), `request` and `requested`, `jacobian`, `matrix_derivatives`,
 //! `adjoint` and `regimes` (what is derived on request), `linearity` (whether a model is linear between its
-//! switches), `affine` (its matrices then), `lower` (to the `program`), `operations` (what it costs),
-//! `evaluator` and `rust` (backends), `print` and
+//! switches), `inertia` (whether all that moves has some), `affine` (its matrices then), `lower` (to the `program`), `operations` (what it costs),
+//! `evaluator` and `rust` (backends), `formula` and
 //! `report` (for people).
 //!
 //! The arrows are two functions: [`equations::derive`] from a model to equations and
@@ -26,7 +26,9 @@ pub mod evaluator;
 mod expand;
 mod field_function;
 mod forces;
+pub mod formula;
 pub mod graph;
+mod inertia;
 mod jacobian;
 mod lagrange;
 pub mod linearity;
@@ -37,7 +39,6 @@ pub mod modes;
 mod moments;
 mod operation;
 mod operations;
-pub mod print;
 pub mod program;
 pub mod quadrature;
 pub mod regimes;

@@ -82,13 +82,14 @@ impl Graph {
     }
 
     fn collect(&mut self, into: &mut BTreeMap<Id, f64>, factor: f64, id: Id, open: bool) {
-        match self.operation(id).clone() {
+        match self.operation(id) {
             Operation::Constant(bits) => {
+                let value = bits.value();
                 let one = self.one();
-                *into.entry(one).or_insert(0.0) += factor * bits.value();
+                *into.entry(one).or_insert(0.0) += factor * value;
             }
             Operation::Sum(terms) if open || terms.len() == 1 => {
-                for &(inner, term) in &terms {
+                for (inner, term) in terms.clone() {
                     self.collect(into, factor * inner.value(), term, open);
                 }
             }
@@ -132,16 +133,16 @@ impl Graph {
 
     /// For X sin(a)^2: X and X cos(a)^2.
     fn squared_sine_partner(&mut self, id: Id) -> Option<(Id, Id)> {
-        let Operation::Product(factors) = self.operation(id).clone() else {
+        let Operation::Product(factors) = self.operation(id) else {
             return None;
         };
         let position = factors.iter().position(|(factor, exponent)| {
             *exponent == 2 && matches!(self.operation(*factor), Operation::Call(Function::Sin, _))
         })?;
-        let Operation::Call(_, argument) = *self.operation(factors[position].0) else {
+        let mut others = factors.to_vec();
+        let Operation::Call(_, argument) = *self.operation(others[position].0) else {
             return None;
         };
-        let mut others = factors.to_vec();
         others.remove(position);
         let rest = self.product(&others);
         let cosine = self.call(Function::Cos, argument);

@@ -6,6 +6,7 @@ use model_spec::diagnostic::{Diagnostic, Diagnostics};
 use model_spec::model::Model;
 
 use crate::equations::{Equations, derive};
+use crate::inertia;
 use crate::lower::lower_requested;
 use crate::program::Program;
 use crate::request::Request;
@@ -23,8 +24,8 @@ impl Variant {
     /// Derives `model` with its fields at `orders`, one for each field.
     ///
     /// # Errors
-    /// Parameter values that are not admissible, and what cannot be derived, each at its
-    /// place in the specification.
+    /// Parameter values that are not admissible, what cannot be derived, and coordinates
+    /// without inertia at the initial state, each at its place in the specification.
     pub fn derive(model: &Model, orders: &[usize]) -> Result<Self, Diagnostics> {
         Self::derive_with(model, orders, &[])
     }
@@ -34,6 +35,22 @@ impl Variant {
     /// # Errors
     /// The same, and what cannot be differentiated.
     pub fn derive_with(
+        model: &Model,
+        orders: &[usize],
+        requests: &[Request],
+    ) -> Result<Self, Diagnostics> {
+        let variant = Self::derive_to_read(model, orders, requests)?;
+        inertia::check(model, orders, &variant.equations, &variant.program)
+            .map_err(|diagnostic| Diagnostics::one(model.source.clone(), diagnostic))?;
+        Ok(variant)
+    }
+
+    /// The same for readers: equations of a machine in which something has no inertia at the
+    /// initial state say what is missing. Their accelerations may be no numbers.
+    ///
+    /// # Errors
+    /// The same but those about inertia.
+    pub fn derive_to_read(
         model: &Model,
         orders: &[usize],
         requests: &[Request],

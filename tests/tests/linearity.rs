@@ -1,8 +1,8 @@
 //! Which models are seen to be linear between their switching surfaces.
 
 use codegen::equations::derive;
+use codegen::formula::written_out;
 use codegen::linearity::{Linearity, linearity};
-use codegen::print::{Notation, formula};
 use eomgen_tests::models::{load, shipped};
 use model_spec::check;
 use model_spec::model::Model;
@@ -19,7 +19,7 @@ fn kind(model: &Model) -> String {
     match linearity(&equations) {
         Linearity::Linear => "linear".to_owned(),
         Linearity::PiecewiseLinear => "piecewise linear".to_owned(),
-        Linearity::Nonlinear(node) => formula(&equations.graph, &Notation::text(model), node),
+        Linearity::Nonlinear(node) => written_out(&equations.graph, model, node).to_string(),
     }
 }
 

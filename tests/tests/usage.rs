@@ -142,6 +142,40 @@ fn parameters_that_cannot_be_set_are_refused() {
     }
 }
 
+/// What has no inertia where it begins is refused by all that would use its accelerations, at
+/// the coordinate. Its equations can be read.
+#[test]
+fn coordinates_without_inertia_of_their_own_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("spec.toml");
+    let text = "[model]\nname = \"two\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+                [coordinates]\nx = { unit = \"m\" }\ny = { unit = \"m\" }\n\
+                [kinetic]\nboth = \"1/2*m*(dot(x) + dot(y))^2\"\n";
+    std::fs::write(&path, text).expect("a file");
+    let spec = path.display().to_string();
+    let out = folder.path().join("out.csv").display().to_string();
+    for command in [
+        &["check", &spec][..],
+        &["generate", &spec, "--out", &out],
+        &["validate", &spec],
+        &["simulate", &spec, "--until", "1", "--out", &out],
+    ] {
+        let found = refused(command);
+        assert!(
+            found.contains("`x`, `y` together have no inertia"),
+            "{found}"
+        );
+        assert!(found.contains("spec.toml:6:1"), "{found}");
+    }
+    let record = eomgen()
+        .args(["check", &spec, "--json"])
+        .output()
+        .expect("it can be run");
+    let record: serde_json::Value = serde_json::from_slice(&record.stdout).expect("JSON");
+    assert_eq!(record["diagnostics"][0]["line"], 6);
+    assert!(accepted(&["derive", &spec]).contains("M[x, y] = m"));
+}
+
 #[test]
 fn parameters_without_a_motion_are_refused() {
     for assignment in ["rho=-7900", "rho=0", "r_s=0", "m=0", "I_p=-1", "l=1e300"] {

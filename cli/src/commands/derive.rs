@@ -1,6 +1,5 @@
 //! `eomgen derive`: the equations of motion on stdout.
 
-use codegen::print::Notation;
 use codegen::report::Report;
 
 use crate::arguments::{Derive, Format};
@@ -9,18 +8,14 @@ use crate::variant::Variant;
 
 /// Runs the command.
 pub fn run(options: &Derive) -> Outcome {
-    let variant = Variant::load(&options.spec, options.order.as_deref())?;
+    let variant = Variant::load_to_read(&options.spec, options.order.as_deref())?;
     let format = if options.json {
         Format::Json
     } else {
         options.format
     };
-    let notation = match format {
-        Format::Latex => Notation::latex(&variant.model),
-        _ => Notation::text(&variant.model),
-    };
     let evaluator = variant.evaluator();
-    let report = Report::new(&variant.model, &variant.equations, &evaluator, &notation);
+    let report = Report::new(&variant.model, &variant.equations, &evaluator);
     match format {
         Format::Text => say(&report.text()),
         Format::Latex => say(&report.latex()),

@@ -4,7 +4,6 @@
 use std::path::Path;
 use std::time::Instant;
 
-use codegen::print::Notation;
 use codegen::report::Report;
 use codegen::rust::Packaging;
 use model_spec::source::Source;
@@ -214,8 +213,7 @@ fn page_text(
     watch: &Stopwatch,
 ) -> Outcome<String> {
     let evaluator = variant.evaluator();
-    let notation = Notation::text(&variant.model);
-    let report = Report::new(&variant.model, &variant.equations, &evaluator, &notation);
+    let report = Report::new(&variant.model, &variant.equations, &evaluator);
     let summary = format!(
         "From rest over {UNTIL} s at order {ORDER} with the paper's values and those assumed where it gives none: \
          the meshes made or lost contact {} times, {}.",

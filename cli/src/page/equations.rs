@@ -1,9 +1,9 @@
 //! The step that shows the derived equations: definitions, energies, M q'' + c = f entry by
 //! entry, the named coefficients with their values, the accelerations, what switches.
 
-use codegen::report::{CoefficientLine, Entry, Line, Report, Solution};
+use codegen::formula::{Formula, Symbol};
+use codegen::report::{CoefficientLine, Entry, Line, Report, Sentence, Solution};
 
-use super::formula;
 use super::markup::{escaped, number, table};
 
 /// At most so many values of a coefficient are shown.
@@ -12,18 +12,23 @@ const SHOWN_VALUES: usize = 8;
 /// The content of the step.
 pub(super) fn content(report: &Report) -> String {
     let mut html = introduction(report);
-    html.push_str(&lines("Definitions", &report.definitions, plain_name));
+    html.push_str(&lines("Definitions", &report.definitions, Formula::mathml));
     html.push_str(&lines(
         "Terms of the energies <i>T</i> and <i>V</i>, of the dissipation, and forces",
         &report.terms,
-        plain_name,
+        Formula::mathml,
     ));
     html.push_str(&energies(report));
+    html.push_str(&lines(
+        "Shared subexpressions, by names of their own",
+        &report.shared,
+        Formula::mathml,
+    ));
     html.push_str(&mass_matrix(&report.mass_matrix));
     html.push_str(&lines(
         "Pivots of its factorisation, which must be positive",
         &report.pivots,
-        plain_name,
+        Formula::mathml,
     ));
     html.push_str(&lines(
         "Velocity terms <i>c</i>",
@@ -36,9 +41,13 @@ pub(super) fn content(report: &Report) -> String {
         |name| indexed("f", &[name]),
     ));
     html.push_str(&coefficients(&report.coefficients));
-    html.push_str(&lines("Accelerations", &report.accelerations, plain_name));
+    html.push_str(&lines(
+        "Accelerations",
+        &report.accelerations,
+        Formula::mathml,
+    ));
     html.push_str(&guards(&report.guards));
-    html.push_str(&format!("<p>{}</p>\n", escaped(&report.linearity)));
+    html.push_str(&format!("<p>{}</p>\n", sentence(&report.linearity)));
     html.push_str(&solution(
         &report.solution,
         report.orders.iter().any(|order| *order > 0),
@@ -59,7 +68,7 @@ fn introduction(report: &Report) -> String {
     let state: Vec<String> = report
         .state
         .iter()
-        .map(|name| formula::html(name))
+        .map(|name| Formula::Symbol(Symbol::of_state(name)).mathml())
         .collect();
     format!(
         "<p>Lagrange’s equations of the energies, in the form <b>M</b> <i>q̈</i> + <i>c</i> = <i>f</i>.{order} \
@@ -70,14 +79,18 @@ fn introduction(report: &Report) -> String {
     )
 }
 
-fn plain_name(name: &str) -> String {
-    formula::html(name)
+/// A letter with names as its indices.
+fn indexed(letter: &str, names: &[&Formula]) -> String {
+    let names: Vec<String> = names.iter().map(|name| name.mathml()).collect();
+    format!("<i>{letter}</i><sub>{}</sub>", names.join(", "))
 }
 
-/// A letter with names as its indices.
-fn indexed(letter: &str, names: &[&str]) -> String {
-    let names: Vec<String> = names.iter().map(|name| formula::html(name)).collect();
-    format!("<i>{letter}</i><sub>{}</sub>", names.join(", "))
+fn sentence(sentence: &Sentence) -> String {
+    let text = escaped(sentence.text);
+    match &sentence.formula {
+        Some(formula) => format!("{text}: {}.", formula.mathml()),
+        None => format!("{text}."),
+    }
 }
 
 fn heading(text: &str) -> String {
@@ -94,20 +107,20 @@ fn equations(rows: &str) -> String {
     )
 }
 
-fn lines(title: &str, lines: &[Line], name: impl Fn(&str) -> String) -> String {
+fn lines(title: &str, lines: &[Line], name: impl Fn(&Formula) -> String) -> String {
     if lines.is_empty() {
         return String::new();
     }
     let rows: String = lines
         .iter()
-        .map(|line| row(&name(&line.name), &formula::html(&line.formula)))
+        .map(|line| row(&name(&line.name), &line.formula.mathml()))
         .collect();
     heading(title) + &equations(&rows)
 }
 
 fn energies(report: &Report) -> String {
-    let rows = row("<i>T</i>", &formula::html(&report.kinetic))
-        + &row("<i>V</i>", &formula::html(&report.potential));
+    let rows =
+        row("<i>T</i>", &report.kinetic.mathml()) + &row("<i>V</i>", &report.potential.mathml());
     heading("Kinetic and potential energy") + &equations(&rows)
 }
 
@@ -117,7 +130,7 @@ fn mass_matrix(entries: &[Entry]) -> String {
         .map(|entry| {
             row(
                 &indexed("M", &[&entry.row, &entry.column]),
-                &formula::html(&entry.formula),
+                &entry.formula.mathml(),
             )
         })
         .collect();
@@ -133,8 +146,8 @@ fn coefficients(lines: &[CoefficientLine]) -> String {
         .map(|line| {
             format!(
                 "<tr><th scope=\"row\" class=\"formula\">{}</th><td class=\"formula\">{}</td><td class=\"values\">{}</td></tr>\n",
-                formula::html(&line.name),
-                formula::html(&line.formula),
+                line.name.mathml(),
+                line.formula.mathml(),
                 values(&line.values)
             )
         })
@@ -159,13 +172,13 @@ fn values(values: &[f64]) -> String {
     shown.join("<br>")
 }
 
-fn guards(guards: &[String]) -> String {
+fn guards(guards: &[Formula]) -> String {
     if guards.is_empty() {
         return String::new();
     }
     let items: String = guards
         .iter()
-        .map(|guard| format!("<li>{}</li>", formula::html(guard)))
+        .map(|guard| format!("<li>{}</li>", guard.mathml()))
         .collect();
     heading("Switching surfaces")
         + &format!(
@@ -184,11 +197,7 @@ fn solution(solution: &Solution, has_modes: bool) -> String {
         1 => "one interface unknown, then ".to_owned(),
         count => format!("{count} interface unknowns, then "),
     };
-    let order: Vec<String> = solution
-        .order
-        .iter()
-        .map(|name| formula::html(name))
-        .collect();
+    let order: Vec<String> = solution.order.iter().map(Formula::mathml).collect();
     format!(
         "{}<p>Without pivoting, in the order that costs least: {modes}{interfaces}{}. That takes {} operations a \
          call, against {} in the dearest order.</p>\n",

@@ -1,6 +1,6 @@
 //! Escaping, and the few HTML elements that several steps need.
 
-use super::formula;
+use codegen::formula::number_element;
 
 /// Text that HTML takes for nothing but text, in content and in attributes.
 pub(super) fn escaped(text: &str) -> String {
@@ -40,21 +40,18 @@ pub(super) fn number(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return escaped(&value.to_string());
     }
-    let magnitude = value.abs();
-    if magnitude == 0.0 || (1e-3..1e5).contains(&magnitude) {
-        let text = format!("{value:.digits$e}");
-        // What has just been written as a number reads as one.
-        let rounded: f64 = text.parse().unwrap_or(value);
-        return formula::html(&rounded.to_string());
-    }
     let text = format!("{value:.digits$e}");
-    match text.split_once('e') {
-        Some((mantissa, exponent)) if mantissa.contains('.') => {
-            let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
-            formula::html(&format!("{mantissa}e{exponent}"))
-        }
-        _ => formula::html(&text),
-    }
+    // What has just been written as a number reads as one.
+    let rounded: f64 = text.parse().unwrap_or(value);
+    let magnitude = rounded.abs();
+    let element = if magnitude == 0.0 || (1e-3..1e5).contains(&magnitude) {
+        number_element(&rounded.to_string(), None)
+    } else {
+        let shortest = format!("{rounded:e}");
+        let (mantissa, exponent) = shortest.split_once('e').unwrap_or((&shortest, "0"));
+        number_element(mantissa, Some(exponent))
+    };
+    format!("<math>{element}</math>")
 }
 
 /// A table with its column headings.
@@ -83,11 +80,18 @@ mod tests {
 
     #[test]
     fn numbers_are_written_for_people() {
-        assert_eq!(number(0.0, 3), "0");
-        assert_eq!(number(0.025, 5), "0.025");
-        assert_eq!(number(-1234.56789, 5), "−1234.57");
-        assert_eq!(number(1e-12, 2), "10<sup>−12</sup>");
-        assert_eq!(number(2.5e8, 5), "2.5·10<sup>8</sup>");
+        let element = |number: &str| format!("<math><mn>{number}</mn></math>");
+        assert_eq!(number(0.0, 3), element("0"));
+        assert_eq!(number(0.025, 5), element("0.025"));
+        assert_eq!(number(-1234.56789, 5), element("−1234.57"));
+        assert_eq!(
+            number(1e-12, 2),
+            "<math><msup><mn>10</mn><mn>−12</mn></msup></math>"
+        );
+        assert_eq!(
+            number(2.5e8, 5),
+            "<math><mn>2.5</mn><mo>·</mo><msup><mn>10</mn><mn>8</mn></msup></math>"
+        );
         assert_eq!(number(f64::INFINITY, 2), "inf");
     }
 }

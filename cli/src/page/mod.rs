@@ -6,7 +6,6 @@
 //! that nothing in a specification becomes markup.
 
 mod equations;
-mod formula;
 mod markup;
 mod steps;
 
@@ -26,7 +25,7 @@ pub struct Tour<'a> {
     pub generated_by: &'a str,
     /// What was checked.
     pub specification: Specification<'a>,
-    /// What was derived from it, in the plain notation.
+    /// What was derived from it.
     pub equations: &'a Report,
     /// What was emitted.
     pub source: Source<'a>,

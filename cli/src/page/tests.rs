@@ -1,14 +1,15 @@
 //! The whole page: every step is there, nothing refers to the outside, and text from a
 //! specification stays text.
 
-use codegen::report::{CoefficientLine, Entry, Line, Report, Solution};
+use codegen::formula::Formula;
+use codegen::report::{CoefficientLine, Entry, Line, Report, Sentence, Solution};
 
 use super::*;
 
 fn line(name: &str, formula: &str) -> Line {
     Line {
-        name: name.to_owned(),
-        formula: formula.to_owned(),
+        name: Formula::named(name),
+        formula: Formula::named(formula),
     }
 }
 
@@ -22,27 +23,31 @@ fn report(text: &str) -> Report {
         state: vec![text.to_owned()],
         definitions: vec![line(text, text)],
         terms: vec![line(text, text)],
-        kinetic: text.to_owned(),
-        potential: text.to_owned(),
+        kinetic: Formula::named(text),
+        potential: Formula::named(text),
+        shared: vec![line(text, text)],
         mass_matrix: vec![Entry {
-            row: text.to_owned(),
-            column: text.to_owned(),
-            formula: text.to_owned(),
+            row: Formula::named(text),
+            column: Formula::named(text),
+            formula: Formula::named(text),
         }],
         pivots: vec![line(text, text)],
         velocity_terms: vec![line(text, text)],
         forces: vec![line(text, text)],
         coefficients: vec![CoefficientLine {
-            name: text.to_owned(),
-            formula: text.to_owned(),
+            name: Formula::named(text),
+            formula: Formula::named(text),
             values: vec![0.25; 10],
         }],
         accelerations: vec![line(text, text)],
-        guards: vec![text.to_owned()],
-        linearity: text.to_owned(),
+        guards: vec![Formula::named(text)],
+        linearity: Sentence {
+            text: "The model is not linear",
+            formula: Some(Formula::named(text)),
+        },
         solution: Solution {
             dense_modes: false,
-            order: vec![text.to_owned()],
+            order: vec![Formula::named(text)],
             interfaces: 1,
             operations: 101,
             dearest: 202,
@@ -187,12 +192,14 @@ fn every_step_is_there() {
         "against 202",
         "one warning",
         "Checks passed: 1; failed: 0; not made: 1",
-        "10<sup>−12</sup>",
-        "3·10<sup>−15</sup>",
+        "<msup><mn>10</mn><mn>−12</mn></msup>",
+        "<mn>3</mn><mo>·</mo><msup><mn>10</mn><mn>−15</mn></msup>",
         "<svg>",
         "500.0 ms",
         "(10 values)",
-        "<i>x</i><sub>sp</sub>",
+        "<msub><mi>x</mi><mi>sp</mi></msub>",
+        "Shared subexpressions",
+        "The model is not linear: <math>",
     ];
     for part in parts {
         assert!(page.contains(part), "{part}");

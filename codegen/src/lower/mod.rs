@@ -13,8 +13,8 @@ use model_spec::model::{Model, ParameterValue};
 use model_spec::unit::Unit;
 
 use crate::equations::{Equations, Rows};
+use crate::formula::abridged;
 use crate::graph::Id;
-use crate::print::{Notation, formula};
 use crate::program::{
     Extent, Op, Program, ProgramField, ProgramGuard, ProgramParameter, Quantity, ValueId,
 };
@@ -55,12 +55,11 @@ pub fn lower_requested(
     let energy = lowering.emit(Op::Add(kinetic, potential), Extent::Scalar);
     observable_values.push(energy);
     observable_values.push(lowering.value(equations.power));
-    let notation = Notation::text(model);
     let guards = equations
         .guards
         .iter()
         .map(|guard| ProgramGuard {
-            formula: formula(&equations.graph, &notation, guard.value),
+            formula: abridged(&equations.graph, model, guard.value).to_string(),
             value: lowering.value(guard.value),
         })
         .collect();

@@ -1,8 +1,26 @@
-//! The report as a LaTeX document.
+//! The report as a LaTeX document: every formula a paragraph, so that TeX breaks its lines.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use model_spec::model::Function;
+
 use super::{Line, Report};
+use crate::formula::{Formula, prose};
+
+/// What stands before the document. Lines of a formula after its first are set in.
+const HEAD: &str = "\
+% Needs the package amsmath and nothing else; compiles as it is, with pdflatex for example.
+\\documentclass{article}
+\\usepackage{amsmath}
+\\setlength{\\parindent}{0pt}
+\\setlength{\\parskip}{0.6ex}
+\\setlength{\\emergencystretch}{3em}
+\\raggedright
+\\everypar{\\hangindent=2em}
+\\everymath{\\displaystyle}
+\\begin{document}
+";
 
 impl Report {
     /// As a LaTeX document.
@@ -14,67 +32,160 @@ impl Report {
     }
 
     fn write_latex(&self, out: &mut String) -> std::fmt::Result {
-        writeln!(
+        write!(out, "{HEAD}\\section*{{{}}}\n\n", prose(&self.title))?;
+        section(out, "Definitions", &lines(&self.definitions))?;
+        section(
             out,
-            "\\documentclass{{article}}\n\\usepackage{{amsmath,breqn}}"
+            "Terms of the energies, of the dissipation, and forces",
+            &lines(&self.terms),
         )?;
-        writeln!(
+        let energies = [("T", &self.kinetic), ("V", &self.potential)];
+        let energies = energies.map(|(name, of)| equation(name, of));
+        section(out, "Energies", &energies)?;
+        section(
             out,
-            "\\begin{{document}}\n\\section*{{{}}}",
-            latex_text(&self.title)
+            "Shared subexpressions, by names of their own",
+            &lines(&self.shared),
         )?;
-        let mut lines: Vec<(String, String)> = vec![
-            ("T".into(), self.kinetic.clone()),
-            ("V".into(), self.potential.clone()),
-        ];
-        lines.extend(
-            self.definitions
-                .iter()
-                .map(|l| (l.name.clone(), l.formula.clone())),
-        );
-        lines.extend(
-            self.terms
-                .iter()
-                .map(|l| (l.name.clone(), l.formula.clone())),
-        );
-        lines.extend(
-            self.mass_matrix
-                .iter()
-                .map(|e| (format!("M_{{{},{}}}", e.row, e.column), e.formula.clone())),
-        );
-        let rows = |symbol: &str, lines: &[Line]| {
-            lines
-                .iter()
-                .map(|l| (format!("{symbol}_{{{}}}", l.name), l.formula.clone()))
-                .collect::<Vec<_>>()
-        };
-        lines.extend(rows("c", &self.velocity_terms));
-        lines.extend(rows("f", &self.forces));
-        lines.extend(
-            self.coefficients
-                .iter()
-                .map(|l| (l.name.clone(), l.formula.clone())),
-        );
-        lines.extend(
-            self.accelerations
-                .iter()
-                .map(|l| (l.name.clone(), l.formula.clone())),
-        );
-        for (left, right) in lines {
-            writeln!(out, "\\begin{{dmath*}} {left} = {right} \\end{{dmath*}}")?;
-        }
+        section(
+            out,
+            "Mass matrix $M$, by entries (symmetric)",
+            &self.mass_lines(),
+        )?;
+        section(out, "Pivots, which must be positive", &lines(&self.pivots))?;
+        section(out, "Velocity terms $c$", &rows("c", &self.velocity_terms))?;
+        section(
+            out,
+            "Generalised forces $f$, with $M\\,\\ddot{q} + c = f$",
+            &rows("f", &self.forces),
+        )?;
+        let coefficients = self.coefficients.iter();
+        let coefficients: Vec<String> = coefficients
+            .map(|line| equation(&line.name.latex(), &line.formula))
+            .collect();
+        section(out, "Coefficients", &coefficients)?;
+        section(out, "Accelerations", &lines(&self.accelerations))?;
+        let guards: Vec<String> = self.guards.iter().map(Formula::latex).collect();
+        section(
+            out,
+            "The equations switch where one of these changes sign",
+            &guards,
+        )?;
+        section(out, "Piecewise functions", &self.piecewise_functions())?;
+        self.write_sentences(out)?;
         writeln!(out, "\\end{{document}}")
+    }
+
+    fn mass_lines(&self) -> Vec<String> {
+        let entries = self.mass_matrix.iter();
+        entries
+            .map(|entry| {
+                let name = format!("M_{{{},{}}}", entry.row.latex(), entry.column.latex());
+                equation(&name, &entry.formula)
+            })
+            .collect()
+    }
+
+    fn write_sentences(&self, out: &mut String) -> std::fmt::Result {
+        let linearity = match &self.linearity.formula {
+            Some(formula) => format!("{}: {}.", self.linearity.text, in_text(&formula.latex())),
+            None => self.linearity.to_string(),
+        };
+        write!(
+            out,
+            "{linearity}\n\n{}\n\n",
+            prose(&self.solution_sentence())
+        )
+    }
+
+    /// What the piecewise functions are that any formula holds.
+    fn piecewise_functions(&self) -> Vec<String> {
+        let mut found = BTreeMap::new();
+        self.for_each_formula(&mut |formula| {
+            formula.visit(&mut |part| {
+                if let Formula::Call(function, _) = part
+                    && let Some(definition) = definition(*function)
+                {
+                    found.insert(function.name(), definition.to_owned());
+                }
+            });
+        });
+        found.into_values().collect()
+    }
+
+    fn for_each_formula(&self, see: &mut impl FnMut(&Formula)) {
+        let parts = [
+            &self.definitions,
+            &self.terms,
+            &self.shared,
+            &self.pivots,
+            &self.velocity_terms,
+            &self.forces,
+            &self.accelerations,
+        ];
+        parts
+            .into_iter()
+            .flatten()
+            .for_each(|line| see(&line.formula));
+        self.mass_matrix
+            .iter()
+            .for_each(|entry| see(&entry.formula));
+        self.coefficients.iter().for_each(|line| see(&line.formula));
+        self.guards.iter().for_each(&mut *see);
     }
 }
 
-/// Characters with a meaning in LaTeX, escaped.
-fn latex_text(text: &str) -> String {
-    text.chars()
-        .map(|c| match c {
-            '\\' => "\\textbackslash{}".to_owned(),
-            '#' | '$' | '%' | '&' | '_' | '{' | '}' => format!("\\{c}"),
-            '~' | '^' => format!("\\{c}{{}}"),
-            _ => c.to_string(),
+/// A piecewise function by its cases.
+fn definition(function: Function) -> Option<&'static str> {
+    match function {
+        Function::Deadzone => Some(
+            "\\operatorname{deadzone}(p, b) = \\begin{cases} p - b & p > b\\\\ 0 & |p| \\le b\\\\ p + b & p < -b \\end{cases}",
+        ),
+        Function::Contact => Some(
+            "\\operatorname{contact}(p, b) = \\begin{cases} 1 & |p| > b\\\\ 0 & |p| \\le b \\end{cases}",
+        ),
+        Function::Sign => Some(
+            "\\operatorname{sign}(p) = \\begin{cases} 1 & p > 0\\\\ 0 & p = 0\\\\ -1 & p < 0 \\end{cases}",
+        ),
+        _ => None,
+    }
+}
+
+fn equation(name: &str, formula: &Formula) -> String {
+    format!("{name} = {}", formula.latex())
+}
+
+fn lines(lines: &[Line]) -> Vec<String> {
+    let lines = lines.iter();
+    lines
+        .map(|line| equation(&line.name.latex(), &line.formula))
+        .collect()
+}
+
+/// Lines of rows: a letter with the row below it.
+fn rows(letter: &str, lines: &[Line]) -> Vec<String> {
+    let lines = lines.iter();
+    lines
+        .map(|line| {
+            equation(
+                &format!("{letter}_{{{}}}", line.name.latex()),
+                &line.formula,
+            )
         })
         .collect()
+}
+
+fn section(out: &mut String, title: &str, formulas: &[String]) -> std::fmt::Result {
+    if formulas.is_empty() {
+        return Ok(());
+    }
+    write!(out, "\\subsection*{{{title}}}\n\n")?;
+    for formula in formulas {
+        write!(out, "{}\n\n", in_text(formula))?;
+    }
+    Ok(())
+}
+
+fn in_text(formula: &str) -> String {
+    format!("${formula}$")
 }

@@ -3,18 +3,20 @@
 //! how the accelerations are solved for. As text, LaTeX or JSON.
 
 mod latex;
+mod outline;
 mod text;
 mod writer;
 
 use model_spec::model::Model;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::equations::Equations;
 use crate::evaluator::Evaluator;
-use crate::print::{Notation, formula};
+use crate::formula::{Formula, Reader, Shared};
+use outline::Outline;
 use writer::Writer;
 
-/// The equations of one variant, every formula written out.
+/// The equations of one variant. In JSON formulas and names are plain text.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// Version of this form.
@@ -32,9 +34,12 @@ pub struct Report {
     /// The named terms of the energies and of the dissipation, and the forces.
     pub terms: Vec<Line>,
     /// T
-    pub kinetic: String,
+    pub kinetic: Formula,
     /// V
-    pub potential: String,
+    pub potential: Formula,
+    /// What several formulas share and is too long to be repeated, under names of their own;
+    /// a line needs none but those before it. Empty where everything is written out.
+    pub shared: Vec<Line>,
     /// Nonzero entries of the mass matrix on and above the diagonal.
     pub mass_matrix: Vec<Entry>,
     /// The pivots of the factorisation.
@@ -48,9 +53,9 @@ pub struct Report {
     /// The accelerations in terms of these.
     pub accelerations: Vec<Line>,
     /// Switching surfaces: formulas that change sign.
-    pub guards: Vec<String>,
+    pub guards: Vec<Formula>,
     /// What kind of model it is between its switching surfaces.
-    pub linearity: String,
+    pub linearity: Sentence,
     /// How the accelerations are solved for.
     pub solution: Solution,
 }
@@ -59,32 +64,57 @@ pub struct Report {
 #[derive(Clone, Debug, Serialize)]
 pub struct Line {
     /// What is given.
-    pub name: String,
+    pub name: Formula,
     /// Its formula.
-    pub formula: String,
+    pub formula: Formula,
 }
 
 /// An entry of the mass matrix.
 #[derive(Clone, Debug, Serialize)]
 pub struct Entry {
     /// Row.
-    pub row: String,
+    pub row: Formula,
     /// Column.
-    pub column: String,
+    pub column: Formula,
     /// Formula.
-    pub formula: String,
+    pub formula: Formula,
 }
 
 /// A named coefficient.
 #[derive(Clone, Debug, Serialize)]
 pub struct CoefficientLine {
     /// Its name.
-    pub name: String,
+    pub name: Formula,
     /// Its formula.
-    pub formula: String,
+    pub formula: Formula,
     /// Its value, or one per mode (a matrix row by row), at the specification's
     /// parameters in SI; empty if it depends on time or state.
     pub values: Vec<f64>,
+}
+
+/// A statement, on a formula if it is about one.
+#[derive(Clone, Debug)]
+pub struct Sentence {
+    /// What is said, without a full stop.
+    pub text: &'static str,
+    /// What it is said of.
+    pub formula: Option<Formula>,
+}
+
+impl std::fmt::Display for Sentence {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.formula {
+            Some(formula) => write!(f, "{}: {formula}.", self.text),
+            None => write!(f, "{}.", self.text),
+        }
+    }
+}
+
+/// Programs read sentences as plain text.
+impl Serialize for Sentence {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
 }
 
 /// How the accelerations are solved for.
@@ -93,7 +123,7 @@ pub struct Solution {
     /// Whether the modal block of the mass matrix is dense.
     pub dense_modes: bool,
     /// Coordinates in the order of their elimination, after the modes.
-    pub order: Vec<String>,
+    pub order: Vec<Formula>,
     /// Interface scalars carried as extra unknowns.
     pub interfaces: usize,
     /// Operations per call of the chosen order.
@@ -104,52 +134,53 @@ pub struct Solution {
 
 impl Report {
     /// The report of a variant. `evaluator` runs the variant's program.
-    pub fn new(
-        model: &Model,
-        equations: &Equations,
-        evaluator: &Evaluator,
-        notation: &Notation,
-    ) -> Self {
-        let writer = Writer {
-            model,
-            equations,
-            notation,
-        };
+    pub fn new(model: &Model, equations: &Equations, evaluator: &Evaluator) -> Self {
         let graph = &equations.graph;
-        let solution = &equations.accelerations.report;
+        let outline = Outline::new(model, equations);
+        let shared = Shared::among(graph, model, &outline.nodes());
+        let reader = Reader::new(graph, model, &shared);
+        let writer = Writer {
+            equations,
+            outline: &outline,
+            reader: &reader,
+        };
+        let guards = equations.guards.iter();
         Self {
             schema: 1,
             model: model.name.clone(),
             title: model.title.clone(),
             orders: graph.orders().to_vec(),
             state: evaluator.program().state_names(),
-            definitions: writer.definitions(),
-            terms: writer.terms(),
+            definitions: writer.lines(&outline.definitions),
+            terms: writer.lines(&outline.terms),
             kinetic: writer.sum_of_terms("T", &model.kinetic),
             potential: writer.sum_of_terms("V", &model.potential),
+            shared: writer.shared(),
             mass_matrix: writer.mass_matrix(),
             pivots: writer.named(&equations.accelerations.pivots),
-            velocity_terms: writer.rows(&equations.velocity_terms),
-            forces: writer.rows(&equations.forces),
+            velocity_terms: writer.lines(&outline.velocity_terms),
+            forces: writer.lines(&outline.forces),
             coefficients: writer.coefficients(evaluator),
             accelerations: writer.accelerations(),
-            guards: equations
-                .guards
-                .iter()
-                .map(|guard| formula(graph, notation, guard.value))
-                .collect(),
+            guards: guards.map(|guard| reader.formula(guard.value)).collect(),
             linearity: writer.linearity(),
-            solution: Solution {
-                dense_modes: solution.dense_modes,
-                order: solution
-                    .order
-                    .iter()
-                    .map(|index| notation.coordinate(*index).to_owned())
-                    .collect(),
-                interfaces: solution.interfaces,
-                operations: solution.operations,
-                dearest: solution.dearest,
-            },
+            solution: Solution::new(model, equations),
+        }
+    }
+}
+
+impl Solution {
+    fn new(model: &Model, equations: &Equations) -> Self {
+        let report = &equations.accelerations.report;
+        let order = report.order.iter();
+        Self {
+            dense_modes: report.dense_modes,
+            order: order
+                .map(|index| Formula::named(&model.coordinates[*index].name))
+                .collect(),
+            interfaces: report.interfaces,
+            operations: report.operations,
+            dearest: report.dearest,
         }
     }
 }

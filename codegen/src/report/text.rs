@@ -27,6 +27,11 @@ impl Report {
             "\nEnergies\n  T = {}\n  V = {}",
             self.kinetic, self.potential
         )?;
+        section(
+            out,
+            "Shared subexpressions, by names of their own",
+            &self.shared,
+        )?;
         writeln!(out, "\nMass matrix M, by entries (symmetric)")?;
         for entry in &self.mass_matrix {
             writeln!(
@@ -65,7 +70,7 @@ impl Report {
         writeln!(out, "{}", self.solution_sentence())
     }
 
-    fn solution_sentence(&self) -> String {
+    pub(super) fn solution_sentence(&self) -> String {
         let solution = &self.solution;
         let modes = match (self.orders.iter().sum::<usize>(), solution.dense_modes) {
             (0, _) => String::new(),
@@ -76,9 +81,10 @@ impl Report {
             0 => String::new(),
             n => format!("{n} interface unknowns, then "),
         };
+        let order: Vec<String> = solution.order.iter().map(ToString::to_string).collect();
         format!(
             "Solved without pivoting: {modes}{interfaces}{} ({} operations a call; {} in the dearest order).",
-            solution.order.join(", "),
+            order.join(", "),
             solution.operations,
             solution.dearest
         )

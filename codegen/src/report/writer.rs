@@ -1,165 +1,88 @@
 //! The parts of the report, written from the equations.
 
-use model_spec::model::{Model, Term};
+use model_spec::model::Term;
 
-use super::{CoefficientLine, Entry, Line};
-use crate::equations::{Equations, Row, Rows};
+use super::outline::{Outline, Shown};
+use super::{CoefficientLine, Entry, Line, Sentence};
+use crate::equations::{Equations, Row};
 use crate::evaluator::Evaluator;
-use crate::graph::{Graph, Id, Shape, Space};
-use crate::linearity::{Linearity, linearity};
-use crate::print::{Notation, expression, formula};
+use crate::formula::{Formula, Index, Reader};
+use crate::graph::{Id, Shape};
+use crate::linearity::Linearity;
 
 /// What the parts are written from.
 pub(super) struct Writer<'a> {
-    pub model: &'a Model,
     pub equations: &'a Equations,
-    pub notation: &'a Notation,
+    pub outline: &'a Outline<'a>,
+    pub reader: &'a Reader<'a>,
 }
 
 impl Writer<'_> {
-    fn graph(&self) -> &Graph {
-        &self.equations.graph
-    }
-
-    fn row_name(&self, row: Row) -> String {
-        match row {
-            Row::Coordinate(index) => self.notation.coordinate(index).to_owned(),
-            Row::Modes(field) => self.notation.mode(field),
-        }
-    }
-
-    pub fn definitions(&self) -> Vec<Line> {
-        let named = &self.equations.definitions;
-        self.model
-            .definitions
+    pub fn lines(&self, shown: &[Shown]) -> Vec<Line> {
+        shown
             .iter()
-            .zip(named)
-            .filter_map(|(definition, node)| {
-                node.map(|node| Line {
-                    name: self.notation.name(&definition.name),
-                    formula: formula(self.graph(), self.notation, node),
-                })
+            .map(|(name, node)| Line {
+                name: name.clone(),
+                formula: self.reader.formula(*node),
             })
             .collect()
     }
 
-    /// A sentence on what kind of model it is between its switching surfaces.
-    pub fn linearity(&self) -> String {
-        match linearity(self.equations) {
-            Linearity::Linear => "The model is linear.".to_owned(),
+    /// The lines of what other formulas share.
+    pub fn shared(&self) -> Vec<Line> {
+        let lines = self.reader.lines();
+        lines
+            .map(|(name, formula)| Line { name, formula })
+            .collect()
+    }
+
+    /// What kind of model it is between its switching surfaces.
+    pub fn linearity(&self) -> Sentence {
+        let (text, formula) = match self.outline.linearity {
+            Linearity::Linear => ("The model is linear", None),
             Linearity::PiecewiseLinear => {
-                "Between its switching surfaces the model is linear.".to_owned()
+                ("Between its switching surfaces the model is linear", None)
             }
-            Linearity::Nonlinear(node) => format!(
-                "The model is not linear: {}.",
-                formula(self.graph(), self.notation, node)
-            ),
-        }
+            Linearity::Nonlinear(node) => {
+                ("The model is not linear", Some(self.reader.formula(node)))
+            }
+        };
+        Sentence { text, formula }
     }
 
     /// An energy as the sum of its terms, by their names.
-    pub fn sum_of_terms(&self, symbol: &str, terms: &[Term]) -> String {
-        if terms.is_empty() {
-            return "0".to_owned();
-        }
-        let names: Vec<String> = terms
-            .iter()
-            .map(|term| self.notation.name(&format!("{symbol}_{}", term.name)))
-            .collect();
-        names.join(" + ")
-    }
-
-    /// The terms of the specification, each under its own name.
-    pub fn terms(&self) -> Vec<Line> {
-        let model = self.model;
-        let energies = [
-            ("T", &model.kinetic),
-            ("V", &model.potential),
-            ("R", &model.dissipation),
-        ];
-        let names = energies
-            .iter()
-            .flat_map(|(symbol, terms)| terms.iter().map(move |t| format!("{symbol}_{}", t.name)))
-            .chain(model.forces.iter().map(|force| force.name.clone()));
-        names
-            .zip(&self.equations.terms)
-            .map(|(name, node)| Line {
-                name: self.notation.name(&name),
-                formula: formula(self.graph(), self.notation, *node),
-            })
-            .collect()
+    pub fn sum_of_terms(&self, symbol: &str, terms: &[Term]) -> Formula {
+        let names = terms.iter().map(|term| format!("{symbol}_{}", term.name));
+        Formula::sum(names.map(|name| Formula::named(&name)).collect())
     }
 
     /// The nodes that have names, with their formulas.
     pub fn named(&self, nodes: &[Id]) -> Vec<Line> {
         let mut lines: Vec<Line> = Vec::new();
         for &node in nodes {
-            let Some(name) = self.graph().name(node) else {
+            let Some(name) = self.equations.graph.name(node) else {
                 continue;
             };
-            let name = self.notation.name(name);
+            let name = Formula::Symbol(self.reader.symbol(name));
             if lines.iter().all(|line| line.name != name) {
                 lines.push(Line {
                     name,
-                    formula: formula(self.graph(), self.notation, node),
+                    formula: self.reader.formula(node),
                 });
             }
         }
         lines
     }
 
-    pub fn rows(&self, rows: &Rows) -> Vec<Line> {
-        let scalars = rows
-            .scalars
-            .iter()
-            .enumerate()
-            .map(|(i, id)| (Row::Coordinate(i), *id));
-        let modal = rows
-            .modal
-            .iter()
-            .enumerate()
-            .map(|(f, id)| (Row::Modes(f), *id));
-        scalars
-            .chain(modal)
-            .filter(|(row, id)| !self.graph().is_zero(*id) && self.is_present(*row))
-            .map(|(row, id)| Line {
-                name: self.row_name(row),
-                formula: formula(self.graph(), self.notation, id),
+    pub fn mass_matrix(&self) -> Vec<Entry> {
+        let entries = self.outline.mass_matrix.iter();
+        entries
+            .map(|(row, column, node)| Entry {
+                row: row.clone(),
+                column: column.clone(),
+                formula: self.reader.formula(*node),
             })
             .collect()
-    }
-
-    fn is_present(&self, row: Row) -> bool {
-        match row {
-            Row::Coordinate(_) => true,
-            Row::Modes(field) => self.graph().size(Space::Modes(field)) > 0,
-        }
-    }
-
-    pub fn mass_matrix(&self) -> Vec<Entry> {
-        let mass = &self.equations.mass;
-        let mut entries = Vec::new();
-        let mut push = |row: Row, column: Row, id: Id| {
-            if !self.graph().is_zero(id) && self.is_present(row) && self.is_present(column) {
-                entries.push(Entry {
-                    row: self.row_name(row),
-                    column: self.row_name(column),
-                    formula: formula(self.graph(), self.notation, id),
-                });
-            }
-        };
-        for (row, values) in mass.scalars.iter().enumerate() {
-            for (column, id) in values.iter().enumerate().skip(row) {
-                push(Row::Coordinate(row), Row::Coordinate(column), *id);
-            }
-            for (field, id) in mass.coupling[row].iter().enumerate() {
-                push(Row::Coordinate(row), Row::Modes(field), *id);
-            }
-        }
-        for (row, id, column) in &self.equations.modal_blocks {
-            push(Row::Modes(*row), Row::Modes(*column), *id);
-        }
-        entries
     }
 
     pub fn coefficients(&self, evaluator: &Evaluator) -> Vec<CoefficientLine> {
@@ -168,8 +91,8 @@ impl Writer<'_> {
             .iter()
             .zip(&evaluator.program().coefficient_values)
             .map(|(coefficient, value)| CoefficientLine {
-                name: self.notation.name(&coefficient.name),
-                formula: formula(self.graph(), self.notation, coefficient.value),
+                name: Formula::named(&coefficient.name),
+                formula: self.reader.formula(coefficient.value),
                 values: if evaluator.program().value(*value).prepared {
                     evaluator.slice(*value).to_vec()
                 } else {
@@ -181,51 +104,52 @@ impl Writer<'_> {
 
     /// Each row whose factors the specification names, as the sum of these.
     pub fn accelerations(&self) -> Vec<Line> {
-        let mut lines: Vec<(Row, Line)> = Vec::new();
+        let mut rows: Vec<(Row, Formula, Vec<Formula>)> = Vec::new();
         for coefficient in &self.equations.coefficients {
             let Some(factor) = &coefficient.factor else {
                 continue;
             };
-            if !self.is_present(factor.row) {
+            if !self.outline.is_present(factor.row) {
                 continue;
             }
-            let name = self.notation.name(&coefficient.name);
-            let term = self.named_term(&name, coefficient.value, factor.by);
-            match lines.iter_mut().find(|(row, _)| *row == factor.row) {
-                Some((_, line)) => {
-                    line.formula.push_str(" + ");
-                    line.formula.push_str(&term);
-                }
+            let term = self.named_term(&coefficient.name, coefficient.value, factor.by);
+            match rows.iter_mut().find(|(row, ..)| *row == factor.row) {
+                Some((_, _, terms)) => terms.push(term),
                 None => {
-                    let acceleration = self.notation.acceleration(&self.row_name(factor.row));
-                    let times = factor
-                        .times
-                        .map(|id| format!("{} ", expression(self.graph(), self.notation, id)))
-                        .unwrap_or_default();
-                    lines.push((
-                        factor.row,
-                        Line {
-                            name: format!("{times}{acceleration}"),
-                            formula: term,
-                        },
-                    ));
+                    let symbol = self.outline.row_symbol(factor.row).with_dots(2);
+                    let times = match factor.times {
+                        Some(id) => self.reader.expression(id),
+                        None => Formula::Number(1.0),
+                    };
+                    let acceleration = times.times(Formula::Symbol(symbol));
+                    rows.push((factor.row, acceleration, vec![term]));
                 }
             }
         }
-        lines.into_iter().map(|(_, line)| line).collect()
+        let lines = rows.into_iter().map(|(_, name, terms)| Line {
+            name,
+            formula: Formula::sum(terms),
+        });
+        lines.collect()
     }
 
-    fn named_term(&self, name: &str, value: Id, by: Id) -> String {
-        let multiplied = expression(self.graph(), self.notation, by);
-        match (self.graph().shape(value), self.graph().shape(by)) {
-            (Shape::Vector(_), Shape::Vector(_)) => format!("sum_i({name}_i*{multiplied})"),
-            (Shape::Matrix(..), _) => {
-                format!("sum_j({name}_ij*{})", multiplied.replace("_i", "_j"))
+    /// A named factor times what it multiplies.
+    fn named_term(&self, name: &str, value: Id, by: Id) -> Formula {
+        let graph = &self.equations.graph;
+        let multiplied = self.reader.expression(by);
+        let indexed =
+            |indices: &[Index]| Formula::Symbol(self.reader.symbol(name).with_indices(indices));
+        match (graph.shape(value), graph.shape(by)) {
+            (Shape::Vector(_), Shape::Vector(_)) => {
+                let product = indexed(&[Index::I]).times(multiplied);
+                Formula::Total(Index::I, Box::new(product))
             }
-            (Shape::Vector(_), _) if multiplied == "1" => format!("{name}_i"),
-            (Shape::Vector(_), _) => format!("{name}_i*{multiplied}"),
-            _ if multiplied == "1" => name.to_owned(),
-            _ => format!("{name}*{multiplied}"),
+            (Shape::Matrix(..), _) => {
+                let product = indexed(&[Index::I, Index::J]).times(multiplied.by_columns());
+                Formula::Total(Index::J, Box::new(product))
+            }
+            (Shape::Vector(_), _) => indexed(&[Index::I]).times(multiplied),
+            (Shape::Scalar, _) => indexed(&[]).times(multiplied),
         }
     }
 }

@@ -168,6 +168,14 @@ impl SmallSystem {
         self.matrix.push(entries);
     }
 
+    /// Whether both halves of the matrix are the same nodes.
+    fn is_symmetric(&self) -> bool {
+        let mut rows = self.matrix.iter().enumerate();
+        rows.all(|(row, entries)| {
+            (0..row).all(|column| entries[column] == self.matrix[column][row])
+        })
+    }
+
     /// Elimination without pivoting, interfaces first, then coordinates in this order.
     /// Returns the unknowns in their own order, and the pivots.
     pub(super) fn eliminate(&self, graph: &mut Graph, coordinates: &[usize]) -> (Vec<Id>, Vec<Id>) {
@@ -176,6 +184,7 @@ impl SmallSystem {
             .collect();
         let mut matrix = self.matrix.clone();
         let mut right = self.right.clone();
+        let symmetric = self.is_symmetric();
         let mut reciprocals = Vec::with_capacity(order.len());
         let mut pivots = Vec::with_capacity(order.len());
         for (step, &pivot_row) in order.iter().enumerate() {
@@ -183,15 +192,20 @@ impl SmallSystem {
             let reciprocal = pivot_reciprocal(graph, pivot);
             pivots.push(pivot);
             reciprocals.push(reciprocal);
-            for &row in &order[step + 1..] {
+            for (place, &row) in order.iter().enumerate().skip(step + 1) {
                 if graph.is_zero(matrix[row][pivot_row]) {
                     continue;
                 }
                 let factor = graph.multiply(matrix[row][pivot_row], reciprocal);
-                for &column in &order[step + 1..] {
+                // What is left of a symmetric matrix is symmetric: its upper half is enough.
+                let first = if symmetric { place } else { step + 1 };
+                for &column in &order[first..] {
                     let product = graph.multiply(factor, matrix[pivot_row][column]);
                     matrix[row][column] =
                         graph.combine_flat(&[(1.0, matrix[row][column]), (-1.0, product)]);
+                    if symmetric {
+                        matrix[column][row] = matrix[row][column];
+                    }
                 }
                 let product = graph.multiply(factor, right[pivot_row]);
                 right[row] = graph.combine_flat(&[(1.0, right[row]), (-1.0, product)]);

@@ -1,5 +1,6 @@
 //! Specifications as text, derived variants, and `rustc`. Nothing is checked here.
 
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -131,4 +132,28 @@ pub fn compile(name: &str, source: &str, options: &[&str]) -> PathBuf {
         String::from_utf8_lossy(&output.stderr)
     );
     folder
+}
+
+/// A chain of pendulums `q_1 ..`, each hanging from the one before: a full mass matrix that
+/// depends on the state.
+pub fn chain_of_pendulums(count: usize) -> String {
+    let mut text = String::from(
+        "[model]\nname = \"chain\"\ntitle = \"A chain\"\n[parameters]\nm = { value = 0.3, unit = \"kg\" }\n\
+         l = { value = 0.4, unit = \"m\" }\ng = { value = 9.81, unit = \"m/s^2\" }\n[coordinates]\n",
+    );
+    (1..=count).for_each(|i| writeln!(text, "q_{i} = {{ unit = \"rad\" }}").unwrap());
+    text.push_str("[definitions]\nx_1 = \"l*sin(q_1)\"\ny_1 = \"-l*cos(q_1)\"\n");
+    for (i, before) in (2..=count).zip(1..) {
+        let (x, y) = (
+            format!("x_{before} + l*sin(q_{i})"),
+            format!("y_{before} - l*cos(q_{i})"),
+        );
+        writeln!(text, "x_{i} = \"{x}\"\ny_{i} = \"{y}\"").unwrap();
+    }
+    text.push_str("[kinetic]\n");
+    (1..=count)
+        .for_each(|i| writeln!(text, "b_{i} = \"1/2*m*(dot(x_{i})^2 + dot(y_{i})^2)\"").unwrap());
+    text.push_str("[potential]\n");
+    (1..=count).for_each(|i| writeln!(text, "h_{i} = \"m*g*y_{i}\"").unwrap());
+    text
 }

@@ -26,12 +26,11 @@ impl PiecewiseLinear {
     pub fn of(model: &Model, orders: &[usize]) -> Result<Self, ExactError> {
         let equations =
             derive(model, orders).map_err(|error| ExactError::Model(error.message.clone()))?;
-        let notation = codegen::print::Notation::text(model);
         // The node in the way is named while its graph is still there.
         if let codegen::linearity::Linearity::Nonlinear(node) =
             codegen::linearity::linearity(&equations)
         {
-            let formula = codegen::print::formula(&equations.graph, &notation, node);
+            let formula = codegen::formula::abridged(&equations.graph, model, node).to_string();
             return Err(ExactError::NotLinear { formula });
         }
         let affine = affine(equations).map_err(|_| ExactError::NotLinear {

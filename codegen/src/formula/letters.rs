@@ -1,0 +1,62 @@
+//! Names of Greek letters, as LaTeX and as the letters themselves.
+
+/// Name, command and letter.
+const GREEK: [(&str, &str, &str); 35] = [
+    ("alpha", "\\alpha", "α"),
+    ("beta", "\\beta", "β"),
+    ("gamma", "\\gamma", "γ"),
+    ("delta", "\\delta", "δ"),
+    ("epsilon", "\\epsilon", "ε"),
+    ("zeta", "\\zeta", "ζ"),
+    ("eta", "\\eta", "η"),
+    ("theta", "\\theta", "θ"),
+    ("iota", "\\iota", "ι"),
+    ("kappa", "\\kappa", "κ"),
+    ("lambda", "\\lambda", "λ"),
+    ("mu", "\\mu", "μ"),
+    ("nu", "\\nu", "ν"),
+    ("xi", "\\xi", "ξ"),
+    ("rho", "\\rho", "ρ"),
+    ("sigma", "\\sigma", "σ"),
+    ("tau", "\\tau", "τ"),
+    ("upsilon", "\\upsilon", "υ"),
+    ("phi", "\\phi", "φ"),
+    ("chi", "\\chi", "χ"),
+    ("psi", "\\psi", "ψ"),
+    ("omega", "\\omega", "ω"),
+    ("Gamma", "\\Gamma", "Γ"),
+    ("Delta", "\\Delta", "Δ"),
+    ("Theta", "\\Theta", "Θ"),
+    ("Lambda", "\\Lambda", "Λ"),
+    ("Xi", "\\Xi", "Ξ"),
+    ("Pi", "\\Pi", "Π"),
+    ("Sigma", "\\Sigma", "Σ"),
+    ("Upsilon", "\\Upsilon", "Υ"),
+    ("Phi", "\\Phi", "Φ"),
+    ("Psi", "\\Psi", "Ψ"),
+    ("Omega", "\\Omega", "Ω"),
+    ("dtheta", "\\Delta\\theta", "Δθ"),
+    ("dphi", "\\Delta\\phi", "Δφ"),
+];
+
+/// The LaTeX command of a letter's name.
+pub(super) fn command(name: &str) -> Option<&'static str> {
+    entry(name).map(|(_, command, _)| *command)
+}
+
+/// The letter of this name.
+pub(super) fn letter(name: &str) -> Option<&'static str> {
+    entry(name).map(|(_, _, letter)| *letter)
+}
+
+/// The LaTeX command of a letter, for prose.
+pub(super) fn command_of(letter: char) -> Option<&'static str> {
+    GREEK
+        .iter()
+        .find(|(_, _, known)| known.chars().eq([letter]))
+        .map(|(_, command, _)| *command)
+}
+
+fn entry(name: &str) -> Option<&'static (&'static str, &'static str, &'static str)> {
+    GREEK.iter().find(|(known, ..)| *known == name)
+}

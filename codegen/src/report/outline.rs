@@ -1,0 +1,151 @@
+//! Which nodes the report shows, under which names: what is chosen before any formula is
+//! written, because formulas share lines.
+
+use model_spec::model::{Model, Term};
+
+use crate::equations::{Equations, Row, Rows};
+use crate::formula::{Formula, Index, Symbol};
+use crate::graph::{Graph, Id, Space};
+use crate::linearity::{Linearity, linearity};
+
+/// A node with the name it is shown under.
+pub(super) type Shown = (Formula, Id);
+
+/// The nodes of a report, part by part.
+pub(super) struct Outline<'a> {
+    model: &'a Model,
+    equations: &'a Equations,
+    /// The specification's definitions that anything uses.
+    pub definitions: Vec<Shown>,
+    /// The terms of the specification, each under its own name.
+    pub terms: Vec<Shown>,
+    /// Nonzero entries of the mass matrix: row, column, node.
+    pub mass_matrix: Vec<(Formula, Formula, Id)>,
+    /// Nonzero velocity terms.
+    pub velocity_terms: Vec<Shown>,
+    /// Nonzero generalised forces.
+    pub forces: Vec<Shown>,
+    /// What kind of model it is.
+    pub linearity: Linearity,
+}
+
+impl<'a> Outline<'a> {
+    pub fn new(model: &'a Model, equations: &'a Equations) -> Self {
+        let mut outline = Self {
+            model,
+            equations,
+            definitions: Vec::new(),
+            terms: Vec::new(),
+            mass_matrix: Vec::new(),
+            velocity_terms: Vec::new(),
+            forces: Vec::new(),
+            linearity: linearity(equations),
+        };
+        outline.definitions = outline.definitions();
+        outline.terms = outline.terms();
+        outline.mass_matrix = outline.mass_matrix();
+        outline.velocity_terms = outline.rows(&equations.velocity_terms);
+        outline.forces = outline.rows(&equations.forces);
+        outline
+    }
+
+    /// All nodes whose formulas are written.
+    pub fn nodes(&self) -> Vec<Id> {
+        let equations = self.equations;
+        let shown = [
+            &self.definitions,
+            &self.terms,
+            &self.velocity_terms,
+            &self.forces,
+        ];
+        let mut nodes: Vec<Id> = shown.into_iter().flatten().map(|(_, node)| *node).collect();
+        nodes.extend(self.mass_matrix.iter().map(|(_, _, node)| *node));
+        let pivots = equations.accelerations.pivots.iter();
+        nodes.extend(pivots.filter(|pivot| self.graph().name(**pivot).is_some()));
+        nodes.extend(equations.coefficients.iter().map(|known| known.value));
+        nodes.extend(equations.guards.iter().map(|guard| guard.value));
+        if let Linearity::Nonlinear(node) = self.linearity {
+            nodes.push(node);
+        }
+        nodes
+    }
+
+    /// The symbol of a row: its coordinate, or its field's mode coordinates.
+    pub fn row_symbol(&self, row: Row) -> Symbol {
+        match row {
+            Row::Coordinate(index) => Symbol::plain(&self.model.coordinates[index].name),
+            Row::Modes(field) => {
+                Symbol::plain(&self.model.fields[field].coordinates).with_indices(&[Index::I])
+            }
+        }
+    }
+
+    /// Whether a row has any element at these orders.
+    pub fn is_present(&self, row: Row) -> bool {
+        match row {
+            Row::Coordinate(_) => true,
+            Row::Modes(field) => self.graph().size(Space::Modes(field)) > 0,
+        }
+    }
+
+    fn graph(&self) -> &Graph {
+        &self.equations.graph
+    }
+
+    fn definitions(&self) -> Vec<Shown> {
+        let definitions = self.model.definitions.iter();
+        definitions
+            .zip(&self.equations.definitions)
+            .filter_map(|(definition, node)| Some((Formula::named(&definition.name), (*node)?)))
+            .collect()
+    }
+
+    fn terms(&self) -> Vec<Shown> {
+        let model = self.model;
+        let named = |symbol: &'static str, terms: &'a [Term]| {
+            terms
+                .iter()
+                .map(move |term| Formula::named(&format!("{symbol}_{}", term.name)))
+        };
+        named("T", &model.kinetic)
+            .chain(named("V", &model.potential))
+            .chain(named("R", &model.dissipation))
+            .chain(model.forces.iter().map(|force| Formula::named(&force.name)))
+            .zip(self.equations.terms.iter().copied())
+            .collect()
+    }
+
+    fn rows(&self, rows: &Rows) -> Vec<Shown> {
+        let scalars = rows.scalars.iter().enumerate();
+        let modal = rows.modal.iter().enumerate();
+        scalars
+            .map(|(index, id)| (Row::Coordinate(index), *id))
+            .chain(modal.map(|(field, id)| (Row::Modes(field), *id)))
+            .filter(|(row, id)| !self.graph().is_zero(*id) && self.is_present(*row))
+            .map(|(row, id)| (Formula::Symbol(self.row_symbol(row)), id))
+            .collect()
+    }
+
+    fn mass_matrix(&self) -> Vec<(Formula, Formula, Id)> {
+        let mass = &self.equations.mass;
+        let mut entries = Vec::new();
+        let mut push = |row: Row, column: Row, id: Id| {
+            if !self.graph().is_zero(id) && self.is_present(row) && self.is_present(column) {
+                let [row, column] = [row, column].map(|of| Formula::Symbol(self.row_symbol(of)));
+                entries.push((row, column, id));
+            }
+        };
+        for (row, values) in mass.scalars.iter().enumerate() {
+            for (column, id) in values.iter().enumerate().skip(row) {
+                push(Row::Coordinate(row), Row::Coordinate(column), *id);
+            }
+            for (field, id) in mass.coupling[row].iter().enumerate() {
+                push(Row::Coordinate(row), Row::Modes(field), *id);
+            }
+        }
+        for (row, id, column) in &self.equations.modal_blocks {
+            push(Row::Modes(*row), Row::Modes(*column), *id);
+        }
+        entries
+    }
+}

@@ -1,0 +1,124 @@
+//! Inertia at the initial state: what lacks it is refused where it is declared, and right models
+//! are not.
+
+use codegen::variant::Variant;
+use model_spec::diagnostic::Record;
+
+use crate::support::{model, models};
+
+/// Two coordinates with this kinetic energy and these properties of the second.
+fn spec(kinetic: &str, second: &str) -> String {
+    format!(
+        "[model]\nname = \"mass\"\ntitle = \"Mass\"\n[parameters]\nm = {{ value = 2, unit = \"kg\" }}\n\
+         l = {{ value = 1, unit = \"m\" }}\n[coordinates]\nx = {{ unit = \"m\" }}\ny = {{ unit = \"m\"{second} }}\n\
+         [kinetic]\nall = \"{kinetic}\"\n"
+    )
+}
+
+fn found(text: &str) -> Option<Record> {
+    let model = model(text);
+    let orders = model.orders(None).unwrap();
+    let found = Variant::derive(&model, &orders).err()?;
+    assert!(Variant::derive_to_read(&model, &orders, &[]).is_ok());
+    Some(found.records().remove(0))
+}
+
+#[test]
+fn inertia_that_is_missing_or_negative_is_refused_at_its_coordinate() {
+    for (kinetic, line, message) in [
+        (
+            "1/2*m*(dot(x) + dot(y))^2",
+            8,
+            "`x`, `y` together have no inertia",
+        ),
+        (
+            "1/2*m*dot(x)^2 + 0*m*dot(y)^2",
+            9,
+            "the coordinate `y` has no inertia",
+        ),
+        (
+            "1/2*m*dot(x)^2 - 1/2*m*dot(y)^2",
+            9,
+            "the coordinate `y` has the negative inertia -2e0",
+        ),
+        (
+            "1/2*m*(dot(x)^2 + dot(y)^2 + 4*dot(x)*dot(y))",
+            8,
+            "`x`, `y` together have a negative inertia",
+        ),
+        (
+            "1/2*m*dot(x)^2 + 1/2*m*(y/l)^2*dot(y)^2",
+            9,
+            "the coordinate `y` has no inertia",
+        ),
+        (
+            "1/2*m*dot(x)^2 + 1/2*m*ln(y/l)*dot(y)^2",
+            9,
+            "comes out as -inf",
+        ),
+        (
+            "1/2*m*dot(x)^2 + m*dot(y)",
+            9,
+            "the coordinate `y` has no inertia",
+        ),
+    ] {
+        let found = found(&spec(kinetic, "")).unwrap_or_else(|| panic!("{kinetic} passes"));
+        assert!(
+            found.message.contains(message),
+            "{kinetic}: {}",
+            found.message
+        );
+        assert!(
+            found.message.contains("not positive definite"),
+            "{}",
+            found.message
+        );
+        assert_eq!(
+            (found.line, found.column),
+            (Some(line), Some(1)),
+            "{kinetic}"
+        );
+    }
+}
+
+#[test]
+fn inertia_that_vanishes_elsewhere_is_no_fault() {
+    for (kinetic, second) in [
+        ("1/2*m*dot(x)^2 + 1/2*m*(y/l)^2*dot(y)^2", ", initial = 1"),
+        ("1/2*m*dot(x)^2 + 1/2*m*cos(y/l)^2*dot(y)^2", ""),
+        ("1/2*m*(dot(x) + dot(y))^2 + 1e-9*m*dot(y)^2", ""),
+        ("1/2*m*(dot(x)*1e6 + dot(y))^2 + 1/2*m*dot(y)^2", ""),
+    ] {
+        assert_eq!(found(&spec(kinetic, second)), None, "{kinetic}");
+    }
+}
+
+#[test]
+fn no_shipped_specification_and_no_feature_lacks_inertia() {
+    for folder in [models(), models().join("../../tests/tests/features")] {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+            assert_eq!(found(&text), None);
+        }
+    }
+}
+
+#[test]
+fn modes_without_inertia_are_named_by_their_field() {
+    let path = models().join("../../tests/tests/features/massless_beam.toml");
+    let text = std::fs::read_to_string(path)
+        .unwrap()
+        .replace("order = 1", "order = 3");
+    let found = found(&text).unwrap();
+    assert!(
+        found.message.contains("`q_2`") && found.message.contains("together"),
+        "{}",
+        found.message
+    );
+    assert!(
+        text.lines()
+            .nth(found.line.unwrap() - 1)
+            .unwrap()
+            .starts_with("[fields.w]")
+    );
+}
