@@ -18,7 +18,8 @@ pub struct Arguments {
 /// The commands.
 #[derive(Subcommand)]
 pub enum Command {
-    /// Read and check a specification: grammar, names, units, inertia, unused parameters.
+    /// Read and check a specification: grammar, names, units, inertia at the initial state,
+    /// unused parameters.
     #[command(after_help = "Example:\n  eomgen check model-spec/models/planetary_arm.toml")]
     Check(Check),
     /// Print the equations of motion and what each coefficient is.
@@ -204,7 +205,8 @@ pub struct Validate {
     /// Modal truncation order of every field, instead of the specification's.
     #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
-    /// The file to write the certificate to; without it only the summary is printed.
+    /// The file to write the certificate to, `-` for stdout; without it only the summary is
+    /// printed.
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Print the certificate on stdout instead of the summary.
@@ -253,7 +255,7 @@ pub struct Simulate {
         required_unless_present = "record"
     )]
     pub until: Option<f64>,
-    /// The file to write: CSV, or Parquet if its name ends in `.parquet`.
+    /// The file to write: CSV, or Parquet if its name ends in `.parquet`; `-` for stdout.
     #[arg(long)]
     pub out: PathBuf,
     /// Another value for a parameter, in the unit the specification declares (repeatable).

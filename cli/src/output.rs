@@ -6,7 +6,76 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use crate::problem::{Outcome, Problem};
+use crate::problem::{Outcome, Problem, say, say_bytes, warn};
+
+/// Where a command's one file goes.
+pub enum Destination {
+    /// To stdout, for the name `-`.
+    Stdout,
+    /// To a device, which stays what it is.
+    Device(PathBuf),
+    /// To a file, which is there whole or not at all.
+    File(PathBuf),
+}
+
+impl Destination {
+    /// Where a name leads. `json`: whether something else is to be read on stdout.
+    ///
+    /// # Errors
+    /// A folder, a pipe or a place that cannot be, and stdout where `json` takes it.
+    pub fn of(path: &Path, json: bool) -> Outcome<Self> {
+        if path == Path::new("-") {
+            return if json {
+                Err(Problem::input(
+                    "--json and --out - both write to stdout: give --out the name of a file",
+                ))
+            } else {
+                Ok(Self::Stdout)
+            };
+        }
+        if is_device(path) {
+            return Ok(Self::Device(path.to_owned()));
+        }
+        file_place(path)?;
+        Ok(Self::File(path.to_owned()))
+    }
+
+    /// Writes the contents.
+    pub fn write(&self, contents: &[u8]) -> Outcome {
+        match self {
+            Self::Stdout => say_bytes(contents),
+            Self::Device(path) => std::fs::OpenOptions::new()
+                .write(true)
+                .open(path)
+                .and_then(|mut device| device.write_all(contents))
+                .map_err(|error| Problem::file("write", path, &error)),
+            Self::File(path) => write_file(path, contents),
+        }
+    }
+
+    /// Says what was done: on stderr where the contents are on stdout.
+    pub fn summarise(&self, summary: &str) -> Outcome {
+        match self {
+            Self::Stdout => {
+                warn(summary.trim_end());
+                Ok(())
+            }
+            _ => say(summary),
+        }
+    }
+}
+
+/// Whether this is something like `/dev/null`. A pipe is none: it might never be read.
+#[cfg(unix)]
+fn is_device(path: &Path) -> bool {
+    use std::os::unix::fs::FileTypeExt;
+    std::fs::metadata(path).is_ok_and(|found| found.file_type().is_char_device())
+}
+
+#[cfg(not(unix))]
+fn is_device(_path: &Path) -> bool {
+    false
+}
 
 /// Writes a file, or leaves what was there. Folders on the way are made.
 pub fn write_file(path: &Path, contents: &[u8]) -> Outcome {
@@ -27,7 +96,9 @@ pub fn file_place(path: &Path) -> Outcome<PathBuf> {
     let failed = |error: &dyn std::fmt::Display| Problem::file("write", path, error);
     match std::fs::metadata(path) {
         Ok(found) if found.is_file() => std::fs::canonicalize(path).map_err(|error| failed(&error)),
-        Ok(_) => Err(failed(&"it is not a file; give the name of a file")),
+        Ok(_) => Err(failed(
+            &"it is not a file; give the name of a file, or - for stdout",
+        )),
         Err(_) if path.file_name().is_none() => Err(failed(&"give the name of a file")),
         Err(_) => match folder_of(path).ancestors().find(|folder| folder.exists()) {
             Some(found) if !found.is_dir() => {

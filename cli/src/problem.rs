@@ -57,8 +57,13 @@ pub fn warn(text: &str) {
 
 /// Writes to stdout; a closed pipe ends the program quietly.
 pub fn say(text: &str) -> Outcome {
+    say_bytes(text.as_bytes())
+}
+
+/// The same for what need not be text.
+pub fn say_bytes(bytes: &[u8]) -> Outcome {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(bytes).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
         Err(error) => Err(Problem::input(format!("cannot write to stdout: {error}"))),

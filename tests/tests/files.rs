@@ -105,6 +105,41 @@ fn devices_pipes_and_links_stay_what_they_are() {
     );
 }
 
+/// `-` is stdout, where nothing else is said then; a device takes the bytes and stays one.
+#[test]
+fn one_file_goes_to_stdout_or_to_a_device() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("a.csv");
+    let simulate =
+        |out: &str| program::run(&["simulate", &spec("pendulum"), "--until", "1", "--out", out]);
+    assert_eq!(simulate(&shown(&file)).status.code(), Some(0));
+    let streamed = simulate("-");
+    assert_eq!(
+        streamed.status.code(),
+        Some(0),
+        "{}",
+        text(&streamed.stderr)
+    );
+    assert_eq!(streamed.stdout, std::fs::read(&file).expect("the table"));
+    assert!(text(&streamed.stderr).contains("1001 rows"));
+    let certificate = program::run(&["validate", &spec("emps"), "--out", "-"]);
+    assert!(
+        text(&certificate.stdout).starts_with("{\n")
+            && text(&certificate.stderr).contains("passed")
+    );
+    for command in [
+        &["simulate", &spec("pendulum"), "--until", "1"][..],
+        &["validate", &spec("emps")],
+    ] {
+        let message = refused(&[command, &["--json", "--out", "-"]].concat());
+        assert!(message.contains("both write to stdout"), "{message}");
+    }
+    if cfg!(unix) {
+        assert_eq!(simulate("/dev/null").status.code(), Some(0));
+        assert!(!std::fs::metadata("/dev/null").expect("a device").is_file());
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn a_folder_that_cannot_be_written_is_refused() {

@@ -6,8 +6,8 @@ use sim::record::{HeldInputs, read_inputs};
 
 use crate::arguments::{Simulate, Solver};
 use crate::motion::{Run, Simulated};
-use crate::output::{file_place, write_file};
-use crate::problem::{Outcome, Problem, say, warn};
+use crate::output::Destination;
+use crate::problem::{Outcome, Problem, warn};
 use crate::ranges::warn_of_ranges;
 use crate::table::Table;
 use crate::variant::{derive_variant, load, orders};
@@ -23,7 +23,7 @@ const DEFAULT_TOLERANCE: f64 = 1e-9;
 
 /// Runs the command.
 pub fn run(options: &Simulate) -> Outcome {
-    file_place(&options.out)?;
+    let destination = Destination::of(&options.out, options.json)?;
     let model = with_settings(load(&options.spec)?.model, &options.set)?;
     let orders = orders(&model, options.order.as_deref())?;
     let variant = derive_variant(model, &orders)?;
@@ -42,8 +42,8 @@ pub fn run(options: &Simulate) -> Outcome {
     let simulated = run.simulate(&times)?;
     warn_of_ranges(&variant.model, &simulated.trajectory, run.inputs())?;
     let table = run.table(&simulated.trajectory);
-    write_file(&options.out, &table.encode(&options.out)?)?;
-    say(&summary(options, &table, &simulated))
+    destination.write(&table.encode(&options.out)?)?;
+    destination.summarise(&summary(options, &table, &simulated))
 }
 
 /// What is said at the end.

@@ -7,16 +7,17 @@ use sim::validate::certificate::{Certificate, Check};
 
 use super::generate::source;
 use crate::arguments::Validate;
-use crate::output::{file_place, write_file};
+use crate::output::Destination;
 use crate::problem::{Outcome, Problem, say};
 use crate::progress::Note;
 use crate::variant::{derive_variant, load, orders};
 
 /// Runs the command.
 pub fn run(options: &Validate) -> Outcome {
-    if let Some(path) = &options.out {
-        file_place(path)?;
-    }
+    let out = options.out.as_deref();
+    let destination = out
+        .map(|path| Destination::of(path, options.json))
+        .transpose()?;
     let model = load(&options.spec)?.model;
     let orders = orders(&model, options.order.as_deref())?;
     let certificate = {
@@ -25,13 +26,13 @@ pub fn run(options: &Validate) -> Outcome {
     };
     let text = serde_json::to_string_pretty(&certificate)
         .map_err(|error| Problem::input(error.to_string()))?;
-    if let Some(path) = &options.out {
-        write_file(path, format!("{text}\n").as_bytes())?;
+    if let Some(destination) = &destination {
+        destination.write(format!("{text}\n").as_bytes())?;
     }
-    if options.json {
-        say(&format!("{text}\n"))?;
-    } else {
-        say(&summary(&certificate))?;
+    match destination {
+        _ if options.json => say(&format!("{text}\n"))?,
+        Some(destination) => destination.summarise(&summary(&certificate))?,
+        None => say(&summary(&certificate))?,
     }
     if certificate.passed {
         Ok(())
