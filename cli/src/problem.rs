@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use model_spec::diagnostic::Diagnostics;
 use model_spec::source::Source;
 use model_spec::variant::ModelError;
+use sim::record::Refusal;
 
 /// A command's end.
 pub type Outcome<T = ()> = Result<T, Problem>;
@@ -16,7 +17,7 @@ pub type Outcome<T = ()> = Result<T, Problem>;
 pub enum Problem {
     /// The input or its use is wrong; the message says what would be right.
     Input(String),
-    /// A specification is wrong.
+    /// A specification, or another file that people write, is wrong.
     Specification(Diagnostics),
     /// The command ran and the answer is no; what there is to say is said.
     Failed,
@@ -36,6 +37,14 @@ impl Problem {
     /// A model that cannot be had with the numbers asked for.
     pub fn model(source: &Source, error: ModelError) -> Self {
         Self::Specification(Diagnostics::one(source.clone(), error.diagnostic()))
+    }
+
+    /// Records that are not taken.
+    pub fn records(refusal: Refusal) -> Self {
+        match refusal {
+            Refusal::Description(found) => Self::Specification(found),
+            Refusal::Record(message) => Self::Input(message),
+        }
     }
 
     /// Says what is wrong on stderr and gives the exit status.

@@ -7,7 +7,7 @@ use model_spec::edit::{self, Edit, EditError, NewParameter, NewValue, SetParamet
 use model_spec::model::{Model, Parameter, ParameterValue};
 use model_spec::source::Source;
 
-use crate::catalogue::{Effect, SiteKind};
+use crate::catalogue::{Change, Effect, SiteKind};
 use crate::placed::{edits, filled, free_name, terms};
 use crate::sites::Site;
 use crate::unknowns::{What, sign_bounds};
@@ -212,26 +212,28 @@ fn candidate(
         parameters.push(CandidateParameter {
             name,
             unit: plain_unit(&filled(&parameter.unit, &words)?),
-            positive: parameter.sign == "+",
+            positive: parameter.positive,
             inverse: parameter.inverse,
-            shape: (parameter.scale == "rate").then_some(parameter.share * rate),
+            shape: parameter.share.map(|share| share * rate),
             shifts: None,
             doc: parameter.doc.clone(),
         });
     }
     for change in &effect.edits {
-        if matches!(change.add.as_str(), "coordinate" | "definition") {
-            let name = free_name(&change.name, &site.name, &mut taken);
-            words.insert(change.name.clone(), name);
+        if let Change::Coordinate { name, .. } | Change::Definition { name, .. } = change {
+            let free = free_name(name, &site.name, &mut taken);
+            words.insert(name.clone(), free);
         }
     }
     let mut changes = Vec::new();
     let mut term = String::new();
     for change in &effect.edits {
         changes.extend(edits(model, change, site, &words)?);
-        let said = filled(&change.value, &words)?;
-        if !said.is_empty() {
-            term = said;
+        if let Change::Term { value, .. }
+        | Change::Definition { value, .. }
+        | Change::Force { value, .. } = change
+        {
+            term = filled(value, &words)?;
         }
     }
     Some(Candidate {

@@ -1,9 +1,17 @@
 //! Effects as data: what a model may lack, each a list of edits with blanks. Where they go is
-//! found in [`crate::sites`], what they do is decided by nobody but the specification.
+//! found in [`crate::sites`], what they do is decided by nobody but the specification. How a file
+//! of effects is read is in `entry`.
+
+mod blanks;
+mod change;
+mod entry;
 
 use std::path::Path;
 
-use serde::Deserialize;
+use model_spec::diagnostic::Diagnostics;
+use model_spec::edit::Section;
+use model_spec::source::Source;
+use model_spec::toml_file;
 
 /// The catalogue that comes with the program.
 const BUILT_IN: &str = include_str!("catalogue.toml");
@@ -12,8 +20,7 @@ const BUILT_IN: &str = include_str!("catalogue.toml");
 const LARGEST: u64 = 1 << 20;
 
 /// An effect.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct Effect {
     /// Its name in results.
     pub name: String,
@@ -24,17 +31,17 @@ pub struct Effect {
     /// What would show it best.
     pub experiment: String,
     /// Whether it repeats with an angle, so that it is tried at several shaft orders.
-    #[serde(default)]
     pub orders: bool,
-    /// Its parameters.
+    /// Its parameters, at least one.
     pub parameters: Vec<EffectParameter>,
-    /// What it changes.
+    /// What it changes, at least one thing.
     pub edits: Vec<Change>,
+    /// Whether it is from a user's file.
+    pub is_own: bool,
 }
 
 /// The kinds of places.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SiteKind {
     /// Anything that moves and can be held: an angle or a position.
     Axis,
@@ -48,98 +55,125 @@ pub enum SiteKind {
     Spring,
 }
 
+impl SiteKind {
+    /// The kinds by their words in a file.
+    pub const WORDS: [(&'static str, Self); 5] = [
+        ("axis", Self::Axis),
+        ("angle", Self::Angle),
+        ("mesh", Self::Mesh),
+        ("arm", Self::Arm),
+        ("spring", Self::Spring),
+    ];
+
+    /// The blanks that a site of this kind fills; `{root}` and `{stiffness}` where it has them.
+    pub fn blanks(self) -> &'static [&'static str] {
+        match self {
+            Self::Axis | Self::Angle => &["on", "unit", "force"],
+            Self::Mesh => &["on", "p", "k", "b"],
+            Self::Arm => &[
+                "term",
+                "velocity",
+                "field",
+                "x",
+                "end",
+                "lever",
+                "root",
+                "stiffness",
+            ],
+            Self::Spring => &["on", "p", "k"],
+        }
+    }
+}
+
 /// A parameter of an effect.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug)]
 pub struct EffectParameter {
     /// Its name, with more behind it where that is taken.
     pub name: String,
     /// Its unit, with blanks.
     pub unit: String,
-    /// "+" if it must not be negative, "" if it may.
-    pub sign: String,
+    /// Whether it must not be negative.
+    pub positive: bool,
     /// What it is.
     pub doc: String,
     /// The effect is absent where it is infinite, not where it is 0.
-    #[serde(default)]
     pub inverse: bool,
-    /// "rate": it is as large as a part of the site's usual rate, and shapes the effect
-    /// without scaling it.
-    #[serde(default)]
-    pub scale: String,
-    /// That part.
-    #[serde(default)]
-    pub share: f64,
+    /// The part of the site's usual rate that it is as large as, where it shapes the effect without
+    /// scaling it.
+    pub share: Option<f64>,
 }
 
 /// One change of the specification.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Change {
-    /// What is added: `force`, `coordinate`, or a term of `kinetic`, `potential`,
-    /// `dissipation` or `definition`.
-    #[serde(default)]
-    pub add: String,
-    /// Where something is replaced: `kinetic`, `mesh` for all terms of one, or `measured` for
-    /// all definitions and observables.
-    #[serde(default)]
-    pub substitute: String,
-    /// The name of what is added.
-    #[serde(default)]
-    pub name: String,
-    /// What a force works on.
-    #[serde(default)]
-    pub on: String,
-    /// The expression added.
-    #[serde(default)]
-    pub value: String,
-    /// The unit of a coordinate.
-    #[serde(default)]
-    pub unit: String,
-    /// What it is.
-    #[serde(default)]
-    pub doc: String,
-    /// The terms in which something is replaced.
-    #[serde(default)]
-    pub terms: Vec<String>,
-    /// What is replaced.
-    #[serde(default)]
-    pub find: String,
-    /// By what.
-    #[serde(default)]
-    pub replace: String,
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// A term of an energy or of the dissipation.
+    Term {
+        /// Which of them.
+        section: Section,
+        /// Its name.
+        name: String,
+        /// Its expression.
+        value: String,
+    },
+    /// A definition, to be used by other changes.
+    Definition {
+        /// Its name, which is a blank of the effect.
+        name: String,
+        /// Its expression.
+        value: String,
+    },
+    /// A force.
+    Force {
+        /// Its name.
+        name: String,
+        /// What it works on.
+        on: String,
+        /// Its expression.
+        value: String,
+    },
+    /// A coordinate.
+    Coordinate {
+        /// Its name, which is a blank of the effect.
+        name: String,
+        /// Its unit.
+        unit: String,
+        /// What it is.
+        doc: String,
+    },
+    /// Something replaced.
+    Substitution {
+        /// Where.
+        within: Within,
+        /// What.
+        find: String,
+        /// By what.
+        replace: String,
+    },
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    #[serde(default)]
-    effect: Vec<Effect>,
+/// Where something is replaced.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Within {
+    /// These terms of the kinetic energy.
+    Kinetic(Vec<String>),
+    /// All terms of a pair of teeth, or of the kinetic energy of a body and of what it carries.
+    Site,
+    /// All definitions and observables.
+    Measured,
 }
 
 /// The effects that come with the program, then those of a user's file; one of the same name
 /// replaces the built-in.
 ///
 /// # Errors
-/// What is wrong with the user's file, with its line.
-pub fn effects(own: Option<&Path>) -> Result<Vec<Effect>, String> {
-    let parse = |text: &str| toml_edit::de::from_str::<File>(text).map_err(|e| e.to_string());
-    let mut effects = parse(BUILT_IN)?.effect;
+/// All that is wrong with the user's file, with its places.
+pub fn effects(own: Option<&Path>) -> Result<Vec<Effect>, Diagnostics> {
+    let mut effects = entry::read(&Source::new("catalogue.toml", BUILT_IN))?;
     if let Some(path) = own {
-        let failed = |error: String| format!("{}: {error}", path.display());
-        let size = std::fs::metadata(path)
-            .map_err(|e| failed(e.to_string()))?
-            .len();
-        if size > LARGEST {
-            return Err(failed(format!(
-                "has {size} bytes; at most {LARGEST} are read"
-            )));
-        }
-        let text = std::fs::read_to_string(path).map_err(|e| failed(e.to_string()))?;
-        for effect in parse(&text).map_err(failed)?.effect {
-            effects.retain(|known| known.name != effect.name);
-            effects.push(effect);
-        }
+        let mut found = entry::read(&toml_file::source(path, LARGEST)?)?;
+        effects.retain(|known| found.iter().all(|own| own.name != known.name));
+        found.iter_mut().for_each(|own| own.is_own = true);
+        effects.extend(found);
     }
     Ok(effects)
 }
@@ -148,8 +182,7 @@ pub fn effects(own: Option<&Path>) -> Result<Vec<Effect>, String> {
 mod tests {
     #[test]
     fn the_built_in_catalogue_can_be_read() {
-        let effects = super::effects(None).expect("a valid catalogue");
+        let effects = super::effects(None).unwrap_or_else(|found| panic!("{found}"));
         assert!(effects.len() >= 16);
-        assert!(effects.iter().all(|effect| !effect.parameters.is_empty()));
     }
 }

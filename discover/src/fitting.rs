@@ -149,8 +149,8 @@ impl Setting<'_> {
             ranges: sketch.ranges,
             prior,
             prior_weight,
-            train,
-            test,
+            train: train.whole(),
+            test: test.whole(),
             plant: sketch.plant,
         })
     }

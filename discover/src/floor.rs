@@ -33,10 +33,8 @@ pub fn floor(setting: &Setting<'_>, fit: &Fit, seed: u64) -> Floor {
     let Ok(starts) = setting.all_starts(&shooting, &theta, &fit.ranges) else {
         return noise_alone;
     };
-    let rest = setting.rest(
-        &shooting,
-        estimate::evaluated(&shooting, &StartPrior::default(), theta, starts),
-    );
+    let estimate = estimate::evaluated(&shooting, &StartPrior::default(), theta, starts);
+    let rest = setting.rest(&shooting, estimate).whole();
     if !rest.pooled.is_finite() {
         return noise_alone;
     }

@@ -1,9 +1,14 @@
 //! Whether a record can be believed: what makes an answer impossible is refused, what only
 //! weakens it is noted. Units are checked where they are read, in [`crate::dataset`].
 
+mod coverage;
+
 use std::path::Path;
 
+use sim::record::description::Description;
+
 use crate::dataset::{Dataset, Record, Refusal};
+use coverage::{STILL, span};
 
 /// A record with fewer samples says nothing.
 const FEWEST_SAMPLES: usize = 50;
@@ -17,9 +22,6 @@ const MOST_HELD: f64 = 0.1;
 /// A channel that spans more noises has a wrong unit or a wrong noise: no sensor resolves so
 /// much.
 const MOST_NOISES: f64 = 1e10;
-
-/// A window with fewer samples says nothing of what happens inside it.
-const FEWEST_IN_WINDOW: f64 = 4.0;
 
 /// Steps that differ from the usual one by more than this part of it are jitter.
 const JITTER: f64 = 0.1;
@@ -100,17 +102,17 @@ pub fn typical_step(times: &[f64]) -> f64 {
 ///
 /// # Errors
 /// The first thing that makes an answer impossible.
-pub fn examine(dataset: &Dataset) -> Result<Vec<String>, Refusal> {
+pub fn examine(dataset: &Dataset, description: &Description) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     for record in dataset.train.iter().chain(&dataset.test) {
         notes.extend(timing(record));
         notes.extend(held_inputs(record));
-        windows(dataset, record)?;
         for (channel, column) in dataset.channels.iter().zip(&record.channels) {
             notes.extend(values(record, &channel.name, channel.noise, column)?);
         }
         different_channels(dataset, record)?;
     }
+    notes.extend(coverage::check(dataset, description)?);
     for test in &dataset.test {
         for train in &dataset.train {
             different_records(dataset, train, test)?;
@@ -146,34 +148,6 @@ fn held_inputs(record: &Record) -> Option<String> {
     })
 }
 
-/// A window holds some samples, and a record not many more windows than samples.
-fn windows(dataset: &Dataset, record: &Record) -> Result<(), Refusal> {
-    let Some(length) = dataset.window else {
-        return Ok(());
-    };
-    let step = typical_step(&record.times);
-    if length < FEWEST_IN_WINDOW * step {
-        return Err(Refusal::file(
-            &dataset.path,
-            format!(
-                "windows.length = {length} s holds less than {FEWEST_IN_WINDOW} samples, {step:.3e} s apart; expected a longer one"
-            ),
-        ));
-    }
-    let (first, last) = (record.times[0], record.times[record.times.len() - 1]);
-    if (last - first) / length > record.times.len() as f64 {
-        return Err(Refusal::file(
-            &record.path,
-            format!(
-                "{} samples span {:.3e} s: most of the record is missing; expected samples at the pace of {step:.3e} s",
-                record.times.len(),
-                last - first
-            ),
-        ));
-    }
-    Ok(())
-}
-
 /// A channel of one record.
 fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
@@ -206,7 +180,7 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
              expected its unit and its noise to be right"
         ));
     }
-    if high - low < 2.0 * noise {
+    if high - low < STILL * noise {
         notes.push(format!(
             "{}: `{name}` moves by less than two noises",
             record.name
@@ -262,10 +236,6 @@ fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result
         ));
     }
     // The channel that moves most tells records apart best.
-    let span = |column: &[f64]| {
-        let known = || column.iter().copied().filter(|v| v.is_finite());
-        known().fold(f64::NEG_INFINITY, f64::max) - known().fold(f64::INFINITY, f64::min)
-    };
     let in_noises = |place: usize| span(&train.channels[place]) / dataset.channels[place].noise;
     let Some(channel) =
         (0..dataset.channels.len()).max_by(|a, b| in_noises(*a).total_cmp(&in_noises(*b)))

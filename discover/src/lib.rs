@@ -9,7 +9,8 @@
 //! [`setting`] (what all fits share), [`sketch`], [`fitting`] and [`rest`] (a specification fitted,
 //! and what that leaves), [`mod@floor`] (what a right model would leave), [`labels`] (whether columns
 //! are what they are called), [`locate`] (where the rest is) by the [`residual_force`];
-//! [`catalogue`], [`sites`] and [`candidates`] (what may be missing; `placed`: a change at a place),
+//! [`catalogue`], [`sites`] and [`candidates`] (what may be missing; `placed`: a change at a place;
+//! [`own`]: a user's effects there),
 //! [`response`] with [`mod@driven`] and [`mod@tried`] (what each candidate does), [`mod@screen`]
 //! (what it promises), [`mod@judge`] by [`rule`] (what is believed), [`trials`] (fits in earnest;
 //! `sets`: how they begin; `shapes`: from elsewhere; `pairs`: two at once; `swaps`: others in the place of an answer;
@@ -40,6 +41,7 @@ pub mod labels;
 pub mod locate;
 pub mod march;
 pub mod named;
+pub mod own;
 mod pairs;
 mod placed;
 pub mod plant;

@@ -5,83 +5,85 @@ use std::collections::BTreeMap;
 use model_spec::edit::{Edit, NewCoordinate, NewForce, NewTerm, Section, Substitution};
 use model_spec::model::{Expr, Model};
 
-use crate::catalogue::Change;
+use crate::catalogue::{Change, Within};
 use crate::sites::Site;
 
 /// The edits that a change of the catalogue comes to at a site, its blanks filled with these words;
-/// none if a word is missing.
+/// none if a word is missing, or what is replaced is not there.
 pub(crate) fn edits(
     model: &Model,
     change: &Change,
     site: &Site,
     words: &BTreeMap<String, String>,
 ) -> Option<Vec<Edit>> {
-    let fill = |text: &str| filled(text, words);
-    let named = words
-        .get(&change.name)
-        .cloned()
-        .unwrap_or_else(|| change.name.clone());
-    if !change.substitute.is_empty() {
-        let (find, replace) = (fill(&change.find)?, fill(&change.replace)?);
-        let places: Vec<(Section, Vec<String>)> = match change.substitute.as_str() {
-            "kinetic" => {
-                let terms: Option<Vec<String>> =
-                    change.terms.iter().map(|term| fill(term)).collect();
-                vec![(Section::Kinetic, terms?)]
-            }
-            "mesh" => holding(model, site, &find),
-            "measured" => measured(model, &find),
-            _ => return None,
-        };
-        let substitutions = places.into_iter().filter(|(_, terms)| !terms.is_empty());
-        return Some(
-            substitutions
-                .map(|(section, terms)| {
-                    Edit::Substitute(Substitution {
-                        section,
-                        terms,
-                        find: find.clone(),
-                        replace: replace.clone(),
-                    })
-                })
-                .collect(),
-        );
-    }
-    let value = fill(&change.value)?;
-    let term = |section: Section| {
-        let mut taken = terms(model);
-        let name = match section {
-            Section::Definitions => named.clone(),
-            _ => free_name(&named, &site.name, &mut taken),
-        };
-        Edit::AddTerm(NewTerm {
+    let fill = |text: &String| filled(text, words);
+    let new = |name: &String| words.get(name).unwrap_or(name).clone();
+    let free = |name: &String| free_name(name, &site.name, &mut terms(model));
+    let term = |section: Section, name: String, value: &String| {
+        Some(Edit::AddTerm(NewTerm {
             section,
             name,
-            value: value.clone(),
+            value: fill(value)?,
             doc: String::new(),
             source: String::new(),
-        })
+        }))
     };
-    Some(vec![match change.add.as_str() {
-        "kinetic" => term(Section::Kinetic),
-        "potential" => term(Section::Potential),
-        "dissipation" => term(Section::Dissipation),
-        "definition" => term(Section::Definitions),
-        "force" => Edit::AddForce(NewForce {
-            name: free_name(&named, &site.name, &mut terms(model)),
-            on: fill(&change.on)?,
+    Some(vec![match change {
+        Change::Term {
+            section,
+            name,
             value,
+        } => term(*section, free(name), value)?,
+        Change::Definition { name, value } => term(Section::Definitions, new(name), value)?,
+        Change::Force { name, on, value } => Edit::AddForce(NewForce {
+            name: free(name),
+            on: fill(on)?,
+            value: fill(value)?,
             doc: String::new(),
             source: String::new(),
         }),
-        "coordinate" => Edit::AddCoordinate(NewCoordinate {
-            name: named,
-            unit: change.unit.clone(),
-            doc: change.doc.clone(),
+        Change::Coordinate { name, unit, doc } => Edit::AddCoordinate(NewCoordinate {
+            name: new(name),
+            unit: fill(unit)?,
+            doc: doc.clone(),
             initial: None,
         }),
-        _ => return None,
+        Change::Substitution {
+            within,
+            find,
+            replace,
+        } => return substitutions(model, within, site, (fill(find)?, fill(replace)?), words),
     }])
+}
+
+/// What is replaced, section by section; none if it is nowhere.
+fn substitutions(
+    model: &Model,
+    within: &Within,
+    site: &Site,
+    (find, replace): (String, String),
+    words: &BTreeMap<String, String>,
+) -> Option<Vec<Edit>> {
+    let places: Vec<(Section, Vec<String>)> = match within {
+        Within::Kinetic(terms) => {
+            let terms: Option<Vec<String>> = terms.iter().map(|term| filled(term, words)).collect();
+            vec![(Section::Kinetic, terms?)]
+        }
+        Within::Site => holding(model, site, &find),
+        Within::Measured => measured(model, &find),
+    };
+    let substitutions: Vec<Edit> = (places.into_iter())
+        .filter(|(_, terms)| !terms.is_empty())
+        .map(|(section, terms)| {
+            Edit::Substitute(Substitution {
+                section,
+                terms,
+                find: find.clone(),
+                replace: replace.clone(),
+            })
+        })
+        .collect();
+    (!substitutions.is_empty()).then_some(substitutions)
 }
 
 /// The definitions and observables that hold an expression, however it is spaced.
@@ -106,7 +108,7 @@ fn measured(model: &Model, find: &str) -> Vec<(Section, Vec<String>)> {
     ]
 }
 
-/// The mesh's terms that hold a name.
+/// The site's terms that hold a name.
 fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)> {
     let text = |section: Section, term: &str| {
         let span = match section {
@@ -128,7 +130,8 @@ fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)
                     .value
                     .span
             }
-            Section::Kinetic | Section::Observables => return None,
+            Section::Kinetic => model.kinetic.iter().find(|t| t.name == term)?.value.span,
+            Section::Observables => return None,
         };
         model.source.text.get(span.start..span.end)
     };

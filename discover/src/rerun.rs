@@ -35,7 +35,7 @@ pub fn rerun(setting: &Setting<'_>, fit: &Fit, text: &str) -> Result<Rerun, Stri
         let starts = estimate.starts.iter();
         let starts = starts.map(|start| mapped(fit, &plant, start)).collect();
         let estimate = evaluated(&shooting, &StartPrior::default(), theta.clone(), starts);
-        setting.rest(&shooting, estimate).pooled
+        setting.rest(&shooting, estimate).whole().pooled
     };
     Ok(Rerun {
         train: left(&setting.train, &fit.train.estimate),

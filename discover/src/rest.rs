@@ -25,6 +25,21 @@ pub struct Rest {
     pub pooled: f64,
     /// How many samples a residual is correlated over.
     pub correlation: f64,
+    /// The windows in which the motion cannot be followed; the others alone are in all this.
+    pub lost: Vec<usize>,
+}
+
+impl Rest {
+    /// The same, infinite where the motion cannot be followed in some window: what is left there is
+    /// not known, and the other windows do not stand for it.
+    pub fn whole(mut self) -> Self {
+        if !self.lost.is_empty() {
+            self.pooled = f64::INFINITY;
+            self.channels.fill(f64::INFINITY);
+            self.in_noises.fill(f64::INFINITY);
+        }
+        self
+    }
 }
 
 impl Setting<'_> {
@@ -32,6 +47,9 @@ impl Setting<'_> {
     pub fn rest(&self, shooting: &Shooting<'_>, estimate: Estimate) -> Rest {
         let channels = shooting.channels();
         let residuals = shooting.residuals(&estimate.theta, &estimate.starts);
+        let lost: Vec<usize> = (0..residuals.len())
+            .filter(|window| residuals[*window].is_none())
+            .collect();
         let residuals: Vec<Vec<f64>> = residuals
             .into_iter()
             .map(|r| r.map(|r| r.values).unwrap_or_default())
@@ -60,6 +78,7 @@ impl Setting<'_> {
             correlation: correlation(&residuals, channels),
             residuals,
             estimate,
+            lost,
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::empirical::add_empirical;
 use crate::fitting::Fit;
 use crate::judge::{Evidence, evidence};
 use crate::named::{Named, leaves_clearly_less};
+use crate::rest::Rest;
 use crate::rule;
 use crate::screen::Screen;
 use crate::setting::Setting;
@@ -15,6 +16,7 @@ use crate::thinned::thin;
 use crate::trials::{Task, Trial, at_floor, leaves_less};
 use crate::unknowns::{Unknown, What, of_null_model};
 use crate::views::Look;
+use crate::windows::Windows;
 
 /// An effect that was believed.
 #[derive(Clone, Debug)]
@@ -64,7 +66,7 @@ impl Found {
 /// Fits the model with its declared unknowns alone.
 ///
 /// # Errors
-/// Why no motion can be followed.
+/// Why no motion can be followed, or where it cannot.
 pub fn null_fit(setting: &Setting<'_>, text: &str) -> Result<Fit, String> {
     let plant = setting.plant(text, None)?;
     let values: Vec<(String, f64)> = plant
@@ -93,11 +95,30 @@ pub fn null_fit(setting: &Setting<'_>, text: &str) -> Result<Fit, String> {
         setting.complete(setting.expected(texts(), unknowns.clone(), theta, (&fit, left))?)
     };
     let (free, waiting) = rayon::join(|| setting.fit(texts(), unknowns.clone(), &theta), waiting);
-    match (free, waiting) {
-        (Ok(free), Ok(waiting)) if waiting.train.pooled < free.train.pooled => Ok(waiting),
-        (Ok(fit), _) | (Err(_), Ok(fit)) => Ok(fit),
-        (Err(error), Err(_)) => Err(error),
-    }
+    let fit = match (free, waiting) {
+        (Ok(free), Ok(waiting)) if waiting.train.pooled < free.train.pooled => waiting,
+        (Ok(fit), _) | (Err(_), Ok(fit)) => fit,
+        (Err(error), Err(_)) => return Err(error),
+    };
+    followed(&setting.train, &fit.train)?;
+    followed(&setting.test, &fit.test)?;
+    Ok(fit)
+}
+
+/// The motion can be followed in all windows of a set.
+fn followed(windows: &Windows<'_>, rest: &Rest) -> Result<(), String> {
+    let Some(first) = rest.lost.first() else {
+        return Ok(());
+    };
+    let window = &windows.list[*first];
+    Err(format!(
+        "the model's motion cannot be followed in {} of {} windows, first at t = {:.6} s of {}: \
+         nothing can be compared there; expected a model that runs through its records",
+        rest.lost.len(),
+        windows.list.len(),
+        window.times[0],
+        windows.records[window.record].name
+    ))
 }
 
 /// Searches for what a model lacks. `floor`: the gap that a right model would leave, in noises.

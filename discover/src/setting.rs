@@ -124,7 +124,6 @@ impl<'d> Setting<'d> {
             windows,
             noise: &self.noise,
             unknowns,
-            margin: (rule::LONGEST_DELAY as usize, rule::LONGEST_LEAD as usize),
             ranges: self.fits_starts().then_some(ranges),
             part: 1.0,
             prior_weight: 1.0,

@@ -8,7 +8,7 @@ use crate::crew::{Crew, Linear};
 use crate::plant::Plant;
 use crate::runner::Runner;
 use crate::unknowns::{Unknown, What};
-use crate::windows::{Window, Windows};
+use crate::windows::{Window, Windows, judged};
 
 /// The sensors' part of the unknowns.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,9 +32,6 @@ pub struct Shooting<'a> {
     pub noise: &'a [f64],
     /// The unknowns.
     pub unknowns: &'a [Unknown],
-    /// Samples at a window's beginning and end that sensors which are late, or early, may see
-    /// from outside of it.
-    pub margin: (usize, usize),
     /// The range of each state, where initial states are estimated.
     pub ranges: Option<&'a [f64]>,
     /// The part of each window that is looked at, from its beginning.
@@ -176,8 +173,7 @@ impl<'a> Shooting<'a> {
     ) -> Vec<f64> {
         let channels = self.channels();
         let samples = seen.len() / channels;
-        let (begin, end) = self.margin;
-        let inside = begin.min(samples / 4)..samples - end.min(samples / 4);
+        let inside = judged(samples);
         let pairs = seen.iter().zip(&window.measured).enumerate();
         pairs
             .map(|(place, (seen, measured))| {

@@ -1,4 +1,4 @@
-//! Where effects may sit in a model: axes, angles, meshes with play and flexible bodies, with
+//! Where effects may sit in a model: axes, angles, meshes with play, flexible bodies and springs, with
 //! the words that fill the blanks of an effect there.
 
 use std::collections::BTreeMap;
@@ -18,7 +18,7 @@ pub struct Site {
     pub name: String,
     /// What fills the blanks.
     pub words: BTreeMap<&'static str, String>,
-    /// The terms that make up a mesh.
+    /// The terms that make up a mesh, or those of the kinetic energy that move with a body.
     pub terms: Vec<(Section, Vec<String>)>,
 }
 
@@ -28,6 +28,12 @@ pub fn sites(model: &Model) -> Vec<Site> {
     let mut found = axes(model, &meshes);
     found.extend(meshes.iter().filter_map(|place| mesh(model, *place)));
     found.extend(arms(model));
+    found.extend(
+        model
+            .potential
+            .iter()
+            .filter_map(|term| spring(model, term)),
+    );
     found
 }
 
@@ -196,18 +202,75 @@ fn mesh(model: &Model, coordinate: usize) -> Option<Site> {
         }
     }
     let name = model.coordinates[coordinate].name.clone();
+    let mut words: BTreeMap<&'static str, String> =
+        [("p", name.clone()), ("k", stiffness?), ("on", name.clone())].into();
+    words.extend(half_play(model, coordinate).map(|play| ("b", play)));
     Some(Site {
         kind: SiteKind::Mesh,
-        words: [("p", name.clone()), ("k", stiffness?), ("on", name.clone())].into(),
+        words,
         name,
         terms,
     })
 }
 
+/// The half-play of a coordinate, as the specification writes it.
+fn half_play(model: &Model, coordinate: usize) -> Option<String> {
+    let mut play = None;
+    for (_, _, value) in values(model) {
+        value.visit(&mut |part| {
+            if let ExprKind::Call(Function::Deadzone, arguments) = &part.kind
+                && arguments[0].kind == ExprKind::Coordinate(coordinate)
+            {
+                play = arguments.get(1).map(|half| text(model, half));
+            }
+        });
+    }
+    play
+}
+
+/// A spring: a term of the potential energy that is a stiffness, one parameter and numbers, times
+/// the square of something that moves.
+fn spring(model: &Model, term: &Term) -> Option<Site> {
+    let moves =
+        |part: &Expr| matches!(part.kind, ExprKind::Coordinate(_) | ExprKind::Definition(_));
+    let base = squared(&term.value, &moves)?;
+    let factor = factor_of_square(&term.value, &moves)?;
+    let (mut parameters, mut powers, mut is_plain) = (Vec::new(), 0, true);
+    factor.visit(&mut |part| {
+        if let ExprKind::Parameter(place) = part.kind {
+            parameters.push(place);
+        }
+    });
+    term.value.visit(&mut |part| match &part.kind {
+        ExprKind::Binary(BinaryOperator::Power, _, exponent) => {
+            powers += 1;
+            is_plain &= exponent.kind == ExprKind::Number(2.0);
+        }
+        ExprKind::Call(..) | ExprKind::Integral { .. } | ExprKind::Sum { .. } => is_plain = false,
+        _ => {}
+    });
+    let ([stiffness], 1, true) = (&parameters[..], powers, is_plain) else {
+        return None;
+    };
+    let deflection = text(model, base);
+    let words = [
+        ("on", deflection.clone()),
+        ("p", deflection),
+        ("k", model.parameters[*stiffness].name.clone()),
+    ];
+    Some(Site {
+        kind: SiteKind::Spring,
+        name: term.name.clone(),
+        words: words.into(),
+        terms: Vec::new(),
+    })
+}
+
 fn arms(model: &Model) -> Vec<Site> {
     let arm = |term: &Term| {
+        // What is spread along the body; a mass at its end is none.
         let velocity = squared(
-            &term.value,
+            spread(&term.value)?,
             &|part| matches!(&part.kind, ExprKind::Dot(of) if matches!(of.kind, ExprKind::Field(_))),
         )?;
         let mut field = None;
@@ -241,14 +304,36 @@ fn arms(model: &Model) -> Vec<Site> {
         .into();
         words.extend(root.map(|root| ("root", root)));
         words.extend(stiffness.map(|factor| ("stiffness", text(model, factor))));
+        let moving = model
+            .kinetic
+            .iter()
+            .filter(|term| holds_field(&term.value, field));
+        let moving = moving.map(|term| term.name.clone()).collect();
         Some(Site {
             kind: SiteKind::Arm,
             name: term.name.clone(),
             words,
-            terms: Vec::new(),
+            terms: vec![(Section::Kinetic, moving)],
         })
     };
     model.kinetic.iter().filter_map(arm).collect()
+}
+
+/// What an expression integrates.
+fn spread(expr: &Expr) -> Option<&Expr> {
+    match &expr.kind {
+        ExprKind::Integral { integrand, .. } => Some(integrand),
+        ExprKind::Binary(_, left, right) => spread(left).or_else(|| spread(right)),
+        ExprKind::Negate(inner) => spread(inner),
+        _ => None,
+    }
+}
+
+/// Whether an expression holds a field.
+fn holds_field(expr: &Expr, field: usize) -> bool {
+    let mut found = false;
+    expr.visit(&mut |part| found |= part.kind == ExprKind::Field(field));
+    found
 }
 
 /// The distance of a body's end from its root.

@@ -88,7 +88,7 @@ impl Round<'_> {
             model,
             effects,
             &sites(model),
-            &usual_rates(self.task.setting),
+            &usual_rates(self.task.setting, model),
         );
         let shaped = self.shaped(trial).unwrap_or(1.0);
         let again = |rival: &usize| {

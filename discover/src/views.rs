@@ -5,10 +5,12 @@
 use std::collections::BTreeMap;
 
 use model_spec::edit::{self, Edit, SetParameter};
+use model_spec::model::Model;
 use model_spec::source::Source;
 
 use crate::candidates::{self, Candidate, candidates};
 use crate::catalogue::Effect;
+use crate::dataset::Quantity;
 use crate::fitting::Fit;
 use crate::named::{Named, Searched, best_of, leaves_clearly_less, named};
 use crate::rule;
@@ -234,7 +236,12 @@ impl Look<'_> {
     fn candidates(&self, fit: &Fit, view: View) -> (Vec<Candidate>, Vec<Candidate>) {
         let (setting, has_play) = (self.task.setting, view != View::NoPlay);
         let model = &fit.plant.model;
-        let mut all = candidates(model, self.effects, &sites(model), &usual_rates(setting));
+        let mut all = candidates(
+            model,
+            self.effects,
+            &sites(model),
+            &usual_rates(setting, model),
+        );
         all.extend(released(setting, fit));
         all.retain(|c| (c.order.is_none() || c.on_mesh != has_play) && (has_play || c.on_mesh));
         all.into_iter()
@@ -326,17 +333,27 @@ fn released(setting: &Setting<'_>, fit: &Fit) -> Vec<Candidate> {
     unknowns.map(candidate).collect()
 }
 
-/// The usual rate of every channel that is measured, by name: the root mean square of its
-/// slope.
-pub(crate) fn usual_rates(setting: &Setting<'_>) -> BTreeMap<String, f64> {
+/// The usual rate of every observable and coordinate that is measured, by its name in the model: the
+/// root mean square of its slope, or of the rate itself where that is measured.
+pub(crate) fn usual_rates(setting: &Setting<'_>, model: &Model) -> BTreeMap<String, f64> {
     let record = &setting.dataset.train[0];
+    let mut rates = BTreeMap::new();
     let channels = setting.dataset.channels.iter().zip(&record.channels);
-    channels
-        .map(|(channel, column)| {
-            let smooth = crate::smooth::smoothed(&record.times, column);
-            let slopes = crate::smooth::sloped(&record.times, &smooth);
-            let square = slopes.iter().map(|s| s * s).sum::<f64>() / slopes.len() as f64;
-            (channel.name.clone(), square.sqrt())
-        })
-        .collect()
+    for (channel, column) in channels {
+        let smooth = crate::smooth::smoothed(&record.times, column);
+        let (name, slopes) = match channel.quantity {
+            Quantity::Rate(place) => (&model.coordinates[place].name, smooth),
+            Quantity::Observable(place) => (
+                &model.observables[place].name,
+                crate::smooth::sloped(&record.times, &smooth),
+            ),
+            Quantity::Coordinate(place) => (
+                &model.coordinates[place].name,
+                crate::smooth::sloped(&record.times, &smooth),
+            ),
+        };
+        let square = slopes.iter().map(|s| s * s).sum::<f64>() / slopes.len() as f64;
+        rates.insert(name.clone(), square.sqrt());
+    }
+    rates
 }

@@ -4,6 +4,18 @@
 use sim::record::HeldInputs;
 
 use crate::dataset::Record;
+use crate::rule;
+
+/// Samples at a window's beginning and end that sensors which are late, or early, may see from
+/// outside of it.
+const MARGIN: (usize, usize) = (rule::LONGEST_DELAY as usize, rule::LONGEST_LEAD as usize);
+
+/// Which of so many samples of a window are compared: not those that a sensor which is late, or
+/// early, may see from outside of it, unless these are most of the window.
+pub fn judged(samples: usize) -> std::ops::Range<usize> {
+    let (begin, end) = MARGIN;
+    begin.min(samples / 4)..samples - end.min(samples / 4)
+}
 
 /// A window shorter than this part of the wanted length is not used.
 const SHORTEST: f64 = 0.5;

@@ -13,6 +13,7 @@ use crate::source::Source;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
 use crate::table::{Entry, Name, entries};
+use crate::toml_file::grammar_error;
 
 /// The most named things a specification may hold.
 pub const MAX_ENTRIES: usize = 2000;
@@ -60,28 +61,6 @@ fn empty() -> Diagnostic {
     Diagnostic::error("the specification is empty")
         .at(Span::new(0, 0), "expected sections")
         .help("needed are [model] with a name, [coordinates] (or [fields.NAME]) and [kinetic]")
-}
-
-fn grammar_error(text: &str, error: &toml_edit::TomlError) -> Diagnostic {
-    let range = error.span().unwrap_or(text.len()..text.len());
-    let mut lines = error.message().lines();
-    let message = lines.next().unwrap_or("this is not TOML").trim();
-    let advice: Vec<&str> = lines
-        .map(str::trim)
-        .filter(|line| !line.is_empty())
-        .collect();
-    let behind_quotes = text[..range.start.min(text.len())].ends_with(['"', '\'']);
-    let operator = text[range.start.min(text.len())..].starts_with(['^', '*', '/', '+', '-']);
-    let help = if message == "duplicate key" {
-        Some("each name is given once in a section".to_owned())
-    } else if behind_quotes && operator {
-        Some("quotes enclose the whole expression: \"a^2\", not \"a\"^2".to_owned())
-    } else {
-        (!advice.is_empty()).then(|| advice.join("; "))
-    };
-    Diagnostic::error(format!("not valid TOML: {message}"))
-        .at(Span::new(range.start, range.end), "here")
-        .help_if(help)
 }
 
 struct Reader<'d> {

@@ -5,7 +5,8 @@
 //! `motion` (what may stand where), `units_check` and `infer` (units of every expression), `checks`,
 //! [`model`] (the result). [`load()`] and [`check`] go all the way. What is wrong is said by
 //! [`diagnostic`]; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers.
-//! Nothing here knows how equations are derived.
+//! [`toml_file`] and [`mod@table`] read other files of TOML with their places as well. Nothing here knows how
+//! equations are derived.
 
 pub mod ast;
 mod checks;
@@ -30,8 +31,9 @@ mod resolve;
 mod scale;
 pub mod source;
 pub mod span;
-mod suggest;
-mod table;
+pub mod suggest;
+pub mod table;
+pub mod toml_file;
 pub mod unit;
 mod units_check;
 pub mod variant;

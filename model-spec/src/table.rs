@@ -1,8 +1,8 @@
 //! Reading TOML tables with the place of every key and value, and saying what is wrong
 //! with a value of the wrong kind. Which sections and keys a specification has is the
-//! business of `document`.
+//! business of `document`; other files are read by the same means.
 
-use toml_edit::{Item, TableLike, Value};
+use toml_edit::{Item, Table, TableLike, Value};
 
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
@@ -92,11 +92,19 @@ impl Quantity {
 /// One `key = value` of a table.
 #[derive(Clone)]
 pub struct Entry<'d> {
-    /// The key.
+    /// The key; that of the list where this stands in one.
     pub name: Name,
-    item: &'d Item,
+    node: Node<'d>,
     /// The whole text of the file.
     text: &'d str,
+}
+
+/// What stands behind a key, or in a list.
+#[derive(Clone, Copy)]
+enum Node<'d> {
+    Item(&'d Item),
+    Value(&'d Value),
+    Table(&'d Table),
 }
 
 /// A table all of whose keys are known.
@@ -114,7 +122,7 @@ pub fn entries<'d>(table: &'d dyn TableLike, text: &'d str) -> Vec<Entry<'d>> {
                 text: key.to_owned(),
                 span: span.map_or_else(Span::default, |range| Span::new(range.start, range.end)),
             },
-            item,
+            node: Node::Item(item),
             text,
         }
     };
@@ -124,7 +132,11 @@ pub fn entries<'d>(table: &'d dyn TableLike, text: &'d str) -> Vec<Entry<'d>> {
 impl<'d> Entry<'d> {
     /// Where the value stands; the key where the value has no place of its own.
     pub fn span(&self) -> Span {
-        let range = self.item.span();
+        let range = match self.node {
+            Node::Item(item) => item.span(),
+            Node::Value(value) => value.span(),
+            Node::Table(table) => table.span(),
+        };
         range.map_or(self.name.span, |range| Span::new(range.start, range.end))
     }
 
@@ -133,9 +145,82 @@ impl<'d> Entry<'d> {
     /// # Errors
     /// If it is no table.
     pub fn table(&self, example: &str) -> Result<Vec<Entry<'d>>, Diagnostic> {
-        match self.item.as_table_like() {
+        match self.table_like() {
             Some(table) => Ok(entries(table, self.text)),
             None => Err(self.mismatch("a table", example)),
+        }
+    }
+
+    /// The elements of the list that is this entry's value, each under the list's name at its own
+    /// place.
+    ///
+    /// # Errors
+    /// If it is no list.
+    pub fn list(&self, example: &str) -> Result<Vec<Entry<'d>>, Diagnostic> {
+        let element = |node: Node<'d>| {
+            let mut entry = Entry {
+                node,
+                ..self.clone()
+            };
+            entry.name.span = entry.span();
+            entry
+        };
+        if let Node::Item(Item::ArrayOfTables(tables)) = self.node {
+            return Ok(tables.iter().map(|t| element(Node::Table(t))).collect());
+        }
+        match self.value() {
+            Some(Value::Array(array)) => {
+                Ok(array.iter().map(|v| element(Node::Value(v))).collect())
+            }
+            _ => Err(self.mismatch("a list", example)),
+        }
+    }
+
+    /// What one of some words stands for.
+    ///
+    /// # Errors
+    /// If it is none of them, with the nearest.
+    pub fn word<T: Copy>(&self, known: &[(&str, T)]) -> Result<T, Diagnostic> {
+        let written = self.written()?;
+        let meant = known.iter().find(|(word, _)| *word == written.text);
+        meant.map(|(_, meaning)| *meaning).ok_or_else(|| {
+            let words = || known.iter().map(|(word, _)| *word);
+            let listed: Vec<String> = words().map(|word| format!("\"{word}\"")).collect();
+            let listed = format!("expected {}", listed.join(" or "));
+            Diagnostic::error(format!(
+                "`{}` cannot be {}",
+                self.name.text,
+                quoted(&written.text)
+            ))
+            .at(written.span, listed.clone())
+            .help(did_you_mean(&written.text, words()).unwrap_or(listed))
+        })
+    }
+
+    /// The truth value that is this entry's value.
+    ///
+    /// # Errors
+    /// If it is none.
+    pub fn truth(&self) -> Result<bool, Diagnostic> {
+        match self.value() {
+            Some(Value::Boolean(truth)) => Ok(*truth.value()),
+            _ => Err(self.mismatch("a truth value", "true")),
+        }
+    }
+
+    fn value(&self) -> Option<&'d Value> {
+        match self.node {
+            Node::Item(item) => item.as_value(),
+            Node::Value(value) => Some(value),
+            Node::Table(_) => None,
+        }
+    }
+
+    fn table_like(&self) -> Option<&'d dyn TableLike> {
+        match self.node {
+            Node::Item(item) => item.as_table_like(),
+            Node::Value(value) => value.as_inline_table().map(|t| t as &dyn TableLike),
+            Node::Table(table) => Some(table),
         }
     }
 
@@ -147,21 +232,12 @@ impl<'d> Entry<'d> {
         found: &mut Diagnostics,
     ) -> Option<Record<'d>> {
         let entries = found.keep(self.table(example))?;
-        let (entries, others): (Vec<_>, Vec<_>) = entries
-            .into_iter()
-            .partition(|entry| known.contains(&entry.name.text.as_str()));
-        for other in others {
-            found.push_with(|| unknown_key(&other.name, known));
-        }
-        Some(Record {
-            owner: self.name.clone(),
-            entries,
-        })
+        Some(Record::of(self.name.clone(), entries, known, found))
     }
 
     /// Whether the value is a table.
     pub fn is_table(&self) -> bool {
-        self.item.is_table_like()
+        self.table_like().is_some()
     }
 
     /// The string that is this entry's value.
@@ -169,7 +245,7 @@ impl<'d> Entry<'d> {
     /// # Errors
     /// If it is no string.
     pub fn written(&self) -> Result<Written, Diagnostic> {
-        let value = self.item.as_value();
+        let value = self.value();
         value
             .and_then(|value| self.written_in(value))
             .ok_or_else(|| self.mismatch("a string", "\"...\""))
@@ -180,7 +256,7 @@ impl<'d> Entry<'d> {
     /// # Errors
     /// If it is no number, or not finite.
     pub fn number(&self) -> Result<Number, Diagnostic> {
-        let value = self.item.as_value();
+        let value = self.value();
         value
             .and_then(|value| self.number_in(value))
             .unwrap_or_else(|| Err(self.mismatch("a number", "0.5")))
@@ -191,7 +267,7 @@ impl<'d> Entry<'d> {
     /// # Errors
     /// If it is neither.
     pub fn quantity(&self) -> Result<Quantity, Diagnostic> {
-        let value = self.item.as_value();
+        let value = self.value();
         value
             .and_then(|value| self.quantity_in(value))
             .unwrap_or_else(|| {
@@ -205,7 +281,7 @@ impl<'d> Entry<'d> {
     /// If it is no array of two numbers or expressions.
     pub fn pair(&self) -> Result<[Quantity; 2], Diagnostic> {
         let example = "[-0.1, 0.1]";
-        let Some(array) = self.item.as_array() else {
+        let Some(Value::Array(array)) = self.value() else {
             return Err(self.mismatch("a pair of ends", example));
         };
         let elements: Vec<&Value> = array.iter().collect();
@@ -277,14 +353,19 @@ impl<'d> Entry<'d> {
     /// # Errors
     /// If it is no whole number.
     pub fn whole(&self) -> Result<(i64, Span), Diagnostic> {
-        match self.item.as_value() {
+        match self.value() {
             Some(Value::Integer(integer)) => Ok((*integer.value(), self.span())),
             _ => Err(self.mismatch("a whole number", "4")),
         }
     }
 
     fn mismatch(&self, expected: &str, example: &str) -> Diagnostic {
-        let kind = match self.item.type_name() {
+        let kind = match self.node {
+            Node::Item(item) => item.type_name(),
+            Node::Value(value) => value.type_name(),
+            Node::Table(_) => "table",
+        };
+        let kind = match kind {
             "inline table" => "table",
             "integer" | "float" => "number",
             "boolean" => "truth value",
@@ -298,6 +379,22 @@ impl<'d> Entry<'d> {
 }
 
 impl<'d> Record<'d> {
+    /// The entries of a table, reporting keys that are not `known`.
+    pub fn of(
+        owner: Name,
+        entries: Vec<Entry<'d>>,
+        known: &[&str],
+        found: &mut Diagnostics,
+    ) -> Self {
+        let (entries, others): (Vec<_>, Vec<_>) = entries
+            .into_iter()
+            .partition(|entry| known.contains(&entry.name.text.as_str()));
+        for other in others {
+            found.push_with(|| unknown_key(&other.name, known));
+        }
+        Self { owner, entries }
+    }
+
     /// The table's own key.
     pub fn owner(&self) -> &Name {
         &self.owner

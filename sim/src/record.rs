@@ -2,17 +2,19 @@
 //! columns of the inputs; between samples an input is held. Measured channels are not
 //! read here.
 
+pub mod description;
+
 use std::path::{Component, Path, PathBuf};
 
+use model_spec::diagnostic::{Diagnostic, Diagnostics};
 use model_spec::model::Model;
+use model_spec::table::Written;
 use model_spec::unit::Unit;
-use serde::Deserialize;
+
+use description::{Column, Description};
 
 /// The largest record accepted, in bytes.
 const LARGEST_RECORD: u64 = 512 << 20;
-
-/// The largest dataset file accepted, in bytes.
-const LARGEST_DATASET: u64 = 1 << 20;
 
 /// Inputs that are constant between the times of a record. Before the first sample the
 /// first one holds, after the last one the last.
@@ -67,60 +69,74 @@ impl HeldInputs {
     }
 }
 
-#[derive(Deserialize)]
-struct Dataset {
-    records: Records,
-    time: Column,
-    #[serde(default)]
-    inputs: std::collections::BTreeMap<String, InputColumn>,
+/// Why records are not taken: where they are wrong, what is wrong and what would be right.
+#[derive(Clone, Debug)]
+pub enum Refusal {
+    /// The dataset file is wrong.
+    Description(Diagnostics),
+    /// A record is wrong: a sentence that names its file, and line where there is one.
+    Record(String),
 }
 
-#[derive(Deserialize)]
-struct Records {
-    #[serde(default)]
-    train: Vec<String>,
-    #[serde(default)]
-    test: Vec<String>,
+impl Refusal {
+    /// A record that is wrong as a whole.
+    pub fn file(path: &Path, message: impl std::fmt::Display) -> Self {
+        Self::Record(format!("{}: {message}", path.display()))
+    }
+
+    /// A record that is wrong on a line.
+    pub fn line(path: &Path, line: u64, message: impl std::fmt::Display) -> Self {
+        Self::Record(format!("{}, line {line}: {message}", path.display()))
+    }
 }
 
-#[derive(Deserialize)]
-struct Column {
-    column: String,
-    unit: String,
+impl From<Diagnostics> for Refusal {
+    fn from(found: Diagnostics) -> Self {
+        Self::Description(found)
+    }
 }
 
-#[derive(Deserialize)]
-struct InputColumn {
-    column: String,
-    unit: String,
-    hold: Option<String>,
+impl std::fmt::Display for Refusal {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Description(found) => found.fmt(f),
+            Self::Record(message) => f.write_str(message),
+        }
+    }
 }
+
+impl std::error::Error for Refusal {}
 
 /// The inputs of `model` from a record of a dataset, and what is worth a warning.
 ///
 /// `record` is `train[0]`, `test[1]`, ...
 ///
 /// # Errors
-/// A sentence that names the file (and line) and says what is wrong and what would be right.
+/// What is wrong with the dataset file or with the record.
 pub fn read_inputs(
     dataset: &Path,
     record: &str,
     model: &Model,
-) -> Result<(HeldInputs, Vec<String>), String> {
-    let text = read_limited(dataset, LARGEST_DATASET)?;
-    let description: Dataset = toml_edit::de::from_str(&text)
-        .map_err(|error| format!("{}: {error}", dataset.display()))?;
-    let path = record_path(dataset, &description.records, record)?;
+) -> Result<(HeldInputs, Vec<String>), Refusal> {
+    let description = Description::read(dataset)?;
+    let place = described(&description, record).map_err(Refusal::Record)?;
+    let wrong = |diagnostic: Diagnostic| {
+        Refusal::Description(Diagnostics::one(description.source.clone(), diagnostic))
+    };
+    let path = beside(dataset, place).map_err(wrong)?;
     let mut warnings = Vec::new();
     let mut columns = Vec::new();
     for input in &model.inputs {
-        match description.inputs.get(&input.name) {
-            Some(column) => columns.push(Some(input_column(
-                dataset,
-                &input.name,
-                column,
-                &input.unit,
-            )?)),
+        let described = description.inputs.iter();
+        match described
+            .into_iter()
+            .find(|column| column.name.text == input.name)
+        {
+            Some(entry) => {
+                columns.push(Some(
+                    scaled(&entry.column, &input.unit.text).map_err(wrong)?,
+                ));
+            }
             None => {
                 warnings.push(format!(
                     "{} has no input `{}`: it is 0",
@@ -131,21 +147,17 @@ pub fn read_inputs(
             }
         }
     }
-    for name in description.inputs.keys() {
+    for column in &description.inputs {
+        let name = &column.name.text;
         if model.inputs.iter().all(|input| input.name != *name) {
             warnings.push(format!(
                 "the model has no input `{name}`: that column is not used"
             ));
         }
     }
-    let time = scaled_column(
-        dataset,
-        "time",
-        &description.time.column,
-        &description.time.unit,
-        "s",
-    )?;
-    Ok((read_record(&path, &time, &columns)?, warnings))
+    let time = scaled(&description.time, "s").map_err(wrong)?;
+    let inputs = read_record(&path, &time, &columns).map_err(Refusal::Record)?;
+    Ok((inputs, warnings))
 }
 
 /// A column's name and the factor that brings it to SI.
@@ -154,58 +166,42 @@ struct Scaled {
     unit: Unit,
 }
 
-fn input_column(
-    dataset: &Path,
-    name: &str,
-    column: &InputColumn,
-    unit: &Unit,
-) -> Result<Scaled, String> {
-    match column.hold.as_deref() {
-        None | Some("zero-order") => {}
-        Some(other) => {
-            return Err(format!(
-                "{}: inputs.{name}: hold = \"{other}\" is not known; expected \"zero-order\"",
-                dataset.display()
-            ));
-        }
-    }
-    scaled_column(
-        dataset,
-        &format!("inputs.{name}"),
-        &column.column,
-        &column.unit,
-        &unit.text,
-    )
-}
-
-fn scaled_column(
-    dataset: &Path,
-    place: &str,
-    column: &str,
-    unit: &str,
-    expected: &str,
-) -> Result<Scaled, String> {
-    let parsed = Unit::parse(unit)
-        .map_err(|error| format!("{}: {place}: unit \"{unit}\": {error}", dataset.display()))?;
-    let wanted = Unit::parse(expected).map_err(|error| error.to_string())?;
-    if parsed.dimension != wanted.dimension {
-        return Err(format!(
-            "{}: {place} is in {unit}, expected {expected}",
-            dataset.display()
-        ));
-    }
+fn scaled(column: &Column, expected: &str) -> Result<Scaled, Diagnostic> {
     Ok(Scaled {
-        name: column.to_owned(),
-        unit: parsed,
+        name: column.column.text.clone(),
+        unit: unit(&column.unit, expected)?,
     })
 }
 
-/// The file of `train[0]`, below the dataset's folder.
-fn record_path(dataset: &Path, records: &Records, record: &str) -> Result<PathBuf, String> {
-    let described = || {
+/// A unit of a dataset file that has the dimension of the expected one.
+///
+/// # Errors
+/// What is no unit, or another quantity's.
+pub fn unit(written: &Written, expected: &str) -> Result<Unit, Diagnostic> {
+    let wrong = |message: String| Diagnostic::error(message);
+    let text = &written.text;
+    let unit = Unit::parse(text).map_err(|error| {
+        wrong(format!("unit \"{text}\": {error}")).at(written.span, format!("expected {expected}"))
+    })?;
+    let wanted = Unit::parse(expected).map_err(|error| wrong(error.to_string()))?;
+    if unit.dimension == wanted.dimension {
+        return Ok(unit);
+    }
+    Err(
+        wrong(format!("the column is in {text}, expected {expected}")).at(
+            written.span,
+            format!("expected {expected}, or a unit of its dimension"),
+        ),
+    )
+}
+
+/// The file of `train[0]`.
+fn described<'d>(description: &'d Description, record: &str) -> Result<&'d Written, String> {
+    let records = &description.records;
+    let none = || {
         format!(
             "{}: there is no record `{record}`; it lists {} as train[..] and {} as test[..], numbered from 0",
-            dataset.display(),
+            description.source.path,
             records.train.len(),
             records.test.len()
         )
@@ -213,21 +209,28 @@ fn record_path(dataset: &Path, records: &Records, record: &str) -> Result<PathBu
     let (list, rest) = match (record.strip_prefix("train["), record.strip_prefix("test[")) {
         (Some(rest), _) => (&records.train, rest),
         (_, Some(rest)) => (&records.test, rest),
-        _ => return Err(described()),
+        _ => return Err(none()),
     };
-    let index: usize = rest
-        .strip_suffix(']')
-        .and_then(|i| i.parse().ok())
-        .ok_or_else(described)?;
-    let name = list.get(index).ok_or_else(described)?;
-    let relative = Path::new(name);
-    if !relative
-        .components()
-        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
-    {
-        return Err(format!(
-            "{}: the record \"{name}\" lies outside the dataset's folder",
-            dataset.display()
+    let index = rest.strip_suffix(']').and_then(|i| i.parse().ok());
+    let index: usize = index.ok_or_else(none)?;
+    list.get(index).ok_or_else(none)
+}
+
+/// A record's file, below the dataset's folder.
+///
+/// # Errors
+/// A name that leads out of that folder.
+pub fn beside(dataset: &Path, file: &Written) -> Result<PathBuf, Diagnostic> {
+    let relative = Path::new(&file.text);
+    let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+    if !relative.components().all(inside) {
+        let name = &file.text;
+        return Err(Diagnostic::error(format!(
+            "the record \"{name}\" lies outside the dataset's folder"
+        ))
+        .at(
+            file.span,
+            "expected a file beside the dataset file or below",
         ));
     }
     Ok(dataset.parent().unwrap_or(Path::new(".")).join(relative))

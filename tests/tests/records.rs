@@ -204,8 +204,8 @@ fn datasets_that_are_none_are_refused() {
         ("unit = \"kN\"", "unit = \"kQ\"", "kQ"),
         ("unit = \"ms\"", "unit = \"mm\"", "expected s"),
         ("\"zero-order\"", "\"cubic\"", "expected \"zero-order\""),
-        ("[time]", "[tyme]", "time"),
-        ("[records]", "[records", "line 2"),
+        ("[time]", "[tyme]", "did you mean `time`?"),
+        ("[records]", "[records", "dataset.toml:2:9"),
         ("\"train.csv\"", "\"missing.csv\"", "missing.csv"),
         (
             "\"train.csv\"",
@@ -223,7 +223,7 @@ fn datasets_that_are_none_are_refused() {
             "outside the dataset's folder",
         ),
         ("\"train.csv\"", "\".\"", "cannot read"),
-        ("\"train.csv\"", "7", "line 3"),
+        ("\"train.csv\"", "7", "dataset.toml:3:10"),
     ] {
         let description = DESCRIPTION.replacen(from, to, 1);
         assert_ne!(description, DESCRIPTION);

@@ -13,7 +13,7 @@ use discover::residual_force::said::said_after;
 use discover::search::{null_fit, search};
 use discover::setting::Setting;
 use discover::trials::at_floor;
-use discover::{catalogue, document, extend, labels, locate, report};
+use discover::{catalogue, document, extend, labels, locate, own, report};
 use model_spec::source::Source;
 use serde_json::{Value, json};
 use sim::validate::certificate::Check;
@@ -55,9 +55,16 @@ pub fn compared(options: &arguments::Compare) -> Outcome<Value> {
 /// Discovers; the document that is left beside the page and the specification.
 pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     let begin = Instant::now();
-    let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
-    let effects = catalogue::effects(options.effects.as_deref()).map_err(Problem::input)?;
-    let setting = Setting::new(&dataset, order, &options.spec.display().to_string(), &text);
+    let (text, order, mut dataset) =
+        inputs(&options.spec, &options.dataset, options.order.as_deref())?;
+    let effects = catalogue::effects(options.effects.as_deref()).map_err(Problem::Specification)?;
+    let path = options.spec.display().to_string();
+    let homeless = own::placed(&effects, &path, &text).map_err(Problem::input)?;
+    for note in &homeless {
+        warn(&format!("note: {note}"));
+    }
+    dataset.notes.extend(homeless);
+    let setting = Setting::new(&dataset, order, &path, &text);
     let (fit, floor_before) = null(&setting, &text, options.seed)?;
     let force = residual_force(&setting, &fit, None);
     let mut place = locate::located(&setting, &fit, force.as_ref());
@@ -135,7 +142,7 @@ fn inputs(
     let text = model.source.text.to_string();
     orders(&model, order)?;
     let order = order.and_then(|order| order.trim().parse().ok());
-    let dataset = read(dataset, &model).map_err(|refusal| Problem::input(refusal.to_string()))?;
+    let dataset = read(dataset, &model).map_err(Problem::records)?;
     for note in &dataset.notes {
         warn(&format!("note: {note}"));
     }
@@ -145,7 +152,7 @@ fn inputs(
 /// The null model's fit and the floor there.
 fn null(setting: &Setting<'_>, text: &str, seed: u64) -> Outcome<(Fit, Floor)> {
     let notes = labels::check(setting, text);
-    for note in notes.map_err(|refusal| Problem::input(refusal.to_string()))? {
+    for note in notes.map_err(Problem::records)? {
         warn(&format!("note: {note}"));
     }
     warn("fitting the model as it is");

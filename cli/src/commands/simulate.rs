@@ -96,7 +96,7 @@ fn inputs(options: &Simulate, model: &Model) -> Outcome<HeldInputs> {
     match &options.record {
         Some(dataset) => {
             let (inputs, warnings) =
-                read_inputs(dataset, &options.record_name, model).map_err(Problem::input)?;
+                read_inputs(dataset, &options.record_name, model).map_err(Problem::records)?;
             for warning in warnings {
                 warn(&format!("warning: {warning}"));
             }

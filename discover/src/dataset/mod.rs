@@ -4,42 +4,20 @@
 //! read. Whether a record can be believed is judged by [`crate::gate`].
 
 mod columns;
-mod description;
 mod parquet_file;
+mod taken;
 
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
+use model_spec::diagnostic::{Diagnostic, Diagnostics};
 use model_spec::model::Model;
+use model_spec::suggest::did_you_mean;
+use model_spec::table::Written;
 use model_spec::unit::Unit;
-use sim::record::HeldInputs;
+use sim::record::description::Description;
+use sim::record::{HeldInputs, beside};
 
-use description::Description;
-
-/// Why a dataset is not taken: where it is wrong, what is wrong and what would be right.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refusal(pub String);
-
-impl Refusal {
-    pub(crate) fn file(path: &Path, message: impl Into<String>) -> Self {
-        Self(format!("{}: {}", path.display(), message.into()))
-    }
-
-    pub(crate) fn line(path: &Path, line: u64, message: impl Into<String>) -> Self {
-        Self(format!(
-            "{}, line {line}: {}",
-            path.display(),
-            message.into()
-        ))
-    }
-}
-
-impl std::fmt::Display for Refusal {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
-    }
-}
-
-impl std::error::Error for Refusal {}
+pub use sim::record::Refusal;
 
 /// What a channel measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,199 +117,128 @@ pub struct Dataset {
 /// Reads a dataset for a model.
 ///
 /// # Errors
-/// The first thing that is wrong, with its file and, where there is one, its line.
+/// What is wrong with the dataset file, or the first thing that is wrong with a record, each with
+/// its place.
 pub fn read(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     let description = Description::read(path)?;
+    let taken = taken::taken(&description, model)?;
     let mut dataset = Dataset {
         path: path.to_owned(),
-        title: description.title.clone().unwrap_or_default(),
+        title: description.title.clone(),
         train: Vec::new(),
         test: Vec::new(),
-        channels: channels(path, &description, model)?,
-        initial: description.initial(path, model)?,
-        window: description.window(path)?,
-        start: description.start(path)?,
-        uncertain: description.uncertain(path, model)?,
-        notes: Vec::new(),
+        channels: taken.channels,
+        initial: taken.initial,
+        window: description.windows.length.map(|length| length.value),
+        start: match description.windows.smoothed {
+            true => Start::Smoothed,
+            false => Start::Fitted,
+        },
+        uncertain: taken.uncertain,
+        notes: notes_of_inputs(&description, model),
     };
-    for name in description.inputs.keys() {
-        if model.inputs.iter().all(|input| input.name != *name) {
-            let note = format!("the model has no input `{name}`: that column is not used");
-            dataset.notes.push(note);
-        }
-    }
-    for input in &model.inputs {
-        if !description.inputs.contains_key(&input.name) {
-            let note = format!("the dataset has no input `{}`: it is 0", input.name);
-            dataset.notes.push(note);
-        }
-    }
-    let lists = [
-        ("train", &description.records.train),
-        ("test", &description.records.test),
-    ];
-    for (kind, files) in lists {
-        if files.is_empty() {
-            return Err(Refusal::file(
-                path,
-                format!("[records] lists no {kind} record; discovery needs both kinds"),
-            ));
-        }
-        for (place, file) in files.iter().enumerate() {
-            let name = format!("{kind}[{place}]");
-            let record = record(path, &name, file, &description, model, &dataset.channels)?;
-            if kind == "train" {
-                dataset.train.push(record);
-            } else {
-                dataset.test.push(record);
-            }
-        }
-    }
-    let notes = crate::gate::examine(&dataset)?;
+    let columns = Columns {
+        description: &description,
+        path,
+        time: &taken.time,
+        inputs: &taken.inputs,
+        channels: &taken.channel_units,
+        model,
+    };
+    let read = |kind: &str, files: &[Written]| -> Result<Vec<Record>, Refusal> {
+        let files = files.iter().enumerate();
+        files
+            .map(|(place, file)| columns.record(&format!("{kind}[{place}]"), file))
+            .collect()
+    };
+    dataset.train = read("train", &description.records.train)?;
+    dataset.test = read("test", &description.records.test)?;
+    let notes = crate::gate::examine(&dataset, &description)?;
     dataset.notes.extend(notes);
     Ok(dataset)
 }
 
-fn channels(
-    path: &Path,
-    description: &Description,
-    model: &Model,
-) -> Result<Vec<Channel>, Refusal> {
-    let mut channels = Vec::new();
-    for (name, entry) in &description.channels {
-        let asked = entry.observable.as_ref().unwrap_or(name);
-        let (quantity, unit) = quantity(model, asked).ok_or_else(|| {
-            let known: Vec<&str> = (model.observables.iter().map(|o| o.name.as_str()))
-                .chain(model.coordinates.iter().map(|c| c.name.as_str()))
-                .collect();
-            Refusal::file(
-                path,
-                format!(
-                    "channels.{name}: the model has no observable or coordinate `{asked}`; it has {}",
-                    known.join(", ")
-                ),
-            )
-        })?;
-        let given = unit_of(path, &format!("channels.{name}"), &entry.unit, &unit)?;
-        let noise = given.to_si(entry.noise);
-        if !(noise.is_finite() && noise > 0.0) {
-            return Err(Refusal::file(
-                path,
-                format!(
-                    "channels.{name}: noise = {}; expected its standard deviation, greater than 0",
-                    entry.noise
-                ),
+/// Inputs that the model or the dataset lacks.
+fn notes_of_inputs(description: &Description, model: &Model) -> Vec<String> {
+    let inputs = || model.inputs.iter().map(|input| input.name.as_str());
+    let mut notes = Vec::new();
+    for column in &description.inputs {
+        let name = column.name.text.as_str();
+        if inputs().all(|input| input != name) {
+            let meant = did_you_mean(name, inputs()).map_or(String::new(), |m| format!("; {m}"));
+            notes.push(format!(
+                "the model has no input `{name}`: that column is not used{meant}"
             ));
         }
-        channels.push(Channel {
-            name: name.clone(),
-            quantity,
-            unit,
-            noise,
-        });
     }
-    if channels.is_empty() {
-        return Err(Refusal::file(
-            path,
-            "there is no [channels.NAME]; expected at least one measured quantity",
-        ));
-    }
-    Ok(channels)
-}
-
-/// A quantity of the model by name, and its SI unit.
-fn quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {
-    if let Some(place) = model.observables.iter().position(|o| o.name == name) {
-        let unit = model.observables[place].unit.text.clone();
-        return Some((Quantity::Observable(place), unit));
-    }
-    if let Some(place) = model.coordinates.iter().position(|c| c.name == name) {
-        let unit = model.coordinates[place].unit.text.clone();
-        return Some((Quantity::Coordinate(place), unit));
-    }
-    let of = name.strip_suffix("_dot")?;
-    let place = model.coordinates.iter().position(|c| c.name == of)?;
-    let unit = format!("{}/s", model.coordinates[place].unit.text);
-    Some((Quantity::Rate(place), unit))
-}
-
-/// A unit that has the dimension of the expected one.
-fn unit_of(path: &Path, place: &str, text: &str, expected: &str) -> Result<Unit, Refusal> {
-    let refuse = |message: String| Refusal::file(path, format!("{place}: {message}"));
-    let unit = Unit::parse(text).map_err(|error| refuse(format!("unit \"{text}\": {error}")))?;
-    let wanted = Unit::parse(expected).map_err(|error| refuse(error.to_string()))?;
-    if unit.dimension == wanted.dimension {
-        Ok(unit)
-    } else {
-        Err(refuse(format!("is in {text}, expected {expected}")))
-    }
-}
-
-fn record(
-    path: &Path,
-    name: &str,
-    file: &str,
-    description: &Description,
-    model: &Model,
-    channels: &[Channel],
-) -> Result<Record, Refusal> {
-    let relative = Path::new(file);
-    let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
-    if !relative.components().all(inside) {
-        return Err(Refusal::file(
-            path,
-            format!("the record \"{file}\" lies outside the dataset's folder"),
-        ));
-    }
-    let place = path.parent().unwrap_or(Path::new(".")).join(relative);
-    let mut wanted = vec![description.time.column.as_str()];
-    let mut units = vec![unit_of(path, "time", &description.time.unit, "s")?];
-    let mut fed = Vec::new();
-    for input in &model.inputs {
-        fed.push(description.inputs.get(&input.name).map(|entry| {
-            wanted.push(&entry.column);
-            (wanted.len() - 1, entry)
-        }));
-        if let Some(Some((_, entry))) = fed.last() {
-            let place = format!("inputs.{}", input.name);
-            units.push(unit_of(path, &place, &entry.unit, &input.unit.text)?);
-            entry.check_hold(path, &place)?;
+    for input in inputs() {
+        if (description.inputs.iter()).all(|column| column.name.text != input) {
+            notes.push(format!("the dataset has no input `{input}`: it is 0"));
         }
     }
-    let first_channel = wanted.len();
-    for channel in channels {
-        let entry = &description.channels[&channel.name];
-        wanted.push(&entry.column);
-        units.push(unit_of(path, &channel.name, &entry.unit, &channel.unit)?);
-    }
-    let mut columns = columns::read(&place, &wanted)?;
-    for (column, unit) in columns.iter_mut().zip(&units) {
-        column
-            .iter_mut()
-            .for_each(|value| *value = unit.to_si(*value));
-    }
-    let channels = columns.split_off(first_channel);
-    let times = columns[0].clone();
-    let missing = vec![0.0; times.len()];
-    let input_columns: Vec<Vec<f64>> = fed
-        .iter()
-        .map(|feed| match feed {
-            Some((place, _)) => columns[*place].clone(),
-            None => missing.clone(),
+    notes
+}
+
+/// Which columns of a record are what.
+struct Columns<'d> {
+    description: &'d Description,
+    /// The dataset file.
+    path: &'d Path,
+    /// The time's unit.
+    time: &'d Unit,
+    /// For each input of the model its column and unit, if there is one.
+    inputs: &'d [Option<(&'d Written, Unit)>],
+    /// The unit of each channel's column.
+    channels: &'d [Unit],
+    model: &'d Model,
+}
+
+impl Columns<'_> {
+    /// Reads one record.
+    fn record(&self, name: &str, file: &Written) -> Result<Record, Refusal> {
+        let wrong =
+            |diagnostic: Diagnostic| Diagnostics::one(self.description.source.clone(), diagnostic);
+        let place = beside(self.path, file).map_err(wrong)?;
+        let mut wanted = vec![self.description.time.column.text.as_str()];
+        let mut units = vec![self.time];
+        for (column, unit) in self.inputs.iter().flatten() {
+            wanted.push(&column.text);
+            units.push(unit);
+        }
+        let first_channel = wanted.len();
+        for (channel, unit) in self.description.channels.iter().zip(self.channels) {
+            wanted.push(&channel.column.column.text);
+            units.push(unit);
+        }
+        let mut columns = columns::read(&place, &wanted)?;
+        for (column, unit) in columns.iter_mut().zip(&units) {
+            for value in column.iter_mut() {
+                // What is too large for a number in SI is as good as missing.
+                *value = Some(unit.to_si(*value))
+                    .filter(|v| v.is_finite())
+                    .unwrap_or(f64::NAN);
+            }
+        }
+        let channels = columns.split_off(first_channel);
+        let mut columns = columns.into_iter();
+        let times = columns.next().unwrap_or_default();
+        let input_columns: Vec<Vec<f64>> = (self.inputs.iter())
+            .map(|fed| fed.as_ref().and_then(|_| columns.next()))
+            .map(|column| column.unwrap_or_else(|| vec![0.0; times.len()]))
+            .collect();
+        crate::gate::check_times(&place, &times)?;
+        for (input, column) in self.model.inputs.iter().zip(&input_columns) {
+            crate::gate::check_input(&place, &input.name, column)?;
+        }
+        Ok(Record {
+            name: name.to_owned(),
+            inputs: held(&times, &input_columns),
+            path: place,
+            times,
+            input_columns,
+            channels,
         })
-        .collect();
-    crate::gate::check_times(&place, &times)?;
-    for (input, column) in model.inputs.iter().zip(&input_columns) {
-        crate::gate::check_input(&place, &input.name, column)?;
     }
-    Ok(Record {
-        name: name.to_owned(),
-        inputs: held(&times, &input_columns),
-        path: place,
-        times,
-        input_columns,
-        channels,
-    })
 }
 
 /// Inputs held from sample to sample, over missing ones too.

@@ -1,0 +1,63 @@
+//! Names in braces within the texts of an effect: all of them known, and the expressions around
+//! them sound.
+
+use model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use model_spec::suggest::did_you_mean;
+use model_spec::table::{Record, Written};
+
+use super::entry::text;
+
+/// What the texts of an effect may hold.
+pub(super) struct Blanks {
+    /// What may stand in braces.
+    pub(super) known: Vec<String>,
+    /// What does.
+    pub(super) used: Vec<String>,
+}
+
+impl Blanks {
+    /// Notes the blanks of a text.
+    pub(super) fn note(&mut self, written: &Written, found: &mut Diagnostics) {
+        let mut begin = 0;
+        while let Some(open) = written.text[begin..].find(['{', '}']) {
+            let open = begin + open;
+            let close = written.text[open..].find('}').map(|length| open + length);
+            let Some(close) = close.filter(|close| *close > open) else {
+                let place = written.place(open, open + 1);
+                let wrong = Diagnostic::error("a blank is not closed, or not opened");
+                found.push(wrong.at(place, "expected a name in braces, as {on}"));
+                return;
+            };
+            let name = &written.text[open + 1..close];
+            if self.known.iter().any(|known| known == name) {
+                self.used.push(name.to_owned());
+            } else {
+                let known = || self.known.iter().map(String::as_str);
+                let listed: Vec<&str> = known().collect();
+                let listed = format!("known here: {}", listed.join(", "));
+                found.push(
+                    Diagnostic::error(format!("nothing fills the blank {}", quoted(name)))
+                        .at(written.place(open + 1, close), "not known here")
+                        .help(did_you_mean(name, known()).unwrap_or(listed)),
+                );
+            }
+            begin = close + 1;
+        }
+    }
+}
+
+/// An expression with blanks.
+pub(super) fn expression(
+    record: &Record<'_>,
+    key: &str,
+    blanks: &mut Blanks,
+    found: &mut Diagnostics,
+) -> Option<String> {
+    let written = text(record, key, "\"-{T_c}*sign(dot({on}))\"", found)?;
+    blanks.note(&written, found);
+    // Parentheses for braces keep every letter at its place.
+    let mut plain = written.clone();
+    plain.text = plain.text.replace('{', "(").replace('}', ")");
+    found.keep(plain.syntax());
+    Some(written.text)
+}

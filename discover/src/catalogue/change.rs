@@ -1,0 +1,167 @@
+//! The edits of an effect: what they add, or what they replace and where.
+
+use model_spec::diagnostic::{Diagnostic, Diagnostics};
+use model_spec::edit::Section;
+use model_spec::table::Entry;
+
+use super::blanks::{Blanks, expression};
+use super::entry::{new_name, some, text};
+use super::{Change, SiteKind, Within};
+
+/// What an edit adds.
+#[derive(Clone, Copy)]
+enum Added {
+    Term(Section),
+    Definition,
+    Force,
+    Coordinate,
+}
+
+const ADDED: [(&str, Added); 6] = [
+    ("force", Added::Force),
+    ("kinetic", Added::Term(Section::Kinetic)),
+    ("potential", Added::Term(Section::Potential)),
+    ("dissipation", Added::Term(Section::Dissipation)),
+    ("definition", Added::Definition),
+    ("coordinate", Added::Coordinate),
+];
+
+/// Where an edit replaces.
+#[derive(Clone, Copy)]
+enum Replaced {
+    Kinetic,
+    /// In the terms of a site of this kind.
+    Site(SiteKind),
+    Measured,
+}
+
+const REPLACED: [(&str, Replaced); 4] = [
+    ("kinetic", Replaced::Kinetic),
+    ("mesh", Replaced::Site(SiteKind::Mesh)),
+    ("arm", Replaced::Site(SiteKind::Arm)),
+    ("measured", Replaced::Measured),
+];
+
+/// All keys of an edit.
+const KEYS: [&str; 10] = [
+    "add",
+    "substitute",
+    "name",
+    "on",
+    "value",
+    "unit",
+    "doc",
+    "terms",
+    "find",
+    "replace",
+];
+
+/// Reads an edit.
+pub(super) fn change(
+    entry: &Entry<'_>,
+    site: SiteKind,
+    blanks: &mut Blanks,
+    found: &mut Diagnostics,
+) -> Option<Change> {
+    let entries = found.keep(entry.table("{ add = \"force\", ... }"))?;
+    let of = |key: &str| entries.iter().find(|entry| entry.name.text == key);
+    match (of("add"), of("substitute")) {
+        (Some(add), None) => {
+            let what = found.keep(add.word(&ADDED))?;
+            addition(entry, what, blanks, found)
+        }
+        (None, Some(substitute)) => {
+            let within = found.keep(substitute.word(&REPLACED))?;
+            if let Replaced::Site(kind) = within
+                && kind != site
+            {
+                let wrong = Diagnostic::error("this effect sits at another kind of site");
+                let kind = SiteKind::WORDS.iter().find(|(_, known)| *known == kind);
+                let expected = kind.map_or("", |(word, _)| word);
+                found.push(wrong.at(substitute.span(), format!("expected site = \"{expected}\"")));
+            }
+            substitution(entry, within, blanks, found)
+        }
+        _ => {
+            entry.record(&KEYS, "{ add = \"force\", ... }", found);
+            found.push(
+                Diagnostic::error("an edit adds or substitutes something")
+                    .at(entry.span(), "expected either `add` or `substitute`"),
+            );
+            None
+        }
+    }
+}
+
+fn addition(
+    entry: &Entry<'_>,
+    what: Added,
+    blanks: &mut Blanks,
+    found: &mut Diagnostics,
+) -> Option<Change> {
+    let known: &[&str] = match what {
+        Added::Term(_) | Added::Definition => &["add", "name", "value"],
+        Added::Force => &["add", "name", "on", "value"],
+        Added::Coordinate => &["add", "name", "unit", "doc"],
+    };
+    let record = entry.record(known, "{ add = \"force\", ... }", found)?;
+    let name = new_name(&record, found);
+    Some(match what {
+        Added::Term(section) => Change::Term {
+            section,
+            value: expression(&record, "value", blanks, found)?,
+            name: name?,
+        },
+        Added::Definition => Change::Definition {
+            value: expression(&record, "value", blanks, found)?,
+            name: name?,
+        },
+        Added::Force => Change::Force {
+            on: expression(&record, "on", blanks, found)?,
+            value: expression(&record, "value", blanks, found)?,
+            name: name?,
+        },
+        Added::Coordinate => {
+            let unit = text(&record, "unit", "\"rad\"", found)?;
+            blanks.note(&unit, found);
+            Change::Coordinate {
+                unit: unit.text,
+                doc: text(&record, "doc", "\"what it is\"", found)?.text,
+                name: name?,
+            }
+        }
+    })
+}
+
+fn substitution(
+    entry: &Entry<'_>,
+    within: Replaced,
+    blanks: &mut Blanks,
+    found: &mut Diagnostics,
+) -> Option<Change> {
+    let known: &[&str] = match within {
+        Replaced::Kinetic => &["substitute", "terms", "find", "replace"],
+        Replaced::Site(_) | Replaced::Measured => &["substitute", "find", "replace"],
+    };
+    let record = entry.record(known, "{ substitute = \"mesh\", ... }", found)?;
+    let find = expression(&record, "find", blanks, found);
+    let replace = expression(&record, "replace", blanks, found);
+    let within = match within {
+        Replaced::Site(_) => Within::Site,
+        Replaced::Measured => Within::Measured,
+        Replaced::Kinetic => {
+            let mut terms = Vec::new();
+            for term in some(&record, "terms", "[\"{term}\"]", found)? {
+                let term = found.keep(term.written())?;
+                blanks.note(&term, found);
+                terms.push(term.text);
+            }
+            Within::Kinetic(terms)
+        }
+    };
+    Some(Change::Substitution {
+        within,
+        find: find?,
+        replace: replace?,
+    })
+}

@@ -1,0 +1,230 @@
+//! A file of effects: what its entries say, with every word, key and blank known. What an
+//! effect does in a specification is checked where it is placed.
+
+use model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use model_spec::source::Source;
+use model_spec::span::Span;
+use model_spec::table::{Entry, Name, Record, Written};
+use model_spec::toml_file;
+
+use super::blanks::Blanks;
+use super::change::change;
+use super::{Effect, EffectParameter, SiteKind};
+
+/// Reads a file of effects.
+///
+/// # Errors
+/// All that is wrong with it.
+pub fn read(source: &Source) -> Result<Vec<Effect>, Diagnostics> {
+    toml_file::read(source, |entries, found| {
+        let file = Name {
+            text: "the file of effects".to_owned(),
+            span: Span::new(0, 0),
+        };
+        let top = Record::of(file, entries.to_vec(), &["effect"], found);
+        let list = top.require("effect", "begin each effect with [[effect]]", found)?;
+        let list = found.keep(list.list("[[effect]]"))?;
+        Some(
+            list.iter()
+                .filter_map(|entry| effect(entry, found))
+                .collect(),
+        )
+    })
+}
+
+fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
+    let known = [
+        "name",
+        "site",
+        "says",
+        "experiment",
+        "orders",
+        "parameters",
+        "edits",
+    ];
+    let record = entry.record(&known, "{ name = \"my_effect\" }", found)?;
+    let name = text(&record, "name", "\"my_effect\"", found);
+    let says = text(&record, "says", "\"a friction of ...\"", found);
+    let experiment = text(&record, "experiment", "\"slow motions\"", found);
+    let site = record.require("site", "write site = \"axis\"", found);
+    let site = site.cloned().map(|site| site.word(&SiteKind::WORDS));
+    let site = site.and_then(|site| found.keep(site));
+    let orders = record.get("orders").map(|orders| orders.truth());
+    let orders = orders.map_or(Some(false), |orders| found.keep(orders));
+    let parameters = some(&record, "parameters", "[{ name = ... }]", found)?;
+    let edits = some(&record, "edits", "[{ add = \"force\", ... }]", found)?;
+    let (site, orders) = (site?, orders?);
+    let own: Vec<Written> = (parameters.iter().chain(&edits))
+        .filter_map(|entry| named(entry))
+        .collect();
+    let of_site = site.blanks().iter().map(|blank| (*blank).to_owned());
+    let of_site: Vec<String> = of_site.collect();
+    for name in own.iter().filter(|own| of_site.contains(&own.text)) {
+        let wrong = format!("{} has a meaning at such a site", quoted(&name.text));
+        found.push(Diagnostic::error(wrong).at(name.span, "expected another name"));
+    }
+    let repeating: &[&str] = match (orders, site) {
+        (true, SiteKind::Mesh) => &["n", "angle"],
+        (true, _) => &["n"],
+        (false, _) => &[],
+    };
+    let mut blanks = Blanks {
+        known: of_site
+            .into_iter()
+            .chain(repeating.iter().map(|blank| (*blank).to_owned()))
+            .chain(own.iter().map(|own| own.text.clone()))
+            .collect(),
+        used: Vec::new(),
+    };
+    let mut listed = Vec::new();
+    for entry in &parameters {
+        listed.extend(parameter(entry, &mut blanks, found));
+    }
+    let mut changes = Vec::new();
+    for entry in &edits {
+        changes.extend(change(entry, site, &mut blanks, found));
+    }
+    for parameter in parameters.iter().filter_map(named) {
+        if !blanks.used.contains(&parameter.text) {
+            found.push(
+                Diagnostic::error(format!("{} is used nowhere", quoted(&parameter.text)))
+                    .at(parameter.span, "no edit holds it")
+                    .help(format!("write {{{}}} in an edit", parameter.text)),
+            );
+        }
+    }
+    Some(Effect {
+        name: name?.text,
+        site,
+        says: says?.text,
+        experiment: experiment?.text,
+        orders,
+        parameters: listed,
+        edits: changes,
+        is_own: false,
+    })
+}
+
+/// The name that a parameter or an addition gives to what it adds, where it is read by others.
+fn named(entry: &Entry<'_>) -> Option<Written> {
+    let entries = entry.table("").ok()?;
+    let of = |key: &str| entries.iter().find(|e| e.name.text == key)?.written().ok();
+    match of("add") {
+        Some(add) if !["coordinate", "definition"].contains(&add.text.as_str()) => None,
+        _ => of("name"),
+    }
+}
+
+/// The elements of a list, at least one.
+pub(super) fn some<'d>(
+    record: &Record<'d>,
+    key: &str,
+    example: &str,
+    found: &mut Diagnostics,
+) -> Option<Vec<Entry<'d>>> {
+    let entry = record.require(key, &format!("write {key} = {example}"), found)?;
+    let list = found.keep(entry.list(example))?;
+    if list.is_empty() {
+        found.push(
+            Diagnostic::error(format!("`{key}` is empty"))
+                .at(entry.span(), "an effect needs one or more")
+                .help(format!("write {key} = {example}")),
+        );
+    }
+    Some(list)
+}
+
+/// The text of a key that is needed, and says something.
+pub(super) fn text(
+    record: &Record<'_>,
+    key: &str,
+    example: &str,
+    found: &mut Diagnostics,
+) -> Option<Written> {
+    let entry = record.require(key, &format!("write {key} = {example}"), found)?;
+    let written = found.keep(entry.written())?;
+    if written.text.trim().is_empty() {
+        found
+            .push(Diagnostic::error(format!("`{key}` is empty")).at(written.span, "expected text"));
+    }
+    Some(written)
+}
+
+/// The name of something that is added to a specification.
+pub(super) fn new_name(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
+    let written = text(record, "name", "\"T_c\"", found)?;
+    let letter = |c: char| c.is_ascii_alphabetic();
+    let rest = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    if !(written.text.starts_with(letter) && written.text.chars().all(rest)) {
+        found.push(
+            Diagnostic::error(format!("{} is no name", quoted(&written.text))).at(
+                written.span,
+                "expected a letter, then letters, digits and underscores",
+            ),
+        );
+    }
+    Some(written.text)
+}
+
+fn parameter(
+    entry: &Entry<'_>,
+    blanks: &mut Blanks,
+    found: &mut Diagnostics,
+) -> Option<EffectParameter> {
+    let known = ["name", "unit", "sign", "doc", "inverse", "scale", "share"];
+    let record = entry.record(&known, "{ name = \"T_c\", ... }", found)?;
+    let name = new_name(&record, found);
+    let unit = text(&record, "unit", "\"{force}\"", found);
+    if let Some(unit) = &unit {
+        blanks.note(unit, found);
+    }
+    let doc = text(&record, "doc", "\"dry friction\"", found);
+    let sign = record.require(
+        "sign",
+        "write sign = \"+\", or \"\" if it may be negative",
+        found,
+    );
+    let sign = sign
+        .cloned()
+        .map(|sign| sign.word(&[("+", true), ("", false)]));
+    let positive = sign.and_then(|sign| found.keep(sign));
+    let inverse = record.get("inverse").map(|inverse| inverse.truth());
+    let inverse = inverse.map_or(Some(false), |inverse| found.keep(inverse));
+    Some(EffectParameter {
+        name: name?,
+        unit: unit?.text,
+        positive: positive?,
+        doc: doc?.text,
+        inverse: inverse?,
+        share: share(&record, found),
+    })
+}
+
+/// The part of the usual rate that a shape is as large as.
+fn share(record: &Record<'_>, found: &mut Diagnostics) -> Option<f64> {
+    let (scale, share) = (record.get("scale"), record.get("share"));
+    if let Some(scale) = scale {
+        found.keep(scale.word(&[("rate", ())]))?;
+    }
+    let (scale, share) = match (scale, share) {
+        (Some(scale), Some(share)) => (scale, share),
+        (None, None) => return None,
+        (Some(alone), None) | (None, Some(alone)) => {
+            found.push(
+                Diagnostic::error("`scale` and `share` go together")
+                    .at(alone.name.span, "the other is missing")
+                    .help("write scale = \"rate\", share = 0.1"),
+            );
+            return None;
+        }
+    };
+    let part = found.keep(share.number())?;
+    if part.value <= 0.0 {
+        found.push(
+            Diagnostic::error(format!("{} is no part", part.value))
+                .at(part.span, "expected more than 0")
+                .also(scale.span(), "of this"),
+        );
+    }
+    Some(part.value)
+}

@@ -1,0 +1,258 @@
+//! Files of a user's effects: what they say is tried, or refused with its place and the nearest that
+//! would be right.
+
+use eomgen_tests::measured::{Measured, Moment};
+use eomgen_tests::program;
+use serde_json::Value;
+
+/// A user's effect: dry friction that grows with the distance from the middle.
+const EFFECTS: &str = r#"[[effect]]
+name = "bent_rail"
+site = "axis"
+says = "a friction that grows away from the middle"
+experiment = "slow motion over the whole range"
+parameters = [{ name = "B_r", unit = "{force}/{unit}", sign = "+", doc = "bent rail" }]
+edits = [{ add = "force", name = "rail", on = "{on}", value = "-{B_r}*abs({on})*sign(dot({on}))" }]
+"#;
+
+/// Arguments of `discover` with a file of effects.
+fn arguments(measured: &Measured, effects: &str, out: &str) -> Vec<String> {
+    measured.write("effects.toml", effects.as_bytes());
+    let mut arguments = measured.arguments("discover", out);
+    let path = measured.file("effects.toml").display().to_string();
+    arguments.extend(["--effects".to_owned(), path]);
+    arguments
+}
+
+/// Where a part of a file of effects stands, as messages say it.
+fn place(effects: &str, part: &str) -> String {
+    let lines = effects.lines().enumerate();
+    let mut places = lines.filter_map(|(line, text)| Some((line, text.find(part)?)));
+    let (line, column) = places.next().expect("the part is there");
+    format!("effects.toml:{}:{}", line + 1, column + 1)
+}
+
+/// Each change of the file is refused at the part named, with these words.
+fn refuses(measured: &Measured, cases: &[(&str, &str, &str, &str)]) {
+    for (from, to, part, words) in cases {
+        let effects = EFFECTS.replacen(from, to, 1);
+        assert_ne!(effects, EFFECTS, "{from}");
+        let message = refused(measured, &effects);
+        let place = place(&effects, part);
+        assert!(message.contains(&place), "{to}: {place}: {message}");
+        assert!(message.contains(words), "{to}: {words}: {message}");
+    }
+}
+
+/// The message with which a file of effects is refused; nothing is written.
+fn refused(measured: &Measured, effects: &str) -> String {
+    let arguments = arguments(measured, effects, "refused");
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let message = program::refused(&arguments);
+    assert!(!measured.file("refused").exists(), "{message}");
+    message
+}
+
+/// What `discover` finds with a file of effects, and what it warned of.
+fn found(measured: &Measured, effects: &str) -> (Value, String) {
+    let arguments = arguments(measured, effects, "found");
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let output = program::run(&arguments);
+    let message = program::text(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    let text = measured.read("found/discovery.json");
+    (serde_json::from_str(&text).expect("JSON"), message)
+}
+
+#[test]
+fn a_users_effect_is_found_where_it_is_and_named_as_the_user_names_it() {
+    let hidden = |at: Moment| -60.0 * at.q.abs() * (at.v / 1e-4).tanh();
+    let measured = Measured::stage_with(&hidden);
+    let (result, message) = found(&measured, EFFECTS);
+    let effects = result["effects"].as_array().expect("a list");
+    assert_eq!(effects.len(), 1, "{message}{effects:#?}");
+    assert_eq!(effects[0]["effect"], "bent_rail");
+    assert_eq!(effects[0]["on"], "q");
+    let size = effects[0]["parameters"]["B_r"]["value"].as_f64();
+    assert!(
+        size.is_some_and(|size| (size - 60.0).abs() < 3.0),
+        "{size:?}"
+    );
+}
+
+#[test]
+fn words_and_keys_that_are_not_known_are_refused_with_the_nearest() {
+    let sign = "sign = \"+\"";
+    refuses(
+        &Measured::stage(0.0),
+        &[
+            (
+                "\"force\"",
+                "\"froce\"",
+                "\"froce\"",
+                "did you mean `force`?",
+            ),
+            (
+                sign,
+                "sign = \"positive\"",
+                "\"positive\"",
+                "expected \"+\" or \"\"",
+            ),
+            ("\"axis\"", "\"axes\"", "\"axes\"", "did you mean `axis`?"),
+            (
+                "[[effect]]",
+                "[[effects]]",
+                "effects",
+                "did you mean `effect`?",
+            ),
+            ("site =", "sites =", "sites", "did you mean `site`?"),
+            ("add =", "ad =", "ad =", "did you mean `add`?"),
+            (
+                "on = \"{on}\"",
+                "onto = \"{on}\"",
+                "onto",
+                "did you mean `on`?",
+            ),
+            (
+                "experiment =",
+                "orders = \"yes\"\nexperiment =",
+                "\"yes\"",
+                "is not a truth value",
+            ),
+            (
+                "add = \"force\"",
+                "substitute = \"mesured\"",
+                "\"mesured\"",
+                "did you mean `measured`?",
+            ),
+            (
+                "add = \"force\"",
+                "substitute = \"mesh\"",
+                "\"mesh\"",
+                "expected site = \"mesh\"",
+            ),
+            (
+                sign,
+                "sign = \"+\", scale = \"rates\", share = 0.1",
+                "\"rates\"",
+                "did you mean `rate`?",
+            ),
+            (
+                sign,
+                "sign = \"+\", scale = \"rate\"",
+                "scale",
+                "`scale` and `share` go together",
+            ),
+            (
+                sign,
+                "sign = \"+\", scale = \"rate\", share = 0.0",
+                "0.0",
+                "expected more than 0",
+            ),
+            (
+                sign,
+                "sign = \"+\", inverse = \"no\"",
+                "\"no\"",
+                "is not a truth value",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn blanks_names_and_expressions_that_are_none_are_refused_with_their_place() {
+    refuses(
+        &Measured::stage(0.0),
+        &[
+            ("abs({on})", "abs({onn})", "onn", "did you mean `on`?"),
+            ("-{B_r}", "-{B_s}", "B_s", "did you mean `B_r`?"),
+            ("-{B_r}", "-2", "\"B_r\"", "`B_r` is used nowhere"),
+            ("abs({on})", "abs({on)", "on)*", "nothing fills the blank"),
+            ("abs({on})", "abs(on})", "})*", "a blank is not closed"),
+            ("abs({on})*", "abs({on})*/", "/sign", "error"),
+            ("\"B_r\"", "\"B r\"", "\"B r\"", "is no name"),
+            (
+                "\"B_r\"",
+                "\"unit\"",
+                "\"unit\"",
+                "has a meaning at such a site",
+            ),
+            ("edits = [{", "edits = [] #", "[] #", "`edits` is empty"),
+            (
+                "says = \"a friction that grows away from the middle\"\n",
+                "",
+                "[[effect]]",
+                "has no `says`",
+            ),
+        ],
+    );
+}
+
+#[test]
+fn files_of_effects_that_are_none_are_refused() {
+    let measured = Measured::stage(0.0);
+    for (text, part) in [
+        ("", "begin each effect with [[effect]]"),
+        ("[[effect", "effects.toml:1:"),
+        ("effect = 3", "effects.toml:1:10"),
+        ("effect = [3]", "effects.toml:1:11"),
+        ("effect = [{}]", "has no `name`"),
+    ] {
+        let message = refused(&measured, text);
+        assert!(message.contains(part), "{text}: {message}");
+    }
+    measured.write("effects.toml", &[0xff, 0xfe, 0, 0]);
+    let mut arguments = measured.arguments("discover", "refused");
+    arguments.extend(["--effects".to_owned(), String::new()]);
+    for path in [
+        measured.file("effects.toml"),
+        measured.file("none.toml"),
+        measured.file("."),
+    ] {
+        let last = arguments.len() - 1;
+        arguments[last] = path.display().to_string();
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let message = program::refused(&arguments);
+        assert!(message.contains("cannot read"), "{message}");
+    }
+}
+
+#[test]
+fn an_effect_that_leaves_no_specification_is_refused() {
+    let measured = Measured::stage(0.0);
+    for (from, to, part) in [
+        ("unit = \"{force}/{unit}\"", "unit = \"kg\"", "bent_rail"),
+        ("abs({on})", "abs(no_such)", "no_such"),
+    ] {
+        let message = refused(&measured, &EFFECTS.replacen(from, to, 1));
+        let parts = [
+            "the effect `bent_rail` on `q` does not leave a specification",
+            part,
+        ];
+        for part in parts {
+            assert!(message.contains(part), "{to}: {message}");
+        }
+    }
+}
+
+#[test]
+fn an_effect_without_a_place_is_said_not_to_be_tried() {
+    let measured = Measured::stage(0.0);
+    let (result, message) = found(&measured, &EFFECTS.replacen("axis", "angle", 1));
+    let note = "the effect `bent_rail` has no place in this model and is not tried";
+    assert!(message.contains(note), "{message}");
+    assert!(result["notes"].to_string().contains(note), "{result:#}");
+}
+
+#[test]
+fn both_effects_of_one_name_in_a_users_file_are_tried() {
+    let hidden = |at: Moment| -60.0 * at.q.abs() * (at.v / 1e-4).tanh();
+    let measured = Measured::stage_with(&hidden);
+    let other = EFFECTS
+        .replacen("abs({on})*", "", 1)
+        .replacen("/{unit}", "", 1);
+    let (result, message) = found(&measured, &format!("{EFFECTS}{other}"));
+    assert_eq!(result["effects"][0]["effect"], "bent_rail", "{message}");
+    let term = result["effects"][0]["term"].as_str();
+    assert!(term.is_some_and(|term| term.contains("abs(q)")), "{term:?}");
+}

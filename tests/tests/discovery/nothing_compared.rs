@@ -1,0 +1,308 @@
+//! A verdict needs something to be compared: whatever leaves nothing is refused, by `compare` and
+//! `discover` alike, with its place and what would be right.
+
+use eomgen_tests::measured::{DESCRIPTION, Measured, record};
+use eomgen_tests::program;
+
+/// Both commands refuse the dataset, and leave nothing; what they say.
+fn refused(measured: &Measured) -> String {
+    let [compare, discover] = ["compare", "discover"].map(|command| {
+        let arguments = measured.arguments(command, "refused");
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let message = program::refused(&arguments);
+        assert!(!measured.file("refused").exists(), "{message}");
+        message
+    });
+    assert_eq!(compare, discover);
+    compare
+}
+
+/// The dataset with one thing changed is refused with all of these parts.
+fn refuses(measured: &Measured, from: &str, to: &str, parts: &[&str]) {
+    let description = DESCRIPTION.replacen(from, to, 1);
+    assert_ne!(description, DESCRIPTION, "{from}");
+    measured.write("dataset.toml", description.as_bytes());
+    let message = refused(measured);
+    for part in parts {
+        assert!(message.contains(part), "{to}: {part}: {message}");
+    }
+}
+
+/// The record of the stage with other cells in column `column` of its lines, counted from 1.
+fn with(column: usize, cell: impl Fn(usize, &str) -> String) -> String {
+    let text = record(0.0, 0.0);
+    let line = |(place, line): (usize, &str)| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if place > 0 {
+            cells[column] = cell(place, &cells[column]);
+        }
+        cells.join(",") + "\n"
+    };
+    text.lines().enumerate().map(line).collect()
+}
+
+#[test]
+fn windows_longer_than_the_records_are_refused() {
+    let measured = Measured::stage(3.0);
+    // The records last 1.995 s, with what follows the last sample 2 s.
+    for length in ["5", "1e9", "2.1"] {
+        let to = format!("length = {length}");
+        let place = ["dataset.toml:27:10", "lasts 1.995", "\"record\""];
+        refuses(&measured, "length = 0.25", &to, &place);
+    }
+    for length in ["2", "1.995", "\"record\""] {
+        let description = DESCRIPTION.replacen("0.25", length, 1);
+        measured.write("dataset.toml", description.as_bytes());
+        let (result, _) = measured.answered("compare", "whole");
+        assert_eq!(result["verdict"], "gap_found", "{length}: {result:#}");
+    }
+}
+
+#[test]
+fn a_set_whose_records_are_all_shorter_than_a_window_is_refused() {
+    let measured = Measured::stage(0.0);
+    let sound = record(0.0, 1.0);
+    let lines: Vec<&str> = sound.lines().take(61).collect();
+    measured.write("test.csv", (lines.join("\n") + "\n").as_bytes());
+    let parts = ["no test record lasts one window of 0.5 s", "lasts 0.295"];
+    refuses(&measured, "length = 0.25", "length = 0.5", &parts);
+}
+
+#[test]
+fn a_record_shorter_than_half_a_window_is_noted() {
+    let measured = Measured::stage(0.0);
+    let sound = record(0.0, 2.0);
+    let lines: Vec<&str> = sound.lines().take(61).collect();
+    measured.write("short.csv", (lines.join("\n") + "\n").as_bytes());
+    let description = DESCRIPTION
+        .replacen("[\"train.csv\"]", "[\"train.csv\", \"short.csv\"]", 1)
+        .replacen("0.25", "0.8", 1);
+    measured.write("dataset.toml", description.as_bytes());
+    let (result, warned) = measured.answered("compare", "short");
+    let note = "train[1]: it lasts 0.295000 s, less than half a window, and is not used";
+    assert!(warned.contains(note), "{warned}");
+    assert!(result["notes"].to_string().contains(note), "{result:#}");
+}
+
+#[test]
+fn windows_of_which_nothing_is_measured_are_refused() {
+    // Of windows of four samples the inner two are compared; these are missing everywhere.
+    let measured = Measured::stage(0.0);
+    let holes = |place: usize, cell: &str| match (place - 1) % 4 {
+        1 | 2 => String::new(),
+        _ => cell.to_owned(),
+    };
+    measured.write("train.csv", with(2, holes).as_bytes());
+    let parts = [
+        "channel `q`: of all training records 0 samples lie inside of windows",
+        "train.csv",
+    ];
+    refuses(&measured, "length = 0.25", "length = 0.02", &parts);
+}
+
+#[test]
+fn a_noise_larger_than_every_motion_is_refused() {
+    let measured = Measured::stage(3.0);
+    let parts = ["dataset.toml:18:9", "nothing but noise"];
+    refuses(&measured, "noise = 1e-6", "noise = 10", &parts);
+    refuses(&measured, "noise = 1e-6", "noise = 1e300", &parts);
+}
+
+#[test]
+fn noise_that_is_none_is_refused_with_its_place() {
+    let measured = Measured::stage(3.0);
+    for (to, part) in [
+        ("noise = 0", "greater than 0"),
+        ("noise = -1e-6", "greater than 0"),
+        ("noise = inf", "not a finite number"),
+        ("noise = \"1e-6\"", "is not a number"),
+        ("noise = []", "is not a number"),
+    ] {
+        refuses(&measured, "noise = 1e-6", to, &["dataset.toml:18:", part]);
+    }
+    let parts = ["dataset.toml:15:11", "`q` has no `noise`"];
+    refuses(&measured, "noise = 1e-6\n", "", &parts);
+}
+
+#[test]
+fn records_that_are_too_short_or_empty_are_refused() {
+    let measured = Measured::stage(0.0);
+    let sound = record(0.0, 0.0);
+    for samples in [0, 1, 2, 49] {
+        let lines: Vec<&str> = sound.lines().take(samples + 1).collect();
+        for file in ["train.csv", "test.csv"] {
+            let measured = Measured::stage(0.0);
+            measured.write(file, (lines.join("\n") + "\n").as_bytes());
+            let message = refused(&measured);
+            let part = format!("holds {samples} samples");
+            assert!(
+                message.contains(file) && message.contains(&part),
+                "{message}"
+            );
+        }
+    }
+    // What is too large for a number in SI is missing.
+    measured.write("train.csv", with(2, |_, _| "1e308".to_owned()).as_bytes());
+    let parts = ["train.csv", "400 of 400 samples are missing"];
+    refuses(
+        &measured,
+        "unit = \"m\"\nnoise = 1e-6",
+        "unit = \"km\"\nnoise = 1e-9",
+        &parts,
+    );
+}
+
+#[test]
+fn channels_and_records_that_are_not_there_are_refused_with_their_place() {
+    let measured = Measured::stage(0.0);
+    let channel = "[channels.q]\ncolumn = \"q\"\nunit = \"m\"\nnoise = 1e-6\n";
+    refuses(
+        &measured,
+        channel,
+        "",
+        &["dataset.toml:2:2", "nothing would be compared"],
+    );
+    for (from, to, parts) in [
+        (
+            "[channels.q]",
+            "[channels.q_dott]",
+            ["dataset.toml:15:11", "no observable or coordinate `q_dott`"],
+        ),
+        (
+            "noise = 1e-6",
+            "noise = 1e-6\nobservable = \"p\"",
+            ["dataset.toml:19:14", "no observable or coordinate `p`"],
+        ),
+        (
+            "[\"train.csv\"]",
+            "[]",
+            ["dataset.toml:2:2", "lists no train record"],
+        ),
+        (
+            "test = [\"test.csv\"]",
+            "",
+            ["dataset.toml:2:2", "lists no test record"],
+        ),
+        (
+            "[\"test.csv\"]",
+            "[7]",
+            ["dataset.toml:4:9", "is not a string"],
+        ),
+        (
+            "[\"test.csv\"]",
+            "\"test.csv\"",
+            ["dataset.toml:4:8", "is not a list"],
+        ),
+    ] {
+        refuses(&measured, from, to, &parts);
+    }
+}
+
+#[test]
+fn keys_and_words_that_are_not_known_are_refused_with_the_nearest() {
+    let measured = Measured::stage(0.0);
+    for (from, to, parts) in [
+        (
+            "[windows]",
+            "[window]",
+            ["dataset.toml:26:2", "did you mean `windows`?"],
+        ),
+        (
+            "[records]",
+            "[record]",
+            ["dataset.toml:2:2", "did you mean `records`?"],
+        ),
+        (
+            "[uncertain]",
+            "[uncertian]",
+            ["dataset.toml:23:2", "did you mean `uncertain`?"],
+        ),
+        (
+            "length = 0.25",
+            "lenght = 0.25",
+            ["dataset.toml:27:1", "did you mean `length`?"],
+        ),
+        (
+            "noise = 1e-6",
+            "noise = 1e-6\ngain = 0.05",
+            [
+                "dataset.toml:19:1",
+                "known here: column, unit, noise, observable",
+            ],
+        ),
+        (
+            "test = ",
+            "tets = ",
+            ["dataset.toml:4:1", "did you mean `test`?"],
+        ),
+        (
+            "hold = \"zero-order\"",
+            "hold = \"zero_order\"",
+            ["dataset.toml:13:8", "did you mean `zero-order`?"],
+        ),
+        (
+            "hold = \"zero-order\"",
+            "hlod = \"zero-order\"",
+            ["dataset.toml:13:1", "did you mean `hold`?"],
+        ),
+        (
+            "length = 0.25",
+            "length = 0.25\nstart = \"smooth\"",
+            ["dataset.toml:28:9", "did you mean `smoothed`?"],
+        ),
+        (
+            "length = 0.25",
+            "length = \"recrod\"",
+            ["dataset.toml:27:10", "did you mean `record`?"],
+        ),
+        (
+            "state = \"rest\"",
+            "state = \"estimated\"",
+            ["dataset.toml:21:9", "did you mean `estimate`?"],
+        ),
+        ("F_v", "F_w", ["dataset.toml:24:1", "did you mean `F_v`?"]),
+        (
+            "relative = 0.05",
+            "relativ = 0.05",
+            ["dataset.toml:24:9", "did you mean `relative`?"],
+        ),
+        (
+            "unit = \"m\"",
+            "unit = \"mmm\"",
+            ["dataset.toml:17:8", "expected m"],
+        ),
+    ] {
+        refuses(&measured, from, to, &parts);
+    }
+}
+
+#[test]
+fn initial_states_that_are_none_are_refused() {
+    let measured = Measured::stage(0.0);
+    let rest = "state = \"rest\"";
+    for (to, part) in [
+        ("state = \"given\"", "`values` are missing"),
+        ("state = \"rest\"\nvalues = { q = 1 }", "are not used"),
+        (
+            "state = \"given\"\nvalues = { p = 1 }",
+            "the model has no state `p`",
+        ),
+        (
+            "state = \"given\"\nvalues = { q = nan }",
+            "not a finite number",
+        ),
+        ("state = {}", "no state is given"),
+        ("", "`initial` has no `state`"),
+    ] {
+        refuses(&measured, rest, to, &["dataset.toml:2", part]);
+    }
+}
+
+#[test]
+fn doubts_that_are_none_are_refused() {
+    let measured = Measured::stage(0.0);
+    for relative in ["0", "-0.1", "1e-300", "1e300", "inf"] {
+        let to = format!("relative = {relative}");
+        refuses(&measured, "relative = 0.05", &to, &["dataset.toml:24:20"]);
+    }
+}
