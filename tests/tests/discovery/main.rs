@@ -1,4 +1,7 @@
 //! What `compare` and `discover` are given, and what they find.
 
+mod arm;
 mod effects_files;
+mod effects_found;
+mod effects_placed;
 mod nothing_compared;

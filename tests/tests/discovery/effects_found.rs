@@ -1,0 +1,534 @@
+//! Every entry of the catalogue, hidden in records of a small machine that suits it, is found there:
+//! by its name, at its place, with its sign and size. Records are simulated and hold no noise; what
+//! discovery is worth against other people's equations is measured elsewhere.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Duration;
+
+use discover::candidates::{Candidate, candidates};
+use discover::catalogue::effects;
+use discover::sites::sites;
+use eomgen_tests::program;
+use model_spec::edit::{self, Edit, SetParameter};
+use model_spec::source::Source;
+use serde_json::Value;
+
+/// The longest a search may take, on a machine with much else to do.
+const LIMIT: Duration = Duration::from_secs(280);
+
+/// A machine and how it is measured.
+struct Machine {
+    name: &'static str,
+    specification: &'static str,
+    /// Channels with their units and noises.
+    channels: &'static [(&'static str, &'static str, f64)],
+    /// Declared parameters.
+    uncertain: &'static str,
+    /// The unit of the input `u`, and its value at a time in s, in two records.
+    unit: &'static str,
+    input: fn(f64, bool) -> f64,
+    /// Time between samples and length of a window, s.
+    sample: f64,
+    window: f64,
+    samples: usize,
+}
+
+/// What is hidden, and where.
+struct Hidden {
+    effect: &'static str,
+    on: &'static str,
+    by: By,
+}
+
+/// How it is hidden.
+enum By {
+    /// An entry of the catalogue, by its place among those of its name, its order and its values.
+    Entry(usize, Option<u32>, &'static [f64]),
+    /// A parameter that is not what the specification says.
+    Shift(f64),
+    /// A sensor that shows something else: what is found of it and how large, and a reading made of
+    /// those so far.
+    Sensor(&'static str, f64, fn(&[f64]) -> f64),
+}
+
+const fn hidden(effect: &'static str, on: &'static str, values: &'static [f64]) -> Hidden {
+    let by = By::Entry(0, None, values);
+    Hidden { effect, on, by }
+}
+
+/// A carriage that a force drives.
+const CARRIAGE: Machine = Machine {
+    name: "carriage",
+    specification: r#"
+[model]
+name = "carriage"
+
+[parameters]
+m = { value = 10, unit = "kg", min = 0 }
+c = { value = 20, unit = "N s/m", min = 0 }
+
+[coordinates]
+x = { unit = "m" }
+
+[inputs]
+u = { unit = "N" }
+
+[kinetic]
+carriage = "1/2*m*dot(x)^2"
+
+[dissipation]
+guide = "1/2*c*dot(x)^2"
+
+[forces]
+motor = { on = "x", value = "u" }
+"#,
+    channels: &[("x", "m", 1e-6)],
+    uncertain: "m = { relative = 0.02 }",
+    unit: "N",
+    input: |t, again| {
+        let turn = if again { 1.0 } else { 0.0 };
+        40.0 * (5.0 * t + turn).cos() - 20.0 * (13.0 * t * (1.0 + 0.3 * turn)).sin()
+    },
+    sample: 0.005,
+    window: 0.25,
+    samples: 400,
+};
+
+/// A rotor that a torque turns to and fro, and round.
+const ROTOR: Machine = Machine {
+    name: "rotor",
+    specification: r#"
+[model]
+name = "rotor"
+
+[parameters]
+J = { value = 0.02, unit = "kg m^2", min = 0 }
+c = { value = 0.02, unit = "N m s", min = 0 }
+
+[coordinates]
+theta = { unit = "rad" }
+
+[inputs]
+u = { unit = "N m" }
+
+[kinetic]
+rotor = "1/2*J*dot(theta)^2"
+
+[dissipation]
+bearing = "1/2*c*dot(theta)^2"
+
+[forces]
+motor = { on = "theta", value = "u" }
+"#,
+    channels: &[("theta", "rad", 1e-5)],
+    uncertain: "J = { relative = 0.02 }",
+    unit: "N m",
+    input: |t, again| {
+        let turn = if again { 0.7 } else { 0.0 };
+        0.5 * (2.1 * t + turn).cos() - 0.25 * (7.0 * t * (1.0 + 0.3 * turn)).sin()
+    },
+    sample: 0.005,
+    window: 0.5,
+    samples: 600,
+};
+
+/// A hub that turns a flexible beam.
+const BEAM: Machine = Machine {
+    name: "beam",
+    specification: r#"
+[model]
+name = "beam"
+
+[parameters]
+J_h = { value = 0.05, unit = "kg m^2", min = 0 }
+rho_A = { value = 0.3, unit = "kg/m", min = 0 }
+l = { value = 1, unit = "m", min = 0 }
+EI = { value = 5, unit = "N m^2", min = 0 }
+c = { value = 0.05, unit = "N m s", min = 0 }
+
+[coordinates]
+theta = { unit = "rad" }
+
+[inputs]
+u = { unit = "N m" }
+
+[fields.w]
+along = "x"
+from = 0
+to = "l"
+basis = "clamped_free"
+coordinates = "q"
+order = 1
+unit = "m"
+
+[kinetic]
+hub = "1/2*J_h*dot(theta)^2"
+beam = "1/2*integral(rho_A*(x*dot(theta) + dot(w))^2, w)"
+
+[potential]
+bending = "1/2*integral(EI*diff(w, x, 2)^2, w)"
+
+[dissipation]
+bearing = "1/2*c*dot(theta)^2"
+
+[forces]
+motor = { on = "theta", value = "u" }
+
+[observables]
+tip = { value = "at(w, l)", unit = "m" }
+"#,
+    channels: &[("theta", "rad", 1e-5), ("tip", "m", 1e-5)],
+    uncertain: "J_h = { relative = 0.02 }",
+    unit: "N m",
+    input: |t, again| {
+        let turn = if again { 0.7 } else { 0.0 };
+        0.8 * (4.0 * t + turn).cos() - 0.6 * (19.0 * t * (1.0 + 0.2 * turn)).sin()
+    },
+    sample: 0.005,
+    window: 0.25,
+    samples: 400,
+};
+
+/// The same in longer windows: a joint that yields has a coordinate of its own, whose initial state does
+/// in a short one what the joint does.
+const BEAM_FOR_LONG: Machine = Machine {
+    window: 1.0,
+    ..BEAM
+};
+
+/// Two shafts with a pair of teeth between, `x` the deflection of these. Their play is small: in a large
+/// one teeth rattle, and a stiffness that varies is lost among their impacts. The ratio is no simple
+/// one, so that an order of one shaft is none of the other's.
+const GEAR: Machine = Machine {
+    name: "gear",
+    specification: r#"
+[model]
+name = "gear"
+
+[parameters]
+J_1 = { value = 2e-3, unit = "kg m^2", min = 0 }
+J_2 = { value = 2e-2, unit = "kg m^2", min = 0 }
+r_1 = { value = 0.05, unit = "m", min = 0 }
+r_2 = { value = 0.13, unit = "m", min = 0 }
+k = { value = 2e4, unit = "N/m", min = 0 }
+c = { value = 40, unit = "N s/m", min = 0 }
+b = { value = 3e-4, unit = "m", min = 0 }
+c_1 = { value = 0.01, unit = "N m s", min = 0 }
+c_2 = { value = 0.05, unit = "N m s", min = 0 }
+
+[coordinates]
+theta_1 = { unit = "rad" }
+x = { unit = "m" }
+
+[inputs]
+u = { unit = "N m" }
+
+[definitions]
+theta_2 = "(r_1*theta_1 - x)/r_2"
+
+[kinetic]
+pinion = "1/2*J_1*dot(theta_1)^2"
+wheel = "1/2*J_2*dot(theta_2)^2"
+
+[potential]
+teeth = "1/2*k*deadzone(x, b)^2"
+
+[dissipation]
+teeth = "1/2*c*contact(x, b)*dot(x)^2"
+bearings = "1/2*c_1*dot(theta_1)^2 + 1/2*c_2*dot(theta_2)^2"
+
+[forces]
+motor = { on = "theta_1", value = "u" }
+
+[observables]
+theta_2 = { value = "theta_2", unit = "rad" }
+"#,
+    channels: &[("theta_1", "rad", 1e-5), ("theta_2", "rad", 1e-5)],
+    uncertain: "J_2 = { relative = 0.02 }",
+    unit: "N m",
+    input: |t, again| {
+        let turn = if again { 0.7 } else { 0.0 };
+        1.5 * (3.0 * t + turn).cos() - 0.5 * (9.0 * t * (1.0 + 0.2 * turn)).sin()
+    },
+    sample: 0.002,
+    window: 0.1,
+    samples: 700,
+};
+
+impl Machine {
+    /// The dataset file.
+    fn description(&self) -> String {
+        let mut text = format!(
+            "[records]\ntrain = [\"train.csv\"]\ntest = [\"test.csv\"]\n\n[time]\ncolumn = \"t\"\nunit = \"s\"\n\n\
+             [inputs.u]\ncolumn = \"u\"\nunit = \"{}\"\n\n[initial]\nstate = \"rest\"\n\n[uncertain]\n{}\n\n\
+             [windows]\nlength = {}\n",
+            self.unit, self.uncertain, self.window
+        );
+        for (name, unit, noise) in self.channels {
+            text += &format!(
+                "\n[channels.{name}]\ncolumn = \"{name}\"\nunit = \"{unit}\"\nnoise = {noise:e}\n"
+            );
+        }
+        text
+    }
+
+    /// Writes a record of a specification: what its channels show, for the input of this record.
+    fn record(&self, folder: &Path, hidden: &Hidden, again: bool) {
+        let (file, record) = match again {
+            false => ("train.csv", "train[0]"),
+            true => ("test.csv", "test[0]"),
+        };
+        let inputs: Vec<(String, String)> = (0..self.samples)
+            .map(|sample| {
+                let t = sample as f64 * self.sample;
+                (
+                    format!("{t:.6}"),
+                    format!("{:.12e}", (self.input)(t, again)),
+                )
+            })
+            .collect();
+        let lines: String = inputs.iter().map(|(t, u)| format!("{t},{u}\n")).collect();
+        std::fs::write(folder.join(file), format!("t,u\n{lines}")).expect("a file");
+        let place = |name: &str| folder.join(name).display().to_string();
+        program::accepted(&[
+            "simulate",
+            &place("truth.toml"),
+            "--record",
+            &place("dataset.toml"),
+            "--record-name",
+            record,
+            "--out",
+            &place("motion.csv"),
+        ]);
+        let motion = std::fs::read_to_string(folder.join("motion.csv")).expect("a motion");
+        let mut rows = motion
+            .lines()
+            .map(|line| line.split(',').collect::<Vec<&str>>());
+        let names = rows.next().expect("names");
+        let columns: Vec<usize> = (self.channels.iter())
+            .map(|(name, ..)| names.iter().position(|n| n == name).expect("a column"))
+            .collect();
+        let mut seen = vec![Vec::with_capacity(self.samples); columns.len()];
+        for row in rows {
+            for (seen, column) in seen.iter_mut().zip(&columns) {
+                seen.push(row[*column].parse::<f64>().expect("a number"));
+            }
+        }
+        let heading: String = self
+            .channels
+            .iter()
+            .map(|(name, ..)| format!(",{name}"))
+            .collect();
+        let mut text = format!("t,u{heading}\n");
+        for (sample, (t, u)) in inputs.iter().enumerate() {
+            text += &format!("{t},{u}");
+            for ((name, ..), column) in self.channels.iter().zip(&seen) {
+                let value = match hidden.by {
+                    By::Sensor(_, _, reading) if *name == hidden.on => reading(&column[..=sample]),
+                    _ => column[sample],
+                };
+                text += &format!(",{value:.15e}");
+            }
+            text.push('\n');
+        }
+        std::fs::write(folder.join(file), text).expect("a file");
+    }
+
+    /// An entry of the catalogue as a candidate.
+    fn candidate(&self, hidden: &Hidden, entry: usize, order: Option<u32>) -> Candidate {
+        let checked = model_spec::check(Source::new(self.name, self.specification));
+        let model = checked.unwrap_or_else(|found| panic!("{found}")).model;
+        let catalogue = effects(None).expect("the catalogue");
+        let mut named = catalogue
+            .iter()
+            .filter(|effect| effect.name == hidden.effect);
+        let effect = named.nth(entry).expect("an effect");
+        let one = std::slice::from_ref(effect);
+        let mut found = candidates(&model, one, &sites(&model), &BTreeMap::new()).into_iter();
+        let is =
+            |c: &Candidate| c.on == hidden.on && c.order.as_ref().map(|(_, order)| *order) == order;
+        found.find(is).expect("the effect has a place")
+    }
+
+    /// The specification of what was measured, and what is to be found: values by their names.
+    fn truth(&self, hidden: &Hidden) -> (String, Vec<(String, f64)>) {
+        match hidden.by {
+            By::Entry(entry, order, values) => {
+                let candidate = self.candidate(hidden, entry, order);
+                let written = candidate.written(self.specification, self.name, values, "hidden");
+                // Of what shapes an effect without scaling it records say less than of its size.
+                let sizes = candidate.parameters.iter().zip(values);
+                let sizes = sizes.filter(|(parameter, _)| parameter.shape.is_none());
+                let sizes = sizes.map(|(parameter, value)| (parameter.name.clone(), *value));
+                (written.expect("a specification"), sizes.collect())
+            }
+            By::Shift(value) => {
+                let set = Edit::SetParameter(SetParameter {
+                    name: hidden.on.to_owned(),
+                    value,
+                    source: "hidden".to_owned(),
+                });
+                let written = edit::apply(&Source::new(self.name, self.specification), &[set]);
+                let size = (hidden.on.to_owned(), value);
+                (written.expect("a specification"), vec![size])
+            }
+            By::Sensor(name, value, _) => (
+                self.specification.to_owned(),
+                vec![(name.to_owned(), value)],
+            ),
+        }
+    }
+
+    /// What `discover` answers to records of the machine with something hidden in it.
+    fn answer(&self, hidden: &Hidden, truth: &str) -> Value {
+        let folder = tempfile::tempdir().expect("a folder");
+        let place = |name: &str| folder.path().join(name);
+        std::fs::write(place("truth.toml"), truth).expect("a file");
+        std::fs::write(place("spec.toml"), self.specification).expect("a file");
+        std::fs::write(place("dataset.toml"), self.description()).expect("a file");
+        for again in [false, true] {
+            self.record(folder.path(), hidden, again);
+        }
+        let mut command = program::eomgen();
+        command.timeout(LIMIT).arg("discover");
+        let output = (command.args([place("spec.toml"), place("dataset.toml")]))
+            .arg("--out")
+            .arg(place("found"))
+            .output()
+            .expect("the program can be run");
+        let message = program::text(&output.stderr);
+        assert_eq!(
+            output.status.code(),
+            Some(0),
+            "{}: {message}",
+            hidden.effect
+        );
+        let text = std::fs::read_to_string(place("found/discovery.json")).expect("a document");
+        serde_json::from_str(&text).expect("JSON")
+    }
+
+    /// The hidden effect is named first, at its place, with its sign and size, and closes the gap.
+    fn shows(&self, hidden: &Hidden) {
+        let (truth, sizes) = self.truth(hidden);
+        let found = self.answer(hidden, &truth);
+        let shown = format!("{} on {}: {:#}", hidden.effect, hidden.on, found["effects"]);
+        println!("{shown}\n{}", found["closure"]);
+        assert_eq!(found["verdict"], "effects_found", "{shown}");
+        let first = &found["effects"][0];
+        assert_eq!(first["effect"], hidden.effect, "{shown}");
+        assert_eq!(first["on"], hidden.on, "{shown}");
+        if let By::Entry(_, Some(order), _) = hidden.by {
+            assert_eq!(first["order"]["order"], order, "{shown}");
+        }
+        let closure = found["closure"]["test"].as_f64();
+        assert!(
+            closure.is_some_and(|closure| closure >= 0.8),
+            "{closure:?}, {shown}"
+        );
+        for (name, value) in sizes {
+            let found = first["parameters"][&name]["value"].as_f64();
+            let found = found.unwrap_or_else(|| panic!("no {name}: {shown}"));
+            assert!(
+                (found - value).abs() <= 0.2 * value.abs(),
+                "{name} = {found} for {value}: {shown}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_may_act_on_a_carriage_is_found_on_it() {
+    for hidden in [
+        hidden("coulomb_friction", "x", &[3.0]),
+        hidden("viscous_friction", "x", &[6.0]),
+        hidden("stribeck_friction", "x", &[4.0, 0.05]),
+        hidden("asymmetric_friction", "x", &[-4.0]),
+        hidden("quadratic_drag", "x", &[15.0]),
+        hidden("force_offset", "x", &[-2.0]),
+        hidden("elastic_restraint", "x", &[30.0]),
+    ] {
+        CARRIAGE.shows(&hidden);
+    }
+}
+
+#[test]
+fn what_repeats_with_an_angle_is_found_on_a_rotor() {
+    ROTOR.shows(&hidden("gravity", "theta", &[0.04, -0.06]));
+    ROTOR.shows(&Hidden {
+        by: By::Entry(0, Some(3), &[0.03, 0.05]),
+        ..hidden("torque_ripple", "theta", &[])
+    });
+}
+
+#[test]
+fn what_may_be_wrong_with_a_flexible_body_is_found_in_it() {
+    for hidden in [
+        hidden("structural_damping", "beam", &[2e-3]),
+        hidden("tip_mass", "beam", &[0.02]),
+        hidden("stiffness_nonlinearity", "beam", &[2e4]),
+    ] {
+        BEAM.shows(&hidden);
+    }
+    BEAM_FOR_LONG.shows(&hidden("joint_compliance", "beam", &[60.0]));
+    BEAM_FOR_LONG.shows(&Hidden {
+        by: By::Entry(1, None, &[60.0]),
+        ..hidden("joint_compliance", "beam", &[])
+    });
+}
+
+#[test]
+fn what_may_be_wrong_with_teeth_is_found_between_them() {
+    GEAR.shows(&hidden("asymmetric_backlash", "x", &[1e-4]));
+    GEAR.shows(&Hidden {
+        by: By::Entry(0, Some(2), &[2e-4, -1e-4]),
+        ..hidden("transmission_error", "x", &[])
+    });
+    GEAR.shows(&Hidden {
+        by: By::Entry(0, Some(2), &[0.2, -0.15]),
+        ..hidden("stiffness_variation", "x", &[])
+    });
+}
+
+#[test]
+fn what_a_sensor_or_a_declared_parameter_is_off_by_is_found_there() {
+    let late = |column: &[f64]| column[column.len().saturating_sub(5)];
+    for (effect, by) in [
+        ("sensor_delay", By::Sensor("delay", 4.0 * BEAM.sample, late)),
+        (
+            "sensor_gain",
+            By::Sensor("gain", 1.1, |column| 1.1 * column[column.len() - 1]),
+        ),
+        (
+            "sensor_bias",
+            By::Sensor("bias", 2e-3, |column| column[column.len() - 1] + 2e-3),
+        ),
+    ] {
+        BEAM.shows(&Hidden {
+            effect,
+            on: "tip",
+            by,
+        });
+    }
+    CARRIAGE.shows(&Hidden {
+        effect: "parameter_shift",
+        on: "m",
+        by: By::Shift(12.0),
+    });
+}
+
+#[test]
+fn every_entry_of_the_catalogue_is_looked_for_here() {
+    let own = include_str!("effects_found.rs");
+    let mut seen = BTreeMap::new();
+    for effect in effects(None).expect("the catalogue") {
+        let entry: &mut usize = seen.entry(effect.name.clone()).or_default();
+        let (name, number) = (&effect.name, *entry);
+        assert!(own.contains(&format!("hidden(\"{name}\"")), "{name}");
+        assert!(
+            number == 0 || own.contains(&format!("By::Entry({number},")),
+            "{name}"
+        );
+        *entry += 1;
+    }
+}

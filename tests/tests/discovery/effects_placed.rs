@@ -1,0 +1,122 @@
+//! Every entry of the catalogue, placed on every shipped specification that has room for it, leaves a
+//! specification that is checked and derived.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use codegen::variant::Variant;
+use discover::candidates::{Candidate, candidates};
+use discover::catalogue::{Effect, SiteKind, effects};
+use discover::sites::sites;
+use eomgen_tests::models::shipped;
+use model_spec::source::Source;
+
+/// The candidates of an effect in a model, of each place and angle the first order alone.
+fn placed(model: &model_spec::model::Model, effect: &Effect) -> Vec<Candidate> {
+    let one = std::slice::from_ref(effect);
+    let mut found = candidates(model, one, &sites(model), &BTreeMap::new());
+    let key = |c: &Candidate| {
+        (
+            c.on.clone(),
+            c.order.as_ref().map(|(angle, _)| angle.clone()),
+        )
+    };
+    found.dedup_by(|a, b| key(a) == key(b));
+    found
+}
+
+#[test]
+fn every_effect_leaves_every_shipped_specification_sound() {
+    let effects = effects(None).expect("the catalogue");
+    let mut homes: BTreeMap<usize, BTreeSet<String>> = BTreeMap::new();
+    for path in shipped() {
+        let name = path
+            .file_stem()
+            .expect("a name")
+            .to_string_lossy()
+            .into_owned();
+        let text = std::fs::read_to_string(&path).expect("a specification");
+        let model = model_spec::load(&path).expect("a model").model;
+        for (place, effect) in effects.iter().enumerate() {
+            for candidate in placed(&model, effect) {
+                let label = format!("{} in {name}", candidate.label());
+                let values = vec![1.5; candidate.parameters.len()];
+                let written = candidate.written(&text, &name, &values, "a test");
+                let written = written.unwrap_or_else(|error| panic!("{label}: {error}"));
+                let checked = model_spec::check(Source::new(name.as_str(), written.as_str()));
+                let checked = checked.unwrap_or_else(|found| panic!("{label}: {found}"));
+                let orders = vec![1; checked.model.fields.len()];
+                let derived = Variant::derive(&checked.model, &orders);
+                assert!(derived.is_ok(), "{label}: {:?}", derived.err());
+                homes.entry(place).or_default().insert(name.clone());
+            }
+        }
+    }
+    for (place, effect) in effects.iter().enumerate() {
+        let homes = homes.get(&place).map_or(0, BTreeSet::len);
+        assert!(
+            homes > 0,
+            "`{}` ({}) has no place anywhere",
+            effect.name,
+            effect.says
+        );
+    }
+    // An axis is wherever something moves.
+    let axis = effects
+        .iter()
+        .position(|effect| effect.site == SiteKind::Axis);
+    let of_axis = axis
+        .and_then(|axis| homes.get(&axis))
+        .map_or(0, BTreeSet::len);
+    assert_eq!(of_axis, shipped().len(), "{homes:?}");
+}
+
+/// A user's effect on springs, of which the catalogue has none.
+const ON_SPRINGS: &str = r#"
+[[effect]]
+name = "hardening"
+site = "spring"
+says = "a spring that hardens"
+experiment = "large deflections"
+parameters = [{ name = "k_h", unit = "N/m^3", sign = "+", doc = "hardening" }]
+edits = [{ add = "potential", name = "hardening", value = "1/4*{k_h}*{p}^4" }]
+"#;
+
+const TWO_CARRIAGES: &str = r#"
+[model]
+name = "two_carriages"
+
+[parameters]
+m = { value = 1.5, unit = "kg" }
+k = { value = 400, unit = "N/m" }
+k_4 = { value = 400, unit = "N/m^3" }
+
+[coordinates]
+p = { unit = "m" }
+q = { unit = "m" }
+
+[kinetic]
+both = "1/2*m*(dot(p)^2 + dot(q)^2)"
+
+[potential]
+spring = "1/2*k*(p - q)^2"
+stop = "1/4*k_4*p^4"
+"#;
+
+#[test]
+fn springs_have_room_for_a_users_effect() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("effects.toml");
+    std::fs::write(&path, ON_SPRINGS).expect("a file");
+    let effects = effects(Some(&path)).unwrap_or_else(|found| panic!("{found}"));
+    let own = effects.last().expect("an effect");
+    assert!(own.is_own);
+    let checked = model_spec::check(Source::new("two_carriages.toml", TWO_CARRIAGES));
+    let model = checked.expect("a specification").model;
+    let found = placed(&model, own);
+    let places: Vec<&str> = found
+        .iter()
+        .map(|candidate| candidate.on.as_str())
+        .collect();
+    assert_eq!(places, ["spring"], "a cubic force is no linear spring");
+    assert_eq!(found[0].term, "1/4*k_h*(p - q)^4");
+}
