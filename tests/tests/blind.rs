@@ -91,7 +91,8 @@ fn label(group: Group, effects: &[&str]) -> Label {
         })
     };
     let label = json!({
-        "case": 1, "group": group, "machine": "stage", "declared": [["M", 1.01]],
+        "case": 1, "group": group, "machine": "stage", "full_priors": false,
+        "declared": [["M", 1.01]],
         "hidden": effects.iter().map(truth).collect::<Vec<Value>>(),
         "sensors": {"gain": [0.0], "bias": [0.0], "delay": [0.0]},
     });
@@ -262,6 +263,92 @@ fn figures_add_up() {
     );
     assert!((score.seconds.0 - 7.5).abs() < 1e-12);
     assert!(score::table(&score).contains("false alarms"));
+}
+
+#[test]
+fn answers_with_nothing_false_and_the_sizes_of_classes_are_counted() {
+    use Group::{Nothing, Outside, Single};
+    let (coulomb, offset) = ("coulomb_friction", "force_offset");
+    let judged = |group, hidden: &[&str], effects: &[(&str, f64, Option<&str>)]| {
+        score::judge(&label(group, hidden), &answer("effects_found", effects))
+    };
+    let mut nameless = answer("effects_found", &[("empirical", 1.0, None)]);
+    let discovery = nameless.discovery.as_mut().expect("an answer");
+    discovery["effects"][0]["status"] = json!("empirical");
+    let mut late = answer("effects_found", &[(coulomb, 2.0, None)]);
+    late.ending = Ending::Timeout;
+    for (judged, is_true, classes) in [
+        (
+            judged(Single, &[coulomb], &[(coulomb, 2.0, None)]),
+            true,
+            vec![],
+        ),
+        (
+            judged(Single, &[coulomb], &[(coulomb, 2.0, Some(offset))]),
+            true,
+            vec![2],
+        ),
+        (judged(Single, &[coulomb], &[]), true, vec![]),
+        (judged(Nothing, &[], &[]), true, vec![]),
+        // Another effect, the other sign, one too many, a class that does not hold it.
+        (
+            judged(Single, &[coulomb], &[(offset, 2.0, None)]),
+            false,
+            vec![],
+        ),
+        (
+            judged(Single, &[coulomb], &[(coulomb, -2.0, None)]),
+            false,
+            vec![],
+        ),
+        (
+            judged(
+                Single,
+                &[coulomb],
+                &[(coulomb, 2.0, None), (offset, 2.0, None)],
+            ),
+            false,
+            vec![],
+        ),
+        (
+            judged(Single, &[coulomb], &[(offset, 2.0, Some("gravity"))]),
+            false,
+            vec![2],
+        ),
+        (judged(Nothing, &[], &[(offset, 1.0, None)]), false, vec![]),
+        (
+            score::judge(&label(Outside, &["worn_friction"]), &nameless),
+            true,
+            vec![],
+        ),
+        (
+            score::judge(&label(Single, &[coulomb]), &nameless),
+            false,
+            vec![],
+        ),
+        (
+            score::judge(&label(Single, &[coulomb]), &late),
+            false,
+            vec![],
+        ),
+    ] {
+        assert_eq!(judged.says_nothing_false(), is_true, "{judged:#?}");
+        assert_eq!(judged.classes, classes, "{judged:#?}");
+    }
+}
+
+#[test]
+fn a_sensor_with_a_fault_is_judged_with_what_every_sensor_is_off_by() {
+    let truth = json!({
+        "hidden": {"effect": "sensor_gain", "on": "q", "order": 0.0, "sign": 1.0, "phase": 0.0, "amount": 0.05},
+        "effect": "sensor_gain", "parameters": [1.05], "floors": 5.0, "alike": [],
+    });
+    let mut faulty = label(Group::Single, &[]);
+    faulty.hidden = serde_json::from_value(json!([truth])).expect("a truth");
+    faulty.sensors.gain = vec![0.01];
+    // 90 % intervals of 0.1 hold 1.06 up to 1.2245, and 1.05 up to 1.2145 only.
+    let found = answer("effects_found", &[("sensor_gain", 1.22, None)]);
+    assert_eq!(score::judge(&faulty, &found).intervals, (1, 1));
 }
 
 #[test]

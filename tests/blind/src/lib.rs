@@ -8,6 +8,7 @@
 //! records   inputs, sensors, and the files that the program is given; labels apart
 //! run       the program on a case, as a user runs it, with a time limit
 //! score     results against labels
+//! history   the figures of runs, kept over time
 //! ```
 //!
 //! Nothing here is shared with the simulator, the derivation or the catalogue: the equations
@@ -16,6 +17,7 @@
 
 pub mod friction;
 pub mod hidden;
+pub mod history;
 pub mod inputs;
 pub mod integrate;
 pub mod machines;

@@ -8,8 +8,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use clap::Parser;
+use eomgen_blind::history::{self, Run};
 use eomgen_blind::plan::{Case, Group, plan};
-use eomgen_blind::{records, run, score};
+use eomgen_blind::score::{self, Score};
+use eomgen_blind::{records, run};
+
+/// The longest a case may take unless something else is asked for, s.
+const LIMIT: f64 = 240.0;
 
 /// Hides effects in records, lets `eomgen discover` look for them, and scores it.
 #[derive(Parser)]
@@ -28,8 +33,11 @@ struct Options {
     #[arg(long, value_parser = group)]
     only: Option<Group>,
     /// The longest a case may take on its core, s; a record may take half of that on two
-    #[arg(long, default_value_t = 240.0)]
+    #[arg(long, default_value_t = LIMIT)]
     limit: f64,
+    /// Appends the figures to tests/blind/history.csv
+    #[arg(long)]
+    keep: bool,
 }
 
 fn range(text: &str) -> Result<Range<usize>, String> {
@@ -96,7 +104,52 @@ fn suite(options: &Options) -> Result<(), String> {
     print!("{}", score::table(&score));
     let document = serde_json::to_string_pretty(&score).map_err(|error| error.to_string())?;
     let path = options.out.join("score.json");
-    records::write_whole(&path, &(document + "\n")).map_err(|error| error.to_string())
+    records::write_whole(&path, &(document + "\n")).map_err(|error| error.to_string())?;
+    match options.keep {
+        true => keep(options, &score),
+        false => Ok(()),
+    }
+}
+
+/// Appends the figures to the history that is kept with the source.
+fn keep(options: &Options, score: &Score) -> Result<(), String> {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/history.csv"));
+    let kept = match std::fs::read_to_string(path) {
+        Ok(kept) => kept,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => history::heading(),
+        Err(error) => return Err(format!("{}: {error}", path.display())),
+    };
+    let run = Run {
+        date: git(&["log", "-1", "--format=%cs"]),
+        commit: git(&["describe", "--always", "--dirty=+"]),
+        command: command(options),
+    };
+    let kept = history::with(&kept, &run, score)?;
+    records::write_whole(path, &kept).map_err(|error| error.to_string())
+}
+
+/// What was asked for, as it is asked for again.
+fn command(options: &Options) -> String {
+    let mut command = format!("--seed {}", options.seed);
+    if let Some(cases) = &options.cases {
+        command += &format!(" --cases {}..{}", cases.start, cases.end);
+    }
+    if let Some(group) = options.only {
+        command += &format!(" --only {}", format!("{group:?}").to_lowercase());
+    }
+    if options.limit != LIMIT {
+        command += &format!(" --limit {}", options.limit);
+    }
+    command
+}
+
+/// What git says, empty without it.
+fn git(arguments: &[&str]) -> String {
+    let output = std::process::Command::new("git").args(arguments).output();
+    output.map_or_else(
+        |_| String::new(),
+        |output| String::from_utf8_lossy(&output.stdout).trim().to_owned(),
+    )
 }
 
 /// The shipped specifications.

@@ -9,7 +9,7 @@ use crate::hidden::{Hidden, Sensors};
 use crate::inputs::{Drive, drive};
 use crate::integrate::Stepper;
 use crate::machines::{Machine, Setup};
-use crate::plan::{Case, Group};
+use crate::plan::{Case, Group, Nuisances};
 use crate::random::Draw;
 use crate::size;
 
@@ -24,6 +24,8 @@ pub struct Label {
     pub machine: crate::machines::Kind,
     /// What is hidden.
     pub hidden: Vec<Truth>,
+    /// Whether parameters and sensors are off as their priors say, all of them.
+    pub full_priors: bool,
     /// True values of the declared parameters, SI.
     pub declared: Vec<(String, f64)>,
     /// True deviations of the sensors without what is hidden.
@@ -126,6 +128,7 @@ pub fn make(case: &Case, seed: u64, specifications: &Path, out: &Path) -> std::i
         group: case.group,
         machine: case.machine,
         hidden: truths,
+        full_priors: case.nuisances == Nuisances::FULL,
         declared,
         sensors: sensors.clone(),
     };

@@ -91,7 +91,7 @@ fn alike(effect: Effect, on: &str) -> Vec<(String, String)> {
     owned.collect()
 }
 
-/// Every effect of the catalogue alone, three times.
+/// Every effect of the catalogue alone, three times; every other one with nuisances at full priors.
 pub fn singles(draw: &mut Draw) -> Vec<Case> {
     use Effect::{
         AsymmetricBacklash, AsymmetricFriction, CoulombFriction, ElasticRestraint, ForceOffset,
@@ -141,7 +141,11 @@ pub fn singles(draw: &mut Draw) -> Vec<Case> {
             if on == "F_v" {
                 hidden.hidden.sign = -1.0;
             }
-            cases.push(case(Group::Single, machine, Manner::Usual, vec![hidden]));
+            let mut made = case(Group::Single, machine, Manner::Usual, vec![hidden]);
+            if cases.len() % 2 == 1 {
+                made.nuisances = Nuisances::FULL;
+            }
+            cases.push(made);
         }
     }
     cases
@@ -163,12 +167,7 @@ pub fn nothings() -> Vec<Case> {
         },
         Nuisances { bias: 1.0, ..none },
         Nuisances { delay: 1.0, ..none },
-        Nuisances {
-            declared: 1.0,
-            bias: 1.0,
-            gain: 1.0,
-            delay: 1.0,
-        },
+        Nuisances::FULL,
     ];
     let mut cases = Vec::new();
     for machine in [Kind::Arm, Kind::Stage, Kind::Pendulum] {

@@ -1,5 +1,6 @@
-//! Which cases a seed makes: 60 with one effect, 30 with nothing hidden, 15 with two and 15
-//! with something outside the catalogue or that the record cannot tell. Their order says
+//! Which cases a seed makes: 60 with one effect, half of them with everything else off as the priors
+//! say, 30 with nothing hidden, 15 with two and 15 with something outside the catalogue or that the
+//! record cannot tell. Their order says
 //! nothing of what they are.
 
 mod lists;
@@ -66,6 +67,14 @@ pub struct Nuisances {
 }
 
 impl Nuisances {
+    /// Everything as the priors say.
+    pub const FULL: Self = Self {
+        declared: 1.0,
+        bias: 1.0,
+        gain: 1.0,
+        delay: 1.0,
+    };
+
     /// Draws them, within two standard deviations; returns the true declared parameters.
     pub fn draw(
         &self,
@@ -120,7 +129,7 @@ pub fn plan(seed: u64) -> Vec<Case> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Group, plan};
+    use super::{Group, Nuisances, plan};
 
     #[test]
     fn a_seed_makes_the_numbers_of_cases_that_are_promised() {
@@ -138,5 +147,13 @@ mod tests {
         );
         assert_eq!(cases, plan(7));
         assert_ne!(cases, plan(8));
+    }
+
+    #[test]
+    fn half_of_the_singles_have_nuisances_at_full_priors() {
+        let cases = plan(7);
+        let singles = cases.iter().filter(|case| case.group == Group::Single);
+        let full = singles.filter(|case| case.nuisances == Nuisances::FULL);
+        assert_eq!(full.count(), 30);
     }
 }

@@ -28,6 +28,8 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
             .map(|e| (word(e, "effect"), word(e, "on"), word(e, "status")))
             .collect(),
         judgement: judgement(label, outcome, effects),
+        full_priors: label.full_priors,
+        classes: effects.iter().filter_map(class_size).collect(),
         extra: 0,
         wrong_signs: 0,
         intervals: (0, 0),
@@ -41,11 +43,14 @@ pub fn judge(label: &Label, outcome: &Outcome) -> Judged {
             .iter()
             .find(|truth| is(found, truth) == Match::Named)
         {
-            Some(truth) => check(truth, usual_bias(label, truth), found, &mut judged),
+            Some(truth) => check(truth, usual(label, truth), found, &mut judged),
             None if label
                 .hidden
                 .iter()
                 .any(|truth| is(found, truth) == Match::Class) => {}
+            // A force without a name says nothing of what is hidden; it is false where that is in
+            // the catalogue.
+            None if label.group == Group::Outside && is_empirical(found) => {}
             None => judged.extra += 1,
         }
     }
@@ -70,10 +75,9 @@ fn judgement(label: &Label, outcome: &Outcome, effects: &[Value]) -> Judgement {
         Ending::Answered if outcome.discovery.is_none() => return Judgement::Failed,
         Ending::Answered => {}
     }
-    let empirical = |e: &Value| word(e, "status") == "empirical";
     match (label.group, effects) {
         (Group::Nothing, []) => return Judgement::Right,
-        (Group::Outside, found) if found.iter().all(empirical) => {
+        (Group::Outside, found) if found.iter().all(is_empirical) => {
             let verdict = outcome.discovery.as_ref().map(|d| word(d, "verdict"));
             return match verdict.as_deref() {
                 Some("no_significant_gap") => Judgement::Missed,
@@ -144,18 +148,32 @@ fn is(found: &Value, truth: &Truth) -> Match {
     }
 }
 
-/// What a biased sensor is off by beside the effect: the bias that every sensor has.
-fn usual_bias(label: &Label, truth: &Truth) -> f64 {
-    if truth.hidden.effect != Effect::SensorBias {
-        return 0.0;
-    }
+/// An expression without a name.
+fn is_empirical(found: &Value) -> bool {
+    word(found, "status") == "empirical"
+}
+
+/// How many effects a class holds; none where one is named.
+fn class_size(found: &Value) -> Option<usize> {
+    let others = found["equivalent"].as_array()?.len();
+    (word(found, "status") == "class").then_some(1 + others)
+}
+
+/// What a faulty sensor is off by beside the fault, as every sensor is.
+fn usual(label: &Label, truth: &Truth) -> f64 {
+    let of = match truth.hidden.effect {
+        Effect::SensorBias => &label.sensors.bias,
+        Effect::SensorGain => &label.sensors.gain,
+        Effect::SensorDelay => &label.sensors.delay,
+        _ => return 0.0,
+    };
     let channels = label.machine.setup().channels;
     let place = (channels.iter()).position(|channel| channel.name == truth.hidden.on);
-    place.map_or(0.0, |place| label.sensors.bias[place])
+    place.map_or(0.0, |place| of[place])
 }
 
 /// Signs and intervals of a right effect's parameters, which stand in the order of names.
-fn check(truth: &Truth, usual_bias: f64, found: &Value, judged: &mut Judged) {
+fn check(truth: &Truth, usual: f64, found: &Value, judged: &mut Judged) {
     let Some(parameters) = found["parameters"].as_object() else {
         return;
     };
@@ -163,7 +181,7 @@ fn check(truth: &Truth, usual_bias: f64, found: &Value, judged: &mut Judged) {
         return;
     }
     for (entry, expected) in parameters.values().zip(&truth.parameters) {
-        let expected = expected + usual_bias;
+        let expected = expected + usual;
         let (Some(value), Some(sd)) = (entry["value"].as_f64(), entry["sd"].as_f64()) else {
             continue;
         };

@@ -29,6 +29,10 @@ pub struct Judged {
     pub found: Vec<(String, String, String)>,
     /// In a word.
     pub judgement: Judgement,
+    /// Whether everything else is off as the priors say.
+    pub full_priors: bool,
+    /// How many effects each class that was found holds.
+    pub classes: Vec<usize>,
     /// How many accepted effects are none of those hidden.
     pub extra: usize,
     /// How many parameters of right effects have the other sign.
@@ -42,6 +46,15 @@ pub struct Judged {
     pub closure: Option<f64>,
     /// How long it took, s.
     pub seconds: f64,
+}
+
+impl Judged {
+    /// Whether there is an answer, and every effect in it is one that is hidden, or a class that holds
+    /// one, with the right sign; an answer that names nothing too.
+    pub fn says_nothing_false(&self) -> bool {
+        let is_answer = !matches!(self.judgement, Judgement::Timeout | Judgement::Failed);
+        is_answer && self.extra == 0 && self.wrong_signs == 0
+    }
 }
 
 /// A case in a word.
@@ -74,6 +87,12 @@ pub struct Score {
     pub named: (usize, usize),
     /// The same, where a class that holds the effect is enough.
     pub named_or_class: (usize, usize),
+    /// Those of the first with everything else off as the priors say.
+    pub named_at_full_priors: (usize, usize),
+    /// Answers with nothing false in them, and all cases.
+    pub nothing_false: (usize, usize),
+    /// Classes that were found: how many, how many effects they hold in all, and the largest.
+    pub class_sizes: (usize, usize, usize),
     /// Cases with nothing hidden in which an effect was reported, and all of them.
     pub false_alarms: (usize, usize),
     /// Parameters of right effects with the wrong sign.
@@ -144,11 +163,21 @@ pub fn summed(cases: Vec<Judged>) -> Score {
     };
     let singles: Vec<&Judged> = cases.iter().filter(large).collect();
     let pairs: Vec<&Judged> = of(Group::Pair).collect();
-    let are = |wanted: &[Judgement]| {
-        let right = singles
+    let are = |of: &[&Judged], wanted: &[Judgement]| {
+        let right = of
             .iter()
             .filter(|judged| wanted.contains(&judged.judgement));
-        (right.count(), singles.len())
+        (right.count(), of.len())
+    };
+    let full: Vec<&Judged> = singles
+        .iter()
+        .copied()
+        .filter(|judged| judged.full_priors)
+        .collect();
+    let sizes = || {
+        cases
+            .iter()
+            .flat_map(|judged| judged.classes.iter().copied())
     };
     let all = |part: fn(&Judged) -> (usize, usize)| {
         let add = |sum: (usize, usize), next: (usize, usize)| (sum.0 + next.0, sum.1 + next.1);
@@ -157,8 +186,17 @@ pub fn summed(cases: Vec<Judged>) -> Score {
     let ended = |is: Judgement| cases.iter().filter(|judged| judged.judgement == is).count();
     let nothing: Vec<&Judged> = of(Group::Nothing).collect();
     Score {
-        named: are(&[Judgement::Right]),
-        named_or_class: are(&[Judgement::Right, Judgement::Class]),
+        named: are(&singles, &[Judgement::Right]),
+        named_or_class: are(&singles, &[Judgement::Right, Judgement::Class]),
+        named_at_full_priors: are(&full, &[Judgement::Right]),
+        nothing_false: (
+            cases
+                .iter()
+                .filter(|judged| judged.says_nothing_false())
+                .count(),
+            cases.len(),
+        ),
+        class_sizes: (sizes().count(), sizes().sum(), sizes().max().unwrap_or(0)),
         false_alarms: (
             nothing
                 .iter()

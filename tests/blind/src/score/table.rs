@@ -32,6 +32,15 @@ pub fn table(score: &Score) -> String {
     for (name, figure) in [
         ("single effects of 3 floors named first", part(score.named)),
         ("... or in a class", part(score.named_or_class)),
+        (
+            "... named, with nuisances at full priors",
+            part(score.named_at_full_priors),
+        ),
+        ("answers with nothing false", part(score.nothing_false)),
+        (
+            "classes, their mean size, the largest",
+            sizes(score.class_sizes),
+        ),
         ("false alarms", part(score.false_alarms)),
         ("wrong signs", score.wrong_signs.to_string()),
         ("90 % intervals that hold", part(score.intervals)),
@@ -53,6 +62,14 @@ pub fn table(score: &Score) -> String {
         text += &format!("{name:<42}{figure}\n");
     }
     text
+}
+
+/// How many classes, the mean of their sizes, and the largest.
+fn sizes((count, sum, largest): (usize, usize, usize)) -> String {
+    match count {
+        0 => "0".to_owned(),
+        _ => format!("{count}, {:.1}, {largest}", sum as f64 / count as f64),
+    }
 }
 
 /// The row and column of a case in the table.

@@ -1,0 +1,115 @@
+//! The figures of runs as lines of a table that is kept with the source: how often discovery was
+//! right, by the day and the command. Measuring is not here.
+
+use crate::score::Score;
+
+/// Which run a line is of.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// The day of the commit.
+    pub date: String,
+    /// The commit.
+    pub commit: String,
+    /// What `blind` was asked for.
+    pub command: String,
+}
+
+/// The first line of the table.
+pub fn heading() -> String {
+    let columns = figures(&[]).map(|(name, _)| name);
+    format!("date,commit,command,{}\n", columns.join(","))
+}
+
+/// A table with the figures of one run more.
+///
+/// # Errors
+/// A table of other columns.
+pub fn with(table: &str, run: &Run, score: &Score) -> Result<String, String> {
+    let heading = heading();
+    if !table.starts_with(&heading) {
+        return Err(format!(
+            "the table has other columns; expected it to begin with {heading}"
+        ));
+    }
+    let values = figures(&[score]).map(|(_, value)| value);
+    let Run {
+        date,
+        commit,
+        command,
+    } = run;
+    let line = format!("{date},{commit},{command},{}\n", values.join(","));
+    Ok(table.to_owned() + &line)
+}
+
+/// The columns, and their values where there is a score.
+fn figures(score: &[&Score]) -> [(&'static str, String); 21] {
+    let part = |of: fn(&Score) -> (usize, usize)| {
+        let parts = score.iter().map(|score| of(score));
+        parts.map(|(a, b)| format!("{a}/{b}")).collect::<String>()
+    };
+    let number = |of: fn(&Score) -> f64| {
+        let numbers = score.iter().map(|score| of(score));
+        numbers.map(|n| format!("{n:.2}")).collect::<String>()
+    };
+    let count = |of: fn(&Score) -> usize| {
+        let counts = score.iter().map(|score| of(score));
+        counts.map(|n| n.to_string()).collect::<String>()
+    };
+    [
+        ("cases", count(|s| s.cases.len())),
+        ("nothing_false", part(|s| s.nothing_false)),
+        ("named", part(|s| s.named)),
+        ("named_or_class", part(|s| s.named_or_class)),
+        ("named_at_full_priors", part(|s| s.named_at_full_priors)),
+        ("false_alarms", part(|s| s.false_alarms)),
+        ("wrong_signs", count(|s| s.wrong_signs)),
+        ("intervals", part(|s| s.intervals)),
+        ("refitted", part(|s| s.refitted)),
+        ("closure", number(|s| s.single_closure.mean)),
+        (
+            "closure_reached",
+            part(|s| (s.single_closure.reached, s.single_closure.of)),
+        ),
+        ("closure_pairs", number(|s| s.pair_closure.mean)),
+        ("pairs", part(|s| s.pairs)),
+        ("untellable_as_class", part(|s| s.classes)),
+        ("outside_not_named", part(|s| s.outside)),
+        ("classes", count(|s| s.class_sizes.0)),
+        ("effects_in_classes", count(|s| s.class_sizes.1)),
+        ("largest_class", count(|s| s.class_sizes.2)),
+        ("too_long", count(|s| s.without_answer.0)),
+        ("no_answer", count(|s| s.without_answer.1)),
+        ("longest_s", number(|s| s.seconds.1)),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Run, heading, with};
+    use crate::score::summed;
+
+    /// The table that is kept.
+    const KEPT: &str = include_str!("../history.csv");
+
+    fn run() -> Run {
+        Run {
+            date: "2026-01-02".to_owned(),
+            commit: "abc".to_owned(),
+            command: "--seed 7 --cases 0..24".to_owned(),
+        }
+    }
+
+    #[test]
+    fn a_line_has_the_columns_of_the_heading() {
+        let table = with(&heading(), &run(), &summed(Vec::new())).expect("a table");
+        let counts: Vec<usize> = table.lines().map(|line| line.split(',').count()).collect();
+        assert_eq!(counts, [24, 24], "{table}");
+        assert!(table.contains("\n2026-01-02,abc,--seed 7 --cases 0..24,0,0/0,"));
+    }
+
+    #[test]
+    fn the_table_that_is_kept_can_be_added_to() {
+        assert!(with(KEPT, &run(), &summed(Vec::new())).is_ok());
+        assert!(with("date,other\n", &run(), &summed(Vec::new())).is_err());
+    }
+}
