@@ -11,7 +11,7 @@ use super::oracle::{Equations, Oracle, OracleError, Side, SwitchValue};
 use super::random::Random;
 use super::sizes;
 
-/// The most regimes that are visited; of more, this many are drawn.
+/// The most regimes that are visited; of more, this many of drawn states.
 const MAX_REGIMES: usize = 81;
 /// States drawn before a regime counts as out of reach.
 const ATTEMPTS: usize = 60;
@@ -51,6 +51,16 @@ pub struct Regime {
 }
 
 impl Regime {
+    /// The regime a state is in.
+    ///
+    /// # Errors
+    /// [`OracleError`] as from [`Oracle::switch_values`].
+    pub fn of(oracle: &Oracle, sample: &Sample) -> Result<Self, OracleError> {
+        let values = oracle.switch_values(sample.time, &sample.state, &sample.inputs)?;
+        let sides = values.iter().map(SwitchValue::side).collect();
+        Ok(Self { sides })
+    }
+
     /// Names and sides, as `x_sp+ x_pr0`; empty for a model without switches.
     pub fn label(&self, oracle: &Oracle) -> String {
         let parts: Vec<String> = oracle
@@ -115,8 +125,11 @@ impl<'o> Sampler<'o> {
         frequencies.fold(1.0, f64::max)
     }
 
-    /// Every combination of sides, or a drawn selection if there are very many.
-    pub fn regimes(&mut self) -> Vec<Regime> {
+    /// Every combination of sides; of very many, those that drawn states have.
+    ///
+    /// # Errors
+    /// [`OracleError`] as from [`Oracle::equations`].
+    pub fn regimes(&mut self) -> Result<Vec<Regime>, OracleError> {
         let switches = self.oracle.switches();
         let count = switches.iter().try_fold(1_usize, |count, switch| {
             count.checked_mul(switch.sides().len())
@@ -132,23 +145,17 @@ impl<'o> Sampler<'o> {
                 };
                 regimes = regimes.iter().flat_map(extended).collect();
             }
-            return regimes;
+            return Ok(regimes);
         }
         let mut regimes = Vec::new();
         for _ in 0..2 * MAX_REGIMES {
-            let draw = |switch: &super::oracle::Switch| {
-                self.random
-                    .pick(switch.sides())
-                    .copied()
-                    .unwrap_or(Side::Plus)
-            };
-            let sides = switches.iter().map(draw).collect();
-            let regime = Regime { sides };
+            let sample = self.draw();
+            let regime = Regime::of(self.oracle, &sample)?;
             if regimes.len() < MAX_REGIMES && !regimes.contains(&regime) {
                 regimes.push(regime);
             }
         }
-        regimes
+        Ok(regimes)
     }
 
     /// A random state, whatever its regime, in the model's domain or not.
@@ -256,8 +263,8 @@ impl<'o> Sampler<'o> {
             inputs,
         } = sample;
         let mut right = true;
+        let mut values = self.oracle.switch_values(*time, state, inputs)?;
         for (index, side) in regime.sides.iter().enumerate() {
-            let values = self.oracle.switch_values(*time, state, inputs)?;
             let Some(value) = values.get(index).filter(|value| value.side() != *side) else {
                 continue;
             };
@@ -273,6 +280,7 @@ impl<'o> Sampler<'o> {
                 && let Some(entry) = state.get_mut(entry)
             {
                 *entry += (target - value.quantity) / slope;
+                values = self.oracle.switch_values(*time, state, inputs)?;
             }
         }
         Ok(right)

@@ -15,6 +15,8 @@ use std::collections::HashMap;
 const STATES_PER_REGIME: usize = 200;
 /// The fewest states of a regime that say anything about it.
 const FEWEST: usize = 20;
+/// Draws without a state after which no more of a regime are looked for.
+const FRUITLESS: usize = 5;
 /// The seed of the states.
 const SEED: u64 = 0x0dd5_eed5;
 
@@ -72,8 +74,11 @@ pub fn check(
         examined: 0,
     };
     let mut sampler = Sampler::new(oracle, SEED)?;
-    for regime in sampler.regimes() {
-        findings.visit(&mut sampler, &regime, variant)?;
+    for regime in sampler.regimes()? {
+        findings.visit(&mut sampler, Some(&regime), variant)?;
+    }
+    if findings.examined == 0 && !oracle.switches().is_empty() {
+        findings.visit(&mut sampler, None, variant)?;
     }
     if findings.examined == 0 {
         let redrawn = sampler.redrawn();
@@ -123,25 +128,31 @@ fn names(oracle: &Oracle, variant: &dyn Variant) -> Check {
 }
 
 impl Findings<'_> {
-    /// All states of one regime.
+    /// All states of one regime, or of whatever regimes they happen to be in.
     fn visit(
         &mut self,
         sampler: &mut Sampler<'_>,
-        regime: &Regime,
+        regime: Option<&Regime>,
         variant: &mut dyn Variant,
     ) -> Result<(), OracleError> {
-        let label = regime.label(self.oracle);
+        let oracle = self.oracle;
+        let label = regime.map_or_else(|| "in any regime".into(), |r| r.label(oracle));
         let name = if label.is_empty() {
             "accelerations".to_owned()
         } else {
             format!("accelerations {label}")
         };
         let mut worst = Worst::default();
-        let mut examined = 0;
+        let (mut examined, mut fruitless) = (0, 0);
         let before = sampler.redrawn();
         for count in 1..=STATES_PER_REGIME {
-            let Some(drawn) = sampler.draw_in(regime)? else {
-                if examined == 0 {
+            let drawn = match regime {
+                Some(regime) => sampler.draw_in(regime)?,
+                None => sampler.draw_inside()?,
+            };
+            let Some(drawn) = drawn else {
+                fruitless += 1;
+                if examined == 0 || fruitless == FRUITLESS {
                     break;
                 }
                 continue;
@@ -149,8 +160,7 @@ impl Findings<'_> {
             let place = format!("state {count} of {label}");
             let place = place.trim_end_matches(" of ");
             examined += 1;
-            self.guards
-                .record(self.oracle, variant, &drawn, regime, &label)?;
+            self.guards.record(oracle, variant, &drawn)?;
             match self.compare(variant, &drawn, place)? {
                 Ok(deviation) => worst.include(Worst::of(deviation, place)),
                 Err(message) => worst.include(Worst::of(f64::INFINITY, message)),
@@ -282,7 +292,7 @@ fn scaled(mass: &DMatrix<f64>) -> DMatrix<f64> {
 /// equations, nothing needs to tell its sides.
 #[derive(Default)]
 struct Guards {
-    regimes: HashMap<Vec<bool>, (Regime, String)>,
+    regimes: HashMap<Vec<bool>, Regime>,
     worst: Worst,
 }
 
@@ -292,10 +302,9 @@ impl Guards {
         oracle: &Oracle,
         variant: &mut dyn Variant,
         drawn: &Drawn,
-        regime: &Regime,
-        label: &str,
     ) -> Result<(), OracleError> {
         let sample = &drawn.sample;
+        let regime = Regime::of(oracle, sample)?;
         let values = match variant.guards(sample.time, &sample.state, &sample.inputs) {
             Ok(values) => values,
             Err(message) => {
@@ -304,16 +313,14 @@ impl Guards {
             }
         };
         let signs = values.iter().map(|value| *value > 0.0).collect();
-        let (known, its_label) = self
-            .regimes
-            .entry(signs)
-            .or_insert_with(|| (regime.clone(), label.to_owned()));
-        self.worst
-            .include(if known == regime || is_same(oracle, drawn, known)? {
-                Worst::of(0.0, "every pattern of signs belongs to one regime")
-            } else {
-                Worst::of(1.0, format!("the same signs in {its_label} and {label}"))
-            });
+        let known = self.regimes.entry(signs).or_insert_with(|| regime.clone());
+        let told = *known == regime || is_same(oracle, drawn, known)?;
+        self.worst.include(if told {
+            Worst::of(0.0, "every pattern of signs belongs to one regime")
+        } else {
+            let (known, label) = (known.label(oracle), regime.label(oracle));
+            Worst::of(1.0, format!("the same signs in {known} and {label}"))
+        });
         Ok(())
     }
 
