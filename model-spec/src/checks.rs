@@ -1,7 +1,7 @@
 //! Checks of a model as a whole that are neither about names nor about units: things that
 //! are never used, and channels that do not exist.
 
-use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
+use crate::diagnostic::{Declared, Diagnostic, Diagnostics, quoted};
 use crate::model::{CoefficientKind, Expr, ExprKind, Model, ParameterValue};
 use crate::suggest::did_you_mean;
 
@@ -53,17 +53,17 @@ pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
     let mut warn = |kind, name: &str, span| warnings.push(Diagnostic::unused(kind, name, span));
     for ((name, span), used) in parameters.zip(used.parameters) {
         if !used {
-            warn("parameter", name, span);
+            warn(Declared::Parameter, name, span);
         }
     }
     for ((name, span), used) in inputs.zip(used.inputs) {
         if !used {
-            warn("input", name, span);
+            warn(Declared::Input, name, span);
         }
     }
     for ((name, span), used) in definitions.zip(used.definitions) {
         if !used {
-            warn("definition", name, span);
+            warn(Declared::Definition, name, span);
         }
     }
 }

@@ -43,9 +43,30 @@ pub struct Diagnostic {
     pub secondary: Vec<Label>,
     /// What would be right, if known.
     pub help: Option<String>,
-    /// For something declared that nothing refers to: what kind of thing, and its name.
-    /// People read all of a kind in one line.
-    pub unused: Option<(&'static str, String)>,
+    /// For the name of something declared that nothing refers to: what it is. People read all
+    /// of a kind in one line.
+    pub unused: Option<Declared>,
+}
+
+/// What can be declared and not used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Declared {
+    /// A parameter.
+    Parameter,
+    /// An input.
+    Input,
+    /// A definition.
+    Definition,
+}
+
+impl Declared {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Parameter => "parameter",
+            Self::Input => "input",
+            Self::Definition => "definition",
+        }
+    }
 }
 
 impl Diagnostic {
@@ -62,10 +83,10 @@ impl Diagnostic {
     }
 
     /// A warning of something declared that nothing refers to.
-    pub fn unused(kind: &'static str, name: &str, span: Span) -> Self {
+    pub fn unused(kind: Declared, name: &str, span: Span) -> Self {
         Self {
-            unused: Some((kind, name.to_owned())),
-            ..Self::warning(format!("the {kind} `{name}` is not used"))
+            unused: Some(kind),
+            ..Self::warning(format!("the {} `{name}` is not used", kind.name()))
         }
         .at(span, "nothing refers to it")
         .help("remove it, or use it where it was meant")
@@ -234,40 +255,34 @@ impl Diagnostics {
 
     /// For each kind of thing of which any is not used, their names and places.
     fn unused_lines(&self) -> Vec<String> {
-        let mut kinds: Vec<(&str, Vec<&str>, Vec<String>)> = Vec::new();
-        for diagnostic in &self.list {
-            let Some((kind, name)) = &diagnostic.unused else {
-                continue;
-            };
-            let record = self.record(diagnostic);
-            let place = record.line.zip(record.column);
-            let place = place.map_or_else(String::new, |(line, column)| format!("{line}:{column}"));
-            match kinds.iter_mut().find(|(known, ..)| known == kind) {
-                Some((_, names, places)) => {
-                    names.push(name);
-                    places.push(place);
-                }
-                None => kinds.push((kind, vec![name], vec![place])),
-            }
-        }
-        let kinds = kinds.iter();
-        kinds
-            .map(|(kind, names, places)| self.unused_line(kind, names, places))
-            .collect()
+        let kinds = [Declared::Parameter, Declared::Input, Declared::Definition];
+        let kinds = kinds.into_iter();
+        kinds.filter_map(|kind| self.unused_line(kind)).collect()
     }
 
-    fn unused_line(&self, kind: &str, names: &[&str], places: &[String]) -> String {
-        let (ending, verb) = if names.len() == 1 {
-            ("", "is")
-        } else {
-            ("s", "are")
+    fn unused_line(&self, kind: Declared) -> Option<String> {
+        let unused = self.list.iter().filter(|found| found.unused == Some(kind));
+        let spans: Vec<Span> = unused
+            .filter_map(|found| found.primary.as_ref().map(|label| label.span))
+            .collect();
+        let (ending, verb) = match spans.len() {
+            0 => return None,
+            1 => ("", "is"),
+            _ => ("s", "are"),
         };
-        format!(
-            "the {kind}{ending} `{}` {verb} not used ({}:{})",
+        let name = |span: &Span| self.source.text[self.inside(*span)].trim_matches(['"', '\'']);
+        let names: Vec<&str> = spans.iter().map(name).collect();
+        let places = spans.iter().map(|span| self.source.place(span.start));
+        let places: Vec<String> = places
+            .map(|place| format!("{}:{}", place.line, place.column))
+            .collect();
+        Some(format!(
+            "the {}{ending} `{}` {verb} not used ({}:{})",
+            kind.name(),
             names.join("`, `"),
             self.source.path,
             places.join(", ")
-        )
+        ))
     }
 
     /// All findings for programs.
