@@ -20,6 +20,13 @@ use super::watched::{Local, ROUNDING, Watched};
 /// of a difference to their logarithm.
 const DECAYED: f64 = 0.25;
 
+/// What rounding may make of a rate that vanishes where a motion is let go, in roundings of all
+/// that it is made of: the place of letting go is known to as many.
+const OF_A_DEPARTURE: f64 = 16.0;
+
+/// A function has left its limit when it is this many times farther than rounding can bring it.
+const GONE: f64 = 4.0;
+
 /// A motion in one regime. Its memory is used again for the next one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Flow {
@@ -48,6 +55,8 @@ pub(super) struct Flow {
     powers_of: f64,
     power_counts: [usize; 2],
     watched: Vec<Watched>,
+    /// Whether a function is leaving a limit that held it.
+    departs: bool,
     clusters: Vec<ClusterFlow>,
     /// The state to be.
     sum: Vec<Lane>,
@@ -93,6 +102,7 @@ impl Flow {
         }
         self.watched
             .resize_with(regime.functionals.len(), Watched::default);
+        self.departs = false;
         self.power_counts = [0; 2];
         self.powers_of = f64::NAN;
         for (watched, functional) in self.watched.iter_mut().zip(&regime.functionals) {
@@ -258,6 +268,55 @@ impl Flow {
         ROUNDING * regime.functionals[place].rate_size(&self.given)
     }
 
+    /// Begins the departure of a function that stands at a limit which held it, so that its
+    /// value and its rate there are rounding, whatever their signs. Nothing is to be done if it
+    /// leaves for certain.
+    pub fn depart<S: Simd>(&mut self, simd: S, regime: &Regime, place: usize) {
+        let Some(rung) = regime.ladder.rungs.last() else {
+            return;
+        };
+        self.sum_up(simd, regime, place);
+        let [value, rate] = self.local(regime, place, rung, |local| {
+            [local.derivatives[0], local.derivatives[1]]
+        });
+        let limits = regime.functionals[place].limits;
+        let (above, below) = ((value - limits.low).abs(), (limits.high - value).abs());
+        let inward = if above <= below { rate } else { -rate };
+        let noise = OF_A_DEPARTURE * self.start_rate_noise(regime, place);
+        if inward <= noise {
+            let distance = above.min(below);
+            self.watched[place].slack = Some([2.0 * distance, 2.0 * rate.abs() + noise]);
+            self.departs = true;
+        }
+    }
+
+    /// Whether a function is still leaving a limit that held it.
+    pub fn is_departing(&self, place: usize) -> bool {
+        self.watched[place].slack.is_some()
+    }
+
+    /// Ends the departures of functions that are farther from their limits by now than
+    /// rounding at the start can have brought them.
+    #[inline(always)]
+    pub fn end_departures<S: Simd>(&mut self, simd: S, regime: &Regime) {
+        if !self.departs {
+            return;
+        }
+        for place in 0..self.watched.len() {
+            let Some([value, rate]) = self.watched[place].slack else {
+                continue;
+            };
+            self.sum_up(simd, regime, place);
+            let limits = regime.functionals[place].limits;
+            let now = self.watched[place].value;
+            let distance = (now - limits.low).abs().min((limits.high - now).abs());
+            if distance > GONE * (value + rate * self.tau) {
+                self.watched[place].slack = None;
+            }
+        }
+        self.departs = self.watched.iter().any(|watched| watched.slack.is_some());
+    }
+
     /// Whether a function is known to keep its limits until a time after the start, s.
     pub fn is_safe(&self, place: usize, until: f64) -> bool {
         self.watched[place].safe_until >= until
@@ -290,15 +349,21 @@ impl Flow {
         make: impl Fn(&Local) -> T,
     ) -> T {
         let local = self.watched[place].local(rung);
-        if self.clusters.is_empty() {
+        if self.clusters.is_empty() && !self.departs {
             make(&local)
         } else {
-            make(&self.with_clusters(local, regime, place, rung))
+            make(&self.completed(local, regime, place, rung))
         }
     }
 
+    /// With the clusters' parts, and what a departure makes uncertain.
     #[cold]
-    fn with_clusters(&self, mut local: Local, regime: &Regime, place: usize, rung: &Rung) -> Local {
+    fn completed(&self, mut local: Local, regime: &Regime, place: usize, rung: &Rung) -> Local {
+        if let Some([value, rate]) = self.watched[place].slack {
+            local.noise += value + rate * self.tau;
+            local.rate_noise += rate;
+            local.drift_noise += rate;
+        }
         let phases = &regime.system.phases;
         let span = (self.tau, rung.length);
         let powers = &regime.functionals[place].cluster_powers;

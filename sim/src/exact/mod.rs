@@ -10,7 +10,8 @@
 //! and `kernels` (numbers side by side), `forced` (forced polynomials), `flow`, `watched` and
 //! `cluster_flow` (the motion in a regime), `bounds` and `search` (the next switch, which
 //! cannot be missed), `clock` (with `error_free`), `entered` and `beyond` (which regimes there are, and where limits lead),
-//! `switching`, [`propagator`] (from switch to switch),
+//! `switching`, `departure` (from a surface that held the motion), [`propagator`] (from switch to
+//! switch),
 //! `follow` (to a time, with samples), `simulate`; for neighbouring motions `saltation`,
 //! `tangent`, `neighbours`, [`lyapunov`] and [`sensitivity`].
 //!
@@ -22,6 +23,7 @@ mod bounds;
 mod clock;
 mod cluster_flow;
 mod decomposition;
+mod departure;
 mod entered;
 pub mod error;
 mod error_free;

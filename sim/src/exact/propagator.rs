@@ -61,6 +61,8 @@ pub struct Motion {
     /// Switches so far and the time at which the present average began.
     switches: u64,
     averaged_from: f64,
+    /// The groups whose functions are leaving a surface that held the motion.
+    pub(super) departing: Vec<usize>,
     /// What was done so far.
     pub(super) effort: Effort,
     /// The state at the start of the present segment.
@@ -197,6 +199,7 @@ impl Propagator {
             regime,
             at_once: 0,
             jumped: None,
+            departing: Vec::new(),
             switches: 0,
             averaged_from: t,
             effort: Effort::default(),
@@ -350,6 +353,7 @@ impl Propagator {
             },
         });
         motion.regime = after;
+        self.let_go(motion, before);
         if leapt {
             // A jump may have led over more than one limit.
             motion.jumped = Some(None);
@@ -384,6 +388,10 @@ fn go_on<S: Simd>(
     rung: &mut usize,
 ) -> (Found, bool) {
     flow.start(simd, regime, &motion.state, inputs, &motion.phases);
+    // A group's function stands at the group's place among the functions.
+    for group in &motion.departing {
+        flow.depart(simd, regime, *group);
+    }
     if motion.at_once > AT_ONCE {
         // Rounding alone decides between surfaces: the motion itself must.
         if let Some(shortest) = regime.ladder.rungs.last() {
@@ -399,6 +407,7 @@ fn go_on<S: Simd>(
         Some(found) => found,
         None => search(simd, flow, regime, length, rung, &mut motion.effort),
     };
+    motion.departing.retain(|group| flow.is_departing(*group));
     if found == Found::Nothing {
         flow.go_to(simd, regime, length);
     }

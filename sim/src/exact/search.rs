@@ -82,6 +82,7 @@ pub(super) fn search<S: Simd>(
             }
         };
         *first = place;
+        flow.end_departures(simd, regime);
         match outcome {
             Outcome::Limit(found) => return found,
             Outcome::End => return Found::Nothing,

@@ -41,6 +41,9 @@ pub(super) struct Watched {
     /// Their magnitudes in the orders 0, 1, 4 and 2, and of which measurement.
     sizes_before: Vec<Lane>,
     measurement: u64,
+    /// What value and rate at the start may be wrong by, as long as the function is leaving a
+    /// limit that held it.
+    pub slack: Option<[f64; 2]>,
 }
 
 /// Value and derivatives of a function where a flow stands, with bounds.
@@ -83,6 +86,7 @@ impl Watched {
         self.sizes_before.resize(sums, Lane::ZERO);
         self.safe_until = f64::NEG_INFINITY;
         self.summed_up_at = f64::NAN;
+        self.slack = None;
         (self.start, self.start_size) = functional.at(given);
         let polynomial = &functional.polynomial;
         self.rate_size = polynomial.rate_size(causes);

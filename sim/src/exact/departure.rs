@@ -1,0 +1,40 @@
+//! How a motion is let go by a surface that held it, as a body breaks away from dry friction.
+//!
+//! There the surface's function stands at its threshold, and its rate is zero: the force has
+//! just reached what friction can bear, and what leads off is the second derivative. Value and
+//! rate are rounding. Taken at their signs they would lead back onto the surface, off it again,
+//! and so on. So the state is put onto the surface, and until the function is farther away than
+//! rounding can have brought it, `flow` takes what it does within that for none.
+
+use super::groups::Place;
+use super::propagator::{Motion, Propagator};
+
+impl Propagator {
+    /// After a change from the regime `before`: the motion stands on every surface that holds it
+    /// from here on, or did until here, and departs from those that did.
+    pub(super) fn let_go(&self, motion: &mut Motion, before: usize) {
+        let (before, after) = (&self.regimes[before], &self.regimes[motion.regime]);
+        for (group, pair) in before.places.iter().zip(&after.places).enumerate() {
+            if pair.0 == pair.1 {
+                continue;
+            }
+            motion.departing.retain(|departing| *departing != group);
+            let (rank, departs) = match pair {
+                (_, Place::On(rank)) => (*rank, false),
+                (Place::On(rank), _) => (*rank, true),
+                _ => continue,
+            };
+            if departs {
+                motion.departing.push(group);
+            }
+            let function = &after.functions[group];
+            let threshold = self.groups[group].threshold(&after.regime.system, rank);
+            let row = function.state.as_slice();
+            let value: f64 = row.iter().zip(&motion.state).map(|(a, y)| a * y).sum();
+            let excess = (value - threshold) / function.state.norm_squared();
+            for (state, factor) in motion.state.iter_mut().zip(row) {
+                *state -= factor * excess;
+            }
+        }
+    }
+}
