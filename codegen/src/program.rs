@@ -439,6 +439,14 @@ impl Program {
             .collect()
     }
 
+    /// Whether the mass matrix may lose its definiteness as the state moves: where it does, a
+    /// pivot that is computed per call makes the accelerations NaN.
+    pub fn may_lose_definiteness(&self) -> bool {
+        let is_pivot = |op: &Op| matches!(op, Op::PivotReciprocal(_) | Op::Cholesky(_));
+        let accelerations = self.per_call(&self.accelerations.all());
+        accelerations.iter().any(|id| is_pivot(&self.value(*id).op))
+    }
+
     /// The values a stage computes per call: what `roots` need and is not prepared.
     pub fn per_call(&self, roots: &[ValueId]) -> Vec<ValueId> {
         self.reachable(roots)

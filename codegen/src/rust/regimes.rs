@@ -62,8 +62,9 @@ impl File<'_> {
             &format!(
                 "/// Rates of the state within a regime, written to `rates`: those of [`rates_into`] where\n\
                  /// [`regime`] is `REGIME`, for half-widths that are not negative. Beyond the regime they go\n\
-                 /// on as they are within, and on its surfaces they are those of its side.\n///\n/// {ORDER}\n\
-                 #[allow(unused_variables)]\n"
+                 /// on as they are within, and on its surfaces they are those of its side.\n///\n/// {ORDER}\n{}\
+                 #[allow(unused_variables)]\n",
+                self.where_not_definite()
             ),
             &Signature {
                 constant: "const REGIME: u32, ",

@@ -34,6 +34,11 @@ impl<'a> Signature<'a> {
     }
 }
 
+/// Of a mass matrix that varies with the state.
+const NOT_DEFINITE: &str = "///\n\
+    /// The mass matrix varies with the state. Where it is not positive definite, rates of velocities \
+    are\n/// NaN, though [`Coefficients::positive_definite`], which knows the parameters alone, is true.\n";
+
 /// The most numbers whose copy every compiler writes out: one cache line.
 const COPIED_AT_ONCE: usize = 8;
 
@@ -44,8 +49,9 @@ impl File<'_> {
         let body = self.body(&self.program.accelerations.all(), needed)?;
         let written = self.stage_with(
             &format!(
-                "/// Rates of the state, written to `rates`.\n///\n/// {ORDER}\n\
-                 #[allow(unused_variables)]\n"
+                "/// Rates of the state, written to `rates`.\n///\n/// {ORDER}\n{}\
+                 #[allow(unused_variables)]\n",
+                self.where_not_definite()
             ),
             &Signature {
                 arguments: "rates: &mut [T; STATES],\n",
@@ -59,8 +65,20 @@ impl File<'_> {
              rates\n",
             self.inlined()
         );
-        let head = format!("/// Rates of the state, returned.\n///\n/// {ORDER}\n");
+        let head = format!(
+            "/// Rates of the state, returned.\n///\n/// {ORDER}\n{}",
+            self.where_not_definite()
+        );
         Ok(written + &self.stage(&head, "rates", "[T; STATES]", &call))
+    }
+
+    /// What is said of rates where the mass matrix may lose its definiteness.
+    pub(super) fn where_not_definite(&self) -> &'static str {
+        if self.program.may_lose_definiteness() {
+            NOT_DEFINITE
+        } else {
+            ""
+        }
     }
 
     /// The statements that write the rates out of a body that has their values.

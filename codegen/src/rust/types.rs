@@ -126,9 +126,15 @@ impl File<'_> {
         }
         fields.push_str(
             "/// Whether all prepared pivots of the mass matrix are positive and finite. If not, \
-             the mass matrix is not positive definite and the rates are not to be used.\n\
-             pub positive_definite: bool,\n",
+             the mass matrix is not positive definite and the rates are not to be used.\n",
         );
+        if self.program.may_lose_definiteness() {
+            fields.push_str(
+                "/// The mass matrix varies with the state too, of which this says nothing: where it \
+                 is not positive definite, rates are NaN.\n",
+            );
+        }
+        fields.push_str("pub positive_definite: bool,\n");
         let check = self.pivot_check(&mut body)?;
         values.push(format!("positive_definite: {FLOW_EVEN}{check}{CLOSE}"));
         let numbers = !casts.is_empty();

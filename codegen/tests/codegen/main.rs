@@ -2,6 +2,7 @@
 //! their derivatives, guards and solved systems, and the emitted source. Specifications
 //! that exercise whole features are certified in the workspace's own tests.
 
+mod definiteness;
 mod emission;
 mod expressions;
 mod gradients;
