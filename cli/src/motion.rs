@@ -3,9 +3,9 @@
 
 use model_spec::model::Model;
 use sim::derived::Driven;
-use sim::exact::{ExactError, PiecewiseLinear, Propagator};
+use sim::exact::{ExactError, PiecewiseLinear};
 use sim::record::HeldInputs;
-use sim::solve::{Method, Settings, SolveError, Trajectory, simulate};
+use sim::solve::{Method, Names, Settings, SolveError, Surface, Trajectory, simulate_into};
 
 use crate::arguments::Solver;
 use crate::problem::{Outcome, Problem, warn};
@@ -21,7 +21,7 @@ pub struct Run {
     columns: Vec<String>,
     observables: usize,
     /// What each switching function is.
-    guards: Vec<String>,
+    surfaces: Vec<Surface>,
     solver: Solver,
     tolerance: f64,
     /// The equations for the exact solver, if it is to be used.
@@ -34,6 +34,16 @@ pub struct Simulated {
     pub trajectory: Trajectory,
     /// Who computed them; never [`Solver::Auto`].
     pub solver: Solver,
+    /// Why the solver did not come to the end, if it did not.
+    pub stopped: Option<Stopped>,
+}
+
+/// Why a solver did not come to the end.
+pub struct Stopped {
+    /// Where it stands, s, if that is known.
+    pub t: Option<f64>,
+    /// What is wrong, with names, and what to do.
+    pub reason: String,
 }
 
 impl Simulated {
@@ -63,20 +73,16 @@ impl Run {
         let mut columns = vec!["t".to_owned()];
         columns.extend(program.state_names());
         columns.extend(program.observables.iter().map(|o| o.name.clone()));
-        let guards = program.guards.iter().flat_map(|guard| {
-            let count = program.value(guard.value).extent.length();
-            std::iter::repeat_n(guard.formula.clone(), count)
-        });
-        let guards = guards.collect();
         let system =
             Driven::new(jit::evaluator(program.clone()), inputs.clone()).map_err(Problem::input)?;
+        let surfaces = system.surfaces();
         Ok(Self {
             system,
             inputs,
             initial,
             columns,
             observables: program.observables.len(),
-            guards,
+            surfaces,
             solver,
             tolerance,
             exact: piecewise_linear(model, &orders, solver)?.map(|exact| (exact, model.clone())),
@@ -93,32 +99,43 @@ impl Run {
         &self.inputs
     }
 
-    /// The states at the given times, with a progress bar for a run that takes long.
+    /// The states at the given times, all of them, with a progress bar for a run that takes
+    /// long.
     pub fn simulate(&self, times: &[f64]) -> Outcome<Simulated> {
-        let Some((equations, model)) = &self.exact else {
-            return self.general(times);
-        };
-        let propagator = equations.propagator(model);
-        let trajectory = propagator.and_then(|propagator| self.exact(propagator, times));
-        match trajectory {
-            Ok(trajectory) => Ok(Simulated {
-                trajectory,
-                solver: Solver::Exact,
-            }),
-            Err(error) if self.solver == Solver::Auto && is_for_the_general(&error) => {
-                let reason = self.reason(&error);
-                warn(&format!("warning: not solved exactly but by rk: {reason}"));
-                self.general(times)
-            }
-            Err(error) => Err(Problem::input(self.reason(&error))),
+        let simulated = self.follow(times)?;
+        match simulated.stopped {
+            Some(stopped) => Err(Problem::input(stopped.reason)),
+            None => Ok(simulated),
         }
     }
 
-    fn exact(&self, mut propagator: Propagator, times: &[f64]) -> Result<Trajectory, ExactError> {
-        let span = span(times);
-        let bar = Bar::new("simulating", span.1 - span.0, "s");
-        let mut progress = |t: f64| bar.set(t - span.0);
-        propagator.simulate(&self.initial, span, times, &self.inputs, &mut progress)
+    /// The same, of the times that the solver comes to; an error if that is none.
+    pub fn follow(&self, times: &[f64]) -> Outcome<Simulated> {
+        let Some((equations, model)) = &self.exact else {
+            return self.general(times);
+        };
+        let mut trajectory = Trajectory::default();
+        let ended = equations.propagator(model).and_then(|mut propagator| {
+            let span = span(times);
+            let bar = Bar::new("simulating", span.1 - span.0, "s");
+            let mut progress = |t: f64| bar.set(t - span.0);
+            let request = (self.initial.as_slice(), span, times);
+            propagator.simulate_into(&mut trajectory, request, &self.inputs, &mut progress)
+        });
+        match ended {
+            Err(error) if self.solver == Solver::Auto && is_for_the_general(&error) => {
+                let reason = error.named(&self.names());
+                warn(&format!("warning: not solved exactly but by rk: {reason}"));
+                self.general(times)
+            }
+            ended => {
+                let stopped = ended.err().map(|error| Stopped {
+                    t: error.time(),
+                    reason: error.named(&self.names()),
+                });
+                so_far(trajectory, Solver::Exact, stopped)
+            }
+        }
     }
 
     /// With a solver for any model.
@@ -134,40 +151,24 @@ impl Run {
         let span = span(times);
         let bar = Bar::new("simulating", span.1 - span.0, "s");
         let mut progress = |t: f64| bar.set(t - span.0);
-        let initial = &self.initial;
-        let trajectory = simulate(&self.system, initial, span, times, &settings, &mut progress)
-            .map_err(|error| Problem::input(format!("{error}{}", self.culprit(&error))))?;
-        Ok(Simulated { trajectory, solver })
+        let mut trajectory = Trajectory::default();
+        let request = (self.initial.as_slice(), span, times);
+        let into = &mut trajectory;
+        let ended = simulate_into(into, &self.system, request, &settings, &mut progress);
+        let stopped = ended.err().map(|error: SolveError| Stopped {
+            t: error.time(),
+            reason: error.named(&self.names()),
+        });
+        so_far(trajectory, solver, stopped)
     }
 
-    /// Why there is no exact solution, with names.
-    fn reason(&self, error: &ExactError) -> String {
-        let culprit = match error {
-            ExactError::Held { guard, .. } => self.guard(*guard),
-            ExactError::Stopped(error) => self.culprit(error),
-            _ => String::new(),
-        };
-        format!("{error}{culprit}")
-    }
-
-    /// The name of what an error gives by number.
-    fn culprit(&self, error: &SolveError) -> String {
-        match *error {
-            SolveError::NotFinite { state, .. } => {
-                let name = self.columns.get(1 + state).map_or("", String::as_str);
-                format!("; that is {name}")
-            }
-            SolveError::Caught { guard, .. } | SolveError::TooManySwitches { guard, .. } => {
-                self.guard(guard)
-            }
-            _ => String::new(),
+    /// What the numbers in an error stand for.
+    fn names(&self) -> Names<'_> {
+        let states = &self.columns[1..self.columns.len() - self.observables];
+        Names {
+            states,
+            surfaces: &self.surfaces,
         }
-    }
-
-    /// The formula of a switching function.
-    fn guard(&self, guard: usize) -> String {
-        let formula = self.guards.get(guard).map_or("", String::as_str);
-        format!("; that is {formula}")
     }
 
     /// Time, state and observables of every sample.
@@ -200,6 +201,21 @@ fn piecewise_linear(
         Solver::Exact => PiecewiseLinear::of(model, orders)
             .map(Some)
             .map_err(|error| Problem::input(error.to_string())),
+    }
+}
+
+/// What a solver found; an error if it was stopped before it had begun.
+fn so_far(trajectory: Trajectory, solver: Solver, stopped: Option<Stopped>) -> Outcome<Simulated> {
+    match stopped {
+        // A request that makes no sense may be refused where the motion begins.
+        Some(stopped) if trajectory.times.len() <= usize::from(stopped.t.is_none()) => {
+            Err(Problem::input(stopped.reason))
+        }
+        stopped => Ok(Simulated {
+            trajectory,
+            solver,
+            stopped,
+        }),
     }
 }
 

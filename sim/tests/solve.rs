@@ -4,7 +4,9 @@ mod systems;
 
 use std::f64::consts::PI;
 
-use sim::solve::{Settings, SolveError, System, Trajectory, simulate};
+use sim::solve::{
+    Method, Names, Settings, SolveError, Surface, System, Trajectory, simulate, simulate_into,
+};
 use systems::{Functions, dead_zone, dry_friction, smooth};
 
 fn run(
@@ -140,7 +142,20 @@ fn a_body_caught_by_dry_friction_is_an_error_and_no_hang() {
         panic!("{error:?}")
     };
     assert!((t - 2.0 * PI).abs() < 1e-6, "{t}");
-    assert!(error.to_string().contains("dry friction"));
+    let surface = |is_speed| Surface {
+        formula: "v".to_owned(),
+        is_speed,
+    };
+    let said = |surface: Surface| {
+        error.named(&Names {
+            states: &[],
+            surfaces: &[surface],
+        })
+    };
+    assert!(said(surface(true)).contains("where `v` is zero: there it sticks, as dry friction"));
+    // At a place it is no friction.
+    assert!(said(surface(false)).contains("chatters") && !said(surface(false)).contains("tanh"));
+    assert!(!error.to_string().contains("friction"));
 }
 
 #[test]
@@ -279,4 +294,145 @@ fn a_request_that_makes_no_sense_is_refused() {
     refused(&[0.0], (0.0, 1.0), &[1.5], 1e-9, "ascend");
     refused(&[0.0], (0.0, 1.0), &[], 1.0, "tolerance");
     refused(&[0.0], (0.0, 1.0), &[], f64::NAN, "tolerance");
+}
+
+#[test]
+fn what_was_found_before_a_stop_is_kept() {
+    // y' = y^2 from 1: 1/(1 - t).
+    let system = smooth(1, |_, y, out| out[0] = y[0] * y[0]);
+    let samples: Vec<f64> = (0..200).map(|k| 0.01 * f64::from(k)).collect();
+    for method in [Method::DormandPrince853, Method::Adams] {
+        let settings = Settings {
+            method,
+            ..Settings::with_tolerance(1e-9)
+        };
+        let mut found = Trajectory::default();
+        let request = (&[1.0][..], (0.0, 2.0), samples.as_slice());
+        let error = simulate_into(&mut found, &system, request, &settings, &mut |_| {})
+            .expect_err("a pole");
+        let t = error.time().expect("a time");
+        assert!((t - 1.0).abs() < 1e-6, "{error}");
+        assert!(found.times.len() >= 99 && found.times.len() == found.states.len());
+        assert_eq!(found.times, samples[..found.times.len()]);
+        assert!((found.states[98][0] * 0.02 - 1.0).abs() < 1e-6);
+        assert!(found.last[0] > 1e5 && found.work.steps > 10);
+    }
+}
+
+#[test]
+fn stiffness_is_said_long_before_the_limit_on_steps() {
+    // y follows a cosine within 1e-7 s; the other one is slow.
+    let system = smooth(2, |t, y, out| {
+        out[0] = -y[0];
+        out[1] = -1e7 * (y[1] - t.cos());
+    });
+    for method in [Method::DormandPrince853, Method::Adams] {
+        let settings = Settings {
+            method,
+            ..Settings::with_tolerance(1e-9)
+        };
+        let begun = std::time::Instant::now();
+        let error = simulate(
+            &system,
+            &[1.0, 1.0],
+            (0.0, 100.0),
+            &[],
+            &settings,
+            &mut |_| {},
+        );
+        let SolveError::Stiff {
+            state: 1,
+            within,
+            steps,
+            ..
+        } = error.expect_err("stiff")
+        else {
+            panic!("another reason")
+        };
+        assert!((5e-8..2e-7).contains(&within), "{within}");
+        assert!(steps > 2e7, "{steps}");
+        assert!(begun.elapsed().as_secs() < 10);
+    }
+}
+
+#[test]
+fn a_fast_vibration_is_not_called_stiff() {
+    let system = smooth(2, |_, y, out| out.copy_from_slice(&[y[1], -1e14 * y[0]]));
+    let settings = Settings {
+        max_steps: 300_000,
+        ..Settings::with_tolerance(1e-9)
+    };
+    let error = simulate(
+        &system,
+        &[1.0, 0.0],
+        (0.0, 1.0),
+        &[],
+        &settings,
+        &mut |_| {},
+    );
+    assert!(
+        matches!(error, Err(SolveError::TooManySteps { steps: 300_000, .. })),
+        "{error:?}"
+    );
+}
+
+#[test]
+fn a_stiff_system_that_comes_to_its_end_is_not_stopped() {
+    let system = smooth(1, |t, y, out| out[0] = -1e6 * (y[0] - t.cos()));
+    let found = run(&system, &[1.0], 1.0, 1e-9).expect("an end");
+    assert!(found.work.steps > 65_536 * 2);
+    assert!((found.last[0] - 1.0_f64.cos()).abs() < 1e-5);
+}
+
+/// A system whose mass matrix is not positive definite beyond y = 1.
+struct Indefinite;
+
+impl System for Indefinite {
+    fn states(&self) -> usize {
+        2
+    }
+
+    fn rates(&self, _: f64, y: &[f64], out: &mut [f64]) {
+        out[0] = 1.0;
+        out[1] = if y[0] < 1.0 { 0.0 } else { f64::NAN };
+    }
+
+    fn indefinite(&self, _: f64, y: &[f64]) -> Option<usize> {
+        (y[0] >= 1.0).then_some(1)
+    }
+}
+
+#[test]
+fn where_the_mass_matrix_is_not_positive_definite_the_coordinate_is_named() {
+    for method in [Method::DormandPrince853, Method::Adams] {
+        let settings = Settings {
+            method,
+            ..Settings::with_tolerance(1e-9)
+        };
+        let error = simulate(
+            &Indefinite,
+            &[0.0, 0.0],
+            (0.0, 2.0),
+            &[],
+            &settings,
+            &mut |_| {},
+        );
+        let Err(SolveError::NotPositiveDefinite { t, coordinate: 1 }) = error else {
+            panic!("{error:?}")
+        };
+        assert!((t - 1.0).abs() < 1e-3, "{t}");
+        let at_once = simulate(
+            &Indefinite,
+            &[2.0, 0.0],
+            (0.0, 2.0),
+            &[],
+            &settings,
+            &mut |_| {},
+        );
+        let wanted = SolveError::NotPositiveDefinite {
+            t: 0.0,
+            coordinate: 1,
+        };
+        assert_eq!(at_once, Err(wanted));
+    }
 }

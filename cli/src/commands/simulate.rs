@@ -39,11 +39,18 @@ pub fn run(options: &Simulate) -> Outcome {
     let tolerance = options.tolerance.unwrap_or(DEFAULT_TOLERANCE);
     let run = Run::new(&variant, inputs, options.solver, tolerance)?;
     check_size(times.len(), run.columns().len())?;
-    let simulated = run.simulate(&times)?;
+    let simulated = run.follow(&times)?;
     warn_of_ranges(&variant.model, &simulated.trajectory, run.inputs())?;
     let table = run.table(&simulated.trajectory);
     destination.write(&table.encode(&options.out)?)?;
-    destination.summarise(&summary(options, &table, &simulated))
+    destination.summarise(&summary(options, &table, &simulated))?;
+    match &simulated.stopped {
+        Some(stopped) => {
+            warn(&format!("error: {}", stopped.reason));
+            Err(Problem::Failed)
+        }
+        None => Ok(()),
+    }
 }
 
 /// What is said at the end.
@@ -60,6 +67,10 @@ fn summary(options: &Simulate, table: &Table, simulated: &Simulated) -> String {
             "steps": work.steps,
             "rejected": work.rejected,
             "evaluations": work.evaluations,
+            "stopped": simulated.stopped.as_ref().map(|stopped| json!({
+                "t": stopped.t,
+                "reason": stopped.reason,
+            })),
         });
         return format!("{document:#}\n");
     }

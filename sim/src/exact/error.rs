@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::solve::SolveError;
+use crate::solve::{Names, SolveError};
 
 /// Why a motion cannot be propagated exactly; times in s.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,35 +33,47 @@ pub enum ExactError {
     Stopped(SolveError),
 }
 
-impl fmt::Display for ExactError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl ExactError {
+    /// Where the motion stands, s, if it had begun.
+    pub fn time(&self) -> Option<f64> {
         match self {
-            Self::NotLinear { formula } => write!(
-                f,
+            Self::Held { t, .. } => Some(*t),
+            Self::Stopped(error) => error.time(),
+            _ => None,
+        }
+    }
+
+    /// What is wrong, when, with which quantity, and what to do.
+    pub fn named(&self, names: &Names<'_>) -> String {
+        match self {
+            Self::NotLinear { formula } => format!(
                 "the model is not linear between its switches: `{formula}`; the general solver \
                  (--solver rk) takes any model"
             ),
-            Self::Model(message) => f.write_str(message),
-            Self::NotFinite => f.write_str(
-                "a coefficient of the equations of motion is infinite or not a number: a mass, \
-                 inertia or length is zero, or a parameter far too large",
-            ),
-            Self::NotPositiveDefinite => f.write_str(crate::derived::NOT_POSITIVE),
+            Self::Model(message) => message.clone(),
+            Self::NotFinite => "a coefficient of the equations of motion is infinite or not a \
+                 number: a mass, inertia or length is zero, or a parameter far too large"
+                .to_owned(),
+            Self::NotPositiveDefinite => crate::derived::NOT_POSITIVE.to_owned(),
             Self::NegativeHalfWidth => {
-                f.write_str("the half-width of a dead zone is negative: expected 0 or more")
+                "the half-width of a dead zone is negative: expected 0 or more".to_owned()
             }
-            Self::NotConverged => f.write_str(
-                "the eigenvalues of the equations of motion could not be found; the general \
-                 solver (--solver rk) needs none",
+            Self::NotConverged => "the eigenvalues of the equations of motion could not be \
+                 found; the general solver (--solver rk) needs none"
+                .to_owned(),
+            Self::Held { t, guard } => format!(
+                "at t = {t:?} s the motion is held where {}, by forces that are not linear \
+                 there; the exact solver knows friction whose level is constant",
+                names.surface(*guard)
             ),
-            Self::Held { t, guard } => write!(
-                f,
-                "at t = {t:?} s the motion is held where switching function {guard} is zero, by \
-                 forces that are not linear there; the exact solver knows friction whose level \
-                 is constant"
-            ),
-            Self::Stopped(error) => error.fmt(f),
+            Self::Stopped(error) => error.named(names),
         }
+    }
+}
+
+impl fmt::Display for ExactError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.named(&Names::default()))
     }
 }
 

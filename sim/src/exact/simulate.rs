@@ -25,6 +25,25 @@ impl Propagator {
         inputs: &HeldInputs,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Trajectory, ExactError> {
+        let mut trajectory = Trajectory::default();
+        let request = (initial, span, samples);
+        self.simulate_into(&mut trajectory, request, inputs, progress)?;
+        Ok(trajectory)
+    }
+
+    /// The same, with the initial state, the span and the samples in one; `trajectory`, which
+    /// is empty before, holds all that was found, also where the motion could not be followed
+    /// to the end.
+    ///
+    /// # Errors
+    /// As for [`Propagator::simulate`].
+    pub fn simulate_into(
+        &mut self,
+        trajectory: &mut Trajectory,
+        (initial, span, samples): (&[f64], (f64, f64), &[f64]),
+        inputs: &HeldInputs,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<(), ExactError> {
         let samples = Samples::new(span, samples)?;
         let mut motion = self.start(span.0, initial, inputs)?;
         let mut recorder = Recorder {
@@ -33,19 +52,18 @@ impl Propagator {
             progress,
         };
         recorder.samples.take_until(span.0, initial);
-        self.follow_until(&mut motion, span.1, inputs, &mut recorder)?;
-        // The last switch may stand at the end, up to rounding.
-        recorder.samples.take_until(span.1, motion.state());
-        let mut trajectory = Trajectory {
-            times: recorder.samples.times,
-            states: recorder.samples.states,
-            switches: recorder.switches,
-            last: motion.state().to_vec(),
-            ..Trajectory::default()
-        };
+        let ended = self.follow_until(&mut motion, span.1, inputs, &mut recorder);
+        if ended.is_ok() {
+            // The last switch may stand at the end, up to rounding.
+            recorder.samples.take_until(span.1, motion.state());
+        }
+        trajectory.times = recorder.samples.times;
+        trajectory.states = recorder.samples.states;
+        trajectory.switches = recorder.switches;
+        trajectory.last = motion.state().to_vec();
         trajectory.work.steps = motion.effort.steps;
         trajectory.work.trials = motion.effort.newton;
-        Ok(trajectory)
+        ended
     }
 }
 

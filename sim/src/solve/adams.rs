@@ -156,7 +156,7 @@ impl Stepper for Adams {
         if end.y.iter().all(|y| y.is_finite()) {
             Ok(end)
         } else {
-            Err(refusal(watched, self.now.point.t, length))
+            Err(refusal(watched, &self.now.point, length))
         }
     }
 
@@ -187,12 +187,13 @@ impl Adams {
         if self.now.history.points() > 0 {
             return Ok(());
         }
-        let Point { t, y } = &self.now.point;
+        let here = &self.now.point;
+        let Point { t, y } = here;
         let mut rates = vec![0.0; y.len()];
         watched.diff(*t, y, &mut rates);
         let norm = self.magnitudes.norm(rates.iter().copied(), y);
         if !norm.is_finite() {
-            return Err(refusal(watched, *t, self.step));
+            return Err(refusal(watched, here, self.step));
         }
         // Shampine and Gordon's guess; a refusal at order 1 corrects it at once.
         self.step = self.step.min(0.25 / norm.sqrt());

@@ -89,7 +89,7 @@ impl Stepper for DormandPrince853 {
                     length,
                 });
             }
-            Err(_) => return Err(refusal(watched, self.here.t, length)),
+            Err(_) => return Err(refusal(watched, &self.here, length)),
         }
         if matches!(self.method.status(), Status::RejectedStep) {
             self.step = self.method.h().min(0.9 * length);
@@ -159,7 +159,7 @@ impl DormandPrince853 {
                 horizon(&self.here, length),
                 &self.here.y,
             )
-            .map_err(|_| refusal(watched, self.here.t, length))?;
+            .map_err(|_| refusal(watched, &self.here, length))?;
         self.ready = true;
         Ok(())
     }
@@ -174,7 +174,7 @@ pub fn single_step<S: System + ?Sized>(
     /// Refuses nothing finite. A large number in its place does not: relative to it the
     /// square of an error can be subnormal, and the method divides by that.
     const ANY: f64 = f64::INFINITY;
-    let refused = || refusal(watched, start.t, length);
+    let refused = || refusal(watched, start, length);
     let mut method = Method::dop853().rtol(0.0).atol(ANY).h0(length);
     let end = horizon(start, length);
     method

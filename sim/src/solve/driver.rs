@@ -8,7 +8,8 @@ use super::dormand_prince::{DormandPrince853, single_step};
 use super::error::SolveError;
 use super::request;
 use super::settings::{Method, Settings};
-use super::stepper::{Outcome, Point, Stepper};
+use super::stepper::{Outcome, Point, Stepper, refusal};
+use super::stiffness::{Pace, Standing};
 use super::system::System;
 use super::trajectory::{Switch, Trajectory};
 use super::watch::Watched;
@@ -39,23 +40,47 @@ pub fn simulate<S: System + ?Sized>(
     settings: &Settings,
     progress: &mut dyn FnMut(f64),
 ) -> Result<Trajectory, SolveError> {
+    let mut trajectory = Trajectory::default();
+    let request = (initial, span, samples);
+    simulate_into(&mut trajectory, system, request, settings, progress)?;
+    Ok(trajectory)
+}
+
+/// The same, with the initial state, the span and the samples in one; `trajectory`, which is
+/// empty before, holds all that was found, also where the solver had to stop.
+///
+/// # Errors
+///
+/// As for [`simulate`].
+pub fn simulate_into<S: System + ?Sized>(
+    trajectory: &mut Trajectory,
+    system: &S,
+    (initial, span, samples): (&[f64], (f64, f64), &[f64]),
+    settings: &Settings,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(), SolveError> {
     request::check(system, initial, span, samples, settings)?;
     let run = match settings.method {
         Method::DormandPrince853 => run::<S, DormandPrince853>,
         Method::Adams => run::<S, Adams>,
     };
-    run(system, initial, span, samples, settings, progress)
+    run(
+        trajectory,
+        system,
+        (initial, span, samples),
+        settings,
+        progress,
+    )
 }
 
 /// The simulation with one method.
 fn run<S: System + ?Sized, M: Stepper>(
+    trajectory: &mut Trajectory,
     system: &S,
-    initial: &[f64],
-    span: (f64, f64),
-    samples: &[f64],
+    (initial, span, samples): (&[f64], (f64, f64), &[f64]),
     settings: &Settings,
     progress: &mut dyn FnMut(f64),
-) -> Result<Trajectory, SolveError> {
+) -> Result<(), SolveError> {
     let start = Point {
         t: span.0,
         y: initial.to_vec(),
@@ -69,14 +94,13 @@ fn run<S: System + ?Sized, M: Stepper>(
         samples,
         end: span.1,
         recent: VecDeque::with_capacity(SWITCHES_AVERAGED),
-        trajectory: Trajectory::default(),
+        pace: Pace::new(span.0),
+        trajectory,
     };
     driver.sample_start();
-    while driver.stepper.here().t < driver.end {
-        driver.advance(system)?;
-        progress(driver.stepper.here().t);
-    }
-    Ok(driver.finish())
+    let ended = driver.go_to_the_end(system, progress);
+    driver.finish();
+    ended
 }
 
 /// A simulation under way.
@@ -87,10 +111,24 @@ struct Driver<'a, S: System + ?Sized, M: Stepper> {
     samples: &'a [f64],
     end: f64,
     recent: VecDeque<f64>,
-    trajectory: Trajectory,
+    pace: Pace,
+    trajectory: &'a mut Trajectory,
 }
 
 impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
+    fn go_to_the_end(
+        &mut self,
+        system: &S,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<(), SolveError> {
+        while self.stepper.here().t < self.end {
+            self.advance(system)?;
+            progress(self.stepper.here().t);
+            self.look_at_the_pace(system)?;
+        }
+        Ok(())
+    }
+
     /// One accepted step, or the way to and over a switching surface.
     fn advance(&mut self, system: &S) -> Result<(), SolveError> {
         let begin = self.stepper.here().t;
@@ -190,6 +228,7 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             return Err(SolveError::NotFinite { t: begin, state });
         }
         self.trajectory.work.steps += 1;
+        self.watched.arrive();
         let t = here.t;
         while let Some(&sample) = self.samples.get(self.trajectory.times.len()) {
             if sample > t {
@@ -232,10 +271,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         if step > f64::EPSILON * t.abs().max(SMALLEST_TIME * self.end.abs()) {
             return Ok(());
         }
-        Err(match (self.watched.crossed(), self.watched.not_finite()) {
-            (_, Some(state)) => SolveError::NotFinite { t, state },
-            (Some(guard), None) => SolveError::Caught { t, guard },
-            (None, None) => SolveError::StepTooSmall { t, step },
+        Err(match (self.watched.indefinite(), self.watched.crossed()) {
+            (None, Some(guard)) if self.watched.not_finite().is_none() => {
+                SolveError::Caught { t, guard }
+            }
+            _ => refusal(self.watched, self.stepper.here(), step),
         })
     }
 
@@ -253,12 +293,35 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
     }
 
     fn check_steps(&self) -> Result<(), SolveError> {
-        let work = &self.trajectory.work;
-        if work.steps + work.rejected + work.trials < self.settings.max_steps {
+        let steps = self.settings.max_steps;
+        if self.steps() < steps {
             return Ok(());
         }
-        let (t, steps) = (self.stepper.here().t, self.settings.max_steps);
-        Err(SolveError::TooManySteps { t, steps })
+        let Point { t, y } = self.stepper.here();
+        Err(SolveError::TooManySteps {
+            t: *t,
+            steps,
+            state: self.watched.fastest(*t, y),
+        })
+    }
+
+    /// All steps that were tried so far.
+    fn steps(&self) -> u64 {
+        let work = &self.trajectory.work;
+        work.steps + work.rejected + work.trials
+    }
+
+    /// Whether there will be an end.
+    fn look_at_the_pace(&mut self, system: &S) -> Result<(), SolveError> {
+        let Point { t, y } = self.stepper.here();
+        let standing = Standing {
+            t: *t,
+            y,
+            step: self.stepper.step(),
+            steps: (self.steps(), self.settings.max_steps),
+            end: self.end,
+        };
+        self.pace.look(system, &standing)
     }
 
     fn sample_start(&mut self) {
@@ -269,10 +332,8 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         }
     }
 
-    fn finish(self) -> Trajectory {
-        let mut trajectory = self.trajectory;
-        trajectory.last = self.stepper.here().y.clone();
-        trajectory.work.evaluations = self.watched.evaluations();
-        trajectory
+    fn finish(self) {
+        self.trajectory.last = self.stepper.here().y.clone();
+        self.trajectory.work.evaluations = self.watched.evaluations();
     }
 }

@@ -5,7 +5,8 @@
 //! Dormand-Prince method of order 8 (`dormand_prince`) or of Adams' method of variable
 //! order (`adams`, of `attempt`s that continue a `history`); `crossing` approaches a switching
 //! surface by steps that stay on one side and then steps over it; `driver` strings these
-//! together into a [`Trajectory`]. A step therefore never averages over a kink or a jump
+//! together into a [`Trajectory`], `stiffness` being asked whether there will be an end; an
+//! `error` says why there is none, with `names`. A step therefore never averages over a kink or a jump
 //! of the right-hand side, which is what ruins the order of a method applied blindly.
 //!
 //! The Runge-Kutta steps come from the crate `differential-equations`. Its interpolation
@@ -33,15 +34,18 @@ mod driver;
 mod error;
 mod history;
 mod magnitudes;
+mod names;
 mod request;
 mod settings;
 mod stepper;
+mod stiffness;
 mod system;
 mod trajectory;
 mod watch;
 
-pub use driver::simulate;
+pub use driver::{simulate, simulate_into};
 pub use error::SolveError;
+pub use names::{Names, Surface};
 pub use settings::{Method, SMALLEST_MAGNITUDE, Settings};
 pub use system::System;
 pub use trajectory::{Switch, Trajectory, Work};

@@ -51,7 +51,10 @@ fn check_rates<S: System + ?Sized>(system: &S, t: f64, y: &[f64]) -> Result<(), 
     let mut rates = vec![0.0; system.states()];
     system.rates(t, y, &mut rates);
     match rates.iter().position(|rate| !rate.is_finite()) {
-        Some(state) => Err(SolveError::NotFinite { t, state }),
+        Some(state) => Err(match system.indefinite(t, y) {
+            Some(coordinate) => SolveError::NotPositiveDefinite { t, coordinate },
+            None => SolveError::NotFinite { t, state },
+        }),
         None => Ok(()),
     }
 }

@@ -67,10 +67,20 @@ pub trait Stepper: Sized {
     ) -> Result<Vec<f64>, SolveError>;
 }
 
-/// Why a method refused to go on from time `t` (s) with this step (s).
-pub fn refusal<S: System + ?Sized>(watched: &Watched<'_, S>, t: f64, step: f64) -> SolveError {
-    match watched.not_finite() {
-        Some(state) => SolveError::NotFinite { t, state },
-        None => SolveError::StepTooSmall { t, step },
+/// Why a method refused to go on from a point with this step (s).
+pub fn refusal<S: System + ?Sized>(
+    watched: &Watched<'_, S>,
+    from: &Point,
+    step: f64,
+) -> SolveError {
+    let t = from.t;
+    match (watched.indefinite(), watched.not_finite()) {
+        (Some(coordinate), _) => SolveError::NotPositiveDefinite { t, coordinate },
+        (None, Some(state)) => SolveError::NotFinite { t, state },
+        (None, None) => SolveError::StepTooSmall {
+            t,
+            step,
+            state: watched.fastest(t, &from.y),
+        },
     }
 }

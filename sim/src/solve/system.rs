@@ -18,6 +18,12 @@ pub trait System {
     /// where one of them changes its sign, and nowhere else.
     fn guards(&self, _t: f64, _y: &[f64], _out: &mut [f64]) {}
 
+    /// The first coordinate whose inertia, given those before it, is not positive at time `t`
+    /// and state `y`, if the system knows of one: its index in the state.
+    fn indefinite(&self, _t: f64, _y: &[f64]) -> Option<usize> {
+        None
+    }
+
     /// The next time after `t` at which the right-hand side is not smooth in time (the
     /// next sample of a recorded input, say); no step reaches across it.
     fn next_breakpoint(&self, _t: f64) -> Option<f64> {
@@ -40,6 +46,10 @@ impl<S: System + ?Sized> System for &S {
 
     fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
         (**self).guards(t, y, out);
+    }
+
+    fn indefinite(&self, t: f64, y: &[f64]) -> Option<usize> {
+        (**self).indefinite(t, y)
     }
 
     fn next_breakpoint(&self, t: f64) -> Option<f64> {

@@ -6,6 +6,7 @@ use std::cell::{Cell, RefCell};
 
 use differential_equations::ode::ODE;
 
+use super::settings::SMALLEST_MAGNITUDE;
 use super::system::System;
 
 /// The side of every switching surface: -1, 1, or 0 where a step begins on it.
@@ -19,6 +20,7 @@ pub struct Watched<'a, S: System + ?Sized> {
     crossed: Cell<Option<usize>>,
     horizon: Cell<f64>,
     not_finite: Cell<Option<usize>>,
+    indefinite: Cell<Option<usize>>,
     evaluations: Cell<u64>,
 }
 
@@ -32,6 +34,7 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
             crossed: Cell::new(None),
             horizon: Cell::new(f64::INFINITY),
             not_finite: Cell::new(None),
+            indefinite: Cell::new(None),
             evaluations: Cell::new(0),
         };
         watched.enter(t, y);
@@ -58,6 +61,17 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
     /// The state variable whose rate was not finite in a trial since the reset.
     pub fn not_finite(&self) -> Option<usize> {
         self.not_finite.get()
+    }
+
+    /// The coordinate without positive inertia at a state that a trial has come to since the
+    /// last [`Watched::arrive`].
+    pub fn indefinite(&self) -> Option<usize> {
+        self.indefinite.get()
+    }
+
+    /// Forgets what trials beyond the next point ran into: the motion has come there.
+    pub fn arrive(&self) {
+        self.indefinite.set(None);
     }
 
     /// Evaluations of the right-hand side so far.
@@ -111,6 +125,16 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         changed
     }
 
+    /// The state variable that changes fastest at `t` and `y`, in parts of its size.
+    pub fn fastest(&self, t: f64, y: &[f64]) -> usize {
+        let mut rates = vec![0.0; y.len()];
+        self.system.rates(t, y, &mut rates);
+        let speed = |index: usize| rates[index].abs() / y[index].abs().max(SMALLEST_MAGNITUDE);
+        let all = 0..y.len();
+        all.max_by(|a, b| speed(*a).total_cmp(&speed(*b)))
+            .unwrap_or(0)
+    }
+
     /// Whether the switching function `guard` is positive in the present regime.
     pub fn is_positive(&self, guard: usize) -> bool {
         self.regime
@@ -128,6 +152,9 @@ impl<S: System + ?Sized> ODE<f64, Vec<f64>> for Watched<'_, S> {
         self.evaluations.set(self.evaluations.get() + 1);
         if let Some(state) = out.iter().position(|rate| !rate.is_finite()) {
             self.not_finite.set(Some(state));
+            if self.indefinite.get().is_none() {
+                self.indefinite.set(self.system.indefinite(t, y));
+            }
         }
         self.look(t, y);
     }

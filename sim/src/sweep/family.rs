@@ -205,7 +205,9 @@ impl Member {
 impl From<SolveError> for Failure {
     fn from(error: SolveError) -> Self {
         match error {
-            SolveError::NotFinite { .. } => Self::NotFinite,
+            SolveError::NotFinite { .. } | SolveError::NotPositiveDefinite { .. } => {
+                Self::NotFinite
+            }
             SolveError::Caught { .. } | SolveError::TooManySwitches { .. } => Self::Switching,
             _ => Self::Limit,
         }

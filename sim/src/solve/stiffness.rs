@@ -1,0 +1,154 @@
+//! Whether there will be an end, and whether it is stability that keeps the steps short.
+//!
+//! A step of an explicit method is no longer than stability allows: a few times what decays
+//! fastest takes, whatever the tolerance. Where the pace of the last steps would need more of
+//! them than there may be, the fastest decay is found by iterating with differences of the
+//! rates; if the steps are as long as it allows, the system is stiff. Otherwise the motion
+//! itself is fast, and goes on to the limit on steps.
+
+use super::error::SolveError;
+use super::system::System;
+
+/// Steps between two looks at the pace: a fraction of a second's work.
+const STEPS: u64 = 1 << 16;
+
+/// So many looks in a row must find no end.
+const LOOKS: u32 = 3;
+
+/// Iterations towards the fastest decay; neighbours in speed need not be told apart.
+const ITERATIONS: usize = 12;
+
+/// Steps that are this long, in units of the fastest decay, are limited by stability: what
+/// decays is gone, and no error comes from it.
+const LIMITED: f64 = 0.3;
+
+/// The same for what vibrates, whose error counts as long as it is there.
+const LIMITED_BY_VIBRATION: f64 = 2.0;
+
+/// How far states are moved for a difference of rates, relative.
+const MOVED: f64 = 1e-7;
+
+/// The pace of a simulation.
+pub struct Pace {
+    /// At the last look: the time, s, and the steps so far.
+    last: (f64, u64),
+    hopeless: u32,
+}
+
+/// Where a simulation stands.
+pub struct Standing<'a> {
+    /// The time, s.
+    pub t: f64,
+    /// The state.
+    pub y: &'a [f64],
+    /// The length of a step, s.
+    pub step: f64,
+    /// Steps so far, refused ones included, and the most there may be.
+    pub steps: (u64, u64),
+    /// The end, s.
+    pub end: f64,
+}
+
+impl Pace {
+    /// At the beginning, s.
+    pub fn new(t: f64) -> Self {
+        Self {
+            last: (t, 0),
+            hopeless: 0,
+        }
+    }
+
+    /// Looks at the pace if it is time to.
+    ///
+    /// # Errors
+    /// If the system is stiff, and there would be no end within the limit on steps.
+    pub fn look<S: System + ?Sized>(
+        &mut self,
+        system: &S,
+        standing: &Standing<'_>,
+    ) -> Result<(), SolveError> {
+        let (t, (steps, most)) = (standing.t, standing.steps);
+        let done = steps - self.last.1;
+        if done < STEPS {
+            return Ok(());
+        }
+        let needed = (standing.end - t) / (t - self.last.0) * done as f64;
+        self.last = (t, steps);
+        if needed < most.saturating_sub(steps) as f64 {
+            self.hopeless = 0;
+            return Ok(());
+        }
+        self.hopeless += 1;
+        if self.hopeless < LOOKS {
+            return Ok(());
+        }
+        self.hopeless = 0;
+        match fastest(system, standing) {
+            Some(fastest) if fastest.limits(standing.step) => Err(SolveError::Stiff {
+                t,
+                state: fastest.state,
+                within: 1.0 / fastest.rate,
+                steps: needed,
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// How fast neighbouring motions part or meet at most.
+struct Fastest {
+    /// 1/s.
+    rate: f64,
+    /// Whether they meet, rather than turn around each other.
+    decays: bool,
+    /// The state variable that has most to do with it.
+    state: usize,
+}
+
+impl Fastest {
+    /// Whether it is what keeps steps of this length, s, from being longer.
+    fn limits(&self, step: f64) -> bool {
+        let limit = if self.decays {
+            LIMITED
+        } else {
+            LIMITED_BY_VIBRATION
+        };
+        self.rate * step > limit
+    }
+}
+
+/// What is fastest where the simulation stands.
+fn fastest<S: System + ?Sized>(system: &S, standing: &Standing<'_>) -> Option<Fastest> {
+    let (t, y) = (standing.t, standing.y);
+    let sizes: Vec<f64> = y.iter().map(|y| y.abs().max(standing.step)).collect();
+    let mut base = vec![0.0; y.len()];
+    let mut moved = base.clone();
+    system.rates(t, y, &mut base);
+    // A direction in parts of the states' sizes, along no axis.
+    let mut direction: Vec<f64> = (0..y.len()).map(|i| 1.0 + 0.1 * (i as f64).cos()).collect();
+    let (mut rate, mut along) = (0.0_f64, 0.0_f64);
+    for _ in 0..ITERATIONS {
+        let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+        if !(length.is_finite() && length > 0.0) {
+            return None;
+        }
+        direction.iter_mut().for_each(|d| *d /= length);
+        let steps = direction.iter().zip(&sizes).map(|(d, size)| d * size);
+        let near: Vec<f64> = y.iter().zip(steps).map(|(y, d)| y + MOVED * d).collect();
+        system.rates(t, &near, &mut moved);
+        let differences = moved.iter().zip(&base).zip(&sizes);
+        let next: Vec<f64> = differences
+            .map(|((a, b), size)| (a - b) / (MOVED * size))
+            .collect();
+        rate = next.iter().map(|d| d * d).sum::<f64>().sqrt();
+        along = next.iter().zip(&direction).map(|(a, b)| a * b).sum();
+        direction = next;
+    }
+    let most = |(_, a): &(usize, &f64), (_, b): &(usize, &f64)| a.abs().total_cmp(&b.abs());
+    let (state, _) = direction.iter().enumerate().max_by(most)?;
+    rate.is_finite().then_some(Fastest {
+        rate,
+        decays: along < -0.5 * rate,
+        state,
+    })
+}

@@ -1,0 +1,276 @@
+//! A solver that has to stop leaves the rows so far, says when, at which quantity and what to
+//! do, and exits with 1. What is true of friction is said of friction alone.
+
+use std::path::Path;
+use std::process::Output;
+use std::time::{Duration, Instant};
+
+use eomgen_tests::program::{accepted, run, text};
+
+/// A mass on a belt that takes it along.
+const BELT: &str = r#"
+[model]
+name = "belt"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 100, unit = "N/m" }
+F = { value = 5, unit = "N" }
+v = { value = 0.1, unit = "m/s" }
+[coordinates]
+x = { unit = "m" }
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[potential]
+V = "1/2*k*x^2"
+[forces]
+belt = { on = "x", value = "-F*sign(dot(x) - v)" }
+"#;
+
+/// A mass between two forces that both lead to the middle, by what is left of the model.
+fn between_forces(law: &str) -> String {
+    format!(
+        r#"
+[model]
+name = "chatter"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+F = {{ value = 1, unit = "N" }}
+D = {{ value = 0.5, unit = "N" }}
+tau = {{ value = 0.1, unit = "s" }}
+[coordinates]
+x = {{ unit = "m", initial = 1 }}
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[forces]
+relay = {{ on = "x", value = "{law}" }}
+"#
+    )
+}
+
+/// A spring that pushes the harder the farther.
+const BLOW_UP: &str = r#"
+[model]
+name = "blow_up"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 2, unit = "N/m^3" }
+[coordinates]
+x = { unit = "m", initial = 1 }
+[kinetic]
+T = "1/2*m*dot(x)^2"
+[potential]
+V = "-1/4*k*x^4"
+"#;
+
+/// A pendulum with dry friction, smoothed so much too steeply that it has no end.
+const STIFF: &str = r#"
+[model]
+name = "stiff"
+[parameters]
+J = { value = 0.0135, unit = "kg m^2" }
+T_g = { value = 0.44, unit = "N m" }
+T_c = { value = 0.02, unit = "N m" }
+v_0 = { value = 1e-9, unit = "rad/s" }
+[coordinates]
+theta = { unit = "rad", initial = 0.3 }
+[kinetic]
+bob = "1/2*J*dot(theta)^2"
+[potential]
+gravity = "-T_g*cos(theta)"
+[forces]
+friction = { on = "theta", value = "-T_c*tanh(dot(theta)/v_0)" }
+"#;
+
+/// A turntable whose inertia vanishes where a slider gets to.
+const INDEFINITE: &str = r#"
+[model]
+name = "turntable"
+[parameters]
+m = { value = 1, unit = "kg" }
+J = { value = 1, unit = "kg m^2" }
+a = { value = 0.5, unit = "m" }
+k = { value = 1, unit = "N m/rad" }
+[coordinates]
+x = { unit = "m", initial_rate = 1 }
+phi = { unit = "rad" }
+[kinetic]
+slider = "1/2*m*dot(x)^2"
+table = "1/2*J*(1 - x/a)*dot(phi)^2"
+[potential]
+spring = "1/2*k*phi^2"
+"#;
+
+struct Stopped {
+    output: Output,
+    rows: Vec<Vec<f64>>,
+    took: Duration,
+}
+
+impl Stopped {
+    fn message(&self) -> String {
+        text(&self.output.stderr)
+    }
+
+    fn says(&self, parts: &[&str]) {
+        let message = self.message();
+        for part in parts {
+            assert!(message.contains(part), "{part} is not in: {message}");
+        }
+        assert!(!message.contains("panicked"), "{message}");
+    }
+
+    fn is_silent_on(&self, parts: &[&str]) {
+        let message = self.message();
+        for part in parts {
+            assert!(!message.contains(part), "{part} is in: {message}");
+        }
+    }
+
+    fn last_time(&self) -> f64 {
+        self.rows.last().expect("rows")[0]
+    }
+}
+
+fn written(folder: &Path, specification: &str) -> String {
+    let path = folder.join("model.toml");
+    std::fs::write(&path, specification).expect("a file");
+    path.display().to_string()
+}
+
+/// A simulation that has to stop.
+fn stopped(specification: &str, until: &str, more: &[&str]) -> Stopped {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (spec, out) = (
+        written(folder.path(), specification),
+        folder.path().join("a.csv"),
+    );
+    let shown = out.display().to_string();
+    let arguments = ["simulate", &spec, "--until", until, "--out", &shown];
+    let begun = Instant::now();
+    let output = run(&[&arguments[..], more].concat());
+    let took = begun.elapsed();
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    let table = std::fs::read_to_string(&out).expect("the rows so far");
+    let rows = table.lines().skip(1).map(|line| {
+        let numbers = line
+            .split(',')
+            .map(|number| number.parse().expect("a number"));
+        numbers.collect::<Vec<f64>>()
+    });
+    let rows: Vec<_> = rows.collect();
+    assert!(rows.iter().flatten().all(|number| number.is_finite()));
+    assert!(rows.windows(2).all(|pair| pair[0][0] < pair[1][0]));
+    Stopped { output, rows, took }
+}
+
+#[test]
+fn friction_at_rest_leaves_the_rows_so_far() {
+    for solver in ["rk", "adams"] {
+        let found = stopped(BELT, "2", &["--solver", solver, "--sample", "0.001"]);
+        // The belt's friction brings the mass to its speed within 0.02 s.
+        assert!(
+            (0.015..0.025).contains(&found.last_time()),
+            "{}",
+            found.last_time()
+        );
+        assert!(found.rows.len() > 15);
+        found.says(&[
+            "error: at t = 0.02",
+            "`dot(x) - v`",
+            "sticks",
+            "tanh(v/v_0)",
+        ]);
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let (spec, out) = (written(folder.path(), BELT), folder.path().join("a.csv"));
+    let shown = out.display().to_string();
+    accepted(&["simulate", &spec, "--until", "2", "--out", &shown]);
+}
+
+#[test]
+fn rows_so_far_in_parquet_and_the_reason_in_json() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (spec, out) = (
+        written(folder.path(), BELT),
+        folder.path().join("a.parquet"),
+    );
+    let shown = out.display().to_string();
+    let output = run(&[
+        "simulate", &spec, "--until", "2", "--sample", "0.001", "--solver", "rk", "--json",
+        "--out", &shown,
+    ]);
+    assert_eq!(output.status.code(), Some(1));
+    let bytes = std::fs::read(&out).expect("the rows so far");
+    assert!(bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"));
+    let document: serde_json::Value =
+        serde_json::from_slice(&output.stdout).expect("one JSON document");
+    let t = document["stopped"]["t"].as_f64().expect("a time");
+    assert!((0.015..0.025).contains(&t), "{t}");
+    assert!(
+        document["stopped"]["reason"]
+            .as_str()
+            .expect("a reason")
+            .contains("sticks")
+    );
+    assert!(document["rows"].as_u64().expect("a number") > 15);
+    let done = run(&[
+        "simulate", &spec, "--until", "0.01", "--json", "--out", &shown,
+    ]);
+    let document: serde_json::Value = serde_json::from_slice(&done.stdout).expect("JSON");
+    assert!(document["stopped"].is_null());
+}
+
+#[test]
+fn a_place_where_forces_chatter_is_no_friction() {
+    // Turns that get shorter and shorter, and a relay that looks ahead.
+    for (law, formula) in [
+        ("-F*sign(x) - D*sign(dot(x))", "`x` is zero"),
+        ("-F*sign(x + tau*dot(x))", "`x + dot(x)*tau` is zero"),
+    ] {
+        let found = stopped(&between_forces(law), "60", &["--solver", "rk"]);
+        found.says(&["at t = ", formula, "chatters"]);
+        found.is_silent_on(&["sticks", "friction", "tanh"]);
+        assert!(found.rows.len() > 10 && found.last_time() > 5.0);
+    }
+}
+
+#[test]
+fn a_motion_that_grows_beyond_all_bounds_is_no_friction() {
+    for solver in ["auto", "adams"] {
+        let found = stopped(BLOW_UP, "20", &["--solver", solver, "--sample", "0.01"]);
+        found.says(&["at t = ", "`x"]);
+        found.is_silent_on(&["sticks", "friction", "tanh"]);
+        // x'' = 2 x^3 from rest at 1: infinite after 1.31 s.
+        assert!(
+            (1.28..1.32).contains(&found.last_time()),
+            "{}",
+            found.last_time()
+        );
+    }
+}
+
+#[test]
+fn stiffness_is_said_after_seconds() {
+    for solver in ["rk", "adams"] {
+        let found = stopped(STIFF, "100", &["--solver", solver]);
+        found.says(&["stiff", "`theta_dot`", "stopped at t = "]);
+        found.is_silent_on(&["sticks"]);
+        assert!(!found.rows.is_empty());
+        assert!(found.took < Duration::from_secs(20), "{:?}", found.took);
+    }
+}
+
+#[test]
+fn a_mass_matrix_that_loses_its_definiteness_is_named() {
+    for solver in ["auto", "rk", "adams"] {
+        let found = stopped(INDEFINITE, "2", &["--solver", solver, "--sample", "0.01"]);
+        found.says(&["at t = 0.", "not positive definite", "`phi`"]);
+        assert!(
+            (0.4..=0.5).contains(&found.last_time()),
+            "{}",
+            found.last_time()
+        );
+        assert!(found.rows.len() > 40);
+    }
+}
