@@ -181,3 +181,25 @@ mass = "1/2*m*dot(x)^2"
 [potential]
 well = "-e*ln(x/L) + e*x/L"
 "#;
+
+/// A mass on a spring with a term linear in its rate beyond where states are drawn.
+pub(super) const FAR: &str = r#"
+[model]
+name = "far"
+
+[parameters]
+m = { value = 2.0, unit = "kg" }
+k = { value = 30, unit = "N/m" }
+h = { value = 4, unit = "kg/s" }
+L = { value = 3, unit = "m" }
+
+[coordinates]
+x = { unit = "m" }
+
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+far = "h*dot(x)*max(x - L, 0)"
+
+[potential]
+spring = "1/2*k*x^2"
+"#;

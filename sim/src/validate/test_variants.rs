@@ -249,6 +249,18 @@ pub(super) const LOGARITHMIC: Single = Single {
     power: |_, _, _| 0.0,
 };
 
+/// The mass of 2 kg on a spring of 30 N/m, with its term beyond 3 m.
+pub(super) const FAR_TERM: Single = Single {
+    name: "x",
+    mass: |_, _, _| 2.0,
+    acceleration: |_, x, _| -15.0 * x,
+    energy: |_, x, rate| rate * rate + 4.0 * rate * (x - 3.0).max(0.0) + 15.0 * x * x,
+    power: |_, x, rate| {
+        let beyond = if x > 3.0 { rate * rate } else { 0.0 };
+        4.0 * (-15.0 * x * (x - 3.0).max(0.0) + beyond)
+    },
+};
+
 impl Variant for Single {
     fn coordinate_names(&self) -> Vec<String> {
         vec![self.name.into()]

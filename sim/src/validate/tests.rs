@@ -5,9 +5,10 @@ use super::certificate::{Certificate, Check};
 use super::certify::{Emitted, EmittedFunction, Reference, Subject, certify};
 use super::compiler::Compiler;
 use super::oracle::Oracle;
-use super::test_models::{BEAM, DOUBLE_PENDULUM, LOGARITHM, ROTOR, SPRING, TANK, model};
+use super::test_models::{BEAM, DOUBLE_PENDULUM, FAR, LOGARITHM, ROTOR, SPRING, TANK, model};
 use super::test_variants::{
-    Beam, DoublePendulum, EMITTED, FREE_ROTOR, Fault, LOGARITHMIC, Single, Spring, TIMED_TANK,
+    Beam, DoublePendulum, EMITTED, FAR_TERM, FREE_ROTOR, Fault, LOGARITHMIC, Single, Spring,
+    TIMED_TANK,
 };
 use super::variant::Variant;
 
@@ -161,6 +162,18 @@ fn the_power_of_a_mass_that_changes_with_time_is_judged_twice() {
         let bad = certificate(TANK, 0, &variants, &[], Err("not emitted".into()));
         assert_eq!(failures(&bad), ["power", "power_balance"]);
     }
+}
+
+#[test]
+fn a_term_linear_in_the_rate_counts_where_few_states_come() {
+    let good = single(FAR, || FAR_TERM);
+    assert!(find(&good, "accelerations switch_1+").passed);
+    assert!(good.passed, "{:?}", failures(&good));
+    let bad = single(FAR, || Single {
+        power: |_, _, _| 0.0,
+        ..FAR_TERM
+    });
+    assert!(failures(&bad).contains(&"power"));
 }
 
 #[test]

@@ -216,8 +216,8 @@ impl Findings<'_> {
         })())
     }
 
-    /// What the power is to be: the rate of T + V. Where no energy depends on time this is
-    /// the power of the forces, elsewhere the rate is taken along the motion with these
+    /// What the power is to be: the rate of T + V. Where no energy depends on time, neither
+    /// at the few states that were asked nor at this one, this is the power of the forces, elsewhere the rate is taken along the motion with these
     /// accelerations, which are judged by themselves.
     fn power(&self, sample: &Sample, accelerations: &[f64]) -> Result<Conditioned, OracleError> {
         let Sample {
@@ -225,7 +225,7 @@ impl Findings<'_> {
             state,
             inputs,
         } = sample;
-        if self.scleronomic {
+        if self.scleronomic && self.oracle.is_scleronomic(*time, state, inputs)? {
             return self.oracle.power(*time, state, inputs);
         }
         self.oracle.energy_rate(*time, state, accelerations, inputs)
