@@ -11,11 +11,15 @@ const RISE: u64 = 5;
 #[test]
 fn no_case_takes_more_instructions_than_before() {
     if !available() {
-        eprintln!("SKIPPED: instructions were not counted, for want of valgrind");
+        skips::skip(
+            "instructions were not counted, for want of valgrind (Debian: apt-get install valgrind)",
+        );
         return;
     }
     if cfg!(debug_assertions) {
-        eprintln!("SKIPPED: instructions are those of optimised code, cargo test --release");
+        skips::skip(
+            "instructions were not counted, they are those of optimised code: cargo test --release",
+        );
         return;
     }
     let folder = tempfile::tempdir().expect("a folder");

@@ -105,14 +105,18 @@ fn seconds(call: impl FnOnce()) -> f64 {
 #[test]
 fn steps_of_eight_are_faster_than_one_after_the_other() {
     if cfg!(debug_assertions) {
-        eprintln!("SKIPPED: nothing is inlined without optimisation, cargo test --release");
+        skips::skip(
+            "lanes were not timed, nothing is inlined without optimisation: cargo test --release",
+        );
         return;
     }
     let coefficients = arm::Coefficients::prepare(&arm::Parameters::default());
     let begin = [1e-5; arm::STATES];
     for registers in [Registers::Wide, Registers::Pair] {
         if !registers.are_there() {
-            eprintln!("SKIPPED: this machine has no registers for {registers:?}");
+            skips::skip(&format!(
+                "{registers:?} was not timed, this machine has no such registers"
+            ));
             continue;
         }
         let (mut eight, mut one) = (f64::INFINITY, f64::INFINITY);
