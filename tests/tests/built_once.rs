@@ -1,0 +1,36 @@
+//! The program has its dependencies with the features that the tests and benches ask of them:
+//! `cargo run` and `cargo test --workspace`, one after the other as in `.ci/run`, then compile
+//! nothing twice.
+
+use std::collections::BTreeSet;
+use std::process::Command;
+
+use eomgen_tests::models::project;
+
+/// Packages with their features, of what is chosen and all that it needs.
+fn packages(chosen: &[&str]) -> BTreeSet<String> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo)
+        .args(["tree", "--offline", "--locked", "--prefix", "none"])
+        .args(["--format", "{p} with {f}"])
+        .args(chosen)
+        .current_dir(project())
+        .output()
+        .expect("cargo can be run");
+    assert!(output.status.success(), "{output:?}");
+    let text = String::from_utf8(output.stdout).expect("names");
+    let line = |line: &str| line.trim_end_matches(" (*)").to_owned();
+    text.lines().map(line).collect()
+}
+
+#[test]
+fn what_the_program_needs_is_built_as_the_tests_need_it() {
+    let whole = packages(&["--workspace", "--edges", "normal,build,dev"]);
+    let program = packages(&["--package", "eomgen-cli", "--edges", "normal,build"]);
+    let twice: Vec<_> = program.difference(&whole).collect();
+    assert!(
+        twice.is_empty(),
+        "compiled for the program and again for the tests; cli/Cargo.toml can ask for the \
+         features that the tests do: {twice:#?}"
+    );
+}
