@@ -340,6 +340,15 @@ pub struct Merge {
     pub json: bool,
 }
 
+/// Which mode shapes the paper's arm is derived with.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ModeShapes {
+    /// Those of a clamped-free beam.
+    Corrected,
+    /// Those that the paper prints, Eq. (18) and (19).
+    Printed,
+}
+
 /// Options of `study-search`.
 #[derive(Args)]
 pub struct StudySearch {
@@ -352,6 +361,9 @@ pub struct StudySearch {
     /// Which sequence of sets.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Which mode shapes the arm has.
+    #[arg(long, value_enum, default_value_t = ModeShapes::Corrected)]
+    pub mode_shapes: ModeShapes,
     /// Print one JSON document on what was found.
     #[arg(long)]
     pub json: bool,

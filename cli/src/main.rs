@@ -38,9 +38,7 @@ fn main() -> ExitCode {
         Command::Discover(options) => commands::discover::discover(&options),
         Command::Sweep(options) => commands::sweep::run(&options),
         Command::Merge(options) => commands::merge::run(&options),
-        Command::StudySearch(options) => {
-            commands::study_search::run(&options.out, options.sets, options.seed, options.json)
-        }
+        Command::StudySearch(options) => commands::study_search::run(&options),
         Command::Study(options) => commands::study::run(&options),
         Command::Tour(options) => commands::tour::run(&options),
     };

@@ -3,10 +3,10 @@
 
 use std::collections::BTreeMap;
 
+use sim::analysis::classify::Motion;
 use sim::analysis::exponent::mean_exponent;
-use sim::exact::Lyapunov;
 use sim::record::HeldInputs;
-use sim::studies::arm::{Arm, Case, Undisclosed};
+use sim::studies::arm::{Arm, Case, Shapes, Undisclosed};
 use sim::studies::case::{Amplitude, Length, measure};
 use sim::studies::claims::{CLAIMS, Claim, cases};
 use sim::studies::judge::{Holding, Readings, judge};
@@ -155,36 +155,152 @@ fn a_missing_case_decides_nothing() {
     }
 }
 
-#[test]
-fn chaos_of_the_assumed_arm_grows_as_tangent_vectors_do() {
-    let arm = Arm::new(&[4]).unwrap();
-    let case = Case {
+/// The arm with the assumed values and the paper's order.
+fn assumed(forcing: Forcing, backlash: f64) -> Case {
+    Case {
         order: 4,
-        backlash: 100e-6,
-        omega: Forcing::TenPi.omega(),
+        backlash,
+        omega: forcing.omega(),
         undisclosed: Undisclosed::ASSUMED,
+    }
+}
+
+/// How fast a second motion beside the first parts from it, per forcing period: it is set back
+/// to its first distance four times in each (G. Benettin, L. Galgani, J.-M. Strelcyn, Phys.
+/// Rev. A 14 (1976) 2338-2345).
+fn parting(arm: &Arm, case: &Case, transient: usize, periods: usize) -> Vec<f64> {
+    const DISTANCE: f64 = 1e-9;
+    let mut propagator = arm.propagator(case).unwrap();
+    let none = HeldInputs::zero(0);
+    let mut follow = |state: &[f64], span: (f64, f64)| {
+        let followed = propagator.simulate(state, span, &[], &none, &mut |_| {});
+        followed.unwrap().last
     };
-    let measured = measure(&arm, &case, &Length::SCREENING).unwrap();
+    let quarter = |count: usize| count as f64 * case.period() / 4.0;
+    let mut here = follow(&[0.0; 14], (0.0, quarter(4 * transient)));
+    let mut difference = vec![1.0; here.len()];
+    let mut growths = vec![0.0; periods];
+    for (period, step) in (0..4 * periods).map(|step| (step / 4, step + 4 * transient)) {
+        // No force depends on where the carrier is.
+        difference[2] = 0.0;
+        let length = difference.iter().map(|d| d * d).sum::<f64>().sqrt();
+        let beside = here.iter().zip(&difference);
+        let beside: Vec<f64> = beside.map(|(y, d)| y + DISTANCE * d / length).collect();
+        let span = (quarter(step), quarter(step + 1));
+        let there = follow(&beside, span);
+        here = follow(&here, span);
+        difference = there.iter().zip(&here).map(|(a, b)| a - b).collect();
+        let parted = difference
+            .iter()
+            .enumerate()
+            .filter(|(place, _)| *place != 2);
+        let parted = parted.map(|(_, d)| d * d).sum::<f64>().sqrt();
+        growths[period] += (parted / DISTANCE).ln();
+    }
+    growths
+}
+
+#[test]
+fn chaos_of_the_assumed_arm_grows_as_neighbouring_motions_part() {
+    let arm = Arm::new(&[4]).unwrap();
+    let case = assumed(Forcing::TenPi, 100e-6);
+    let length = Length {
+        strong: None,
+        ..Length::SCREENING
+    };
+    let measured = measure(&arm, &case, &length).unwrap();
     let reading = Reading::of(&measured);
     assert_eq!(reading.kind, Kind::Chaotic, "{}", reading.sentence);
-    let mut propagator = arm.propagator(&case).unwrap();
-    let request = Lyapunov {
-        transient: 40.0 * case.period(),
-        interval: case.period(),
-        intervals: 200,
-        exponents: 1,
-    };
-    let start = vec![0.0; propagator.states()];
-    let none = HeldInputs::zero(0);
-    let grown = propagator.lyapunov(&start, 0.0, &none, &request).unwrap();
-    let tangent = mean_exponent(&grown.growths[0], grown.interval).unwrap();
-    let neighbours = measured.evidence.exponent.unwrap();
-    // Two independent stretches of one chaotic motion: four of their joint standard errors.
-    let error = neighbours.standard_error.hypot(tangent.standard_error);
+    let carried = measured.evidence.exponent.unwrap();
+    let parted = mean_exponent(&parting(&arm, &case, 40, 200), case.period()).unwrap();
+    // Two stretches of one chaotic motion, by tangents and by differences: four of their joint
+    // standard errors.
+    let error = carried.standard_error.hypot(parted.standard_error);
     assert!(
-        (neighbours.value - tangent.value).abs() < 4.0 * error,
-        "{neighbours:?} {tangent:?}"
+        (carried.value - parted.value).abs() < 4.0 * error,
+        "{carried:?} {parted:?}"
     );
+    // What the torque makes at its own frequency is no sign of order.
+    let lines = measured.evidence.line_share.unwrap();
+    assert!(lines < 0.1, "{lines}");
+}
+
+#[test]
+fn stated_errors_of_exponents_are_how_they_scatter_over_neighbouring_backlashes() {
+    let arm = Arm::new(&[4]).unwrap();
+    let length = Length {
+        transient: (200, 200),
+        periods: 400,
+        most: 400,
+        ..Length::SCREENING
+    };
+    // Chaos that comes and goes over hundreds of periods.
+    let exponents: Vec<_> = (0..24)
+        .map(|place| {
+            let case = assumed(Forcing::FivePi, 100e-6 + 1e-8 * f64::from(place));
+            let strong = None;
+            let measured = measure(&arm, &case, &Length { strong, ..length });
+            measured.unwrap().evidence.exponent.unwrap()
+        })
+        .collect();
+    let count = exponents.len() as f64;
+    let mean = exponents.iter().map(|e| e.value).sum::<f64>() / count;
+    let squares = exponents.iter().map(|e| (e.value - mean).powi(2));
+    let scatter = (squares.sum::<f64>() / (count - 1.0)).sqrt();
+    let stated = exponents.iter().map(|e| e.standard_error.powi(2));
+    let stated = (stated.sum::<f64>() / count).sqrt();
+    // 24 of them know the scatter to 15 %; batches of 20 periods state half of it.
+    assert!(
+        (0.65..1.6).contains(&(stated / scatter)),
+        "{stated} {scatter} {exponents:?}"
+    );
+}
+
+#[test]
+fn a_case_is_followed_on_until_it_is_decided() {
+    let arm = Arm::new(&[4]).unwrap();
+    let case = assumed(Forcing::FivePi, 10e-6);
+    let motion = |most: usize| {
+        let length = Length {
+            transient: (150, 150),
+            most,
+            ..Length::SCREENING
+        };
+        let measured = measure(&arm, &case, &length).unwrap();
+        // What is recorded does not grow.
+        let last = measured.record.times.last().unwrap() - measured.record.times[0];
+        assert!((last / case.period() - 100.0).abs() < 1e-9);
+        (measured.verdict.motion, measured.periods)
+    };
+    assert_eq!(motion(100), (Motion::Undecided, 100));
+    let (decided, periods) = motion(2000);
+    assert_eq!(decided, Motion::Chaotic);
+    assert!((200..2000).contains(&periods), "{periods}");
+}
+
+#[test]
+fn with_the_printed_mode_shapes_the_least_play_is_chaos_and_no_third_mode_dominates() {
+    let arm = Arm::with(Shapes::Printed, &[4]).unwrap();
+    let length = Length {
+        modes: 1,
+        ..Length::FULL
+    };
+    for micrometres in [10, 25, 50, 100] {
+        for forcing in [Forcing::FivePi, Forcing::TenPi] {
+            let key = Key::flexible(forcing, micrometres);
+            let measured = measure(&arm, &key.case(Undisclosed::ASSUMED), &length);
+            let reading = Reading::of(&measured.unwrap());
+            // One of the eight comes to rest in a motion that repeats.
+            let settles = (forcing, micrometres) == (Forcing::FivePi, 50);
+            let kind = if settles {
+                Kind::Regular
+            } else {
+                Kind::Chaotic
+            };
+            assert_eq!(reading.kind, kind, "{key}: {}", reading.sentence);
+            assert_eq!(reading.dominant_mode(), Some(2), "{:?}", reading.vibration);
+        }
+    }
 }
 
 #[test]
@@ -242,7 +358,8 @@ fn a_killed_search_goes_on_to_the_same_bytes() {
     let short = Length {
         transient: (2, 2),
         periods: 100,
-        strong: Some(20),
+        most: 100,
+        strong: Some(30),
         modes: 1,
     };
     let request = Request {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use sim::studies::StudyError;
-use sim::studies::arm::{Arm, Undisclosed};
+use sim::studies::arm::{Arm, Shapes, Undisclosed};
 use sim::studies::case::Length;
 use sim::studies::charts::charts;
 use sim::studies::claims::CLAIMS;
@@ -14,6 +14,7 @@ use sim::studies::search::{Found, Judged, Request, judge_all, orders, ranked, se
 use sim::studies::sets::RANGES;
 use sim::studies::tally::{exclusive, histogram, share_with, shares, undecided};
 
+use crate::arguments::{ModeShapes, StudySearch};
 use crate::claims_table::markdown;
 use crate::output::{file_place, write_file};
 use crate::problem::{Outcome, Problem, say};
@@ -30,8 +31,9 @@ const MOST_SETS: usize = 1_000_000;
 /// How many sets `search.json` names.
 const NAMED: usize = 20;
 
-/// Runs the command: `sets` parameter sets of the sequence `seed`, into the folder `out`.
-pub fn run(out: &Path, sets: usize, seed: u64, as_json: bool) -> Outcome {
+/// Runs the command.
+pub fn run(options: &StudySearch) -> Outcome {
+    let (out, sets) = (options.out.as_path(), options.sets);
     let (document, table) = (out.join("search.json"), out.join("search.csv"));
     file_place(&document)?;
     file_place(&table)?;
@@ -40,10 +42,14 @@ pub fn run(out: &Path, sets: usize, seed: u64, as_json: bool) -> Outcome {
             "--sets {sets}: expected 1 to {MOST_SETS} parameter sets"
         )));
     }
-    let arm = Arm::new(&orders()).map_err(refused)?;
+    let shapes = match options.mode_shapes {
+        ModeShapes::Corrected => Shapes::Corrected,
+        ModeShapes::Printed => Shapes::Printed,
+    };
+    let arm = Arm::with(shapes, &orders()).map_err(refused)?;
     let request = Request {
         sets,
-        seed,
+        seed: options.seed,
         confirmed: CONFIRMED.min(sets),
         neighbours: NEIGHBOURS.min(sets),
         screening: Length::SCREENING,
@@ -68,7 +74,7 @@ pub fn run(out: &Path, sets: usize, seed: u64, as_json: bool) -> Outcome {
     }
     let report = report(&request, &assumed, &found);
     write_file(&document, format!("{report:#}\n").as_bytes())?;
-    if as_json {
+    if options.json {
         return say(&format!("{report:#}\n"));
     }
     say(&summary(&assumed, &found, out))

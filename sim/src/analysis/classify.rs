@@ -33,7 +33,8 @@ pub struct Evidence {
     pub chaos_indicator: Option<f64>,
     /// The period found on the section, in forcing periods.
     pub period: Option<usize>,
-    /// The share of the power that lies in discrete lines of the spectrum.
+    /// Of the power that is not the forcing's and its harmonics', the share that lies in discrete
+    /// lines of the spectrum. With them every forced motion has nearly all of it in lines.
     pub line_share: Option<f64>,
     /// The forcing frequency, rad/s.
     pub forcing: f64,
@@ -78,7 +79,7 @@ enum Growth {
 /// Weighs the evidence.
 ///
 /// With l the exponent, s its standard error, T = 2 pi/forcing, K the chaos indicator and L
-/// the share of the power in lines:
+/// the share of the power beside the forcing's harmonics that is in lines:
 ///
 /// * l is *positive* if l > max(3 s, 0.01/T), and *not positive* if l <= max(3 s, 0.01/T)
 ///   and l + 3 s <= 0.1/T: an error so large that it could hide growth is no evidence. A
@@ -228,7 +229,11 @@ impl fmt::Display for Numbers<'_> {
             None => write!(f, "; no period found")?,
         }
         match finite(*line_share) {
-            Some(share) => write!(f, "; {:.0} % of the power in lines", 100.0 * share),
+            Some(share) => write!(
+                f,
+                "; {:.0} % of the power beside the harmonics in lines",
+                100.0 * share
+            ),
             None => Ok(()),
         }
     }
@@ -350,7 +355,7 @@ mod tests {
             classify(&growing(5.0, 0.25)).sentence,
             "chaotic: neighbouring motions separate and the section diffuses (largest exponent \
              5.000 ± 0.250 1/s, 1.000 per forcing period; 0-1 test K = 0.97; no period found; \
-             20 % of the power in lines)."
+             20 % of the power beside the harmonics in lines)."
         );
         let periodic = Evidence {
             period: Some(2),

@@ -30,6 +30,9 @@ pub enum Trend {
 const LINE_HALF_WIDTH: usize = 2;
 /// How far to both sides the background of a line is looked for, in steps of frequency.
 const BACKGROUND_REACH: usize = 24;
+/// A smaller share of the power than this is that of rounding, a thousandth of a millionth of
+/// the amplitude.
+const ROUNDING: f64 = 1e-18;
 /// How far a line stands out of its background. A density averaged over eight segments or
 /// more exceeds four times its median once in some 10^6 values if the signal is noise.
 const PROMINENCE: f64 = 20.0;
@@ -113,6 +116,27 @@ fn mean_power(values: &[f64], window: &[f64], trend: Trend) -> Vec<f64> {
     power
 }
 
+/// What is left of a series when the mean over all periods of `period` samples is taken off
+/// it: the forcing's line and all of its harmonics, which any forced motion has, chaos
+/// included. Samples after the last whole period are left out. None if nothing is left but
+/// rounding, for a motion that repeats with the forcing, or if there is no whole period.
+pub fn without_harmonics(values: &[f64], period: usize) -> Option<Vec<f64>> {
+    let periods = values.len().checked_div(period)?;
+    let mut repeated = vec![0.0; period];
+    for cycle in values.chunks_exact(period) {
+        for (sum, value) in repeated.iter_mut().zip(cycle) {
+            *sum += value / periods as f64;
+        }
+    }
+    let cycles = values.chunks_exact(period);
+    let rest = cycles.flat_map(|cycle| cycle.iter().zip(&repeated).map(|(x, mean)| x - mean));
+    let rest: Vec<f64> = rest.collect();
+    let power = |series: &[f64]| series.iter().map(|x| x * x).sum::<f64>();
+    let average = super::error::mean(values);
+    let varying: Vec<f64> = values.iter().map(|value| value - average).collect();
+    (power(&rest) > ROUNDING * power(&varying)).then_some(rest)
+}
+
 impl PowerSpectrum {
     /// The step from one frequency to the next, Hz; 0 if there are fewer than two.
     pub fn resolution(&self) -> f64 {
@@ -152,7 +176,9 @@ impl PowerSpectrum {
             return None;
         }
         let lines = (0..self.density.len()).filter_map(|k| self.line_density(k));
-        Some((lines.sum::<f64>() / total).clamp(0.0, 1.0))
+        // From 0 on: the sum of nothing is -0.
+        let sum = lines.fold(0.0, |sum, line| sum + line);
+        Some((sum / total).clamp(0.0, 1.0))
     }
 
     /// The sum of the densities of the line at `k` above its background, if there is one.
@@ -302,6 +328,36 @@ mod tests {
         let share = welch(&mixed, 1e-3, 1000, Trend::Mean)?.line_share();
         // 130 segments: the noise under the line is subtracted to within a per cent.
         assert!((share.unwrap() - 0.5).abs() < 0.02, "{share:?}");
+        Ok(())
+    }
+
+    #[test]
+    fn a_strong_forcing_does_not_hide_that_the_rest_is_noise() -> Result<(), AnalysisError> {
+        let (count, period) = (1 << 16, 50);
+        // Harmonics a hundred times as strong as what else moves, noise or another line.
+        let forced = |rest: &[f64]| -> Vec<f64> {
+            let harmonics = |n: usize| {
+                let angle = TAU * n as f64 / period as f64;
+                60.0 * angle.sin() + 25.0 * (3.0 * angle).cos()
+            };
+            rest.iter()
+                .enumerate()
+                .map(|(n, x)| x + harmonics(n))
+                .collect()
+        };
+        let share = |values: &[f64]| -> Result<Option<f64>, AnalysisError> {
+            Ok(welch(values, 1e-3, 20 * period, Trend::Mean)?.line_share())
+        };
+        let noisy = forced(&noise(count));
+        assert!(share(&noisy)?.unwrap() > 0.999, "the forcing's lines");
+        let rest = without_harmonics(&noisy, period).unwrap();
+        assert!(share(&rest)?.unwrap() < 0.01);
+        let lines = forced(&sine(1.0, 7.3, 1e-3, count));
+        let rest = without_harmonics(&lines, period).unwrap();
+        assert!(share(&rest)?.unwrap() > 0.99);
+        assert_eq!(without_harmonics(&forced(&vec![0.0; count]), period), None);
+        assert_eq!(without_harmonics(&[1.0; 5], 0), None);
+        assert_eq!(without_harmonics(&[1.0; 5], 6), None);
         Ok(())
     }
 

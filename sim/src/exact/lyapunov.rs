@@ -6,7 +6,7 @@
 
 use super::error::ExactError;
 use super::flow::Flow;
-use super::propagator::{Change, Follow, Propagator, Segment};
+use super::propagator::{Change, Follow, Motion, Propagator, Segment};
 use super::tangent::Tangents;
 use crate::record::HeldInputs;
 use crate::solve::SolveError;
@@ -38,7 +38,70 @@ pub struct Growth {
     pub switches: u64,
 }
 
+/// A motion with tangent vectors beside it, to be followed on as long as one likes.
+pub struct Carried {
+    motion: Motion,
+    frame: Frame,
+}
+
+impl Carried {
+    /// For each tangent vector ln |v_after| / |v_before| over the last stretch.
+    pub fn growth(&self) -> &[f64] {
+        &self.frame.growth
+    }
+
+    /// The state at the end of the last stretch.
+    pub fn state(&self) -> &[f64] {
+        self.motion.state()
+    }
+
+    /// Switches so far.
+    pub fn switches(&self) -> u64 {
+        self.motion.switches()
+    }
+}
+
 impl Propagator {
+    /// The motion from `initial` at time `t`, s, on, with one tangent vector. Its length is
+    /// the root of the sum of (weight times entry)^2; what has the weight 0 is left out of it.
+    ///
+    /// # Errors
+    /// As for [`Propagator::start`], or if not every state has a weight.
+    pub fn carried(
+        &mut self,
+        initial: &[f64],
+        t: f64,
+        inputs: &HeldInputs,
+        weights: &[f64],
+    ) -> Result<Carried, ExactError> {
+        if weights.len() != self.states || weights.iter().any(|w| !(*w >= 0.0 && w.is_finite())) {
+            let problem = format!("expected {} weights of 0 or more", self.states);
+            return Err(SolveError::Request { problem }.into());
+        }
+        Ok(Carried {
+            motion: self.start(t, initial, inputs)?,
+            frame: Frame::new(weights, 1),
+        })
+    }
+
+    /// Follows a motion and its tangent vectors on to a time, s; then these are orthonormal
+    /// again.
+    ///
+    /// # Errors
+    /// As for [`Propagator::simulate`].
+    pub fn carry(
+        &mut self,
+        carried: &mut Carried,
+        end: f64,
+        inputs: &HeldInputs,
+    ) -> Result<(), ExactError> {
+        let Carried { motion, frame } = carried;
+        frame.growth.fill(0.0);
+        self.follow_until(motion, end, inputs, frame)?;
+        frame.orthonormalise();
+        Ok(())
+    }
+
     /// The growth of neighbouring motions, from `initial` at time `t`, s, on.
     ///
     /// At most as many exponents are given as there are states that matter.
@@ -56,29 +119,35 @@ impl Propagator {
         let felt = self.felt_states();
         let wanted = request.exponents.min(felt.iter().filter(|f| **f).count());
         let mut motion = self.start(t, initial, inputs)?;
-        let mut frame = Frame::new(&felt, 0);
-        self.follow_until(&mut motion, t + 0.5 * request.transient, inputs, &mut frame)?;
-        let mut frame = Frame::new(&felt, wanted);
+        let weights: Vec<f64> = felt.iter().map(|felt| f64::from(u8::from(*felt))).collect();
+        let mut nobody = Frame::new(&weights, 0);
+        self.follow_until(
+            &mut motion,
+            t + 0.5 * request.transient,
+            inputs,
+            &mut nobody,
+        )?;
+        let mut carried = Carried {
+            motion,
+            frame: Frame::new(&weights, wanted),
+        };
         let measured_from = t + request.transient;
-        self.follow_until(&mut motion, measured_from, inputs, &mut frame)?;
-        frame.orthonormalise();
+        self.carry(&mut carried, measured_from, inputs)?;
         let mut growths = vec![Vec::with_capacity(request.intervals); wanted];
         let mut section = Vec::with_capacity(request.intervals);
         for index in 1..=request.intervals {
-            frame.growth.fill(0.0);
             let end = measured_from + index as f64 * request.interval;
-            self.follow_until(&mut motion, end, inputs, &mut frame)?;
-            frame.orthonormalise();
-            for (all, growth) in growths.iter_mut().zip(&frame.growth) {
+            self.carry(&mut carried, end, inputs)?;
+            for (all, growth) in growths.iter_mut().zip(carried.growth()) {
                 all.push(*growth);
             }
-            section.push(motion.state().to_vec());
+            section.push(carried.state().to_vec());
         }
         Ok(Growth {
             interval: request.interval,
             growths,
             section,
-            switches: motion.switches(),
+            switches: carried.switches(),
         })
     }
 }
@@ -100,31 +169,37 @@ impl Lyapunov {
 /// Tangent vectors that are kept orthonormal.
 struct Frame {
     tangents: Tangents,
-    felt: Vec<bool>,
+    /// The squared weight of each state in a length.
+    metric: Vec<f64>,
     /// ln of what each vector has grown by.
     growth: Vec<f64>,
 }
 
 impl Frame {
     /// The first unit vectors, turned a little against each other.
-    fn new(felt: &[bool], count: usize) -> Self {
-        let places: Vec<usize> = (0..felt.len()).filter(|state| felt[*state]).collect();
+    fn new(weights: &[f64], count: usize) -> Self {
+        let felt = weights
+            .iter()
+            .enumerate()
+            .filter(|(_, weight)| **weight > 0.0);
+        let felt: Vec<(usize, f64)> = felt.map(|(state, weight)| (state, *weight)).collect();
         let vectors = (0..count)
             .map(|index| {
-                let mut vector = vec![0.0; felt.len()];
-                for (k, state) in places.iter().enumerate() {
-                    vector[*state] = if k == index {
+                let mut vector = vec![0.0; weights.len()];
+                for (k, (state, weight)) in felt.iter().enumerate() {
+                    let turned = if k == index {
                         1.0
                     } else {
                         0.1 / (1 + k + index) as f64
                     };
+                    vector[*state] = turned / weight;
                 }
                 vector
             })
             .collect();
         let mut frame = Self {
             tangents: Tangents::new(vectors),
-            felt: felt.to_vec(),
+            metric: weights.iter().map(|weight| weight * weight).collect(),
             growth: vec![0.0; count],
         };
         frame.orthonormalise();
@@ -138,23 +213,28 @@ impl Frame {
         for index in 0..vectors.len() {
             let (done, rest) = vectors.split_at_mut(index);
             let vector = &mut rest[0];
-            for (slot, felt) in vector.iter_mut().zip(&self.felt) {
-                if !felt {
+            for (slot, metric) in vector.iter_mut().zip(&self.metric) {
+                if *metric == 0.0 {
                     *slot = 0.0;
                 }
             }
             for earlier in done {
-                let along: f64 = earlier.iter().zip(&*vector).map(|(a, b)| a * b).sum();
+                let along = product(&self.metric, earlier, vector);
                 vector
                     .iter_mut()
                     .zip(earlier)
                     .for_each(|(slot, e)| *slot -= along * *e);
             }
-            let length = vector.iter().map(|v| v * v).sum::<f64>().sqrt();
+            let length = product(&self.metric, vector, vector).sqrt();
             self.growth[index] += length.ln();
             vector.iter_mut().for_each(|slot| *slot /= length);
         }
     }
+}
+
+fn product(metric: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    let pairs = a.iter().zip(b).zip(metric);
+    pairs.map(|((a, b), metric)| metric * a * b).sum()
 }
 
 impl Follow for Frame {

@@ -56,7 +56,7 @@ mod tangent;
 mod watched;
 
 pub use error::ExactError;
-pub use lyapunov::{Growth, Lyapunov};
+pub use lyapunov::{Carried, Growth, Lyapunov};
 pub use model::PiecewiseLinear;
 pub use propagator::{Motion, Propagator};
 pub use sensitivity::{By, Sensitivities};

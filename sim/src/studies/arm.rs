@@ -59,8 +59,36 @@ impl Case {
     }
 }
 
+/// Which mode shapes the arm is derived with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shapes {
+    /// Those of a clamped-free beam.
+    #[default]
+    Corrected,
+    /// Those that Eq. (18) and (19) print, with a root that is none and the wrong sign.
+    Printed,
+}
+
+impl Shapes {
+    /// The name of the basis in a specification.
+    fn basis(self) -> &'static str {
+        match self {
+            Self::Corrected => "\"clamped_free\"",
+            Self::Printed => "\"clamped_free_printed\"",
+        }
+    }
+
+    fn shape(self, number: usize) -> ModeShape {
+        match self {
+            Self::Corrected => ModeShape::clamped_free(number),
+            Self::Printed => ModeShape::printed(number),
+        }
+    }
+}
+
 /// The paper's arm, derived once for each order.
 pub struct Arm {
+    shapes: Shapes,
     model: Model,
     derived: Vec<(usize, PiecewiseLinear)>,
     names: Vec<String>,
@@ -73,7 +101,16 @@ impl Arm {
     /// # Errors
     /// If it cannot be derived at an order.
     pub fn new(orders: &[usize]) -> Result<Self, StudyError> {
-        let source = Source::new("planetary_arm.toml", SPECIFICATION);
+        Self::with(Shapes::Corrected, orders)
+    }
+
+    /// Derives the shipped arm with these mode shapes.
+    ///
+    /// # Errors
+    /// If it cannot be derived at an order.
+    pub fn with(shapes: Shapes, orders: &[usize]) -> Result<Self, StudyError> {
+        let text = SPECIFICATION.replace(Shapes::Corrected.basis(), shapes.basis());
+        let source = Source::new("planetary_arm.toml", text);
         let checked = model_spec::check(source)
             .map_err(|diagnostics| StudyError::Request(diagnostics.render(false)))?;
         let model = checked.model;
@@ -86,6 +123,7 @@ impl Arm {
             derived.push((order, PiecewiseLinear::of(&model, &[order])?));
         }
         Ok(Self {
+            shapes,
             model,
             derived,
             names,
@@ -96,6 +134,11 @@ impl Arm {
     /// The specification's model.
     pub fn model(&self) -> &Model {
         &self.model
+    }
+
+    /// The mode shapes it is derived with.
+    pub fn shapes(&self) -> Shapes {
+        self.shapes
     }
 
     /// A propagator of a case.
@@ -130,7 +173,8 @@ impl Arm {
         let at = |name| self.shipped(name);
         let (rho, area, l) = (at("rho"), at("A"), at("l"));
         let bending = at("E") * case.undisclosed.second_moment / (rho * area * l.powi(4));
-        let shapes: Vec<ModeShape> = (1..=case.order).map(ModeShape::clamped_free).collect();
+        let shapes = (1..=case.order).map(|number| self.shapes.shape(number));
+        let shapes: Vec<ModeShape> = shapes.collect();
         let carrier =
             (at("I_c") + 3.0 * at("m_p") * at("r_c").powi(2) + rho * area * l.powi(3) / 3.0)
                 / at("i_sH").powi(2);

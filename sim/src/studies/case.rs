@@ -5,25 +5,24 @@
 //! runs free, no force depends on its angle, and in the rotating frame the mean torque is
 //! zero. Only for b_m = 0, where the drive accelerates for ever, does a_m load the teeth.
 
-use crate::analysis::classify::{Evidence, SIGNIFICANCE, Verdict, classify};
-use crate::analysis::exponent::Exponent;
+use crate::analysis::classify::{Evidence, Verdict};
 use crate::analysis::modes::{BandPower, TipShares, band_power, tip_shares};
-use crate::analysis::poincare::{Section, Shape};
-use crate::analysis::spectrum::{Trend, welch};
-use crate::analysis::zero_one::chaos_indicator;
+use crate::analysis::poincare::Shape;
+use crate::analysis::spectrum::{Trend, welch, without_harmonics};
+use crate::exact::Propagator;
 
 use super::arm::{Arm, Case, Lengths};
 use super::error::StudyError;
-use super::neighbours::COMPARISONS;
+use super::kind::{Known, find, is_strong};
+use super::neighbours::Neighbours;
 use super::run::Run;
+use super::series::extents;
 pub use super::series::{Amplitude, Record};
-use super::series::{FIRST_MODE, X_PR, X_SP, extents};
 
-/// Points of the section are equal within this share of the motion's extent: above what is
-/// left of a transient that decays over tens of periods, below what the eye sees.
-const TOLERANCE: f64 = 2e-3;
 /// Forcing periods in a segment of a spectrum: harmonics are then 20 steps apart.
 const SEGMENT: usize = 20;
+/// From fewer segments, which overlap by half, peaks of noise stand out as lines do.
+const FEWEST_SEGMENTS: usize = 8;
 /// The band of a natural frequency reaches about this much above and below, by ratio.
 const BAND: f64 = 2.5;
 /// The least and the most samples per forcing period.
@@ -45,6 +44,9 @@ pub struct Length {
     pub transient: (usize, usize),
     /// How many forcing periods are recorded then; at least 100, as the 0-1 test needs.
     pub periods: usize,
+    /// How many forcing periods a motion is followed at most, twice as many each time, until
+    /// its kind is decided. What is recorded does not grow with them.
+    pub most: usize,
     /// After how many recorded forcing periods a motion is let go whose neighbours part by
     /// more than a factor e per forcing period, three standard errors deducted: such chaos
     /// needs no second witness, and is the dearest to follow. None: never.
@@ -59,7 +61,8 @@ impl Length {
     pub const SCREENING: Self = Self {
         transient: (20, 60),
         periods: 100,
-        strong: Some(20),
+        most: 400,
+        strong: Some(30),
         modes: 1,
     };
 
@@ -67,6 +70,7 @@ impl Length {
     pub const CONFIRMING: Self = Self {
         transient: (100, 300),
         periods: 300,
+        most: 2000,
         strong: None,
         modes: 1,
     };
@@ -75,18 +79,19 @@ impl Length {
     pub const FULL: Self = Self {
         transient: (150, 1000),
         periods: 400,
+        most: 2000,
         strong: None,
         modes: 4,
     };
 
-    /// Samples per forcing period, a multiple of four.
+    /// Samples per forcing period.
     fn samples(&self, case: &Case, lengths: &Lengths) -> usize {
         let shown = self.modes.min(lengths.natural.len());
         let highest = shown
             .checked_sub(1)
             .and_then(|mode| lengths.natural.get(mode));
         let needed = highest.map_or(0.0, |highest| 2.6 * BAND * highest * case.period());
-        COMPARISONS * ((needed as usize).clamp(LEAST_SAMPLES, MOST_SAMPLES) / COMPARISONS + 1)
+        (needed as usize).clamp(LEAST_SAMPLES, MOST_SAMPLES)
     }
 }
 
@@ -99,6 +104,8 @@ pub struct Measurement {
     pub evidence: Evidence,
     /// The kind of motion.
     pub verdict: Verdict,
+    /// From how many forcing periods the kind was decided.
+    pub periods: usize,
     /// The stroboscopic section: points of x_sp, x_pr and their rates, once per forcing
     /// period; m and m/s.
     pub section: Vec<f64>,
@@ -165,54 +172,33 @@ pub fn measure(arm: &Arm, case: &Case, length: &Length) -> Result<Measurement, S
     let mut propagator = arm.propagator(case)?;
     let waited = waiting(case, length, &lengths);
     let mut run = Run::start(&mut propagator, case, waited, samples)?;
-    let mut growth = None;
-    if let Some(periods) = length.strong {
-        run.extend(&mut propagator, periods.min(length.periods))?;
-        let exponent = run.exponent(&mut propagator, case, &lengths)?;
-        growth = Some(exponent).filter(|exponent| is_strong(exponent, case));
-    }
-    let exponent = match growth {
-        Some(exponent) => exponent,
-        None => {
-            run.extend(&mut propagator, length.periods)?;
-            run.exponent(&mut propagator, case, &lengths)?
-        }
+    let mut neighbours = Neighbours::beside(&run, &mut propagator, case, &lengths)?;
+    let looked = match length.strong {
+        Some(periods) if parts_at_once(&mut neighbours, &mut propagator, case, periods)? => periods,
+        _ => length.periods,
     };
+    run.extend(&mut propagator, looked)?;
     let record = Record::of(&run.times, &run.states, &lengths);
-    let scale = extents(&run.states);
-    let section = section(&run.states, case, samples);
-    let places = mesh_places(case);
-    // A coordinate that does not move at all has any scale.
-    let section_scale = places.map(|place| match scale.get(place) {
-        Some(scale) if *scale > 0.0 => *scale,
-        _ => 1.0,
-    });
-    let shape = Section {
-        points: &section,
-        scale: &section_scale,
-    }
-    .shape(TOLERANCE)?;
-    let strobe: Vec<f64> = section.iter().step_by(places.len()).copied().collect();
     let interval = case.period() / samples as f64;
     let segment = SEGMENT * samples;
-    let spectrum = welch(&record.x_sp, interval, segment, Trend::Mean)?;
-    let evidence = Evidence {
-        exponent: Some(exponent),
-        chaos_indicator: chaos_indicator(&strobe).ok(),
-        period: shape.period,
-        line_share: spectrum.line_share(),
-        forcing: case.omega,
+    let known = Known {
+        case,
+        extents: &extents(&run.states),
+        line_share: line_share(&record.x_sp, interval, samples)?,
     };
+    let lasting = (looked, length.most.max(looked));
+    let found = find(&mut neighbours, &mut propagator, &known, lasting)?;
     let signed = record.dr.iter().zip(&record.transmission);
     let signed: Vec<f64> = signed.map(|(dr, lag)| dr - lag).collect();
     let halves = record.f_la.split_at(record.f_la.len() / 2);
     let modal: Vec<&[f64]> = record.modal.iter().map(Vec::as_slice).collect();
     Ok(Measurement {
         case: *case,
-        verdict: classify(&evidence),
-        evidence,
-        section,
-        shape,
+        verdict: found.verdict,
+        evidence: found.evidence,
+        section: found.section,
+        shape: found.shape,
+        periods: found.periods,
         x_sp: Amplitude::of(&record.x_sp),
         f_la: Amplitude::of(&record.f_la),
         f_la_signed: Amplitude::of(&signed),
@@ -228,9 +214,15 @@ pub fn measure(arm: &Arm, case: &Case, length: &Length) -> Result<Measurement, S
     })
 }
 
-/// Whether neighbours part so fast that nothing else need be asked.
-pub fn is_strong(exponent: &Exponent, case: &Case) -> bool {
-    (exponent.value - SIGNIFICANCE * exponent.standard_error) * case.period() > 1.0
+/// Whether neighbours part so fast over the first periods that nothing else need be asked.
+fn parts_at_once(
+    neighbours: &mut Neighbours,
+    propagator: &mut Propagator,
+    case: &Case,
+    periods: usize,
+) -> Result<bool, StudyError> {
+    neighbours.extend(propagator, periods)?;
+    Ok(is_strong(&neighbours.exponent()?, case))
 }
 
 /// How many forcing periods are waited.
@@ -244,20 +236,16 @@ fn waiting(case: &Case, length: &Length, lengths: &Lengths) -> usize {
     ((time / case.period()).ceil() as usize).clamp(least, most.max(least))
 }
 
-/// Places of x_sp, x_pr and their rates in the state.
-fn mesh_places(case: &Case) -> [usize; 4] {
-    let rates = FIRST_MODE + case.order;
-    [X_SP, X_PR, rates + X_SP, rates + X_PR]
-}
-
-fn section(states: &[Vec<f64>], case: &Case, samples: usize) -> Vec<f64> {
-    let once = states.iter().step_by(samples);
-    once.flat_map(|state| {
-        mesh_places(case)
-            .into_iter()
-            .map(|place| state.get(place).copied().unwrap_or_default())
-    })
-    .collect()
+/// The share in lines of what x_sp does beside the forcing's harmonics; none from a record so
+/// short that noise would pass for lines.
+fn line_share(x_sp: &[f64], interval: f64, samples: usize) -> Result<Option<f64>, StudyError> {
+    if x_sp.len() < FEWEST_SEGMENTS * SEGMENT * samples / 2 {
+        return Ok(None);
+    }
+    let Some(rest) = without_harmonics(x_sp, samples) else {
+        return Ok(None);
+    };
+    Ok(welch(&rest, interval, SEGMENT * samples, Trend::Mean)?.line_share())
 }
 
 /// Power above the first band, whichever frequency it is seen at: what is faster than half

@@ -2,7 +2,7 @@
 //!
 //! [`arm`] makes the paper's arm at any values of what the paper does not disclose, and
 //! [`case`](mod@case) measures one case: `run` follows its motion, `neighbours` says how
-//! fast neighbouring motions part, `series` has the paper's quantities. [`reading`] is what the claims need of it, [`claims`]
+//! fast neighbouring motions part, `kind` what kind of motion that makes it, `series` has the paper's quantities. [`reading`] is what the claims need of it, [`claims`]
 //! states them with their rules, [`judge`] decides, `evidence` says on what grounds.
 //! [`sets`] spreads the undisclosed values over plausible ranges, [`search`] judges all
 //! claims at each, [`tally`] counts what holds together, [`charts`] draws it. `display` samples cases for
@@ -17,6 +17,7 @@ pub mod error;
 mod evidence;
 mod figures;
 pub mod judge;
+mod kind;
 mod neighbours;
 pub mod order;
 pub mod reading;

@@ -1,153 +1,112 @@
 //! How fast neighbouring motions part: the largest Lyapunov exponent of the motion relative
 //! to the machine's free rotation.
 //!
-//! A second motion is started beside the recorded one, carried exactly for a part of a
-//! forcing period, compared, and set back to its first distance (G. Benettin, L. Galgani,
-//! J.-M. Strelcyn, Phys. Rev. A 14 (1976) 2338-2345). The displacement of the carrier is
-//! left out: no force depends on it, so it would add an exponent that is zero and hide the
-//! negative ones; where nothing damps the rotation its rate is left out too, which would
-//! otherwise grow linearly and pass for a slow divergence.
+//! A tangent vector is carried along the motion exactly and measured once per forcing period
+//! (G. Benettin, L. Galgani, A. Giorgilli, J.-M. Strelcyn, Meccanica 15 (1980) 9-30). The
+//! displacement of the carrier is left out: no force depends on it, so it would add an
+//! exponent that is zero and hide the negative ones; where nothing damps the rotation its
+//! rate is left out too, which would otherwise grow linearly and pass for a slow divergence.
 
 use std::f64::consts::TAU;
 
 use crate::analysis::exponent::{Exponent, mean_exponent};
-use crate::exact::Propagator;
+use crate::exact::{Carried, Propagator};
 use crate::record::HeldInputs;
 
 use super::arm::{Case, Lengths};
 use super::error::StudyError;
-use super::series::{FIRST_MODE, X_C, X_PR, X_SP, extents};
+use super::run::Run;
+use super::series::{FIRST_MODE, X_C, X_PR, X_SP};
 
-/// How many times per forcing period neighbouring motions are compared.
-pub(super) const COMPARISONS: usize = 4;
-/// After these forcing periods the difference of neighbours has turned into the direction
-/// that grows fastest.
+/// After these forcing periods a tangent vector has turned into the direction that grows
+/// fastest.
 const TURNING: usize = 5;
 
-/// The distance of the neighbours, each coordinate divided by its scale: far above rounding
-/// (1e-16 m beside deflections of 1e-5 m) and far below 1, where the difference is no longer
-/// linear after it has grown by a factor of 1000.
-const DISTANCE: f64 = 1e-6;
-
-/// A recorded motion beside which another is carried.
-pub(super) struct Recorded<'a> {
-    /// Times, s, and the states there.
-    pub times: &'a [f64],
-    pub states: &'a [Vec<f64>],
-    /// Samples per forcing period.
-    pub samples: usize,
+/// A motion with a tangent vector, seen once per forcing period.
+pub(super) struct Neighbours {
+    carried: Carried,
+    begin: f64,
+    period: f64,
+    /// The logarithm of the vector's growth over each period.
+    growths: Vec<f64>,
+    /// The state at the beginning and after each period.
+    states: Vec<Vec<f64>>,
 }
 
-/// How a difference is measured.
-struct Measure {
-    /// The unit of each number of the state.
-    scale: Vec<f64>,
-    /// Numbers of the state that are left out.
-    free: Vec<usize>,
-}
-
-/// The largest exponent of a recorded motion.
-pub(super) fn exponent(
-    propagator: &mut Propagator,
-    case: &Case,
-    lengths: &Lengths,
-    recorded: &Recorded<'_>,
-) -> Result<Exponent, StudyError> {
-    let measure = Measure::of(case, lengths, recorded.states);
-    let every = (recorded.samples / COMPARISONS).max(1);
-    let times: Vec<f64> = recorded.times.iter().step_by(every).copied().collect();
-    let states = recorded.states.iter().step_by(every).map(Vec::as_slice);
-    let states: Vec<&[f64]> = states.collect();
-    let growths = growths(propagator, &times, &states, &measure)?;
-    let turned = growths.get(TURNING * COMPARISONS..).unwrap_or_default();
-    Ok(mean_exponent(turned, case.period() / COMPARISONS as f64)?)
-}
-
-impl Measure {
-    /// Units in which a free vibration of the arm on the closed drive keeps its size, as its
-    /// energy does: otherwise the phase of the vibration would pass for growth.
-    fn of(case: &Case, lengths: &Lengths, states: &[Vec<f64>]) -> Self {
-        let extents = extents(states);
-        let rates = FIRST_MODE + case.order;
-        let carrier = extents.get(rates + X_C).copied().unwrap_or_default();
-        let modal = extents.get(rates + FIRST_MODE..).unwrap_or_default();
-        let rate = modal
-            .iter()
-            .fold(carrier / lengths.carrier_rate, |a, b| a.max(*b));
-        // Without any motion, the unit itself.
-        let rate = if rate > 0.0 { rate } else { 1.0 };
-        let mut scale = vec![rate; 2 * rates];
-        let meshes = [X_SP, X_PR].map(|mesh| (mesh, lengths.mesh_deflection));
-        let mesh_rates = [X_SP, X_PR].map(|mesh| (rates + mesh, lengths.mesh_rate));
-        let modes = lengths.natural.iter().enumerate();
-        let modes = modes.map(|(mode, natural)| (FIRST_MODE + mode, 1.0 / (TAU * natural)));
-        let carrier = [(rates + X_C, lengths.carrier_rate)];
-        for (place, unit) in meshes
-            .into_iter()
-            .chain(mesh_rates)
-            .chain(modes)
-            .chain(carrier)
-        {
-            if let Some(entry) = scale.get_mut(place) {
-                *entry = rate * unit;
-            }
-        }
-        let mut free = vec![X_C];
-        if case.undisclosed.b_m <= 0.0 {
-            free.push(rates + X_C);
-        }
-        Self { scale, free }
+impl Neighbours {
+    /// Beside a recorded motion, from where its record begins.
+    pub fn beside(
+        run: &Run,
+        propagator: &mut Propagator,
+        case: &Case,
+        lengths: &Lengths,
+    ) -> Result<Self, StudyError> {
+        let first = run.states.first().cloned().unwrap_or_default();
+        let weights = weights(case, lengths);
+        let carried = propagator.carried(&first, run.begin, &HeldInputs::zero(0), &weights)?;
+        Ok(Self {
+            carried,
+            begin: run.begin,
+            period: case.period(),
+            growths: Vec::new(),
+            states: vec![first],
+        })
     }
 
-    fn leave_out(&self, difference: &mut [f64]) {
-        for &place in &self.free {
-            if let Some(value) = difference.get_mut(place) {
-                *value = 0.0;
-            }
-        }
-    }
-
-    /// The size of a difference.
-    fn norm(&self, difference: &[f64]) -> f64 {
-        let scaled = difference.iter().zip(&self.scale);
-        scaled.map(|(d, s)| (d / s).powi(2)).sum::<f64>().sqrt()
-    }
-}
-
-/// The logarithm of the growth from each time to the next. The first growths, over which the
-/// difference turns into the direction that grows fastest, are in it.
-fn growths(
-    propagator: &mut Propagator,
-    times: &[f64],
-    states: &[&[f64]],
-    measure: &Measure,
-) -> Result<Vec<f64>, StudyError> {
-    let mut difference = measure.scale.clone();
-    measure.leave_out(&mut difference);
-    let mut growths = Vec::with_capacity(times.len());
-    for (times, states) in times.windows(2).zip(states.windows(2)) {
-        let (&[from, to], &[here, there]) = (times, states) else {
-            continue;
-        };
-        let factor = DISTANCE / measure.norm(&difference);
-        let start: Vec<f64> = here
-            .iter()
-            .zip(&difference)
-            .map(|(y, d)| y + d * factor)
-            .collect();
+    /// Follows the motion until so many forcing periods have been seen.
+    pub fn extend(
+        &mut self,
+        propagator: &mut Propagator,
+        periods: usize,
+    ) -> Result<(), StudyError> {
         let none = HeldInputs::zero(0);
-        let neighbour = propagator.simulate(&start, (from, to), &[], &none, &mut |_| {})?;
-        let ends = neighbour.last.iter().zip(there);
-        difference = ends.map(|(a, b)| a - b).collect();
-        measure.leave_out(&mut difference);
-        let grown = measure.norm(&difference);
-        // Two neighbours that meet exactly are as near as rounding allows.
-        let least = DISTANCE * f64::EPSILON;
-        if grown < least {
-            difference.clone_from(&measure.scale);
-            measure.leave_out(&mut difference);
+        for period in self.growths.len() + 1..=periods {
+            let end = self.begin + period as f64 * self.period;
+            propagator.carry(&mut self.carried, end, &none)?;
+            self.growths.extend(self.carried.growth());
+            self.states.push(self.carried.state().to_vec());
         }
-        growths.push((grown.max(least) / DISTANCE).ln());
+        Ok(())
     }
-    Ok(growths)
+
+    /// The states once per forcing period.
+    pub fn states(&self) -> &[Vec<f64>] {
+        &self.states
+    }
+
+    /// The largest exponent so far.
+    pub fn exponent(&self) -> Result<Exponent, StudyError> {
+        let turned = self.growths.get(TURNING..).unwrap_or_default();
+        Ok(mean_exponent(turned, self.period)?)
+    }
+}
+
+/// Weights with which a free vibration of the arm on the closed drive keeps its length, as it
+/// keeps its energy: otherwise the phase of the vibration would pass for growth. What is free
+/// has none.
+fn weights(case: &Case, lengths: &Lengths) -> Vec<f64> {
+    let rates = FIRST_MODE + case.order;
+    let mut weights = vec![1.0; 2 * rates];
+    let meshes = [X_SP, X_PR].map(|mesh| (mesh, 1.0 / lengths.mesh_deflection));
+    let mesh_rates = [X_SP, X_PR].map(|mesh| (rates + mesh, 1.0 / lengths.mesh_rate));
+    let modes = lengths.natural.iter().enumerate();
+    let modes = modes.map(|(mode, natural)| (FIRST_MODE + mode, TAU * natural));
+    let is_restrained = case.undisclosed.b_m > 0.0;
+    let carrier_rate = if is_restrained {
+        1.0 / lengths.carrier_rate
+    } else {
+        0.0
+    };
+    let carrier = [(X_C, 0.0), (rates + X_C, carrier_rate)];
+    let all = meshes
+        .into_iter()
+        .chain(mesh_rates)
+        .chain(modes)
+        .chain(carrier);
+    for (place, weight) in all {
+        if let Some(slot) = weights.get_mut(place) {
+            *slot = weight;
+        }
+    }
+    weights
 }

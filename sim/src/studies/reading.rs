@@ -7,7 +7,8 @@ use std::fmt;
 use crate::analysis::classify::{Evidence, HIDDEN_GROWTH, Motion, SIGNIFICANCE};
 
 use super::arm::{Case, Undisclosed};
-use super::case::{Amplitude, Measurement, is_strong};
+use super::case::{Amplitude, Measurement};
+use super::kind::is_strong;
 
 /// One of the paper's two forcing frequencies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -1,12 +1,10 @@
 //! A motion after its transient, from rest at zero, that can be followed on.
 
-use crate::analysis::exponent::Exponent;
 use crate::exact::Propagator;
 use crate::record::HeldInputs;
 
-use super::arm::{Case, Lengths};
+use super::arm::Case;
 use super::error::StudyError;
-use super::neighbours::{Recorded, exponent};
 
 /// A recorded motion.
 pub(super) struct Run {
@@ -73,20 +71,5 @@ impl Run {
     /// When the record ends, s.
     pub fn end(&self) -> f64 {
         self.times.last().copied().unwrap_or(self.begin)
-    }
-
-    /// The largest Lyapunov exponent over the record.
-    pub fn exponent(
-        &self,
-        propagator: &mut Propagator,
-        case: &Case,
-        lengths: &Lengths,
-    ) -> Result<Exponent, StudyError> {
-        let recorded = Recorded {
-            times: &self.times,
-            states: &self.states,
-            samples: self.samples,
-        };
-        exponent(propagator, case, lengths, &recorded)
     }
 }

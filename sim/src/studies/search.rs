@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::arm::{Arm, Undisclosed};
+use super::arm::{Arm, Shapes, Undisclosed};
 use super::case::{Length, measure};
 use super::claims::{CLAIMS, cases};
 use super::error::StudyError;
@@ -19,7 +19,7 @@ use super::reading::Reading;
 use super::sets::{neighbour, set};
 
 /// The edition of the rules: what was judged by other ones is not mixed in.
-const RULES: u32 = 2;
+const RULES: u32 = 3;
 
 /// Sets in a chunk.
 const CHUNK: usize = 20;
@@ -167,7 +167,7 @@ pub fn search(
     folder: &Path,
     progress: &mut dyn FnMut(usize),
 ) -> Result<Found, StudyError> {
-    let store = Store::open(folder, request)?;
+    let store = Store::open(folder, request, arm.shapes())?;
     let sets: Vec<(usize, Undisclosed)> = (0..request.sets)
         .map(|index| (index, set(index, request.seed)))
         .collect();
@@ -217,14 +217,15 @@ struct Store {
 }
 
 impl Store {
-    fn open(folder: &Path, request: &Request) -> Result<Self, StudyError> {
+    fn open(folder: &Path, request: &Request, shapes: Shapes) -> Result<Self, StudyError> {
         let store = Self {
             folder: folder.to_owned(),
         };
         fs::create_dir_all(folder).map_err(|error| refused("make", folder, &error))?;
         let description = folder.join("request.txt");
         let claims: Vec<&str> = CLAIMS.iter().map(|claim| claim.id).collect();
-        let text = format!("{request:?}\n{}\nrules {RULES}\n", claims.join(" "));
+        let claims = claims.join(" ");
+        let text = format!("{request:?}\n{shapes:?} mode shapes\n{claims}\nrules {RULES}\n");
         match fs::read_to_string(&description) {
             Ok(found) if found == text => {}
             Ok(_) => {

@@ -7,11 +7,8 @@ use super::error::SweepError;
 use super::family::{Family, Frequency};
 use super::measure::{Column, Description, Failure, Measure, Worker};
 use super::span::Span;
-use crate::analysis::exponent::mean_exponent;
+use crate::analysis::exponent::{FEWEST, mean_exponent};
 use crate::exact::{ExactError, Lyapunov as Request};
-
-/// The fewest periods from which [`mean_exponent`] tells an error.
-const FEWEST_PERIODS: usize = 20;
 
 /// Measures a family of models that are linear between their switches.
 pub struct Lyapunov<'a> {
@@ -29,7 +26,7 @@ impl<'a> Lyapunov<'a> {
     /// A model that is not linear between its switches or has no such parameter, a span that
     /// makes no sense.
     pub fn new(family: &'a Family, frequency: &str, span: Span) -> Result<Self, SweepError> {
-        span.check("lyapunov", FEWEST_PERIODS)?;
+        span.check("lyapunov", FEWEST)?;
         if let Err(error) = family.exact() {
             return Err(SweepError::Request(refusal(error)));
         }
