@@ -4,13 +4,14 @@
 use std::path::Path;
 use std::time::Duration;
 
+use eomgen_tests::models::project;
 use eomgen_tests::program::{accepted, eomgen, refused, text};
 use serde_json::Value;
 
 /// Runs a study into a folder; its document.
 fn study(name: &str, out: &Path) -> Value {
     let mut command = eomgen();
-    command.timeout(Duration::from_secs(120));
+    command.timeout(Duration::from_secs(600));
     command.args(["study", name, "--json", "--out"]).arg(out);
     let output = command.output().expect("the program can be run");
     assert!(output.status.success(), "{}", text(&output.stderr));
@@ -113,6 +114,33 @@ fn check_closed_form(case: &Value) {
     // The arm bends: at 5 Hz below a first frequency of 37 Hz it adds up to (5/37)^2 = 1.8 %
     // to its own share of the inertia.
     assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+}
+
+#[test]
+fn every_other_study_runs_and_leaves_what_the_pages_show() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, figures) in [("order", 1), ("backlash", 6), ("flexibility", 4)] {
+        let out = folder.path().join(name);
+        let document = study(name, &out);
+        assert_eq!(document["study"], name);
+        let drawn = list(&document, "figures");
+        assert!(drawn.len() >= figures, "{name}: {}", drawn.len());
+        for figure in drawn {
+            assert!(
+                file(&out, &figure["file"]).ends_with(b"</svg>\n"),
+                "{figure}"
+            );
+        }
+    }
+    // Products of matrices are those of the processor: other bits, another chaos.
+    if cfg!(target_arch = "x86_64") {
+        let shown = std::fs::read(project().join("docs/fig_09.svg")).expect("a figure");
+        let left = std::fs::read(folder.path().join("backlash/fig_09.svg")).expect("a figure");
+        assert!(
+            left == shown,
+            "docs/fig_09.svg is not what `study backlash` leaves"
+        );
+    }
 }
 
 #[test]

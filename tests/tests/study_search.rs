@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use eomgen_tests::models::project;
 use eomgen_tests::program::{self, accepted, eomgen, refused, text};
 use serde_json::Value;
 
@@ -87,6 +88,7 @@ fn a_killed_search_goes_on_to_the_same_bytes() {
     assert_eq!(files(&killed.join("parts")), files(&whole.join("parts")));
 
     counts_are_those_of_the_table(&found, &rows(&whole));
+    the_assumed_values_are_judged_as_the_page_says(&found);
     for name in ["together.svg", "claims.svg"] {
         let svg = fs::read_to_string(whole.join(name)).expect(name);
         assert!(
@@ -110,6 +112,36 @@ fn a_killed_search_goes_on_to_the_same_bytes() {
         &other,
     ]);
     assert!(error.contains("different search"), "{error}");
+}
+
+/// What is said of the assumed values does not depend on the search, and is what
+/// docs/claims.json holds: verdicts, and numbers to the last digit printed.
+fn the_assumed_values_are_judged_as_the_page_says(found: &Value) {
+    let kept = fs::read_to_string(project().join("docs/claims.json")).expect("claims.json");
+    let kept: Value = serde_json::from_str(&kept).expect("JSON");
+    let pairs = |document: &Value| -> Vec<(Value, Value)> {
+        let claims = document["claims"].as_array().expect("claims").iter();
+        claims
+            .map(|claim| (claim["id"].clone(), claim["assumed"].clone()))
+            .collect()
+    };
+    let (kept, found) = (pairs(&kept), pairs(found));
+    assert_eq!(kept.len(), found.len());
+    for ((id, kept), (same, found)) in kept.iter().zip(&found) {
+        assert_eq!(id, same);
+        // Products of matrices are those of the processor: other bits, another chaos.
+        let named = if cfg!(target_arch = "x86_64") {
+            &["verdict", "strict", "evidence"][..]
+        } else {
+            &["verdict", "strict"]
+        };
+        for name in named {
+            assert_eq!(
+                kept[name], found[name],
+                "{id}: run study-search again, as docs/claims.md says"
+            );
+        }
+    }
 }
 
 /// `search.json` says what can be counted in `search.csv`.
