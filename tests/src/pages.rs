@@ -1,0 +1,111 @@
+//! The commands that README.md and the pages in docs/ print, with the output they show.
+
+use std::path::PathBuf;
+
+use crate::models::project;
+
+/// A command as a page prints it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Printed {
+    /// The page, from the project's folder on.
+    pub page: String,
+    /// The command on one line, without what follows a `#`.
+    pub command: String,
+    /// The lines shown below it.
+    pub output: Vec<String>,
+}
+
+/// A block of output that no command stands above.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Loose {
+    /// The page, from the project's folder on.
+    pub page: String,
+    /// Its lines.
+    pub lines: Vec<String>,
+}
+
+/// The pages: README.md and all of docs/.
+pub fn pages() -> Vec<(String, String)> {
+    let docs = std::fs::read_dir(project().join("docs")).expect("docs");
+    let docs = docs.map(|entry| entry.expect("an entry").path());
+    let mut paths: Vec<PathBuf> = docs
+        .filter(|path| path.extension().is_some_and(|end| end == "md"))
+        .collect();
+    paths.push(project().join("README.md"));
+    paths.sort();
+    let page = |path: PathBuf| {
+        let name = path.strip_prefix(project()).expect("in the project");
+        let text = std::fs::read_to_string(&path).expect("a page");
+        (name.display().to_string(), text)
+    };
+    paths.into_iter().map(page).collect()
+}
+
+/// All commands in console blocks, in the order of their page, and what else these hold.
+pub fn in_blocks() -> (Vec<Printed>, Vec<Loose>) {
+    let (mut printed, mut loose) = (Vec::new(), Vec::new());
+    for (page, text) in pages() {
+        for block in text.split("```console\n").skip(1) {
+            let block = block.split("```").next().unwrap_or_default();
+            let lines: Vec<String> = block.lines().map(str::to_owned).collect();
+            if !lines.iter().any(|line| line.starts_with("$ ")) {
+                let page = page.clone();
+                loose.push(Loose { page, lines });
+                continue;
+            }
+            assert!(lines[0].starts_with("$ "), "{page}: {block}");
+            commands(&page, &lines, &mut printed);
+        }
+    }
+    (printed, loose)
+}
+
+/// The commands of a block, each with the lines below it.
+fn commands(page: &str, lines: &[String], printed: &mut Vec<Printed>) {
+    let mut goes_on = false;
+    for line in lines {
+        let begun = line.strip_prefix("$ ");
+        let text = begun.unwrap_or(line);
+        let (text, more) = match text.strip_suffix('\\') {
+            Some(text) if begun.is_some() || goes_on => (text, true),
+            _ => (text, false),
+        };
+        let words = || {
+            let words = text.split(" #").next().unwrap_or_default();
+            words.split_whitespace().collect::<Vec<_>>().join(" ")
+        };
+        match printed.last_mut() {
+            Some(last) if begun.is_none() && goes_on => {
+                last.command = format!("{} {}", last.command, words());
+            }
+            Some(last) if begun.is_none() => last.output.push(line.clone()),
+            _ => printed.push(Printed {
+                page: page.to_owned(),
+                command: words(),
+                output: Vec::new(),
+            }),
+        }
+        goes_on = more;
+    }
+}
+
+/// All commands in running text and tables.
+pub fn in_text() -> Vec<Printed> {
+    let begins = ["cargo ", "rustc ", "EOMGEN_", "examples/bare_metal/run"];
+    let mut printed = Vec::new();
+    for (page, text) in pages() {
+        // Odd parts between single backticks, with the blocks out of the way.
+        let prose: String = text.split("```").step_by(2).collect();
+        for code in prose.split('`').skip(1).step_by(2) {
+            let code = code.split_whitespace().collect::<Vec<_>>().join(" ");
+            if begins.iter().any(|begin| code.starts_with(begin)) && code.split(' ').count() > 2 {
+                printed.push(Printed {
+                    page: page.clone(),
+                    command: code,
+                    output: Vec::new(),
+                });
+            }
+        }
+    }
+    printed
+}
