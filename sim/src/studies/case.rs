@@ -44,9 +44,10 @@ pub struct Length {
     pub transient: (usize, usize),
     /// How many forcing periods are recorded then; at least 100, as the 0-1 test needs.
     pub periods: usize,
-    /// How many forcing periods a motion is followed at most, twice as many each time, until
-    /// its kind is decided. What is recorded does not grow with them.
-    pub most: usize,
+    /// The least and the most forcing periods that a motion is followed to tell its kind: twice
+    /// as many each time, until it is decided. What is recorded does not grow with them. Chaos
+    /// that comes and goes has an exponent with an error from some 1000 on.
+    pub followed: (usize, usize),
     /// After how many recorded forcing periods a motion is let go whose neighbours part by
     /// more than a factor e per forcing period, three standard errors deducted: such chaos
     /// needs no second witness, and is the dearest to follow. None: never.
@@ -61,7 +62,7 @@ impl Length {
     pub const SCREENING: Self = Self {
         transient: (20, 60),
         periods: 100,
-        most: 400,
+        followed: (100, 400),
         strong: Some(30),
         modes: 1,
     };
@@ -70,7 +71,7 @@ impl Length {
     pub const CONFIRMING: Self = Self {
         transient: (100, 300),
         periods: 300,
-        most: 2000,
+        followed: (1000, 2000),
         strong: None,
         modes: 1,
     };
@@ -79,7 +80,7 @@ impl Length {
     pub const FULL: Self = Self {
         transient: (150, 1000),
         periods: 400,
-        most: 2000,
+        followed: (1000, 2000),
         strong: None,
         modes: 4,
     };
@@ -173,11 +174,13 @@ pub fn measure(arm: &Arm, case: &Case, length: &Length) -> Result<Measurement, S
     let waited = waiting(case, length, &lengths);
     let mut run = Run::start(&mut propagator, case, waited, samples)?;
     let mut neighbours = Neighbours::beside(&run, &mut propagator, case, &lengths)?;
-    let looked = match length.strong {
-        Some(periods) if parts_at_once(&mut neighbours, &mut propagator, case, periods)? => periods,
-        _ => length.periods,
+    let (recorded, followed) = match length.strong {
+        Some(periods) if parts_at_once(&mut neighbours, &mut propagator, case, periods)? => {
+            (periods, (periods, periods))
+        }
+        _ => (length.periods, length.followed),
     };
-    run.extend(&mut propagator, looked)?;
+    run.extend(&mut propagator, recorded)?;
     let record = Record::of(&run.times, &run.states, &lengths);
     let interval = case.period() / samples as f64;
     let segment = SEGMENT * samples;
@@ -186,8 +189,7 @@ pub fn measure(arm: &Arm, case: &Case, length: &Length) -> Result<Measurement, S
         extents: &extents(&run.states),
         line_share: line_share(&record.x_sp, interval, samples)?,
     };
-    let lasting = (looked, length.most.max(looked));
-    let found = find(&mut neighbours, &mut propagator, &known, lasting)?;
+    let found = find(&mut neighbours, &mut propagator, &known, followed)?;
     let signed = record.dr.iter().zip(&record.transmission);
     let signed: Vec<f64> = signed.map(|(dr, lag)| dr - lag).collect();
     let halves = record.f_la.split_at(record.f_la.len() / 2);
