@@ -28,7 +28,7 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// What another test runs, with the file that does.
-const ELSEWHERE: [(&str, &str); 6] = [
+const ELSEWHERE: [(&str, &str); 7] = [
     // Searches of one set, and what they say of the assumed values against docs/claims.json.
     (
         "cargo run --release -- study-search ",
@@ -51,6 +51,8 @@ const ELSEWHERE: [(&str, &str); 6] = [
         "cargo run --release -p eomgen-benches --bin history",
         "benches/tests/instructions.rs",
     ),
+    // The same test, with fewer models.
+    ("EOMGEN_SMOOTH_MODELS=300 ", "tests/tests/smooth_models.rs"),
     // The same test, keeping what it finds.
     (
         "EOMGEN_REFRESH=1 cargo test ",
