@@ -3,10 +3,7 @@
 use serde_json::Value;
 use sim::reference::mode_shapes::ModeShape;
 
-const MODES: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../../shared/reference/clamped_free_modes.json"
-);
+const MODES: &str = include_str!("../../tests/reference/clamped_free_modes.json");
 
 fn number(mode: &Value, name: &str) -> f64 {
     let text = mode[name]
@@ -17,14 +14,7 @@ fn number(mode: &Value, name: &str) -> f64 {
 
 #[test]
 fn modes_1_to_128_agree_with_high_precision() {
-    let Ok(text) = std::fs::read_to_string(MODES) else {
-        let _ = std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("SKIPPED: no high-precision table of mode shapes beside the repository\n"),
-        );
-        return;
-    };
-    let modes: Vec<Value> = serde_json::from_str(&text).expect("a list of modes");
+    let modes: Vec<Value> = serde_json::from_str(MODES).expect("a list of modes");
     assert_eq!(modes.len(), 128);
     for (r, mode) in (1..).zip(&modes) {
         let shape = ModeShape::clamped_free(r);

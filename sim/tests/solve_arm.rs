@@ -7,33 +7,24 @@ use arm::Arm;
 use sim::reference::mode_shapes::ModeShape;
 use sim::solve::{Settings, simulate};
 
-const REFERENCE: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../../shared/reference/trajectory_order4.csv"
-);
+const REFERENCE: &str = include_str!("../../tests/reference/trajectory_order4.csv");
 
 /// Time, x_sp and tip of each row up to `until` seconds.
-fn reference(until: f64) -> Option<Vec<[f64; 3]>> {
-    let text = std::fs::read_to_string(REFERENCE).ok()?;
-    let rows = text.lines().skip(1).map(|line| {
+fn reference(until: f64) -> Vec<[f64; 3]> {
+    let rows = REFERENCE.lines().skip(1).map(|line| {
         let fields: Vec<f64> = line
             .split(',')
             .map(|field| field.parse().expect("a number"))
             .collect();
         [fields[0], fields[1], fields[4]]
     });
-    Some(rows.take_while(|row| row[0] <= until).collect())
+    rows.take_while(|row| row[0] <= until).collect()
 }
 
 #[test]
 fn the_arm_follows_the_reference_trajectory_for_a_second() {
-    let Some(rows) = reference(1.0) else {
-        let _ = std::io::Write::write_fmt(
-            &mut std::io::stderr(),
-            format_args!("SKIPPED: no reference trajectory beside the repository\n"),
-        );
-        return;
-    };
+    let rows = reference(1.0);
+    assert_eq!(rows.len(), 101, "a row per hundredth of a second");
     let arm = Arm::<4>::default();
     let samples: Vec<f64> = rows.iter().map(|row| row[0]).collect();
     let begin = std::time::Instant::now();

@@ -1,8 +1,6 @@
 //! The Taylor series by themselves: arithmetic, mode shapes, first crossings, independence
 //! of the step, and the paper's case against a trajectory known to seventeen digits.
 
-use std::io::Write;
-
 use eomgen_tests::taylor::arm::Case;
 use eomgen_tests::taylor::crossing::first_rise;
 use eomgen_tests::taylor::double_double::DoubleDouble;
@@ -11,26 +9,11 @@ use eomgen_tests::taylor::run::{LONGEST, Run};
 use eomgen_tests::taylor::scalar::Scalar;
 use serde_json::Value;
 
-/// Lies beside the project: mode shapes to 25 digits.
-const MODES: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../../shared/reference/clamped_free_modes.json"
-);
+/// Mode shapes to 25 digits.
+const MODES: &str = include_str!("../reference/clamped_free_modes.json");
 
-/// Lies beside the project: two codes in quadruple precision that agree to its last digit.
-const TRAJECTORY: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../../shared/reference/trajectory_order4.csv"
-);
-
-/// The text of a file beside the project; says so where there is none.
-fn beside(path: &str) -> Option<String> {
-    let text = std::fs::read_to_string(path).ok();
-    if text.is_none() {
-        let _ = std::io::stderr().write_fmt(format_args!("SKIPPED: nothing at {path}\n"));
-    }
-    text
-}
+/// Two codes in quadruple precision agree to its last digit.
+const TRAJECTORY: &str = include_str!("../reference/trajectory_order4.csv");
 
 fn pair(high: f64, low: f64) -> DoubleDouble {
     DoubleDouble { high, low }
@@ -90,8 +73,7 @@ fn double_doubles_carry_thirty_one_digits() {
 
 #[test]
 fn modes_1_to_128_agree_with_high_precision() {
-    let Some(text) = beside(MODES) else { return };
-    let modes: Vec<Value> = serde_json::from_str(&text).expect("a list of modes");
+    let modes: Vec<Value> = serde_json::from_str(MODES).expect("a list of modes");
     assert_eq!(modes.len(), 128);
     for (r, mode) in (1..).zip(&modes) {
         let own = Mode::<DoubleDouble>::clamped_free(r);
@@ -182,13 +164,10 @@ fn the_motion_does_not_depend_on_the_step() {
 
 #[test]
 fn the_papers_case_is_met_to_the_references_last_digits() {
-    let Some(text) = beside(TRAJECTORY) else {
-        return;
-    };
-    let times = milliseconds(2000);
+    let times: Vec<f64> = (0..=200).map(|k| f64::from(k) / 100.0).collect();
     let run = Run::<DoubleDouble>::of(case(4, 25e-6), &times, LONGEST);
     assert_eq!(run.counts().iter().sum::<usize>(), 965);
-    let rows: Vec<Vec<f64>> = text
+    let rows: Vec<Vec<f64>> = TRAJECTORY
         .lines()
         .skip(1)
         .map(|line| {
