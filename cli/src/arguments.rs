@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use codegen::request::Request;
+use codegen::request::{Request, UnknownRequest};
 
 /// From a specification of a mechanical system's energies to fast, checked equations of
 /// motion in Rust.
@@ -29,7 +29,7 @@ pub enum Command {
     Derive(Derive),
     /// Emit the equations of motion as source.
     #[command(
-        after_help = "Examples:\n  eomgen generate model-spec/models/planetary_arm.toml --order 5 --out arm5\n  eomgen generate model-spec/models/emps.toml --with jacobians,inverse_dynamics --out emps\n  eomgen generate --all --check"
+        after_help = "Examples:\n  eomgen generate model-spec/models/planetary_arm.toml --order 5 --out arm5\n  eomgen generate model-spec/models/emps.toml --with jacobians,inverse_dynamics --certify --out emps\n  eomgen generate --all --check"
     )]
     Generate(Generate),
     /// Check derived equations against independent ones and write a certificate.
@@ -165,6 +165,38 @@ pub enum Target {
     Rust,
 }
 
+/// What `generate` leaves besides.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Extra {
+    /// Functions in the source.
+    Request(Request),
+    /// A benchmark beside it.
+    Bench,
+}
+
+impl Extra {
+    /// The functions among what was asked for.
+    pub fn requests(all: &[Self]) -> Vec<Request> {
+        let request = |extra: &Self| match extra {
+            Self::Request(request) => Some(*request),
+            Self::Bench => None,
+        };
+        all.iter().filter_map(request).collect()
+    }
+}
+
+impl std::str::FromStr for Extra {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        if name == "bench" {
+            return Ok(Self::Bench);
+        }
+        let request = name.parse().map(Self::Request);
+        request.map_err(|error: UnknownRequest| format!("{error}, bench"))
+    }
+}
+
 /// Options of `generate`.
 #[derive(Args)]
 pub struct Generate {
@@ -177,17 +209,23 @@ pub struct Generate {
     /// What to emit besides rates, observables, energy, power, guards and mass matrix:
     /// bias_forces, inverse_dynamics, guard_rates, jacobians, products (of the Jacobian with
     /// vectors), linearisation, regimes (rates with every contact
-    /// decided), lanes (every function inlined once more).
+    /// decided), lanes (every function inlined once more), bench (a benchmark beside the
+    /// source).
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
-    pub with: Vec<Request>,
+    pub with: Vec<Extra>,
     /// The language.
     #[arg(long, value_enum, default_value = "rust")]
     pub target: Target,
     /// The folder to write `lib.rs` to.
     #[arg(long, required_unless_present = "all")]
     pub out: Option<PathBuf>,
-    /// Regenerate the checked-in variants in `generated/src` (from the project's folder).
-    #[arg(long, conflicts_with_all = ["spec", "out", "order", "with"])]
+    /// Leave `certificate.json` beside the source, as `validate` writes it; exit status 1 if
+    /// any check fails.
+    #[arg(long)]
+    pub certify: bool,
+    /// Regenerate the checked-in variants in `generated/src` and their certificates (from the
+    /// project's folder).
+    #[arg(long, conflicts_with_all = ["spec", "out", "order", "with", "certify"])]
     pub all: bool,
     /// With --all: compare instead of writing; exit status 1 on a difference.
     #[arg(long, requires = "all")]
@@ -205,6 +243,10 @@ pub struct Validate {
     /// Modal truncation order of every field, instead of the specification's.
     #[arg(long, allow_negative_numbers = true)]
     pub order: Option<String>,
+    /// What is emitted besides, as for `generate`, and judged with it: the certificate is of
+    /// one emitted source, and says nothing of what is not in it.
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub with: Vec<Extra>,
     /// The file to write the certificate to, `-` for stdout; without it only the summary is
     /// printed.
     #[arg(long)]

@@ -35,13 +35,7 @@ impl Source {
 
     /// SHA-256 of the text, 64 lower-case hexadecimal digits.
     pub fn hash(&self) -> String {
-        let digest = Sha256::digest(self.text.as_bytes());
-        let mut digits = String::with_capacity(64);
-        for byte in digest {
-            // Writing to a String cannot fail.
-            let _ = write!(digits, "{byte:02x}");
-        }
-        digits
+        sha256(&self.text)
     }
 
     /// The line and column of a byte offset; an offset past the end is the end, one
@@ -55,6 +49,17 @@ impl Source {
             column: before[line_start..].chars().count() + 1,
         }
     }
+}
+
+/// SHA-256 of a text's bytes, 64 lower-case hexadecimal digits.
+pub fn sha256(text: &str) -> String {
+    let digest = Sha256::digest(text.as_bytes());
+    let mut digits = String::with_capacity(64);
+    for byte in digest {
+        // Writing to a String cannot fail.
+        let _ = write!(digits, "{byte:02x}");
+    }
+    digits
 }
 
 #[cfg(test)]

@@ -2,18 +2,22 @@
 //! equations themselves are in [`crate::reference`].
 
 use model_spec::model::Model;
+use model_spec::source::Source;
 
 use crate::reference::closed_forms::{self, Situation};
 use crate::reference::equation_10::{self, ShaftMotion};
 use crate::reference::equation_22::{Coefficients, Equation22};
 use crate::reference::{Evaluation, PlanetaryArmParameters, equation_12};
+use crate::same_motion::difference;
+use crate::validate::certificate::Check;
 use crate::validate::certify::Reference;
+use crate::validate::checks::ROW_TOLERANCE;
 
 /// The paper's time scale omega_n = sqrt(k_sp/M_sp), in rad/s, and displacement scale b_c, in m.
 const PAPER_SCALES: (f64, f64) = (3.0885e4, 25e-6);
 
 /// The specifications that were written out by hand. A model of the same name may follow
-/// other conventions; only these very texts are known to be the same machines.
+/// other conventions; only what has the very equations of one of them is the same machine.
 const SHIPPED: [&str; 8] = [
     include_str!("../../model-spec/models/planetary_arm.toml"),
     include_str!("../../model-spec/models/double_pendulum.toml"),
@@ -25,49 +29,118 @@ const SHIPPED: [&str; 8] = [
     include_str!("../../model-spec/models/two_link_arm.toml"),
 ];
 
-/// The references for `model` at `order` with parameter values in SI; none for a model
-/// that nobody has written by hand.
-pub fn references(model: &Model, order: usize, values: &[f64]) -> Vec<Reference> {
-    if !SHIPPED.contains(&&*model.source.text) {
-        return Vec::new();
+/// The arm's derived parameters that its hand-written equations take as they are.
+const GIVEN_OF_THE_ARM: [&str; 3] = ["I_s", "I_p", "I_c"];
+
+/// What was written by hand for a model.
+#[derive(Default)]
+pub struct ByHand {
+    /// The equations.
+    pub references: Vec<Reference>,
+    /// A line for each that does not apply, with the reason.
+    pub absent: Vec<Check>,
+}
+
+/// What was written by hand for `model` at `order`, with parameter values in SI.
+pub fn by_hand(model: &Model, order: usize, values: &[f64]) -> ByHand {
+    let known = match written(model) {
+        Ok(known) => known,
+        Err(reason) => return ByHand::absent("reference", reason),
+    };
+    if known.name == "planetary_arm" {
+        return match arm_parameters(model, values) {
+            Some(parameters) => arm(parameters, order),
+            None => ByHand::absent("reference", "a parameter is missing".to_owned()),
+        };
     }
-    if model.name == "planetary_arm" {
-        return arm_parameters(model, values).map_or_else(Vec::new, |p| arm(p, order));
+    match closed_form(&known, model, order, values) {
+        Ok(reference) => ByHand {
+            references: vec![reference],
+            absent: Vec::new(),
+        },
+        Err(reason) => ByHand::absent("reference closed_form", reason),
     }
-    closed_form(model, order, values).into_iter().collect()
+}
+
+impl ByHand {
+    fn absent(name: &str, reason: String) -> Self {
+        Self {
+            references: Vec::new(),
+            absent: vec![Check::skipped(name, ROW_TOLERANCE, reason)],
+        }
+    }
+}
+
+/// The shipped specification with the equations of `model`, or why there is none.
+fn written(model: &Model) -> Result<Model, String> {
+    let mut reason = format!("nobody has written the equations of {} by hand", model.name);
+    for text in SHIPPED {
+        let Ok(checked) = model_spec::check(Source::new("a shipped specification", text)) else {
+            continue;
+        };
+        let known = checked.model;
+        let all: Vec<&str> = known.parameters.iter().map(|p| p.name.as_str()).collect();
+        let given = match known.name.as_str() {
+            "planetary_arm" => &GIVEN_OF_THE_ARM[..],
+            _ => &all,
+        };
+        match difference(model, &known, given) {
+            None => return Ok(known),
+            Some(found) if known.name == model.name => {
+                reason = format!("this is not the {} written by hand: {found}", known.name);
+            }
+            Some(_) => {}
+        }
+    }
+    Err(reason)
 }
 
 /// Eq. (12) and Eq. (10) for the rigid arm; Eq. (22) in SI and in the paper's scales for the flexible one.
-fn arm(parameters: PlanetaryArmParameters, order: usize) -> Vec<Reference> {
+fn arm(parameters: PlanetaryArmParameters, order: usize) -> ByHand {
     if order == 0 {
-        return vec![
-            reference(
-                "equation_12",
-                move |t, state, _, accelerations| match <&[f64; 6]>::try_from(state) {
-                    Ok(state) => {
-                        equation_12::corrected(&parameters, t, state).deviation(accelerations)
-                    }
-                    Err(_) => f64::INFINITY,
-                },
-            ),
-            reference("equation_10", move |t, state, _, accelerations| {
-                shaft_motion(&parameters, state, accelerations).map_or(f64::INFINITY, |motion| {
-                    equation_10::corrected(&parameters, t, &motion).worst()
-                })
-            }),
-        ];
+        return ByHand {
+            references: rigid_arm(parameters),
+            absent: Vec::new(),
+        };
     }
     let coefficients = Coefficients::new(&parameters, order);
-    let mut found = vec![reference(
-        "equation_22",
-        move |t, state, _, accelerations| {
-            coefficients
-                .evaluate(t, state)
-                .map_or(f64::INFINITY, |expected| expected.deviation(accelerations))
-        },
-    )];
-    found.extend(scaled(&parameters, order));
+    let mut found = ByHand {
+        references: vec![reference(
+            "equation_22",
+            move |t, state, _, accelerations| {
+                coefficients
+                    .evaluate(t, state)
+                    .map_or(f64::INFINITY, |expected| expected.deviation(accelerations))
+            },
+        )],
+        absent: Vec::new(),
+    };
+    match scaled(&parameters, order) {
+        Some(reference) => found.references.push(reference),
+        None => found.absent.push(Check::skipped(
+            "reference equation_22_dimensionless",
+            ROW_TOLERANCE,
+            "written out for 1 to 8, 16, 32, 64 and 128 modes",
+        )),
+    }
     found
+}
+
+fn rigid_arm(parameters: PlanetaryArmParameters) -> Vec<Reference> {
+    vec![
+        reference(
+            "equation_12",
+            move |t, state, _, accelerations| match <&[f64; 6]>::try_from(state) {
+                Ok(state) => equation_12::corrected(&parameters, t, state).deviation(accelerations),
+                Err(_) => f64::INFINITY,
+            },
+        ),
+        reference("equation_10", move |t, state, _, accelerations| {
+            shaft_motion(&parameters, state, accelerations).map_or(f64::INFINITY, |motion| {
+                equation_10::corrected(&parameters, t, &motion).worst()
+            })
+        }),
+    ]
 }
 
 /// The shafts' angles, rates and accelerations, Eq. (1) to (5).
@@ -147,14 +220,22 @@ fn reference(
     }
 }
 
-/// The textbook equations of the model's name, if its parameters fit them.
-fn closed_form(model: &Model, order: usize, values: &[f64]) -> Option<Reference> {
-    let form = closed_forms::find(&model.name)?;
+/// The textbook equations of `known` with the values of `model`, or why they do not apply.
+fn closed_form(
+    known: &Model,
+    model: &Model,
+    order: usize,
+    values: &[f64],
+) -> Result<Reference, String> {
+    let form = closed_forms::find(&known.name).ok_or("there is no closed form")?;
+    // A parameter that only this model has stands in none of the equations, whatever its name.
+    let stands = |name: &str| known.parameters.iter().any(|own| own.name == name);
     let parameters: Vec<(String, f64)> = model
         .parameters
         .iter()
         .map(|parameter| parameter.name.clone())
         .zip(values.iter().copied())
+        .filter(|(name, _)| stands(name))
         .collect();
     let names: Vec<String> = model
         .inputs
@@ -181,8 +262,8 @@ fn closed_form(model: &Model, order: usize, values: &[f64]) -> Option<Reference>
     let modes: usize = order * model.fields.len();
     let rest = vec![0.0; 2 * (model.coordinates.len() + modes)];
     let still = vec![0.0; model.inputs.len()];
-    evaluate(&rest, &still).ok()?;
-    Some(reference(
+    evaluate(&rest, &still).map_err(|unfit| unfit.to_string())?;
+    Ok(reference(
         "closed_form",
         move |_, state, inputs, accelerations| {
             evaluate(state, inputs)

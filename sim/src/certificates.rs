@@ -1,37 +1,73 @@
 //! The certificate of a model at one order: its derivation and its emitted source go
 //! before the checks of [`crate::validate`], with whatever was written by hand for it.
 
-use codegen::equations::derive;
+use codegen::equations::{Equations, derive};
 use codegen::evaluator::Evaluator;
-use codegen::lower::lower;
+use codegen::lower::{lower, lower_requested};
+use codegen::request::Request;
+use codegen::requested::requested;
 use model_spec::model::Model;
 use model_spec::variant::ModelError;
 
-use crate::by_hand::references;
+use crate::by_hand::by_hand;
 use crate::derived::Derived;
+use crate::requested::DerivedRequests;
 use crate::validate::certificate::Certificate;
-use crate::validate::certify::{Emitted, EmittedFunction, Subject, certify};
+use crate::validate::certify::{Emitted, EmittedFunction, Subject, about, certify};
+use crate::validate::requested::Requested;
 use crate::validate::variant::Variant;
 
 /// The certificate of `model` with every field at `order`; `emitted` is the source of
-/// that variant as a crate of its own.
+/// that variant with `requests`, as a file by itself.
 ///
 /// # Errors
 /// If the parameters have no finite values.
 pub fn certificate(
     model: &Model,
     order: usize,
+    requests: &[Request],
     emitted: String,
 ) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
     let variants = |order: usize| variant(model, order, &parameters);
-    let emitted = Emitted {
-        source: emitted,
-        input_fields: model
-            .inputs
-            .iter()
-            .map(|input| input.name.clone())
-            .collect(),
+    let on_request = || on_request(model, order, &parameters, requests);
+    let by_hand = by_hand(model, order, &parameters);
+    Ok(certify(&Subject {
+        model,
+        order,
+        parameters: &parameters,
+        variants: &variants,
+        references: &by_hand.references,
+        absent: &by_hand.absent,
+        requested: (!requests.is_empty()).then_some(&on_request),
+        emitted: Ok(source(model, requests, emitted)),
+    }))
+}
+
+/// The same without its checks, so that it has not passed: what a certificate has to say
+/// that it is about.
+///
+/// # Errors
+/// As [`certificate`].
+pub fn unchecked(
+    model: &Model,
+    order: usize,
+    requests: &[Request],
+    emitted: String,
+) -> Result<Certificate, ModelError> {
+    let parameters = model.parameter_values()?;
+    let emitted = source(model, requests, emitted);
+    let about = about(model, order, &parameters, Some(&emitted));
+    Ok(Certificate::new(about, Vec::new()))
+}
+
+/// The emitted source with what is to be compared of it.
+fn source(model: &Model, requests: &[Request], source: String) -> Emitted {
+    let inputs = model.inputs.iter();
+    let names = requests.iter().map(|request| request.name().to_owned());
+    Emitted {
+        source,
+        input_fields: inputs.map(|input| input.name.clone()).collect(),
         functions: vec![
             EmittedFunction::Rates,
             EmittedFunction::Observables,
@@ -40,22 +76,31 @@ pub fn certificate(
             EmittedFunction::Guards,
             EmittedFunction::MassMatrix,
         ],
-    };
-    let references = references(model, order, &parameters);
-    Ok(certify(&Subject {
-        model,
-        order,
-        parameters: &parameters,
-        variants: &variants,
-        references: &references,
-        emitted: Ok(emitted),
-    }))
+        requests: Some(names.collect()),
+    }
 }
 
 /// The variant of a model with every field at `order`, at parameter values in SI.
 fn variant(model: &Model, order: usize, parameters: &[f64]) -> Result<Box<dyn Variant>, String> {
-    let orders = vec![order; model.fields.len()];
-    let equations = derive(model, &orders).map_err(|error| error.to_string())?;
+    let equations = equations(model, order)?;
     let evaluator = Evaluator::new(lower(model, &equations, parameters));
     Ok(Box::new(Derived::new(evaluator)))
+}
+
+/// What was requested of that variant.
+fn on_request(
+    model: &Model,
+    order: usize,
+    parameters: &[f64],
+    requests: &[Request],
+) -> Result<Box<dyn Requested>, String> {
+    let mut equations = equations(model, order)?;
+    let requested = requested(&mut equations, requests).map_err(|error| error.to_string())?;
+    let program = lower_requested(model, &equations, parameters, &requested);
+    Ok(Box::new(DerivedRequests::new(Evaluator::new(program))))
+}
+
+fn equations(model: &Model, order: usize) -> Result<Equations, String> {
+    let orders = vec![order; model.fields.len()];
+    derive(model, &orders).map_err(|error| error.to_string())
 }

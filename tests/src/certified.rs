@@ -1,11 +1,15 @@
 //! Certificates of models given as text, without compiling what would be emitted: whether a
 //! right model passes and a wrong one fails.
 
+use codegen::evaluator::Evaluator;
+use codegen::request::Request;
 use model_spec::model::Model;
 use model_spec::source::Source;
 use sim::derived::Derived;
+use sim::requested::DerivedRequests;
 use sim::validate::certificate::Certificate;
 use sim::validate::certify::{Subject, certify};
+use sim::validate::requested::Requested;
 use sim::validate::variant::Variant;
 
 use crate::models::variant;
@@ -20,18 +24,31 @@ pub fn checked(text: &str) -> Model {
 
 /// The certificate of `model` if its equations were those of `subject`.
 pub fn certificate(model: &Model, subject: &Model) -> Certificate {
+    certificate_with(model, subject, &[])
+}
+
+/// The same, with what is requested of `subject`.
+pub fn certificate_with(model: &Model, subject: &Model, requests: &[Request]) -> Certificate {
     let parameters = model.parameter_values().expect("values");
     let variants = |order: usize| {
         let evaluator = variant(subject, order).evaluator;
         Ok(Box::new(Derived::new(evaluator)) as Box<dyn Variant>)
     };
     let order = model.fields.first().map_or(0, |field| field.order);
+    let orders: Vec<usize> = subject.fields.iter().map(|field| field.order).collect();
+    let requested = || {
+        let derived = codegen::variant::Variant::derive_with(subject, &orders, requests);
+        let program = derived.map_err(|found| found.render(false))?.program;
+        Ok(Box::new(DerivedRequests::new(Evaluator::new(program))) as Box<dyn Requested>)
+    };
     certify(&Subject {
         model,
         order,
         parameters: &parameters,
         variants: &variants,
         references: &[],
+        absent: &[],
+        requested: (!requests.is_empty()).then_some(&requested),
         emitted: Err("judged elsewhere".to_owned()),
     })
 }

@@ -94,7 +94,7 @@ fn certify(name: &str, orders: &[usize]) {
     let model = load(name);
     let mut failures = Vec::new();
     for &order in orders {
-        let certificate = certificate(&model, order, emitted(&model, order)).unwrap();
+        let certificate = certificate(&model, order, &[], emitted(&model, order)).unwrap();
         failures.extend(certificate.failures().map(|check| {
             format!(
                 "order {order}, {}: {:?} ({})",

@@ -9,7 +9,8 @@
 //! ```
 
 use codegen::evaluator::Point;
-use eomgen_tests::certified::{certificate, checked};
+use codegen::request::Request;
+use eomgen_tests::certified::{certificate, certificate_with, checked};
 use eomgen_tests::models::variant;
 use eomgen_tests::smooth_models::{SmoothModel, SmoothModels};
 use model_spec::model::Model;
@@ -70,6 +71,50 @@ fn right_models_are_not_called_wrong() {
         alarms.len() as u64 <= count / 300,
         "{} of {count}:\n{}",
         alarms.len(),
+        alarms.join("\n\n")
+    );
+}
+
+/// What is judged beside the equations themselves.
+const REQUESTS: [Request; 5] = [
+    Request::BiasForces,
+    Request::InverseDynamics,
+    Request::GuardRates,
+    Request::Jacobians,
+    Request::Products,
+];
+
+#[test]
+fn what_is_requested_of_right_models_is_not_called_wrong() {
+    let (count, seed) = (
+        number("EOMGEN_SMOOTH_MODELS", 12),
+        number("EOMGEN_SMOOTH_SEED", 1),
+    );
+    let mut models = SmoothModels::new(seed);
+    let mut alarms = Vec::new();
+    for place in 0..count {
+        let (written, model) = next(&mut models);
+        let certificate = certificate_with(&model, &model, &REQUESTS);
+        let made = certificate
+            .checks
+            .iter()
+            .find(|check| check.name == "rates_by_state");
+        assert!(
+            made.is_some_and(|check| !check.skipped),
+            "# {place}: {made:?}"
+        );
+        if !certificate.passed {
+            let failures: Vec<_> = certificate.failures().collect();
+            alarms.push(format!("# {place}\n{}{failures:#?}", written.text));
+        }
+    }
+    println!(
+        "{} false alarms of {count} models, seed {seed}",
+        alarms.len()
+    );
+    assert!(
+        alarms.len() as u64 <= count / 300,
+        "{}",
         alarms.join("\n\n")
     );
 }

@@ -4,6 +4,8 @@ pub mod check;
 pub mod derive;
 pub mod discover;
 pub mod generate;
+mod generate_all;
+mod generate_bench;
 pub mod merge;
 pub mod simulate;
 pub mod study;

@@ -72,7 +72,7 @@ pub fn run(options: &Tour) -> Outcome {
     watch.lap("emit Rust");
     drop(note);
     let note = Note::new("validating against independent equations");
-    let certificate = validate::of(&variant.model, &[ORDER])?;
+    let certificate = validate::of(&variant.model, &[ORDER], &[])?;
     watch.lap("validate, including a compilation of the emitted Rust");
     drop(note);
     let run = Run::new(&variant, HeldInputs::zero(0), Solver::Auto, TOLERANCE)?;

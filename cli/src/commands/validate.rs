@@ -1,16 +1,18 @@
 //! `eomgen validate`: the certificate of a variant.
 
+use codegen::request::Request;
 use codegen::rust::Packaging;
+use codegen::variant::Variant;
 use model_spec::model::Model;
 use sim::certificates::certificate;
 use sim::validate::certificate::{Certificate, Check};
 
 use super::generate::source;
-use crate::arguments::Validate;
+use crate::arguments::{Extra, Validate};
 use crate::output::Destination;
 use crate::problem::{Outcome, Problem, say};
 use crate::progress::Note;
-use crate::variant::{derive_variant, load, orders};
+use crate::variant::{load, orders};
 
 /// Runs the command.
 pub fn run(options: &Validate) -> Outcome {
@@ -22,15 +24,14 @@ pub fn run(options: &Validate) -> Outcome {
     let orders = orders(&model, options.order.as_deref())?;
     let certificate = {
         let _note = Note::new(format!("validating {}", model.name));
-        of(&model, &orders)?
+        of(&model, &orders, &Extra::requests(&options.with))?
     };
-    let text = serde_json::to_string_pretty(&certificate)
-        .map_err(|error| Problem::input(error.to_string()))?;
+    let text = document(&certificate)?;
     if let Some(destination) = &destination {
-        destination.write(format!("{text}\n").as_bytes())?;
+        destination.write(text.as_bytes())?;
     }
     match destination {
-        _ if options.json => say(&format!("{text}\n"))?,
+        _ if options.json => say(&text)?,
         Some(destination) => destination.summarise(&summary(&certificate))?,
         None => say(&summary(&certificate))?,
     }
@@ -41,8 +42,36 @@ pub fn run(options: &Validate) -> Outcome {
     }
 }
 
-/// The certificate of a model at the given orders, which are one for all fields.
-pub fn of(model: &Model, orders: &[usize]) -> Outcome<Certificate> {
+/// A certificate as it is written to a file.
+pub fn document(certificate: &Certificate) -> Outcome<String> {
+    let text = serde_json::to_string_pretty(certificate)
+        .map_err(|error| Problem::input(error.to_string()))?;
+    Ok(text + "\n")
+}
+
+/// The certificate of a model at the given orders, which are one for all fields, as it is
+/// emitted with `requests`.
+pub fn of(model: &Model, orders: &[usize], requests: &[Request]) -> Outcome<Certificate> {
+    one_order(model, orders)?;
+    let variant = Variant::derive_with(model, orders, requests).map_err(Problem::Specification)?;
+    let emitted = source(&variant.program, Packaging::Crate)?;
+    of_source(model, orders, requests, emitted)
+}
+
+/// The certificate of a source that was emitted so.
+pub fn of_source(
+    model: &Model,
+    orders: &[usize],
+    requests: &[Request],
+    emitted: String,
+) -> Outcome<Certificate> {
+    let order = one_order(model, orders)?;
+    certificate(model, order, requests, emitted)
+        .map_err(|error| Problem::model(&model.source, error))
+}
+
+/// The order of all fields.
+fn one_order(model: &Model, orders: &[usize]) -> Outcome<usize> {
     let order = orders.first().copied().unwrap_or(0);
     if orders.iter().any(|other| *other != order) {
         return Err(Problem::input(format!(
@@ -51,9 +80,7 @@ pub fn of(model: &Model, orders: &[usize]) -> Outcome<Certificate> {
             model.name
         )));
     }
-    let variant = derive_variant(model.clone(), orders)?;
-    let emitted = source(&variant.program, Packaging::Crate)?;
-    certificate(model, order, emitted).map_err(|error| Problem::model(&model.source, error))
+    Ok(order)
 }
 
 /// One line per check.

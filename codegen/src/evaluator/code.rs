@@ -16,7 +16,9 @@ pub enum Stage {
     Mass,
     /// Velocity terms and generalised forces.
     Forces,
-    /// M a + c - f, if it was requested; so for those that follow.
+    /// c - f, if it was requested; so for those that follow.
+    BiasForces,
+    /// M a + c - f.
     InverseDynamics,
     /// The rates of the guards.
     GuardRates,
@@ -32,12 +34,13 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Rates,
         Self::Observables,
         Self::Guards,
         Self::Mass,
         Self::Forces,
+        Self::BiasForces,
         Self::InverseDynamics,
         Self::GuardRates,
         Self::Jacobians,
@@ -64,7 +67,8 @@ impl Stage {
                 roots.extend(program.forces.all());
                 roots
             }
-            Self::InverseDynamics
+            Self::BiasForces
+            | Self::InverseDynamics
             | Self::GuardRates
             | Self::Jacobians
             | Self::ForwardProduct
@@ -79,6 +83,10 @@ impl Stage {
         let requested = &program.requested;
         let products = requested.products.iter();
         match self {
+            Self::BiasForces => {
+                let rows = requested.bias_forces.iter();
+                rows.flat_map(RowValues::all).collect()
+            }
             Self::InverseDynamics => {
                 let rows = requested.inverse_dynamics.iter();
                 rows.flat_map(RowValues::all).collect()

@@ -5,6 +5,16 @@ use super::{Evaluator, Point, Stage};
 use crate::program::{Argument, Entry, Extent, Jacobian, Op, RowValues, ValueId, Variable};
 
 impl Evaluator {
+    /// c - f; a number per degree of freedom.
+    pub fn bias_forces(&mut self, point: Point<'_>, out: &mut [f64]) -> bool {
+        let Some(rows) = self.program.requested.bias_forces.clone() else {
+            return false;
+        };
+        self.compute(Stage::BiasForces, &point);
+        self.copy_rows(&rows.scalars, &rows.modal, out);
+        true
+    }
+
     /// M a + c - f for these accelerations; a number per degree of freedom.
     pub fn inverse_dynamics(
         &mut self,

@@ -1,7 +1,7 @@
-//! The certificate of a variant: which checks it went through and how it fared. Only the
-//! record; the checks are in `checks`.
+//! The certificate of a variant: what was checked, which checks it went through and how it
+//! fared. Only the record; the checks are in `checks`.
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// The version of the certificate's form.
 pub const SCHEMA: u32 = 1;
@@ -15,6 +15,17 @@ pub struct Certificate {
     pub model: String,
     /// The order.
     pub order: usize,
+    /// What derived and emitted it, with its version.
+    pub generator: String,
+    /// SHA-256 of the specification's text, 64 lower-case hexadecimal digits.
+    pub specification_sha256: String,
+    /// SHA-256 of the emitted source; none (null) if nothing was emitted.
+    pub source_sha256: Option<String>,
+    /// What was requested beside the rates, by the names of `--with`.
+    pub with: Vec<String>,
+    /// The values of all parameters, in SI, in the order of the specification.
+    #[serde(serialize_with = "by_name")]
+    pub parameters: Vec<(String, f64)>,
     /// Whether no check failed; skipped checks do not count.
     pub passed: bool,
     /// The checks in the order they were made.
@@ -39,13 +50,35 @@ pub struct Check {
     pub detail: String,
 }
 
+/// What a certificate is about.
+#[derive(Clone, Debug, Default)]
+pub struct Certified {
+    /// The model's name.
+    pub model: String,
+    /// The order.
+    pub order: usize,
+    /// SHA-256 of the specification's text.
+    pub specification_sha256: String,
+    /// SHA-256 of the emitted source, if there is one.
+    pub source_sha256: Option<String>,
+    /// What was requested, by name.
+    pub with: Vec<String>,
+    /// Names and values of all parameters, in SI.
+    pub parameters: Vec<(String, f64)>,
+}
+
 impl Certificate {
-    /// The certificate with `checks`; an empty one does not pass.
-    pub fn new(model: &str, order: usize, checks: Vec<Check>) -> Self {
+    /// The certificate of `about` with `checks`; an empty one does not pass.
+    pub fn new(about: Certified, checks: Vec<Check>) -> Self {
         Self {
             schema: SCHEMA,
-            model: model.to_owned(),
-            order,
+            model: about.model,
+            order: about.order,
+            generator: concat!("eomgen ", env!("CARGO_PKG_VERSION")).to_owned(),
+            specification_sha256: about.specification_sha256,
+            source_sha256: about.source_sha256,
+            with: about.with,
+            parameters: about.parameters,
             passed: checks.iter().any(|check| check.passed)
                 && checks.iter().all(|check| check.passed || check.skipped),
             checks,
@@ -58,6 +91,11 @@ impl Certificate {
             .iter()
             .filter(|check| !check.passed && !check.skipped)
     }
+}
+
+/// Pairs as one JSON object, in their order.
+fn by_name<S: Serializer>(pairs: &[(String, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().map(|(name, value)| (name, value)))
 }
 
 impl Check {
@@ -138,15 +176,34 @@ impl Worst {
 mod tests {
     use super::*;
 
+    fn arm() -> Certified {
+        Certified {
+            model: "arm".into(),
+            order: 4,
+            specification_sha256: "0123".into(),
+            source_sha256: Some("4567".into()),
+            with: vec!["jacobians".into()],
+            parameters: vec![("l".into(), 0.5)],
+        }
+    }
+
     #[test]
     fn a_certificate_has_the_agreed_fields() {
         let checks = vec![
             Check::made("made", Worst::of(1e-15, "200 states"), 1e-12),
             Check::skipped("skipped", 0.0, "no compiler"),
         ];
-        let json = serde_json::to_value(Certificate::new("arm", 4, checks)).unwrap_or_default();
+        let json = serde_json::to_value(Certificate::new(arm(), checks)).unwrap_or_default();
         assert_eq!(json["schema"], 1);
         assert_eq!((&json["model"], &json["order"]), (&"arm".into(), &4.into()));
+        assert_eq!(
+            json["generator"],
+            format!("eomgen {}", env!("CARGO_PKG_VERSION"))
+        );
+        assert_eq!(json["specification_sha256"], "0123");
+        assert_eq!(json["source_sha256"], "4567");
+        assert_eq!(json["with"][0], "jacobians");
+        assert_eq!(json["parameters"]["l"], 0.5);
         assert_eq!(json["passed"], true);
         assert_eq!(json["checks"][0]["value"], 1e-15);
         assert_eq!(json["checks"][0]["tolerance"], 1e-12);
@@ -162,11 +219,11 @@ mod tests {
             Worst::default(),
         ] {
             let checks = vec![good.clone(), Check::made("bad", bad, 1e-12)];
-            assert!(!Certificate::new("m", 0, checks).passed);
+            assert!(!Certificate::new(arm(), checks).passed);
         }
-        assert!(!Certificate::new("m", 0, Vec::new()).passed);
+        assert!(!Certificate::new(arm(), Vec::new()).passed);
         let skipped = vec![Check::skipped("s", 0.0, "")];
-        assert!(!Certificate::new("m", 0, skipped).passed);
+        assert!(!Certificate::new(arm(), skipped).passed);
     }
 
     #[test]

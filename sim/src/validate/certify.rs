@@ -1,10 +1,13 @@
 //! Runs every check that applies to a model at one order and writes the certificate.
 
-use super::certificate::{Certificate, Check, Worst};
-use super::checks::{MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, nesting, states};
+use super::certificate::{Certificate, Certified, Check, Worst};
+use super::checks::requested::Judged;
+use super::checks::{MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, nesting, requested, states};
 use super::oracle::{Oracle, OracleError};
+use super::requested::Requested;
 use super::variant::Variant;
 use model_spec::model::{MAX_ORDER, Model};
+use model_spec::source::sha256;
 
 pub use super::checks::emitted::{Emitted, EmittedFunction};
 pub use super::checks::states::Reference;
@@ -21,6 +24,10 @@ pub struct Subject<'s> {
     pub variants: &'s dyn Fn(usize) -> Result<Box<dyn Variant>, String>,
     /// Equations written by hand for this model.
     pub references: &'s [Reference],
+    /// Lines for equations written by hand that do not apply to it, with the reason.
+    pub absent: &'s [Check],
+    /// Makes what was requested of this order, with these parameters; none if nothing was.
+    pub requested: Option<&'s dyn Fn() -> Result<Box<dyn Requested>, String>>,
     /// The emitted source with the specification's own parameters, or why there is none.
     pub emitted: Result<Emitted, String>,
 }
@@ -32,7 +39,29 @@ pub fn certify(subject: &Subject<'_>) -> Certificate {
         let worst = Worst::of(f64::INFINITY, message);
         vec![Check::made("accelerations", worst, ROW_TOLERANCE)]
     });
-    Certificate::new(&subject.model.name, subject.order, checks)
+    let emitted = subject.emitted.as_ref().ok();
+    let about = about(subject.model, subject.order, subject.parameters, emitted);
+    Certificate::new(about, checks)
+}
+
+/// What the certificate of a model at an order, with parameters in SI, is about.
+pub fn about(
+    model: &Model,
+    order: usize,
+    parameters: &[f64],
+    emitted: Option<&Emitted>,
+) -> Certified {
+    let names = model.parameters.iter().map(|known| known.name.clone());
+    Certified {
+        model: model.name.clone(),
+        order,
+        specification_sha256: model.source.hash(),
+        source_sha256: emitted.map(|emitted| sha256(&emitted.source)),
+        with: emitted
+            .and_then(|emitted| emitted.requests.clone())
+            .unwrap_or_default(),
+        parameters: names.zip(parameters.iter().copied()).collect(),
+    }
 }
 
 fn all_checks(subject: &Subject<'_>) -> Result<Vec<Check>, String> {
@@ -40,12 +69,27 @@ fn all_checks(subject: &Subject<'_>) -> Result<Vec<Check>, String> {
     let mut variant = (subject.variants)(subject.order)?;
     let variant = variant.as_mut();
     let mut checks = states::check(&oracle, variant, subject.references).map_err(text)?;
+    checks.extend_from_slice(subject.absent);
     checks.push(balance::check(&oracle, variant).map_err(text)?);
     checks.extend(nested(subject, &oracle, variant)?);
     checks.extend(rigid(subject, variant)?);
-    checks.push(match &subject.emitted {
-        Ok(emitted) => emitted::check(&oracle, variant, emitted).map_err(text)?,
-        Err(reason) => Check::skipped("emitted_rust", 0.0, reason),
+    let mut requested = subject.requested.map(|make| make()).transpose()?;
+    if let Some(requested) = &mut requested {
+        let judged = Judged {
+            oracle: &oracle,
+            model: subject.model,
+            order: subject.order,
+            parameters: subject.parameters,
+        };
+        let found = requested::check(&judged, variant, requested.as_mut());
+        checks.extend(found.map_err(text)?);
+    }
+    checks.extend(match &subject.emitted {
+        Ok(emitted) => {
+            let requested = requested.as_deref_mut();
+            emitted::check(&oracle, variant, requested, emitted).map_err(text)?
+        }
+        Err(reason) => emitted::skipped(None, reason),
     });
     Ok(checks)
 }

@@ -5,7 +5,9 @@ use super::certificate::{Certificate, Check};
 use super::certify::{Emitted, EmittedFunction, Reference, Subject, certify};
 use super::compiler::Compiler;
 use super::oracle::Oracle;
+use super::requested::Requested;
 use super::test_models::{BEAM, DOUBLE_PENDULUM, FAR, LOGARITHM, ROTOR, SPRING, TANK, model};
+use super::test_requests::SpringRequests;
 use super::test_variants::{
     Beam, DoublePendulum, EMITTED, FAR_TERM, FREE_ROTOR, Fault, LOGARITHMIC, Single, Spring,
     TIMED_TANK,
@@ -28,6 +30,8 @@ fn certificate(
         parameters: &parameters,
         variants,
         references,
+        absent: &[],
+        requested: None,
         emitted,
     })
 }
@@ -277,6 +281,7 @@ fn emitted(source: &str) -> Emitted {
         source: source.to_owned(),
         input_fields: vec!["u".into()],
         functions: vec![EmittedFunction::Rates, EmittedFunction::Energy],
+        requests: None,
     }
 }
 
@@ -313,4 +318,65 @@ fn a_missing_compiler_is_a_reason() {
     let folder = tempfile::tempdir().unwrap();
     let found = Compiler::named("no-such-rustc".into(), folder.path());
     assert!(found.unwrap_err().contains("no-such-rustc"));
+}
+
+/// The certificate of the right spring with requests of which the one of this name is wrong.
+fn requests(wrong: &'static str) -> Certificate {
+    let model = model(SPRING);
+    let parameters = model.parameter_values().unwrap();
+    let variants = |_| Ok(Box::new(Spring(Fault::None)) as Box<dyn Variant>);
+    let requested = || Ok(Box::new(SpringRequests(wrong)) as Box<dyn Requested>);
+    certify(&Subject {
+        model: &model,
+        order: 0,
+        parameters: &parameters,
+        variants: &variants,
+        references: &[],
+        absent: &[],
+        requested: Some(&requested),
+        emitted: Err("not emitted".into()),
+    })
+}
+
+/// The checks of everything that may be requested.
+const REQUESTED: [&str; 12] = [
+    "bias_forces",
+    "inverse_dynamics",
+    "guard_rates",
+    "rates_by_state",
+    "rates_by_inputs",
+    "rates_by_parameters",
+    "observables_by_state",
+    "observables_by_inputs",
+    "observables_by_parameters",
+    "jacobian_vector_product",
+    "vector_jacobian_product",
+    "vector_jacobian_product_by_parameters",
+];
+
+#[test]
+fn what_was_requested_passes_where_it_is_right_and_fails_by_a_thousandth() {
+    let right = requests("");
+    assert!(right.passed, "{:?}", failures(&right));
+    for name in REQUESTED {
+        let check = find(&right, name);
+        assert!(check.passed && !check.skipped, "{check:?}");
+        assert_eq!(failures(&requests(name)), [name]);
+    }
+}
+
+#[test]
+fn a_certificate_names_the_texts_and_the_values_that_it_is_about() {
+    let certificate = spring(Fault::None, Ok(emitted(EMITTED)));
+    assert_eq!(
+        certificate.specification_sha256,
+        model(SPRING).source.hash()
+    );
+    let source = model_spec::source::sha256(EMITTED);
+    assert_eq!(certificate.source_sha256, Some(source));
+    let values = [("m", 2.0), ("k", 300.0), ("b", 0.01), ("c", 5.0)];
+    let values = values.map(|(name, value)| (name.to_owned(), value));
+    assert_eq!(certificate.parameters, values);
+    let without = spring(Fault::None, Err("not emitted".into()));
+    assert_eq!(without.source_sha256, None);
 }

@@ -1,12 +1,14 @@
 //! The emitted Rust, compiled by a compiler found on this machine, against the variant
 //! it was emitted from: the same bits at every state. Without a compiler the check is
-//! skipped and says so; source that does not compile fails it.
+//! skipped and says so; source that does not compile fails it. What goes beyond rates of
+//! plain numbers is in `kinds`.
 
 use super::super::certificate::{Check, Worst};
 use super::super::compiler::{self, Compiler};
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
+use super::kinds::{self, OnRequest};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -27,6 +29,9 @@ pub struct Emitted {
     pub input_fields: Vec<String>,
     /// The functions to compare.
     pub functions: Vec<EmittedFunction>,
+    /// What was requested besides, by the names of `--with`, of source that computes with
+    /// any number of its trait `Scalar`; none of plain functions of `f64`.
+    pub requests: Option<Vec<String>>,
 }
 
 /// A function of an emitted crate.
@@ -84,16 +89,17 @@ impl EmittedFunction {
     }
 }
 
-/// Compiles `emitted` and compares it with `variant` at random states. The value is the
-/// number of numbers whose bits differ.
+/// Compiles `emitted` and compares it with `variant` and `requested` at random states. The
+/// value of the first check is the number of numbers whose bits differ.
 ///
 /// # Errors
 /// [`OracleError`] as from [`Oracle::equations`].
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,
+    requested: Option<OnRequest<'_>>,
     emitted: &Emitted,
-) -> Result<Check, OracleError> {
+) -> Result<Vec<Check>, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
     let mut samples = Vec::with_capacity(STATES);
     while samples.len() < STATES
@@ -103,48 +109,61 @@ pub fn check(
     }
     if samples.is_empty() {
         let reason = "no state of the model's domain was found";
-        return Ok(Check::skipped(NAME, 0.0, reason));
+        return Ok(skipped(emitted.requests.as_deref(), reason));
     }
-    let folder = match tempfile::tempdir() {
-        Ok(folder) => folder,
-        Err(error) => {
-            let reason = format!("no temporary folder: {error}");
-            return Ok(Check::skipped(NAME, 0.0, reason));
-        }
+    let found = tempfile::tempdir().map_err(|error| format!("no temporary folder: {error}"));
+    let (folder, compiler) = match found.and_then(|folder| {
+        let compiler = Compiler::find(folder.path())?;
+        Ok((folder, compiler))
+    }) {
+        Ok(found) => found,
+        Err(reason) => return Ok(skipped(emitted.requests.as_deref(), &reason)),
     };
-    let compiler = match Compiler::find(folder.path()) {
-        Ok(compiler) => compiler,
-        Err(reason) => return Ok(Check::skipped(NAME, 0.0, reason)),
-    };
-    let found = build_and_run(&compiler, folder.path(), emitted, &samples);
+    let folder = folder.path();
+    let found = build(&compiler, folder, emitted).and_then(|()| {
+        let harness = ("harness", &*harness_source(emitted));
+        run_linked(&compiler, folder, harness, &table(&samples))
+    });
     let worst = match found.and_then(|lines| compare(variant, emitted, &samples, &lines)) {
         Ok(worst) => worst,
         Err(message) => Worst::of(f64::INFINITY, message),
     };
-    Ok(Check::made(NAME, worst, 0.0))
+    let mut checks = vec![Check::made(NAME, worst, 0.0)];
+    let judged = (variant, requested);
+    checks.extend(kinds::check(&compiler, folder, emitted, judged, &samples));
+    Ok(checks)
 }
 
-/// What the compiled source prints for `samples`.
-fn build_and_run(
+/// The checks of emitted source with `requests`, none of which can be made.
+pub fn skipped(requests: Option<&[String]>, reason: &str) -> Vec<Check> {
+    let mut checks = vec![Check::skipped(NAME, 0.0, reason)];
+    checks.extend(requests.map_or_else(Vec::new, |names| kinds::skipped(names, reason)));
+    checks
+}
+
+/// Compiles the source to a library in `folder`.
+fn build(compiler: &Compiler, folder: &Path, emitted: &Emitted) -> Result<(), String> {
+    let library = folder.join("model.rs");
+    compiler::write(&library, &emitted.source)?;
+    let kind = ["--crate-type", "rlib", "--crate-name", "model"];
+    let object = folder.join("libmodel.rlib");
+    let output = compiler.compile(&library, &object, &kind)?;
+    succeed("the emitted source", output).map(drop)
+}
+
+/// What a program that calls the library in `folder` prints for `input`.
+pub(super) fn run_linked(
     compiler: &Compiler,
     folder: &Path,
-    emitted: &Emitted,
-    samples: &[Sample],
+    (name, source): (&str, &str),
+    input: &str,
 ) -> Result<String, String> {
-    let (library, harness) = (folder.join("model.rs"), folder.join("harness.rs"));
-    compiler::write(&library, &emitted.source)?;
-    compiler::write(&harness, &harness_source(emitted))?;
-    let object = folder.join("libmodel.rlib");
-    let kind = ["--crate-type", "rlib", "--crate-name", "model"];
-    succeed(
-        "the emitted source",
-        compiler.compile(&library, &object, &kind)?,
-    )?;
-    let program = folder.join("harness");
-    let link = format!("model={}", object.display());
+    let (harness, program) = (folder.join(format!("{name}.rs")), folder.join(name));
+    compiler::write(&harness, source)?;
+    let link = format!("model={}", folder.join("libmodel.rlib").display());
     let linked = compiler.compile(&harness, &program, &["--extern", &link])?;
     succeed("the harness", linked)?;
-    let output = compiler::execute(&program, &table(samples))?;
+    let output = compiler::execute(&program, input)?;
     succeed("the compiled model", output)
 }
 
@@ -170,7 +189,7 @@ fn table(samples: &[Sample]) -> String {
     table
 }
 
-fn line(numbers: &[f64]) -> String {
+pub(super) fn line(numbers: &[f64]) -> String {
     let words: Vec<String> = numbers
         .iter()
         .map(|number| format!("{:016x}", number.to_bits()))
@@ -271,7 +290,7 @@ fn compare(
 
 /// How many words of two lines differ; a missing word differs. A NaN is a NaN, whatever
 /// its sign and payload, which no rule of arithmetic gives.
-fn differences(found: &str, expected: &str) -> usize {
+pub(super) fn differences(found: &str, expected: &str) -> usize {
     let (found, expected): (Vec<_>, Vec<_>) =
         (found.split(' ').collect(), expected.split(' ').collect());
     let same = found

@@ -7,7 +7,7 @@
 //! on `legendre` nodes with `shapes`), `scene` (a state and directions in it),
 //! `evaluate` (any number type, with `functions`; [`Conditioned`] numbers tell how far they
 //! can be known), `integrals` (what all rows share),
-//! `terms` (rows of one named term), [`Oracle`] (all rows), `energy` (energies and powers),
+//! `terms` (rows of one named term), [`Oracle`] (all rows), `energy` (energies and powers), `observables`,
 //! `switches` (where piecewise functions change side).
 //!
 //! The rows: with L = T - V, for every generalised coordinate j
@@ -30,6 +30,7 @@ mod functions;
 mod integrals;
 mod legendre;
 mod lower;
+mod observables;
 mod places;
 mod scene;
 mod shapes;
@@ -51,10 +52,12 @@ use lower::Lowering;
 use model_spec::evaluate::evaluate as evaluate_constant;
 use model_spec::model::{Expr, Model, Range};
 use nalgebra::DMatrix;
+use observables::lower_observables;
 use scene::{Direction, Scene};
 use switches::Imposed;
 use system::System;
 use terms::{Lowered, LoweredForce, lower_force, lower_terms};
+use tree::Tree;
 
 /// Evaluates the equations of motion of one variant at any state.
 #[derive(Debug)]
@@ -69,6 +72,7 @@ pub struct Oracle {
     dissipation: Vec<Lowered>,
     forces: Vec<LoweredForce>,
     switches: Vec<Switch>,
+    observables: Vec<Option<Tree>>,
 }
 
 impl Oracle {
@@ -87,6 +91,7 @@ impl Oracle {
         for force in &model.forces {
             forces.extend(lower_force(&mut lowering, force)?);
         }
+        let observables = lower_observables(&mut lowering, model);
         if let Some(term) = kinetic.iter().find(|term| term.dependence.input) {
             return Err(OracleError::InputRate(term.name.clone()));
         }
@@ -101,6 +106,7 @@ impl Oracle {
             dissipation,
             forces,
             switches: Vec::new(),
+            observables,
         };
         oracle.switches = switches::find(&oracle, model);
         Ok(oracle)

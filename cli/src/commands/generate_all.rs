@@ -1,0 +1,152 @@
+//! `eomgen generate --all`: the variants that are checked in, with their certificates.
+
+use std::path::{Path, PathBuf};
+
+use codegen::rust::Packaging;
+use model_spec::model::Model;
+use serde_json::{Value, json};
+use sim::certificates::unchecked;
+
+use super::generate::source;
+use super::validate::{document, of_source};
+use crate::output::write_file;
+use crate::problem::{Outcome, Problem, say, warn};
+use crate::progress::Note;
+use crate::variant::{derive_variant, load};
+
+/// The specification whose variants are checked in.
+const SPECIFICATION: &str = "model-spec/models/planetary_arm.toml";
+
+/// Where they are checked in, and where their certificates are.
+const FOLDER: &str = "generated/src";
+const CERTIFICATES: &str = "generated/certificates";
+
+/// The highest order checked in.
+const HIGHEST_ORDER: usize = 8;
+
+/// A variant that is checked in.
+struct CheckedIn {
+    name: String,
+    order: usize,
+    text: String,
+}
+
+/// Writes all, or with `check` compares.
+pub fn run(check: bool, json: bool) -> Outcome {
+    let root = project_root()?;
+    let model = load(&root.join(SPECIFICATION))?.model;
+    let variants = variants(&model)?;
+    let mut different = different_sources(&root, &variants, check)?;
+    for variant in &variants {
+        let path = root.join(certificate_file(variant));
+        if check {
+            if !is_of(&path, &model, variant)? {
+                different.push(certificate_file(variant));
+            }
+        } else {
+            let _note = Note::new(format!("certifying {}", variant.name));
+            let orders = vec![variant.order; model.fields.len()];
+            let text = document(&of_source(&model, &orders, &[], variant.text.clone())?)?;
+            if std::fs::read_to_string(&path).unwrap_or_default() != text {
+                different.push(certificate_file(variant));
+                write_file(&path, text.as_bytes())?;
+            }
+        }
+    }
+    say_what_differs(2 * variants.len() + 1, &different, check, json)?;
+    if check && !different.is_empty() {
+        warn(&format!(
+            "error: not what the generator emits: {}; run `eomgen generate --all`",
+            different.join(", ")
+        ));
+        return Err(Problem::Failed);
+    }
+    Ok(())
+}
+
+/// The sources that are not what is emitted; written, unless they are only compared.
+fn different_sources(root: &Path, variants: &[CheckedIn], check: bool) -> Outcome<Vec<String>> {
+    let mut different = Vec::new();
+    let root_module = [("lib.rs".to_owned(), root_module(variants))];
+    let files = variants
+        .iter()
+        .map(|variant| (format!("{}.rs", variant.name), variant.text.clone()));
+    for (name, text) in files.chain(root_module) {
+        let path = root.join(FOLDER).join(&name);
+        if std::fs::read_to_string(&path).unwrap_or_default() != text {
+            different.push(name);
+            if !check {
+                write_file(&path, text.as_bytes())?;
+            }
+        }
+    }
+    Ok(different)
+}
+
+fn say_what_differs(files: usize, different: &[String], check: bool, json: bool) -> Outcome {
+    if json {
+        let document = json!({"files": files, "different": different, "written": !check});
+        return say(&format!("{document:#}\n"));
+    }
+    let verb = if check { "differ" } else { "written" };
+    say(&format!("{files} files, {} {verb}\n", different.len()))
+}
+
+fn certificate_file(variant: &CheckedIn) -> String {
+    format!("{CERTIFICATES}/{}.json", variant.name)
+}
+
+/// Whether a file is the passed certificate of a variant as it is emitted now. Nothing is
+/// checked again: its hashes tie it to specification and source.
+fn is_of(path: &Path, model: &Model, variant: &CheckedIn) -> Outcome<bool> {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let found: Value = serde_json::from_str(&text).unwrap_or_default();
+    let expected = unchecked(model, variant.order, &[], variant.text.clone())
+        .map_err(|error| Problem::model(&model.source, error))?;
+    let expected =
+        serde_json::to_value(expected).map_err(|error| Problem::input(error.to_string()))?;
+    let same = |(key, value): (&String, &Value)| {
+        ["passed", "checks"].contains(&key.as_str()) || found[key] == *value
+    };
+    let all = expected
+        .as_object()
+        .is_some_and(|fields| fields.iter().all(same));
+    Ok(all && found["passed"] == true)
+}
+
+fn variants(model: &Model) -> Outcome<Vec<CheckedIn>> {
+    let variant = |order: usize| {
+        let name = match order {
+            0 => format!("{}_rigid", model.name),
+            order => format!("{}_order_{order}", model.name),
+        };
+        let derived = derive_variant(model.clone(), &vec![order; model.fields.len()])?;
+        let text = source(&derived.program, Packaging::Module)?;
+        Ok(CheckedIn { name, order, text })
+    };
+    (0..=HIGHEST_ORDER).map(variant).collect()
+}
+
+/// The root of the crate `generated`.
+fn root_module(variants: &[CheckedIn]) -> String {
+    let header = "//! Equations of motion of the planetary arm, rigid and with one to eight modes, as\n\
+                  //! emitted by `eomgen generate --all`. Do not edit: regenerate.\n\n\
+                  #![no_std]\n\n";
+    let module = |variant: &CheckedIn| format!("#[rustfmt::skip]\npub mod {};\n", variant.name);
+    header.to_owned() + &variants.iter().map(module).collect::<String>()
+}
+
+/// The folder of the project, at or above the current one.
+fn project_root() -> Outcome<PathBuf> {
+    let current = std::env::current_dir()
+        .map_err(|error| Problem::input(format!("no current folder: {error}")))?;
+    current
+        .ancestors()
+        .find(|folder| folder.join(SPECIFICATION).is_file() && folder.join(FOLDER).is_dir())
+        .map(Path::to_path_buf)
+        .ok_or_else(|| {
+            Problem::input(format!(
+                "--all works inside the project: no folder here or above holds {SPECIFICATION} and {FOLDER}"
+            ))
+        })
+}

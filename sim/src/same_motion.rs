@@ -1,0 +1,204 @@
+//! Whether two models have the same equations of motion but for the values of their
+//! parameters. Names of coordinates, inputs and parameters count, and so do the forms of
+//! energies and forces and the numbers that stand in them; comments, names of terms,
+//! observables and how an expression is divided into definitions do not.
+
+use model_spec::model::{Expr, ExprKind, Field, Force, Model, ParameterValue, Term};
+
+/// What keeps `model` from having the equations of motion of `known`; none if it has them.
+/// A parameter that `known` derives from others may have any value if its name is among
+/// `given`; any other must be derived in the same way.
+pub fn difference(model: &Model, known: &Model, given: &[&str]) -> Option<String> {
+    let pair = Pair { model, known };
+    pair.coordinates()
+        .or_else(|| pair.inputs())
+        .or_else(|| pair.fields())
+        .or_else(|| pair.terms("kinetic", &model.kinetic, &known.kinetic))
+        .or_else(|| pair.terms("potential", &model.potential, &known.potential))
+        .or_else(|| pair.terms("dissipation", &model.dissipation, &known.dissipation))
+        .or_else(|| pair.forces())
+        .or_else(|| pair.derived_parameters(given))
+}
+
+/// Two models under comparison.
+struct Pair<'m> {
+    model: &'m Model,
+    known: &'m Model,
+}
+
+impl Pair<'_> {
+    fn coordinates(&self) -> Option<String> {
+        let names = |model: &Model| -> Vec<String> {
+            let coordinates = model.coordinates.iter();
+            coordinates.map(|known| known.name.clone()).collect()
+        };
+        listed("coordinates", &names(self.model), &names(self.known))
+    }
+
+    fn inputs(&self) -> Option<String> {
+        let names = |model: &Model| -> Vec<String> {
+            let inputs = model.inputs.iter();
+            inputs.map(|input| input.name.clone()).collect()
+        };
+        listed("inputs", &names(self.model), &names(self.known))
+    }
+
+    fn fields(&self) -> Option<String> {
+        let (fields, known) = (&self.model.fields, &self.known.fields);
+        let alike = |(field, known): (&Field, &Field)| {
+            field.basis == known.basis
+                && self.same(&field.from, &known.from)
+                && self.same(&field.to, &known.to)
+        };
+        (fields.len() != known.len() || !fields.iter().zip(known).all(alike))
+            .then(|| "its fields, their domains or bases are others".to_owned())
+    }
+
+    fn terms(&self, section: &str, terms: &[Term], known: &[Term]) -> Option<String> {
+        let same = |term: &Term, known: &Term| self.same(&term.value, &known.value);
+        matched(section, terms, known, same, |term| &term.name)
+    }
+
+    fn forces(&self) -> Option<String> {
+        let same = |force: &Force, known: &Force| {
+            self.same(&force.on, &known.on) && self.same(&force.value, &known.value)
+        };
+        let (forces, known) = (&self.model.forces, &self.known.forces);
+        matched("forces", forces, known, same, |force| &force.name)
+    }
+
+    /// A derived parameter that the equations do not take as given.
+    fn derived_parameters(&self, given: &[&str]) -> Option<String> {
+        let derived = self.known.parameters.iter().filter_map(|known| {
+            let ParameterValue::Expression(value) = &known.value else {
+                return None;
+            };
+            (!given.contains(&known.name.as_str())).then_some((&known.name, value))
+        });
+        for (name, value) in derived {
+            let own = self.model.parameters.iter().find(|own| own.name == *name);
+            let alike = own.is_none_or(|own| match &own.value {
+                ParameterValue::Expression(own) => self.same(own, value),
+                ParameterValue::Number(_) => false,
+            });
+            if !alike {
+                return Some(format!("its parameter `{name}` is derived differently"));
+            }
+        }
+        None
+    }
+
+    /// Whether two expressions are the same, definitions written out. The walk ends with the
+    /// known expression, however often this model's definitions share others.
+    fn same(&self, left: &Expr, right: &Expr) -> bool {
+        use ExprKind as K;
+        if let K::Definition(index) = left.kind {
+            let definition = self.model.definitions.get(index);
+            return definition.is_some_and(|own| self.same(&own.value, right));
+        }
+        let right = self.written_out(right);
+        match (&left.kind, &right.kind) {
+            (K::Parameter(own), K::Parameter(known)) => {
+                self.model.parameters.get(*own).map(|p| &p.name)
+                    == self.known.parameters.get(*known).map(|p| &p.name)
+            }
+            (K::Dot(left), K::Dot(right)) | (K::Negate(left), K::Negate(right)) => {
+                self.same(left, right)
+            }
+            (K::Diff(left, times), K::Diff(right, other)) => {
+                times == other && self.same(left, right)
+            }
+            (K::At { .. }, K::At { .. })
+            | (K::Integral { .. }, K::Integral { .. })
+            | (K::Sum { .. }, K::Sum { .. }) => self.same_in_field(&left.kind, &right.kind),
+            (K::Binary(operator, a, b), K::Binary(other, c, d)) => {
+                operator == other && self.same(a, c) && self.same(b, d)
+            }
+            (K::Call(function, arguments), K::Call(other, others)) => {
+                function == other
+                    && arguments.len() == others.len()
+                    && arguments.iter().zip(others).all(|(a, b)| self.same(a, b))
+            }
+            // What has no parts; coordinates, inputs and fields are known to be the same.
+            (left, right) => left == right,
+        }
+    }
+
+    /// The same of what belongs to a field.
+    fn same_in_field(&self, left: &ExprKind, right: &ExprKind) -> bool {
+        use ExprKind as K;
+        match (left, right) {
+            (
+                K::At {
+                    field,
+                    value,
+                    position,
+                },
+                K::At {
+                    field: other,
+                    value: known,
+                    position: place,
+                },
+            ) => field == other && self.same(value, known) && self.same(position, place),
+            (
+                K::Integral { field, integrand },
+                K::Integral {
+                    field: other,
+                    integrand: known,
+                },
+            ) => field == other && self.same(integrand, known),
+            (
+                K::Sum { field, summand },
+                K::Sum {
+                    field: other,
+                    summand: known,
+                },
+            ) => field == other && self.same(summand, known),
+            _ => false,
+        }
+    }
+
+    /// What stands behind the names of the known model's definitions.
+    fn written_out<'e>(&'e self, mut expression: &'e Expr) -> &'e Expr {
+        while let ExprKind::Definition(index) = expression.kind {
+            let Some(definition) = self.known.definitions.get(index) else {
+                break;
+            };
+            expression = &definition.value;
+        }
+        expression
+    }
+}
+
+/// Whether two lists of names differ.
+fn listed(what: &str, own: &[String], known: &[String]) -> Option<String> {
+    (own != known).then(|| {
+        let names = |names: &[String]| {
+            if names.is_empty() {
+                "none".to_owned()
+            } else {
+                names.join(", ")
+            }
+        };
+        format!("its {what} are {}, not {}", names(own), names(known))
+    })
+}
+
+/// The first entry of one list that has no partner in the other.
+fn matched<T>(
+    section: &str,
+    own: &[T],
+    known: &[T],
+    same: impl Fn(&T, &T) -> bool,
+    name: impl Fn(&T) -> &str,
+) -> Option<String> {
+    let mut left: Vec<&T> = known.iter().collect();
+    for entry in own {
+        let Some(place) = left.iter().position(|known| same(entry, known)) else {
+            return Some(format!("`{}` of [{section}] is another", name(entry)));
+        };
+        left.swap_remove(place);
+    }
+    let missing = left.first()?;
+    Some(format!("it has no `{}` of [{section}]", name(missing)))
+}

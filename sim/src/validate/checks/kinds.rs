@@ -1,0 +1,474 @@
+//! The emitted source beyond rates of plain `f64`, compiled once more: requested functions
+//! against their evaluation here, bit for bit; eight states at once against each alone, bit
+//! for bit; single precision against a bound of what it rounds away, found by running the
+//! same source with numbers that carry such a bound.
+
+use super::super::certificate::{Check, Worst};
+use super::super::compiler::Compiler;
+use super::super::random::Random;
+use super::super::requested::{JACOBIANS, Requested};
+use super::super::sampler::Sample;
+use super::super::variant::Variant;
+use super::emitted::{Emitted, differences, line, run_linked};
+use std::path::Path;
+
+/// Deviation of single precision that passes, in bounds. Both sides are evaluated in double
+/// precision beside what single precision rounds; a millionth is more than that may add.
+const SINGLE_TOLERANCE: f64 = 1.0 + 1e-6;
+/// States compared, in groups of eight for lanes.
+const STATES: usize = 48;
+/// The lanes of a group.
+const LANES: usize = 8;
+/// The seed of directions, weights and accelerations.
+const SEED: u64 = 0x51de_5eed;
+
+/// What was requested, borrowed from where it is kept.
+pub type OnRequest<'r> = &'r mut (dyn Requested + 'static);
+
+/// Everything a requested function is called with.
+struct Arguments {
+    sample: Sample,
+    accelerations: Vec<f64>,
+    direction: Vec<f64>,
+    input_direction: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+impl Arguments {
+    fn drawn(sample: &Sample, random: &mut Random) -> Self {
+        let mut draw = |count: usize| (0..count).map(|_| random.away_from_zero()).collect();
+        Self {
+            accelerations: draw(sample.state.len() / 2),
+            direction: draw(sample.state.len()),
+            input_direction: draw(sample.inputs.len()),
+            weights: draw(sample.state.len()),
+            sample: sample.clone(),
+        }
+    }
+
+    fn line(&self) -> String {
+        let Sample {
+            time,
+            state,
+            inputs,
+        } = &self.sample;
+        let [a, d, u, w] = [
+            &self.accelerations,
+            &self.direction,
+            &self.input_direction,
+            &self.weights,
+        ];
+        line(&[&[*time][..], state, inputs, a, d, u, w].concat())
+    }
+}
+
+/// The names of the checks that belong to `requests`.
+fn names(requests: &[String]) -> Vec<&'static str> {
+    let has = |name: &str| requests.iter().any(|known| known == name);
+    let mut found = Vec::new();
+    if calls(requests)
+        .iter()
+        .any(|call| call.row == "emitted_requests")
+    {
+        found.push("emitted_requests");
+    }
+    for name in ["linearisation", "lanes"] {
+        if has(name) {
+            found.push(name);
+        }
+    }
+    found.push("f32");
+    found
+}
+
+fn tolerance(name: &str) -> f64 {
+    if name == "f32" { SINGLE_TOLERANCE } else { 0.0 }
+}
+
+/// The checks of `requests`, none of which can be made.
+pub fn skipped(requests: &[String], reason: &str) -> Vec<Check> {
+    let names = names(requests).into_iter();
+    names
+        .map(|name| Check::skipped(name, tolerance(name), reason))
+        .collect()
+}
+
+/// Compiles what calls `emitted`, whose library stands in `folder`, and compares.
+pub fn check(
+    compiler: &Compiler,
+    folder: &Path,
+    emitted: &Emitted,
+    (variant, requested): (&mut dyn Variant, Option<OnRequest<'_>>),
+    samples: &[Sample],
+) -> Vec<Check> {
+    let Some(requests) = &emitted.requests else {
+        return Vec::new();
+    };
+    let mut random = Random::new(SEED);
+    let arguments: Vec<Arguments> = samples
+        .iter()
+        .take(STATES)
+        .map(|sample| Arguments::drawn(sample, &mut random))
+        .collect();
+    let calls = calls(requests);
+    let text: Vec<String> = arguments.iter().map(Arguments::line).collect();
+    let source = harness_source(emitted, &calls, requests);
+    let found = run_linked(
+        compiler,
+        folder,
+        ("kinds", &source),
+        &(text.join("\n") + "\n"),
+    )
+    .and_then(|lines| {
+        let mut reading = Reading {
+            lines: lines.lines(),
+            variant,
+            requested,
+        };
+        reading.worst(requests, &calls, &arguments)
+    });
+    match found {
+        Ok(checks) => checks,
+        Err(message) => names(requests)
+            .into_iter()
+            .map(|name| {
+                let worst = Worst::of(f64::INFINITY, message.clone());
+                Check::made(name, worst, tolerance(name))
+            })
+            .collect(),
+    }
+}
+
+/// A function of the emitted source, called at every state.
+struct Call {
+    /// The check that it belongs to.
+    row: &'static str,
+    name: &'static str,
+    /// Statements that print one line for each list of numbers.
+    text: String,
+}
+
+/// The calls of everything in `requests` that gives numbers of its own.
+fn calls(requests: &[String]) -> Vec<Call> {
+    let has = |name: &str| requests.iter().any(|known| known == name);
+    let at = "t, &state, &inputs, &coefficients";
+    let mut calls = Vec::new();
+    let mut add = |row, name, text| calls.push(Call { row, name, text });
+    for (name, more) in [
+        ("bias_forces", ""),
+        ("inverse_dynamics", ", &accelerations"),
+        ("guard_rates", ""),
+    ] {
+        if has(name) {
+            add(
+                "emitted_requests",
+                name,
+                format!("model::{name}({at}{more}).print();"),
+            );
+        }
+    }
+    if has("jacobians") || has("linearisation") {
+        for name in JACOBIANS {
+            let (rows, columns) = extents(name);
+            let pattern = name.to_uppercase();
+            let text = format!(
+                "let dense: [[f64; model::{columns}]; model::{rows}] = \
+                 model::{pattern}.dense(&model::{name}({at})); dense.print();"
+            );
+            add("emitted_requests", name, text);
+        }
+    }
+    if has("products") {
+        let text = format!(
+            "model::jacobian_vector_product({at}, &direction, &inputs_of(input_direction)).print();"
+        );
+        add("emitted_requests", "jacobian_vector_product", text);
+        let text = format!(
+            "let (by_state, by_inputs) = model::vector_jacobian_product({at}, &weights); \
+             by_state.print(); let by_inputs: [f64; INPUTS] = [/*FIELDS*/]; by_inputs.print();"
+        );
+        add("emitted_requests", "vector_jacobian_product", text);
+        let name = "vector_jacobian_product_by_parameters";
+        add(
+            "emitted_requests",
+            name,
+            format!("model::{name}({at}, &weights).print();"),
+        );
+    }
+    if has("linearisation") {
+        let text = format!(
+            "let l = model::linearise({at}); l.rates.print(); l.observables.print(); \
+             l.A.print(); l.B.print(); l.C.print(); l.D.print();"
+        );
+        add("linearisation", "linearise", text);
+    }
+    calls
+}
+
+/// The names of a Jacobian's extents.
+fn extents(name: &str) -> (&'static str, &'static str) {
+    let rows = if name.starts_with("rates") {
+        "STATES"
+    } else {
+        "OBSERVABLES"
+    };
+    let columns = match name.rsplit('_').next() {
+        Some("state") => "STATES",
+        Some("inputs") => "INPUTS",
+        _ => "PARAMETERS",
+    };
+    (rows, columns)
+}
+
+fn harness_source(emitted: &Emitted, calls: &[Call], requests: &[String]) -> String {
+    let fields = emitted.input_fields.iter();
+    let by_inputs: Vec<String> = fields.map(|field| format!("by_inputs.{field}")).collect();
+    let statement = |call: &Call| {
+        let text = call.text.replace("/*FIELDS*/", &by_inputs.join(", "));
+        format!("        {{ {text} }}\n")
+    };
+    let statements: String = calls.iter().map(statement).collect();
+    let mut source = include_str!("harness/kinds.rs")
+        .replace("        //CALLS\n", &statements)
+        .replace("//INPUTS\n", &inputs_of(&emitted.input_fields));
+    // Coefficients of a model that has none are of no kind of numbers.
+    let has_coefficients = emitted.source.contains("pub struct Coefficients<");
+    for kind in ["f32", "Rounded"] {
+        let conversion = if has_coefficients {
+            format!(".cast::<{kind}>()")
+        } else {
+            String::new()
+        };
+        source = source.replace(&format!("/*CAST {kind}*/"), &conversion);
+    }
+    if requests.iter().any(|name| name == "lanes") {
+        source = source
+            .replace("//LANES\n", include_str!("harness/lanes.rs"))
+            .replace("        //GROUPS\n", GROUPS);
+    }
+    source
+}
+
+/// What compares every group of states.
+const GROUPS: &str = "        if group.len() == 8 {
+            let found = compare_lanes(&group, &coefficients);
+            lanes = [lanes[0] + found[0], lanes[1] + found[1]];
+            group.clear();
+        }
+";
+
+/// How many inputs there are, and a function that makes them of as many numbers.
+fn inputs_of(fields: &[String]) -> String {
+    let count = format!("const INPUTS: usize = {};\n\n", fields.len());
+    if fields.is_empty() {
+        let none = "fn inputs_of<T>(_: [T; INPUTS]) -> model::Inputs {\n    model::Inputs {}\n}\n";
+        return count + none;
+    }
+    let given = fields.iter().enumerate();
+    let given: Vec<String> = given
+        .map(|(i, field)| format!("{field}: given[{i}]"))
+        .collect();
+    let given = given.join(", ");
+    let head = "fn inputs_of<T: Copy>(given: [T; INPUTS]) -> model::Inputs<T> {";
+    format!("{count}{head}\n    model::Inputs {{ {given} }}\n}}\n")
+}
+
+/// What the compiled program printed, being compared.
+struct Reading<'l, 'r> {
+    lines: std::str::Lines<'l>,
+    variant: &'r mut dyn Variant,
+    requested: Option<OnRequest<'r>>,
+}
+
+impl Reading<'_, '_> {
+    fn next(&mut self) -> Result<String, String> {
+        let line = self.lines.next();
+        Ok(line.ok_or("the compiled model stopped early")?.to_owned())
+    }
+
+    fn worst(
+        &mut self,
+        requests: &[String],
+        calls: &[Call],
+        arguments: &[Arguments],
+    ) -> Result<Vec<Check>, String> {
+        let mut rows = [
+            ("emitted_requests", 0, 0, None),
+            ("linearisation", 0, 0, None),
+        ];
+        for (count, arguments) in (1..).zip(arguments) {
+            for call in calls {
+                for expected in self.expected(call.name, arguments)? {
+                    let wrong = differences(&self.next()?, &line(&expected));
+                    let row = rows.iter_mut().find(|row| row.0 == call.row);
+                    let Some((_, compared, differing, first)) = row else {
+                        continue;
+                    };
+                    *compared += expected.len();
+                    *differing += wrong;
+                    if wrong > 0 && first.is_none() {
+                        *first = Some(format!("first in {} at state {count}", call.name));
+                    }
+                }
+            }
+        }
+        let (single, lanes) = (numbers(&self.next()?)?, numbers(&self.next()?)?);
+        let mut checks = Vec::new();
+        for name in names(requests) {
+            let worst = match name {
+                "f32" => of_single(&single),
+                "lanes" => {
+                    let detail = format!("{} numbers in groups of {LANES} states", at(&lanes, 1));
+                    Worst::of(at(&lanes, 0), detail)
+                }
+                _ => of_bits(&rows, name),
+            };
+            checks.push(if name == "f32" && at(&single, 1) == 0.0 {
+                let reason = "single precision holds none of its numbers";
+                Check::skipped(name, SINGLE_TOLERANCE, reason)
+            } else {
+                Check::made(name, worst, tolerance(name))
+            });
+        }
+        Ok(checks)
+    }
+
+    /// What a call prints.
+    fn expected(&mut self, name: &str, at: &Arguments) -> Result<Vec<Vec<f64>>, String> {
+        let sample = &at.sample;
+        let missing = || format!("{name} is not there");
+        let requested = self.requested.as_deref_mut().ok_or_else(missing)?;
+        let found = match name {
+            "bias_forces" => requested.bias_forces(sample).map(|rows| vec![rows]),
+            "inverse_dynamics" => {
+                let rows = requested.inverse_dynamics(sample, &at.accelerations);
+                rows.map(|rows| vec![rows])
+            }
+            "guard_rates" => requested.guard_rates(sample).map(|rates| vec![rates]),
+            "jacobian_vector_product" => requested
+                .jacobian_vector_product(sample, &at.direction, &at.input_direction)
+                .map(|rows| vec![rows]),
+            "vector_jacobian_product" => requested
+                .vector_jacobian_product(sample, &at.weights)
+                .map(|(by_state, by_inputs)| vec![by_state, by_inputs]),
+            "vector_jacobian_product_by_parameters" => requested
+                .vector_jacobian_product_by_parameters(sample, &at.weights)
+                .map(|rows| vec![rows]),
+            "linearise" => return self.linearised(sample),
+            name => row_by_row(requested, name, sample).map(|rows| vec![rows]),
+        };
+        found.ok_or_else(missing)
+    }
+
+    /// Rates and observables, then A, B, C and D as the Jacobians say.
+    fn linearised(&mut self, sample: &Sample) -> Result<Vec<Vec<f64>>, String> {
+        let Sample {
+            time,
+            state,
+            inputs,
+        } = sample;
+        let mut rates = vec![f64::NAN; state.len()];
+        self.variant.rates(*time, state, inputs, &mut rates)?;
+        let observables = self.variant.observables(*time, state, inputs)?;
+        let mut found = vec![rates, observables];
+        for name in [
+            "rates_by_state",
+            "rates_by_inputs",
+            "observables_by_state",
+            "observables_by_inputs",
+        ] {
+            let requested = self.requested.as_deref_mut();
+            let rows = requested.and_then(|requested| row_by_row(requested, name, sample));
+            found.push(rows.ok_or_else(|| format!("{name} is not there"))?);
+        }
+        Ok(found)
+    }
+}
+
+/// A Jacobian's numbers, row by row.
+fn row_by_row(requested: &mut dyn Requested, name: &str, sample: &Sample) -> Option<Vec<f64>> {
+    let jacobian = requested.jacobian(name, sample)?;
+    Some(jacobian.transpose().as_slice().to_vec())
+}
+
+type BitRow = (&'static str, usize, usize, Option<String>);
+
+fn of_bits(rows: &[BitRow], name: &str) -> Worst {
+    match rows.iter().find(|row| row.0 == name) {
+        Some((_, compared, differing, first)) => {
+            let all = || format!("{compared} numbers");
+            Worst::of(*differing as f64, first.clone().unwrap_or_else(all))
+        }
+        None => Worst::default(),
+    }
+}
+
+fn of_single(found: &[f64]) -> Worst {
+    let detail = format!(
+        "of the bound of rounding; {} numbers, {} of them known to two digits",
+        at(found, 1),
+        at(found, 2)
+    );
+    Worst::of(at(found, 0), detail)
+}
+
+fn at(numbers: &[f64], place: usize) -> f64 {
+    numbers.get(place).copied().unwrap_or(f64::NAN)
+}
+
+/// The numbers of a line of bits.
+fn numbers(line: &str) -> Result<Vec<f64>, String> {
+    let words = line.split(' ');
+    let number = |word: &str| u64::from_str_radix(word, 16).map(f64::from_bits);
+    words
+        .map(|word| number(word).map_err(|_| format!("the compiled model printed {word:?}")))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is compiled for these inputs and requests, of source with or without coefficients.
+    fn harness(inputs: &[&str], requests: &[&str], source: &str) -> String {
+        let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+        let requests: Vec<String> = owned(requests);
+        let emitted = Emitted {
+            source: source.to_owned(),
+            input_fields: owned(inputs),
+            functions: Vec::new(),
+            requests: Some(requests.clone()),
+        };
+        harness_source(&emitted, &calls(&requests), &requests)
+    }
+
+    #[test]
+    fn every_place_of_the_harness_is_filled() {
+        let all = [
+            "bias_forces",
+            "inverse_dynamics",
+            "guard_rates",
+            "jacobians",
+            "products",
+            "linearisation",
+            "lanes",
+        ];
+        let text = harness(&["u", "f"], &all, "pub struct Coefficients<T = f64> {");
+        for place in [
+            "//CALLS", "//INPUTS", "//LANES", "//GROUPS", "CAST", "FIELDS",
+        ] {
+            assert!(!text.contains(place), "{place}");
+        }
+        assert!(text.contains("model::Inputs { u: given[0], f: given[1] }"));
+        assert!(text.contains("[by_inputs.u, by_inputs.f]"));
+        assert!(text.contains("coefficients.cast::<f32>()"));
+    }
+
+    #[test]
+    fn a_model_without_inputs_and_coefficients_has_none_of_any_kind() {
+        let text = harness(&[], &[], "pub struct Coefficients {");
+        assert!(text.contains("const INPUTS: usize = 0;"));
+        assert!(text.contains("(coefficients, coefficients)"));
+        assert!(!text.contains("compare_lanes"));
+    }
+}

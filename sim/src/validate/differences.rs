@@ -1,0 +1,187 @@
+//! How the oracle's equations and observables change along a direction of states, inputs and
+//! parameters, by central differences of eighth order. What is differentiated are the rows
+//! of the equations at held accelerations, so that no solution of a system comes in between.
+
+use super::oracle::{Oracle, Side};
+use super::sampler::Sample;
+use model_spec::model::{Model, ParameterValue};
+
+/// Weights of f(k h) - f(-k h), k = 1 .. 4 (Fornberg, "Generation of finite difference
+/// formulas on arbitrarily spaced grids", Math. Comp. 51, 1988, table 1).
+const WEIGHTS: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
+
+/// A number with the largest of what was added up for it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Slope {
+    /// The derivative along the direction.
+    pub value: f64,
+    /// The largest addend of the quantity itself: over one length of the direction a
+    /// quantity changes by no more than a few of these.
+    pub scale: f64,
+}
+
+/// Where to: what a step of length 1 adds.
+#[derive(Clone, Debug)]
+pub(super) struct Direction {
+    /// To the state.
+    pub state: Vec<f64>,
+    /// To the inputs.
+    pub inputs: Vec<f64>,
+    /// To the independent parameters, in the order of the model's parameters.
+    pub parameters: Vec<f64>,
+}
+
+impl Direction {
+    /// Nowhere.
+    pub fn still(states: usize, inputs: usize, parameters: usize) -> Self {
+        Self {
+            state: vec![0.0; states],
+            inputs: vec![0.0; inputs],
+            parameters: vec![0.0; parameters],
+        }
+    }
+
+    fn moves_parameters(&self) -> bool {
+        self.parameters.iter().any(|entry| *entry != 0.0)
+    }
+}
+
+/// The derivatives by eighth-order central differences of quantities known as value and
+/// scale; none where one of the values is missing or not finite.
+pub(super) fn slopes(
+    step: f64,
+    mut at: impl FnMut(f64) -> Option<Vec<Slope>>,
+) -> Option<Vec<Slope>> {
+    let mut found: Vec<Slope> = Vec::new();
+    for (count, weight) in (1..).zip(WEIGHTS) {
+        for side in [1.0, -1.0] {
+            let values = at(side * f64::from(count) * step)?;
+            found.resize(values.len(), Slope::default());
+            for (slope, value) in found.iter_mut().zip(values) {
+                if !value.value.is_finite() {
+                    return None;
+                }
+                slope.value += side * weight * value.value / step;
+                slope.scale = slope.scale.max(value.scale);
+            }
+        }
+    }
+    Some(found)
+}
+
+/// The oracle about one state of one regime.
+pub(super) struct Surroundings<'s> {
+    /// The oracle.
+    pub oracle: &'s Oracle,
+    /// The model it was made of.
+    pub model: &'s Model,
+    /// The order.
+    pub order: usize,
+    /// All parameters in SI.
+    pub parameters: &'s [f64],
+    /// The state.
+    pub sample: &'s Sample,
+    /// The accelerations there, held.
+    pub accelerations: Vec<f64>,
+}
+
+impl Surroundings<'_> {
+    /// How every row of the equations, then every observable, changes along `direction`; none
+    /// if the regime or the domain of a function ends within four steps.
+    pub fn slopes(&self, direction: &Direction, step: f64) -> Option<Vec<Slope>> {
+        let here = sides(self.oracle, self.sample)?;
+        slopes(step, |length| {
+            let sample = self.moved(direction, length);
+            if !direction.moves_parameters() {
+                return self.quantities(self.oracle, &sample, &here);
+            }
+            let parameters = self.moved_parameters(direction, length)?;
+            let oracle = Oracle::new(self.model, self.order, &parameters).ok()?;
+            self.quantities(&oracle, &sample, &here)
+        })
+    }
+
+    fn moved(&self, direction: &Direction, length: f64) -> Sample {
+        let moved = |from: &[f64], direction: &[f64]| -> Vec<f64> {
+            let entries = from.iter().zip(direction);
+            entries.map(|(from, by)| from + length * by).collect()
+        };
+        Sample {
+            state: moved(&self.sample.state, &direction.state),
+            inputs: moved(&self.sample.inputs, &direction.inputs),
+            ..self.sample.clone()
+        }
+    }
+
+    /// All parameters after a move of the independent ones.
+    fn moved_parameters(&self, direction: &Direction, length: f64) -> Option<Vec<f64>> {
+        let mut model = self.model.clone();
+        let known = self.parameters.iter().zip(&direction.parameters);
+        for (parameter, (value, by)) in model.parameters.iter_mut().zip(known) {
+            if let ParameterValue::Number(own) = &mut parameter.value {
+                *own = value + length * by;
+            }
+        }
+        model.parameter_values().ok()
+    }
+
+    fn quantities(&self, oracle: &Oracle, sample: &Sample, here: &[Side]) -> Option<Vec<Slope>> {
+        if sides(oracle, sample)? != here {
+            return None;
+        }
+        let Sample {
+            time,
+            state,
+            inputs,
+        } = sample;
+        let equations = oracle.equations(*time, state, inputs).ok()?;
+        let rows = equations.residuals(&self.accelerations);
+        let mut quantities: Vec<Slope> = rows
+            .iter()
+            .map(|row| Slope {
+                value: row.value,
+                scale: row.scale,
+            })
+            .collect();
+        let observables = oracle.observables(*time, state, inputs).ok()?;
+        quantities.extend(observables.iter().map(|observable| Slope {
+            value: observable.value,
+            scale: observable.magnitude,
+        }));
+        Some(quantities)
+    }
+}
+
+/// On which sides of its switches a state is.
+fn sides(oracle: &Oracle, sample: &Sample) -> Option<Vec<Side>> {
+    let values = oracle.switch_values(sample.time, &sample.state, &sample.inputs);
+    Some(values.ok()?.iter().map(|value| value.side()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_of_eighth_order_take_a_sine_to_rounding() {
+        let sine = |x: f64| {
+            Some(vec![Slope {
+                value: (0.7 + x).sin(),
+                scale: 1.0,
+            }])
+        };
+        let slope = slopes(1.0 / 16.0, sine).expect("a slope")[0];
+        assert!((slope.value - 0.7_f64.cos()).abs() < 1e-12, "{slope:?}");
+        // The error goes with the eighth power of the step.
+        let error = |step| (slopes(step, sine).expect("a slope")[0].value - 0.7_f64.cos()).abs();
+        let order = (error(0.5) / error(0.25)).log2();
+        assert!((order - 8.0).abs() < 0.2, "{order}");
+    }
+
+    #[test]
+    fn a_neighbour_that_is_missing_leaves_no_slope() {
+        let edge = |x: f64| (x < 0.2).then(|| vec![Slope::default()]);
+        assert!(slopes(0.1, edge).is_none());
+        assert!(slopes(0.01, edge).is_some());
+    }
+}

@@ -1,0 +1,62 @@
+//! Observables of the specification, with `energy` and `power` last.
+
+use super::conditioned::Conditioned;
+use super::evaluate::Pass;
+use super::lower::Lowering;
+use super::scene::Direction;
+use super::tree::Tree;
+use super::{Oracle, OracleError};
+use model_spec::model::Model;
+
+/// The tree of every observable; none of one that cannot be evaluated here.
+pub(super) fn lower_observables(lowering: &mut Lowering<'_>, model: &Model) -> Vec<Option<Tree>> {
+    let observables = model.observables.iter();
+    observables
+        .map(|known| lowering.term(&known.name, &known.value).ok())
+        .collect()
+}
+
+impl Oracle {
+    /// The observables at a state in the order of the specification, then T + V and its rate.
+    /// One that cannot be evaluated is 0 of infinite terms.
+    ///
+    /// # Errors
+    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    pub fn observables(
+        &self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Vec<Conditioned>, OracleError> {
+        let scene = self.scene(time, state, None, inputs)?;
+        let pass = Pass::new(&scene, Direction::Still, Direction::Still);
+        let value = |tree: &Option<Tree>| match tree {
+            Some(tree) => pass.value(tree).re,
+            None => Conditioned::new(0.0, f64::INFINITY),
+        };
+        let mut found: Vec<Conditioned> = self.observables.iter().map(value).collect();
+        found.push(self.energy(time, state, inputs)?);
+        found.push(self.rate_of_energy(time, state, inputs)?);
+        Ok(found)
+    }
+
+    /// The rate of T + V along the motion: where no energy depends on time this is the power
+    /// of the forces, elsewhere it is taken along the oracle's own accelerations.
+    ///
+    /// # Errors
+    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    pub fn rate_of_energy(
+        &self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Conditioned, OracleError> {
+        if self.is_scleronomic(time, state, inputs)? {
+            return self.power(time, state, inputs);
+        }
+        let dense = self.equations(time, state, inputs)?.accelerations();
+        let still = || vec![f64::NAN; self.size()];
+        let accelerations = dense.map_or_else(still, |a| a.as_slice().to_vec());
+        self.energy_rate(time, state, &accelerations, inputs)
+    }
+}

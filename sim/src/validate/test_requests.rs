@@ -1,0 +1,156 @@
+//! What may be requested of the spring of the certificate's tests, written out by hand, each
+//! with a fault of a thousandth in one number.
+
+use super::requested::Requested;
+use super::sampler::Sample;
+use nalgebra::DMatrix;
+
+/// The requests of the spring; the function of this name has a fault.
+pub(super) struct SpringRequests(pub &'static str);
+
+const M: f64 = 2.0;
+const K: f64 = 300.0;
+const B: f64 = 0.01;
+const C: f64 = 5.0;
+
+/// Stretch, side of the play (0 within it), rate and pull.
+fn at(sample: &Sample) -> [f64; 4] {
+    let (y, rate) = (sample.state[0], sample.state[1]);
+    let side = if y.abs() > B { y.signum() } else { 0.0 };
+    [y - y.clamp(-B, B), side, rate, sample.inputs[0]]
+}
+
+fn force(sample: &Sample) -> f64 {
+    let [stretch, side, rate, pull] = at(sample);
+    pull - K * stretch - C * side.abs() * rate
+}
+
+impl SpringRequests {
+    /// The numbers, the last that is not 0 off by a thousandth if this one has the fault.
+    fn given(&self, name: &str, mut numbers: Vec<f64>) -> Vec<f64> {
+        let last = numbers.iter_mut().rev().find(|number| **number != 0.0);
+        if let (true, Some(number)) = (self.0 == name, last) {
+            *number *= 1.001;
+        }
+        numbers
+    }
+
+    fn rates_by(&self, name: &str, at_: &Sample) -> DMatrix<f64> {
+        let [stretch, side, rate, _] = at(at_);
+        let touching = side.abs();
+        match name {
+            "rates_by_state" => DMatrix::from_row_slice(
+                2,
+                2,
+                &self.given(name, vec![0.0, 1.0, -K * touching / M, -C * touching / M]),
+            ),
+            "rates_by_inputs" => {
+                DMatrix::from_row_slice(2, 1, &self.given(name, vec![0.0, 1.0 / M]))
+            }
+            "rates_by_parameters" => {
+                let by_mass = -force(at_) / (M * M);
+                let row = [by_mass, -stretch / M, K * side / M, -touching * rate / M];
+                let numbers = [&[0.0; 4][..], &row].concat();
+                DMatrix::from_row_slice(2, 4, &self.given(name, numbers))
+            }
+            _ => self.observables_by(name, at_),
+        }
+    }
+
+    /// Of T + V and of the power.
+    fn observables_by(&self, name: &str, at_: &Sample) -> DMatrix<f64> {
+        let [stretch, side, rate, pull] = at(at_);
+        let touching = side.abs();
+        let (columns, numbers) = match name {
+            "observables_by_state" => {
+                let by_rate = pull - 2.0 * C * touching * rate;
+                (2, vec![K * stretch, M * rate, 0.0, by_rate])
+            }
+            "observables_by_inputs" => (1, vec![0.0, rate]),
+            _ => {
+                let energy = [
+                    0.5 * rate * rate,
+                    0.5 * stretch * stretch,
+                    -K * stretch * side,
+                    0.0,
+                ];
+                let power = [0.0, 0.0, 0.0, -touching * rate * rate];
+                (4, [energy, power].concat())
+            }
+        };
+        DMatrix::from_row_slice(2, columns, &self.given(name, numbers))
+    }
+
+    /// Weights times one of the Jacobians.
+    fn weighted(&self, name: &str, at_: &Sample, weights: &[f64]) -> Vec<f64> {
+        let jacobian = SpringRequests("").rates_by(name, at_);
+        let weights = DMatrix::from_row_slice(1, 2, weights);
+        (weights * jacobian).as_slice().to_vec()
+    }
+}
+
+impl Requested for SpringRequests {
+    fn names(&self) -> Vec<String> {
+        let names = [
+            "bias_forces",
+            "inverse_dynamics",
+            "guard_rates",
+            "jacobians",
+            "products",
+        ];
+        names.map(str::to_owned).to_vec()
+    }
+
+    fn parameter_names(&self) -> Vec<String> {
+        ["m", "k", "b", "c"].map(str::to_owned).to_vec()
+    }
+
+    fn bias_forces(&mut self, at: &Sample) -> Option<Vec<f64>> {
+        Some(self.given("bias_forces", vec![-force(at)]))
+    }
+
+    fn inverse_dynamics(&mut self, at: &Sample, accelerations: &[f64]) -> Option<Vec<f64>> {
+        let missing = M * accelerations[0] - force(at);
+        Some(self.given("inverse_dynamics", vec![missing]))
+    }
+
+    fn guard_rates(&mut self, at: &Sample) -> Option<Vec<f64>> {
+        Some(self.given("guard_rates", vec![at.state[1]; 2]))
+    }
+
+    fn jacobian(&mut self, name: &str, at: &Sample) -> Option<DMatrix<f64>> {
+        Some(self.rates_by(name, at))
+    }
+
+    fn jacobian_vector_product(
+        &mut self,
+        at: &Sample,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Option<Vec<f64>> {
+        let right = SpringRequests("");
+        let by_state = right.rates_by("rates_by_state", at) * DMatrix::from_row_slice(2, 1, state);
+        let by_inputs = right.rates_by("rates_by_inputs", at) * inputs[0];
+        let product = (by_state + by_inputs).as_slice().to_vec();
+        Some(self.given("jacobian_vector_product", product))
+    }
+
+    fn vector_jacobian_product(
+        &mut self,
+        at: &Sample,
+        weights: &[f64],
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
+        let by_state = self.weighted("rates_by_state", at, weights);
+        let by_inputs = self.weighted("rates_by_inputs", at, weights);
+        Some((self.given("vector_jacobian_product", by_state), by_inputs))
+    }
+
+    fn vector_jacobian_product_by_parameters(
+        &mut self,
+        at: &Sample,
+        weights: &[f64],
+    ) -> Option<Vec<f64>> {
+        let product = self.weighted("rates_by_parameters", at, weights);
+        Some(self.given("vector_jacobian_product_by_parameters", product))
+    }
+}
