@@ -2,6 +2,7 @@
 //! `discover` alike, with its place and what would be right.
 
 use eomgen_tests::measured::{DESCRIPTION, Measured, record};
+use eomgen_tests::models::path;
 use eomgen_tests::program;
 
 /// Both commands refuse the dataset, and leave nothing; what they say.
@@ -98,6 +99,34 @@ fn windows_of_which_nothing_is_measured_are_refused() {
         "train.csv",
     ];
     refuses(&measured, "length = 0.25", "length = 0.02", &parts);
+}
+
+#[test]
+fn a_model_that_does_not_run_through_its_windows_is_refused() {
+    let measured = Measured::stage(3.0);
+    let sound = std::fs::read_to_string(path("emps")).expect("a specification");
+    // A spring that pushes away from the middle: the motion leaves every number behind.
+    let unstable = sound
+        .replacen(
+            "[coordinates]",
+            "k_u = { value = 1e12, unit = \"N/m\" }\n\n[coordinates]",
+            1,
+        )
+        .replacen(
+            "[kinetic]",
+            "[potential]\nunstable = \"-1/2*k_u*q^2\"\n\n[kinetic]",
+            1,
+        );
+    measured.write("unstable.toml", unstable.as_bytes());
+    for command in ["compare", "discover"] {
+        let mut arguments = measured.arguments(command, "refused");
+        arguments[1] = measured.file("unstable.toml").display().to_string();
+        let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+        let message = program::refused(&arguments);
+        let part = "cannot be followed in 8 of 8 windows, first at t = 0.000000 s of train[0]";
+        assert!(message.contains(part), "{message}");
+        assert!(!measured.file("refused").exists(), "{message}");
+    }
 }
 
 #[test]
