@@ -154,6 +154,7 @@ fn at_rest_except(graph: &mut Graph, id: Id, kept: &[Id]) -> Id {
                         | model_spec::model::Function::Contact
                         | model_spec::model::Function::Sign
                         | model_spec::model::Function::Abs
+                        | model_spec::model::Function::Above
                 )
             }
             _ => false,

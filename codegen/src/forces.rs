@@ -5,7 +5,7 @@ use model_spec::model::Function;
 
 use crate::differentiate::{Direction, by_scalar};
 use crate::equations::{Guard, Rows};
-use crate::graph::{Graph, Id, Operation};
+use crate::graph::{Dependence, Graph, Id, Operation};
 use crate::lagrange::{Kind, Layout};
 use crate::solve::Accelerations;
 use crate::translate::{DeriveError, Derived, Translator, along_motion};
@@ -27,11 +27,7 @@ pub(crate) fn applied_forces(
         }
         named.push(value);
         let on = translator.node(&force.on)?;
-        if translator
-            .graph
-            .dependence(on)
-            .has(crate::graph::Dependence::RATE)
-        {
+        if translator.graph.dependence(on).has(Dependence::RATE) {
             return Err(DeriveError {
                 span: force.on.span,
                 message: "a force acts on something that holds a rate".into(),
@@ -100,7 +96,7 @@ pub(crate) fn guards(graph: &mut Graph, roots: &[Id]) -> Vec<Guard> {
             }
             _ => continue,
         };
-        for value in surfaces(graph, function, &arguments) {
+        for value in surfaces(graph, function, &arguments).all() {
             if found.iter().all(|guard| guard.value != value) {
                 found.push(Guard { value, function });
             }
@@ -109,14 +105,116 @@ pub(crate) fn guards(graph: &mut Graph, roots: &[Id]) -> Vec<Guard> {
     found
 }
 
-/// Where a piecewise function switches, as nodes that change sign there.
-pub(crate) fn surfaces(graph: &mut Graph, function: Function, arguments: &[Id]) -> Vec<Id> {
-    match (function, arguments) {
-        (Function::Deadzone | Function::Contact, &[p, b]) => {
-            vec![graph.subtract(p, b), graph.add(p, b)]
-        }
-        (Function::Min | Function::Max, &[a, b]) => vec![graph.subtract(a, b)],
-        (Function::Abs | Function::Sign, &[a]) => vec![a],
-        _ => Vec::new(),
+/// Where a piecewise function switches: nodes that change sign there, and are positive where
+/// they say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Surfaces {
+    /// Nowhere.
+    None,
+    /// Where p changes sign.
+    One(Id),
+    /// Where p changes sign: -p, which is positive where p is negative.
+    Turned(Id),
+    /// Where p passes b or -b: positive above the one, and above the other.
+    Between {
+        /// p - b.
+        above: Id,
+        /// p + b.
+        beyond: Id,
+    },
+    /// Where p leaves the rest between -b and b, on which it may stay through a whole region:
+    /// both are positive outside, and neither is where p is exactly b or -b.
+    Outside {
+        /// p - b, or p.
+        above: Id,
+        /// -p - b, or -p.
+        below: Id,
+    },
+}
+
+impl Surfaces {
+    /// The nodes.
+    pub fn all(self) -> impl Iterator<Item = Id> {
+        let (first, second) = match self {
+            Self::None => (None, None),
+            Self::One(surface) | Self::Turned(surface) => (Some(surface), None),
+            Self::Between { above, beyond } => (Some(above), Some(beyond)),
+            Self::Outside { above, below } => (Some(above), Some(below)),
+        };
+        first.into_iter().chain(second)
     }
+}
+
+/// Where a piecewise function switches. What jumps by a switching function that may vanish on a
+/// whole region has a surface for either side of it, as it has a value of its own there.
+pub(crate) fn surfaces(graph: &mut Graph, function: Function, arguments: &[Id]) -> Surfaces {
+    match (function, arguments) {
+        (Function::Contact, &[p, b]) if may_rest(graph, p) => {
+            let beyond = graph.add(p, b);
+            Surfaces::Outside {
+                above: graph.subtract(p, b),
+                below: graph.negate(beyond),
+            }
+        }
+        (Function::Sign, &[p]) if may_rest(graph, p) => Surfaces::Outside {
+            above: p,
+            below: graph.negate(p),
+        },
+        (Function::Deadzone | Function::Contact, &[p, b]) => Surfaces::Between {
+            above: graph.subtract(p, b),
+            beyond: graph.add(p, b),
+        },
+        (Function::Min | Function::Max, &[a, b]) => Surfaces::One(graph.subtract(a, b)),
+        (Function::Above, &[p]) if begins_with_minus(graph, p) && !may_rest(graph, p) => {
+            Surfaces::Turned(graph.negate(p))
+        }
+        (Function::Abs | Function::Sign | Function::Above, &[p]) => Surfaces::One(p),
+        _ => Surfaces::None,
+    }
+}
+
+/// Whether the first of a sum's terms that move is subtracted: the surface is then that of what
+/// others, such as min(p, 0), are written with.
+fn begins_with_minus(graph: &Graph, id: Id) -> bool {
+    let Operation::Sum(terms) = graph.operation(id) else {
+        return false;
+    };
+    let mut moving = terms
+        .iter()
+        .filter(|(_, term)| !graph.dependence(*term).is_prepared());
+    moving
+        .next()
+        .is_some_and(|(factor, _)| factor.value() < 0.0)
+}
+
+/// Whether a switching function may have one value on a whole region: it holds a piecewise
+/// function itself, or is of inputs alone, which may be held.
+pub(crate) fn may_rest(graph: &Graph, id: Id) -> bool {
+    let moves = Dependence::COORDINATE
+        .join(Dependence::RATE)
+        .join(Dependence::TIME);
+    if !graph.dependence(id).has(moves) {
+        return true;
+    }
+    graph.reachable(&[id]).into_iter().any(|part| {
+        let switches = match graph.operation(part) {
+            Operation::Select { .. } => true,
+            Operation::Call(function, _) => is_piecewise(*function),
+            _ => false,
+        };
+        switches && !graph.dependence(part).is_prepared()
+    })
+}
+
+fn is_piecewise(function: Function) -> bool {
+    matches!(
+        function,
+        Function::Abs
+            | Function::Sign
+            | Function::Min
+            | Function::Max
+            | Function::Deadzone
+            | Function::Contact
+            | Function::Above
+    )
 }

@@ -360,5 +360,6 @@ fn is_quick(function: Function) -> bool {
             | Function::Max
             | Function::Deadzone
             | Function::Contact
+            | Function::Above
     )
 }

@@ -122,7 +122,7 @@ impl Degrees<'_> {
         let scalar = self.graph.shape(id) == Shape::Scalar;
         match (function, arguments) {
             (Function::Sin | Function::Cos, &[a]) if self.is_phase(a) => Ok(1),
-            (Function::Contact | Function::Sign, _) if scalar => {
+            (Function::Contact | Function::Sign | Function::Above, _) if scalar => {
                 self.highest(arguments.iter().copied())?;
                 Ok(0)
             }

@@ -3,7 +3,7 @@
 //! backend's; the polynomials in sides that make a model linear are in `affine`.
 
 use crate::equations::Equations;
-use crate::forces::surfaces;
+use crate::forces::{Surfaces, surfaces};
 use crate::graph::{Graph, Id, Operation, Shape};
 
 /// How many surfaces the number of a regime has room for, a bit each.
@@ -29,9 +29,17 @@ pub enum Decided {
         /// The place of p + b.
         beyond: usize,
     },
+    /// A sign or a contact that may rest on a whole region, by p - b and -p - b, where b is 0
+    /// for a sign.
+    Outside {
+        /// The place of p - b.
+        above: usize,
+        /// The place of -p - b.
+        below: usize,
+    },
     /// Anything else, by the one surface at which it switches.
     By(usize),
-    /// A choice where a > b, by b - a.
+    /// A choice where a > b, by b - a; or what is above where p > 0, by -p.
     Turned(usize),
 }
 
@@ -77,16 +85,19 @@ fn places(equations: &Equations) -> Vec<(Id, usize)> {
 
 fn decided(graph: &mut Graph, id: Id, place: &dyn Fn(Id) -> Option<usize>) -> Option<Decided> {
     match graph.operation(id).clone() {
-        Operation::Call(function, arguments) => {
-            match *surfaces(graph, function, &arguments).as_slice() {
-                [above, beyond] => Some(Decided::Between {
-                    above: place(above)?,
-                    beyond: place(beyond)?,
-                }),
-                [surface] => place(surface).map(Decided::By),
-                _ => None,
-            }
-        }
+        Operation::Call(function, arguments) => match surfaces(graph, function, &arguments) {
+            Surfaces::Between { above, beyond } => Some(Decided::Between {
+                above: place(above)?,
+                beyond: place(beyond)?,
+            }),
+            Surfaces::Outside { above, below } => Some(Decided::Outside {
+                above: place(above)?,
+                below: place(below)?,
+            }),
+            Surfaces::One(surface) => place(surface).map(Decided::By),
+            Surfaces::Turned(surface) => place(surface).map(Decided::Turned),
+            Surfaces::None => None,
+        },
         Operation::Select { a, b, .. } => {
             let (difference, turned) = (graph.subtract(a, b), graph.subtract(b, a));
             let by = place(difference).map(Decided::By);

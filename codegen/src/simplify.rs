@@ -450,6 +450,8 @@ fn exact_value(function: Function, x: f64) -> Option<f64> {
         Function::Abs => Some(x.abs()),
         Function::Sign if x == 0.0 => Some(0.0),
         Function::Sign => Some(x.signum()),
+        Function::Above if x > 0.0 => Some(1.0),
+        Function::Above if x <= 0.0 => Some(0.0),
         _ => None,
     }
 }

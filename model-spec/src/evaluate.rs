@@ -66,6 +66,8 @@ fn call(function: Function, x: f64, second: f64) -> f64 {
         Function::Deadzone => (x + second) * 0.0,
         Function::Contact if x.abs() > second => 1.0,
         Function::Contact => (x + second) * 0.0,
+        Function::Above if x > 0.0 => 1.0,
+        Function::Above => x * 0.0,
     }
 }
 
@@ -102,6 +104,9 @@ mod tests {
         assert_eq!(called(Function::Contact, 1.0, 1.0), 0.0);
         assert_eq!(called(Function::Sign, -0.5, 0.0), -1.0);
         assert_eq!(called(Function::Sign, 0.0, 0.0), 0.0);
+        assert_eq!(called(Function::Above, 2.0, 0.0), 1.0);
+        assert_eq!(called(Function::Above, 0.0, 0.0), 0.0);
+        assert_eq!(called(Function::Above, -2.0, 0.0), 0.0);
         assert_eq!(
             called(Function::Atan2, 1.0, 0.0),
             std::f64::consts::FRAC_PI_2
@@ -110,7 +115,12 @@ mod tests {
 
     #[test]
     fn not_a_number_does_not_disappear() {
-        for function in [Function::Sign, Function::Deadzone, Function::Contact] {
+        for function in [
+            Function::Sign,
+            Function::Deadzone,
+            Function::Contact,
+            Function::Above,
+        ] {
             assert!(called(function, f64::NAN, 1.0).is_nan(), "{function:?}");
         }
     }

@@ -4,7 +4,7 @@
 use crate::model::Function;
 
 /// The functions of scalar arguments, with how they are called.
-const FUNCTIONS: [(&str, Function, &[&str]); 19] = [
+const FUNCTIONS: [(&str, Function, &[&str]); 20] = [
     ("sin", Function::Sin, &["x"]),
     ("cos", Function::Cos, &["x"]),
     ("tan", Function::Tan, &["x"]),
@@ -24,6 +24,7 @@ const FUNCTIONS: [(&str, Function, &[&str]); 19] = [
     ("max", Function::Max, &["a", "b"]),
     ("deadzone", Function::Deadzone, &["p", "b"]),
     ("contact", Function::Contact, &["p", "b"]),
+    ("above", Function::Above, &["p"]),
 ];
 
 /// The forms that are no functions of scalars.

@@ -175,7 +175,9 @@ impl Inference<'_> {
         let name = function.name();
         match (function, arguments) {
             (Function::Abs, [argument]) => self.infer(argument),
-            (Function::Sign, [argument]) => self.infer(argument).map(|_| Some(Dimension::NONE)),
+            (Function::Sign | Function::Above, [argument]) => {
+                self.infer(argument).map(|_| Some(Dimension::NONE))
+            }
             (Function::Sqrt, [argument]) => match self.infer(argument)? {
                 Some(dimension) => dimension
                     .power(Ratio::new(1, 2))

@@ -438,4 +438,6 @@ pub enum Function {
     Deadzone,
     /// `contact(p, b)`, 1 where |p| > b and 0 elsewhere, Eq. (8) without the rate.
     Contact,
+    /// `above(p)`, 1 where p > 0 and 0 elsewhere.
+    Above,
 }

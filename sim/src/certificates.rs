@@ -1,19 +1,23 @@
 //! The certificate of a model at one order: its derivation and its emitted source go
 //! before the checks of [`crate::validate`], with whatever was written by hand for it.
 
+use std::cell::RefCell;
+
 use codegen::equations::{Equations, derive};
 use codegen::evaluator::Evaluator;
 use codegen::lower::{lower, lower_requested};
 use codegen::request::Request;
 use codegen::requested::requested;
+use codegen::rust::{Packaging, emit};
 use model_spec::model::Model;
 use model_spec::variant::ModelError;
 
 use crate::by_hand::by_hand;
 use crate::derived::Derived;
+use crate::exact::{PiecewiseLinear, Propagator};
 use crate::requested::DerivedRequests;
 use crate::validate::certificate::Certificate;
-use crate::validate::certify::{Emitted, EmittedFunction, Subject, about, certify};
+use crate::validate::certify::{Emitted, EmittedFunction, Sized, Subject, about, certify};
 use crate::validate::requested::Requested;
 use crate::validate::variant::Variant;
 
@@ -32,6 +36,12 @@ pub fn certificate(
     let variants = |order: usize| variant(model, order, &parameters);
     let on_request = || on_request(model, order, &parameters, requests);
     let by_hand = by_hand(model, order, &parameters);
+    let propagator = exact(model, order).map(RefCell::new);
+    let derivative = |time: f64, state: &[f64], inputs: &[f64]| match &propagator {
+        Ok(propagator) => rates(&mut propagator.borrow_mut(), time, state, inputs),
+        Err(reason) => Err(reason.clone()),
+    };
+    let emitted = source(model, requests, emitted);
     Ok(certify(&Subject {
         model,
         order,
@@ -40,7 +50,12 @@ pub fn certificate(
         references: &by_hand.references,
         absent: &by_hand.absent,
         requested: (!requests.is_empty()).then_some(&on_request),
-        emitted: Ok(source(model, requests, emitted)),
+        regimes: kernels(model, order, &emitted.input_fields),
+        emitted: Ok(emitted),
+        exact: match &propagator {
+            Ok(_) => Ok(&derivative),
+            Err(reason) => Err(reason.clone()),
+        },
     }))
 }
 
@@ -78,6 +93,47 @@ fn source(model: &Model, requests: &[Request], source: String) -> Emitted {
         ],
         requests: Some(names.collect()),
     }
+}
+
+/// The source of a variant with kernels of its regimes, or why there is none.
+fn kernels(model: &Model, order: usize, input_fields: &[String]) -> Result<Emitted, String> {
+    let orders = vec![order; model.fields.len()];
+    let derived = codegen::variant::Variant::derive_with(model, &orders, &[Request::Regimes]);
+    let program = derived.map_err(|found| found.render(false))?.program;
+    let surfaces = program.guards.len();
+    if surfaces == 0 {
+        return Err("the model has no piecewise function".to_owned());
+    }
+    let source = emit(&program, Packaging::Crate).map_err(|error| error.to_string())?;
+    Ok(Emitted {
+        source,
+        input_fields: input_fields.to_vec(),
+        functions: Vec::new(),
+        requests: None,
+    })
+}
+
+/// What propagates a model exactly, or why nothing does.
+fn exact(model: &Model, order: usize) -> Result<Propagator, String> {
+    let orders = vec![order; model.fields.len()];
+    let linear = PiecewiseLinear::of(model, &orders);
+    let propagator = linear.and_then(|linear| linear.propagator(model));
+    propagator.map_err(|error| error.to_string())
+}
+
+/// The rates as a propagator has them.
+fn rates(
+    propagator: &mut Propagator,
+    time: f64,
+    state: &[f64],
+    inputs: &[f64],
+) -> Result<Sized, String> {
+    let found = propagator.rates(time, state, inputs);
+    let found = found.map_err(|error| error.to_string())?;
+    Ok(Sized {
+        rates: found.values,
+        sizes: found.sizes,
+    })
 }
 
 /// The variant of a model with every field at `order`, at parameter values in SI.

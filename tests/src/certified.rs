@@ -50,5 +50,7 @@ pub fn certificate_with(model: &Model, subject: &Model, requests: &[Request]) ->
         absent: &[],
         requested: (!requests.is_empty()).then_some(&requested),
         emitted: Err("judged elsewhere".to_owned()),
+        regimes: Err("judged elsewhere".to_owned()),
+        exact: Err("judged elsewhere".to_owned()),
     })
 }

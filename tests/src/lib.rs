@@ -8,6 +8,7 @@ pub mod measured;
 pub mod models;
 pub mod motions;
 pub mod pages;
+pub mod piecewise;
 pub mod program;
 pub mod smooth_models;
 pub mod taylor;

@@ -38,9 +38,9 @@ const SPECIAL: [f64; 14] = [
 ];
 
 /// The functions of the language.
-const FUNCTIONS: [&str; 19] = [
+const FUNCTIONS: [&str; 20] = [
     "Sin", "Cos", "Tan", "Asin", "Acos", "Atan", "Atan2", "Sinh", "Cosh", "Tanh", "Exp", "Ln",
-    "Sqrt", "Abs", "Sign", "Min", "Max", "Deadzone", "Contact",
+    "Sqrt", "Abs", "Sign", "Min", "Max", "Deadzone", "Contact", "Above",
 ];
 
 /// What [`kind`] may say.

@@ -51,6 +51,7 @@ impl Writer<'_, '_, '_> {
             Law::Elementary(elementary) => self.elementary(elementary, arguments, lanes),
             Law::Deadzone => self.deadzone(p, b),
             Law::Contact => self.contact(p, b),
+            Law::Above => self.above(p),
         }
     }
 
@@ -145,6 +146,14 @@ impl Writer<'_, '_, '_> {
         let either = self.ins().bor(above, below);
         let one = self.literal(1.0, Lanes::Two);
         self.ins().band(either, one)
+    }
+
+    /// 1 where p > 0, 0 elsewhere.
+    fn above(&mut self, p: Value) -> Value {
+        let zero = self.literal(0.0, Lanes::Two);
+        let one = self.literal(1.0, Lanes::Two);
+        let positive = self.compare(FloatCC::GreaterThan, p, zero);
+        self.ins().band(positive, one)
     }
 
     /// Where p > b, and where p < -b.

@@ -21,6 +21,7 @@ use model_spec::model::Function;
 
 use crate::differentiate::by_scalar;
 use crate::equations::{Equations, Rows};
+use crate::forces::may_rest;
 use crate::graph::{Graph, Id, Operation, Shape, Space};
 use crate::linearity::{Linearity, linearity};
 use crate::substitute::substitute;
@@ -41,6 +42,9 @@ pub struct AffineEquations {
     pub(crate) guard_functions: Vec<Function>,
     /// For each guard the first one that differs from it by parameters alone.
     pub(crate) guard_groups: Vec<usize>,
+    /// For each guard whether it may have one value throughout a regime: it feels the sides of
+    /// other surfaces, or is of inputs alone.
+    pub(crate) guards_rest: Vec<bool>,
     /// What must not be negative: half-widths of dead zones.
     pub(crate) half_widths: Vec<Id>,
     pub(crate) phases: Vec<PhaseNodes>,
@@ -103,6 +107,7 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, Id> {
         })
         .collect();
     let guard_groups = parallel(graph, &surfaces);
+    let guards_rest = surfaces.iter().map(|id| may_rest(graph, *id)).collect();
     let mut derived_parameters = equations.derived_parameters;
     derived_parameters.extend(guards.iter().map(|_| None));
     let mut parameter_names = equations.parameter_names;
@@ -116,6 +121,7 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, Id> {
         guards: guard_rows,
         guard_functions: equations.guards.iter().map(|g| g.function).collect(),
         guard_groups,
+        guards_rest,
         half_widths: with_sides.half_widths,
         phases,
         pivots: equations.accelerations.pivots,

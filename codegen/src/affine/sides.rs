@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use model_spec::model::Function;
 
 use crate::equations::Equations;
-use crate::forces::surfaces;
+use crate::forces::{Surfaces, surfaces};
 use crate::graph::{Graph, Id, Operation};
 use crate::substitute::substitute;
 
@@ -83,11 +83,25 @@ impl Sides {
         arguments: &[Id],
         parameter: &dyn Fn(&mut Graph, Id) -> Option<Id>,
     ) -> Option<Id> {
-        let sides = surfaces(graph, function, arguments)
-            .into_iter()
+        let surfaces = surfaces(graph, function, arguments);
+        let sides = surfaces
+            .all()
             .map(|surface| parameter(graph, surface))
             .collect::<Option<Vec<Id>>>()?;
         let inner: Vec<Id> = arguments.iter().map(|a| self.inner(graph, *a)).collect();
+        if let (Function::Contact, &[_, b]) = (function, inner.as_slice()) {
+            self.half_widths.push(b);
+        }
+        if let (Surfaces::Outside { .. }, &[above, below]) = (surfaces, sides.as_slice()) {
+            return match function {
+                Function::Contact => Some(graph.add(above, below)),
+                Function::Sign => Some(graph.subtract(above, below)),
+                _ => None,
+            };
+        }
+        if let (Surfaces::Turned(_), &[side]) = (surfaces, sides.as_slice()) {
+            return Some(opposite(graph, side));
+        }
         Some(match (function, sides.as_slice(), inner.as_slice()) {
             (Function::Deadzone, &[above, beyond], &[p, b]) => {
                 self.half_widths.push(b);
@@ -96,12 +110,12 @@ impl Sides {
                 let (upper, lower) = (graph.multiply(above, upper), graph.multiply(below, lower));
                 graph.add(upper, lower)
             }
-            (Function::Contact, &[above, beyond], &[_, b]) => {
-                self.half_widths.push(b);
+            (Function::Contact, &[above, beyond], _) => {
                 let below = opposite(graph, beyond);
                 graph.add(above, below)
             }
             (Function::Sign, &[side], _) => sign(graph, side),
+            (Function::Above, &[side], _) => side,
             (Function::Abs, &[side], &[p]) => {
                 let sign = sign(graph, side);
                 graph.multiply(sign, p)

@@ -33,6 +33,7 @@ pub(crate) struct AffineLayout {
     pub(crate) guards: Vec<RowValues>,
     pub(crate) guard_functions: Vec<Function>,
     pub(crate) guard_groups: Vec<usize>,
+    pub(crate) guards_rest: Vec<bool>,
     pub(crate) phases: Vec<[ValueId; 2]>,
     pub(crate) half_widths: Vec<ValueId>,
     pub(crate) inputs: usize,
@@ -100,6 +101,12 @@ impl AffineEvaluator {
     /// For each switching function the first one that differs from it by parameters alone.
     pub fn guard_groups(&self) -> &[usize] {
         &self.layout.guard_groups
+    }
+
+    /// For each switching function whether it may have one value throughout a regime: it feels
+    /// the sides of other surfaces, or is of inputs alone.
+    pub fn guards_rest(&self) -> &[bool] {
+        &self.layout.guards_rest
     }
 
     /// Numbers in the state.

@@ -17,6 +17,8 @@ pub enum Law {
     Deadzone,
     /// 1 where |p| > b, 0 elsewhere, Eq. (8).
     Contact,
+    /// 1 where p > 0, 0 elsewhere.
+    Above,
 }
 
 /// A function of the expression language; `b` is read by those of two arguments.
@@ -25,6 +27,7 @@ pub fn call(function: Function, a: f64, b: f64) -> f64 {
         Law::Elementary(elementary) => elementary.apply(&[a, b]),
         Law::Deadzone => deadzone(a, b),
         Law::Contact => contact(a, b),
+        Law::Above => above(a),
     }
 }
 
@@ -37,6 +40,11 @@ fn deadzone(p: f64, b: f64) -> f64 {
 /// 1 where |p| > b, 0 elsewhere, Eq. (8).
 fn contact(p: f64, b: f64) -> f64 {
     if p > b || p < -b { 1.0 } else { 0.0 }
+}
+
+/// 1 where p > 0, 0 elsewhere.
+fn above(p: f64) -> f64 {
+    if p > 0.0 { 1.0 } else { 0.0 }
 }
 
 /// How a function is computed.
@@ -61,5 +69,6 @@ pub fn law(function: Function) -> Law {
         Function::Max => Elementary::Max,
         Function::Deadzone => return Law::Deadzone,
         Function::Contact => return Law::Contact,
+        Function::Above => return Law::Above,
     })
 }

@@ -52,6 +52,7 @@ pub fn lower_affine(
             guards,
             guard_functions: equations.guard_functions.clone(),
             guard_groups: equations.guard_groups.clone(),
+            guards_rest: equations.guards_rest.clone(),
             phases,
             half_widths,
             inputs: model.inputs.len(),

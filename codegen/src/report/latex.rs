@@ -144,6 +144,9 @@ fn definition(function: Function) -> Option<&'static str> {
         Function::Contact => Some(
             "\\operatorname{contact}(p, b) = \\begin{cases} 1 & |p| > b\\\\ 0 & |p| \\le b \\end{cases}",
         ),
+        Function::Above => Some(
+            "\\operatorname{above}(p) = \\begin{cases} 1 & p > 0\\\\ 0 & p \\le 0 \\end{cases}",
+        ),
         Function::Sign => Some(
             "\\operatorname{sign}(p) = \\begin{cases} 1 & p > 0\\\\ 0 & p = 0\\\\ -1 & p < 0 \\end{cases}",
         ),

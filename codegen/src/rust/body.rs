@@ -341,6 +341,10 @@ impl<'a> Body<'a> {
                 self.needed.contact = true;
                 "contact"
             }
+            Law::Above => {
+                self.needed.above = true;
+                "above"
+            }
         };
         Expression::call(name, arguments)
     }

@@ -6,7 +6,9 @@ use std::collections::BTreeSet;
 use super::expression::{Expression, assignment};
 use super::layout::{DEEPER, SHALLOWER};
 use super::literals::block;
-use super::piecewise::{CHOSEN, CONTACT, DEADZONE, DEADZONE_ON_SIDE, POSITIVE, TOUCHING};
+use super::piecewise::{
+    ABOVE, CHOSEN, CONTACT, DEADZONE, DEADZONE_ON_SIDE, EITHER, POSITIVE, TOUCHING,
+};
 use super::slopes;
 use elementary::{Function as Elementary, Kernel, Operation};
 
@@ -19,10 +21,14 @@ pub struct Needed {
     pub deadzone: bool,
     /// The indicator of Eq. (8).
     pub contact: bool,
-    /// The same where the side is known.
+    /// The indicator of one side.
+    pub above: bool,
+    /// f_k where the side is known.
     pub deadzone_on_side: bool,
     /// Whether there is contact where the side is known.
     pub touching: bool,
+    /// Whether a function is on either side of where it rests.
+    pub either: bool,
     /// One of two by what is known.
     pub chosen: bool,
     /// Reciprocals of pivots.
@@ -51,11 +57,13 @@ pub fn items(needed: &Needed) -> String {
     for (needed, item) in [
         (needed.deadzone, DEADZONE),
         (needed.contact, CONTACT),
+        (needed.above, ABOVE),
         (needed.deadzone_on_side, DEADZONE_ON_SIDE),
         (needed.touching, TOUCHING),
+        (needed.either, EITHER),
         (needed.chosen, CHOSEN),
         (
-            needed.deadzone_on_side || needed.touching || needed.chosen,
+            needed.deadzone_on_side || needed.touching || needed.either || needed.chosen,
             POSITIVE,
         ),
         (needed.pivot_reciprocal, PIVOT_RECIPROCAL),

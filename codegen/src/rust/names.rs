@@ -9,7 +9,7 @@ use crate::program::{Program, ValueId};
 
 /// Names that emitted functions use for themselves: variables, helpers, constants, fields,
 /// and what Rust's prelude gives a value of.
-const TAKEN: [&str; 57] = [
+const TAKEN: [&str; 58] = [
     "t",
     "state",
     "inputs",
@@ -50,6 +50,7 @@ const TAKEN: [&str; 57] = [
     "guards",
     "deadzone_on_side",
     "touching",
+    "either",
     "chosen",
     "positive",
     "pivot_reciprocal",

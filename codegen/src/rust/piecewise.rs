@@ -21,6 +21,15 @@ fn contact<T: Scalar>(p: T, b: T) -> T {
 }
 ";
 
+/// The indicator of one side.
+pub const ABOVE: &str = "\
+/// 1 where p > 0 and 0 elsewhere.
+#[inline(always)]
+fn above<T: Scalar>(p: T) -> T {
+    T::select_greater(p, T::number(0.0), T::number(1.0), T::number(0.0))
+}
+";
+
 /// f_k on a side of its dead zone.
 pub const DEADZONE_ON_SIDE: &str = "\
 /// Deflection beyond the backlash on a known side of it: f_k of Eq. (7).
@@ -36,6 +45,15 @@ pub const TOUCHING: &str = "\
 #[inline(always)]
 fn touching(above: bool, beyond: bool) -> bool {
     above || !beyond
+}
+";
+
+/// The indicator outside of what may be a whole region.
+pub const EITHER: &str = "\
+/// Whether a switching function is on either side of where it rests.
+#[inline(always)]
+fn either(above: bool, below: bool) -> bool {
+    above || below
 }
 ";
 

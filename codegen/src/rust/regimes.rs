@@ -104,8 +104,19 @@ pub(super) fn of_side(
             let touching = touching(decided, needed)?;
             chosen(touching, &one(), &Expression::number(0.0), needed)
         }
+        (Op::Call(Function::Sign, _), _, Decided::Outside { above, below }) => {
+            let (zero, minus_one) = (Expression::number(0.0), Expression::number(-1.0));
+            let otherwise = chosen(positive(below), &minus_one, &zero, needed);
+            chosen(positive(above), &one(), &otherwise, needed)
+        }
         (Op::Call(Function::Sign, _), _, Decided::By(place)) => {
             chosen(positive(place), &one(), &Expression::number(-1.0), needed)
+        }
+        (Op::Call(Function::Above, _), _, Decided::By(place)) => {
+            chosen(positive(place), &one(), &Expression::number(0.0), needed)
+        }
+        (Op::Call(Function::Above, _), _, Decided::Turned(place)) => {
+            chosen(positive(place), &Expression::number(0.0), &one(), needed)
         }
         (Op::Call(Function::Abs, _), [a], Decided::By(place)) => {
             chosen(positive(place), a, &Expression::negate(a), needed)
@@ -135,12 +146,18 @@ fn positive(place: usize) -> Expression {
 }
 
 fn touching(decided: Decided, needed: &mut Needed) -> Option<Expression> {
-    let Decided::Between { above, beyond } = decided else {
-        return None;
+    let (name, sides) = match decided {
+        Decided::Between { above, beyond } => {
+            needed.touching = true;
+            ("touching", [above, beyond])
+        }
+        Decided::Outside { above, below } => {
+            needed.either = true;
+            ("either", [above, below])
+        }
+        Decided::By(_) | Decided::Turned(_) => return None,
     };
-    needed.touching = true;
-    let sides = [positive(above), positive(beyond)];
-    Some(Expression::call("touching", &sides))
+    Some(Expression::call(name, &sides.map(positive)))
 }
 
 fn chosen(

@@ -151,6 +151,7 @@ impl Reference {
             "ln" => a.chain((1.0 + u * u).ln(), 2.0 * u / (1.0 + u * u)),
             "sqrt" => a.chain((1.0 + u * u).sqrt(), u / (1.0 + u * u).sqrt()),
             "abs" => a.chain(u.abs(), side),
+            "above" => a.chain(f64::from(u8::from(u > 0.0)), 0.0),
             _ => a.chain(side, 0.0),
         }
     }

@@ -62,6 +62,8 @@ fn each_function_has_its_surfaces() {
     );
     assert_eq!(guards(&particle("F*b", "F*sign(dot(x))"), 1.0, 2.0), [0.25]);
     assert_eq!(guards(&particle("F*b", "F*abs(x)/b"), 1.0, 2.0), [1.0]);
+    assert_eq!(guards(&particle("F*b", "F*above(-x)"), 1.0, 2.0), [1.0]);
+    assert_eq!(guards(&particle("F*b", "F*above(b - x)"), 1.0, 2.0), [0.5]);
     assert_eq!(guards(&particle("F*b", "F/b*min(x, y)"), 1.0, 2.0), [-1.0]);
 }
 
@@ -75,6 +77,20 @@ fn a_slope_that_jumps_has_a_surface() {
         guards(&particle("F*deadzone(x, b)", "0*F"), 1.0, 2.0),
         [0.5, 1.5]
     );
+}
+
+/// What jumps by a function that may be zero on a whole region has a surface for either side,
+/// and is on neither where that function is zero.
+#[test]
+fn a_jump_by_what_may_rest_has_a_surface_for_either_side() {
+    let sign = particle("F*b", "F*sign(deadzone(x, b))");
+    assert_eq!(guards(&sign, 1.0, 2.0), [0.5, 1.5, 0.5, -0.5]);
+    assert_eq!(guards(&sign, 0.25, 2.0), [-0.25, 0.75, 0.0, 0.0]);
+    let contact = particle("F*b", "F*contact(max(x, 0), b)");
+    assert_eq!(guards(&contact, 2.0, 2.0), [2.0, 1.5, -2.5]);
+    assert_eq!(guards(&contact, -1.0, 2.0), [-1.0, -0.5, -0.5]);
+    let smooth = particle("F*b", "F*abs(max(x, 0))/b");
+    assert_eq!(guards(&smooth, 2.0, 2.0), [2.0, 2.0]);
 }
 
 /// A surface that several functions share stands once.

@@ -34,7 +34,7 @@ pub fn trees() -> impl Strategy<Value = Tree> {
     leaf.prop_recursive(6, 40, 2, |inner| {
         let unary = prop::sample::select(vec![
             "-", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "ln",
-            "sqrt", "abs", "sign",
+            "sqrt", "abs", "sign", "above",
         ]);
         let binary = prop::sample::select(vec![
             "+", "+", "-", "-", "*", "*", "*", "/", "min", "max", "atan2", "deadzone", "contact",

@@ -70,9 +70,13 @@ fn row(system: &AffineSystem, guard: usize) -> Row {
 }
 
 impl Surfaces {
-    /// The surfaces of a model; none if one of them moves with the side of another.
+    /// The surfaces of a model; none if one of them may move with the side of another, or be
+    /// of inputs alone.
     pub fn of(evaluator: &mut AffineEvaluator) -> Option<Self> {
         let count = evaluator.guard_count();
+        if evaluator.guards_rest().contains(&true) {
+            return None;
+        }
         let below = evaluator.system(&vec![0.0; count]);
         let above = evaluator.system(&vec![1.0; count]);
         let mut surfaces: Vec<(Row, Vec<usize>)> = Vec::new();

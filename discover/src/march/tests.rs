@@ -66,6 +66,43 @@ fn a_march_follows_the_exact_motion_through_its_switches() {
     }
 }
 
+/// Whose surfaces rest on whole regions, which a march would take to be negative there.
+#[test]
+fn what_surfaces_of_surfaces_move_is_not_marched() {
+    let text = r#"
+[model]
+name = "preload"
+[parameters]
+m = { value = 1, unit = "kg" }
+F = { value = 10, unit = "N" }
+b = { value = 0.1, unit = "m" }
+[coordinates]
+y = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+T = "1/2*m*dot(y)^2"
+[forces]
+springs = { on = "y", value = "-F*JUMP" }
+push = { on = "y", value = "u" }
+"#;
+    let marched = |jump: &str| {
+        let source = Source::new("preload", text.replace("JUMP", jump).as_str());
+        let model = model_spec::check(source).expect("valid").model;
+        let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+        March::new(exact.evaluator(&exact_values(&model)), 1e-3, 1.0).is_some()
+    };
+    assert!(marched("sign(y)"));
+    assert!(marched("above(dot(y))"));
+    for jump in [
+        "sign(deadzone(y, b))",
+        "contact(contact(y, b), 0)",
+        "sign(u)",
+    ] {
+        assert!(!marched(jump), "{jump}");
+    }
+}
+
 fn exact_values(model: &Model) -> Vec<f64> {
     let all = model.parameter_values().expect("values");
     let independent = model

@@ -6,6 +6,7 @@ use nalgebra::Complex;
 use super::error::ExactError;
 use super::functional::Linear;
 use super::groups::Place;
+use super::passage::Limit;
 use super::propagator::Propagator;
 use super::saltation;
 
@@ -29,21 +30,17 @@ pub(super) struct Beyond {
 
 impl Propagator {
     /// Finds what lies beyond a limit and remembers it.
-    pub(super) fn find_beyond(
-        &mut self,
-        before: usize,
-        functional: usize,
-        group: usize,
-        upper: bool,
-        t: f64,
-    ) -> Result<Beyond, ExactError> {
+    pub(super) fn find_beyond(&mut self, limit: &Limit) -> Result<Beyond, ExactError> {
+        let &Limit {
+            before,
+            functional,
+            group,
+            upper,
+            t,
+            ..
+        } = limit;
         let mut places = self.regimes[before].places.clone();
-        places[group] = match (places[group], upper) {
-            (Place::Between(above), true) => Place::Between(above + 1),
-            (Place::Between(above), false) => Place::Between(above - 1),
-            (Place::On(rank), true) => Place::Between(rank + 1),
-            (Place::On(rank), false) => Place::Between(rank),
-        };
+        places[group] = places[group].beyond(upper);
         let held = matches!(self.regimes[before].places[group], Place::On(_));
         let regime = self.regime(&places, t)?;
         let jumps = !held && self.rate_jumps(before, regime, group);

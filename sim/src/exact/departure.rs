@@ -24,10 +24,14 @@ impl Propagator {
                 (Place::On(rank), _) => (*rank, true),
                 _ => continue,
             };
+            let function = &after.functions[group];
+            if function.is_still() {
+                // It rests: there is no surface that the state could be put onto.
+                continue;
+            }
             if departs {
                 motion.departing.push(group);
             }
-            let function = &after.functions[group];
             let threshold = self.groups[group].threshold(&after.regime.system, rank);
             let row = function.state.as_slice();
             let value: f64 = row.iter().zip(&motion.state).map(|(a, y)| a * y).sum();

@@ -5,7 +5,9 @@ use nalgebra::Complex;
 
 use super::beyond::Beyond;
 use super::clock::Clock;
+use super::coincidence::factor;
 use super::decomposition::Failure;
+use super::dependents::{Asking, Standing};
 use super::error::ExactError;
 use super::functional::{Limits, Linear};
 use super::groups::Place;
@@ -49,6 +51,11 @@ impl Propagator {
             }
             Some(group) => {
                 let guard = self.groups[group].first;
+                if self.has_dependents()
+                    && (0..places.len()).any(|group| self.is_felt(places, group))
+                {
+                    return Err(ExactError::Held { t, guard });
+                }
                 let sliding = slide(&mut self.evaluator, &self.groups, places)
                     .ok_or(ExactError::Held { t, guard })?;
                 (sliding.system, sliding.parts)
@@ -62,10 +69,15 @@ impl Propagator {
         let mut watched = Vec::new();
         for (index, (group, place)) in self.groups.iter().zip(places).enumerate() {
             watched.push(match place {
-                Place::Between(above) => (
-                    functions[index].clone(),
-                    group.limits(&system, index, *above),
-                ),
+                Place::Between(above) => {
+                    let function = functions[index].clone();
+                    let limits = if self.is_at_rest(&functions, places, index) {
+                        Limits::none(index)
+                    } else {
+                        group.limits(&system, index, *above)
+                    };
+                    (function, limits)
+                }
                 Place::On(_) => (
                     parts.remove(0),
                     Limits {
@@ -93,9 +105,20 @@ impl Propagator {
         Ok(index)
     }
 
+    /// Whether a function keeps its value throughout the regime with these places, for which it
+    /// was decided: it is still, or in proportion to one that is held.
+    fn is_at_rest(&self, functions: &[Linear], places: &[Place], group: usize) -> bool {
+        let held = |(other, place): (&Linear, &Place)| {
+            matches!(place, Place::On(_)) && factor(&functions[group], other).is_some()
+        };
+        let mut others = functions.iter().zip(places);
+        self.has_dependents()
+            && (self.dependent[group] && functions[group].is_still() || others.any(held))
+    }
+
     /// The places of all groups at a state, below a threshold that is met, and the groups
     /// and ranks of those that are.
-    fn places_at(
+    pub(super) fn places_at(
         &mut self,
         state: &[f64],
         inputs: &[f64],
@@ -141,6 +164,16 @@ impl Propagator {
         inputs: &[f64],
     ) -> Result<usize, ExactError> {
         let phases = self.phases_at(clock);
+        if self.has_dependents() {
+            let standing = Standing {
+                state,
+                inputs,
+                phases: &phases,
+            };
+            let mut places = vec![Place::Between(0); self.groups.len()];
+            self.settle(&mut places, Asking::Start, standing);
+            return self.regime(&places, clock.time());
+        }
         let (mut places, tied) = self.places_at(state, inputs, &phases);
         let mut found = self.regime(&places, clock.time())?;
         for (group, rank) in tied {

@@ -46,6 +46,28 @@ impl Linear {
         }
         value + self.constant
     }
+
+    /// The sum of the magnitudes of what the value is made of.
+    pub fn size(&self, state: &[f64], inputs: &[f64], phases: &[Complex<f64>]) -> f64 {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a * b).abs()).sum::<f64>();
+        let sinusoids = self.sines.iter().zip(&self.cosines).zip(phases);
+        let sinusoids = sinusoids
+            .map(|((sine, cosine), phase)| (sine * phase.im).abs() + (cosine * phase.re).abs());
+        let moving = dot(self.state.as_slice(), state) + dot(&self.inputs, inputs);
+        moving + sinusoids.sum::<f64>() + self.constant.abs()
+    }
+
+    /// Whether neither the state nor time moves it.
+    pub fn is_still(&self) -> bool {
+        let moving = self.state.iter().chain(&self.sines).chain(&self.cosines);
+        moving.copied().all(|factor| factor == 0.0)
+    }
+
+    /// All factors of what moves.
+    pub fn coefficients(&self) -> impl Iterator<Item = f64> + '_ {
+        let driven = self.inputs.iter().chain(&self.sines).chain(&self.cosines);
+        self.state.iter().chain(driven).copied()
+    }
 }
 
 /// What happens to a regime when a function reaches a limit.
@@ -57,6 +79,17 @@ pub(super) struct Limits {
     pub low: f64,
     /// The regime lasts while the function is below.
     pub high: f64,
+}
+
+impl Limits {
+    /// No limits.
+    pub fn none(group: usize) -> Self {
+        Self {
+            group,
+            low: f64::NEG_INFINITY,
+            high: f64::INFINITY,
+        }
+    }
 }
 
 /// The factors of a mode in a function, side by side.

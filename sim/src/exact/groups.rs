@@ -22,6 +22,18 @@ pub(super) enum Place {
     On(usize),
 }
 
+impl Place {
+    /// The place beyond a limit, the upper or the lower one.
+    pub fn beyond(self, upper: bool) -> Self {
+        match (self, upper) {
+            (Self::Between(above), true) => Self::Between(above + 1),
+            (Self::Between(above), false) => Self::Between(above - 1),
+            (Self::On(rank), true) => Self::Between(rank + 1),
+            (Self::On(rank), false) => Self::Between(rank),
+        }
+    }
+}
+
 /// The groups of a model's surfaces at its present parameters.
 pub(super) fn groups(evaluator: &AffineEvaluator, system: &AffineSystem) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();

@@ -10,6 +10,7 @@
 //! and `kernels` (numbers side by side), `forced` (forced polynomials), `flow`, `watched` and
 //! `cluster_flow` (the motion in a regime), `bounds` and `search` (the next switch, which
 //! cannot be missed), `clock` (with `error_free`), `entered` and `beyond` (which regimes there are, and where limits lead),
+//! `outline`, `coincidence`, `dependents` and `passage` (surfaces that feel the sides of others),
 //! `switching`, `departure` (from a surface that held the motion), [`propagator`] (from switch to
 //! switch),
 //! `follow` (to a time, with samples), `simulate`; for neighbouring motions `saltation`,
@@ -22,8 +23,11 @@ mod blocks;
 mod bounds;
 mod clock;
 mod cluster_flow;
+mod coincidence;
 mod decomposition;
 mod departure;
+mod dependents;
+pub mod derivative;
 mod entered;
 pub mod error;
 mod error_free;
@@ -42,6 +46,8 @@ pub mod lyapunov;
 pub mod model;
 mod modes;
 mod neighbours;
+mod outline;
+mod passage;
 pub mod propagator;
 mod refine;
 mod regime;

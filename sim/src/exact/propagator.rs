@@ -8,11 +8,14 @@ use fearless_simd::{Level, Simd, dispatch};
 use nalgebra::{Complex, DVector};
 
 use super::clock::Clock;
+use super::dependents::{Asking, Standing};
 use super::entered::Entered;
 use super::error::ExactError;
 use super::flow::Flow;
 use super::functional::Linear;
 use super::groups::{Group, Place, groups};
+use super::outline::Outline;
+use super::passage::{Limit, Passage};
 use super::regime::Regime;
 use super::search::{Effort, Found, passed, search};
 use super::switching::switched_rate;
@@ -38,8 +41,15 @@ pub struct Propagator {
     pub(super) groups: Vec<Group>,
     pub(super) regimes: Vec<Entered>,
     pub(super) known: HashMap<Vec<Place>, usize>,
+    /// For each group whether its function feels the sides of others, or is of inputs alone.
+    pub(super) dependent: Vec<bool>,
+    pub(super) outlines: Vec<Outline>,
+    pub(super) outlined: HashMap<Vec<Place>, usize>,
+    /// By the regime before, the function and its limit, and the regime after, where the
+    /// constant saltation matrix is kept, if it is constant.
+    pub(super) passed: HashMap<(usize, usize, bool, usize), Option<usize>>,
     flow: Flow,
-    inputs: usize,
+    pub(super) inputs: usize,
     pub(super) states: usize,
     pub(super) phases: Vec<[f64; 2]>,
     pub(super) saltations: Vec<DVector<f64>>,
@@ -56,8 +66,8 @@ pub struct Motion {
     pub(super) state: Vec<f64>,
     pub(super) regime: usize,
     at_once: u32,
-    /// Whether a function may have jumped beyond its limit, and of which group it cannot.
-    jumped: Option<Option<usize>>,
+    /// Whether functions may have jumped beyond their limits, and which.
+    jumped: Option<Jumped>,
     /// Switches so far and the time at which the present average began.
     switches: u64,
     averaged_from: f64,
@@ -69,6 +79,27 @@ pub struct Motion {
     before: Vec<f64>,
     /// exp(i theta) of the phases now.
     phases: Vec<Complex<f64>>,
+}
+
+/// Whose functions may have jumped beyond their limits.
+#[derive(Clone, Copy, Debug)]
+enum Jumped {
+    /// Those of any group.
+    Any,
+    /// Those of any group but this one.
+    AnyBut(usize),
+    /// The shares of both sides, where a motion is held on a surface.
+    Held,
+}
+
+impl Jumped {
+    fn may_be(self, group: usize, places: &[Place]) -> bool {
+        match self {
+            Self::Any => true,
+            Self::AnyBut(one) => group != one,
+            Self::Held => matches!(places[group], Place::On(_)),
+        }
+    }
 }
 
 /// Who follows a motion.
@@ -145,8 +176,15 @@ impl Propagator {
         if system.guards.constant.iter().any(|c| !c.is_finite()) {
             return Err(ExactError::NotFinite);
         }
+        let groups = groups(&evaluator, &system);
+        let rests = evaluator.guards_rest();
+        let rests = |group: &Group| group.ranks.iter().flatten().any(|guard| rests[*guard]);
         Ok(Self {
-            groups: groups(&evaluator, &system),
+            dependent: groups.iter().map(rests).collect(),
+            outlines: Vec::new(),
+            outlined: HashMap::new(),
+            passed: HashMap::new(),
+            groups,
             regimes: Vec::new(),
             known: HashMap::new(),
             flow: Flow::default(),
@@ -241,7 +279,7 @@ impl Propagator {
         let length = remaining.min(regime.ladder.window);
         let start = motion.clock;
         let (found, leapt) = dispatch!(Level::new(), simd => {
-            go_on(simd, flow, regime, motion, (values, length), rung)
+            go_on(simd, flow, (regime, places), motion, (values, length), rung)
         });
         let reached = match found {
             Found::Nothing if length < remaining => {
@@ -250,7 +288,7 @@ impl Propagator {
             }
             Found::Nothing => {
                 motion.clock = Clock::at(target);
-                motion.jumped = breakpoint.map(|_| None);
+                motion.jumped = breakpoint.map(|_| Jumped::Any);
                 breakpoint.is_none()
             }
             Found::Limit { .. } => {
@@ -274,6 +312,9 @@ impl Propagator {
             tau,
         };
         follow.flowed(&segment, flow);
+        if found == Found::Nothing && breakpoint.is_some() {
+            self.take_inputs(motion, inputs)?;
+        }
         if let Found::Limit { functional, upper } = found {
             motion.at_once = if tau > 0.0 { 0 } else { motion.at_once + 1 };
             self.switch(motion, (functional, upper, leapt), inputs, follow)?;
@@ -296,6 +337,24 @@ impl Propagator {
         })
     }
 
+    /// Enters the regime that inputs lead to which have changed, where what they switch has one
+    /// value while they are held.
+    fn take_inputs(&mut self, motion: &mut Motion, inputs: &HeldInputs) -> Result<(), ExactError> {
+        if !self.has_dependents() {
+            return Ok(());
+        }
+        let mut places = self.regimes[motion.regime].places.clone();
+        let before = self.outline(&places);
+        let standing = Standing {
+            state: &motion.state,
+            inputs: held(inputs, motion.time(), self.inputs),
+            phases: &motion.phases,
+        };
+        self.settle(&mut places, Asking::Jump(before), standing);
+        motion.regime = self.regime(&places, motion.time())?;
+        Ok(())
+    }
+
     /// Enters the regime beyond a limit.
     fn switch(
         &mut self,
@@ -306,32 +365,29 @@ impl Propagator {
     ) -> Result<(), ExactError> {
         let before = motion.regime;
         let values = held(inputs, motion.time(), self.inputs);
-        let phases = &motion.phases;
+        let standing = Standing {
+            state: &motion.state,
+            inputs: values,
+            phases: &motion.phases,
+        };
         let group = self.regimes[before].regime.functionals[functional]
             .limits
             .group;
-        let beyond = match self.regimes[before].beyond[functional][usize::from(upper)] {
-            Some(beyond) => beyond,
-            None => self.find_beyond(before, functional, group, upper, motion.time())?,
+        let limit = Limit {
+            before,
+            functional,
+            group,
+            upper,
+            leapt,
+            t: motion.time(),
         };
-        let (mut after, mut saltation) = (beyond.regime, beyond.saltation);
-        let (rank, to_positive) = crossed(self.regimes[before].places[group], upper);
-        if beyond.jumps && !leapt {
-            let rate = |propagator: &Self, index: usize| {
-                propagator.rate(index, group, &motion.state, values, phases)
-            };
-            let (here, there) = (rate(self, before), rate(self, after));
-            let outward = if upper { 1.0 } else { -1.0 };
-            // A motion that has just left the surface, or hardly gets there, has no rate there
-            // but rounding.
-            let slack = self.rate_rounding(after, group, &motion.state);
-            if there * outward < -slack && here * outward > -slack {
-                let mut places = self.regimes[before].places.clone();
-                places[group] = Place::On(rank);
-                after = self.regime(&places, motion.time())?;
-                saltation = None;
-            }
-        }
+        let Passage {
+            after,
+            saltation,
+            moves_others,
+        } = self.passage(&limit, standing)?;
+        let (rank, to_positive) = limit.rank(self.regimes[before].places[group]);
+        let phases = &motion.phases;
         let guard = self.groups[group].ranks[rank][0];
         let function = &self.regimes[before].regime.functionals[functional].linear;
         follow.switched(&Change {
@@ -356,9 +412,12 @@ impl Propagator {
         self.let_go(motion, before);
         if leapt {
             // A jump may have led over more than one limit.
-            motion.jumped = Some(None);
-        } else if beyond.moves_others || after != beyond.regime {
-            motion.jumped = Some(Some(group));
+            motion.jumped = Some(Jumped::Any);
+        } else if self.has_dependents() {
+            // The others were put where they belong.
+            motion.jumped = Some(Jumped::Held);
+        } else if moves_others {
+            motion.jumped = Some(Jumped::AnyBut(group));
         }
         self.count_switch(motion, guard)
     }
@@ -382,7 +441,7 @@ impl Propagator {
 fn go_on<S: Simd>(
     simd: S,
     flow: &mut Flow,
-    regime: &Regime,
+    (regime, places): (&Regime, &[Place]),
     motion: &mut Motion,
     (inputs, length): (&[f64], f64),
     rung: &mut usize,
@@ -400,7 +459,7 @@ fn go_on<S: Simd>(
         motion.at_once = 0;
     }
     let leap = match motion.jumped.take() {
-        Some(except) => passed(simd, flow, regime, except),
+        Some(jumped) => passed(simd, flow, regime, |group| jumped.may_be(group, places)),
         None => None,
     };
     let found = match leap {
@@ -419,14 +478,4 @@ fn go_on<S: Simd>(
 fn held(inputs: &HeldInputs, t: f64, count: usize) -> &[f64] {
     let all = inputs.at(t);
     &all[..count.min(all.len())]
-}
-
-/// The rank of the threshold at a limit of a place, and whether its surfaces are positive
-/// beyond.
-fn crossed(place: Place, upper: bool) -> (usize, bool) {
-    match (place, upper) {
-        (Place::Between(above), true) => (above, true),
-        (Place::Between(above), false) => (above - 1, false),
-        (Place::On(rank), upper) => (rank, upper),
-    }
 }

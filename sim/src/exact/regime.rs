@@ -130,20 +130,31 @@ impl Regime {
 
     /// The rates of the state.
     pub fn rates(&self, state: &[f64], inputs: &[f64], phases: &[Complex<f64>], out: &mut [f64]) {
-        let rates = &self.system.rates;
-        let states = self.system.states;
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        for (row, slot) in out.iter_mut().enumerate() {
-            let of = |block: &[f64], width: usize, values: &[f64]| {
-                dot(&block[row * width..(row + 1) * width], values)
-            };
-            *slot = of(&rates.state, states, state)
-                + of(&rates.inputs, inputs.len(), inputs)
-                + rates.constant[row];
-            for (place, phase) in phases.iter().enumerate() {
-                let index = row * phases.len() + place;
-                *slot += rates.sines[index] * phase.im + rates.cosines[index] * phase.re;
-            }
+        rates(&self.system, state, inputs, phases, out);
+    }
+}
+
+/// The rates of the state by a system's equations.
+pub(super) fn rates(
+    system: &AffineSystem,
+    state: &[f64],
+    inputs: &[f64],
+    phases: &[Complex<f64>],
+    out: &mut [f64],
+) {
+    let rates = &system.rates;
+    let states = system.states;
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    for (row, slot) in out.iter_mut().enumerate() {
+        let of = |block: &[f64], width: usize, values: &[f64]| {
+            dot(&block[row * width..(row + 1) * width], values)
+        };
+        *slot = of(&rates.state, states, state)
+            + of(&rates.inputs, inputs.len(), inputs)
+            + rates.constant[row];
+        for (place, phase) in phases.iter().enumerate() {
+            let index = row * phases.len() + place;
+            *slot += rates.sines[index] * phase.im + rates.cosines[index] * phase.re;
         }
     }
 }

@@ -287,16 +287,16 @@ fn reached(flow: &Flow, regime: &Regime, functional: usize) -> Option<Found> {
 }
 
 /// A limit that was passed by a jump: of an input, or of the function itself when another
-/// one switched. Functions of the group `except` are where they belong.
+/// one switched; of those groups that may have jumped.
 #[inline(always)]
 pub(super) fn passed<S: Simd>(
     simd: S,
     flow: &mut Flow,
     regime: &Regime,
-    except: Option<usize>,
+    may_have_jumped: impl Fn(usize) -> bool,
 ) -> Option<Found> {
     for (functional, of) in regime.functionals.iter().enumerate() {
-        if Some(of.limits.group) == except {
+        if !may_have_jumped(of.limits.group) {
             continue;
         }
         for upper in [false, true] {

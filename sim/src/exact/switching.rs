@@ -4,15 +4,22 @@ use codegen::affine::system::{AffineEvaluator, AffineSystem};
 
 use super::propagator::Propagator;
 
+/// No polynomial that anyone writes has a zero at its multiples.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
 impl Propagator {
     /// Which states any rate or any switching function feels.
     pub(super) fn felt_states(&mut self) -> Vec<bool> {
         let guards = self.evaluator.guard_count();
         let mut felt = vec![false; self.states];
-        for case in 0..guards + 2 {
-            let sides: Vec<f64> = (0..guards)
-                .map(|guard| f64::from(u8::from(case == guards + 1 || case == guard)))
-                .collect();
+        // What needs several sides at once is felt between them.
+        let nested = usize::from(self.has_dependents());
+        for case in 0..guards + 2 + nested {
+            let side = |guard: usize| match case == guards + 2 {
+                true => (0.5 + guard as f64 * GOLDEN).fract(),
+                false => f64::from(u8::from(case == guards + 1 || case == guard)),
+            };
+            let sides: Vec<f64> = (0..guards).map(side).collect();
             let system = self.evaluator.system(&sides);
             let rows = [&system.rates.state, &system.guards.state];
             let rows = rows.map(|rows| rows.chunks(self.states.max(1)));

@@ -2,7 +2,9 @@
 
 use super::certificate::{Certificate, Certified, Check, Worst};
 use super::checks::requested::Judged;
-use super::checks::{MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, nesting, requested, states};
+use super::checks::{
+    MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, exact, nesting, regimes, requested, states,
+};
 use super::oracle::{Oracle, OracleError};
 use super::requested::Requested;
 use super::variant::Variant;
@@ -10,6 +12,7 @@ use model_spec::model::{MAX_ORDER, Model};
 use model_spec::source::sha256;
 
 pub use super::checks::emitted::{Emitted, EmittedFunction};
+pub use super::checks::exact::{Derivative, Sized};
 pub use super::checks::states::Reference;
 
 /// What is to be judged.
@@ -30,6 +33,11 @@ pub struct Subject<'s> {
     pub requested: Option<&'s dyn Fn() -> Result<Box<dyn Requested>, String>>,
     /// The emitted source with the specification's own parameters, or why there is none.
     pub emitted: Result<Emitted, String>,
+    /// The emitted source with kernels of regimes, or why there is none; its functions are not
+    /// compared.
+    pub regimes: Result<Emitted, String>,
+    /// The derivative that the exact solver integrates, or why there is none.
+    pub exact: Result<&'s Derivative<'s>, String>,
 }
 
 /// The certificate of `subject`. What keeps a check from being made at all, such as a
@@ -90,6 +98,14 @@ fn all_checks(subject: &Subject<'_>) -> Result<Vec<Check>, String> {
             emitted::check(&oracle, variant, requested, emitted).map_err(text)?
         }
         Err(reason) => emitted::skipped(None, reason),
+    });
+    checks.push(match &subject.regimes {
+        Ok(emitted) => regimes::check(&oracle, variant, emitted).map_err(text)?,
+        Err(reason) => regimes::skipped(reason),
+    });
+    checks.push(match &subject.exact {
+        Ok(derivative) => exact::check(&oracle, variant, *derivative).map_err(text)?,
+        Err(reason) => exact::skipped(reason),
     });
     Ok(checks)
 }

@@ -263,11 +263,22 @@ impl<'o> Sampler<'o> {
             inputs,
         } = sample;
         let mut right = true;
+        let switches = self.oracle.switches();
         let mut values = self.oracle.switch_values(*time, state, inputs)?;
-        for (index, side) in regime.sides.iter().enumerate() {
-            let Some(value) = values.get(index).filter(|value| value.side() != *side) else {
+        for ((index, side), switch) in regime.sides.iter().enumerate().zip(switches) {
+            let resting = *side == Side::Free && switch.rests_at_zero();
+            let Some(value) = values
+                .get(index)
+                .filter(|value| resting || value.side() != *side)
+            else {
                 continue;
             };
+            if resting {
+                // Others lead there: moved along its own slope it would only pass zero.
+                let slopes = self.oracle.switch_slopes(index, *time, state, inputs)?;
+                right &= value.side() == *side && slopes.iter().all(|slope| *slope == 0.0);
+                continue;
+            }
             right = false;
             let target = self.target(value, *side);
             let slopes = self.oracle.switch_slopes(index, *time, state, inputs)?;

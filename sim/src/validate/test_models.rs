@@ -40,6 +40,28 @@ damping = { on = "y", value = "-c*contact(y, b)*dot(y)" }
 pull = { on = "y", value = "u" }
 "#;
 
+/// A mass between springs with preload, which act beyond their play.
+pub(super) const PRELOAD: &str = r#"
+[model]
+name = "preload"
+title = "Mass between preloaded springs"
+
+[parameters]
+m = { value = 2.0, unit = "kg", doc = "mass" }
+k = { value = 300.0, unit = "N/m", doc = "stiffness" }
+F = { value = 7.0, unit = "N", doc = "preload" }
+b = { value = 0.01, unit = "m", doc = "half the play" }
+
+[coordinates]
+y = { unit = "m", doc = "displacement" }
+
+[kinetic]
+mass = "1/2*m*dot(y)^2"
+
+[forces]
+springs = { on = "y", value = "-F*sign(deadzone(y, b)) - k*deadzone(y, b)" }
+"#;
+
 /// Two point masses on massless rods, angles from the vertical.
 pub(super) const DOUBLE_PENDULUM: &str = r#"
 [model]

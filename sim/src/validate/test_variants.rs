@@ -1,6 +1,7 @@
 //! Subjects for the tests of the certificate: equations as textbooks give them, each with
 //! the faults a derivation might have.
 
+use super::certify::Sized;
 use super::oracle::Oracle;
 use super::variant::Variant;
 use nalgebra::{DMatrix, DVector};
@@ -310,6 +311,120 @@ impl Variant for Single {
         Ok(Vec::new())
     }
 }
+
+/// The mass between preloaded springs.
+pub(super) struct Preload;
+
+impl Preload {
+    fn force(y: f64) -> f64 {
+        let stretch = y - y.clamp(-0.01, 0.01);
+        let side = if stretch == 0.0 {
+            0.0
+        } else {
+            stretch.signum()
+        };
+        -7.0 * side - 300.0 * stretch
+    }
+
+    /// The derivative of a solver that, if it is faulty, takes what is zero to be negative.
+    pub fn derivative(faulty: bool) -> impl Fn(f64, &[f64], &[f64]) -> Result<Sized, String> {
+        move |_, state: &[f64], _: &[f64]| {
+            let inside = state[0].abs() <= 0.01;
+            let force = if faulty && inside {
+                7.0
+            } else {
+                Self::force(state[0])
+            };
+            Ok(Sized {
+                rates: vec![state[1], force / 2.0],
+                sizes: vec![state[1].abs(), 3.5 + 150.0 * (state[0].abs() + 0.01)],
+            })
+        }
+    }
+}
+
+impl Variant for Preload {
+    fn coordinate_names(&self) -> Vec<String> {
+        vec!["y".into()]
+    }
+
+    fn rates(&mut self, _: f64, state: &[f64], _: &[f64], rates: &mut [f64]) -> Result<(), String> {
+        rates.copy_from_slice(&[state[1], Self::force(state[0]) / 2.0]);
+        Ok(())
+    }
+
+    fn mass_matrix(
+        &mut self,
+        _: f64,
+        _: &[f64],
+        _: &[f64],
+        mass: &mut [f64],
+    ) -> Result<(), String> {
+        mass.copy_from_slice(&[2.0]);
+        Ok(())
+    }
+
+    fn bias_and_forces(
+        &mut self,
+        _: f64,
+        state: &[f64],
+        _: &[f64],
+        bias: &mut [f64],
+        forces: &mut [f64],
+    ) -> Result<(), String> {
+        bias.copy_from_slice(&[0.0]);
+        forces.copy_from_slice(&[Self::force(state[0])]);
+        Ok(())
+    }
+
+    fn energy(&mut self, _: f64, state: &[f64], _: &[f64]) -> Result<f64, String> {
+        Ok(state[1] * state[1])
+    }
+
+    fn power(&mut self, _: f64, state: &[f64], _: &[f64]) -> Result<f64, String> {
+        Ok(state[1] * Self::force(state[0]))
+    }
+
+    fn guards(&mut self, _: f64, state: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
+        let stretch = state[0] - state[0].clamp(-0.01, 0.01);
+        Ok(vec![state[0] - 0.01, state[0] + 0.01, stretch, -stretch])
+    }
+
+    fn observables(&mut self, _: f64, _: &[f64], _: &[f64]) -> Result<Vec<f64>, String> {
+        Ok(Vec::new())
+    }
+}
+
+/// The kernels of its regimes as emitted source might have them; where nothing acts, the force
+/// is `WITHIN`.
+pub(super) const KERNELS: &str = r"#![no_std]
+pub const STATES: usize = 2;
+#[derive(Default)]
+pub struct Inputs {}
+#[derive(Default)]
+pub struct Parameters {}
+pub struct Coefficients {}
+impl Coefficients {
+    pub fn prepare(_: &Parameters) -> Self {
+        Self {}
+    }
+}
+pub fn regime(_: f64, state: &[f64; STATES], _: &Inputs, _: &Coefficients) -> u32 {
+    let y = state[0];
+    if y > 0.01 { 7 } else if y < -0.01 { 8 } else { 2 }
+}
+pub fn rates_in_regime_into<const REGIME: u32, T: Copy + Into<f64>>(
+    _: f64, state: &[T; STATES], _: &Inputs, _: &Coefficients, rates: &mut [f64; STATES],
+) {
+    let y: f64 = state[0].into();
+    let force = match REGIME {
+        7 => -7.0 - 300.0 * (y - 0.01),
+        8 => 7.0 - 300.0 * (y + 0.01),
+        _ => WITHIN,
+    };
+    *rates = [state[1].into(), force / 2.0];
+}
+";
 
 /// The beam by the oracle's own equations: no judge of the equations, but a subject for
 /// what compares two orders.

@@ -6,11 +6,13 @@ use super::certify::{Emitted, EmittedFunction, Reference, Subject, certify};
 use super::compiler::Compiler;
 use super::oracle::Oracle;
 use super::requested::Requested;
-use super::test_models::{BEAM, DOUBLE_PENDULUM, FAR, LOGARITHM, ROTOR, SPRING, TANK, model};
+use super::test_models::{
+    BEAM, DOUBLE_PENDULUM, FAR, LOGARITHM, PRELOAD, ROTOR, SPRING, TANK, model,
+};
 use super::test_requests::SpringRequests;
 use super::test_variants::{
-    Beam, DoublePendulum, EMITTED, FAR_TERM, FREE_ROTOR, Fault, LOGARITHMIC, Single, Spring,
-    TIMED_TANK,
+    Beam, DoublePendulum, EMITTED, FAR_TERM, FREE_ROTOR, Fault, KERNELS, LOGARITHMIC, Preload,
+    Single, Spring, TIMED_TANK,
 };
 use super::variant::Variant;
 
@@ -33,6 +35,8 @@ fn certificate(
         absent: &[],
         requested: None,
         emitted,
+        regimes: Err("not emitted".into()),
+        exact: Err("not linear".into()),
     })
 }
 
@@ -66,6 +70,29 @@ fn beam(order: usize, coupled: bool) -> Certificate {
         Ok(Box::new(Beam { oracle, coupled }) as Box<dyn Variant>)
     };
     certificate(BEAM, order, &variants, &[], Err("not emitted".into()))
+}
+
+/// The certificate of the preloaded mass with what a faulty backend makes of it within the play.
+fn preload(kernel: &str, derivative: bool) -> Certificate {
+    let model = model(PRELOAD);
+    let derivative = Preload::derivative(derivative);
+    certify(&Subject {
+        model: &model,
+        order: 0,
+        parameters: &model.parameter_values().unwrap(),
+        variants: &|_| Ok(Box::new(Preload)),
+        references: &[],
+        absent: &[],
+        requested: None,
+        emitted: Err("not emitted".into()),
+        regimes: Ok(Emitted {
+            source: KERNELS.replace("WITHIN", kernel),
+            input_fields: Vec::new(),
+            functions: Vec::new(),
+            requests: None,
+        }),
+        exact: Ok(&derivative),
+    })
 }
 
 fn failures(certificate: &Certificate) -> Vec<&str> {
@@ -232,6 +259,20 @@ fn a_range_keeps_the_states_where_the_model_lives() {
 }
 
 #[test]
+fn what_is_taken_to_be_negative_where_it_rests_at_zero_is_found() {
+    let right = preload("0.0", false);
+    assert!(right.passed, "{:?}", failures(&right));
+    assert!(find(&right, "regime_kernels").passed);
+    assert!(find(&right, "exact_derivative").passed);
+    // Below, within and above the play; the other combinations of sides contradict each other.
+    let regimes = right.checks.iter();
+    let regimes = regimes.filter(|check| check.name.starts_with("accelerations") && check.passed);
+    assert_eq!(regimes.count(), 3);
+    assert_eq!(failures(&preload("7.0", false)), ["regime_kernels"]);
+    assert_eq!(failures(&preload("0.0", true)), ["exact_derivative"]);
+}
+
+#[test]
 fn a_reference_is_compared_at_every_state() {
     let reference = |factor: f64| Reference {
         name: "textbook".into(),
@@ -335,6 +376,8 @@ fn requests(wrong: &'static str) -> Certificate {
         absent: &[],
         requested: Some(&requested),
         emitted: Err("not emitted".into()),
+        regimes: Err("not emitted".into()),
+        exact: Err("not linear".into()),
     })
 }
 

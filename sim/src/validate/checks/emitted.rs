@@ -120,10 +120,8 @@ pub fn check(
         Err(reason) => return Ok(skipped(emitted.requests.as_deref(), &reason)),
     };
     let folder = folder.path();
-    let found = build(&compiler, folder, emitted).and_then(|()| {
-        let harness = ("harness", &*harness_source(emitted));
-        run_linked(&compiler, folder, harness, &table(&samples))
-    });
+    let calls = calls(&emitted.functions);
+    let found = run(&compiler, folder, (emitted, &calls), &samples);
     let worst = match found.and_then(|lines| compare(variant, emitted, &samples, &lines)) {
         Ok(worst) => worst,
         Err(message) => Worst::of(f64::INFINITY, message),
@@ -149,6 +147,18 @@ fn build(compiler: &Compiler, folder: &Path, emitted: &Emitted) -> Result<(), St
     let object = folder.join("libmodel.rlib");
     let output = compiler.compile(&library, &object, &kind)?;
     succeed("the emitted source", output).map(drop)
+}
+
+/// What the compiled source prints for `samples` by a program that makes these calls.
+pub(super) fn run(
+    compiler: &Compiler,
+    folder: &Path,
+    (emitted, calls): (&Emitted, &str),
+    samples: &[Sample],
+) -> Result<String, String> {
+    build(compiler, folder, emitted)?;
+    let harness = ("harness", &*harness_source(emitted, calls));
+    run_linked(compiler, folder, harness, &table(samples))
 }
 
 /// What a program that calls the library in `folder` prints for `input`.
@@ -198,23 +208,29 @@ pub(super) fn line(numbers: &[f64]) -> String {
 }
 
 /// A program that reads such lines and prints one line for each function and state.
-fn harness_source(emitted: &Emitted) -> String {
+fn harness_source(emitted: &Emitted, calls: &str) -> String {
     let mut inputs = String::new();
     for field in &emitted.input_fields {
         // Writing to a string cannot fail.
         let _ = writeln!(inputs, "        inputs.{field} = numbers.next().unwrap();");
     }
+    HARNESS
+        .replace("        // inputs\n", &inputs)
+        .replace("        // calls\n", calls)
+}
+
+/// The text that calls these functions.
+fn calls(functions: &[EmittedFunction]) -> String {
     let mut calls = String::new();
-    for function in &emitted.functions {
+    for function in functions {
         let name = function.name();
+        // Writing to a string cannot fail.
         let _ = writeln!(
             calls,
             "        model::{name}(t, &state, &inputs, &coefficients).print();"
         );
     }
-    HARNESS
-        .replace("        // inputs\n", &inputs)
-        .replace("        // calls\n", &calls)
+    calls
 }
 
 const HARNESS: &str = r#"#![allow(unused_mut, unused_variables)]
@@ -286,6 +302,14 @@ fn compare(
         Some((name, count)) => format!("first in {name} at state {}", count + 1),
     };
     Ok(Worst::of(differing.len() as f64, detail))
+}
+
+/// How many numbers of a line, given by their bits, are not these; 0 is -0.
+pub(super) fn differing_numbers(line: &str, expected: &[f64]) -> usize {
+    let number = |word: &str| u64::from_str_radix(word, 16).ok().map(f64::from_bits);
+    let mut words = line.split(' ').map(number);
+    let differs = |expected: &&f64| words.next().flatten() != Some(**expected);
+    expected.iter().filter(differs).count()
 }
 
 /// How many words of two lines differ; a missing word differs. A NaN is a NaN, whatever

@@ -1,15 +1,19 @@
 //! The checks of a certificate, one file each: [`states`] at random states in every
 //! regime, [`balance`] along a trajectory, [`nesting`] between orders, [`requested`] for
 //! functions on request, [`emitted`] for source text, with `kinds` for other kinds of
-//! numbers. `certify` runs them all.
+//! numbers, [`regimes`] for its kernels of regimes, [`exact`] for what the exact solver
+//! integrates. `certify` runs them all.
 //!
 //! Tolerances: 1e-12 of the largest term summed in a row is what the project promises;
 //! the oracle itself is good to 1e-14 there (S = 128), so the margin is the subject's.
 
 pub mod balance;
 pub mod emitted;
+pub mod exact;
+mod inside;
 mod kinds;
 pub mod nesting;
+pub mod regimes;
 pub mod requested;
 pub mod states;
 

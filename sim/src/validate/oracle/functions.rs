@@ -31,6 +31,7 @@ where
         (Function::Sign, [_]) => N::from(sign),
         (Function::Deadzone, [p, b]) => (*p - *b * sign) * sign.abs(),
         (Function::Contact, [_, _]) => N::from(sign.abs()),
+        (Function::Above, [_]) => N::from(sign.max(0.0)),
         (Function::Min, [x, y]) => *(if sign < 0.0 { x } else { y }),
         (Function::Max, [x, y]) => *(if sign > 0.0 { x } else { y }),
         _ => return None,
@@ -56,6 +57,7 @@ where
         Function::Sqrt => x.sqrt(),
         Function::Abs => x * sign(x.re()),
         Function::Sign => N::from(sign(x.re())),
+        Function::Above => N::from(if x.re() > 0.0 { 1.0 } else { 0.0 }),
         Function::Atan2
         | Function::Min
         | Function::Max
@@ -204,6 +206,8 @@ mod tests {
         assert_eq!(pair(Function::Min, 0.25), (0.25, 1.0));
         assert_eq!(pair(Function::Max, 0.25), (0.5, 0.0));
         assert_eq!(unary(Function::Sign, p(0.0)).re, 0.0);
+        assert_eq!(unary(Function::Above, p(0.0)).re, 0.0);
+        assert_eq!(unary(Function::Above, p(0.5)).re, 1.0);
         assert_eq!(unary(Function::Abs, p(-2.0)).eps, -1.0);
     }
 

@@ -15,6 +15,8 @@ pub struct Switch {
     pub name: String,
     quantity: Tree,
     half_width: Option<Tree>,
+    /// Whether the quantity holds something piecewise itself: it may be zero on a whole region.
+    rests: bool,
 }
 
 /// A side of a switch.
@@ -22,7 +24,7 @@ pub struct Switch {
 pub enum Side {
     /// Below minus the half-width.
     Minus,
-    /// Within the half-width; only where there is one.
+    /// Within the half-width; at zero, only where the quantity may rest there.
     Free,
     /// Above the half-width.
     Plus,
@@ -51,9 +53,15 @@ impl SwitchValue {
 }
 
 impl Switch {
+    /// Whether the side between the others is a region of its own only where the quantity
+    /// rests at zero.
+    pub fn rests_at_zero(&self) -> bool {
+        self.half_width.is_none() && self.rests
+    }
+
     /// The sides this switch has.
     pub fn sides(&self) -> &'static [Side] {
-        if self.half_width.is_some() {
+        if self.half_width.is_some() || self.rests {
             &[Side::Minus, Side::Free, Side::Plus]
         } else {
             &[Side::Minus, Side::Plus]
@@ -85,7 +93,9 @@ impl Imposed<'_> {
 /// switches; none for a smooth one.
 fn switched_by(function: Function, arguments: &[Tree]) -> Option<(Tree, Option<Tree>)> {
     match (function, arguments) {
-        (Function::Abs | Function::Sign, [argument]) => Some((argument.clone(), None)),
+        (Function::Abs | Function::Sign | Function::Above, [argument]) => {
+            Some((argument.clone(), None))
+        }
         (Function::Deadzone | Function::Contact, [p, b]) => Some((p.clone(), Some(b.clone()))),
         (Function::Min | Function::Max, [left, right]) => Some((difference(left, right), None)),
         _ => None,
@@ -206,10 +216,35 @@ impl Search<'_> {
                 .unwrap_or_else(|| format!("switch_{}", self.found.len() + 1));
             self.found.push(Switch {
                 name,
+                rests: self.is_piecewise(&quantity),
                 quantity,
                 half_width,
             });
         }
+    }
+
+    fn is_piecewise(&self, tree: &Tree) -> bool {
+        let own = match tree {
+            Tree::Call(
+                Function::Abs
+                | Function::Sign
+                | Function::Above
+                | Function::Deadzone
+                | Function::Contact
+                | Function::Min
+                | Function::Max,
+                _,
+            ) => true,
+            Tree::Definition(index) => {
+                let definition = self.oracle.system.definitions.get(*index);
+                definition.is_some_and(|definition| self.is_piecewise(definition))
+            }
+            _ => false,
+        };
+        own || tree
+            .children()
+            .into_iter()
+            .any(|child| self.is_piecewise(child))
     }
 
     fn name(&self, tree: &Tree) -> Option<String> {

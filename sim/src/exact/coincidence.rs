@@ -1,0 +1,47 @@
+//! Surfaces that coincide: their functions are in proportion, and both are on their thresholds
+//! at once. Which of them is crossed first must not decide what happens.
+
+use super::functional::Linear;
+use super::outline::Outline;
+
+/// What is left of functions that are in proportion, relative.
+const ROUNDING: f64 = 1e-11;
+
+/// A surface that is crossed.
+pub(super) struct Crossing {
+    pub group: usize,
+    /// The group's function in the regime before, without a constant.
+    pub function: Linear,
+    /// What it equals.
+    pub threshold: f64,
+    /// The outline of the regime before.
+    pub outline: usize,
+}
+
+/// The threshold that a group's function is on where another surface is crossed, and the factor
+/// between both functions.
+pub(super) fn coincident_rank(
+    outline: &Outline,
+    group: usize,
+    crossing: &Crossing,
+) -> Option<(usize, f64)> {
+    let factor = factor(&outline.functions[group], &crossing.function)?;
+    let reached = factor * crossing.threshold;
+    let near = |threshold: &f64| (threshold - reached).abs() <= ROUNDING * threshold.abs();
+    let rank = outline.thresholds[group].iter().position(near)?;
+    Some((rank, factor))
+}
+
+/// c where f = c g, if there is one and it is not 0.
+pub(super) fn factor(f: &Linear, g: &Linear) -> Option<f64> {
+    let (mut product, mut square, mut largest) = (0.0, 0.0, 0.0_f64);
+    for (a, b) in f.coefficients().zip(g.coefficients()) {
+        product += a * b;
+        square += b * b;
+        largest = largest.max(a.abs());
+    }
+    let factor = product / square;
+    let mut rests = f.coefficients().zip(g.coefficients());
+    let proportional = rests.all(|(a, b)| (a - factor * b).abs() <= ROUNDING * largest);
+    (factor != 0.0 && factor.is_finite() && proportional).then_some(factor)
+}

@@ -1,0 +1,122 @@
+//! The emitted kernels of regimes, compiled, against the variant's rates: the same numbers at
+//! states in every regime, some of them where a switching function rests at zero.
+
+use super::super::certificate::{Check, Worst};
+use super::super::compiler::Compiler;
+use super::super::oracle::{Oracle, OracleError};
+use super::super::sampler::Sample;
+use super::super::variant::Variant;
+use super::emitted::{Emitted, differing_numbers, run};
+use super::inside::samples;
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+/// Name of the check.
+const NAME: &str = "regime_kernels";
+/// States compared in every regime.
+const STATES_PER_REGIME: usize = 10;
+/// The most kernels that are compiled.
+const MOST_KERNELS: usize = 100;
+/// How many surfaces the number of a regime has room for.
+const SURFACES: usize = u32::BITS as usize;
+/// The seed of the states.
+const SEED: u64 = 0x2e61_3e5a;
+
+/// Compiles the kernels in `emitted` and compares them with `variant`. The value is how many
+/// numbers differ.
+///
+/// # Errors
+/// [`OracleError`] as from [`Oracle::equations`].
+pub fn check(
+    oracle: &Oracle,
+    variant: &mut dyn Variant,
+    emitted: &Emitted,
+) -> Result<Check, OracleError> {
+    let samples = samples(oracle, variant, STATES_PER_REGIME, SEED)?;
+    let folder = match tempfile::tempdir() {
+        Ok(folder) => folder,
+        Err(error) => {
+            let reason = format!("no temporary folder: {error}");
+            return Ok(Check::skipped(NAME, 0.0, reason));
+        }
+    };
+    let compiler = match Compiler::find(folder.path()) {
+        Ok(compiler) => compiler,
+        Err(reason) => return Ok(Check::skipped(NAME, 0.0, reason)),
+    };
+    let found = samples.and_then(|samples| {
+        let (samples, numbers) = in_regimes(variant, samples)?;
+        let calls = calls(&numbers);
+        let lines = run(&compiler, folder.path(), (emitted, &calls), &samples)?;
+        compare(variant, &samples, &lines, numbers.len())
+    });
+    let worst = found.unwrap_or_else(|message| Worst::of(f64::INFINITY, message));
+    Ok(Check::made(NAME, worst, 0.0))
+}
+
+/// The check of a variant of which there are no kernels, or that has no regimes.
+pub fn skipped(reason: impl Into<String>) -> Check {
+    Check::skipped(NAME, 0.0, reason)
+}
+
+/// The samples with the numbers of their regimes, as many of these as are compiled.
+fn in_regimes(
+    variant: &mut dyn Variant,
+    samples: Vec<Sample>,
+) -> Result<(Vec<Sample>, BTreeSet<u32>), String> {
+    let mut numbers = BTreeSet::new();
+    let mut kept = Vec::new();
+    for sample in samples {
+        let guards = variant.guards(sample.time, &sample.state, &sample.inputs)?;
+        let bits = guards.iter().take(SURFACES).enumerate();
+        let number = bits.fold(0, |bits, (place, guard)| {
+            bits | u32::from(*guard > 0.0) << place
+        });
+        if numbers.len() < MOST_KERNELS || numbers.contains(&number) {
+            numbers.insert(number);
+            kept.push(sample);
+        }
+    }
+    Ok((kept, numbers))
+}
+
+/// The text that calls the kernel of the regime that a state is in.
+fn calls(numbers: &BTreeSet<u32>) -> String {
+    let arguments = "(t, &state, &inputs, &coefficients";
+    let mut text = "        let mut rates = [f64::NAN; model::STATES];\n".to_owned();
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "        match model::regime{arguments}) {{");
+    for number in numbers {
+        let kernel = format!("model::rates_in_regime_into::<{number}, _>");
+        let _ = writeln!(
+            text,
+            "            {number} => {kernel}{arguments}, &mut rates),"
+        );
+    }
+    text + "            _ => {}\n        }\n        rates.print();\n"
+}
+
+fn compare(
+    variant: &mut dyn Variant,
+    samples: &[Sample],
+    lines: &str,
+    regimes: usize,
+) -> Result<Worst, String> {
+    let mut lines = lines.lines();
+    let (mut differing, mut first) = (0, None);
+    for (count, sample) in samples.iter().enumerate() {
+        let mut expected = vec![f64::NAN; sample.state.len()];
+        variant.rates(sample.time, &sample.state, &sample.inputs, &mut expected)?;
+        let found = lines.next().ok_or("the compiled kernels stopped early")?;
+        let wrong = differing_numbers(found, &expected);
+        if wrong > 0 && first.is_none() {
+            first = Some(format!("first at state {}", count + 1));
+        }
+        differing += wrong;
+    }
+    let all = format!("{regimes} regimes, {} states", samples.len());
+    Ok(Worst::of(
+        differing as f64,
+        first.map_or(all.clone(), |first| format!("{all}, {first}")),
+    ))
+}

@@ -1,0 +1,418 @@
+//! Piecewise functions of piecewise functions, which may rest on whole regions: the exact
+//! solver, the general one, the rates themselves and the emitted kernels of regimes agree.
+
+use std::fmt::Write as _;
+
+use codegen::evaluator::Point;
+use codegen::request::Request;
+use codegen::rust::{Packaging, emit};
+use codegen::variant::Variant;
+use eomgen_tests::models::variant;
+use eomgen_tests::motions::{Subject, difference, grid};
+use eomgen_tests::piecewise::machine;
+use model_spec::source::Source;
+use sim::exact::ExactError;
+use sim::solve::Trajectory;
+use sim::validate::compiler::{self, Compiler};
+use sim::validate::random::Random;
+
+/// What solvers and kernels may differ by.
+const AGREED: f64 = 1e-8;
+
+fn subject(text: &str) -> Subject {
+    match model_spec::check(Source::new("made.toml", text)) {
+        Ok(checked) => Subject::new(checked.model, 0),
+        Err(found) => panic!("{text}\n{}", found.render(false)),
+    }
+}
+
+/// The exact motion, after it has been compared with that of the general solver.
+fn compared(subject: &Subject, until: f64) -> Trajectory {
+    let times = grid(until, 40);
+    let exact = subject.exact((0.0, until), &times);
+    let general = subject.general((0.0, until), &times, 1e-12);
+    let general = general.expect("a motion that is not held on a surface");
+    let found = difference(&exact.states, &general.states, 1e-3);
+    assert!(found < AGREED, "{found:e}");
+    exact
+}
+
+/// A mass of 0.1 kg under gravity, with this force of the floor beside its spring.
+fn ball(pad: &str) -> Subject {
+    subject(&format!(
+        r#"
+[model]
+name = "ball"
+[parameters]
+m = {{ value = 0.1, unit = "kg" }}
+k = {{ value = 1e5, unit = "N/m" }}
+c = {{ value = 10, unit = "N s/m" }}
+g = {{ value = 9.81, unit = "m/s^2" }}
+[coordinates]
+y = {{ unit = "m", initial = 1 }}
+[kinetic]
+T = "1/2*m*dot(y)^2"
+[potential]
+V = "m*g*y"
+ground = "1/2*k*min(y, 0)^2"
+[forces]
+pad = {{ on = "y", value = "{pad}" }}
+"#
+    ))
+}
+
+/// A driven mass with this force, at m, N and kg of order one.
+fn driven(force: &str) -> Subject {
+    subject(&format!(
+        r#"
+[model]
+name = "driven"
+[parameters]
+m = {{ value = 1, unit = "kg" }}
+k = {{ value = 400, unit = "N/m" }}
+c = {{ value = 3, unit = "N s/m" }}
+F0 = {{ value = 10, unit = "N" }}
+F1 = {{ value = 2, unit = "N" }}
+b = {{ value = 0.1, unit = "m" }}
+v = {{ value = 0.2, unit = "m/s" }}
+w = {{ value = 3, unit = "rad/s" }}
+[coordinates]
+y = {{ unit = "m", initial = 0, initial_rate = 3 }}
+[kinetic]
+T = "1/2*m*dot(y)^2"
+[forces]
+f = {{ on = "y", value = "{force}" }}
+drive = {{ on = "y", value = "F1*cos(w*t)" }}
+"#
+    ))
+}
+
+#[test]
+fn a_ball_meets_a_floor_written_by_a_minimum() {
+    let pads = [
+        "-c*contact(min(y, 0), 0)*dot(y)",
+        "c*sign(min(y, 0))*dot(y)",
+        "-c*above(-y)*dot(y)",
+        "-c*above(abs(y) - y)*dot(y)",
+    ];
+    for pad in pads {
+        let motion = compared(&ball(pad), 2.0);
+        assert_eq!(motion.switches.len(), 6, "{pad}");
+        assert!(
+            (motion.last[0] - 0.2426).abs() < 5e-5,
+            "{pad}: {}",
+            motion.last[0]
+        );
+    }
+}
+
+#[test]
+fn springs_with_preload_and_stops_of_one_side_hold_where_nothing_acts() {
+    for force in [
+        "-F0*sign(deadzone(y, b)) - k*deadzone(y, b)",
+        "-k*max(y - b, 0) - c*contact(max(y - b, 0), 0)*dot(y)",
+        "-k*y - F0*sign(min(y, b) - b)",
+        "-k*y - F0*contact(min(y, b), b)",
+        "-k*y - F0*contact(deadzone(max(y, -b), b), 0)",
+        "-k*y - F0*sign(max(y, 0)*contact(y, b))",
+        "-k*y - F0*sign(max(y - b, 0) + min(y + b, 0))",
+        "-k*y - F0*contact(contact(y, b) + above(y), 1)",
+        "-k*y - F0*above(y) - c*above(-y)*dot(y)",
+    ] {
+        let motion = compared(&driven(force), 3.0);
+        assert!(motion.switches.len() > 1, "{force}");
+    }
+}
+
+/// Friction beyond a speed holds the mass at that speed. Where the friction is smooth instead,
+/// and steep, the motion is nearly the same.
+#[test]
+fn friction_that_sets_in_at_a_speed_holds_the_mass_there() {
+    let times = grid(4.0, 40);
+    let force = |friction: &str| format!("-{friction} - 0.3*k*y");
+    let sudden = driven(&force("F0*sign(deadzone(dot(y), v))"));
+    let steep = driven(&force("F0*min(max(deadzone(dot(y), v)/(1e-6*v), -1), 1)"));
+    let exact = sudden.exact((0.0, 4.0), &times);
+    let near = steep.exact((0.0, 4.0), &times);
+    let apart = difference(&exact.states, &near.states, 1e-3);
+    assert!(apart < 1e-4, "{apart:e}");
+    let held = exact
+        .states
+        .iter()
+        .filter(|y| (y[1].abs() - 0.2).abs() < 1e-9);
+    assert!(held.count() > 1);
+    assert!(exact.switches.len() < 100, "{}", exact.switches.len());
+}
+
+/// An input that is held at zero is on no side of zero.
+#[test]
+fn the_sign_of_an_input_that_is_held_at_zero_is_zero() {
+    let mut subject = subject(
+        r#"
+[model]
+name = "pushed"
+[parameters]
+m = { value = 2, unit = "kg" }
+F = { value = 3, unit = "N" }
+[coordinates]
+y = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+T = "1/2*m*dot(y)^2"
+[forces]
+push = { on = "y", value = "F*sign(u)" }
+"#,
+    );
+    let times = vec![0.0, 1.0, 2.0, 3.0];
+    let inputs = sim::record::HeldInputs::new(times, vec![0.0, 1.0, 0.0, -1.0], 1);
+    subject.inputs = inputs.expect("ascending times");
+    let motion = subject.exact((0.0, 4.0), &[1.0, 2.0, 3.0, 4.0]);
+    let rates: Vec<f64> = motion.states.iter().map(|state| state[1]).collect();
+    for (found, expected) in rates.iter().zip([0.0, 1.5, 1.5, 0.0]) {
+        assert!((found - expected).abs() < 1e-12, "{rates:?}");
+    }
+}
+
+/// How many of the random machines could not be compared, and why.
+#[derive(Debug, Default)]
+struct Tally {
+    machines: usize,
+    /// Rounding alone decides somewhere on which side a function is.
+    ambiguous: usize,
+    /// Held on a surface, or there too often: only the exact solver follows.
+    held: usize,
+    /// The exact solver refuses and says why.
+    refused: usize,
+    motions: usize,
+    switches: usize,
+    /// The general solver does not know the motion so well itself.
+    uncertain: usize,
+    rates: usize,
+    resting: usize,
+    kernels: usize,
+    worst_motion: f64,
+    worst_rates: f64,
+}
+
+/// A machine's states with the number of the regime of each.
+struct Sample {
+    t: f64,
+    state: Vec<f64>,
+    input: f64,
+    regime: u32,
+    rates: Vec<f64>,
+}
+
+fn number(name: &str, otherwise: u64) -> u64 {
+    let value = std::env::var(name).ok();
+    value.map_or(otherwise, |text| text.parse().expect("a whole number"))
+}
+
+/// As many machines as `EOMGEN_PIECEWISE_COUNT` says, from the seed `EOMGEN_PIECEWISE_SEED`.
+#[test]
+fn random_machines_move_alike_by_every_way() {
+    let seed = number("EOMGEN_PIECEWISE_SEED", 16);
+    let count = number("EOMGEN_PIECEWISE_COUNT", 20);
+    let mut random = Random::new(seed);
+    let mut tally = Tally::default();
+    let mut emitted = Vec::new();
+    for index in 0..count {
+        let subject = machine(&mut random, 3);
+        tally.machines += 1;
+        let place = format!(
+            "machine {index} of seed {seed}\n{}",
+            subject.model.source.text
+        );
+        let Some(samples) = samples(&subject, &mut random, &mut tally) else {
+            tally.ambiguous += 1;
+            continue;
+        };
+        compare_rates(&subject, &samples, &place, &mut tally);
+        compare_motions(&subject, &place, &mut tally);
+        emitted.push((kernel(&subject), samples, place));
+    }
+    for batch in emitted.chunks(25) {
+        compare_kernels(batch, &mut tally);
+    }
+    println!("{tally:?}");
+    assert!(2 * tally.motions > tally.machines, "{tally:?}");
+    assert!(tally.resting > 0 && tally.switches > 0, "{tally:?}");
+}
+
+/// Random states with their rates, none on a surface; none if rounding decides about sides.
+fn samples(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Option<Vec<Sample>> {
+    let mut evaluator = variant(&subject.model, 0).evaluator;
+    let guards = evaluator.guard_count();
+    let mut samples = Vec::new();
+    for _ in 0..60 {
+        let state: Vec<f64> = (0..4).map(|_| 1.5 * random.symmetric()).collect();
+        let t = random.unit();
+        let input = random.pick(&[-1.0, 0.0, 0.25, 1.0]).copied()?;
+        let inputs = [input];
+        let point = |state| Point {
+            t,
+            state,
+            inputs: &inputs,
+        };
+        let mut values = vec![0.0; guards];
+        evaluator.guards(point(&state), &mut values);
+        if values
+            .iter()
+            .any(|value| *value != 0.0 && value.abs() < 1e-13)
+        {
+            return None;
+        }
+        tally.resting += usize::from(values.contains(&0.0));
+        let bits = values.iter().take(32).enumerate();
+        let regime = bits.fold(0, |bits, (k, value)| bits | u32::from(*value > 0.0) << k);
+        let mut rates = vec![0.0; 4];
+        evaluator.rates(point(&state), &mut rates);
+        samples.push(Sample {
+            t,
+            state,
+            input,
+            regime,
+            rates,
+        });
+    }
+    Some(samples)
+}
+
+fn compare_rates(subject: &Subject, samples: &[Sample], place: &str, tally: &mut Tally) {
+    let mut propagator = subject
+        .propagator()
+        .expect("a model that is linear by pieces");
+    for sample in samples {
+        let found = propagator.rates(sample.t, &sample.state, &[sample.input]);
+        let found = found.expect("rates").values;
+        let size = sample.rates.iter().fold(1.0, |m: f64, r| m.max(r.abs()));
+        for (found, expected) in found.iter().zip(&sample.rates) {
+            let off = (found - expected).abs() / size;
+            assert!(off < AGREED, "{off:e} at {:?}\n{place}", sample.state);
+            tally.worst_rates = tally.worst_rates.max(off);
+        }
+        tally.rates += 1;
+    }
+}
+
+fn compare_motions(subject: &Subject, place: &str, tally: &mut Tally) {
+    let times = grid(1.2, 24);
+    let general = |tolerance| subject.general((0.0, 1.2), &times, tolerance);
+    let exact = subject.try_exact((0.0, 1.2), &times);
+    let (coarse, fine) = match (general(1e-11), general(1e-13)) {
+        (Ok(coarse), Ok(fine)) => (coarse, fine),
+        _ => {
+            tally.held += 1;
+            return;
+        }
+    };
+    let exact = match exact {
+        Ok(exact) => exact,
+        Err(ExactError::Held { .. }) => {
+            tally.refused += 1;
+            return;
+        }
+        Err(error) => panic!("{error}\n{place}"),
+    };
+    let doubt = difference(&coarse.states, &fine.states, 0.1);
+    let found = difference(&exact.states, &fine.states, 0.1);
+    if doubt > 0.1 * AGREED {
+        tally.uncertain += 1;
+        assert!(found < 10.0 * doubt, "{found:e} where {doubt:e}\n{place}");
+        return;
+    }
+    assert!(found < AGREED, "{found:e}\n{place}");
+    tally.worst_motion = tally.worst_motion.max(found);
+    tally.motions += 1;
+    tally.switches += exact.switches.len();
+}
+
+/// What is emitted of a machine, with kernels of regimes.
+fn kernel(subject: &Subject) -> String {
+    let derived = Variant::derive_with(&subject.model, &[], &[Request::Regimes]);
+    let program = derived.expect("a model that can be derived").program;
+    emit(&program, Packaging::Module).expect("names that Rust knows")
+}
+
+type Emitted = (String, Vec<Sample>, String);
+
+/// Compiles kernels of many machines at once and compares each with the rates.
+fn compare_kernels(batch: &[Emitted], tally: &mut Tally) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let compiler = match Compiler::find(folder.path()) {
+        Ok(compiler) => compiler,
+        Err(reason) => {
+            println!("skipped: {reason}");
+            return;
+        }
+    };
+    let mut source = "#![allow(warnings)]\n".to_owned();
+    let mut calls = String::new();
+    let mut lines = String::new();
+    for (place, (text, samples, _)) in batch.iter().enumerate() {
+        writeln!(source, "mod machine_{place} {{\n{text}\n}}").expect("text");
+        let mut regimes: Vec<u32> = samples.iter().map(|sample| sample.regime).collect();
+        regimes.sort_unstable();
+        regimes.dedup();
+        writeln!(calls, "{place} => call!(machine_{place}, n, {regimes:?}),").expect("text");
+        for sample in samples {
+            let numbers = [&[sample.t, sample.input][..], &sample.state].concat();
+            let words = numbers.iter().map(|number| number.to_bits().to_string());
+            let words: Vec<String> = words.collect();
+            writeln!(lines, "{place} {} {}", sample.regime, words.join(" ")).expect("text");
+        }
+    }
+    source += &HARNESS.replace("// calls", &calls);
+    let (file, program) = (
+        folder.path().join("kernels.rs"),
+        folder.path().join("kernels"),
+    );
+    compiler::write(&file, &source).expect("a file");
+    let built = compiler.compile(&file, &program, &["-C", "opt-level=0"]);
+    let built = built.expect("a compiler that ends");
+    assert!(built.success, "{}", built.stderr);
+    let run = compiler::execute(&program, &lines).expect("a program that ends");
+    assert!(run.success, "{}", run.stderr);
+    let mut found = run.stdout.lines();
+    for (_, samples, place) in batch {
+        for sample in samples {
+            let line = found.next().expect("a line for every state");
+            let found = line.split(' ').map(|word| word.parse().expect("bits"));
+            let found: Vec<f64> = found.map(f64::from_bits).collect();
+            assert_eq!(found, sample.rates, "at {:?}\n{place}", sample.state);
+            tally.kernels += 1;
+        }
+    }
+}
+
+const HARNESS: &str = r#"
+macro_rules! call {
+    ($module:ident, $n:ident, [$($regime:literal),*]) => {{
+        let f = |k: usize| f64::from_bits($n[k]);
+        let mut inputs = $module::Inputs::default();
+        inputs.u = f(3);
+        let state = [f(4), f(5), f(6), f(7)];
+        let coefficients = $module::Coefficients::prepare(&Default::default());
+        let mut rates = [f64::NAN; 4];
+        match $n[1] {
+            $($regime => $module::rates_in_regime_into::<$regime, _>(
+                f(2), &state, &inputs, &coefficients, &mut rates),)*
+            _ => {}
+        }
+        rates
+    }};
+}
+
+fn main() {
+    for line in std::io::stdin().lines() {
+        let n: Vec<u64> = line.unwrap().split(' ').map(|word| word.parse().unwrap()).collect();
+        let rates: [f64; 4] = match n[0] {
+            // calls
+            _ => panic!(),
+        };
+        let words: Vec<String> = rates.iter().map(|rate| rate.to_bits().to_string()).collect();
+        println!("{}", words.join(" "));
+    }
+}
+"#;
