@@ -61,7 +61,9 @@ fn identifier(name: &str) -> String {
     let text = name
         .replace('&', "&amp;")
         .replace('<', "&lt;")
-        .replace('>', "&gt;");
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+        .replace('\'', "&#39;");
     format!("<mi>{text}</mi>")
 }
 
