@@ -343,7 +343,7 @@ fn compare_kernels(batch: &[Emitted], tally: &mut Tally) {
     let compiler = match Compiler::find(folder.path()) {
         Ok(compiler) => compiler,
         Err(reason) => {
-            println!("skipped: {reason}");
+            skips::skip(&reason);
             return;
         }
     };

@@ -1,6 +1,6 @@
-//! A skip is seen though the test passes.
+//! A skip is seen though the test passes, and every test says it in the one way that is.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use skips::{LIST, skip};
@@ -28,5 +28,36 @@ fn a_skip_of_a_test_that_passes_is_seen_and_listed() {
         assert!(seen.contains(&line), "{seen}");
         let listed = std::fs::read_to_string(&list).expect("a list");
         assert_eq!(listed, line.repeat(lines), "run after run is added");
+    }
+}
+
+/// The Rust files below a folder that belong to tests.
+fn test_files(folder: &Path, within_tests: bool, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if path.is_dir() && !name.starts_with("target") && !name.starts_with('.') {
+            test_files(&path, within_tests || name == "tests", found);
+        } else if within_tests && name.ends_with(".rs") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn no_test_says_it_in_a_way_of_its_own() {
+    let project = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut files = Vec::new();
+    test_files(&project, false, &mut files);
+    assert!(files.len() > 100, "the project's tests: {}", files.len());
+    let own = ["tests/skips/src/lib.rs", "tests/skips/tests/seen.rs"];
+    for file in files
+        .iter()
+        .filter(|file| !own.iter().any(|own| file.ends_with(own)))
+    {
+        let text = std::fs::read_to_string(file).expect("a file");
+        // Split, so that it is not found here.
+        let found = text.contains(concat!("\"SKIP", "PED"));
+        assert!(!found, "{}: skips::skip is seen", file.display());
     }
 }
