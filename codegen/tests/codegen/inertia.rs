@@ -10,7 +10,7 @@ use crate::support::{model, models};
 fn spec(kinetic: &str, second: &str) -> String {
     format!(
         "[model]\nname = \"mass\"\ntitle = \"Mass\"\n[parameters]\nm = {{ value = 2, unit = \"kg\" }}\n\
-         l = {{ value = 1, unit = \"m\" }}\n[coordinates]\nx = {{ unit = \"m\" }}\ny = {{ unit = \"m\"{second} }}\n\
+         l = {{ value = 1, unit = \"m\" }}\nv = {{ value = 1, unit = \"m/s\" }}\n[coordinates]\nx = {{ unit = \"m\" }}\ny = {{ unit = \"m\"{second} }}\n\
          [kinetic]\nall = \"{kinetic}\"\n"
     )
 }
@@ -28,37 +28,37 @@ fn inertia_that_is_missing_or_negative_is_refused_at_its_coordinate() {
     for (kinetic, line, message) in [
         (
             "1/2*m*(dot(x) + dot(y))^2",
-            8,
+            9,
             "`x`, `y` together have no inertia",
         ),
         (
             "1/2*m*dot(x)^2 + 0*m*dot(y)^2",
-            9,
+            10,
             "the coordinate `y` has no inertia",
         ),
         (
             "1/2*m*dot(x)^2 - 1/2*m*dot(y)^2",
-            9,
+            10,
             "the coordinate `y` has the negative inertia -2e0",
         ),
         (
             "1/2*m*(dot(x)^2 + dot(y)^2 + 4*dot(x)*dot(y))",
-            8,
+            9,
             "`x`, `y` together have a negative inertia",
         ),
         (
             "1/2*m*dot(x)^2 + 1/2*m*(y/l)^2*dot(y)^2",
-            9,
+            10,
             "the coordinate `y` has no inertia",
         ),
         (
             "1/2*m*dot(x)^2 + 1/2*m*ln(y/l)*dot(y)^2",
-            9,
+            10,
             "comes out as -inf",
         ),
         (
-            "1/2*m*dot(x)^2 + m*dot(y)",
-            9,
+            "1/2*m*dot(x)^2 + m*v*dot(y)",
+            10,
             "the coordinate `y` has no inertia",
         ),
     ] {
