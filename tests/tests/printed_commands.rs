@@ -28,7 +28,12 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// What another test runs, with the file that does.
-const ELSEWHERE: [(&str, &str); 7] = [
+const ELSEWHERE: [(&str, &str); 8] = [
+    // The bench of a small machine, built and run.
+    (
+        "cd emps && cargo bench -- --",
+        "tests/tests/bench_of_a_model.rs",
+    ),
     // Searches of one set, and what they say of the assumed values against docs/claims.json.
     (
         "cargo run --release -- study-search ",

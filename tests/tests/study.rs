@@ -94,7 +94,8 @@ fn check_numbers(case: &Value) {
 fn check_closed_form(case: &Value) {
     assert_eq!(number(&case["b"]), 0.0);
     // Two meshes pass from flank to flank, twice in each of the five periods of a second.
-    assert_eq!(number(&case["switches_per_second"]), 20.0);
+    let switches = number(&case["switches_per_second"]);
+    assert!((switches - 20.0).abs() < 1e-12, "{switches}");
     let tooth = 3e-3_f64 * 24.6_f64.to_radians().cos() / 2.0;
     let (r_s, r_c) = (27.0 * tooth, 3e-3 * 63.0 / 2.0);
     let (sun, planet) = (0.39 * r_s * r_s, 0.61);

@@ -4,7 +4,7 @@
 //! depend on how well the trajectory was integrated.
 
 use super::super::certificate::{Check, Worst};
-use super::super::oracle::{Conditioned, Oracle, OracleError};
+use super::super::oracle::{Conditioned, Equations, Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
 use super::{ROW_TOLERANCE, accelerations};
@@ -79,11 +79,11 @@ impl Motion {
                 state,
                 inputs,
             } = &sample;
-            if oracle.equations_inside(*time, state, inputs)?.is_none() {
+            let Some(equations) = oracle.equations_inside(*time, state, inputs)? else {
                 return Ok(());
-            }
+            };
             let place = format!("step {}", self.looked + 1);
-            let balance = imbalance(oracle, variant, &sample)?;
+            let balance = imbalance(oracle, &equations, variant, &sample)?;
             if matches!(&balance, Ok((value, size)) if *value > 0.0 && *size < REST) {
                 return Ok(());
             }
@@ -137,8 +137,13 @@ impl Motion {
 }
 
 /// |d(T + V)/dt - power| relative to the terms of both, and the magnitude of these.
+///
+/// The difference is the power of what is left of the rows at the variant's accelerations. These
+/// hold a row to a share of its largest term, in which inertias of other coordinates may cancel,
+/// so a row's term times the row's rate is a term here too.
 fn imbalance(
     oracle: &Oracle,
+    equations: &Equations,
     variant: &mut dyn Variant,
     sample: &Sample,
 ) -> Result<Result<(f64, f64), String>, OracleError> {
@@ -157,7 +162,14 @@ fn imbalance(
     };
     let rate = oracle.energy_rate(*time, state, &accelerations, inputs)?;
     let forces = oracle.power(*time, state, inputs)?;
-    let rate = Conditioned::new(rate.value, rate.magnitude.max(forces.magnitude));
+    let rows = equations.residuals(&accelerations);
+    let rates = &state[accelerations.len()..];
+    let rows = rows
+        .iter()
+        .zip(rates)
+        .map(|(row, rate)| row.scale * rate.abs());
+    let magnitude = rows.fold(rate.magnitude.max(forces.magnitude), f64::max);
+    let rate = Conditioned::new(rate.value, magnitude);
     Ok(Ok((rate.deviation(power), rate.magnitude)))
 }
 
