@@ -57,18 +57,24 @@ pub fn derive_variant(model: Model, orders: &[usize]) -> Outcome<Variant> {
     })
 }
 
+/// Derives a model at the given orders, also one without inertia at its own parameters and
+/// initial state: for readers, and for who judges other parameters.
+pub fn derive_unjudged(model: Model, orders: &[usize]) -> Outcome<Variant> {
+    let derived = codegen::variant::Variant::derive_to_read(&model, orders, &[])
+        .map_err(Problem::Specification)?;
+    Ok(Variant {
+        model,
+        equations: derived.equations,
+        program: derived.program,
+    })
+}
+
 impl Variant {
     /// Loads, checks and derives for readers: also what has no inertia somewhere.
     pub fn load_to_read(path: &Path, order: Option<&str>) -> Outcome<Self> {
         let model = load(path)?.model;
         let orders = orders(&model, order)?;
-        let derived = codegen::variant::Variant::derive_to_read(&model, &orders, &[])
-            .map_err(Problem::Specification)?;
-        Ok(Self {
-            model,
-            equations: derived.equations,
-            program: derived.program,
-        })
+        derive_unjudged(model, &orders)
     }
 
     /// An evaluator of the program, at the specification's parameters.

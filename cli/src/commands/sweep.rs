@@ -12,7 +12,7 @@ use super::simulate::{setting, warn_of_inputs};
 use crate::arguments::Sweep;
 use crate::problem::{Outcome, Problem, say};
 use crate::progress::Bar;
-use crate::variant::{derive_variant, load, orders};
+use crate::variant::{derive_unjudged, load, orders};
 
 /// What can be measured.
 const MEASURES: [&str; 2] = ["lyapunov", "poincare"];
@@ -118,7 +118,7 @@ fn family(options: &Sweep, grid: &Grid, set: &[(&str, f64)]) -> Outcome<Family> 
     let first = at(0)?;
     warn_of_inputs(&first);
     let orders = orders(&first, options.order.as_deref())?;
-    let variant = derive_variant(first, &orders)?;
+    let variant = derive_unjudged(first, &orders)?;
     let family = Family::new(variant.model, variant.program);
     // Exact propagation calls no right-hand side.
     let code = match family.exact() {
