@@ -6,6 +6,7 @@ use std::path::Path;
 use codegen::equations::Equations;
 use codegen::evaluator::Evaluator;
 use codegen::program::Program;
+use codegen::variant::Variant as Derived;
 use model_spec::Checked;
 use model_spec::model::Model;
 
@@ -48,28 +49,26 @@ pub fn orders(model: &Model, text: Option<&str>) -> Outcome<Vec<usize>> {
 
 /// Derives a model at the given orders.
 pub fn derive_variant(model: Model, orders: &[usize]) -> Outcome<Variant> {
-    let derived =
-        codegen::variant::Variant::derive(&model, orders).map_err(Problem::Specification)?;
-    Ok(Variant {
-        model,
-        equations: derived.equations,
-        program: derived.program,
-    })
+    let derived = Derived::derive(&model, orders).map_err(Problem::Specification)?;
+    Ok(Variant::of(model, derived))
 }
 
 /// Derives a model at the given orders, also one without inertia at its own parameters and
 /// initial state: for readers, and for who judges other parameters.
 pub fn derive_unjudged(model: Model, orders: &[usize]) -> Outcome<Variant> {
-    let derived = codegen::variant::Variant::derive_to_read(&model, orders, &[])
-        .map_err(Problem::Specification)?;
-    Ok(Variant {
-        model,
-        equations: derived.equations,
-        program: derived.program,
-    })
+    let derived = Derived::derive_to_read(&model, orders, &[]).map_err(Problem::Specification)?;
+    Ok(Variant::of(model, derived))
 }
 
 impl Variant {
+    fn of(model: Model, derived: Derived) -> Self {
+        Self {
+            model,
+            equations: derived.equations,
+            program: derived.program,
+        }
+    }
+
     /// Loads, checks and derives for readers: also what has no inertia somewhere.
     pub fn load_to_read(path: &Path, order: Option<&str>) -> Outcome<Self> {
         let model = load(path)?.model;
