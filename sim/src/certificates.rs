@@ -3,9 +3,10 @@
 
 use std::cell::RefCell;
 
-use codegen::equations::{Equations, derive};
+use codegen::equations::derive;
 use codegen::evaluator::Evaluator;
-use codegen::lower::{lower, lower_requested};
+use codegen::lower::lower_requested;
+use codegen::program::Program;
 use codegen::request::Request;
 use codegen::requested::requested;
 use codegen::rust::{Packaging, emit};
@@ -50,7 +51,7 @@ pub fn certificate(
         references: &by_hand.references,
         absent: &by_hand.absent,
         requested: (!requests.is_empty()).then_some(&on_request),
-        regimes: kernels(model, order, &emitted.input_fields),
+        regimes: kernels(model, order, &parameters, &emitted.input_fields),
         emitted: Ok(emitted),
         exact: match &propagator {
             Ok(_) => Ok(&derivative),
@@ -96,12 +97,14 @@ fn source(model: &Model, requests: &[Request], source: String) -> Emitted {
 }
 
 /// The source of a variant with kernels of its regimes, or why there is none.
-fn kernels(model: &Model, order: usize, input_fields: &[String]) -> Result<Emitted, String> {
-    let orders = vec![order; model.fields.len()];
-    let derived = codegen::variant::Variant::derive_with(model, &orders, &[Request::Regimes]);
-    let program = derived.map_err(|found| found.render(false))?.program;
-    let surfaces = program.guards.len();
-    if surfaces == 0 {
+fn kernels(
+    model: &Model,
+    order: usize,
+    parameters: &[f64],
+    input_fields: &[String],
+) -> Result<Emitted, String> {
+    let program = program(model, order, parameters, &[Request::Regimes])?;
+    if program.guards.is_empty() {
         return Err("the model has no piecewise function".to_owned());
     }
     let source = emit(&program, Packaging::Crate).map_err(|error| error.to_string())?;
@@ -138,8 +141,7 @@ fn rates(
 
 /// The variant of a model with every field at `order`, at parameter values in SI.
 fn variant(model: &Model, order: usize, parameters: &[f64]) -> Result<Box<dyn Variant>, String> {
-    let equations = equations(model, order)?;
-    let evaluator = Evaluator::new(lower(model, &equations, parameters));
+    let evaluator = Evaluator::new(program(model, order, parameters, &[])?);
     Ok(Box::new(Derived::new(evaluator)))
 }
 
@@ -150,13 +152,19 @@ fn on_request(
     parameters: &[f64],
     requests: &[Request],
 ) -> Result<Box<dyn Requested>, String> {
-    let mut equations = equations(model, order)?;
-    let requested = requested(&mut equations, requests).map_err(|error| error.to_string())?;
-    let program = lower_requested(model, &equations, parameters, &requested);
-    Ok(Box::new(DerivedRequests::new(Evaluator::new(program))))
+    let evaluator = Evaluator::new(program(model, order, parameters, requests)?);
+    Ok(Box::new(DerivedRequests::new(evaluator)))
 }
 
-fn equations(model: &Model, order: usize) -> Result<Equations, String> {
+/// The program of that variant with what is requested.
+fn program(
+    model: &Model,
+    order: usize,
+    parameters: &[f64],
+    requests: &[Request],
+) -> Result<Program, String> {
     let orders = vec![order; model.fields.len()];
-    derive(model, &orders).map_err(|error| error.to_string())
+    let mut equations = derive(model, &orders).map_err(|error| error.to_string())?;
+    let requested = requested(&mut equations, requests).map_err(|error| error.to_string())?;
+    Ok(lower_requested(model, &equations, parameters, &requested))
 }

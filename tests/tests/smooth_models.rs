@@ -119,6 +119,9 @@ fn what_is_requested_of_right_models_is_not_called_wrong() {
     );
 }
 
+/// A term may be so small beside the others of its row, at every state, that a ten-millionth of
+/// it is within the row's rounding. Of such a term a thousandth has to be seen, and few terms may
+/// be such.
 #[test]
 fn a_term_that_differs_by_a_ten_millionth_is_seen() {
     let (count, seed) = (
@@ -126,24 +129,35 @@ fn a_term_that_differs_by_a_ten_millionth_is_seen() {
         number("EOMGEN_SMOOTH_SEED", 1),
     );
     let mut models = SmoothModels::new(seed);
-    let (mut faults, mut unseen) = (0, Vec::new());
+    let (mut faults, mut within_rounding, mut unseen) = (0, 0, Vec::new());
     for _ in 0..count {
         let (written, model) = next(&mut models);
         for (section, name, term) in &written.terms {
-            let right = format!("\"{term}\"");
             let line = written
                 .text
                 .lines()
                 .find(|line| line.starts_with(&format!("{name} = ")))
                 .expect("the term's line");
-            let wrong = line.replace(&right, &format!("\"({term})*1.0000001\""));
-            let subject = checked(&written.text.replace(line, &wrong));
+            let is_seen = |factor: &str| {
+                let wrong = format!("\"({term})*{factor}\"");
+                let wrong = line.replace(&format!("\"{term}\""), &wrong);
+                let subject = checked(&written.text.replace(line, &wrong));
+                !certificate(&model, &subject).passed
+            };
             faults += 1;
-            if certificate(&model, &subject).passed {
+            if is_seen("1.0000001") {
+                continue;
+            }
+            within_rounding += 1;
+            if !is_seen("1.001") {
                 unseen.push(format!("[{section}] {line}\n{}", written.text));
             }
         }
     }
-    println!("{} of {faults} faults not seen, seed {seed}", unseen.len());
+    let not_seen = unseen.len();
+    println!(
+        "of {faults} faults {within_rounding} are within rounding, {not_seen} not seen, seed {seed}"
+    );
     assert!(unseen.is_empty(), "{}", unseen.join("\n\n"));
+    assert!(within_rounding * 100 <= faults);
 }

@@ -11,7 +11,8 @@ const NEARBY: f64 = 1e-6;
 /// Up to so many states in every regime, and as many that are drawn whatever their regime.
 ///
 /// # Errors
-/// [`OracleError`] as from [`Oracle::equations`]; within, what the variant says.
+/// [`OracleError`] as from [`Oracle::equations`]; within, what the variant says, or that there
+/// is no such state, so that a comparison over nothing never passes.
 pub fn samples(
     oracle: &Oracle,
     variant: &mut dyn Variant,
@@ -42,6 +43,9 @@ pub fn samples(
             Ok(false) => {}
             Err(message) => return Ok(Err(message)),
         }
+    }
+    if inside.is_empty() {
+        return Ok(Err("no state was found inside any regime".to_owned()));
     }
     Ok(Ok(inside))
 }
