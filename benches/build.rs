@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 

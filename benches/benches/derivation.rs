@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use codegen::equations::derive;
-use codegen::lower::lower;
+use codegen::mechanics::equations::derive;
+use codegen::program::lowering::lower;
 use codegen::rust::{Packaging, emit};
 use criterion::{Criterion, criterion_group, criterion_main};
 

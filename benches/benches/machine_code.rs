@@ -4,10 +4,10 @@
 use std::hint::black_box;
 use std::path::Path;
 
-use codegen::equations::derive;
-use codegen::evaluator::{Evaluator, Point};
-use codegen::lower::lower;
+use codegen::mechanics::equations::derive;
 use codegen::program::Program;
+use codegen::program::evaluator::{Evaluator, Point};
+use codegen::program::lowering::lower;
 use criterion::{Criterion, criterion_group, criterion_main};
 use eomgen_benches::{generated, state, variants};
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use codegen::request::{Request, UnknownRequest};
+use codegen::mechanics::outputs::{Request, UnknownRequest};
 
 /// From a specification of a mechanical system's energies to fast, checked equations of
 /// motion in Rust.

@@ -3,9 +3,9 @@
 use std::io::IsTerminal;
 use std::path::Path;
 
-use codegen::equations::Equations;
-use codegen::evaluator::Evaluator;
+use codegen::mechanics::equations::Equations;
 use codegen::program::Program;
+use codegen::program::evaluator::Evaluator;
 use codegen::variant::Variant as Derived;
 use model_spec::Checked;
 use model_spec::model::Model;

@@ -1,55 +1,19 @@
 //! From a checked model to equations of motion, and from these to programs and source.
 //!
-//! The pipeline, one file each: `translate`, `field_function` and `moments` (expressions to
-//! the hash-consed `graph` of `operation`s (of `arguments`), whose constructors in `simplify` apply the
-//! algebraic laws), `modes`, `tables` and `quadrature` (constants of a basis),
-//! `differentiate` and `matrix` (derivatives that keep their structure), `lagrange`,
-//! `forces` and `equations` (the equations of motion), `solve` (the accelerations),
-//! `coefficients` (names as in Eq. (22)), `request` and `requested`, `jacobian`, `matrix_derivatives`,
-//! `adjoint` and `regimes` (what is derived on request), `linearity` (whether a model is linear between its
-//! switches), `inertia` (whether all that moves has some), `affine` (its matrices then), `lower` (to the `program`), `operations` (what it costs),
-//! `evaluator` and `rust` (backends), `formula` and
-//! `report` (for people).
+//! Four stages, one folder each; a stage reads those above it and no other:
 //!
-//! The arrows are two functions: [`equations::derive`] from a model to equations and
-//! [`lower::lower`] from equations to a program; [`variant`] goes both.
+//! 1. [`symbolic`]: expressions as nodes of one hash-consed graph, their simplification,
+//!    derivatives and formulas;
+//! 2. [`mechanics`]: from a model to its equations of motion, [`mechanics::equations::derive`];
+//! 3. [`program`]: from equations to a list of values in static single assignment,
+//!    [`program::lowering::lower`], and its evaluation;
+//! 4. [`rust`] (the emitted source) and [`report`] (equations for people).
+//!
+//! [`variant`] goes from a model to its program in one call.
 
-mod adjoint;
-pub mod affine;
-mod arguments;
-pub mod coefficients;
-mod degree;
-pub mod describe;
-pub mod differentiate;
-pub mod equations;
-pub mod evaluator;
-mod expand;
-mod field_function;
-mod forces;
-pub mod formula;
-pub mod graph;
-mod inertia;
-mod jacobian;
-mod lagrange;
-pub mod linearity;
-pub mod lower;
-pub mod matrix;
-mod matrix_derivatives;
-pub mod modes;
-mod moments;
-mod operation;
-mod operations;
+pub mod mechanics;
 pub mod program;
-pub mod quadrature;
-pub mod regimes;
 pub mod report;
-pub mod request;
-pub mod requested;
 pub mod rust;
-mod simplify;
-pub mod solve;
-mod substitute;
-mod table_text;
-pub mod tables;
-pub mod translate;
+pub mod symbolic;
 pub mod variant;

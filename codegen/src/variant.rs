@@ -5,12 +5,13 @@
 use model_spec::diagnostic::{Diagnostic, Diagnostics};
 use model_spec::model::Model;
 
-use crate::equations::{Equations, derive};
-use crate::inertia;
-use crate::lower::lower_requested;
+use crate::mechanics::equations::{Equations, derive};
+use crate::mechanics::inertia;
+use crate::mechanics::outputs::Request;
+use crate::mechanics::outputs::requested;
 use crate::program::Program;
-use crate::request::Request;
-use crate::requested::requested;
+use crate::program::evaluator::{Evaluator, Point};
+use crate::program::lowering::lower_requested;
 
 /// A model derived at one order for each of its fields.
 pub struct Variant {
@@ -40,8 +41,9 @@ impl Variant {
         requests: &[Request],
     ) -> Result<Self, Diagnostics> {
         let variant = Self::derive_to_read(model, orders, requests)?;
-        inertia::check(model, orders, &variant.equations, &variant.program)
-            .map_err(|diagnostic| Diagnostics::one(model.source.clone(), diagnostic))?;
+        let found = |diagnostic| Diagnostics::one(model.source.clone(), diagnostic);
+        let mass = initial_mass_matrix(model, orders, &variant.program).map_err(found)?;
+        inertia::check(model, orders, &variant.equations, &mass).map_err(found)?;
         Ok(variant)
     }
 
@@ -70,4 +72,27 @@ impl Variant {
         let program = lower_requested(model, &equations, &values, &requested);
         Ok(Self { equations, program })
     }
+}
+
+/// The mass matrix at the initial state and the declared parameters, row by row.
+fn initial_mass_matrix(
+    model: &Model,
+    orders: &[usize],
+    program: &Program,
+) -> Result<Vec<f64>, Diagnostic> {
+    let state = model
+        .initial_state(orders)
+        .map_err(|error| error.diagnostic())?;
+    let size = state.len() / 2;
+    let mut matrix = vec![0.0; size * size];
+    let inputs = vec![0.0; model.inputs.len()];
+    Evaluator::new(program.clone()).mass_matrix(
+        Point {
+            t: 0.0,
+            state: &state,
+            inputs: &inputs,
+        },
+        &mut matrix,
+    );
+    Ok(matrix)
 }

@@ -1,7 +1,7 @@
 //! What of a model lies beyond its linear part, as two compiled programs tell it: one of the
 //! whole model and one of that part.
 
-use codegen::evaluator::{Evaluator, Point};
+use codegen::program::evaluator::{Evaluator, Point};
 
 use crate::march::Force;
 

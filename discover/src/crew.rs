@@ -1,7 +1,7 @@
 //! How windows' outputs depend on their initial states and on the unknowns: by neighbouring
 //! motions that come along where the plant is marched, otherwise by difference quotients.
 
-use codegen::evaluator::{Evaluator, Point};
+use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::{DMatrix, DVector};
 
 use crate::march::Drives;

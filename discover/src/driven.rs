@@ -2,7 +2,7 @@
 //! of the candidate's model are compared with the fitted one's, and what they differ by drives
 //! a tangent vector. Hundreds of candidates are looked at in one march.
 
-use codegen::evaluator::{Evaluator, Point};
+use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 

@@ -4,8 +4,8 @@
 
 use std::sync::Arc;
 
-use codegen::evaluator::{Evaluator, MachineCode};
 use codegen::program::Program;
+use codegen::program::evaluator::{Evaluator, MachineCode};
 use codegen::variant::Variant;
 use model_spec::model::{Model, ParameterValue};
 use model_spec::source::Source;

@@ -5,7 +5,7 @@
 
 use std::cell::RefCell;
 
-use codegen::evaluator::{Evaluator, Point};
+use codegen::program::evaluator::{Evaluator, Point};
 use sim::exact::Propagator;
 use sim::record::HeldInputs;
 use sim::solve::{Settings, System, simulate};

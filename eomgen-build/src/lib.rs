@@ -27,7 +27,7 @@
 
 use std::path::{Path, PathBuf};
 
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 use model_spec::Checked;

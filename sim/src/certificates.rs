@@ -3,12 +3,12 @@
 
 use std::cell::RefCell;
 
-use codegen::equations::derive;
-use codegen::evaluator::Evaluator;
-use codegen::lower::lower_requested;
+use codegen::mechanics::equations::derive;
+use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::requested;
 use codegen::program::Program;
-use codegen::request::Request;
-use codegen::requested::requested;
+use codegen::program::evaluator::Evaluator;
+use codegen::program::lowering::lower_requested;
 use codegen::rust::{Packaging, emit};
 use model_spec::model::Model;
 use model_spec::variant::ModelError;

@@ -3,7 +3,7 @@
 
 use std::cell::RefCell;
 
-use codegen::evaluator::{Evaluator, Point};
+use codegen::program::evaluator::{Evaluator, Point};
 use codegen::program::{Op, ValueId};
 
 use crate::record::HeldInputs;

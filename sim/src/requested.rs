@@ -1,8 +1,8 @@
 //! What was requested of a derived model, seen by the certificate: the evaluator of its
 //! program behind the trait. Nothing is derived here.
 
-use codegen::evaluator::{Evaluator, Point};
 use codegen::program::Jacobian;
+use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 
 use crate::validate::requested::Requested;

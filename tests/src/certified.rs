@@ -1,8 +1,8 @@
 //! Certificates of models given as text, without compiling what would be emitted: whether a
 //! right model passes and a wrong one fails.
 
-use codegen::evaluator::Evaluator;
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
+use codegen::program::evaluator::Evaluator;
 use model_spec::model::Model;
 use model_spec::source::Source;
 use sim::derived::Derived;

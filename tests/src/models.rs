@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use codegen::equations::{Equations, derive};
-use codegen::evaluator::Evaluator;
-use codegen::lower::lower;
+use codegen::mechanics::equations::{Equations, derive};
+use codegen::program::evaluator::Evaluator;
+use codegen::program::lowering::lower;
 use model_spec::model::Model;
 use sim::validate::oracle::Oracle;
 use sim::validate::sampler::{Sample, Sampler};

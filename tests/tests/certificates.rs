@@ -2,8 +2,8 @@
 //! is made and passes, and fails where it should. What each check means and its tolerance
 //! stand in the certificate.
 
-use codegen::lower::lower;
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
+use codegen::program::lowering::lower;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 use eomgen_tests::models::{load, project, shipped, variant};

@@ -1,8 +1,8 @@
 //! The checked-in variants are what the generator emits, and compute bit for bit what the
 //! evaluator computes, interpreted and as machine code.
 
-use codegen::evaluator::{Evaluator, Point};
-use codegen::lower::lower;
+use codegen::program::evaluator::{Evaluator, Point};
+use codegen::program::lowering::lower;
 use codegen::rust::{Packaging, emit};
 use eomgen_tests::models::{load, project, samples, variant};
 use eomgen_tests::program::eomgen;

@@ -2,7 +2,7 @@
 //! hand-written ones of Eq. (22), and complete, so that the equations can be put together
 //! from them again.
 
-use codegen::evaluator::{Evaluator, Point};
+use codegen::program::evaluator::{Evaluator, Point};
 use eomgen_tests::models::{load, samples, variant};
 use sim::reference::PlanetaryArmParameters;
 use sim::reference::equation_22::{Coefficients, ModeRow};

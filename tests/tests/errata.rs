@@ -2,7 +2,7 @@
 //! energies and differs from what is misprinted. `cargo test --release -p eomgen-tests
 //! --test errata -- --nocapture` prints the table.
 
-use codegen::evaluator::Point;
+use codegen::program::evaluator::Point;
 use eomgen_tests::models::{load, variant};
 use model_spec::model::Model;
 use sim::reference::PlanetaryArmParameters;

@@ -6,8 +6,8 @@
 //! largest of several runs counts, which differ in their steps and so in their roundings.
 //! The exact solver is asked to stay within ten times that.
 
-use codegen::evaluator::Evaluator;
-use codegen::lower::lower;
+use codegen::program::evaluator::Evaluator;
+use codegen::program::lowering::lower;
 use eomgen_tests::models::load;
 use eomgen_tests::taylor::arm::Case;
 use eomgen_tests::taylor::double_double::DoubleDouble;
@@ -246,7 +246,8 @@ fn general_solver_agrees(order: usize, b: f64) {
     let reference = Reference::new(order, b, 0.02);
     let model = model(reference.case);
     let orders = vec![order; model.fields.len()];
-    let equations = codegen::equations::derive(&model, &orders).expect("the model can be derived");
+    let equations =
+        codegen::mechanics::equations::derive(&model, &orders).expect("the model can be derived");
     let parameters = model
         .parameter_values()
         .expect("the parameters have values");

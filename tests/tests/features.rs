@@ -4,7 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
-use codegen::evaluator::Point;
+use codegen::program::evaluator::Point;
 use codegen::rust::{Packaging, emit};
 use eomgen_tests::models::{samples, variant};
 use model_spec::model::Model;

@@ -1,8 +1,8 @@
 //! Which models are seen to be linear between their switching surfaces.
 
-use codegen::equations::derive;
-use codegen::formula::written_out;
-use codegen::linearity::{Linearity, linearity};
+use codegen::mechanics::equations::derive;
+use codegen::mechanics::linearity::{Linearity, linearity};
+use codegen::symbolic::formula::written_out;
 use eomgen_tests::models::{load, shipped};
 use model_spec::check;
 use model_spec::model::Model;

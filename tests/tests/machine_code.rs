@@ -5,9 +5,9 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use codegen::equations::derive;
-use codegen::evaluator::{Evaluator, Point};
-use codegen::lower::lower;
+use codegen::mechanics::equations::derive;
+use codegen::program::evaluator::{Evaluator, Point};
+use codegen::program::lowering::lower;
 use codegen::program::{Op, Program};
 use eomgen_tests::models::{load, project, shipped};
 use model_spec::model::Model;

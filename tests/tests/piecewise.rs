@@ -3,8 +3,8 @@
 
 use std::fmt::Write as _;
 
-use codegen::evaluator::Point;
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
+use codegen::program::evaluator::Point;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 use eomgen_tests::models::variant;

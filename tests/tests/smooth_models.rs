@@ -8,8 +8,8 @@
 //!       cargo test --release -p eomgen-tests --test smooth_models -- --nocapture
 //! ```
 
-use codegen::evaluator::Point;
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
+use codegen::program::evaluator::Point;
 use eomgen_tests::certified::{certificate, certificate_with, checked};
 use eomgen_tests::models::variant;
 use eomgen_tests::smooth_models::{SmoothModel, SmoothModels};

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
 use codegen::variant::Variant;
 use model_spec::model::Model;
 

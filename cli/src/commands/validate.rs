@@ -1,6 +1,6 @@
 //! `eomgen validate`: the certificate of a variant.
 
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
 use codegen::rust::Packaging;
 use codegen::variant::Variant;
 use model_spec::model::Model;

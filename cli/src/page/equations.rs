@@ -1,8 +1,8 @@
 //! The step that shows the derived equations: definitions, energies, M q'' + c = f entry by
 //! entry, the named coefficients with their values, the accelerations, what switches.
 
-use codegen::formula::{Formula, Symbol};
 use codegen::report::{CoefficientLine, Entry, Line, Report, Sentence, Solution};
+use codegen::symbolic::formula::{Formula, Symbol};
 
 use super::markup::{escaped, number, table};
 

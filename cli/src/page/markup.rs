@@ -1,6 +1,6 @@
 //! Escaping, and the few HTML elements that several steps need.
 
-use codegen::formula::number_element;
+use codegen::symbolic::formula::number_element;
 
 /// Text that HTML takes for nothing but text, in content and in attributes.
 pub(super) fn escaped(text: &str) -> String {

@@ -1,8 +1,8 @@
 //! The whole page: every step is there, nothing refers to the outside, and text from a
 //! specification stays text.
 
-use codegen::formula::Formula;
 use codegen::report::{CoefficientLine, Entry, Line, Report, Sentence, Solution};
+use codegen::symbolic::formula::Formula;
 
 use super::*;
 

@@ -6,8 +6,8 @@
 
 use std::rc::Rc;
 
-use codegen::evaluator::{Law, law};
 use codegen::program::Arguments;
+use codegen::program::evaluator::{Law, law};
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Value, types};
 use elementary::{Function as Elementary, Kernel, Operation};

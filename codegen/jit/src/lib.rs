@@ -14,8 +14,8 @@
 
 use std::sync::Arc;
 
-use codegen::evaluator::{Evaluator, MachineCode};
 use codegen::program::Program;
+use codegen::program::evaluator::{Evaluator, MachineCode};
 
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod branches;

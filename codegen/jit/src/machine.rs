@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::Mutex;
 
-use codegen::evaluator::{MachineCode, Places, Point, Stage};
 use codegen::program::Program;
+use codegen::program::evaluator::{MachineCode, Places, Point, Stage};
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, Signature, types};
 use cranelift_codegen::settings::{self, Configurable};

@@ -9,7 +9,7 @@
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
-use codegen::evaluator::{Places, Stage};
+use codegen::program::evaluator::{Places, Stage};
 use codegen::program::{Extent, Op, Program, RowValues, ValueId};
 use cranelift_codegen::ir::Value;
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder};

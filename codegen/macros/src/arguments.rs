@@ -1,7 +1,7 @@
 //! What stands in the brackets of the macro: a file and an order, or sections. What the
 //! sections hold is the business of `tables`.
 
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
 use proc_macro2::{Span, TokenStream};
 use syn::parse::{Parse, ParseStream};
 use syn::token::Brace;

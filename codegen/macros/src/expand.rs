@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 use model_spec::diagnostic::Diagnostics;

@@ -5,8 +5,8 @@ use std::fmt::Write;
 
 use model_spec::model::Function;
 
-use super::{Line, Report};
-use crate::formula::{Formula, prose};
+use super::types::{Line, Report};
+use crate::symbolic::formula::{Formula, prose};
 
 /// What stands before the document. Lines of a formula after its first are set in.
 const HEAD: &str = "\

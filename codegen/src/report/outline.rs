@@ -3,10 +3,12 @@
 
 use model_spec::model::{Model, Term};
 
-use crate::equations::{Equations, Row, Rows};
-use crate::formula::{Formula, Index, Symbol};
-use crate::graph::{Graph, Id, Space};
-use crate::linearity::{Linearity, linearity};
+use crate::mechanics::coefficients::Row;
+use crate::mechanics::equations::Equations;
+use crate::mechanics::linearity::{Linearity, linearity};
+use crate::mechanics::rows::Rows;
+use crate::symbolic::formula::{Formula, Index, Symbol};
+use crate::symbolic::graph::{Graph, Id, Space};
 
 /// A node with the name it is shown under.
 pub(super) type Shown = (Formula, Id);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Line, Report};
+use super::types::{Line, Report};
 
 impl Report {
     /// As plain text.

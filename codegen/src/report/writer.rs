@@ -3,12 +3,13 @@
 use model_spec::model::Term;
 
 use super::outline::{Outline, Shown};
-use super::{CoefficientLine, Entry, Line, Sentence};
-use crate::equations::{Equations, Row};
-use crate::evaluator::Evaluator;
-use crate::formula::{Formula, Index, Reader};
-use crate::graph::{Id, Shape};
-use crate::linearity::Linearity;
+use super::types::{CoefficientLine, Entry, Line, Sentence};
+use crate::mechanics::coefficients::Row;
+use crate::mechanics::equations::Equations;
+use crate::mechanics::linearity::Linearity;
+use crate::program::evaluator::Evaluator;
+use crate::symbolic::formula::{Formula, Index, Reader};
+use crate::symbolic::graph::{Id, Shape};
 
 /// What the parts are written from.
 pub(super) struct Writer<'a> {

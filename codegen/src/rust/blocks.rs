@@ -1,8 +1,8 @@
 //! Statements for matrices: products, Gram matrices, assembled blocks and Cholesky factors,
 //! as loops in the order that the program defines.
 
-use super::EmitError;
-use super::body::{Body, Emitted, looped, reference};
+use super::body::{Body, looped, reference};
+use super::emit_error::{EmitError, Emitted};
 use super::expression::{Expression, assignment};
 use crate::program::{Extent, Op, ValueId};
 

@@ -6,13 +6,13 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::EmitError;
+use super::emit_error::{EmitError, Emitted};
 use super::expression::{Expression, assignment, infix};
 use super::functions::Needed;
 use super::literals::{block, identifier};
 use super::names::Names;
-use super::regimes::{Switches, of_side};
-use crate::evaluator::{Law, law};
+use super::sides::{Switches, of_side};
+use crate::program::evaluator::{Law, law};
 use crate::program::{Argument, Extent, Op, PARTIAL_SUMS, Program, Request, ValueId, Variable};
 use elementary::Function as Elementary;
 use model_spec::model::Function;
@@ -43,8 +43,6 @@ pub struct Body<'a> {
     /// What is decided by the regime that the stage is for.
     switches: Switches,
 }
-
-pub(super) type Emitted<T> = Result<T, EmitError>;
 
 impl<'a> Body<'a> {
     /// A stage that computes `roots`; its values are bound where several need them.

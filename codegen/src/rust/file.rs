@@ -3,13 +3,13 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use super::EmitError;
+use super::emit_error::{EmitError, Emitted};
 use super::expression::array;
 use super::functions::{Needed, items};
 use super::layout;
 use super::literals::{block, doc, file_doc, identifier, number};
 use super::names::Names;
-use super::requested::requested_roots;
+use super::roots::{coefficient_values, stage_roots};
 use super::scalar::{COEFFICIENT, SCALAR};
 use crate::program::{Extent, Op, Program, ValueId};
 
@@ -28,8 +28,6 @@ pub enum Packaging {
 
 /// The inner module of [`Packaging::Items`].
 pub const ITEMS_MODULE: &str = "eomgen_emitted";
-
-pub(super) type Emitted<T> = Result<T, EmitError>;
 
 /// The source of a program as Rust.
 ///
@@ -220,45 +218,4 @@ pub(super) fn quantity_line(text: &str, unit: &str, origin: &str) -> String {
         line.push_str(&format!(" ({origin})"));
     }
     line
-}
-
-/// The values that the mass matrix is written from.
-pub(super) fn mass_roots(program: &Program) -> Vec<ValueId> {
-    let mass = &program.mass;
-    let mut roots: Vec<ValueId> = mass.scalars.iter().flatten().copied().collect();
-    roots.extend(mass.coupling.iter().flatten());
-    // Modal blocks are written from their parts: as a whole they would be prepared.
-    for block in mass.modal.iter().flatten().flatten() {
-        roots.extend(program.value(*block).op.operands());
-    }
-    roots
-}
-
-/// What the stages that are called with coefficients return.
-fn stage_roots(program: &Program) -> Vec<ValueId> {
-    let mut roots = program.accelerations.all();
-    roots.extend(&program.observable_values);
-    roots.extend(program.guards.iter().map(|g| g.value));
-    roots.extend(mass_roots(program));
-    roots.extend(requested_roots(program));
-    roots
-}
-
-/// The prepared values that stages read directly, constants and tables aside.
-fn coefficient_values(program: &Program) -> Vec<ValueId> {
-    let roots = stage_roots(program);
-    let mut read: BTreeSet<ValueId> = program
-        .reachable(&roots)
-        .into_iter()
-        .filter(|id| !program.value(*id).prepared)
-        .flat_map(|id| program.value(id).op.operands())
-        .collect();
-    read.extend(roots);
-    read.retain(|id| {
-        let value = program.value(*id);
-        value.prepared && !matches!(value.op, Op::Constant(_) | Op::Table(_))
-    });
-    read.into_iter()
-        .filter(|id| program.value(*id).extent.length() > 0)
-        .collect()
 }

@@ -3,11 +3,13 @@
 //! nonzeros, row by row. The linearisation puts them into dense matrices.
 
 use super::body::Body;
+use super::emit_error::Emitted;
 use super::expression::{Expression, array, assignment, infix};
-use super::file::{Emitted, File};
+use super::file::File;
 use super::functions::Needed;
+use super::roots::entry_roots;
 use super::types::literal;
-use crate::program::{Entry, Extent, Jacobian, Op, Program, Request, ValueId};
+use crate::program::{Entry, Extent, Jacobian, Request, ValueId};
 
 impl File<'_> {
     pub(super) fn jacobians(&self, needed: &mut Needed) -> Emitted<String> {
@@ -171,20 +173,6 @@ fn write_entry(
     let place = format!("values[{}]", infix("+", start, step));
     body.push_loop("i", count, &assignment(&place, value));
     Ok(())
-}
-
-/// The values that a Jacobian is written from: assembled blocks are written from their parts.
-pub(super) fn entry_roots(program: &Program, jacobian: &Jacobian<ValueId>) -> Vec<ValueId> {
-    let entries = jacobian.entries.iter();
-    entries
-        .flat_map(|entry| {
-            let value = program.value(entry.value);
-            match value.op {
-                Op::Assemble { .. } => value.op.operands(),
-                _ => vec![entry.value],
-            }
-        })
-        .collect()
 }
 
 const PATTERN: &str = "\

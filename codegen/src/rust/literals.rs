@@ -1,7 +1,7 @@
 //! Numbers, names and documentation as source. Text from a specification passes through
 //! here and nowhere else: names are checked to be identifiers, prose becomes comments.
 
-use super::EmitError;
+use super::emit_error::EmitError;
 use super::layout::{DEEPER, SHALLOWER};
 
 /// A number with all its bits, in the shorter of the two usual notations.

@@ -3,7 +3,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::EmitError;
+use super::emit_error::EmitError;
 use super::literals::identifier;
 use crate::program::{Program, ValueId};
 

@@ -1,11 +1,13 @@
 //! The emitted functions that are called with prepared coefficients, one per stage.
 
 use super::body::{Body, looped};
+use super::emit_error::Emitted;
 use super::expression::{Expression, array, assignment, infix};
-use super::file::{Emitted, File, mass_roots, quantity_line};
+use super::file::{File, quantity_line};
 use super::functions::Needed;
 use super::layout::{DEEPER, SHALLOWER};
 use super::literals::{block, doc};
+use super::roots::mass_roots;
 use crate::program::{Extent, Op, Request, ValueId};
 
 /// What arguments and results of the rates are.

@@ -1,12 +1,13 @@
 //! The emitted types: parameters, inputs, and the coefficients with their preparation.
 
 use super::body::{Access, Body};
+use super::emit_error::Emitted;
 use super::expression::{Expression, assignment};
-use super::file::{Emitted, File, quantity_line};
+use super::file::{File, quantity_line};
 use super::functions::Needed;
 use super::layout::{CLOSE, FLOW_EVEN, SPACE};
 use super::literals::{block, doc, identifier, number};
-use crate::describe::describe_value;
+use crate::program::describe::describe_value;
 use crate::program::{Extent, Quantity};
 
 /// The most characters of a struct's literal that is written on one line.

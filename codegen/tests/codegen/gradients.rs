@@ -1,8 +1,8 @@
 //! Gradients backward through branches: what is infinite or no number in a branch that is not
 //! taken does not come through.
 
-use codegen::evaluator::{Evaluator, Point};
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
+use codegen::program::evaluator::{Evaluator, Point};
 use codegen::variant::Variant;
 
 /// A mass that a constant force pushes, and farther out one with a slope that is infinite at 0.

@@ -1,8 +1,8 @@
 //! Mode tables against published digits, against a reference to 25 digits, and against
 //! integrals by a rule that has nothing in common with the tables' own.
 
-use codegen::modes::table;
-use codegen::tables::TableKind;
+use codegen::mechanics::fields::modes::table;
+use codegen::symbolic::tables::TableKind;
 use model_spec::model::Basis;
 
 use crate::support::{evaluator, model, observables};

@@ -6,9 +6,9 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use codegen::evaluator::{Evaluator, Point};
-use codegen::formula::Formula;
+use codegen::program::evaluator::{Evaluator, Point};
 use codegen::report::Report;
+use codegen::symbolic::formula::Formula;
 use codegen::variant::Variant;
 use model_spec::model::Model;
 

@@ -1,6 +1,6 @@
 //! Requests that a model refuses: what is said, and what it still answers.
 
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
 use codegen::variant::Variant;
 
 /// A beam whose inertia grows where it bends: its modal mass matrix is dense and moves.

@@ -2,7 +2,7 @@
 //! against elimination with pivoting of the dense matrix; and named coefficients against
 //! differences of the accelerations.
 
-use codegen::evaluator::{Evaluator, Point};
+use codegen::program::evaluator::{Evaluator, Point};
 
 use crate::support::{accelerations, equations, evaluator, model, program, shipped};
 

@@ -4,11 +4,11 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use codegen::equations::{Equations, derive};
-use codegen::evaluator::{Evaluator, Point};
-use codegen::lower::lower;
+use codegen::mechanics::equations::{Equations, derive};
+use codegen::mechanics::outputs::Request;
 use codegen::program::Program;
-use codegen::request::Request;
+use codegen::program::evaluator::{Evaluator, Point};
+use codegen::program::lowering::lower;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 use model_spec::model::Model;

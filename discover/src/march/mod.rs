@@ -21,7 +21,7 @@ mod tangents;
 
 use std::collections::HashMap;
 
-use codegen::affine::system::AffineEvaluator;
+use codegen::program::affine::AffineEvaluator;
 use sim::record::HeldInputs;
 
 pub use beyond::Force;

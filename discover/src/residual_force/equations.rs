@@ -2,7 +2,7 @@
 //! end of a flexible body. Along a motion each tells where it stands and how a force of one unit
 //! in it accelerates the model. What forces are tried is decided elsewhere.
 
-use codegen::evaluator::{Evaluator, Point};
+use codegen::program::evaluator::{Evaluator, Point};
 use model_spec::edit::{self, Edit, NewForce, NewParameter, NewTerm, NewValue, Section};
 use model_spec::model::{Expr, ExprKind, Model};
 use model_spec::source::Source;

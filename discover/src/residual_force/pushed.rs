@@ -3,7 +3,7 @@
 //! motion with a small force is integrated beside the one without. What is made of them is
 //! decided elsewhere.
 
-use codegen::evaluator::Point;
+use codegen::program::evaluator::Point;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Motions with small forces beside the one without, by Runge-Kutta steps, where no march
 //! carries neighbouring motions. Which forces is decided elsewhere.
 
-use codegen::evaluator::{Evaluator, Point};
+use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 
 use crate::march::Drives;

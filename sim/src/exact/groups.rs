@@ -1,6 +1,6 @@
 //! Switching surfaces in groups of parallel ones, and where a motion stands among them.
 
-use codegen::affine::system::{AffineEvaluator, AffineSystem};
+use codegen::program::affine::{AffineEvaluator, AffineSystem};
 
 use super::functional::{Limits, Linear};
 

@@ -1,9 +1,9 @@
 //! Which models can be propagated exactly, and what is derived once for all parameters.
 
-use codegen::affine::affine;
-use codegen::affine::system::{AffineEvaluator, AffineProgram};
-use codegen::equations::derive;
-use codegen::lower::lower_affine;
+use codegen::mechanics::affine::affine;
+use codegen::mechanics::equations::derive;
+use codegen::program::affine::{AffineEvaluator, AffineProgram};
+use codegen::program::lowering::lower_affine;
 use model_spec::model::{Model, ParameterValue};
 
 use super::error::ExactError;
@@ -27,10 +27,11 @@ impl PiecewiseLinear {
         let equations =
             derive(model, orders).map_err(|error| ExactError::Model(error.message.clone()))?;
         // The node in the way is named while its graph is still there.
-        if let codegen::linearity::Linearity::Nonlinear(node) =
-            codegen::linearity::linearity(&equations)
+        if let codegen::mechanics::linearity::Linearity::Nonlinear(node) =
+            codegen::mechanics::linearity::linearity(&equations)
         {
-            let formula = codegen::formula::abridged(&equations.graph, model, node).to_string();
+            let formula =
+                codegen::symbolic::formula::abridged(&equations.graph, model, node).to_string();
             return Err(ExactError::NotLinear { formula });
         }
         let affine = affine(equations).map_err(|_| ExactError::NotLinear {

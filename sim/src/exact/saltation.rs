@@ -6,7 +6,7 @@
 //! u (rate of g) on the surface; it is then found once, and a grazing crossing divides
 //! nothing small by nothing small.
 
-use codegen::affine::system::{AffineRows, AffineSystem};
+use codegen::program::affine::{AffineRows, AffineSystem};
 use nalgebra::{DVector, Matrix2, Vector2};
 
 use super::functional::Linear;

@@ -1,6 +1,6 @@
 //! What switching can do to a model at all, whatever its state.
 
-use codegen::affine::system::{AffineEvaluator, AffineSystem};
+use codegen::program::affine::{AffineEvaluator, AffineSystem};
 
 use super::propagator::Propagator;
 

@@ -4,8 +4,8 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use codegen::evaluator::{Evaluator, MachineCode};
 use codegen::program::Program;
+use codegen::program::evaluator::{Evaluator, MachineCode};
 use model_spec::model::Model;
 use model_spec::unit::Unit;
 
@@ -28,7 +28,7 @@ pub struct Family {
 /// One member of a family.
 pub struct Member {
     /// The values of [`Program::parameters`], in SI: what
-    /// [`Evaluator::prepare`](codegen::evaluator::Evaluator::prepare) takes.
+    /// [`Evaluator::prepare`](codegen::program::evaluator::Evaluator::prepare) takes.
     pub parameters: Vec<f64>,
     /// The initial state in SI.
     pub initial: Vec<f64>,

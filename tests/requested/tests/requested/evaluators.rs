@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
 
-use codegen::evaluator::Evaluator;
-use codegen::request::Request;
+use codegen::mechanics::outputs::Request;
+use codegen::program::evaluator::Evaluator;
 use codegen::variant::Variant;
 
 /// A specification and the order of its fields.

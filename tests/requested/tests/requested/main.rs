@@ -12,7 +12,7 @@ mod models;
 mod rounded;
 mod tracked;
 
-use codegen::evaluator::Point as EvaluatorPoint;
+use codegen::program::evaluator::Point as EvaluatorPoint;
 use dual::Dual;
 use proptest::prelude::*;
 use tracked::Tracked;

@@ -1,0 +1,175 @@
+//! The equations of a piecewise-linear model as y' = A y + B u + S sin + C cos + c: every
+//! coefficient a node of parameters alone, so that one program gives the matrices of any
+//! regime at any parameters.
+//!
+//! A switching function becomes a polynomial in *sides*, one per switching surface: 1 where
+//! the surface's function is positive, 0 where it is not. With the sides as parameters,
+//! deadzone(p, b) is s(p - b) (p - b) + (1 - s(p + b)) (p + b), and what is left is linear in
+//! the motion. A side between 0 and 1 is a state held on the surface (dry friction that
+//! sticks): the convex combination of the motions on both sides.
+//!
+//! The files: [`mod@self`] (the coefficients as nodes), `sides` (switching functions to
+//! polynomials), `rows` (an expression's coefficients). Their numbers are the program's.
+
+mod rows;
+mod sides;
+
+use std::collections::HashMap;
+
+use model_spec::model::Function;
+
+use crate::mechanics::equations::Equations;
+use crate::mechanics::forces::may_rest;
+use crate::mechanics::linearity::{Linearity, linearity};
+use crate::mechanics::rows::Rows;
+use crate::symbolic::differentiate::by_scalar;
+use crate::symbolic::graph::{Graph, Id, Operation, Shape, Space};
+use crate::symbolic::substitute::substitute;
+
+pub(crate) use rows::AffineRow;
+
+/// The equations of a model that is linear between its switching surfaces.
+pub struct AffineEquations {
+    pub(crate) graph: Graph,
+    pub(crate) parameter_names: Vec<String>,
+    /// For each parameter the node of its expression; the sides follow, with none.
+    pub(crate) derived_parameters: Vec<Option<Id>>,
+    /// One per coordinate.
+    pub(crate) scalars: Vec<AffineRow>,
+    /// One per field: its coefficients hold a number or a row per mode.
+    pub(crate) modal: Vec<AffineRow>,
+    pub(crate) guards: Vec<AffineRow>,
+    pub(crate) guard_functions: Vec<Function>,
+    /// For each guard the first one that differs from it by parameters alone.
+    pub(crate) guard_groups: Vec<usize>,
+    /// For each guard whether it may have one value throughout a regime: it feels the sides of
+    /// other surfaces, or is of inputs alone.
+    pub(crate) guards_rest: Vec<bool>,
+    /// What must not be negative: half-widths of dead zones.
+    pub(crate) half_widths: Vec<Id>,
+    pub(crate) phases: Vec<PhaseNodes>,
+    /// Pivots of the mass matrix.
+    pub(crate) pivots: Vec<Id>,
+}
+
+/// A phase rate t + offset.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PhaseNodes {
+    pub rate: Id,
+    pub offset: Id,
+}
+
+/// The coefficients of a piecewise-linear model.
+///
+/// # Errors
+/// The node that is not linear between switching surfaces, if there is one.
+pub fn affine(mut equations: Equations) -> Result<AffineEquations, Id> {
+    if let Linearity::Nonlinear(node) = linearity(&equations) {
+        return Err(node);
+    }
+    let not_scalar = |guard: &&crate::mechanics::guard::Guard| {
+        equations.graph.shape(guard.value) != Shape::Scalar
+    };
+    if let Some(guard) = equations.guards.iter().find(not_scalar) {
+        return Err(guard.value);
+    }
+    let mut with_sides = sides::Sides::of(&mut equations);
+    let graph = &mut equations.graph;
+    let known = &mut with_sides.known;
+    let mut replaced = |graph: &mut Graph, id: Id| substitute(graph, id, &|_, _| None, known);
+    let accelerations = Rows {
+        scalars: each(graph, &equations.accelerations.rows.scalars, &mut replaced),
+        modal: each(graph, &equations.accelerations.rows.modal, &mut replaced),
+    };
+    let surfaces: Vec<Id> = equations.guards.iter().map(|guard| guard.value).collect();
+    let guards = each(graph, &surfaces, &mut replaced);
+    let moving = [accelerations.nodes(), guards.clone()].concat();
+    let sinusoids = rows::Sinusoids::in_nodes(graph, &moving);
+    let inputs = input_count(graph, &moving);
+    let mut reader = rows::Reader::new(&accelerations, graph, &sinusoids, inputs);
+    let scalars = read(&mut reader, graph, &accelerations.scalars);
+    let modal = accelerations.modal.iter().enumerate();
+    let modal: Vec<AffineRow> = modal
+        .map(|(field, id)| reader.row(graph, *id, Some(Space::Modes(field))))
+        .collect();
+    let guard_rows = read(&mut reader, graph, &guards);
+    let rows = scalars.iter().chain(&modal).chain(&guard_rows);
+    let unsettled = |id: &Id| !graph.dependence(*id).is_prepared();
+    if let Some(node) = rows.flat_map(AffineRow::nodes).find(unsettled) {
+        return Err(node);
+    }
+    let time = graph.intern(Operation::Time);
+    let phases = sinusoids
+        .phases
+        .iter()
+        .map(|&phase| PhaseNodes {
+            rate: by_scalar(graph, phase, time),
+            offset: at_time_zero(graph, phase, time),
+        })
+        .collect();
+    let guard_groups = parallel(graph, &surfaces);
+    let guards_rest = surfaces.iter().map(|id| may_rest(graph, *id)).collect();
+    let mut derived_parameters = equations.derived_parameters;
+    derived_parameters.extend(guards.iter().map(|_| None));
+    let mut parameter_names = equations.parameter_names;
+    parameter_names.extend((0..guards.len()).map(|guard| format!("side_{guard}")));
+    Ok(AffineEquations {
+        graph: equations.graph,
+        parameter_names,
+        derived_parameters,
+        scalars,
+        modal,
+        guards: guard_rows,
+        guard_functions: equations.guards.iter().map(|g| g.function).collect(),
+        guard_groups,
+        guards_rest,
+        half_widths: with_sides.half_widths,
+        phases,
+        pivots: equations.accelerations.pivots,
+    })
+}
+
+fn each(
+    graph: &mut Graph,
+    nodes: &[Id],
+    replaced: &mut dyn FnMut(&mut Graph, Id) -> Id,
+) -> Vec<Id> {
+    nodes.iter().map(|id| replaced(graph, *id)).collect()
+}
+
+fn read(reader: &mut rows::Reader<'_>, graph: &mut Graph, nodes: &[Id]) -> Vec<AffineRow> {
+    nodes
+        .iter()
+        .map(|id| reader.row(graph, *id, None))
+        .collect()
+}
+
+fn at_time_zero(graph: &mut Graph, phase: Id, time: Id) -> Id {
+    let zero = |graph: &mut Graph, node: Id| (node == time).then(|| graph.zero());
+    substitute(graph, phase, &zero, &mut HashMap::new())
+}
+
+/// For each surface the first one that it is parallel to, itself included.
+fn parallel(graph: &mut Graph, surfaces: &[Id]) -> Vec<usize> {
+    let mut firsts = Vec::with_capacity(surfaces.len());
+    for (index, &surface) in surfaces.iter().enumerate() {
+        let first = (0..index).find(|&other| {
+            let difference = graph.combine_flat(&[(1.0, surface), (-1.0, surfaces[other])]);
+            graph.dependence(difference).is_prepared()
+        });
+        firsts.push(first.unwrap_or(index));
+    }
+    firsts
+}
+
+/// How many inputs there are, up to the last one used.
+fn input_count(graph: &Graph, nodes: &[Id]) -> usize {
+    let inputs = graph
+        .reachable(nodes)
+        .into_iter()
+        .filter_map(|id| match graph.operation(id) {
+            Operation::Input(index) => Some(index + 1),
+            _ => None,
+        });
+    inputs.max().unwrap_or(0)
+}

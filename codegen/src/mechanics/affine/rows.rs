@@ -1,0 +1,183 @@
+//! The coefficients of one expression that is of first degree in the motion: its
+//! derivatives, and what is left of it at rest.
+
+use std::collections::HashMap;
+
+use model_spec::model::Function;
+
+use crate::mechanics::rows::Rows;
+use crate::symbolic::differentiate::{ModalDerivative, by_scalar};
+use crate::symbolic::graph::{Graph, Id, Operation, Space};
+use crate::symbolic::substitute::substitute;
+
+/// The coefficients of an expression: of a scalar numbers, and vectors for the modes; of a
+/// vector over modes vectors, and matrices for the modes.
+#[derive(Clone, Debug)]
+pub(crate) struct AffineRow {
+    pub coordinates: Vec<Id>,
+    pub mode_coordinates: Vec<Id>,
+    pub rates: Vec<Id>,
+    pub mode_rates: Vec<Id>,
+    pub inputs: Vec<Id>,
+    pub sines: Vec<Id>,
+    pub cosines: Vec<Id>,
+    pub constant: Id,
+}
+
+impl AffineRow {
+    /// All coefficients.
+    pub fn nodes(&self) -> impl Iterator<Item = Id> + '_ {
+        let blocks = [
+            &self.coordinates,
+            &self.mode_coordinates,
+            &self.rates,
+            &self.mode_rates,
+            &self.inputs,
+            &self.sines,
+            &self.cosines,
+        ];
+        let all = blocks.into_iter().flatten().copied();
+        all.chain(std::iter::once(self.constant))
+    }
+}
+
+/// The sines and cosines of time.
+pub(super) struct Sinusoids {
+    /// The distinct phases.
+    pub phases: Vec<Id>,
+    /// For each phase its sine and its cosine.
+    calls: Vec<[Id; 2]>,
+}
+
+impl Sinusoids {
+    /// Those that `nodes` hold.
+    pub fn in_nodes(graph: &mut Graph, nodes: &[Id]) -> Self {
+        let mut phases = Vec::new();
+        for id in graph.reachable(nodes) {
+            if graph.dependence(id).is_prepared() {
+                continue;
+            }
+            if let Operation::Call(Function::Sin | Function::Cos, arguments) = graph.operation(id)
+                && !phases.contains(&arguments[0])
+            {
+                phases.push(arguments[0]);
+            }
+        }
+        let calls = phases
+            .iter()
+            .map(|&phase| {
+                let functions = [Function::Sin, Function::Cos];
+                functions.map(|function| graph.intern(Operation::Call(function, (&[phase]).into())))
+            })
+            .collect();
+        Self { phases, calls }
+    }
+}
+
+/// Reads coefficients off expressions.
+pub(super) struct Reader<'a> {
+    sinusoids: &'a Sinusoids,
+    coordinates: Vec<Id>,
+    rates: Vec<Id>,
+    inputs: Vec<Id>,
+    modes: Vec<ModalDerivative>,
+    mode_rates: Vec<ModalDerivative>,
+    at_rest: HashMap<Id, Id>,
+}
+
+impl<'a> Reader<'a> {
+    /// A reader for a model whose accelerations have these rows.
+    pub fn new(rows: &Rows, graph: &mut Graph, sinusoids: &'a Sinusoids, inputs: usize) -> Self {
+        let scalars = 0..rows.scalars.len();
+        let fields = 0..rows.modal.len();
+        let mut modal = |operation: fn(usize) -> Operation| -> Vec<ModalDerivative> {
+            fields
+                .clone()
+                .filter_map(|field| {
+                    let variable = graph.intern(operation(field));
+                    ModalDerivative::new(graph, variable)
+                })
+                .collect()
+        };
+        let (modes, mode_rates) = (
+            modal(Operation::ModeCoordinates),
+            modal(Operation::ModeRates),
+        );
+        let mut leaves = |range: std::ops::Range<usize>, operation: fn(usize) -> Operation| {
+            range.map(|i| graph.intern(operation(i))).collect()
+        };
+        Self {
+            sinusoids,
+            coordinates: leaves(scalars.clone(), Operation::Coordinate),
+            rates: leaves(scalars, Operation::Rate),
+            inputs: leaves(0..inputs, Operation::Input),
+            modes,
+            mode_rates,
+            at_rest: HashMap::new(),
+        }
+    }
+
+    /// The coefficients of `id`, which stands for each element of `elements` if these are given.
+    pub fn row(&mut self, graph: &mut Graph, id: Id, elements: Option<Space>) -> AffineRow {
+        let by = |graph: &mut Graph, variables: &[Id]| -> Vec<Id> {
+            variables
+                .iter()
+                .map(|variable| by_scalar(graph, id, *variable))
+                .collect()
+        };
+        let (coordinates, rates) = (by(graph, &self.coordinates), by(graph, &self.rates));
+        let inputs = by(graph, &self.inputs);
+        let by_calls = |graph: &mut Graph, place: usize| -> Vec<Id> {
+            let calls = self.sinusoids.calls.iter();
+            calls
+                .map(|pair| by_scalar(graph, id, pair[place]))
+                .collect()
+        };
+        AffineRow {
+            coordinates,
+            rates,
+            inputs,
+            sines: by_calls(graph, 0),
+            cosines: by_calls(graph, 1),
+            mode_coordinates: by_modes(graph, id, elements, &mut self.modes),
+            mode_rates: by_modes(graph, id, elements, &mut self.mode_rates),
+            constant: self.constant(graph, id),
+        }
+    }
+
+    /// What is left where nothing moves, nothing is put in and every sinusoid is 0.
+    fn constant(&mut self, graph: &mut Graph, id: Id) -> Id {
+        let sinusoids = self.sinusoids;
+        let replacement = |graph: &mut Graph, node: Id| {
+            let moves = match graph.operation(node) {
+                Operation::Coordinate(_)
+                | Operation::Rate(_)
+                | Operation::ModeCoordinates(_)
+                | Operation::ModeRates(_)
+                | Operation::Input(_) => true,
+                _ => sinusoids.calls.iter().flatten().any(|call| *call == node),
+            };
+            moves.then(|| graph.zero())
+        };
+        substitute(graph, id, &replacement, &mut self.at_rest)
+    }
+}
+
+/// The derivative by each field's modes: a vector for a scalar, a matrix for elements.
+fn by_modes(
+    graph: &mut Graph,
+    id: Id,
+    elements: Option<Space>,
+    fields: &mut [ModalDerivative],
+) -> Vec<Id> {
+    fields
+        .iter_mut()
+        .map(|field| match elements {
+            Some(space) => {
+                let jacobian = field.of_elements(graph, id, space);
+                jacobian.assemble(graph)
+            }
+            None => field.gradient(graph, id),
+        })
+        .collect()
+}

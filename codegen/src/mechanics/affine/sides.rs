@@ -1,0 +1,151 @@
+//! Switching functions as polynomials in the sides of their surfaces.
+
+use std::collections::HashMap;
+
+use model_spec::model::Function;
+
+use crate::mechanics::equations::Equations;
+use crate::mechanics::forces::{Surfaces, surfaces};
+use crate::symbolic::graph::{Graph, Id, Operation};
+use crate::symbolic::substitute::substitute;
+
+/// Replacements for every switching function of a model.
+pub(super) struct Sides {
+    /// A node to the one that stands for it.
+    pub known: HashMap<Id, Id>,
+    /// Half-widths of dead zones: what is written here holds for those that are not negative.
+    pub half_widths: Vec<Id>,
+}
+
+impl Sides {
+    /// Replaces what switches in the accelerations and in the surfaces themselves.
+    pub fn of(equations: &mut Equations) -> Self {
+        let first_side = equations.parameter_names.len();
+        let values: Vec<Id> = equations.guards.iter().map(|guard| guard.value).collect();
+        let roots = [equations.accelerations.rows.nodes(), values.clone()].concat();
+        let graph = &mut equations.graph;
+        let mut sides = Self {
+            known: HashMap::new(),
+            half_widths: Vec::new(),
+        };
+        // Operands come first: what stands inside of a switching function is replaced by then.
+        for id in graph.reachable(&roots) {
+            if graph.dependence(id).is_prepared() {
+                continue;
+            }
+            let parameter = |graph: &mut Graph, surface: Id| {
+                let index = values.iter().position(|value| *value == surface)?;
+                Some(graph.intern(Operation::Parameter(first_side + index)))
+            };
+            if let Some(replacement) = sides.replacement(graph, id, &parameter) {
+                sides.known.insert(id, replacement);
+            }
+        }
+        sides
+    }
+
+    fn replacement(
+        &mut self,
+        graph: &mut Graph,
+        id: Id,
+        parameter: &dyn Fn(&mut Graph, Id) -> Option<Id>,
+    ) -> Option<Id> {
+        match graph.operation(id).clone() {
+            Operation::Call(function, arguments) => {
+                self.call(graph, function, &arguments, parameter)
+            }
+            Operation::Select {
+                a,
+                b,
+                then,
+                otherwise,
+            } => {
+                let difference = graph.subtract(a, b);
+                let side = match parameter(graph, difference) {
+                    Some(side) => side,
+                    None => {
+                        let turned = graph.subtract(b, a);
+                        let side = parameter(graph, turned)?;
+                        opposite(graph, side)
+                    }
+                };
+                let (then, otherwise) = (self.inner(graph, then), self.inner(graph, otherwise));
+                Some(between(graph, side, then, otherwise))
+            }
+            _ => None,
+        }
+    }
+
+    fn call(
+        &mut self,
+        graph: &mut Graph,
+        function: Function,
+        arguments: &[Id],
+        parameter: &dyn Fn(&mut Graph, Id) -> Option<Id>,
+    ) -> Option<Id> {
+        let surfaces = surfaces(graph, function, arguments);
+        let sides = surfaces
+            .all()
+            .map(|surface| parameter(graph, surface))
+            .collect::<Option<Vec<Id>>>()?;
+        let inner: Vec<Id> = arguments.iter().map(|a| self.inner(graph, *a)).collect();
+        if let (Function::Contact, &[_, b]) = (function, inner.as_slice()) {
+            self.half_widths.push(b);
+        }
+        if let (Surfaces::Outside { .. }, &[above, below]) = (surfaces, sides.as_slice()) {
+            return match function {
+                Function::Contact => Some(graph.add(above, below)),
+                Function::Sign => Some(graph.subtract(above, below)),
+                _ => None,
+            };
+        }
+        if let (Surfaces::Turned(_), &[side]) = (surfaces, sides.as_slice()) {
+            return Some(opposite(graph, side));
+        }
+        Some(match (function, sides.as_slice(), inner.as_slice()) {
+            (Function::Deadzone, &[above, beyond], &[p, b]) => {
+                self.half_widths.push(b);
+                let (upper, lower) = (graph.subtract(p, b), graph.add(p, b));
+                let below = opposite(graph, beyond);
+                let (upper, lower) = (graph.multiply(above, upper), graph.multiply(below, lower));
+                graph.add(upper, lower)
+            }
+            (Function::Contact, &[above, beyond], _) => {
+                let below = opposite(graph, beyond);
+                graph.add(above, below)
+            }
+            (Function::Sign, &[side], _) => sign(graph, side),
+            (Function::Above, &[side], _) => side,
+            (Function::Abs, &[side], &[p]) => {
+                let sign = sign(graph, side);
+                graph.multiply(sign, p)
+            }
+            (Function::Max, &[side], &[a, b]) => between(graph, side, a, b),
+            (Function::Min, &[side], &[a, b]) => between(graph, side, b, a),
+            _ => return None,
+        })
+    }
+
+    fn inner(&mut self, graph: &mut Graph, id: Id) -> Id {
+        substitute(graph, id, &|_, _| None, &mut self.known)
+    }
+}
+
+/// 1 - side.
+fn opposite(graph: &mut Graph, side: Id) -> Id {
+    let one = graph.one();
+    graph.subtract(one, side)
+}
+
+/// 2 side - 1.
+fn sign(graph: &mut Graph, side: Id) -> Id {
+    let one = graph.one();
+    graph.combine(&[(2.0, side), (-1.0, one)])
+}
+
+/// side a + (1 - side) b, so that a side of 0 or 1 leaves the other untouched.
+fn between(graph: &mut Graph, side: Id, a: Id, b: Id) -> Id {
+    let other = opposite(graph, side);
+    let (a, b) = (graph.multiply(side, a), graph.multiply(other, b));
+    graph.add(a, b)
+}

@@ -1,0 +1,183 @@
+//! The equations of motion of one model at one order, by Lagrange's equations
+//! d/dt(dT/dq') - dT/dq + dV/dq + dR/dq' = Q, as nodes of one graph: mass matrix,
+//! generalised forces, accelerations, energy, power and guards.
+
+use model_spec::model::{Model, ParameterValue, Term};
+
+use crate::mechanics::coefficients::{NamedCoefficient, named};
+use crate::mechanics::forces::{applied_forces, guards, power};
+use crate::mechanics::guard::Guard;
+use crate::mechanics::lagrange::{Kind, Layout};
+use crate::mechanics::mass_matrix::MassMatrix;
+use crate::mechanics::rows::Rows;
+use crate::mechanics::solve::{Accelerations, solve};
+use crate::mechanics::translate::{Derived, Translator};
+use crate::symbolic::graph::{Graph, Id};
+
+/// The equations of motion of one model at one order.
+pub struct Equations {
+    /// The model's name.
+    pub name: String,
+    /// The graph all nodes below belong to.
+    pub graph: Graph,
+    /// Names of the parameters.
+    pub parameter_names: Vec<String>,
+    /// For each parameter, the node of its expression, if it is derived from others.
+    pub derived_parameters: Vec<Option<Id>>,
+    /// T, in J.
+    pub kinetic: Id,
+    /// V, in J.
+    pub potential: Id,
+    /// The mass matrix.
+    pub mass: MassMatrix,
+    /// Velocity terms c of M q'' + c = f: what is quadratic in the rates and not a force.
+    pub velocity_terms: Rows,
+    /// Generalised forces f: -dV/dq - dR/dq' + Q.
+    pub forces: Rows,
+    /// The accelerations and how they were solved for.
+    pub accelerations: Accelerations,
+    /// Power of all non-conservative forces, in W: d(T + V)/dt.
+    pub power: Id,
+    /// The switching surfaces: a node that changes sign, with what it means.
+    pub guards: Vec<Guard>,
+    /// The specification's observables.
+    pub observables: Vec<Id>,
+    /// The specification's named coefficients.
+    pub coefficients: Vec<NamedCoefficient>,
+    /// The terms of the energies and of the dissipation and the forces, in the order of the
+    /// specification: kinetic, potential, dissipation, forces.
+    pub terms: Vec<Id>,
+    /// Nodes of the definitions that anything uses.
+    pub definitions: Vec<Option<Id>>,
+    /// How many inputs there are.
+    pub inputs: usize,
+    /// The modal blocks of the mass matrix on and above the diagonal as nodes: field of
+    /// the rows, block, field of the columns.
+    pub modal_blocks: Vec<(usize, Id, usize)>,
+}
+
+/// Derives the equations of motion for fields of these orders.
+pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
+    let mut translator = Translator::new(model, orders);
+    let derived_parameters = derived_parameters(&mut translator)?;
+    let mut terms = Vec::new();
+    let kinetic = total_of(&mut translator, &model.kinetic, "T", &mut terms)?;
+    let potential = total_of(&mut translator, &model.potential, "V", &mut terms)?;
+    let dissipation = total_of(&mut translator, &model.dissipation, "R", &mut terms)?;
+    let layout = Layout::new(model, orders);
+    let momenta = layout.gradient(&mut translator.graph, kinetic, Kind::Rates);
+    let mass = layout.mass_matrix(&mut translator.graph, &momenta);
+    name_mass_matrix(&mut translator.graph, model, &mass);
+    let velocity_terms = layout.velocity_terms(&mut translator.graph, kinetic, &momenta);
+    let applied = applied_forces(&mut translator, &layout, dissipation, &mut terms)?;
+    let forces = layout.with_potential(&mut translator.graph, &applied, potential);
+    let right_side = layout.difference(&mut translator.graph, &forces, &velocity_terms);
+    let accelerations = solve(&mut translator.graph, &mass, &right_side);
+    name_accelerations(&mut translator.graph, model, &accelerations);
+    let power = power(
+        &mut translator.graph,
+        &layout,
+        kinetic,
+        potential,
+        &applied,
+        &momenta,
+        &accelerations,
+    );
+    let observables = model
+        .observables
+        .iter()
+        .map(|o| translator.node(&o.value))
+        .collect::<Derived<Vec<Id>>>()?;
+    for (observable, node) in model.observables.iter().zip(&observables) {
+        translator.graph.set_name(*node, &observable.name);
+    }
+    let coefficients = named(&mut translator, &accelerations)?;
+    let mut moving = forces.nodes();
+    moving.extend(velocity_terms.nodes());
+    moving.extend(mass.scalars.iter().flatten());
+    moving.extend(accelerations.rows.nodes());
+    let guards = guards(&mut translator.graph, &moving);
+    let modal_blocks = mass.assembled_blocks(&mut translator.graph);
+    let definitions = translator.definition_nodes();
+    Ok(Equations {
+        name: model.name.clone(),
+        graph: translator.graph,
+        parameter_names: model.parameters.iter().map(|p| p.name.clone()).collect(),
+        derived_parameters,
+        kinetic,
+        potential,
+        mass,
+        velocity_terms,
+        forces,
+        accelerations,
+        power,
+        guards,
+        observables,
+        coefficients,
+        terms,
+        definitions,
+        inputs: model.inputs.len(),
+        modal_blocks,
+    })
+}
+
+fn name_mass_matrix(graph: &mut Graph, model: &Model, mass: &MassMatrix) {
+    for (row, entries) in mass.scalars.iter().enumerate() {
+        let name = &model.coordinates[row].name;
+        for (column, entry) in entries.iter().enumerate().skip(row) {
+            graph.suggest_name(
+                *entry,
+                &format!("M_{name}_{}", model.coordinates[column].name),
+            );
+        }
+        for (field, entry) in mass.coupling[row].iter().enumerate() {
+            graph.suggest_name(
+                *entry,
+                &format!("M_{name}_{}", model.fields[field].coordinates),
+            );
+        }
+    }
+}
+
+fn name_accelerations(graph: &mut Graph, model: &Model, accelerations: &Accelerations) {
+    for (pivot, place) in accelerations.pivots.iter().zip(&accelerations.report.order) {
+        graph.suggest_name(*pivot, &format!("pivot_{}", model.coordinates[*place].name));
+    }
+    for (coordinate, node) in model.coordinates.iter().zip(&accelerations.rows.scalars) {
+        graph.suggest_name(*node, &format!("{}_ddot", coordinate.name));
+    }
+    for (field, node) in model.fields.iter().zip(&accelerations.rows.modal) {
+        graph.suggest_name(*node, &format!("{}_ddot", field.coordinates));
+    }
+}
+
+fn derived_parameters(translator: &mut Translator) -> Derived<Vec<Option<Id>>> {
+    let model = translator.model;
+    model
+        .parameters
+        .iter()
+        .map(|parameter| match &parameter.value {
+            ParameterValue::Number(_) => Ok(None),
+            ParameterValue::Expression(expr) => translator.node(expr).map(Some),
+        })
+        .collect()
+}
+
+/// The sum of named terms; each is named after `symbol` and itself.
+fn total_of(
+    translator: &mut Translator,
+    terms: &[Term],
+    symbol: &str,
+    named: &mut Vec<Id>,
+) -> Derived<Id> {
+    let mut nodes = Vec::with_capacity(terms.len());
+    for term in terms {
+        let node = translator.node(&term.value)?;
+        translator
+            .graph
+            .suggest_name(node, &format!("{symbol}_{}", term.name));
+        named.push(node);
+        nodes.push((1.0, node));
+    }
+    Ok(translator.graph.combine(&nodes))
+}

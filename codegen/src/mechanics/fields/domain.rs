@@ -1,0 +1,30 @@
+//! The domain of a field, as nodes of the graph.
+
+use model_spec::model::Basis;
+
+use super::modes;
+use crate::symbolic::graph::{Graph, Id};
+use crate::symbolic::tables::TableKind;
+
+/// The domain of a field, as nodes.
+pub struct Domain {
+    /// The field.
+    pub field: usize,
+    /// Its mode shapes.
+    pub basis: Basis,
+    /// Where it starts.
+    pub from: Id,
+    /// Where it ends.
+    pub to: Id,
+    /// to - from
+    pub length: Id,
+}
+
+impl Domain {
+    /// The node of one of the field's tables.
+    pub fn table(&self, graph: &mut Graph, kind: TableKind) -> Id {
+        let order = graph.orders()[self.field];
+        let basis = self.basis;
+        graph.constants(self.field, kind, || modes::table(basis, order, kind))
+    }
+}

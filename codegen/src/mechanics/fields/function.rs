@@ -1,0 +1,308 @@
+//! Functions of the position along a field, and their integrals over its domain.
+//!
+//! An integrand is kept as a sum of terms: a scalar, a power of s = (x - from)/(to - from),
+//! an optional weight given at quadrature nodes, and at most two field atoms (w, its rate,
+//! a mode shape, or a derivative of one by the position). Terms without a weight have
+//! exact dimensionless integrals (`modes`), so that lengths and stiffnesses stay
+//! parameters; a weight that depends on parameters alone is integrated once, when the
+//! coefficients are prepared. What does not fit, an integrand that is not quadratic in the
+//! field, is evaluated at the quadrature nodes.
+
+use model_spec::ast::BinaryOperator;
+use model_spec::model::Function;
+
+use super::term::{Atom, Term};
+use crate::mechanics::fields::domain::Domain;
+use crate::mechanics::fields::moments::{integral_of_term, shapes_at};
+use crate::symbolic::arguments::Arguments;
+use crate::symbolic::graph::{Graph, Id, Space};
+use crate::symbolic::tables::TableKind;
+
+/// A function of the position along a field.
+#[derive(Clone, Debug)]
+pub struct FieldFunction {
+    terms: Vec<Term>,
+}
+
+/// The most terms an integrand may have when products of its sums are formed.
+const MAX_TERMS: usize = 4096;
+
+/// The highest power of s that is integrated by a table of its own.
+const MAX_MOMENT: u32 = 32;
+
+type Outcome<T> = Result<T, String>;
+
+impl FieldFunction {
+    /// Something that does not vary along the field.
+    pub fn constant(scalar: Id) -> Self {
+        Self {
+            terms: vec![Term {
+                scalar,
+                power: 0,
+                weight: None,
+                atoms: Vec::new(),
+            }],
+        }
+    }
+
+    /// The position x = from + length s.
+    pub fn position(graph: &mut Graph, domain: &Domain) -> Self {
+        let mut function = Self::constant(domain.length);
+        function.terms[0].power = 1;
+        if !graph.is_zero(domain.from) {
+            function.terms.extend(Self::constant(domain.from).terms);
+        }
+        function
+    }
+
+    /// A field atom whose derivatives are by x.
+    pub fn atom(graph: &mut Graph, domain: &Domain, atom: Atom) -> Self {
+        let scale = graph.integer_power(domain.length, -i32::from(atom.derivative()));
+        let mut function = Self::constant(scale);
+        function.terms[0].atoms.push(atom);
+        function
+    }
+
+    /// A multiple.
+    pub fn scaled(mut self, graph: &mut Graph, factor: f64) -> Self {
+        for term in &mut self.terms {
+            term.scalar = graph.scale(factor, term.scalar);
+        }
+        self
+    }
+
+    /// A sum, difference, product, quotient or power.
+    pub fn binary(
+        &self,
+        graph: &mut Graph,
+        domain: &Domain,
+        operator: BinaryOperator,
+        other: &Self,
+    ) -> Outcome<Self> {
+        match operator {
+            BinaryOperator::Add => self.plus(graph, other.clone()),
+            BinaryOperator::Subtract => {
+                let negated = other.clone().scaled(graph, -1.0);
+                self.plus(graph, negated)
+            }
+            BinaryOperator::Multiply => self.times(graph, domain, other),
+            BinaryOperator::Divide => match other.as_scalar() {
+                Some(scalar) => {
+                    let reciprocal = graph.integer_power(scalar, -1);
+                    self.times(graph, domain, &Self::constant(reciprocal))
+                }
+                None => {
+                    let values = other.values(graph, domain)?;
+                    let reciprocal = graph.integer_power(values, -1);
+                    let weight = Self::weight(graph, reciprocal);
+                    self.times(graph, domain, &weight)
+                }
+            },
+            BinaryOperator::Power => self.to_the_power(graph, domain, other),
+        }
+    }
+
+    /// A function applied at every position.
+    pub fn call(
+        graph: &mut Graph,
+        domain: &Domain,
+        function: Function,
+        arguments: &[Self],
+    ) -> Outcome<Self> {
+        let operands = |all| Arguments::of(all).ok_or("a function takes one or two arguments");
+        let scalars: Option<Vec<Id>> = arguments.iter().map(Self::as_scalar).collect();
+        if let Some(scalars) = scalars {
+            return Ok(Self::constant(graph.call(function, operands(scalars)?)));
+        }
+        let values = arguments
+            .iter()
+            .map(|a| a.values(graph, domain))
+            .collect::<Outcome<Vec<Id>>>()?;
+        let result = graph.call(function, operands(values)?);
+        Ok(Self::weight(graph, result))
+    }
+
+    /// The value at a position (parameters only).
+    pub fn at(&self, graph: &mut Graph, domain: &Domain, position: Id) -> Outcome<Id> {
+        let from_start = graph.subtract(position, domain.from);
+        let s = graph.divide(from_start, domain.length);
+        let mut terms = Vec::new();
+        for term in &self.terms {
+            if term.weight.is_some() {
+                return Err(
+                    "at(...) takes the field, its derivatives and polynomials of the position"
+                        .into(),
+                );
+            }
+            let mut factors = vec![(term.scalar, 1), (s, term.power as i32)];
+            for atom in &term.atoms {
+                let shapes = shapes_at(graph, domain, s, atom.derivative());
+                let value = match atom.amplitudes(graph, domain.field) {
+                    Some(amplitudes) => {
+                        let product = graph.multiply(shapes, amplitudes);
+                        graph.total_over(Space::Modes(domain.field), product)
+                    }
+                    None => shapes,
+                };
+                factors.push((value, 1));
+            }
+            terms.push((1.0, graph.product(&factors)));
+        }
+        Ok(graph.combine(&terms))
+    }
+
+    /// The integral over the domain.
+    pub fn integral(&self, graph: &mut Graph, domain: &Domain) -> Outcome<Id> {
+        let mut terms = Vec::new();
+        for term in &self.terms {
+            let value = integral_of_term(graph, domain, term);
+            let product = graph.product(&[(term.scalar, 1), (domain.length, 1), (value, 1)]);
+            terms.push((1.0, product));
+        }
+        Ok(graph.combine(&terms))
+    }
+
+    fn weight(graph: &mut Graph, values: Id) -> Self {
+        let mut function = Self::constant(graph.one());
+        function.terms[0].weight = Some(values);
+        function
+    }
+
+    /// The scalar, if this does not vary along the field.
+    fn as_scalar(&self) -> Option<Id> {
+        match self.terms.as_slice() {
+            [term] if term.power == 0 && term.weight.is_none() && term.atoms.is_empty() => {
+                Some(term.scalar)
+            }
+            _ => None,
+        }
+    }
+
+    fn plus(&self, graph: &mut Graph, other: Self) -> Outcome<Self> {
+        let mut terms = self.terms.clone();
+        terms.extend(other.terms);
+        bounded(collect_like_terms(graph, terms))
+    }
+
+    fn times(&self, graph: &mut Graph, domain: &Domain, other: &Self) -> Outcome<Self> {
+        let atoms = |function: &Self| {
+            function
+                .terms
+                .iter()
+                .map(|t| t.atoms.len())
+                .max()
+                .unwrap_or(0)
+        };
+        if atoms(self) + atoms(other) > 2 {
+            let values = [self.values(graph, domain)?, other.values(graph, domain)?];
+            let product = graph.multiply(values[0], values[1]);
+            return Ok(Self::weight(graph, product));
+        }
+        if self.terms.len() * other.terms.len() > MAX_TERMS {
+            return Err(too_many_terms());
+        }
+        let mut terms = Vec::new();
+        for a in &self.terms {
+            for b in &other.terms {
+                let weight = match (a.weight, b.weight) {
+                    (Some(a), Some(b)) => Some(graph.multiply(a, b)),
+                    (a, b) => a.or(b),
+                };
+                let mut atoms = [a.atoms.clone(), b.atoms.clone()].concat();
+                atoms.sort();
+                let (power, weight) = within_moments(graph, domain, a.power + b.power, weight);
+                terms.push(Term {
+                    scalar: graph.multiply(a.scalar, b.scalar),
+                    power,
+                    weight,
+                    atoms,
+                });
+            }
+        }
+        bounded(collect_like_terms(graph, terms))
+    }
+
+    fn to_the_power(&self, graph: &mut Graph, domain: &Domain, exponent: &Self) -> Outcome<Self> {
+        let number = exponent.as_scalar().and_then(|e| graph.as_constant(e));
+        if let (Some(base), Some(exponent)) = (self.as_scalar(), exponent.as_scalar()) {
+            return Ok(Self::constant(graph.power(base, exponent)));
+        }
+        match number {
+            Some(n) if n == n.round() && (0.0..=8.0).contains(&n) => {
+                let mut result = Self::constant(graph.one());
+                for _ in 0..n as u32 {
+                    result = result.times(graph, domain, self)?;
+                }
+                Ok(result)
+            }
+            _ => {
+                let base = self.values(graph, domain)?;
+                let exponent = exponent.values(graph, domain)?;
+                let result = graph.power(base, exponent);
+                Ok(Self::weight(graph, result))
+            }
+        }
+    }
+
+    /// The values at the quadrature nodes: a vector over the nodes, or a scalar.
+    fn values(&self, graph: &mut Graph, domain: &Domain) -> Outcome<Id> {
+        let s = domain.table(graph, TableKind::NodePosition);
+        let mut terms = Vec::new();
+        for term in &self.terms {
+            let mut factors = vec![(term.scalar, 1), (s, term.power as i32)];
+            factors.extend(term.weight.map(|weight| (weight, 1)));
+            for atom in &term.atoms {
+                let matrix = domain.table(graph, TableKind::ShapeAtNodes(atom.derivative()));
+                let Some(amplitudes) = atom.amplitudes(graph, domain.field) else {
+                    return Err("phi[i] enters an integrand as a factor, at most twice".into());
+                };
+                factors.push((graph.apply(matrix, false, amplitudes), 1));
+            }
+            terms.push((1.0, graph.product(&factors)));
+        }
+        Ok(graph.combine(&terms))
+    }
+}
+
+/// A power too high for a moment of its own becomes part of the weight.
+fn within_moments(
+    graph: &mut Graph,
+    domain: &Domain,
+    power: u32,
+    weight: Option<Id>,
+) -> (u32, Option<Id>) {
+    if power <= MAX_MOMENT {
+        return (power, weight);
+    }
+    let s = domain.table(graph, TableKind::NodePosition);
+    let mut factors = vec![(s, power as i32)];
+    factors.extend(weight.map(|weight| (weight, 1)));
+    (0, Some(graph.product(&factors)))
+}
+
+fn collect_like_terms(graph: &mut Graph, terms: Vec<Term>) -> Vec<Term> {
+    let mut collected: Vec<Term> = Vec::new();
+    for term in terms {
+        let alike = collected.iter().position(|other| {
+            other.power == term.power && other.weight == term.weight && other.atoms == term.atoms
+        });
+        match alike {
+            Some(index) => {
+                collected[index].scalar = graph.add(collected[index].scalar, term.scalar);
+            }
+            None => collected.push(term),
+        }
+    }
+    collected
+}
+
+fn bounded(terms: Vec<Term>) -> Outcome<FieldFunction> {
+    if terms.len() > MAX_TERMS {
+        return Err(too_many_terms());
+    }
+    Ok(FieldFunction { terms })
+}
+
+fn too_many_terms() -> String {
+    format!("this integrand has more than {MAX_TERMS} terms when multiplied out")
+}

@@ -1,0 +1,11 @@
+//! Functions of the position along a field, and their integrals.
+//!
+//! `term` and `function` (integrands as sums of terms), `moments` (their integrals as nodes),
+//! `domain` (where a field lives), `modes` and `quadrature` (the numbers of a basis).
+
+pub mod domain;
+pub mod function;
+pub mod modes;
+pub(crate) mod moments;
+pub mod quadrature;
+pub(crate) mod term;

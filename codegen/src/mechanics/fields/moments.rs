@@ -1,0 +1,185 @@
+//! Mode shapes at a point and integrals of one term of an integrand, as nodes: exact
+//! dimensionless constants where there are some, quadrature elsewhere.
+
+use model_spec::model::Function;
+
+use crate::mechanics::fields::domain::Domain;
+use crate::mechanics::fields::modes::is_orthogonal;
+use crate::mechanics::fields::term::Term;
+use crate::symbolic::graph::{Graph, Id, Operation, Space};
+use crate::symbolic::tables::TableKind;
+
+/// phi_r^(a) at s, a vector over the modes: tables at the ends, formulas elsewhere.
+pub(crate) fn shapes_at(graph: &mut Graph, domain: &Domain, s: Id, derivative: u8) -> Id {
+    match graph.as_constant(s) {
+        Some(0.0) => return domain.table(graph, TableKind::ShapeAtStart(derivative)),
+        Some(1.0) => return domain.table(graph, TableKind::ShapeAtEnd(derivative)),
+        _ => {}
+    }
+    let beta = domain.table(graph, TableKind::Wavenumber);
+    let xi = domain.table(graph, TableKind::Mixing);
+    let growing = domain.table(graph, TableKind::GrowingAmplitude);
+    let one = graph.one();
+    let z = graph.multiply(beta, s);
+    let sine = graph.call(Function::Sin, &[z]);
+    let cosine = graph.call(Function::Cos, &[z]);
+    let (first, second, sign) = match derivative % 4 {
+        0 => (sine, cosine, [1.0, 1.0]),
+        1 => (cosine, sine, [1.0, -1.0]),
+        2 => (sine, cosine, [-1.0, -1.0]),
+        _ => (cosine, sine, [-1.0, 1.0]),
+    };
+    let second = graph.multiply(xi, second);
+    let left = graph.negate(z);
+    let falling = graph.call(Function::Exp, &[left]);
+    let right = graph.subtract(z, beta);
+    let rising = graph.call(Function::Exp, &[right]);
+    let rising = graph.multiply(growing, rising);
+    let mixed = graph.subtract(one, xi);
+    let falling = graph.multiply(mixed, falling);
+    let falling_sign = if derivative.is_multiple_of(2) {
+        0.5
+    } else {
+        -0.5
+    };
+    let shape = graph.combine(&[
+        (sign[0], first),
+        (sign[1], second),
+        (-0.5, rising),
+        (falling_sign, falling),
+    ]);
+    graph.product(&[(beta, i32::from(derivative)), (shape, 1)])
+}
+
+/// The integral over s of s^power weight atom_1 atom_2; a vector over the modes where a
+/// bare shape is left.
+pub(crate) fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &Term) -> Id {
+    if let Some(weight) = term.weight {
+        return weighted_integral(graph, domain, term, weight);
+    }
+    let modes = Space::Modes(domain.field);
+    match *term.atoms.as_slice() {
+        [a, b] => {
+            let (left, right) = (a.derivative(), b.derivative());
+            let orthogonal = is_orthogonal(domain.basis, term.power, left, right);
+            let amplitudes = [
+                a.amplitudes(graph, domain.field),
+                b.amplitudes(graph, domain.field),
+            ];
+            let own = TableKind::OwnMoment {
+                power: term.power,
+                left,
+                right,
+            };
+            let pair = TableKind::PairMoment {
+                power: term.power,
+                left,
+                right,
+            };
+            match amplitudes {
+                [None, None] => domain.table(graph, own),
+                [Some(u), Some(v)] if orthogonal => {
+                    let table = domain.table(graph, own);
+                    let product = graph.product(&[(table, 1), (u, 1), (v, 1)]);
+                    graph.total_over(modes, product)
+                }
+                [Some(u), Some(v)] => {
+                    let table = domain.table(graph, pair);
+                    let applied = graph.apply(table, false, v);
+                    let product = graph.multiply(u, applied);
+                    graph.total_over(modes, product)
+                }
+                [Some(u), None] if orthogonal => {
+                    let table = domain.table(graph, own);
+                    graph.multiply(table, u)
+                }
+                [None, Some(u)] if orthogonal => {
+                    let table = domain.table(graph, own);
+                    graph.multiply(table, u)
+                }
+                [Some(u), None] => {
+                    let table = domain.table(graph, pair);
+                    graph.apply(table, true, u)
+                }
+                [None, Some(u)] => {
+                    let table = domain.table(graph, pair);
+                    graph.apply(table, false, u)
+                }
+            }
+        }
+        [a] => {
+            let table = domain.table(
+                graph,
+                TableKind::Moment {
+                    power: term.power,
+                    derivative: a.derivative(),
+                },
+            );
+            match a.amplitudes(graph, domain.field) {
+                Some(u) => {
+                    let product = graph.multiply(table, u);
+                    graph.total_over(modes, product)
+                }
+                None => table,
+            }
+        }
+        _ => graph.constant(1.0 / f64::from(term.power + 1)),
+    }
+}
+
+fn weighted_integral(graph: &mut Graph, domain: &Domain, term: &Term, weight: Id) -> Id {
+    let s = domain.table(graph, TableKind::NodePosition);
+    let quadrature = domain.table(graph, TableKind::NodeWeight);
+    let weight = graph.product(&[(quadrature, 1), (s, term.power as i32), (weight, 1)]);
+    let modes = Space::Modes(domain.field);
+    let nodes = Space::Nodes(domain.field);
+    let amplitudes: Vec<Option<Id>> = term
+        .atoms
+        .iter()
+        .map(|atom| atom.amplitudes(graph, domain.field))
+        .collect();
+    let shapes: Vec<Id> = term
+        .atoms
+        .iter()
+        .map(|atom| domain.table(graph, TableKind::ShapeAtNodes(atom.derivative())))
+        .collect();
+    match (amplitudes.as_slice(), shapes.as_slice()) {
+        (&[Some(u), Some(v)], &[left, right]) if graph.dependence(weight).is_prepared() => {
+            let gram = graph.intern(Operation::Gram {
+                left,
+                weight,
+                right,
+            });
+            let applied = graph.apply(gram, false, v);
+            let product = graph.multiply(u, applied);
+            graph.total_over(modes, product)
+        }
+        (&[Some(u), Some(v)], &[left, right]) => {
+            let at_nodes = [graph.apply(left, false, u), graph.apply(right, false, v)];
+            let product = graph.product(&[(weight, 1), (at_nodes[0], 1), (at_nodes[1], 1)]);
+            graph.total_over(nodes, product)
+        }
+        (&[Some(u), None], &[left, right]) => {
+            let at_nodes = graph.apply(left, false, u);
+            let product = graph.multiply(weight, at_nodes);
+            graph.apply(right, true, product)
+        }
+        (&[None, Some(v)], &[left, right]) => {
+            let at_nodes = graph.apply(right, false, v);
+            let product = graph.multiply(weight, at_nodes);
+            graph.apply(left, true, product)
+        }
+        (&[None, None], &[left, right]) => graph.intern(Operation::GramDiagonal {
+            left,
+            weight,
+            right,
+        }),
+        (&[Some(u)], &[shape]) => {
+            let moment = graph.apply(shape, true, weight);
+            let product = graph.multiply(moment, u);
+            graph.total_over(modes, product)
+        }
+        (&[None], &[shape]) => graph.apply(shape, true, weight),
+        _ => graph.total_over(nodes, weight),
+    }
+}

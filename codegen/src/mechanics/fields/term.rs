@@ -1,0 +1,49 @@
+//! A term of an integrand: powers of the position, a weight, and field atoms.
+
+use crate::symbolic::graph::{Graph, Id, Operation};
+
+/// A field, its rate or a mode shape, with the number of derivatives by the position.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Atom {
+    /// w
+    Coordinates(u8),
+    /// dot(w)
+    Rates(u8),
+    /// phi[i]
+    Shapes(u8),
+}
+
+impl Atom {
+    /// The atom differentiated `times` more by the position.
+    pub fn differentiated(self, times: u8) -> Self {
+        match self {
+            Self::Coordinates(d) => Self::Coordinates(d + times),
+            Self::Rates(d) => Self::Rates(d + times),
+            Self::Shapes(d) => Self::Shapes(d + times),
+        }
+    }
+
+    pub(crate) fn derivative(self) -> u8 {
+        match self {
+            Self::Coordinates(d) | Self::Rates(d) | Self::Shapes(d) => d,
+        }
+    }
+
+    /// The vector over the modes that multiplies the shapes; `None` for a bare shape.
+    pub(crate) fn amplitudes(self, graph: &mut Graph, field: usize) -> Option<Id> {
+        match self {
+            Self::Coordinates(_) => Some(graph.intern(Operation::ModeCoordinates(field))),
+            Self::Rates(_) => Some(graph.intern(Operation::ModeRates(field))),
+            Self::Shapes(_) => None,
+        }
+    }
+}
+
+/// scalar s^power weight atom_1 atom_2; the derivatives in the atoms are by s.
+#[derive(Clone, Debug)]
+pub(crate) struct Term {
+    pub(crate) scalar: Id,
+    pub(crate) power: u32,
+    pub(crate) weight: Option<Id>,
+    pub(crate) atoms: Vec<Atom>,
+}

@@ -1,0 +1,14 @@
+//! A switching surface, as a node and the function that switches there.
+
+use model_spec::model::Function;
+
+use crate::symbolic::graph::Id;
+
+/// A switching surface.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Guard {
+    /// Changes sign where the model switches.
+    pub value: Id,
+    /// The function that switches.
+    pub function: Function,
+}

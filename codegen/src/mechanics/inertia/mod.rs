@@ -1,0 +1,168 @@
+//! Whether every coordinate has inertia where the motion begins: the mass matrix at the initial
+//! state and the declared parameters has to be positive definite. Where it is not, the
+//! coordinates are named that can move without inertia, or with a negative one.
+
+mod lack;
+
+use model_spec::diagnostic::Diagnostic;
+use model_spec::model::Model;
+use model_spec::span::Span;
+
+use crate::mechanics::equations::Equations;
+use crate::symbolic::graph::Dependence;
+use lack::{Lack, lack};
+
+/// Refuses a model with a motion from its initial state that no inertia opposes; `mass` is the
+/// mass matrix there, row by row, in kg, kg m^2 or whatever the coordinates make of it.
+///
+/// # Errors
+/// A coordinate whose inertia is not positive or no number there, or coordinates of which a
+/// combination has none.
+pub fn check(
+    model: &Model,
+    orders: &[usize],
+    equations: &Equations,
+    mass: &[f64],
+) -> Result<(), Diagnostic> {
+    let machine = Machine {
+        model,
+        names: model.state_names(orders),
+        orders,
+        moves: equations.inertia_moves(),
+    };
+    match lack(mass, machine.names.len() / 2) {
+        None => Ok(()),
+        Some(lack) => Err(machine.diagnostic(&lack)),
+    }
+}
+
+impl Equations {
+    /// Whether the mass matrix depends on more than parameters.
+    fn inertia_moves(&self) -> bool {
+        let moving = Dependence::COORDINATE
+            .join(Dependence::RATE)
+            .join(Dependence::TIME);
+        let entries = self.mass.scalars.iter().chain(&self.mass.coupling);
+        let mut nodes = entries.flatten().copied();
+        let mut blocks = self.modal_blocks.iter().map(|(_, block, _)| *block);
+        let moves = |node| self.graph.dependence(node).has(moving);
+        nodes.any(moves) || blocks.any(moves)
+    }
+}
+
+/// What the findings are said with.
+struct Machine<'m> {
+    model: &'m Model,
+    orders: &'m [usize],
+    names: Vec<String>,
+    /// Whether the inertia depends on where and when the machine is.
+    moves: bool,
+}
+
+impl Machine<'_> {
+    fn diagnostic(&self, lack: &Lack) -> Diagnostic {
+        match lack {
+            Lack::Of(place, value) => self.of_one(*place, *value),
+            Lack::Along { rates, negative } => self.of_several(rates, *negative),
+        }
+        .help_if(Some(self.help()))
+    }
+
+    fn of_one(&self, place: usize, value: f64) -> Diagnostic {
+        let name = &self.names[place];
+        let what = if !value.is_finite() {
+            format!("an inertia that comes out as {value}")
+        } else if value < 0.0 {
+            format!("the negative inertia {value:e}")
+        } else {
+            "no inertia".to_owned()
+        };
+        let message = format!(
+            "{} `{name}` has {what} at the initial state: the mass matrix is not positive definite",
+            self.kind(place)
+        );
+        Diagnostic::error(message).at(
+            self.span(place),
+            "its kinetic energy does not grow with its rate",
+        )
+    }
+
+    fn of_several(&self, rates: &[f64], negative: bool) -> Diagnostic {
+        let moving: Vec<usize> = (0..rates.len()).filter(|at| rates[*at] != 0.0).collect();
+        let names: Vec<String> = moving
+            .iter()
+            .map(|place| format!("`{}`", self.names[*place]))
+            .collect();
+        let direction: Vec<String> = moving
+            .iter()
+            .map(|place| format!("dot({}) = {}", self.names[*place], short(rates[*place])))
+            .collect();
+        let what = if negative { "a negative" } else { "no" };
+        let message = format!(
+            "{} together have {what} inertia at the initial state: the mass matrix is not positive definite",
+            names.join(", ")
+        );
+        let label = format!(
+            "kinetic energy does not grow along {}",
+            direction.join(", ")
+        );
+        let mut places = moving.iter().map(|place| self.span(*place));
+        let mut found = Diagnostic::error(message);
+        if let Some(first) = places.next() {
+            found = found.at(first, label);
+            // All modes of a field stand at one place.
+            let mut others: Vec<Span> = places.filter(|place| *place != first).collect();
+            others.dedup();
+            for other in others {
+                found = found.also(other, "moves with it");
+            }
+        }
+        found
+    }
+
+    fn help(&self) -> String {
+        let mut help = "every coordinate, and every combination of them, needs a term of [kinetic] that grows \
+                        with its rate; look for a missing term, a wrong sign or a parameter that is 0"
+            .to_owned();
+        if self.moves {
+            help.push_str(
+                "; if inertia is missing at this place alone, give `initial` another value",
+            );
+        }
+        help
+    }
+
+    fn kind(&self, place: usize) -> &'static str {
+        if place < self.model.coordinates.len() {
+            "the coordinate"
+        } else {
+            "the mode"
+        }
+    }
+
+    /// Where a coordinate, or the field of a mode, is declared.
+    fn span(&self, place: usize) -> Span {
+        let coordinates = &self.model.coordinates;
+        if let Some(coordinate) = coordinates.get(place) {
+            return coordinate.span;
+        }
+        let mut first = coordinates.len();
+        let fields = self.model.fields.iter().zip(self.orders);
+        for (field, order) in fields {
+            first += order;
+            if place < first {
+                return field.span;
+            }
+        }
+        Span::default()
+    }
+}
+
+/// A number for a message.
+fn short(value: f64) -> String {
+    let text = format!("{value:.4}");
+    match text.trim_end_matches('0').trim_end_matches('.') {
+        "0" | "-0" => format!("{value:.1e}"),
+        short => short.to_owned(),
+    }
+}

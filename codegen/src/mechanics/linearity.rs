@@ -1,0 +1,165 @@
+//! Whether a model is linear between its switching surfaces, read off the structure of its
+//! equations: such a model can be solved exactly from switch to switch.
+//!
+//! Linear means: a constant mass matrix, and forces of first degree in coordinates, rates,
+//! inputs and sines of time, with the sides of the switching surfaces taken as given. The
+//! test is sufficient, not necessary: what cancels only by an identity is not seen.
+
+use std::collections::HashMap;
+
+use model_spec::model::Function;
+
+use crate::mechanics::equations::Equations;
+use crate::symbolic::graph::{Dependence, Graph, Id, Operation, Shape};
+
+/// What kind of model it is between its switching surfaces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Linearity {
+    /// Linear everywhere.
+    Linear,
+    /// Linear between switching surfaces that are linear themselves.
+    PiecewiseLinear,
+    /// Not linear because of this node, the first that is found.
+    Nonlinear(Id),
+}
+
+/// The kind of model that the equations are.
+pub fn linearity(equations: &Equations) -> Linearity {
+    let graph = &equations.graph;
+    let mut degrees = Degrees {
+        graph,
+        known: HashMap::new(),
+    };
+    let mass = &equations.mass;
+    let blocks = equations.modal_blocks.iter().map(|(_, block, _)| *block);
+    let masses = mass
+        .scalars
+        .iter()
+        .chain(&mass.coupling)
+        .flatten()
+        .copied()
+        .chain(blocks);
+    for entry in masses {
+        if !graph.dependence(entry).is_prepared() {
+            return Linearity::Nonlinear(entry);
+        }
+    }
+    let rows = [equations.velocity_terms.nodes(), equations.forces.nodes()].concat();
+    let surfaces = equations.guards.iter().map(|guard| guard.value);
+    for node in rows.into_iter().chain(surfaces) {
+        match degrees.of(node) {
+            Ok(0 | 1) => {}
+            Ok(_) => return Linearity::Nonlinear(node),
+            Err(culprit) => return Linearity::Nonlinear(culprit),
+        }
+    }
+    if equations.guards.is_empty() {
+        Linearity::Linear
+    } else {
+        Linearity::PiecewiseLinear
+    }
+}
+
+/// Degrees of nodes in what moves.
+struct Degrees<'g> {
+    graph: &'g Graph,
+    known: HashMap<Id, Result<u32, Id>>,
+}
+
+impl Degrees<'_> {
+    /// The degree of a node with the switching sides given, or the node in the way.
+    fn of(&mut self, id: Id) -> Result<u32, Id> {
+        if self.graph.dependence(id).is_prepared() {
+            return Ok(0);
+        }
+        if let Some(&known) = self.known.get(&id) {
+            return known;
+        }
+        let degree = self.compute(id);
+        self.known.insert(id, degree);
+        degree
+    }
+
+    fn compute(&mut self, id: Id) -> Result<u32, Id> {
+        let graph = self.graph;
+        match graph.operation(id) {
+            Operation::Coordinate(_)
+            | Operation::Rate(_)
+            | Operation::ModeCoordinates(_)
+            | Operation::ModeRates(_)
+            | Operation::Input(_) => Ok(1),
+            Operation::Sum(terms) => self.highest(terms.iter().map(|(_, term)| *term)),
+            Operation::Product(factors) => {
+                let mut total = 0;
+                for &(factor, exponent) in factors {
+                    let degree = self.of(factor)?;
+                    let power = u32::try_from(exponent).ok().filter(|_| degree < 2);
+                    match (degree, power) {
+                        (0, _) => {}
+                        (_, Some(power)) => total += degree * power,
+                        (_, None) => return Err(id),
+                    }
+                }
+                if total > 1 { Err(id) } else { Ok(total) }
+            }
+            Operation::Call(function, arguments) => self.call(id, *function, arguments),
+            Operation::Select {
+                a,
+                b,
+                then,
+                otherwise,
+            } => {
+                self.highest([*a, *b])?;
+                self.highest([*then, *otherwise])
+            }
+            Operation::Total(a) | Operation::CholeskySolve(_, a) => self.of(*a),
+            Operation::Apply { vector, .. } => self.of(*vector),
+            _ => Err(id),
+        }
+    }
+
+    fn call(&mut self, id: Id, function: Function, arguments: &[Id]) -> Result<u32, Id> {
+        let scalar = self.graph.shape(id) == Shape::Scalar;
+        match (function, arguments) {
+            (Function::Sin | Function::Cos, &[a]) if self.is_phase(a) => Ok(1),
+            (Function::Contact | Function::Sign | Function::Above, _) if scalar => {
+                self.highest(arguments.iter().copied())?;
+                Ok(0)
+            }
+            (Function::Deadzone | Function::Abs | Function::Min | Function::Max, _) if scalar => {
+                self.highest(arguments.iter().copied())
+            }
+            _ => Err(id),
+        }
+    }
+
+    fn highest(&mut self, parts: impl IntoIterator<Item = Id>) -> Result<u32, Id> {
+        parts
+            .into_iter()
+            .try_fold(0, |highest, part| Ok(self.of(part)?.max(highest)))
+    }
+
+    /// Whether a node is a phase omega t + phi.
+    fn is_phase(&self, id: Id) -> bool {
+        let moving = Dependence::COORDINATE
+            .join(Dependence::RATE)
+            .join(Dependence::INPUT);
+        if self.graph.dependence(id).has(moving) {
+            return false;
+        }
+        match self.graph.operation(id) {
+            Operation::Time => true,
+            Operation::Sum(terms) => terms.iter().all(|(_, term)| {
+                self.graph.dependence(*term).is_prepared() || self.is_phase(*term)
+            }),
+            Operation::Product(factors) => {
+                let timed: Vec<&(Id, i32)> = factors
+                    .iter()
+                    .filter(|(factor, _)| !self.graph.dependence(*factor).is_prepared())
+                    .collect();
+                matches!(timed.as_slice(), [(factor, 1)] if self.is_phase(*factor))
+            }
+            _ => false,
+        }
+    }
+}

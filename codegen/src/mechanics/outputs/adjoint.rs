@@ -1,0 +1,300 @@
+//! Gradients by reverse accumulation: of a weighted sum of nodes, by every leaf they depend
+//! on, in one pass from the nodes down. Vectors stay vectors: what a scalar receives from a
+//! vector is summed over its elements, what a sum hands down stands for every element.
+//! What comes through a branch is chosen where it leaves the branch, not where it enters.
+
+use std::collections::HashMap;
+
+use super::matrix_derivatives::holds_matrix_of_parameters;
+use crate::symbolic::differentiate::{choice, partial_derivatives};
+use crate::symbolic::graph::{Dependence, Graph, Id, Operation, Shape, Space};
+
+/// The gradient of the sum of weight times node, a vector's elements summed, by every leaf
+/// that is no parameter. Matrices that move are not followed; the caller sees to it that
+/// there are none.
+pub fn gradient(graph: &mut Graph, weighted: &[(Id, Id)]) -> HashMap<Id, Id> {
+    accumulate(graph, weighted, |graph, id| {
+        !graph.dependence(id).is_prepared()
+    })
+}
+
+/// The gradient of the same by every independent parameter, in their order with those that
+/// are derived from others left out; nothing where a matrix depends on parameters.
+pub fn gradient_by_parameters(
+    graph: &mut Graph,
+    weighted: &[(Id, Id)],
+    derived: &[Option<Id>],
+) -> Option<Vec<Id>> {
+    let mut roots: Vec<Id> = weighted.iter().map(|(_, node)| *node).collect();
+    roots.extend(derived.iter().flatten());
+    if holds_matrix_of_parameters(graph, &roots) {
+        return None;
+    }
+    let mut parts: Vec<Vec<(f64, Id)>> = vec![Vec::new(); derived.len()];
+    hand_to_parameters(graph, weighted, &mut parts);
+    for index in outermost_first(graph, derived) {
+        let received = std::mem::take(&mut parts[index]);
+        let adjoint = graph.combine(&received);
+        if let (Some(expression), false) = (derived[index], graph.is_zero(adjoint)) {
+            hand_to_parameters(graph, &[(adjoint, expression)], &mut parts);
+        }
+    }
+    let independent = parts.iter().zip(derived).filter(|(_, d)| d.is_none());
+    Some(independent.map(|(parts, _)| graph.combine(parts)).collect())
+}
+
+/// Adds what each parameter's own leaf receives to its parts.
+fn hand_to_parameters(graph: &mut Graph, weighted: &[(Id, Id)], parts: &mut [Vec<(f64, Id)>]) {
+    let received = accumulate(graph, weighted, depends_on_parameters);
+    let mut received: Vec<(Id, Id)> = received.into_iter().collect();
+    received.sort();
+    for (leaf, adjoint) in received {
+        if let Operation::Parameter(index) = *graph.operation(leaf) {
+            parts[index].push((1.0, adjoint));
+        }
+    }
+}
+
+fn depends_on_parameters(graph: &Graph, id: Id) -> bool {
+    graph.dependence(id).has(Dependence::PARAMETER)
+}
+
+/// The derived parameters, each before those that its expression reads.
+fn outermost_first(graph: &Graph, derived: &[Option<Id>]) -> Vec<usize> {
+    let mut order = Vec::new();
+    let mut known = vec![false; derived.len()];
+    for index in 0..derived.len() {
+        after_what_is_read(graph, derived, index, &mut known, &mut order);
+    }
+    order.reverse();
+    order
+}
+
+fn after_what_is_read(
+    graph: &Graph,
+    derived: &[Option<Id>],
+    index: usize,
+    known: &mut [bool],
+    order: &mut Vec<usize>,
+) {
+    let (Some(expression), false) = (derived[index], known[index]) else {
+        return;
+    };
+    known[index] = true;
+    for node in graph.reachable(&[expression]) {
+        if let Operation::Parameter(read) = *graph.operation(node) {
+            after_what_is_read(graph, derived, read, known, order);
+        }
+    }
+    order.push(index);
+}
+
+/// Every leaf's part in the sum of weight times node, by way of the nodes that `follows`
+/// names.
+fn accumulate(
+    graph: &mut Graph,
+    weighted: &[(Id, Id)],
+    follows: fn(&Graph, Id) -> bool,
+) -> HashMap<Id, Id> {
+    let roots: Vec<Id> = weighted.iter().map(|(_, node)| *node).collect();
+    let mut adjoints = Adjoints {
+        received: HashMap::new(),
+        follows,
+    };
+    for &(weight, node) in weighted {
+        adjoints.add(node, Part::of(weight));
+    }
+    let mut gradient = HashMap::new();
+    for id in graph.reachable(&roots).into_iter().rev() {
+        if !follows(graph, id) {
+            continue;
+        }
+        let adjoint = adjoints.total(graph, id);
+        if graph.is_zero(adjoint.value) {
+            continue;
+        }
+        if graph.operands(graph.operation(id)).is_empty() {
+            gradient.insert(id, adjoint.chosen(graph));
+        } else {
+            adjoints.hand_down(graph, id, &adjoint);
+        }
+    }
+    gradient
+}
+
+/// What decides whether a branch is taken: a > b, or that this does not hold.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Condition {
+    a: Id,
+    b: Id,
+    holds: bool,
+}
+
+impl Condition {
+    /// `value` where the branch is taken, 0 elsewhere.
+    fn chosen(self, graph: &mut Graph, value: Id) -> Id {
+        let zero = graph.zero();
+        let (then, otherwise) = if self.holds {
+            (value, zero)
+        } else {
+            (zero, value)
+        };
+        graph.select(self.a, self.b, then, otherwise)
+    }
+
+    fn is_scalar(self, graph: &Graph) -> bool {
+        [self.a, self.b]
+            .into_iter()
+            .all(|id| graph.shape(id) == Shape::Scalar)
+    }
+}
+
+/// A part of an adjoint that counts under conditions, the outermost first. The choice waits
+/// until parts of other branches join it: a partial derivative inside a branch that is not
+/// taken may be infinite or no number, and 0 times it would be no number either.
+#[derive(Clone)]
+struct Part {
+    conditions: Vec<Condition>,
+    value: Id,
+}
+
+impl Part {
+    fn of(value: Id) -> Self {
+        Self {
+            conditions: Vec::new(),
+            value,
+        }
+    }
+
+    fn with(&self, value: Id) -> Self {
+        Self {
+            conditions: self.conditions.clone(),
+            value,
+        }
+    }
+
+    fn under(&self, condition: Condition) -> Self {
+        let mut part = self.clone();
+        part.conditions.push(condition);
+        part
+    }
+
+    fn chosen(self, graph: &mut Graph) -> Id {
+        self.chosen_to(graph, 0).value
+    }
+
+    /// The same with no more than this many conditions left open.
+    fn chosen_to(mut self, graph: &mut Graph, open: usize) -> Self {
+        while self.conditions.len() > open
+            && let Some(condition) = self.conditions.pop()
+        {
+            self.value = condition.chosen(graph, self.value);
+        }
+        self
+    }
+
+    /// The same with no condition open that differs from element to element.
+    fn chosen_by_element(self, graph: &mut Graph) -> Self {
+        let whole = self
+            .conditions
+            .iter()
+            .take_while(|condition| condition.is_scalar(graph))
+            .count();
+        self.chosen_to(graph, whole)
+    }
+}
+
+/// What each node has received so far.
+struct Adjoints {
+    received: HashMap<Id, Vec<Part>>,
+    /// Which nodes count.
+    follows: fn(&Graph, Id) -> bool,
+}
+
+impl Adjoints {
+    fn add(&mut self, id: Id, part: Part) {
+        self.received.entry(id).or_default().push(part);
+    }
+
+    /// The sum of what a node has received, under the conditions that all of it has.
+    fn total(&mut self, graph: &mut Graph, id: Id) -> Part {
+        let parts = self.received.remove(&id).unwrap_or_default();
+        let mut common = parts.first().map_or(Vec::new(), |p| p.conditions.clone());
+        for part in &parts {
+            let pairs = common.iter().zip(&part.conditions);
+            common.truncate(pairs.take_while(|(a, b)| a == b).count());
+        }
+        let mut terms = Vec::with_capacity(parts.len());
+        for part in parts {
+            terms.push((1.0, part.chosen_to(graph, common.len()).value));
+        }
+        Part {
+            conditions: common,
+            value: graph.combine(&terms),
+        }
+    }
+
+    /// Adds a part that is a vector over `space`, or stands for each of its elements.
+    fn add_over(&mut self, graph: &mut Graph, space: Space, operand: Id, part: Part) {
+        let part = match graph.shape(operand) {
+            Shape::Scalar => {
+                let part = part.chosen_by_element(graph);
+                let total = graph.total_over(space, part.value);
+                part.with(total)
+            }
+            _ => part,
+        };
+        self.add(operand, part);
+    }
+
+    /// What the operands of `id` receive from its adjoint.
+    fn hand_down(&mut self, graph: &mut Graph, id: Id, adjoint: &Part) {
+        match graph.operation(id).clone() {
+            Operation::Total(a) => self.add(a, adjoint.clone()),
+            Operation::Apply {
+                matrix,
+                transposed,
+                vector,
+            } => {
+                let adjoint = adjoint.clone().chosen_by_element(graph);
+                let part = adjoint.with(graph.apply(matrix, !transposed, adjoint.value));
+                if let Shape::Matrix(rows, columns) = graph.shape(matrix) {
+                    let space = if transposed { rows } else { columns };
+                    self.add_over(graph, space, vector, part);
+                }
+            }
+            Operation::CholeskySolve(factor, vector) => {
+                let adjoint = adjoint.clone().chosen_by_element(graph);
+                let part = adjoint.with(graph.cholesky_solve(factor, adjoint.value));
+                if let Shape::Vector(space) = graph.shape(id) {
+                    self.add_over(graph, space, vector, part);
+                }
+            }
+            _ => self.hand_down_element_wise(graph, id, adjoint),
+        }
+    }
+
+    fn hand_down_element_wise(&mut self, graph: &mut Graph, id: Id, adjoint: &Part) {
+        let parts: Vec<(Id, Part)> = if let Some([a, b, then, otherwise]) = choice(graph, id) {
+            let branch = |holds| adjoint.under(Condition { a, b, holds });
+            vec![(then, branch(true)), (otherwise, branch(false))]
+        } else {
+            partial_derivatives(graph, id, self.follows)
+                .into_iter()
+                .map(|(operand, partial)| {
+                    let product = graph.multiply(partial, adjoint.value);
+                    (operand, adjoint.with(product))
+                })
+                .collect()
+        };
+        for (operand, part) in parts {
+            if !(self.follows)(graph, operand) {
+                continue;
+            }
+            match graph.shape(id) {
+                Shape::Vector(space) => self.add_over(graph, space, operand, part),
+                _ => self.add(operand, part),
+            }
+        }
+    }
+}

@@ -1,0 +1,254 @@
+//! What is derived on request, as nodes of the equations' graph: bias forces, inverse
+//! dynamics, guards' rates, products with the Jacobian. Jacobians themselves are in
+//! `jacobian`. The structure they stand in is in `types`.
+
+use super::adjoint;
+use super::jacobian::{
+    JacobianRows, by_parameters, by_variables, observable_rows, one_row, rate_rows,
+};
+use super::matrix_derivatives::holds_moving_matrix;
+use super::output::Request;
+use super::regimes::switches;
+use super::types::{Jacobian, Products, Requested};
+use crate::mechanics::equations::Equations;
+use crate::mechanics::rows::Rows;
+use crate::mechanics::translate::along_motion;
+use crate::symbolic::differentiate::Direction;
+use crate::symbolic::graph::{Argument, Graph, Id, Operation, Space, Variable};
+use crate::symbolic::matrix::StructuredMatrix;
+
+/// Derives what is requested.
+///
+/// # Errors
+/// If the modal mass matrix is dense and moves with the state: products and Jacobians are not
+/// derived then.
+pub fn requested(
+    equations: &mut Equations,
+    requests: &[Request],
+) -> Result<Requested<Id, Rows>, MovingMatrix> {
+    let mut result = Requested {
+        requests: requests.to_vec(),
+        ..Requested::default()
+    };
+    let has = |request| requests.contains(&request);
+    let differentiated =
+        has(Request::Jacobians) || has(Request::Products) || has(Request::Linearisation);
+    if differentiated {
+        let mut roots = equations.accelerations.rows.nodes();
+        roots.extend(&equations.observables);
+        roots.push(equations.power);
+        if holds_moving_matrix(&equations.graph, &roots) {
+            return Err(MovingMatrix);
+        }
+    }
+    if has(Request::BiasForces) || has(Request::InverseDynamics) {
+        let bias = bias_forces(equations);
+        result.inverse_dynamics =
+            has(Request::InverseDynamics).then(|| inverse_dynamics(equations, &bias));
+        result.bias_forces = has(Request::BiasForces).then_some(bias);
+    }
+    result.guard_rates = has(Request::GuardRates).then(|| guard_rates(equations));
+    if has(Request::Jacobians) || has(Request::Linearisation) {
+        result.jacobians = jacobians(equations);
+    }
+    result.products = has(Request::Products).then(|| products(equations));
+    result.regimes = has(Request::Regimes).then(|| switches(equations));
+    Ok(result)
+}
+
+/// Why Jacobians could not be derived.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MovingMatrix;
+
+impl std::fmt::Display for MovingMatrix {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("no Jacobian: the modal mass matrix is dense and moves with the state")
+    }
+}
+
+impl std::error::Error for MovingMatrix {}
+
+fn bias_forces(equations: &mut Equations) -> Rows {
+    let graph = &mut equations.graph;
+    let pairs = |terms: &[Id], forces: &[Id], graph: &mut Graph| -> Vec<Id> {
+        let rows = terms.iter().zip(forces);
+        rows.map(|(c, f)| graph.combine(&[(1.0, *c), (-1.0, *f)]))
+            .collect()
+    };
+    let (terms, forces) = (&equations.velocity_terms, &equations.forces);
+    Rows {
+        scalars: pairs(&terms.scalars, &forces.scalars, graph),
+        modal: pairs(&terms.modal, &forces.modal, graph),
+    }
+}
+
+/// The rows of M a + bias, with a from the argument.
+fn inverse_dynamics(equations: &mut Equations, bias: &Rows) -> Rows {
+    let (graph, mass) = (&mut equations.graph, &equations.mass);
+    let argument = |graph: &mut Graph, variable| {
+        graph.intern(Operation::Argument(Argument::Accelerations, variable))
+    };
+    let scalars: Vec<Id> = (0..bias.scalars.len())
+        .map(|index| argument(graph, Variable::Coordinate(index)))
+        .collect();
+    let modal: Vec<Id> = (0..bias.modal.len())
+        .map(|field| argument(graph, Variable::ModeCoordinates(field)))
+        .collect();
+    let mut rows = bias.clone();
+    for (row, slot) in rows.scalars.iter_mut().enumerate() {
+        let mut terms = vec![(1.0, *slot)];
+        for (entry, a) in mass.scalars[row].iter().zip(&scalars) {
+            terms.push((1.0, graph.multiply(*entry, *a)));
+        }
+        for (field, entry) in mass.coupling[row].iter().enumerate() {
+            let product = graph.multiply(*entry, modal[field]);
+            terms.push((1.0, graph.total_over(Space::Modes(field), product)));
+        }
+        *slot = graph.combine(&terms);
+    }
+    for (field, slot) in rows.modal.iter_mut().enumerate() {
+        let mut terms = vec![(1.0, *slot)];
+        for (coupling, a) in mass.coupling.iter().zip(&scalars) {
+            terms.push((1.0, graph.multiply(coupling[field], *a)));
+        }
+        for (block, a) in mass.modal[field].iter().zip(&modal) {
+            terms.extend(times(graph, block, *a).into_iter().map(|term| (1.0, term)));
+        }
+        *slot = graph.combine(&terms);
+    }
+    rows
+}
+
+/// The parts of matrix times vector.
+fn times(graph: &mut Graph, matrix: &StructuredMatrix, vector: Id) -> Vec<Id> {
+    let mut parts = Vec::new();
+    if let Some(diagonal) = matrix.diagonal {
+        parts.push(graph.multiply(diagonal, vector));
+    }
+    for &(u, v) in &matrix.outer {
+        let product = graph.multiply(v, vector);
+        let total = graph.total_over(matrix.columns, product);
+        parts.push(graph.multiply(u, total));
+    }
+    for part in &matrix.matrices {
+        let scaled = graph.multiply(part.column, vector);
+        let product = graph.apply(part.matrix, part.transposed, scaled);
+        parts.push(graph.multiply(part.row, product));
+    }
+    parts
+}
+
+/// The rates of the guards along the motion, the inputs held.
+fn guard_rates(equations: &mut Equations) -> Vec<Id> {
+    let rows = equations.accelerations.rows.clone();
+    let tangent = move |graph: &mut Graph, leaf: Id| match *graph.operation(leaf) {
+        Operation::Rate(index) => rows.scalars[index],
+        Operation::ModeRates(field) => rows.modal[field],
+        _ => along_motion(graph, leaf),
+    };
+    let mut direction = Direction::new(&tangent);
+    let graph = &mut equations.graph;
+    let guards = equations.guards.iter();
+    guards
+        .map(|guard| direction.derivative(graph, guard.value))
+        .collect()
+}
+
+fn products(equations: &mut Equations) -> Products<Id, Rows> {
+    let rows = equations.accelerations.rows.clone();
+    let tangent = |graph: &mut Graph, leaf: Id| match variable_of(graph, leaf) {
+        Some(variable) => graph.intern(Operation::Argument(Argument::Direction, variable)),
+        None => graph.zero(),
+    };
+    let graph = &mut equations.graph;
+    let mut direction = Direction::new(&tangent);
+    let forward = Rows {
+        scalars: derivatives(graph, &mut direction, &rows.scalars),
+        modal: derivatives(graph, &mut direction, &rows.modal),
+    };
+    let mut weighted = Vec::new();
+    for (index, row) in rows.scalars.iter().enumerate() {
+        weighted.push((weight(graph, Variable::Rate(index)), *row));
+    }
+    for (field, row) in rows.modal.iter().enumerate() {
+        weighted.push((weight(graph, Variable::ModeRates(field)), *row));
+    }
+    let gradient = adjoint::gradient(graph, &weighted);
+    let mut reverse: Vec<(Variable, Id)> = gradient
+        .into_iter()
+        .filter_map(|(leaf, node)| Some((variable_of(graph, leaf)?, node)))
+        .collect();
+    reverse.sort_by_key(|(_, node)| *node);
+    Products {
+        forward,
+        reverse,
+        by_parameters: weighted_by_parameters(equations, &rows, &weighted),
+    }
+}
+
+/// The gradient of the weighted rates by the independent parameters: backward where it can be,
+/// one parameter after the other where matrices hold them.
+fn weighted_by_parameters(
+    equations: &mut Equations,
+    rows: &Rows,
+    weighted: &[(Id, Id)],
+) -> Jacobian<Id> {
+    const NAME: &str = "weighted_rates_by_parameters";
+    let graph = &mut equations.graph;
+    match adjoint::gradient_by_parameters(graph, weighted, &equations.derived_parameters) {
+        Some(gradient) => one_row(graph, NAME, &gradient),
+        None => {
+            let sum = JacobianRows::single(weighted_sum(graph, rows));
+            by_parameters(equations, &sum, NAME)
+        }
+    }
+}
+
+/// The sum of weights times accelerations, the rows of the rates that hold parameters.
+fn weighted_sum(graph: &mut Graph, rows: &Rows) -> Id {
+    let mut terms = Vec::new();
+    for (index, row) in rows.scalars.iter().enumerate() {
+        let weight = weight(graph, Variable::Rate(index));
+        terms.push((1.0, graph.multiply(weight, *row)));
+    }
+    for (field, row) in rows.modal.iter().enumerate() {
+        let weight = weight(graph, Variable::ModeRates(field));
+        let product = graph.multiply(weight, *row);
+        terms.push((1.0, graph.total_over(Space::Modes(field), product)));
+    }
+    graph.combine(&terms)
+}
+
+fn derivatives(graph: &mut Graph, direction: &mut Direction<'_>, nodes: &[Id]) -> Vec<Id> {
+    nodes
+        .iter()
+        .map(|node| direction.derivative(graph, *node))
+        .collect()
+}
+
+fn weight(graph: &mut Graph, variable: Variable) -> Id {
+    graph.intern(Operation::Argument(Argument::Weights, variable))
+}
+
+fn variable_of(graph: &Graph, leaf: Id) -> Option<Variable> {
+    Some(match *graph.operation(leaf) {
+        Operation::Coordinate(index) => Variable::Coordinate(index),
+        Operation::ModeCoordinates(field) => Variable::ModeCoordinates(field),
+        Operation::Rate(index) => Variable::Rate(index),
+        Operation::ModeRates(field) => Variable::ModeRates(field),
+        Operation::Input(index) => Variable::Input(index),
+        _ => return None,
+    })
+}
+
+fn jacobians(equations: &mut Equations) -> Vec<Jacobian<Id>> {
+    let (rates, observables) = (rate_rows(equations), observable_rows(equations));
+    vec![
+        by_variables(equations, &rates, "rates_by_state", false),
+        by_variables(equations, &rates, "rates_by_inputs", true),
+        by_parameters(equations, &rates, "rates_by_parameters"),
+        by_variables(equations, &observables, "observables_by_state", false),
+        by_variables(equations, &observables, "observables_by_inputs", true),
+        by_parameters(equations, &observables, "observables_by_parameters"),
+    ]
+}

@@ -1,0 +1,315 @@
+//! Jacobians as blocks of structural nonzeros: each row, or the rows of a field's modes, by
+//! each variable, or by the modes of a field. Rows are differentiated as they stand in the
+//! graph, with the factorisation that they share, so that a bottleneck such as the one sum
+//! over all modes is differentiated once.
+
+use super::types::{Entry, Jacobian};
+use crate::mechanics::equations::Equations;
+use crate::symbolic::differentiate::{Direction, ModalDerivative};
+use crate::symbolic::graph::{Graph, Id, Operation, Space, Variable};
+use crate::symbolic::matrix::StructuredMatrix;
+
+/// The rows of a Jacobian: nodes, and the diagonal block of ones if there is one.
+pub(crate) struct JacobianRows {
+    count: usize,
+    /// Ones from the first row on at the columns from here on.
+    identity: Option<usize>,
+    rows: Vec<Row>,
+}
+
+/// One row, or one for each mode of a field.
+#[derive(Clone, Copy)]
+struct Row {
+    first: usize,
+    count: usize,
+    node: Id,
+    /// The field whose modes the rows are.
+    field: Option<usize>,
+}
+
+impl JacobianRows {
+    /// One row.
+    pub(crate) fn single(node: Id) -> Self {
+        let row = Row {
+            first: 0,
+            count: 1,
+            node,
+            field: None,
+        };
+        Self {
+            count: 1,
+            identity: None,
+            rows: vec![row],
+        }
+    }
+}
+
+/// The rates of the state: the rates of coordinates are themselves part of the state.
+pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
+    let degrees = degrees_of_freedom(equations);
+    let accelerations = &equations.accelerations.rows;
+    let mut rows: Vec<Row> = accelerations
+        .scalars
+        .iter()
+        .enumerate()
+        .map(|(index, node)| Row {
+            first: degrees + index,
+            count: 1,
+            node: *node,
+            field: None,
+        })
+        .collect();
+    for (field, node) in accelerations.modal.iter().enumerate() {
+        rows.push(Row {
+            first: degrees + mode_offset(equations, field),
+            count: equations.graph.orders()[field],
+            node: *node,
+            field: Some(field),
+        });
+    }
+    JacobianRows {
+        count: 2 * degrees,
+        identity: Some(degrees),
+        rows,
+    }
+}
+
+/// The observables, energy and power last.
+pub(crate) fn observable_rows(equations: &mut Equations) -> JacobianRows {
+    let energy = equations.graph.add(equations.kinetic, equations.potential);
+    let nodes = equations.observables.iter().copied();
+    let rows: Vec<Row> = nodes
+        .chain([energy, equations.power])
+        .enumerate()
+        .map(|(first, node)| Row {
+            first,
+            count: 1,
+            node,
+            field: None,
+        })
+        .collect();
+    JacobianRows {
+        count: rows.len(),
+        identity: None,
+        rows,
+    }
+}
+
+/// The Jacobian by the state, or by the inputs.
+pub(crate) fn by_variables(
+    equations: &mut Equations,
+    rows: &JacobianRows,
+    name: &'static str,
+    inputs: bool,
+) -> Jacobian<Id> {
+    let variables = if inputs {
+        (0..equations.inputs).map(Variable::Input).collect()
+    } else {
+        state_variables(equations)
+    };
+    let mut blocks = Blocks::new(&mut equations.graph, rows, inputs);
+    let mut column = 0;
+    for variable in variables {
+        column += blocks.by_variable(variable, column);
+    }
+    blocks.jacobian(name, column)
+}
+
+/// The Jacobian by the independent parameters.
+pub(crate) fn by_parameters(
+    equations: &mut Equations,
+    rows: &JacobianRows,
+    name: &'static str,
+) -> Jacobian<Id> {
+    let independent: Vec<usize> = (0..equations.parameter_names.len())
+        .filter(|index| equations.derived_parameters[*index].is_none())
+        .collect();
+    let mut blocks = Blocks::new(&mut equations.graph, rows, true);
+    for (column, parameter) in independent.iter().enumerate() {
+        blocks.by_parameter(&equations.derived_parameters, *parameter, column);
+    }
+    blocks.jacobian(name, independent.len())
+}
+
+/// A Jacobian of one row.
+pub(crate) fn one_row(graph: &Graph, name: &'static str, row: &[Id]) -> Jacobian<Id> {
+    let nonzeros = row
+        .iter()
+        .enumerate()
+        .filter(|(_, id)| !graph.is_zero(**id));
+    let entries = nonzeros.map(|(column, value)| Entry {
+        row: 0,
+        rows: 1,
+        column,
+        columns: 1,
+        diagonal: false,
+        value: *value,
+    });
+    Jacobian {
+        name,
+        rows: 1,
+        columns: row.len(),
+        entries: entries.collect(),
+    }
+}
+
+fn degrees_of_freedom(equations: &Equations) -> usize {
+    mode_offset(equations, equations.graph.orders().len())
+}
+
+fn mode_offset(equations: &Equations, field: usize) -> usize {
+    let modes: usize = equations.graph.orders()[..field].iter().sum();
+    equations.forces.scalars.len() + modes
+}
+
+fn state_variables(equations: &Equations) -> Vec<Variable> {
+    let (coordinates, fields) = (equations.forces.scalars.len(), equations.forces.modal.len());
+    (0..coordinates)
+        .map(Variable::Coordinate)
+        .chain((0..fields).map(Variable::ModeCoordinates))
+        .chain((0..coordinates).map(Variable::Rate))
+        .chain((0..fields).map(Variable::ModeRates))
+        .collect()
+}
+
+/// The blocks of a Jacobian so far.
+struct Blocks<'a> {
+    graph: &'a mut Graph,
+    rows: &'a JacobianRows,
+    entries: Vec<Entry<Id>>,
+}
+
+impl<'a> Blocks<'a> {
+    fn new(graph: &'a mut Graph, rows: &'a JacobianRows, without_identity: bool) -> Self {
+        let mut entries = Vec::new();
+        if let (Some(column), false) = (rows.identity, without_identity) {
+            entries.push(Entry {
+                row: 0,
+                rows: column,
+                column,
+                columns: column,
+                diagonal: true,
+                value: graph.one(),
+            });
+        }
+        Self {
+            graph,
+            rows,
+            entries,
+        }
+    }
+
+    fn jacobian(mut self, name: &'static str, columns: usize) -> Jacobian<Id> {
+        self.entries
+            .retain(|entry| entry.rows > 0 && entry.columns > 0);
+        self.entries.sort_by_key(|entry| (entry.row, entry.column));
+        Jacobian {
+            name,
+            rows: self.rows.count,
+            columns,
+            entries: self.entries,
+        }
+    }
+
+    /// The blocks by a variable whose first column is this; how many columns it has.
+    fn by_variable(&mut self, variable: Variable, column: usize) -> usize {
+        let leaf = self.graph.variable(variable);
+        if let Some(mut derivative) = ModalDerivative::new(self.graph, leaf) {
+            let columns = self.graph.length(self.graph.shape(leaf));
+            for row in &self.rows.rows {
+                self.by_modes(&mut derivative, *row, column, columns);
+            }
+            return columns;
+        }
+        let mut direction = Direction::default();
+        direction.seed(leaf, self.graph.one());
+        self.along(&mut direction, column);
+        1
+    }
+
+    fn by_parameter(&mut self, derived: &[Option<Id>], parameter: usize, column: usize) {
+        let mut direction = Direction::default();
+        let leaf = self.graph.intern(Operation::Parameter(parameter));
+        direction.seed(leaf, self.graph.one());
+        let mut seeded = vec![false; derived.len()];
+        for index in 0..derived.len() {
+            seed_derived(self.graph, derived, index, &mut direction, &mut seeded);
+        }
+        self.along(&mut direction, column);
+    }
+
+    /// One column: the derivatives of all rows along a direction.
+    fn along(&mut self, direction: &mut Direction<'_>, column: usize) {
+        for row in &self.rows.rows {
+            let value = direction.derivative(self.graph, row.node);
+            self.push(*row, (column, 1), false, value);
+        }
+    }
+
+    fn by_modes(
+        &mut self,
+        derivative: &mut ModalDerivative,
+        row: Row,
+        column: usize,
+        columns: usize,
+    ) {
+        let Some(field) = row.field else {
+            let value = derivative.gradient(self.graph, row.node);
+            self.push(row, (column, columns), false, value);
+            return;
+        };
+        let matrix = derivative.of_elements(self.graph, row.node, Space::Modes(field));
+        match matrix {
+            StructuredMatrix {
+                diagonal: Some(diagonal),
+                outer,
+                matrices,
+                ..
+            } if outer.is_empty() && matrices.is_empty() => {
+                self.push(row, (column, columns), true, diagonal);
+            }
+            matrix if matrix.is_zero() => {}
+            matrix => {
+                let value = matrix.assemble(self.graph);
+                self.push(row, (column, columns), false, value);
+            }
+        }
+    }
+
+    fn push(&mut self, row: Row, (column, columns): (usize, usize), diagonal: bool, value: Id) {
+        if self.graph.is_zero(value) {
+            return;
+        }
+        self.entries.push(Entry {
+            row: row.first,
+            rows: row.count,
+            column,
+            columns,
+            diagonal,
+            value,
+        });
+    }
+}
+
+/// Gives the leaf of a derived parameter its derivative along the direction, those that its
+/// expression reads first.
+fn seed_derived(
+    graph: &mut Graph,
+    derived: &[Option<Id>],
+    index: usize,
+    direction: &mut Direction<'_>,
+    seeded: &mut [bool],
+) {
+    let (Some(expression), false) = (derived[index], seeded[index]) else {
+        return;
+    };
+    seeded[index] = true;
+    for node in graph.reachable(&[expression]) {
+        if let Operation::Parameter(read) = *graph.operation(node) {
+            seed_derived(graph, derived, read, direction, seeded);
+        }
+    }
+    let slope = direction.derivative(graph, expression);
+    let leaf = graph.intern(Operation::Parameter(index));
+    direction.seed(leaf, slope);
+}

@@ -1,0 +1,145 @@
+//! Derivatives along a direction of what is computed with matrices that move with it:
+//! products, Gram matrices and solutions by a Cholesky factor. Modal matrices move with
+//! parameters; a factor is not differentiated, but the system that it solves:
+//! d(M^-1 b) = M^-1 (db - dM M^-1 b).
+
+use crate::symbolic::differentiate::Direction;
+use crate::symbolic::graph::{Assembly, Dependence, Graph, Id, Operation};
+
+impl Direction<'_> {
+    /// d(matrix vector) along the direction.
+    pub(crate) fn applied(
+        &mut self,
+        graph: &mut Graph,
+        matrix: Id,
+        transposed: bool,
+        vector: Id,
+    ) -> Id {
+        let inner = self.derivative(graph, vector);
+        let by_vector = graph.apply(matrix, transposed, inner);
+        let by_matrix = self.moved_matrix_applied(graph, matrix, transposed, vector);
+        graph.add(by_vector, by_matrix)
+    }
+
+    /// d(L^-T L^-1 right) along the direction, `solution` being the node itself.
+    pub(crate) fn solved(&mut self, graph: &mut Graph, factor: Id, right: Id, solution: Id) -> Id {
+        let inner = self.derivative(graph, right);
+        let moved = match *graph.operation(factor) {
+            Operation::Cholesky(matrix) => {
+                self.moved_matrix_applied(graph, matrix, false, solution)
+            }
+            _ => graph.zero(),
+        };
+        let rest = graph.subtract(inner, moved);
+        graph.cholesky_solve(factor, rest)
+    }
+
+    /// d(matrix) vector, the vector held.
+    fn moved_matrix_applied(
+        &mut self,
+        graph: &mut Graph,
+        matrix: Id,
+        transposed: bool,
+        vector: Id,
+    ) -> Id {
+        match graph.operation(matrix).clone() {
+            Operation::Gram {
+                left,
+                weight,
+                right,
+            } => {
+                let moved = self.derivative(graph, weight);
+                if graph.is_zero(moved) {
+                    return moved;
+                }
+                let (outer, inner) = if transposed {
+                    (right, left)
+                } else {
+                    (left, right)
+                };
+                let at_nodes = graph.apply(inner, false, vector);
+                let weighted = graph.multiply(moved, at_nodes);
+                graph.apply(outer, true, weighted)
+            }
+            Operation::Assemble(assembly) => self.moved_assembly(graph, &assembly, vector),
+            _ => graph.zero(),
+        }
+    }
+
+    /// The same of an assembled matrix, part by part. It is never transposed: a factor is that
+    /// of a symmetric one.
+    fn moved_assembly(&mut self, graph: &mut Graph, assembly: &Assembly, vector: Id) -> Id {
+        let mut terms = Vec::new();
+        if let Some(diagonal) = assembly.diagonal {
+            let moved = self.derivative(graph, diagonal);
+            terms.push((1.0, graph.multiply(moved, vector)));
+        }
+        for &(u, v) in &assembly.outer {
+            let (moved_u, moved_v) = (self.derivative(graph, u), self.derivative(graph, v));
+            for (u, v) in [(moved_u, v), (u, moved_v)] {
+                let product = graph.multiply(v, vector);
+                let total = graph.total_over(assembly.columns, product);
+                terms.push((1.0, graph.multiply(u, total)));
+            }
+        }
+        for part in &assembly.matrices {
+            let scaled = graph.multiply(part.column, vector);
+            let product = graph.apply(part.matrix, part.transposed, scaled);
+            let moved_row = self.derivative(graph, part.row);
+            terms.push((1.0, graph.multiply(moved_row, product)));
+            let moved_column = self.derivative(graph, part.column);
+            let scaled_by_moved = graph.multiply(moved_column, vector);
+            let by_column = graph.apply(part.matrix, part.transposed, scaled_by_moved);
+            let by_matrix = self.moved_matrix_applied(graph, part.matrix, part.transposed, scaled);
+            let inner = graph.add(by_column, by_matrix);
+            terms.push((1.0, graph.multiply(part.row, inner)));
+        }
+        graph.combine(&terms)
+    }
+
+    /// d(diagonal of left^T diag(weight) right) along the direction.
+    pub(crate) fn gram_diagonal(
+        &mut self,
+        graph: &mut Graph,
+        left: Id,
+        weight: Id,
+        right: Id,
+    ) -> Id {
+        let moved = self.derivative(graph, weight);
+        if graph.is_zero(moved) {
+            return moved;
+        }
+        graph.intern(Operation::GramDiagonal {
+            left,
+            weight: moved,
+            right,
+        })
+    }
+}
+
+/// Whether `roots` hold a matrix that moves with the state: those are differentiated by
+/// parameters alone.
+pub(crate) fn holds_moving_matrix(graph: &Graph, roots: &[Id]) -> bool {
+    holds_matrix(graph, roots, |graph, id| {
+        !graph.dependence(id).is_prepared()
+    })
+}
+
+/// Whether something in `roots` is a matrix operation on what depends on parameters.
+pub(crate) fn holds_matrix_of_parameters(graph: &Graph, roots: &[Id]) -> bool {
+    holds_matrix(graph, roots, |graph, id| {
+        graph.dependence(id).has(Dependence::PARAMETER)
+    })
+}
+
+fn holds_matrix(graph: &Graph, roots: &[Id], counts: fn(&Graph, Id) -> bool) -> bool {
+    graph.reachable(roots).into_iter().any(|id| {
+        matches!(
+            graph.operation(id),
+            Operation::Gram { .. }
+                | Operation::GramDiagonal { .. }
+                | Operation::Assemble(_)
+                | Operation::Cholesky(_)
+        ) && counts(graph, id)
+    })
+}

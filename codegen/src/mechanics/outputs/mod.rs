@@ -1,0 +1,19 @@
+//! What is derived on request beside rates, observables, energy, power, guards and mass matrix.
+//!
+//! `output` (what can be asked for), `types` (the structure of what was derived), `derive` (its
+//! derivation), `jacobian` (columns by state, inputs and parameters), `adjoint` (products with
+//! weights, backward), `matrix_derivatives` (what differentiates a modal matrix), `regimes`
+//! (which surfaces decide each branch).
+
+mod adjoint;
+mod derive;
+mod jacobian;
+mod matrix_derivatives;
+mod output;
+mod regimes;
+mod types;
+
+pub use derive::requested;
+pub use output::{Request, UnknownRequest};
+pub use regimes::{Decided, SURFACES_OF_A_REGIME, Switch};
+pub use types::{Entry, Jacobian, Products, Requested};

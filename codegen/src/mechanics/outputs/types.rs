@@ -1,0 +1,113 @@
+//! What is derived on request, of nodes in the equations and of values in the program: the same
+//! structure for both.
+
+use super::output::Request;
+use super::regimes::Switch;
+use crate::symbolic::graph::Variable;
+
+/// What was requested, of nodes `N` and rows `R` of them.
+#[derive(Clone, Debug)]
+pub struct Requested<N, R> {
+    /// What was asked for.
+    pub requests: Vec<Request>,
+    /// c - f
+    pub bias_forces: Option<R>,
+    /// M a + c - f, the accelerations a being an argument.
+    pub inverse_dynamics: Option<R>,
+    /// The rate of each guard along the motion.
+    pub guard_rates: Option<Vec<N>>,
+    /// Jacobians by state, inputs and parameters: of the rates, then of the observables.
+    pub jacobians: Vec<Jacobian<N>>,
+    /// Products with the Jacobian of the rates.
+    pub products: Option<Products<N, R>>,
+    /// What a regime decides in the accelerations.
+    pub regimes: Option<Vec<Switch<N>>>,
+}
+
+impl<N, R> Default for Requested<N, R> {
+    fn default() -> Self {
+        Self {
+            requests: Vec::new(),
+            bias_forces: None,
+            inverse_dynamics: None,
+            guard_rates: None,
+            jacobians: Vec::new(),
+            products: None,
+            regimes: None,
+        }
+    }
+}
+
+/// Products of the rates' Jacobian by state and inputs.
+#[derive(Clone, Debug)]
+pub struct Products<N, R> {
+    /// The accelerations' rows of the product with a direction; those above are the rates'
+    /// part of the direction.
+    pub forward: R,
+    /// For each variable, the product of the weights with its column, without what the
+    /// rates' own rows add.
+    pub reverse: Vec<(Variable, N)>,
+    /// The product of the weights with the columns by parameters: a Jacobian of one row.
+    pub by_parameters: Jacobian<N>,
+}
+
+/// A Jacobian by its structural nonzeros.
+#[derive(Clone, Debug)]
+pub struct Jacobian<N> {
+    /// What it is: `rates_by_state` and so on.
+    pub name: &'static str,
+    /// How many rows.
+    pub rows: usize,
+    /// How many columns.
+    pub columns: usize,
+    /// Its blocks, by rows, then by columns; blocks of the same rows stand together.
+    pub entries: Vec<Entry<N>>,
+}
+
+/// A block of structural nonzeros.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry<N> {
+    /// First row.
+    pub row: usize,
+    /// How many rows.
+    pub rows: usize,
+    /// First column.
+    pub column: usize,
+    /// How many columns.
+    pub columns: usize,
+    /// Whether only the diagonal is filled.
+    pub diagonal: bool,
+    /// A scalar, a vector over the rows or columns, or an assembled matrix.
+    pub value: N,
+}
+
+impl<N> Entry<N> {
+    /// How many nonzeros it has in each of its rows.
+    pub fn width(&self) -> usize {
+        if self.diagonal { 1 } else { self.columns }
+    }
+}
+
+impl<N> Jacobian<N> {
+    /// How many structural nonzeros there are.
+    pub fn nonzeros(&self) -> usize {
+        self.entries.iter().map(|e| e.rows * e.width()).sum()
+    }
+
+    /// Where the nonzeros of each entry begin, and how many there are in each of its rows
+    /// with those of the other entries of these rows.
+    pub fn places(&self) -> Vec<(usize, usize)> {
+        let mut places = Vec::with_capacity(self.entries.len());
+        let mut start = 0;
+        for group in self.entries.chunk_by(|a, b| a.row == b.row) {
+            let width: usize = group.iter().map(Entry::width).sum();
+            let mut offset = 0;
+            for entry in group {
+                places.push((start + offset, width));
+                offset += entry.width();
+            }
+            start += group[0].rows * width;
+        }
+        places
+    }
+}

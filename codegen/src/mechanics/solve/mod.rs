@@ -1,0 +1,117 @@
+//! The accelerations from M a = f, following the structure of the mass matrix.
+//!
+//! Modes are eliminated first: their block is diagonal plus outer products through a few
+//! interface scalars (the deflection at a tip mass, say), so that with
+//! D a_q + Phi (G Phi^T a_q + C^T a - b) + H^T a = f_q the modes cost O(S). The forces that
+//! act through the interfaces, p = G Phi^T a_q + C^T a - b, stand as extra unknowns beside
+//! the coordinates in a small system, solved by elimination without pivoting in the order
+//! that counts fewest operations. Forces and not the accelerations Phi^T a_q: of many modes
+//! the end is light, its acceleration large and nearly cancelled by that of what it carries,
+//! and p would be their difference. Coupling that turns with the state goes through
+//! interfaces (C), any other does not (H): only scalars turn (see
+//! `ModalBlock::couple_through_interfaces`). Where G is not diagonal or C not zero the
+//! interfaces are made orthogonal first, or a pivot could be negative although M is positive
+//! definite (see `ModalBlock::orthogonalise`). Where the basis is not orthogonal the modal
+//! block is dense and its Cholesky factor takes the place of D. Pivots must be positive: a
+//! reciprocal of one that is not is NaN.
+
+mod critical_path;
+mod elimination;
+mod modal;
+mod separation;
+mod small;
+
+use crate::mechanics::mass_matrix::MassMatrix;
+use crate::mechanics::rows::Rows;
+use crate::symbolic::graph::{Graph, Id};
+use crate::symbolic::operation_count::count_operations;
+use modal::{ModalBlock, ModalInverse};
+use small::SmallSystem;
+
+/// The accelerations, and how they were found.
+#[derive(Clone, Debug)]
+pub struct Accelerations {
+    /// The accelerations.
+    pub rows: Rows,
+    /// All pivots of the factorisation, which must be positive: those of the coordinates in
+    /// the order of their elimination, then those of the interfaces, vectors over the
+    /// modes, and Cholesky factors (positive if they hold no NaN).
+    pub pivots: Vec<Id>,
+    /// What was chosen.
+    pub report: SolveReport,
+}
+
+/// How the accelerations are solved for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SolveReport {
+    /// The unknowns in the order of their elimination after the modes: coordinates by
+    /// number.
+    pub order: Vec<usize>,
+    /// How many interface scalars stand beside the coordinates.
+    pub interfaces: usize,
+    /// Operations per call for the chosen order.
+    pub operations: usize,
+    /// Operations per call of the dearest order tried.
+    pub dearest: usize,
+    /// Whether a field's modal block is dense.
+    pub dense_modes: bool,
+}
+
+/// Solves M a = f.
+pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &Rows) -> Accelerations {
+    let modal = ModalBlock::new(graph, mass, right);
+    let system = SmallSystem::new(graph, mass, right, &modal);
+    let coordinates = right.scalars.len();
+    let mut solved_in = |order: Vec<usize>| {
+        let (unknowns, mut pivots) = system.eliminate(graph, &order);
+        pivots.rotate_left(system.interfaces);
+        let rows = system.back_substitute(graph, &modal, &unknowns);
+        let operations = count_operations(graph, &rows.nodes());
+        (operations, order, rows, pivots)
+    };
+    let mut best = solved_in((0..coordinates).collect());
+    let mut dearest = best.0;
+    for order in other_orders(coordinates) {
+        let other = solved_in(order);
+        dearest = dearest.max(other.0);
+        if other.0 < best.0 {
+            best = other;
+        }
+    }
+    let (operations, order, rows, mut pivots) = best;
+    let rows = critical_path::late_terms_last(graph, &rows);
+    pivots.extend(modal.inverses.iter().flatten().map(ModalInverse::pivot));
+    Accelerations {
+        rows,
+        pivots,
+        report: SolveReport {
+            order,
+            interfaces: modal.interfaces.len(),
+            operations,
+            dearest,
+            dense_modes: modal.inverses.iter().flatten().any(ModalInverse::is_dense),
+        },
+    }
+}
+
+/// The orders to try beside the natural one: all others for up to four coordinates, its
+/// reverse beyond.
+fn other_orders(count: usize) -> Vec<Vec<usize>> {
+    if count > 4 {
+        return vec![(0..count).rev().collect()];
+    }
+    let mut orders = vec![Vec::new()];
+    for _ in 0..count {
+        orders = orders
+            .into_iter()
+            .flat_map(|order: Vec<usize>| {
+                (0..count)
+                    .filter(|index| !order.contains(index))
+                    .map(|index| [order.clone(), vec![index]].concat())
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+    }
+    // The first is the natural one.
+    orders.split_off(1)
+}

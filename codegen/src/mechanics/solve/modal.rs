@@ -1,0 +1,299 @@
+//! The modal block of the mass matrix: its inverse field by field, and the interface scalars
+//! through which outer products couple the modes.
+
+use super::elimination::{inner_product, pivot_reciprocal};
+use super::separation::{Part, spread};
+use crate::mechanics::mass_matrix::MassMatrix;
+use crate::mechanics::rows::Rows;
+use crate::symbolic::graph::{Graph, Id, Operation, Space};
+
+/// How the modes of one field are solved for.
+pub(super) enum ModalInverse {
+    /// Division by a diagonal.
+    Diagonal { diagonal: Id, reciprocal: Id },
+    /// Cholesky factor of a dense block.
+    Dense { factor: Id },
+}
+
+impl ModalInverse {
+    pub(super) fn new(graph: &mut Graph, mass: &MassMatrix, field: usize) -> Self {
+        let block = &mass.modal[field][field];
+        // Without a diagonal, fewer outer products than modes make a singular block.
+        let full_rank = block.outer.len() >= graph.size(Space::Modes(field));
+        if block.matrices.is_empty() && (block.diagonal.is_some() || !full_rank) {
+            let diagonal = block.diagonal.unwrap_or_else(|| graph.zero());
+            let reciprocal = pivot_reciprocal(graph, diagonal);
+            return Self::Diagonal {
+                diagonal,
+                reciprocal,
+            };
+        }
+        let matrix = block.assemble(graph);
+        let factor = graph.intern(Operation::Cholesky(matrix));
+        Self::Dense { factor }
+    }
+
+    /// A constant diagonal is divided into every term, where it cancels against the
+    /// stiffness of the same mode.
+    pub(super) fn apply(&self, graph: &mut Graph, vector: Id) -> Id {
+        match *self {
+            Self::Dense { factor } => graph.cholesky_solve(factor, vector),
+            Self::Diagonal { reciprocal, .. } => match graph.operation(vector).clone() {
+                Operation::Sum(terms) if graph.dependence(reciprocal).is_prepared() => {
+                    let divided: Vec<(f64, Id)> = terms
+                        .iter()
+                        .map(|&(c, term)| (c.value(), graph.multiply(term, reciprocal)))
+                        .collect();
+                    graph.combine(&divided)
+                }
+                _ => graph.multiply(vector, reciprocal),
+            },
+        }
+    }
+
+    pub(super) fn pivot(&self) -> Id {
+        match *self {
+            Self::Diagonal { diagonal, .. } => diagonal,
+            Self::Dense { factor } => factor,
+        }
+    }
+
+    pub(super) fn is_dense(&self) -> bool {
+        matches!(self, Self::Dense { .. })
+    }
+}
+
+/// A vector over one field's modes through which outer products act.
+pub(super) struct Interface {
+    pub(super) field: usize,
+    pub(super) shape: Id,
+    /// D^-1 shape
+    pub(super) solved: Id,
+    /// shape^T D^-1 shape, before the interfaces are made orthogonal
+    pub(super) square: Id,
+}
+
+/// Of a combination of other interfaces rounding leaves about 1e-32 of the square.
+const LEAST_SHARE: f64 = 1e-20;
+
+/// The modal block: an inverse per field, and interfaces with their weights G.
+pub(super) struct ModalBlock {
+    pub(super) inverses: Vec<Option<ModalInverse>>,
+    pub(super) interfaces: Vec<Interface>,
+    pub(super) weights: Vec<Vec<Id>>,
+    /// C: coupling of each coordinate through the interfaces.
+    pub(super) coupling: Vec<Vec<Id>>,
+    /// Coupling of each coordinate with each field past the interfaces.
+    pub(super) direct_coupling: Vec<Vec<Id>>,
+    /// b: the part of the modes' forces that acts through the interfaces.
+    pub(super) forces: Vec<Id>,
+    /// The modes' forces past the interfaces, per field.
+    pub(super) direct_forces: Vec<Id>,
+    /// Whether a field acts on coordinates through its interfaces alone.
+    pub(super) through_interfaces: Vec<bool>,
+}
+
+impl ModalBlock {
+    pub(super) fn new(graph: &mut Graph, mass: &MassMatrix, right: &Rows) -> Self {
+        let fields = mass.modal.len();
+        let inverses = (0..fields)
+            .map(|field| {
+                let occupied = graph.size(Space::Modes(field)) > 0;
+                occupied.then(|| ModalInverse::new(graph, mass, field))
+            })
+            .collect();
+        let mut block = Self {
+            inverses,
+            interfaces: Vec::new(),
+            weights: Vec::new(),
+            coupling: vec![Vec::new(); right.scalars.len()],
+            direct_coupling: mass.coupling.clone(),
+            forces: Vec::new(),
+            direct_forces: right.modal.clone(),
+            through_interfaces: vec![false; fields],
+        };
+        for row in 0..fields {
+            for column in 0..fields {
+                let dense = block.inverses[row]
+                    .as_ref()
+                    .is_some_and(ModalInverse::is_dense);
+                if row == column && dense {
+                    continue;
+                }
+                for &(u, v) in &mass.modal[row][column].outer {
+                    block.add_outer(graph, (row, u), (column, v));
+                }
+            }
+        }
+        for field in 0..fields {
+            block.couple_through_interfaces(graph, field);
+        }
+        if !block.weights_are_diagonal(graph) {
+            for field in 0..fields {
+                block.orthogonalise(graph, field);
+            }
+        }
+        block
+    }
+
+    /// Where a field's coupling turns with the state, as a link's does with the angle of the
+    /// next: its shapes become interfaces, so that only scalars turn. The shapes themselves
+    /// must not, or the interfaces would cost more than they spare.
+    fn couple_through_interfaces(&mut self, graph: &mut Graph, field: usize) {
+        if !matches!(
+            self.inverses[field],
+            Some(ModalInverse::Diagonal { reciprocal, .. }) if graph.dependence(reciprocal).is_prepared()
+        ) {
+            return;
+        }
+        let rows: Vec<Id> = self.direct_coupling.iter().map(|row| row[field]).collect();
+        let turning = |graph: &Graph, id: &Id| !graph.dependence(*id).is_prepared();
+        let interfaces: Vec<Id> = self.interfaces.iter().map(|i| i.shape).collect();
+        if !rows.iter().any(|row| turning(graph, row))
+            || interfaces.iter().any(|shape| turning(graph, shape))
+        {
+            return;
+        }
+        let spreads: Vec<Vec<Part>> = rows.iter().map(|row| spread(graph, *row)).collect();
+        if spreads
+            .iter()
+            .flatten()
+            .any(|part| turning(graph, &part.vector))
+        {
+            return;
+        }
+        self.through_interfaces[field] = true;
+        for (row, parts) in spreads.into_iter().enumerate() {
+            self.direct_coupling[row][field] = graph.zero();
+            for part in parts {
+                if let Some(place) = self.interface(graph, field, part.vector) {
+                    self.coupling[row][place] = part.scalar;
+                }
+            }
+        }
+        let mut direct = Vec::new();
+        for part in spread(graph, self.direct_forces[field]) {
+            let place = self
+                .interfaces
+                .iter()
+                .position(|i| i.field == field && i.shape == part.vector);
+            match place {
+                Some(place) => self.forces[place] = part.scalar,
+                None => direct.push((1.0, graph.multiply(part.scalar, part.vector))),
+            }
+        }
+        self.direct_forces[field] = graph.combine(&direct);
+    }
+
+    fn weights_are_diagonal(&self, graph: &Graph) -> bool {
+        let diagonal = self.weights.iter().enumerate().all(|(row, weights)| {
+            let beside = |(column, weight): (usize, &Id)| row == column || graph.is_zero(*weight);
+            weights.iter().enumerate().all(beside)
+        });
+        diagonal && !self.through_interfaces.contains(&true)
+    }
+
+    /// Makes the interfaces of a field orthogonal by D^-1 (Gram-Schmidt), each keeping its
+    /// own direction: phi_k = psi_k + sum over j < k of mu_kj psi_j, G' = U G U^T with
+    /// U_jk = mu_kj.
+    ///
+    /// The pivots of I + G K, K = Phi^T D^-1 Phi, are ratios of its leading minors. With K
+    /// diagonal these are the minors of the symmetric I + K^1/2 G K^1/2, all positive if
+    /// the modal block is positive definite. With any other K they need not be: for a mass
+    /// on a lever between two points of a beam the first can be negative.
+    fn orthogonalise(&mut self, graph: &mut Graph, field: usize) {
+        let places: Vec<usize> = (0..self.interfaces.len())
+            .filter(|place| self.interfaces[*place].field == field)
+            .collect();
+        for (count, &place) in places.iter().enumerate() {
+            let shares: Vec<(usize, Id)> = places[..count]
+                .iter()
+                .map(|&earlier| (earlier, self.share(graph, place, earlier)))
+                .collect();
+            let mut terms = vec![(1.0, self.interfaces[place].shape)];
+            for &(earlier, share) in &shares {
+                terms.push((-1.0, graph.multiply(share, self.interfaces[earlier].shape)));
+                self.move_weight(graph, place, earlier, share);
+            }
+            let shape = graph.combine(&terms);
+            self.interfaces[place].shape = shape;
+            self.interfaces[place].solved = self.solve_field(graph, field, shape);
+        }
+    }
+
+    /// mu: how much of the orthogonal interface `earlier` is in the interface `place`; 0 if
+    /// `earlier` was a combination of others, which leaves nothing but rounding of it.
+    fn share(&self, graph: &mut Graph, place: usize, earlier: usize) -> Id {
+        let (own, other) = (&self.interfaces[place], &self.interfaces[earlier]);
+        let product = inner_product(graph, own.field, own.shape, other.solved);
+        let square = inner_product(graph, own.field, other.shape, other.solved);
+        let share = graph.divide(product, square);
+        let least = graph.scale(LEAST_SHARE, other.square);
+        let zero = graph.zero();
+        graph.select(square, least, share, zero)
+    }
+
+    /// The weights after phi_place = psi + share psi_earlier.
+    fn move_weight(&mut self, graph: &mut Graph, place: usize, earlier: usize, share: Id) {
+        for column in 0..self.interfaces.len() {
+            let moved = graph.multiply(share, self.weights[place][column]);
+            self.weights[earlier][column] = graph.add(self.weights[earlier][column], moved);
+        }
+        for row in 0..self.interfaces.len() {
+            let moved = graph.multiply(share, self.weights[row][place]);
+            self.weights[row][earlier] = graph.add(self.weights[row][earlier], moved);
+        }
+        for row in self.coupling.iter_mut().chain([&mut self.forces]) {
+            let moved = graph.multiply(share, row[place]);
+            row[earlier] = graph.add(row[earlier], moved);
+        }
+    }
+
+    /// Spreads u v^T over interfaces: scalar factors go into the weights.
+    fn add_outer(&mut self, graph: &mut Graph, u: (usize, Id), v: (usize, Id)) {
+        let (rows, columns) = (spread(graph, u.1), spread(graph, v.1));
+        for u_part in &rows {
+            for v_part in &columns {
+                let row = self.interface(graph, u.0, u_part.vector);
+                let column = self.interface(graph, v.0, v_part.vector);
+                let (Some(row), Some(column)) = (row, column) else {
+                    continue;
+                };
+                let weight = graph.multiply(u_part.scalar, v_part.scalar);
+                self.weights[row][column] = graph.add(self.weights[row][column], weight);
+            }
+        }
+    }
+
+    fn interface(&mut self, graph: &mut Graph, field: usize, shape: Id) -> Option<usize> {
+        let known = self
+            .interfaces
+            .iter()
+            .position(|i| i.field == field && i.shape == shape);
+        if known.is_some() {
+            return known;
+        }
+        let solved = self.inverses[field].as_ref()?.apply(graph, shape);
+        let square = inner_product(graph, field, shape, solved);
+        self.interfaces.push(Interface {
+            field,
+            shape,
+            solved,
+            square,
+        });
+        let zero = graph.zero();
+        let rows = self.weights.iter_mut().chain(&mut self.coupling);
+        for row in rows.chain([&mut self.forces]) {
+            row.push(zero);
+        }
+        self.weights.push(vec![zero; self.interfaces.len()]);
+        Some(self.interfaces.len() - 1)
+    }
+
+    pub(super) fn solve_field(&self, graph: &mut Graph, field: usize, vector: Id) -> Id {
+        match &self.inverses[field] {
+            Some(inverse) if !graph.is_zero(vector) => inverse.apply(graph, vector),
+            _ => graph.zero(),
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Vectors over the modes as scalars times vectors that hold no scalar factor. What turns
+//! with the state then stands in the scalars, and the vectors depend on parameters alone.
+
+use std::collections::BTreeMap;
+
+use crate::symbolic::graph::{Graph, Id, Operation, Shape};
+
+/// A scalar times a vector without scalar factors (1 for equal entries).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    pub(super) scalar: Id,
+    pub(super) vector: Id,
+}
+
+/// A vector as a sum of parts, each vector once, in the order of the graph. Sums are opened
+/// from the outermost to the innermost, so that a shared one is opened once.
+pub(super) fn spread(graph: &mut Graph, vector: Id) -> Vec<Part> {
+    let one = graph.one();
+    let mut waiting: BTreeMap<Id, Vec<(f64, Id)>> = BTreeMap::from([(vector, vec![(1.0, one)])]);
+    let mut found: BTreeMap<Id, Vec<(f64, Id)>> = BTreeMap::new();
+    while let Some((node, weights)) = waiting.pop_last() {
+        let weight = graph.combine(&weights);
+        if graph.shape(node) == Shape::Scalar {
+            let scalar = graph.multiply(weight, node);
+            found.entry(one).or_default().push((1.0, scalar));
+            continue;
+        }
+        match graph.operation(node).clone() {
+            Operation::Sum(terms) => {
+                for (factor, term) in &terms {
+                    let weight = (factor.value(), weight);
+                    waiting.entry(*term).or_default().push(weight);
+                }
+            }
+            Operation::Product(factors) => {
+                let (scalars, mut vectors) = graph.scalar_factors(&factors);
+                let scalar = graph.product(&scalars);
+                let weight = graph.multiply(weight, scalar);
+                let opened = sum_among(graph, &mut vectors);
+                let others = graph.product(&vectors);
+                if opened.is_empty() && scalars.is_empty() {
+                    found.entry(node).or_default().push((1.0, weight));
+                } else if opened.is_empty() {
+                    waiting.entry(others).or_default().push((1.0, weight));
+                }
+                for (factor, term) in opened {
+                    let product = graph.multiply(others, term);
+                    waiting.entry(product).or_default().push((factor, weight));
+                }
+            }
+            _ => found.entry(node).or_default().push((1.0, weight)),
+        }
+    }
+    let collected = found.into_iter().map(|(vector, weights)| Part {
+        scalar: graph.combine(&weights),
+        vector,
+    });
+    let parts: Vec<Part> = collected.collect();
+    parts
+        .into_iter()
+        .filter(|part| !graph.is_zero(part.scalar))
+        .collect()
+}
+
+/// The terms of a sum among the factors, which is taken out of them; none if there is none.
+fn sum_among(graph: &Graph, factors: &mut Vec<(Id, i32)>) -> Vec<(f64, Id)> {
+    let place = factors.iter().position(|(factor, exponent)| {
+        *exponent == 1 && matches!(graph.operation(*factor), Operation::Sum(_))
+    });
+    let Some(place) = place else {
+        return Vec::new();
+    };
+    match graph.operation(factors.remove(place).0) {
+        Operation::Sum(terms) => terms.iter().map(|(c, term)| (c.value(), *term)).collect(),
+        _ => Vec::new(),
+    }
+}

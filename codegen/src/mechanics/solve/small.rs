@@ -1,0 +1,274 @@
+//! The small system of interface forces and coordinates that is left when the modes are
+//! eliminated, and its elimination without pivoting.
+
+use super::elimination::{inner_product, pivot_reciprocal};
+use super::modal::ModalBlock;
+use crate::mechanics::mass_matrix::MassMatrix;
+use crate::mechanics::rows::Rows;
+use crate::symbolic::graph::{Graph, Id, Space};
+
+/// The system left when the modes are eliminated: interface forces, then coordinates.
+pub(super) struct SmallSystem {
+    pub(super) interfaces: usize,
+    pub(super) matrix: Vec<Vec<Id>>,
+    pub(super) right: Vec<Id>,
+    /// D^-1 f_q per field
+    pub(super) free_modes: Vec<Id>,
+    /// D^-1 h per coordinate and field
+    pub(super) solved_coupling: Vec<Vec<Id>>,
+}
+
+/// What the interfaces do when the modes alone move them.
+struct Response {
+    /// K = Phi^T D^-1 Phi
+    compliance: Vec<Vec<Id>>,
+    /// Phi^T D^-1 H^T, interfaces x coordinates
+    coupling: Vec<Vec<Id>>,
+    /// Phi^T D^-1 f_q
+    free: Vec<Id>,
+}
+
+impl SmallSystem {
+    pub(super) fn new(
+        graph: &mut Graph,
+        mass: &MassMatrix,
+        right: &Rows,
+        modal: &ModalBlock,
+    ) -> Self {
+        let mut solved = |vectors: &[Id]| -> Vec<Id> {
+            let fields = vectors.iter().enumerate();
+            fields
+                .map(|(field, vector)| modal.solve_field(graph, field, *vector))
+                .collect()
+        };
+        let free_modes = solved(&modal.direct_forces);
+        let solved_coupling = modal
+            .direct_coupling
+            .iter()
+            .map(|row| solved(row))
+            .collect();
+        let mut system = Self {
+            interfaces: modal.interfaces.len(),
+            matrix: Vec::new(),
+            right: Vec::new(),
+            free_modes,
+            solved_coupling,
+        };
+        let response = system.response(graph, modal);
+        for place in 0..system.interfaces {
+            system.push_interface_row(graph, place, modal, &response);
+        }
+        for row in 0..right.scalars.len() {
+            system.push_coordinate_row(graph, mass, row, right.scalars[row], modal, &response);
+        }
+        system
+    }
+
+    fn response(&self, graph: &mut Graph, modal: &ModalBlock) -> Response {
+        let mut response = Response {
+            compliance: Vec::new(),
+            coupling: Vec::new(),
+            free: Vec::new(),
+        };
+        for (place, interface) in modal.interfaces.iter().enumerate() {
+            let (field, shape) = (interface.field, interface.shape);
+            let orthogonal = modal.through_interfaces[field];
+            let others = modal.interfaces.iter().enumerate();
+            let compliance = others.map(|(column, other)| {
+                if other.field == field && (place == column || !orthogonal) {
+                    inner_product(graph, field, shape, other.solved)
+                } else {
+                    graph.zero()
+                }
+            });
+            response.compliance.push(compliance.collect());
+            let coupling = self.solved_coupling.iter();
+            let coupling = coupling.map(|h| inner_product(graph, field, shape, h[field]));
+            response.coupling.push(coupling.collect());
+            let free = self.free_modes[field];
+            // Many terms are summed before they are multiplied with shape after shape.
+            response.free.push(if orthogonal && !graph.is_zero(free) {
+                let product = graph.multiply(shape, free);
+                graph.total_over(Space::Modes(field), product)
+            } else {
+                inner_product(graph, field, shape, free)
+            });
+        }
+        response
+    }
+
+    /// (1 + G K) p + (G Phi^T D^-1 H^T - C^T) a = G Phi^T D^-1 f_q - b
+    fn push_interface_row(
+        &mut self,
+        graph: &mut Graph,
+        place: usize,
+        modal: &ModalBlock,
+        response: &Response,
+    ) {
+        let weights = &modal.weights[place];
+        let mut row: Vec<Id> = (0..self.interfaces)
+            .map(|column| {
+                let one = if column == place {
+                    graph.one()
+                } else {
+                    graph.zero()
+                };
+                let compliance = response.compliance.iter().map(|row| row[column]);
+                plus_products(graph, one, 1.0, weights, compliance)
+            })
+            .collect();
+        for (coordinate, coupling) in modal.coupling.iter().enumerate() {
+            let own = graph.negate(coupling[place]);
+            let moved = response.coupling.iter().map(|row| row[coordinate]);
+            row.push(plus_products(graph, own, 1.0, weights, moved));
+        }
+        let force = graph.negate(modal.forces[place]);
+        let free = response.free.iter().copied();
+        let right = plus_products(graph, force, 1.0, weights, free);
+        self.right.push(right);
+        self.matrix.push(row);
+    }
+
+    /// (A - H D^-1 H^T) a - (H D^-1 Phi + C K) p = f - H D^-1 f_q - C Phi^T D^-1 f_q; a field
+    /// couples by C or by H.
+    fn push_coordinate_row(
+        &mut self,
+        graph: &mut Graph,
+        mass: &MassMatrix,
+        row: usize,
+        force: Id,
+        modal: &ModalBlock,
+        response: &Response,
+    ) {
+        let direct = &modal.direct_coupling[row];
+        let through = &modal.coupling[row];
+        let mut entries: Vec<Id> = (0..self.interfaces)
+            .map(|column| {
+                let own = graph.negate(response.coupling[column][row]);
+                let compliance = response.compliance.iter().map(|row| row[column]);
+                plus_products(graph, own, -1.0, through, compliance)
+            })
+            .collect();
+        for (column, solved) in self.solved_coupling.iter().enumerate() {
+            let mut terms = vec![(1.0, mass.scalars[row][column])];
+            for (field, h) in direct.iter().enumerate() {
+                terms.push((-1.0, inner_product(graph, field, *h, solved[field])));
+            }
+            entries.push(graph.combine(&terms));
+        }
+        let mut terms = vec![(1.0, force)];
+        for (field, h) in direct.iter().enumerate() {
+            terms.push((
+                -1.0,
+                inner_product(graph, field, *h, self.free_modes[field]),
+            ));
+        }
+        for (coupling, free) in through.iter().zip(&response.free) {
+            terms.push((-1.0, graph.multiply(*coupling, *free)));
+        }
+        self.right.push(graph.combine_flat(&terms));
+        self.matrix.push(entries);
+    }
+
+    /// Whether both halves of the matrix are the same nodes.
+    fn is_symmetric(&self) -> bool {
+        let mut rows = self.matrix.iter().enumerate();
+        rows.all(|(row, entries)| {
+            (0..row).all(|column| entries[column] == self.matrix[column][row])
+        })
+    }
+
+    /// Elimination without pivoting, interfaces first, then coordinates in this order.
+    /// Returns the unknowns in their own order, and the pivots.
+    pub(super) fn eliminate(&self, graph: &mut Graph, coordinates: &[usize]) -> (Vec<Id>, Vec<Id>) {
+        let order: Vec<usize> = (0..self.interfaces)
+            .chain(coordinates.iter().map(|index| self.interfaces + index))
+            .collect();
+        let mut matrix = self.matrix.clone();
+        let mut right = self.right.clone();
+        let symmetric = self.is_symmetric();
+        let mut reciprocals = Vec::with_capacity(order.len());
+        let mut pivots = Vec::with_capacity(order.len());
+        for (step, &pivot_row) in order.iter().enumerate() {
+            let pivot = matrix[pivot_row][pivot_row];
+            let reciprocal = pivot_reciprocal(graph, pivot);
+            pivots.push(pivot);
+            reciprocals.push(reciprocal);
+            for (place, &row) in order.iter().enumerate().skip(step + 1) {
+                if graph.is_zero(matrix[row][pivot_row]) {
+                    continue;
+                }
+                let factor = graph.multiply(matrix[row][pivot_row], reciprocal);
+                // What is left of a symmetric matrix is symmetric: its upper half is enough.
+                let first = if symmetric { place } else { step + 1 };
+                for &column in &order[first..] {
+                    let product = graph.multiply(factor, matrix[pivot_row][column]);
+                    matrix[row][column] =
+                        graph.combine_flat(&[(1.0, matrix[row][column]), (-1.0, product)]);
+                    if symmetric {
+                        matrix[column][row] = matrix[row][column];
+                    }
+                }
+                let product = graph.multiply(factor, right[pivot_row]);
+                right[row] = graph.combine_flat(&[(1.0, right[row]), (-1.0, product)]);
+            }
+        }
+        let zero = graph.zero();
+        let mut unknowns = vec![zero; order.len()];
+        for (step, &row) in order.iter().enumerate().rev() {
+            let mut terms = vec![(1.0, right[row])];
+            for &column in &order[step + 1..] {
+                terms.push((-1.0, graph.multiply(matrix[row][column], unknowns[column])));
+            }
+            let rest = graph.combine(&terms);
+            unknowns[row] = graph.multiply(rest, reciprocals[step]);
+        }
+        (unknowns, pivots)
+    }
+
+    /// The accelerations of the modes once interface forces and coordinates are known:
+    /// D^-1 (f_q - H^T a - Phi p).
+    pub(super) fn back_substitute(
+        &self,
+        graph: &mut Graph,
+        modal: &ModalBlock,
+        unknowns: &[Id],
+    ) -> Rows {
+        let (forces, coordinates) = unknowns.split_at(modal.interfaces.len());
+        let by_field = (0..modal.inverses.len())
+            .map(|field| {
+                let mut terms = vec![(1.0, self.free_modes[field])];
+                for (interface, &force) in modal.interfaces.iter().zip(forces) {
+                    if interface.field == field {
+                        terms.push((-1.0, graph.multiply(interface.solved, force)));
+                    }
+                }
+                for (row, &value) in coordinates.iter().enumerate() {
+                    terms.push((
+                        -1.0,
+                        graph.multiply(self.solved_coupling[row][field], value),
+                    ));
+                }
+                graph.combine_flat(&terms)
+            })
+            .collect();
+        Rows {
+            scalars: coordinates.to_vec(),
+            modal: by_field,
+        }
+    }
+}
+
+/// start + sign sum of a_k b_k
+fn plus_products(
+    graph: &mut Graph,
+    start: Id,
+    sign: f64,
+    a: &[Id],
+    b: impl Iterator<Item = Id>,
+) -> Id {
+    let products = a.iter().zip(b).map(|(a, b)| (sign, graph.multiply(*a, b)));
+    let mut terms: Vec<(f64, Id)> = products.collect();
+    terms.push((1.0, start));
+    graph.combine(&terms)
+}

@@ -1,0 +1,307 @@
+//! From the checked model's expressions to graph nodes. Functions of the position along a
+//! field are handed to `field_function`; everything else maps node for node.
+
+use std::collections::HashMap;
+
+use model_spec::ast::BinaryOperator;
+use model_spec::diagnostic::Diagnostic;
+use model_spec::model::{Expr, ExprKind, Model};
+use model_spec::span::Span;
+
+use crate::mechanics::fields::domain::Domain;
+use crate::mechanics::fields::function::FieldFunction;
+use crate::mechanics::fields::term::Atom;
+use crate::symbolic::arguments::Arguments;
+use crate::symbolic::differentiate::Direction;
+use crate::symbolic::graph::{Graph, Id, Operation, Space};
+
+/// Why a model could not be derived, and where in its source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DeriveError {
+    /// Where the cause stands in the specification.
+    pub span: Span,
+    /// What is wrong.
+    pub message: String,
+    /// What would be right, if known.
+    pub help: Option<String>,
+}
+
+impl std::fmt::Display for DeriveError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for DeriveError {}
+
+impl DeriveError {
+    /// The same as a finding on the model's source.
+    pub fn diagnostic(self) -> Diagnostic {
+        Diagnostic::error(self.message)
+            .at(self.span, "")
+            .help_if(self.help)
+    }
+}
+
+/// Result of a derivation step.
+pub type Derived<T> = Result<T, DeriveError>;
+
+/// Translates expressions of one model into one graph.
+pub struct Translator<'m> {
+    /// The model.
+    pub model: &'m Model,
+    /// The graph that grows.
+    pub graph: Graph,
+    definitions: HashMap<usize, Id>,
+    coefficients: Vec<Id>,
+}
+
+impl<'m> Translator<'m> {
+    /// A translator for fields of these orders.
+    pub fn new(model: &'m Model, orders: &[usize]) -> Self {
+        let mut graph = Graph::new(orders);
+        graph.reserve_names(model.parameters.iter().map(|p| &p.name));
+        graph.reserve_names(model.coordinates.iter().map(|c| &c.name));
+        graph.reserve_names(model.inputs.iter().map(|i| &i.name));
+        graph.reserve_names(model.definitions.iter().map(|d| &d.name));
+        graph.reserve_names(model.observables.iter().map(|o| &o.name));
+        graph.reserve_names(model.coefficients.iter().map(|c| &c.name));
+        Self {
+            model,
+            graph,
+            definitions: HashMap::new(),
+            coefficients: Vec::new(),
+        }
+    }
+
+    /// Records the node of the next named coefficient, so that later ones may refer to it.
+    pub fn push_coefficient(&mut self, node: Id) {
+        self.coefficients.push(node);
+    }
+
+    /// The node of each definition that was used so far.
+    pub fn definition_nodes(&self) -> Vec<Option<Id>> {
+        (0..self.model.definitions.len())
+            .map(|index| self.definitions.get(&index).copied())
+            .collect()
+    }
+
+    /// The node of a scalar expression (a vector inside a sum over modes).
+    pub fn node(&mut self, expr: &Expr) -> Derived<Id> {
+        match &expr.kind {
+            ExprKind::Number(value) => Ok(self.graph.constant(*value)),
+            ExprKind::Pi => Ok(self.graph.constant(std::f64::consts::PI)),
+            ExprKind::Time => Ok(self.graph.intern(Operation::Time)),
+            ExprKind::Parameter(index) => Ok(self.graph.intern(Operation::Parameter(*index))),
+            ExprKind::Coordinate(index) => Ok(self.graph.intern(Operation::Coordinate(*index))),
+            ExprKind::Input(index) => Ok(self.graph.intern(Operation::Input(*index))),
+            ExprKind::Definition(index) => self.definition(*index),
+            ExprKind::Coefficient(index) => match self.coefficients.get(*index) {
+                Some(&node) => Ok(node),
+                None => Err(error(expr, "this coefficient is not known yet")),
+            },
+            ExprKind::ModeCoordinate(field) => {
+                Ok(self.graph.intern(Operation::ModeCoordinates(*field)))
+            }
+            ExprKind::Dot(operand) => self.dot(operand),
+            ExprKind::Negate(operand) => {
+                let inner = self.node(operand)?;
+                Ok(self.graph.negate(inner))
+            }
+            ExprKind::Binary(operator, left, right) => {
+                let (left, right) = (self.node(left)?, self.node(right)?);
+                Ok(self.binary(*operator, left, right))
+            }
+            ExprKind::Call(function, arguments) => {
+                let arguments = Arguments::of(self.nodes(arguments)?)
+                    .ok_or_else(|| error(expr, "a function takes one or two arguments"))?;
+                Ok(self.graph.call(*function, arguments))
+            }
+            ExprKind::Integral { field, integrand } => self.integral(*field, integrand),
+            ExprKind::At {
+                field,
+                value,
+                position,
+            } => self.at(*field, value, position),
+            ExprKind::Sum { field, summand } => {
+                let inner = self.node(summand)?;
+                Ok(self.graph.total_over(Space::Modes(*field), inner))
+            }
+            ExprKind::Position(_)
+            | ExprKind::Field(_)
+            | ExprKind::ModeShape(_)
+            | ExprKind::Diff(..) => Err(error(
+                expr,
+                "a function of the position stands outside integral(...) and at(...)",
+            )),
+        }
+    }
+
+    fn nodes(&mut self, expressions: &[Expr]) -> Derived<Vec<Id>> {
+        expressions.iter().map(|e| self.node(e)).collect()
+    }
+
+    /// The node of a binary operation.
+    pub fn binary(&mut self, operator: BinaryOperator, left: Id, right: Id) -> Id {
+        match operator {
+            BinaryOperator::Add => self.graph.add(left, right),
+            BinaryOperator::Subtract => self.graph.subtract(left, right),
+            BinaryOperator::Multiply => self.graph.multiply(left, right),
+            BinaryOperator::Divide => self.graph.divide(left, right),
+            BinaryOperator::Power => self.graph.power(left, right),
+        }
+    }
+
+    fn definition(&mut self, index: usize) -> Derived<Id> {
+        if let Some(&known) = self.definitions.get(&index) {
+            return Ok(known);
+        }
+        let definition = &self.model.definitions[index];
+        let node = self.node(&definition.value)?;
+        self.graph.set_name(node, &definition.name);
+        self.definitions.insert(index, node);
+        Ok(node)
+    }
+
+    /// The time derivative of a coordinate, definition or mode coordinate.
+    fn dot(&mut self, operand: &Expr) -> Derived<Id> {
+        match operand.kind {
+            ExprKind::Coordinate(index) => Ok(self.graph.intern(Operation::Rate(index))),
+            ExprKind::ModeCoordinate(field) => Ok(self.graph.intern(Operation::ModeRates(field))),
+            _ => {
+                let node = self.node(operand)?;
+                if self
+                    .graph
+                    .dependence(node)
+                    .has(crate::symbolic::graph::Dependence::RATE)
+                {
+                    return Err(DeriveError {
+                        span: operand.span,
+                        message: "dot() of something that holds a rate is an acceleration".into(),
+                        help: Some("an energy, force or observable may hold rates, no more".into()),
+                    });
+                }
+                if self
+                    .graph
+                    .dependence(node)
+                    .has(crate::symbolic::graph::Dependence::INPUT)
+                {
+                    return Err(error(operand, "the rate of an input is not known"));
+                }
+                let rate = along_motion(&mut self.graph, node);
+                if let ExprKind::Definition(index) = operand.kind {
+                    let name = format!("{}_dot", self.model.definitions[index].name);
+                    self.graph.set_name(rate, &name);
+                }
+                Ok(rate)
+            }
+        }
+    }
+
+    fn at(&mut self, field: usize, value: &Expr, position: &Expr) -> Derived<Id> {
+        let function = self.field_function(field, value)?;
+        let position = self.node(position)?;
+        let domain = self.domain(field)?;
+        function
+            .at(&mut self.graph, &domain, position)
+            .map_err(|m| error(value, m))
+    }
+
+    fn integral(&mut self, field: usize, integrand: &Expr) -> Derived<Id> {
+        let function = self.field_function(field, integrand)?;
+        let domain = self.domain(field)?;
+        function
+            .integral(&mut self.graph, &domain)
+            .map_err(|m| error(integrand, m))
+    }
+
+    /// The domain of a field.
+    fn domain(&mut self, field: usize) -> Derived<Domain> {
+        let spec = &self.model.fields[field];
+        let from = self.node(&spec.from)?;
+        let to = self.node(&spec.to)?;
+        let length = self.graph.subtract(to, from);
+        Ok(Domain {
+            field,
+            basis: spec.basis,
+            from,
+            to,
+            length,
+        })
+    }
+
+    /// An expression of a field's position.
+    fn field_function(&mut self, field: usize, expr: &Expr) -> Derived<FieldFunction> {
+        match &expr.kind {
+            ExprKind::Position(_) => {
+                let domain = self.domain(field)?;
+                Ok(FieldFunction::position(&mut self.graph, &domain))
+            }
+            ExprKind::Field(_) | ExprKind::ModeShape(_) | ExprKind::Dot(_) | ExprKind::Diff(..) => {
+                match field_atom(expr) {
+                    Some(atom) => {
+                        let domain = self.domain(field)?;
+                        Ok(FieldFunction::atom(&mut self.graph, &domain, atom))
+                    }
+                    None => Ok(FieldFunction::constant(self.node(expr)?)),
+                }
+            }
+            ExprKind::Negate(operand) => {
+                let inner = self.field_function(field, operand)?;
+                Ok(inner.scaled(&mut self.graph, -1.0))
+            }
+            ExprKind::Binary(operator, left, right) => {
+                let left_function = self.field_function(field, left)?;
+                let right_function = self.field_function(field, right)?;
+                let domain = self.domain(field)?;
+                left_function
+                    .binary(&mut self.graph, &domain, *operator, &right_function)
+                    .map_err(|m| error(expr, m))
+            }
+            ExprKind::Call(function, arguments) => {
+                let arguments = arguments
+                    .iter()
+                    .map(|a| self.field_function(field, a))
+                    .collect::<Derived<Vec<_>>>()?;
+                let domain = self.domain(field)?;
+                FieldFunction::call(&mut self.graph, &domain, *function, &arguments)
+                    .map_err(|m| error(expr, m))
+            }
+            _ => Ok(FieldFunction::constant(self.node(expr)?)),
+        }
+    }
+}
+
+/// `w`, `dot(w)`, `phi[i]` and their derivatives by the position.
+fn field_atom(expr: &Expr) -> Option<Atom> {
+    match &expr.kind {
+        ExprKind::Field(_) => Some(Atom::Coordinates(0)),
+        ExprKind::ModeShape(_) => Some(Atom::Shapes(0)),
+        ExprKind::Dot(inner) => match field_atom(inner)? {
+            Atom::Coordinates(derivative) => Some(Atom::Rates(derivative)),
+            _ => None,
+        },
+        ExprKind::Diff(inner, times) => Some(field_atom(inner)?.differentiated(*times)),
+        _ => None,
+    }
+}
+
+/// The time derivative of a node along the motion, without accelerations: coordinates
+/// move with their rates, time with 1.
+pub fn along_motion(graph: &mut Graph, node: Id) -> Id {
+    let tangent = |graph: &mut Graph, leaf: Id| match *graph.operation(leaf) {
+        Operation::Coordinate(index) => graph.intern(Operation::Rate(index)),
+        Operation::ModeCoordinates(field) => graph.intern(Operation::ModeRates(field)),
+        Operation::Time => graph.one(),
+        _ => graph.zero(),
+    };
+    Direction::new(&tangent).derivative(graph, node)
+}
+
+fn error(expr: &Expr, message: impl Into<String>) -> DeriveError {
+    DeriveError {
+        span: expr.span,
+        message: message.into(),
+        help: None,
+    }
+}

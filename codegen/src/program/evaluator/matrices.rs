@@ -1,0 +1,153 @@
+//! Matrix operations of the evaluator: products, Gram matrices, assembled blocks, Cholesky
+//! factors, in the order of summation that the program defines.
+
+use elementary::Function as Elementary;
+
+use super::operands::Operands;
+use crate::program::{ScaledValue, ValueId};
+
+/// left^T diag(weight) right.
+pub(super) fn gram(out: &mut [f64], operands: &Operands<'_>, [left, weight, right]: [ValueId; 3]) {
+    let (left, nodes, rows) = operands.matrix(left);
+    let (right, _, columns) = operands.matrix(right);
+    let (weight, stride) = operands.strided(weight);
+    for r in 0..rows {
+        for c in 0..columns {
+            out[r * columns + c] = (0..nodes).fold(0.0, |total, g| {
+                total + left[g * rows + r] * weight[g * stride] * right[g * columns + c]
+            });
+        }
+    }
+}
+
+/// The diagonal of the same.
+pub(super) fn gram_diagonal(
+    out: &mut [f64],
+    operands: &Operands<'_>,
+    [left, weight, right]: [ValueId; 3],
+) {
+    let (left, nodes, modes) = operands.matrix(left);
+    let (right, ..) = operands.matrix(right);
+    let (weight, stride) = operands.strided(weight);
+    for (r, slot) in out.iter_mut().enumerate() {
+        *slot = (0..nodes).fold(0.0, |total, g| {
+            total + left[g * modes + r] * weight[g * stride] * right[g * modes + r]
+        });
+    }
+}
+
+/// A matrix, or its transpose, times a vector.
+pub(super) fn apply(
+    out: &mut [f64],
+    (matrix, rows, columns): (&[f64], usize, usize),
+    transposed: bool,
+    (vector, stride): (&[f64], usize),
+) {
+    for (i, slot) in out.iter_mut().enumerate() {
+        *slot = if transposed {
+            (0..rows).fold(0.0, |total, g| {
+                total + matrix[g * columns + i] * vector[g * stride]
+            })
+        } else {
+            (0..columns).fold(0.0, |total, c| {
+                total + matrix[i * columns + c] * vector[c * stride]
+            })
+        };
+    }
+}
+
+/// A matrix of so many columns from its diagonal, outer products and scaled matrices.
+pub(super) fn assemble(
+    out: &mut [f64],
+    columns: usize,
+    operands: &Operands<'_>,
+    (diagonal, outer, matrices): (Option<ValueId>, &[(ValueId, ValueId)], &[ScaledValue]),
+) {
+    out.fill(0.0);
+    if let Some(diagonal) = diagonal {
+        let (diagonal, stride) = operands.strided(diagonal);
+        for r in 0..columns {
+            out[r * columns + r] += diagonal[r * stride];
+        }
+    }
+    for (u, v) in outer {
+        let (u, v) = (operands.strided(*u), operands.strided(*v));
+        for (place, slot) in out.iter_mut().enumerate() {
+            *slot += u.0[place / columns * u.1] * v.0[place % columns * v.1];
+        }
+    }
+    for scaled in matrices {
+        let (matrix, _, width) = operands.matrix(scaled.matrix);
+        let (row, column) = (
+            operands.strided(scaled.row),
+            operands.strided(scaled.column),
+        );
+        for (place, slot) in out.iter_mut().enumerate() {
+            let (r, c) = (place / columns, place % columns);
+            let entry = if scaled.transposed {
+                matrix[c * width + r]
+            } else {
+                matrix[r * width + c]
+            };
+            *slot += row.0[r * row.1] * entry * column.0[c * column.1];
+        }
+    }
+}
+
+/// Row by row, L L^T = matrix; the upper part of `out` becomes 0.
+pub(super) fn cholesky(out: &mut [f64], matrix: &[f64], size: usize) {
+    out.fill(0.0);
+    for r in 0..size {
+        for c in 0..=r {
+            let rest = (0..c).fold(matrix[r * size + c], |rest, k| {
+                rest - out[r * size + k] * out[c * size + k]
+            });
+            out[r * size + c] = if r == c {
+                if rest > 0.0 {
+                    Elementary::Sqrt.apply(&[rest])
+                } else {
+                    f64::NAN
+                }
+            } else {
+                rest / out[c * size + c]
+            };
+        }
+    }
+}
+
+/// The right side of so many columns, possibly one number for all rows, solved into `out`.
+pub(super) fn cholesky_solve(
+    out: &mut [f64],
+    columns: usize,
+    (factor, size, _): (&[f64], usize, usize),
+    (right, stride): (&[f64], usize),
+) {
+    for column in 0..columns {
+        let right = (right, stride * columns);
+        solve_column(out, (column, columns), factor, size, right);
+    }
+}
+
+/// Column `column` of the right side, solved into the same column of `out`; both hold
+/// `columns` numbers in a row, the right side possibly one number for all rows.
+fn solve_column(
+    out: &mut [f64],
+    (column, columns): (usize, usize),
+    factor: &[f64],
+    size: usize,
+    (right, stride): (&[f64], usize),
+) {
+    let at = |r: usize| r * columns + column;
+    for r in 0..size {
+        let rest = (0..r).fold(right[r * stride + column], |rest, k| {
+            rest - factor[r * size + k] * out[at(k)]
+        });
+        out[at(r)] = rest / factor[r * size + r];
+    }
+    for r in (0..size).rev() {
+        let rest = (r + 1..size).fold(out[at(r)], |rest, k| {
+            rest - factor[k * size + r] * out[at(k)]
+        });
+        out[at(r)] = rest / factor[r * size + r];
+    }
+}

@@ -1,0 +1,265 @@
+//! Runs a program at once, with no compiler: every value has a place in one block of
+//! memory, every stage is a list of steps over it. Slower than emitted code, the same bits.
+//! Where somebody supplies machine code for the stages, that runs instead.
+
+mod code;
+mod functions;
+mod matrices;
+mod operands;
+mod outputs;
+mod places;
+mod point;
+mod step;
+
+use std::sync::Arc;
+
+use crate::program::{Extent, Op, Program, ValueId};
+pub use code::{MachineCode, Stage};
+pub use functions::{Law, call, law};
+pub use places::Places;
+pub use point::Point;
+use step::step;
+
+/// A program with memory to run it in. Nothing is allocated after construction.
+pub struct Evaluator {
+    program: Program,
+    memory: Vec<f64>,
+    places: Places,
+    /// The values that are parameters, each with its place among these.
+    parameters: Vec<(ValueId, usize)>,
+    prepare: Vec<ValueId>,
+    /// The steps of each stage, in the order of [`Stage::ALL`].
+    stages: [Vec<ValueId>; Stage::ALL.len()],
+    code: Option<Arc<dyn MachineCode>>,
+}
+
+impl Evaluator {
+    /// Takes a program and prepares it with the specification's parameters.
+    pub fn new(program: Program) -> Self {
+        let prepare = program
+            .ids()
+            .filter(|id| program.value(*id).prepared)
+            .collect();
+        let parameters = program
+            .ids()
+            .filter_map(|id| match program.value(id).op {
+                Op::Parameter(place) => Some((id, place)),
+                _ => None,
+            })
+            .collect();
+        let places = Places::of(&program);
+        let mut evaluator = Self {
+            memory: vec![0.0; places.size()],
+            places,
+            parameters,
+            prepare,
+            stages: Stage::ALL.map(|stage| program.per_call(&stage.roots(&program))),
+            code: None,
+            program,
+        };
+        let defaults = evaluator.program.default_parameters();
+        evaluator.prepare(&defaults);
+        evaluator
+    }
+
+    /// The same, computed by machine code made from this program.
+    pub fn with_code(program: Program, code: Arc<dyn MachineCode>) -> Self {
+        let mut evaluator = Self::new(program);
+        evaluator.memory.extend_from_slice(code.room());
+        evaluator.code = Some(code);
+        evaluator
+    }
+
+    /// The program.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// Computes everything that depends on the parameters alone.
+    ///
+    /// `parameters`: the independent parameters in SI, in the order of the program, as many
+    /// as it has.
+    pub fn prepare(&mut self, parameters: &[f64]) {
+        for (id, place) in &self.parameters {
+            self.memory[self.places.offset(*id)] = parameters[*place];
+        }
+        if let Some(code) = &self.code {
+            code.prepare(&mut self.memory);
+        } else {
+            let steps = &self.prepare;
+            run(
+                &mut self.memory,
+                &self.places,
+                &self.program,
+                steps,
+                &NOWHERE,
+            );
+        }
+    }
+
+    /// Whether every prepared pivot of the mass matrix is positive: otherwise the rates
+    /// are NaN.
+    pub fn pivots_are_positive(&self) -> bool {
+        self.program.pivots.iter().all(|id| {
+            let matrix = matches!(self.program.value(*id).extent, Extent::Matrix(..));
+            self.slice(*id)
+                .iter()
+                .all(|p| p.is_finite() && (matrix || *p > 0.0))
+        })
+    }
+
+    /// The rates of the state; `out` has as many numbers as the state.
+    #[inline]
+    pub fn rates(&mut self, point: Point<'_>, out: &mut [f64]) {
+        match &self.code {
+            Some(code) => code.rates(&mut self.memory, &point, out),
+            None => self.interpreted_rates(&point, out),
+        }
+    }
+
+    /// Apart from [`Evaluator::rates`], so that machine code is called without a detour.
+    #[inline(never)]
+    fn interpreted_rates(&mut self, point: &Point<'_>, out: &mut [f64]) {
+        self.compute(Stage::Rates, point);
+        let degrees = self.program.degrees_of_freedom();
+        let (velocities, accelerations) = out.split_at_mut(degrees);
+        velocities.copy_from_slice(&point.state[degrees..2 * degrees]);
+        self.copy_rows(
+            &self.program.accelerations.scalars,
+            &self.program.accelerations.modal,
+            accelerations,
+        );
+    }
+
+    /// The observables, `energy` and `power` last.
+    pub fn observables(&mut self, point: Point<'_>, out: &mut [f64]) {
+        self.compute(Stage::Observables, &point);
+        for (value, id) in out.iter_mut().zip(&self.program.observable_values) {
+            *value = self.memory[self.places.offset(*id)];
+        }
+    }
+
+    /// How many switching surfaces there are, those over modes one by one.
+    pub fn guard_count(&self) -> usize {
+        let extents = self
+            .program
+            .guards
+            .iter()
+            .map(|g| self.program.value(g.value).extent);
+        extents.map(Extent::length).sum()
+    }
+
+    /// The values of the switching surfaces; `out` has [`Evaluator::guard_count`] numbers.
+    pub fn guards(&mut self, point: Point<'_>, out: &mut [f64]) {
+        self.compute(Stage::Guards, &point);
+        let mut place = 0;
+        for guard in &self.program.guards {
+            let values = self.slice(guard.value);
+            out[place..place + values.len()].copy_from_slice(values);
+            place += values.len();
+        }
+    }
+
+    /// The mass matrix, row by row.
+    pub fn mass_matrix(&mut self, point: Point<'_>, out: &mut [f64]) {
+        self.compute(Stage::Mass, &point);
+        let size = self.program.degrees_of_freedom();
+        let scalars = self.program.coordinates.len();
+        out.fill(0.0);
+        for row in 0..scalars {
+            for column in 0..scalars {
+                out[row * size + column] = self.slice(self.program.mass.scalars[row][column])[0];
+            }
+            for field in 0..self.program.fields.len() {
+                let offset = self.program.mode_offset(field);
+                for mode in 0..self.program.fields[field].order {
+                    let value = self.element(self.program.mass.coupling[row][field], mode);
+                    out[row * size + offset + mode] = value;
+                    out[(offset + mode) * size + row] = value;
+                }
+            }
+        }
+        for (row, blocks) in self.program.mass.modal.iter().enumerate() {
+            for (column, block) in blocks.iter().enumerate() {
+                let Some(block) = block else { continue };
+                let (first_row, first_column) = (
+                    self.program.mode_offset(row),
+                    self.program.mode_offset(column),
+                );
+                let columns = self.program.fields[column].order;
+                for (place, value) in self.slice(*block).iter().enumerate() {
+                    let (r, c) = (place / columns, place % columns);
+                    out[(first_row + r) * size + first_column + c] = *value;
+                }
+            }
+        }
+    }
+
+    /// Velocity terms c and generalised forces f of M q'' + c = f.
+    pub fn bias_and_forces(&mut self, point: Point<'_>, bias: &mut [f64], forces: &mut [f64]) {
+        self.compute(Stage::Forces, &point);
+        self.copy_rows(
+            &self.program.velocity_terms.scalars,
+            &self.program.velocity_terms.modal,
+            bias,
+        );
+        self.copy_rows(
+            &self.program.forces.scalars,
+            &self.program.forces.modal,
+            forces,
+        );
+    }
+
+    /// The numbers of a value as last computed; machine code leaves those that are
+    /// prepared and the [roots](Stage::roots) of the last stage but the rates.
+    pub fn slice(&self, id: ValueId) -> &[f64] {
+        let start = self.places.offset(id);
+        &self.memory[start..start + self.program.values[id.0].extent.length()]
+    }
+
+    fn element(&self, id: ValueId, index: usize) -> f64 {
+        match self.program.values[id.0].extent {
+            Extent::Scalar => self.memory[self.places.offset(id)],
+            _ => self.memory[self.places.offset(id) + index],
+        }
+    }
+
+    fn copy_rows(&self, scalars: &[ValueId], modal: &[ValueId], out: &mut [f64]) {
+        for (place, id) in scalars.iter().enumerate() {
+            out[place] = self.memory[self.places.offset(*id)];
+        }
+        for (field, id) in modal.iter().enumerate() {
+            let offset = self.program.mode_offset(field);
+            for mode in 0..self.program.fields[field].order {
+                out[offset + mode] = self.element(*id, mode);
+            }
+        }
+    }
+
+    fn compute(&mut self, stage: Stage, point: &Point<'_>) {
+        if let Some(code) = &self.code {
+            code.compute(stage, &mut self.memory, point);
+        } else {
+            let steps = &self.stages[stage as usize];
+            run(&mut self.memory, &self.places, &self.program, steps, point);
+        }
+    }
+}
+
+const NOWHERE: Point<'static> = Point {
+    t: 0.0,
+    state: &[],
+    inputs: &[],
+};
+
+fn run(
+    memory: &mut [f64],
+    places: &Places,
+    program: &Program,
+    steps: &[ValueId],
+    point: &Point<'_>,
+) {
+    for id in steps {
+        step(memory, places, program, *id, point);
+    }
+}

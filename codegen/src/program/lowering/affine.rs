@@ -1,0 +1,125 @@
+//! The program of a piecewise-linear model's coefficients: prepared values only.
+
+use model_spec::model::Model;
+
+use super::quantities::{program_parameters, quantity};
+use super::values::Lowering;
+use crate::mechanics::affine::{AffineEquations, AffineRow};
+use crate::program::affine::{AffineLayout, AffineProgram, AffineRowValues};
+use crate::program::{
+    MassBlocks, Program, ProgramField, ProgramParameter, Quantity, Requested, RowValues, ValueId,
+};
+
+/// The program of the coefficients of `equations`, which belong to `model`.
+pub fn lower_affine(
+    model: &Model,
+    equations: &AffineEquations,
+    parameter_values: &[f64],
+) -> AffineProgram {
+    let mut lowering = Lowering::new(
+        &equations.graph,
+        &equations.derived_parameters,
+        &equations.parameter_names,
+    );
+    let mut rows = |rows: &[AffineRow]| -> Vec<AffineRowValues> {
+        rows.iter().map(|row| values(&mut lowering, row)).collect()
+    };
+    let (scalars, modal) = (rows(&equations.scalars), rows(&equations.modal));
+    let guards = rows(&equations.guards);
+    let phases = equations
+        .phases
+        .iter()
+        .map(|phase| [lowering.value(phase.rate), lowering.value(phase.offset)])
+        .collect();
+    let half_widths = equations
+        .half_widths
+        .iter()
+        .map(|id| lowering.value(*id))
+        .collect();
+    let pivots = equations
+        .pivots
+        .iter()
+        .filter(|id| equations.graph.dependence(**id).is_prepared())
+        .map(|id| lowering.value(*id))
+        .collect();
+    let mut parameters = program_parameters(model, parameter_values);
+    parameters.extend((0..guards.len()).map(side));
+    AffineProgram {
+        layout: AffineLayout {
+            scalars,
+            modal,
+            guards,
+            guard_functions: equations.guard_functions.clone(),
+            guard_groups: equations.guard_groups.clone(),
+            guards_rest: equations.guards_rest.clone(),
+            phases,
+            half_widths,
+            inputs: model.inputs.len(),
+        },
+        program: Program {
+            name: model.name.clone(),
+            title: model.title.clone(),
+            spec_hash: model.source.hash(),
+            parameters,
+            coordinates: model
+                .coordinates
+                .iter()
+                .map(|c| quantity(&c.name, &c.unit.text, &c.doc))
+                .collect(),
+            fields: fields(model, equations.graph.orders()),
+            inputs: Vec::new(),
+            observables: Vec::new(),
+            tables: lowering.tables,
+            values: lowering.values,
+            accelerations: RowValues::default(),
+            mass: MassBlocks::default(),
+            velocity_terms: RowValues::default(),
+            forces: RowValues::default(),
+            observable_values: Vec::new(),
+            guards: Vec::new(),
+            pivots,
+            coefficient_values: Vec::new(),
+            requested: Requested::default(),
+        },
+    }
+}
+
+fn fields(model: &Model, orders: &[usize]) -> Vec<ProgramField> {
+    let fields = model.fields.iter().zip(orders);
+    fields
+        .map(|(field, order)| ProgramField {
+            coordinates: field.coordinates.clone(),
+            unit: field.unit.text.clone(),
+            order: *order,
+        })
+        .collect()
+}
+
+/// The parameter that says on which side of a surface the motion is.
+fn side(guard: usize) -> ProgramParameter {
+    ProgramParameter {
+        quantity: Quantity {
+            name: format!("side_{guard}"),
+            unit: "1".to_owned(),
+            doc: "1 where the switching function is positive, 0 where it is not".to_owned(),
+        },
+        origin: String::new(),
+        value: 0.0,
+    }
+}
+
+fn values(lowering: &mut Lowering<'_>, row: &AffineRow) -> AffineRowValues {
+    let mut all = |nodes: &[crate::symbolic::graph::Id]| -> Vec<ValueId> {
+        nodes.iter().map(|id| lowering.value(*id)).collect()
+    };
+    AffineRowValues {
+        coordinates: all(&row.coordinates),
+        mode_coordinates: all(&row.mode_coordinates),
+        rates: all(&row.rates),
+        mode_rates: all(&row.mode_rates),
+        inputs: all(&row.inputs),
+        sines: all(&row.sines),
+        cosines: all(&row.cosines),
+        constant: all(&[row.constant])[0],
+    }
+}

@@ -1,0 +1,210 @@
+//! Sums and products as binary operations in a fixed order.
+
+use model_spec::model::Function;
+
+use super::values::Lowering;
+use crate::program::{Extent, Op, ValueId};
+use crate::symbolic::graph::{Bits, Id, Operation, Shape};
+
+impl Lowering<'_> {
+    /// Prepared terms first, as one value; then the others, those last that wait longest for
+    /// elementary functions, so that all else is summed in the meantime. Among equals
+    /// positive terms come before negative ones so that no negation is needed.
+    pub(super) fn sum(&mut self, terms: &[(Bits, Id)]) -> ValueId {
+        let graph = self.graph;
+        let (prepared, mut live): (Vec<_>, Vec<_>) = terms
+            .iter()
+            .map(|(factor, id)| (factor.value(), *id))
+            .partition(|(_, id)| graph.dependence(*id).is_prepared());
+        live.sort_by_key(|(_, id)| graph.waits(*id));
+        let mut parts: Vec<(bool, ValueId)> =
+            prepared.iter().map(|(c, id)| self.term(*c, *id)).collect();
+        if !live.is_empty() && parts.len() > 1 {
+            parts = vec![(false, self.add_all(&parts))];
+        }
+        for equals in live.chunk_by(|(_, a), (_, b)| graph.waits(*a) == graph.waits(*b)) {
+            if graph.waits(equals[0].1) > 0 {
+                parts = self.joined(parts);
+            }
+            parts.extend(equals.iter().map(|(c, id)| self.term(*c, *id)));
+        }
+        self.add_all(&parts)
+    }
+
+    /// The parts as one, subtracted if all of them are.
+    fn joined(&mut self, parts: Vec<(bool, ValueId)>) -> Vec<(bool, ValueId)> {
+        if parts.len() < 2 {
+            return parts;
+        }
+        if parts.iter().any(|(negative, _)| !negative) {
+            return vec![(false, self.add_all(&parts))];
+        }
+        let magnitudes: Vec<(bool, ValueId)> =
+            parts.into_iter().map(|(_, value)| (false, value)).collect();
+        vec![(true, self.add_all(&magnitudes))]
+    }
+
+    /// The sum of values, each with whether it is subtracted.
+    fn add_all(&mut self, parts: &[(bool, ValueId)]) -> ValueId {
+        let mut ordered: Vec<(bool, ValueId)> = parts.to_vec();
+        ordered.sort_by_key(|(negative, _)| *negative);
+        let mut iterator = ordered.into_iter();
+        let Some((negative, first)) = iterator.next() else {
+            return self.constant(0.0);
+        };
+        let mut total = if negative { self.negated(first) } else { first };
+        for (negative, value) in iterator {
+            let op = if negative { Op::Subtract } else { Op::Add };
+            total = self.binary(op, total, value);
+        }
+        total
+    }
+
+    /// -a; the sign goes into a prepared factor if there is one.
+    fn negated(&mut self, value: ValueId) -> ValueId {
+        let extent = self.values[value.0].extent;
+        if let Op::Multiply(factor, moving) = self.values[value.0].op
+            && self.values[factor.0].prepared
+            && !self.values[moving.0].prepared
+        {
+            let extent = self.values[factor.0].extent;
+            let factor = self.emit(Op::Negate(factor), extent);
+            return self.binary(Op::Multiply, factor, moving);
+        }
+        self.emit(Op::Negate(value), extent)
+    }
+
+    /// |c| times a node, and whether c is negative.
+    pub(super) fn term(&mut self, factor: f64, id: Id) -> (bool, ValueId) {
+        let graph = self.graph;
+        let (negative, magnitude) = (factor < 0.0, factor.abs());
+        let factors = match graph.operation(id) {
+            Operation::Product(factors) => factors.to_vec(),
+            Operation::Constant(bits) => {
+                return (negative, self.constant(magnitude * bits.value()));
+            }
+            _ => vec![(id, 1)],
+        };
+        let (prepared, live): (Vec<_>, Vec<_>) = factors
+            .into_iter()
+            .partition(|(id, _)| graph.dependence(*id).is_prepared());
+        if let Some(total) = self.scaled_total(magnitude, &prepared, &live) {
+            return (negative, total);
+        }
+        let coefficient = self.powers(magnitude, &prepared);
+        let moving = (!live.is_empty())
+            .then(|| self.where_in_contact(&live))
+            .flatten();
+        let value = match (coefficient, moving) {
+            (Some(coefficient), Some(moving)) => self.binary(Op::Multiply, coefficient, moving),
+            (Some(only), None) | (None, Some(only)) => only,
+            (None, None) => self.constant(1.0),
+        };
+        (negative, value)
+    }
+
+    /// A prepared factor times a sum over modes of prepared factors times others: the factor
+    /// goes into the prepared ones, if nothing else needs the sum without it.
+    fn scaled_total(
+        &mut self,
+        number: f64,
+        prepared: &[(Id, i32)],
+        live: &[(Id, i32)],
+    ) -> Option<ValueId> {
+        let graph = self.graph;
+        let &[(total, 1)] = live else {
+            return None;
+        };
+        let Operation::Total(summand) = graph.operation(total) else {
+            return None;
+        };
+        let Operation::Product(factors) = graph.operation(*summand) else {
+            return None;
+        };
+        let once = self.uses.get(&total) == Some(&1);
+        let (constant, moving): (Vec<_>, Vec<_>) = factors
+            .iter()
+            .partition(|(id, _)| graph.dependence(*id).is_prepared());
+        if !once || constant.is_empty() || (prepared.is_empty() && number == 1.0) {
+            return None;
+        }
+        let coefficient = self.powers(number, &[prepared, constant.as_slice()].concat())?;
+        let moving = self.where_in_contact(&moving)?;
+        let summand = self.binary(Op::Multiply, coefficient, moving);
+        Some(self.emit(Op::Total(summand), Extent::Scalar))
+    }
+
+    /// A product of powers; a contact among others chooses between them and 0, which waits
+    /// for no multiplication.
+    fn where_in_contact(&mut self, factors: &[(Id, i32)]) -> Option<ValueId> {
+        let graph = self.graph;
+        let contact = |(id, _): &(Id, i32)| {
+            matches!(graph.operation(*id), Operation::Call(Function::Contact, _))
+        };
+        let Some(place) = factors.iter().position(contact) else {
+            return self.powers(1.0, factors);
+        };
+        if factors.len() == 1 || factors[place].1 < 0 {
+            return self.powers(1.0, factors);
+        }
+        let mut others = factors.to_vec();
+        others.remove(place);
+        let then = self.where_in_contact(&others)?;
+        let a = self.value(factors[place].0);
+        let b = self.constant(0.0);
+        let otherwise = b;
+        let extent = self.join(a, then);
+        let op = Op::Select {
+            a,
+            b,
+            then,
+            otherwise,
+        };
+        Some(self.emit(op, extent))
+    }
+
+    /// A number times a product of powers, scalars before vectors; `None` for a bare 1.
+    fn powers(&mut self, number: f64, factors: &[(Id, i32)]) -> Option<ValueId> {
+        let graph = self.graph;
+        let mut ordered = factors.to_vec();
+        ordered.sort_by_key(|(id, _)| graph.shape(*id) != Shape::Scalar);
+        let mut above: Option<ValueId> = (number != 1.0).then(|| self.constant(number));
+        let mut below: Option<ValueId> = None;
+        for (id, exponent) in ordered {
+            let base = self.value(id);
+            let power = self.integer_power(base, exponent.unsigned_abs());
+            let side = if exponent > 0 { &mut above } else { &mut below };
+            *side = Some(match *side {
+                Some(product) => self.binary(Op::Multiply, product, power),
+                None => power,
+            });
+        }
+        match (above, below) {
+            (above, None) => above,
+            (Some(above), Some(below)) => Some(self.binary(Op::Divide, above, below)),
+            (None, Some(below)) => {
+                let one = self.constant(1.0);
+                Some(self.binary(Op::Divide, one, below))
+            }
+        }
+    }
+
+    /// base^n by squaring.
+    fn integer_power(&mut self, base: ValueId, exponent: u32) -> ValueId {
+        let mut result: Option<ValueId> = None;
+        let (mut square, mut rest) = (base, exponent);
+        while rest > 0 {
+            if rest & 1 == 1 {
+                result = Some(match result {
+                    Some(product) => self.binary(Op::Multiply, product, square),
+                    None => square,
+                });
+            }
+            rest >>= 1;
+            if rest > 0 {
+                square = self.binary(Op::Multiply, square, square);
+            }
+        }
+        result.unwrap_or_else(|| self.constant(1.0))
+    }
+}

@@ -1,0 +1,117 @@
+//! From the equations' graph to a program: sums and products become binary operations in
+//! a fixed order, what depends on parameters alone is split off and prepared once.
+//!
+//! A term `c P X` of a sum, P of parameters and X of the state, becomes one prepared
+//! coefficient |c| P times X, added or subtracted by the sign of c.
+
+mod affine;
+mod arithmetic;
+mod outputs;
+mod quantities;
+mod values;
+
+use model_spec::model::Model;
+
+use crate::mechanics::equations::Equations;
+use crate::mechanics::outputs::Requested;
+use crate::mechanics::rows::Rows;
+use crate::program::{Extent, Op, Program, ProgramField, ProgramGuard, ValueId};
+use crate::symbolic::formula::abridged;
+use crate::symbolic::graph::Id;
+pub use affine::lower_affine;
+use quantities::{program_observables, program_parameters, quantity};
+use values::Lowering;
+
+/// The program of one variant.
+pub fn lower(model: &Model, equations: &Equations, parameter_values: &[f64]) -> Program {
+    lower_requested(model, equations, parameter_values, &Requested::default())
+}
+
+/// The program of one variant with what was requested, which leaves the rest as it is.
+pub fn lower_requested(
+    model: &Model,
+    equations: &Equations,
+    parameter_values: &[f64],
+    requested: &Requested<Id, Rows>,
+) -> Program {
+    let mut lowering = Lowering::new(
+        &equations.graph,
+        &equations.derived_parameters,
+        &equations.parameter_names,
+    );
+    lowering.uses = equations.graph.uses(&equations.accelerations.rows.nodes());
+    let accelerations = lowering.rows(&equations.accelerations.rows);
+    lowering.uses.clear();
+    let mass = lowering.mass(equations);
+    let velocity_terms = lowering.rows(&equations.velocity_terms);
+    let forces = lowering.rows(&equations.forces);
+    let mut observable_values: Vec<ValueId> = equations
+        .observables
+        .iter()
+        .map(|id| lowering.value(*id))
+        .collect();
+    let kinetic = lowering.value(equations.kinetic);
+    let potential = lowering.value(equations.potential);
+    let energy = lowering.emit(Op::Add(kinetic, potential), Extent::Scalar);
+    observable_values.push(energy);
+    observable_values.push(lowering.value(equations.power));
+    let guards = equations
+        .guards
+        .iter()
+        .map(|guard| ProgramGuard {
+            formula: abridged(&equations.graph, model, guard.value).to_string(),
+            value: lowering.value(guard.value),
+        })
+        .collect();
+    let pivots = equations
+        .accelerations
+        .pivots
+        .iter()
+        .filter(|id| equations.graph.dependence(**id).is_prepared())
+        .map(|id| lowering.value(*id))
+        .collect();
+    let coefficient_values = equations
+        .coefficients
+        .iter()
+        .map(|coefficient| lowering.value(coefficient.value))
+        .collect();
+    let requested = lowering.requested(requested);
+    Program {
+        name: model.name.clone(),
+        title: model.title.clone(),
+        spec_hash: model.source.hash(),
+        parameters: program_parameters(model, parameter_values),
+        coordinates: model
+            .coordinates
+            .iter()
+            .map(|c| quantity(&c.name, &c.unit.text, &c.doc))
+            .collect(),
+        fields: model
+            .fields
+            .iter()
+            .zip(equations.graph.orders())
+            .map(|(field, order)| ProgramField {
+                coordinates: field.coordinates.clone(),
+                unit: field.unit.text.clone(),
+                order: *order,
+            })
+            .collect(),
+        inputs: model
+            .inputs
+            .iter()
+            .map(|i| quantity(&i.name, &i.unit.text, &i.doc))
+            .collect(),
+        observables: program_observables(model),
+        tables: lowering.tables,
+        values: lowering.values,
+        accelerations,
+        mass,
+        velocity_terms,
+        forces,
+        observable_values,
+        guards,
+        pivots,
+        coefficient_values,
+        requested,
+    }
+}

@@ -1,0 +1,323 @@
+//! The values of a program, node by node, each once.
+
+use std::collections::HashMap;
+use std::hash::{Hash, Hasher};
+
+use crate::mechanics::equations::Equations;
+use crate::mechanics::rows::Rows;
+use crate::program::{
+    Extent, MassBlocks, Op, ProgramTable, RowValues, ScaledValue, Value, ValueId,
+};
+use crate::symbolic::graph::{Assembly, Graph, Id, Operation, Shape};
+
+/// An operation and its extent, to be found again: numbers are compared by their bits.
+struct Computation {
+    op: Op,
+    extent: Extent,
+}
+
+impl PartialEq for Computation {
+    fn eq(&self, other: &Self) -> bool {
+        let same = match (&self.op, &other.op) {
+            (Op::Constant(a), Op::Constant(b)) => a.to_bits() == b.to_bits(),
+            (a, b) => a == b,
+        };
+        same && self.extent == other.extent
+    }
+}
+
+impl Eq for Computation {}
+
+impl Hash for Computation {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        std::mem::discriminant(&self.op).hash(state);
+        match &self.op {
+            Op::Constant(number) => number.to_bits().hash(state),
+            Op::Table(place)
+            | Op::Parameter(place)
+            | Op::Coordinate(place)
+            | Op::Rate(place)
+            | Op::ModeCoordinates(place)
+            | Op::ModeRates(place)
+            | Op::Input(place) => place.hash(state),
+            Op::Argument(argument, variable) => (argument, variable).hash(state),
+            op => op.operands().hash(state),
+        }
+    }
+}
+
+/// Values in the making.
+pub(super) struct Lowering<'g> {
+    pub(super) graph: &'g Graph,
+    derived: &'g [Option<Id>],
+    /// Place among the independent parameters, for each parameter.
+    independent: Vec<usize>,
+    parameter_names: Vec<String>,
+    pub(super) values: Vec<Value>,
+    known: HashMap<Computation, ValueId>,
+    lowered: HashMap<Id, ValueId>,
+    pub(super) tables: Vec<ProgramTable>,
+    table_places: HashMap<usize, usize>,
+    /// How often the accelerations read each node, while these are lowered.
+    pub(super) uses: HashMap<Id, usize>,
+}
+
+impl<'g> Lowering<'g> {
+    /// A lowering of nodes of `graph`, whose parameters have these names and, if they are
+    /// derived from others, these expressions.
+    pub(super) fn new(graph: &'g Graph, derived: &'g [Option<Id>], names: &[String]) -> Self {
+        let mut next = 0;
+        let independent = derived
+            .iter()
+            .map(|derived| {
+                let place = next;
+                next += usize::from(derived.is_none());
+                place
+            })
+            .collect();
+        Self {
+            graph,
+            derived,
+            independent,
+            parameter_names: names.to_vec(),
+            values: Vec::new(),
+            known: HashMap::new(),
+            lowered: HashMap::new(),
+            tables: Vec::new(),
+            table_places: HashMap::new(),
+            uses: HashMap::new(),
+        }
+    }
+
+    pub(super) fn rows(&mut self, rows: &Rows) -> RowValues {
+        RowValues {
+            scalars: rows.scalars.iter().map(|id| self.value(*id)).collect(),
+            modal: rows.modal.iter().map(|id| self.value(*id)).collect(),
+        }
+    }
+
+    pub(super) fn mass(&mut self, equations: &Equations) -> MassBlocks {
+        let mass = &equations.mass;
+        let block = |rows: &Vec<Id>, lowering: &mut Self| {
+            rows.iter()
+                .map(|id| lowering.value(*id))
+                .collect::<Vec<_>>()
+        };
+        MassBlocks {
+            scalars: mass.scalars.iter().map(|row| block(row, self)).collect(),
+            coupling: mass.coupling.iter().map(|row| block(row, self)).collect(),
+            modal: mass
+                .modal
+                .iter()
+                .map(|row| {
+                    row.iter()
+                        .map(|matrix| {
+                            (!matrix.is_zero()).then(|| self.assembly(&matrix.assembly()))
+                        })
+                        .collect()
+                })
+                .collect(),
+        }
+    }
+
+    fn extent(&self, shape: Shape) -> Extent {
+        match shape {
+            Shape::Scalar => Extent::Scalar,
+            Shape::Vector(space) => Extent::Vector(self.graph.size(space)),
+            Shape::Matrix(rows, columns) => {
+                Extent::Matrix(self.graph.size(rows), self.graph.size(columns))
+            }
+        }
+    }
+
+    /// Adds a value, or finds it if it stands there already.
+    pub(super) fn emit(&mut self, op: Op, extent: Extent) -> ValueId {
+        let key = Computation { op, extent };
+        if let Some(&known) = self.known.get(&key) {
+            return known;
+        }
+        let op = key.op.clone();
+        let prepared = match op {
+            Op::Constant(_) | Op::Table(_) | Op::Parameter(_) => true,
+            Op::Coordinate(_)
+            | Op::Rate(_)
+            | Op::ModeCoordinates(_)
+            | Op::ModeRates(_)
+            | Op::Input(_)
+            | Op::Time
+            | Op::Argument(..) => false,
+            _ => op.operands().iter().all(|id| self.values[id.0].prepared),
+        };
+        let id = ValueId(self.values.len());
+        self.values.push(Value {
+            op,
+            extent,
+            prepared,
+            name: None,
+        });
+        self.known.insert(key, id);
+        id
+    }
+
+    pub(super) fn join(&self, a: ValueId, b: ValueId) -> Extent {
+        match self.values[a.0].extent {
+            Extent::Scalar => self.values[b.0].extent,
+            other => other,
+        }
+    }
+
+    pub(super) fn binary(
+        &mut self,
+        op: fn(ValueId, ValueId) -> Op,
+        a: ValueId,
+        b: ValueId,
+    ) -> ValueId {
+        let extent = self.join(a, b);
+        self.emit(op(a, b), extent)
+    }
+
+    pub(super) fn constant(&mut self, value: f64) -> ValueId {
+        self.emit(Op::Constant(value), Extent::Scalar)
+    }
+
+    /// The value of a node.
+    pub(super) fn value(&mut self, id: Id) -> ValueId {
+        if let Some(&known) = self.lowered.get(&id) {
+            return known;
+        }
+        let value = self.lower_node(id);
+        self.lowered.insert(id, value);
+        if let Some(name) = self.graph.name(id)
+            && self.values[value.0].name.is_none()
+        {
+            self.values[value.0].name = Some(name.to_owned());
+        }
+        value
+    }
+
+    fn lower_node(&mut self, id: Id) -> ValueId {
+        let graph = self.graph;
+        let op = match graph.operation(id) {
+            Operation::Constant(bits) => return self.constant(bits.value()),
+            Operation::Parameter(index) => return self.parameter(*index),
+            Operation::Table(index) => return self.table(*index),
+            Operation::Sum(terms) => return self.sum(terms),
+            Operation::Product(_) => return self.term(1.0, id).1,
+            Operation::Assemble(assembly) => return self.assembly(assembly),
+            Operation::Coordinate(index) => Op::Coordinate(*index),
+            Operation::Rate(index) => Op::Rate(*index),
+            Operation::Input(index) => Op::Input(*index),
+            Operation::Time => Op::Time,
+            Operation::Argument(argument, variable) => Op::Argument(*argument, *variable),
+            Operation::ModeCoordinates(field) => Op::ModeCoordinates(*field),
+            Operation::ModeRates(field) => Op::ModeRates(*field),
+            Operation::Call(function, arguments) => {
+                Op::Call(*function, arguments.map(|a| self.value(a)))
+            }
+            Operation::Power(base, exponent) => Op::Power(self.value(*base), self.value(*exponent)),
+            Operation::Select {
+                a,
+                b,
+                then,
+                otherwise,
+            } => Op::Select {
+                a: self.value(*a),
+                b: self.value(*b),
+                then: self.value(*then),
+                otherwise: self.value(*otherwise),
+            },
+            Operation::Total(a) => Op::Total(self.value(*a)),
+            Operation::Apply {
+                matrix,
+                transposed,
+                vector,
+            } => Op::Apply {
+                matrix: self.value(*matrix),
+                transposed: *transposed,
+                vector: self.value(*vector),
+            },
+            Operation::Gram {
+                left,
+                weight,
+                right,
+            } => Op::Gram {
+                left: self.value(*left),
+                weight: self.value(*weight),
+                right: self.value(*right),
+            },
+            Operation::GramDiagonal {
+                left,
+                weight,
+                right,
+            } => Op::GramDiagonal {
+                left: self.value(*left),
+                weight: self.value(*weight),
+                right: self.value(*right),
+            },
+            Operation::Cholesky(matrix) => Op::Cholesky(self.value(*matrix)),
+            Operation::CholeskySolve(factor, right) => {
+                Op::CholeskySolve(self.value(*factor), self.value(*right))
+            }
+            Operation::PivotReciprocal(pivot) => Op::PivotReciprocal(self.value(*pivot)),
+        };
+        let extent = self.extent(graph.shape(id));
+        self.emit(op, extent)
+    }
+
+    fn assembly(&mut self, assembly: &Assembly) -> ValueId {
+        let op = Op::Assemble {
+            diagonal: assembly.diagonal.map(|id| self.value(id)),
+            outer: assembly
+                .outer
+                .iter()
+                .map(|(u, v)| (self.value(*u), self.value(*v)))
+                .collect(),
+            matrices: assembly
+                .matrices
+                .iter()
+                .map(|m| ScaledValue {
+                    row: self.value(m.row),
+                    matrix: self.value(m.matrix),
+                    transposed: m.transposed,
+                    column: self.value(m.column),
+                })
+                .collect(),
+        };
+        let extent = self.extent(Shape::Matrix(assembly.rows, assembly.columns));
+        self.emit(op, extent)
+    }
+
+    fn parameter(&mut self, index: usize) -> ValueId {
+        let value = match self.derived[index] {
+            Some(expression) => self.value(expression),
+            None => {
+                let place = self.independent[index];
+                self.emit(Op::Parameter(place), Extent::Scalar)
+            }
+        };
+        let name = &mut self.values[value.0].name;
+        if name.is_none() {
+            *name = Some(self.parameter_names[index].clone());
+        }
+        value
+    }
+
+    fn table(&mut self, index: usize) -> ValueId {
+        let table = self.graph.table(index);
+        let extent = self.extent(table.shape());
+        let place = match self.table_places.get(&index) {
+            Some(&place) => place,
+            None => {
+                self.tables.push(ProgramTable {
+                    doc: crate::symbolic::table_text::doc(table),
+                    name: crate::symbolic::table_text::constant_name(table),
+                    extent,
+                    values: table.values.clone(),
+                });
+                self.table_places.insert(index, self.tables.len() - 1);
+                self.tables.len() - 1
+            }
+        };
+        self.emit(Op::Table(place), extent)
+    }
+}

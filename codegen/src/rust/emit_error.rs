@@ -1,0 +1,33 @@
+//! What keeps a program from being emitted.
+
+use crate::program::ValueId;
+
+/// Why a program could not be emitted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum EmitError {
+    /// A name is no Rust identifier.
+    Name(String),
+    /// A value does not stand where a stage needs it: a defect of the generator.
+    Value(String),
+}
+
+impl EmitError {
+    /// A value that stands where a value of its kind has no source.
+    pub(super) fn misplaced(id: ValueId, kind: &str) -> Self {
+        Self::Value(format!("value {} {kind} where it stands", id.index()))
+    }
+}
+
+impl std::fmt::Display for EmitError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Name(name) => write!(f, "`{name}` is no Rust identifier"),
+            Self::Value(message) => write!(f, "the program cannot be emitted: {message}"),
+        }
+    }
+}
+
+impl std::error::Error for EmitError {}
+
+/// What comes of writing a part of the file.
+pub(super) type Emitted<T> = Result<T, EmitError>;

@@ -1,0 +1,82 @@
+//! The values that each part of the file is written from.
+
+use std::collections::BTreeSet;
+
+use crate::program::{Jacobian, Op, Program, RowValues, ValueId};
+
+/// The values that the mass matrix is written from.
+pub(super) fn mass_roots(program: &Program) -> Vec<ValueId> {
+    let mass = &program.mass;
+    let mut roots: Vec<ValueId> = mass.scalars.iter().flatten().copied().collect();
+    roots.extend(mass.coupling.iter().flatten());
+    // Modal blocks are written from their parts: as a whole they would be prepared.
+    for block in mass.modal.iter().flatten().flatten() {
+        roots.extend(program.value(*block).op.operands());
+    }
+    roots
+}
+
+/// What the stages that are called with coefficients return.
+pub(super) fn stage_roots(program: &Program) -> Vec<ValueId> {
+    let mut roots = program.accelerations.all();
+    roots.extend(&program.observable_values);
+    roots.extend(program.guards.iter().map(|g| g.value));
+    roots.extend(mass_roots(program));
+    roots.extend(requested_roots(program));
+    roots
+}
+
+/// The prepared values that stages read directly, constants and tables aside.
+pub(super) fn coefficient_values(program: &Program) -> Vec<ValueId> {
+    let roots = stage_roots(program);
+    let mut read: BTreeSet<ValueId> = program
+        .reachable(&roots)
+        .into_iter()
+        .filter(|id| !program.value(*id).prepared)
+        .flat_map(|id| program.value(id).op.operands())
+        .collect();
+    read.extend(roots);
+    read.retain(|id| {
+        let value = program.value(*id);
+        value.prepared && !matches!(value.op, Op::Constant(_) | Op::Table(_))
+    });
+    read.into_iter()
+        .filter(|id| program.value(*id).extent.length() > 0)
+        .collect()
+}
+
+/// The values that the requested functions are written from.
+fn requested_roots(program: &Program) -> Vec<ValueId> {
+    let requested = &program.requested;
+    let rows = [&requested.bias_forces, &requested.inverse_dynamics];
+    let mut roots: Vec<ValueId> = rows
+        .into_iter()
+        .flatten()
+        .flat_map(RowValues::all)
+        .collect();
+    roots.extend(requested.guard_rates.iter().flatten());
+    if let Some(products) = &requested.products {
+        roots.extend(products.forward.all());
+        roots.extend(products.reverse.iter().map(|(_, id)| *id));
+        roots.extend(products.by_parameters.entries.iter().map(|e| e.value));
+    }
+    for jacobian in &requested.jacobians {
+        roots.extend(entry_roots(program, jacobian));
+    }
+    roots.retain(|id| !matches!(program.value(*id).op, Op::Constant(_)));
+    roots
+}
+
+/// The values that a Jacobian is written from: assembled blocks are written from their parts.
+pub(super) fn entry_roots(program: &Program, jacobian: &Jacobian<ValueId>) -> Vec<ValueId> {
+    let entries = jacobian.entries.iter();
+    entries
+        .flat_map(|entry| {
+            let value = program.value(entry.value);
+            match value.op {
+                Op::Assemble { .. } => value.op.operands(),
+                _ => vec![entry.value],
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,106 @@
+//! Values whose branch a regime decides, as expressions of its number.
+
+use std::collections::HashMap;
+
+use model_spec::model::Function;
+
+use super::expression::Expression;
+use super::functions::Needed;
+use crate::program::{Decided, Op, Program, ValueId};
+
+/// Values whose branch a regime decides.
+pub(super) type Switches = HashMap<ValueId, Decided>;
+
+/// A value whose branch a regime decides, of these operands.
+pub(super) fn of_side(
+    program: &Program,
+    switches: &Switches,
+    id: ValueId,
+    operands: &[Expression],
+    needed: &mut Needed,
+) -> Option<Expression> {
+    let op = &program.value(id).op;
+    if let (Op::Select { a, b, .. }, [_, _, then, otherwise]) = (op, operands)
+        && let (Op::Call(Function::Contact, _), Op::Constant(0.0)) =
+            (&program.value(*a).op, &program.value(*b).op)
+    {
+        let touching = touching(*switches.get(a)?, needed)?;
+        return Some(chosen(touching, then, otherwise, needed));
+    }
+    let decided = *switches.get(&id)?;
+    let one = || Expression::number(1.0);
+    Some(match (op, operands, decided) {
+        (Op::Call(Function::Deadzone, _), [p, b], Decided::Between { above, beyond }) => {
+            needed.deadzone_on_side = true;
+            let sides = [positive(above), positive(beyond), p.clone(), b.clone()];
+            Expression::call("deadzone_on_side", &sides)
+        }
+        (Op::Call(Function::Contact, _), _, _) => {
+            let touching = touching(decided, needed)?;
+            chosen(touching, &one(), &Expression::number(0.0), needed)
+        }
+        (Op::Call(Function::Sign, _), _, Decided::Outside { above, below }) => {
+            let (zero, minus_one) = (Expression::number(0.0), Expression::number(-1.0));
+            let otherwise = chosen(positive(below), &minus_one, &zero, needed);
+            chosen(positive(above), &one(), &otherwise, needed)
+        }
+        (Op::Call(Function::Sign, _), _, Decided::By(place)) => {
+            chosen(positive(place), &one(), &Expression::number(-1.0), needed)
+        }
+        (Op::Call(Function::Above, _), _, Decided::By(place)) => {
+            chosen(positive(place), &one(), &Expression::number(0.0), needed)
+        }
+        (Op::Call(Function::Above, _), _, Decided::Turned(place)) => {
+            chosen(positive(place), &Expression::number(0.0), &one(), needed)
+        }
+        (Op::Call(Function::Abs, _), [a], Decided::By(place)) => {
+            chosen(positive(place), a, &Expression::negate(a), needed)
+        }
+        (Op::Call(Function::Max, _), [a, b], Decided::By(place)) => {
+            chosen(positive(place), a, b, needed)
+        }
+        (Op::Call(Function::Min, _), [a, b], Decided::By(place)) => {
+            chosen(positive(place), b, a, needed)
+        }
+        (Op::Select { .. }, [_, _, then, otherwise], Decided::By(place)) => {
+            chosen(positive(place), then, otherwise, needed)
+        }
+        (Op::Select { .. }, [_, _, then, otherwise], Decided::Turned(place)) => {
+            chosen(positive(place), otherwise, then, needed)
+        }
+        _ => return None,
+    })
+}
+
+fn positive(place: usize) -> Expression {
+    let arguments = [
+        Expression::atom("REGIME"),
+        Expression::atom(place.to_string()),
+    ];
+    Expression::call("positive", &arguments)
+}
+
+fn touching(decided: Decided, needed: &mut Needed) -> Option<Expression> {
+    let (name, sides) = match decided {
+        Decided::Between { above, beyond } => {
+            needed.touching = true;
+            ("touching", [above, beyond])
+        }
+        Decided::Outside { above, below } => {
+            needed.either = true;
+            ("either", [above, below])
+        }
+        Decided::By(_) | Decided::Turned(_) => return None,
+    };
+    Some(Expression::call(name, &sides.map(positive)))
+}
+
+fn chosen(
+    first: Expression,
+    then: &Expression,
+    otherwise: &Expression,
+    needed: &mut Needed,
+) -> Expression {
+    needed.chosen = true;
+    Expression::call("chosen", &[first, then.clone(), otherwise.clone()])
+}

@@ -1,0 +1,440 @@
+//! Derivatives of graph nodes: by a scalar variable, along a direction (forward mode),
+//! and by a field's modes, where the result of a scalar is a vector (its gradient) and
+//! that of a vector a structured matrix (diagonal, outer products and tables). Shared
+//! nodes are differentiated once; nothing is multiplied out.
+
+use std::collections::HashMap;
+
+use model_spec::model::Function;
+
+use crate::symbolic::arguments::Arguments;
+use crate::symbolic::graph::{Graph, Id, Operation, Shape, Space};
+use crate::symbolic::matrix::StructuredMatrix;
+
+/// Which nodes move at all along a direction. Asked before a derivative is formed: most of
+/// an expression is constant along most directions, and the partial derivatives by what is
+/// constant would be formed for nothing.
+#[derive(Default)]
+struct Moving {
+    known: HashMap<Id, bool>,
+}
+
+impl Moving {
+    /// Whether anything that `id` is computed from moves, by what `leaf` says of nodes that
+    /// it knows and of all that have no operands.
+    fn has(&mut self, graph: &Graph, id: Id, leaf: &dyn Fn(&Graph, Id) -> Option<bool>) -> bool {
+        if let Some(&known) = self.known.get(&id) {
+            return known;
+        }
+        let moves = match leaf(graph, id) {
+            Some(moves) => moves,
+            None => {
+                let operands = graph.operands(graph.operation(id));
+                operands.into_iter().any(|a| self.has(graph, a, leaf))
+            }
+        };
+        self.known.insert(id, moves);
+        moves
+    }
+}
+
+/// The derivative of a leaf.
+pub type Tangent<'a> = dyn Fn(&mut Graph, Id) -> Id + 'a;
+
+/// Values that the leaves of the graph have as derivatives.
+#[derive(Default)]
+pub struct Direction<'a> {
+    tangent: Option<&'a Tangent<'a>>,
+    known: HashMap<Id, Id>,
+    moving: Moving,
+}
+
+impl<'a> Direction<'a> {
+    /// A direction given by the derivative of every leaf that is no parameter (0 for those
+    /// that are constant).
+    pub fn new(tangent: &'a Tangent<'a>) -> Self {
+        Self {
+            tangent: Some(tangent),
+            ..Self::default()
+        }
+    }
+
+    /// Treats `id` as a variable whose derivative is `tangent`.
+    pub fn seed(&mut self, id: Id, tangent: Id) {
+        self.known.insert(id, tangent);
+    }
+
+    /// The derivative of `id` along the direction.
+    pub fn derivative(&mut self, graph: &mut Graph, id: Id) -> Id {
+        if let Some(&known) = self.known.get(&id) {
+            return known;
+        }
+        let result = self.compute(graph, id);
+        self.known.insert(id, result);
+        result
+    }
+
+    /// Whether `id` can have a derivative other than 0. No tangent is asked for, which would
+    /// put its nodes into the graph out of turn.
+    fn moves(&mut self, graph: &Graph, id: Id) -> bool {
+        let (known, tangents) = (&self.known, self.tangent.is_some());
+        self.moving
+            .has(graph, id, &|graph, id| match known.get(&id) {
+                Some(derivative) => Some(!graph.is_zero(*derivative)),
+                None => graph
+                    .operands(graph.operation(id))
+                    .is_empty()
+                    .then(|| tangents && !graph.dependence(id).is_prepared()),
+            })
+    }
+
+    fn compute(&mut self, graph: &mut Graph, id: Id) -> Id {
+        if !self.moves(graph, id) {
+            return graph.zero();
+        }
+        let operation = graph.operation(id).clone();
+        if graph.operands(&operation).is_empty() {
+            return match self.tangent {
+                Some(tangent) => tangent(graph, id),
+                None => graph.zero(),
+            };
+        }
+        match operation {
+            Operation::Total(a) => {
+                let inner = self.derivative(graph, a);
+                match graph.shape(a) {
+                    Shape::Vector(space) => graph.total_over(space, inner),
+                    _ => inner,
+                }
+            }
+            Operation::Apply {
+                matrix,
+                transposed,
+                vector,
+            } => self.applied(graph, matrix, transposed, vector),
+            Operation::CholeskySolve(factor, vector) => self.solved(graph, factor, vector, id),
+            Operation::GramDiagonal {
+                left,
+                weight,
+                right,
+            } => self.gram_diagonal(graph, left, weight, right),
+            _ if choice(graph, id).is_some() => {
+                choose(graph, id, |graph, branch| self.derivative(graph, branch))
+            }
+            _ => {
+                let partials =
+                    partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
+                let mut terms = Vec::with_capacity(partials.len());
+                for (operand, partial) in partials {
+                    let inner = self.derivative(graph, operand);
+                    if !graph.is_zero(inner) {
+                        terms.push((1.0, graph.multiply(partial, inner)));
+                    }
+                }
+                graph.combine(&terms)
+            }
+        }
+    }
+}
+
+/// The derivative of a node by a scalar node taken as a variable of its own: a leaf, or an
+/// expression whose own operands then count as constant.
+pub fn by_scalar(graph: &mut Graph, id: Id, variable: Id) -> Id {
+    let mut direction = Direction::default();
+    let one = graph.one();
+    direction.seed(variable, one);
+    direction.derivative(graph, id)
+}
+
+/// For a node that is one of two others: a and b of the condition a > b, the node where it
+/// holds, the node elsewhere.
+pub(crate) fn choice(graph: &Graph, id: Id) -> Option<[Id; 4]> {
+    match graph.operation(id) {
+        &Operation::Select {
+            a,
+            b,
+            then,
+            otherwise,
+        } => Some([a, b, then, otherwise]),
+        Operation::Call(function, arguments) => match (function, &**arguments) {
+            (Function::Max, &[a, b]) => Some([a, b, a, b]),
+            (Function::Min, &[a, b]) => Some([b, a, a, b]),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The derivative of such a node. The derivatives are chosen between, not multiplied by 1
+/// and 0: that of the branch not taken may be infinite or no number.
+fn choose(graph: &mut Graph, id: Id, mut derivative: impl FnMut(&mut Graph, Id) -> Id) -> Id {
+    let Some([a, b, then, otherwise]) = choice(graph, id) else {
+        return graph.zero();
+    };
+    let (taken, skipped) = (derivative(graph, then), derivative(graph, otherwise));
+    graph.select(a, b, taken, skipped)
+}
+
+/// For an element-wise operation: each operand that moves with the partial derivative by
+/// it (for functions every operand). Matrix operations have none here: along a direction they
+/// are in `matrix_derivatives`, and with the state they do not move.
+pub(crate) fn partial_derivatives(
+    graph: &mut Graph,
+    id: Id,
+    mut moves: impl FnMut(&Graph, Id) -> bool,
+) -> Vec<(Id, Id)> {
+    if let Some([a, b, then, otherwise]) = choice(graph, id) {
+        let (zero, one) = (graph.zero(), graph.one());
+        let taken = graph.select(a, b, one, zero);
+        let skipped = graph.select(a, b, zero, one);
+        return vec![(then, taken), (otherwise, skipped)];
+    }
+    match graph.operation(id).clone() {
+        Operation::Sum(terms) => terms
+            .iter()
+            .filter_map(|&(factor, term)| {
+                if !moves(graph, term) {
+                    return None;
+                }
+                Some((term, graph.constant(factor.value())))
+            })
+            .collect(),
+        Operation::Product(factors) => factors
+            .iter()
+            .filter_map(|&(factor, exponent)| {
+                if !moves(graph, factor) {
+                    return None;
+                }
+                let lowered: Vec<(Id, i32)> = factors
+                    .iter()
+                    .map(|&(other, power)| (other, if other == factor { power - 1 } else { power }))
+                    .collect();
+                let rest = graph.product(&lowered);
+                Some((factor, graph.scale(f64::from(exponent), rest)))
+            })
+            .collect(),
+        Operation::Power(base, exponent) => power_derivatives(graph, id, base, exponent),
+        Operation::Call(function, arguments) => {
+            function_derivatives(graph, id, function, arguments)
+        }
+        Operation::PivotReciprocal(pivot) => {
+            let square = graph.integer_power(id, 2);
+            vec![(pivot, graph.negate(square))]
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn power_derivatives(graph: &mut Graph, id: Id, base: Id, exponent: Id) -> Vec<(Id, Id)> {
+    let minus_one = graph.constant(-1.0);
+    let lowered = graph.add(exponent, minus_one);
+    let power = graph.power(base, lowered);
+    let by_base = graph.multiply(exponent, power);
+    let logarithm = graph.call(Function::Ln, &[base]);
+    let by_exponent = graph.multiply(id, logarithm);
+    vec![(base, by_base), (exponent, by_exponent)]
+}
+
+fn function_derivatives(
+    graph: &mut Graph,
+    id: Id,
+    function: Function,
+    arguments: Arguments<Id>,
+) -> Vec<(Id, Id)> {
+    match (function, &*arguments) {
+        (Function::Atan2, &[y, x]) => {
+            let squares = [graph.integer_power(y, 2), graph.integer_power(x, 2)];
+            let radius = graph.add(squares[0], squares[1]);
+            let by_y = graph.divide(x, radius);
+            let by_x = graph.divide(y, radius);
+            vec![(y, by_y), (x, graph.negate(by_x))]
+        }
+        (Function::Deadzone, &[p, b]) => {
+            let contact = graph.call(Function::Contact, arguments);
+            let side = graph.call(Function::Sign, &[p]);
+            let by_b = graph.multiply(contact, side);
+            vec![(p, contact), (b, graph.negate(by_b))]
+        }
+        (_, &[a]) => match derivative_of_function(graph, id, function, a) {
+            Some(derivative) => vec![(a, derivative)],
+            None => Vec::new(),
+        },
+        _ => Vec::new(),
+    }
+}
+
+/// The derivative of a function of one argument; `None` where it is 0 almost everywhere.
+fn derivative_of_function(graph: &mut Graph, id: Id, function: Function, a: Id) -> Option<Id> {
+    let one = graph.one();
+    let square = |graph: &mut Graph, x: Id| graph.integer_power(x, 2);
+    Some(match function {
+        Function::Sin => graph.call(Function::Cos, &[a]),
+        Function::Cos => {
+            let sine = graph.call(Function::Sin, &[a]);
+            graph.negate(sine)
+        }
+        Function::Tan => {
+            let tangent = square(graph, id);
+            graph.add(one, tangent)
+        }
+        Function::Asin | Function::Acos => {
+            let argument = square(graph, a);
+            let rest = graph.subtract(one, argument);
+            let root = graph.call(Function::Sqrt, &[rest]);
+            let slope = graph.integer_power(root, -1);
+            if function == Function::Acos {
+                graph.negate(slope)
+            } else {
+                slope
+            }
+        }
+        Function::Atan => {
+            let argument = square(graph, a);
+            let sum = graph.add(one, argument);
+            graph.integer_power(sum, -1)
+        }
+        Function::Sinh => graph.call(Function::Cosh, &[a]),
+        Function::Cosh => graph.call(Function::Sinh, &[a]),
+        Function::Tanh => {
+            let value = square(graph, id);
+            graph.subtract(one, value)
+        }
+        Function::Exp => id,
+        Function::Ln => graph.integer_power(a, -1),
+        Function::Sqrt => {
+            let reciprocal = graph.integer_power(id, -1);
+            graph.scale(0.5, reciprocal)
+        }
+        Function::Abs => graph.call(Function::Sign, &[a]),
+        _ => return None,
+    })
+}
+
+/// Derivatives by the modes of one field.
+pub struct ModalDerivative {
+    variable: Id,
+    space: Space,
+    moving: Moving,
+    gradients: HashMap<Id, Id>,
+    jacobians: HashMap<Id, StructuredMatrix>,
+}
+
+impl ModalDerivative {
+    /// Derivatives by the vector leaf `variable` (a field's mode coordinates or rates).
+    pub fn new(graph: &Graph, variable: Id) -> Option<Self> {
+        match graph.shape(variable) {
+            Shape::Vector(space) => Some(Self {
+                variable,
+                space,
+                moving: Moving::default(),
+                gradients: HashMap::new(),
+                jacobians: HashMap::new(),
+            }),
+            _ => None,
+        }
+    }
+
+    fn moves(&mut self, graph: &Graph, id: Id) -> bool {
+        let variable = self.variable;
+        self.moving.has(graph, id, &|graph, id| {
+            let leaf = graph.operands(graph.operation(id)).is_empty();
+            leaf.then_some(id == variable)
+        })
+    }
+
+    /// The gradient of a scalar node: a vector over the modes, or 0.
+    pub fn gradient(&mut self, graph: &mut Graph, id: Id) -> Id {
+        if let Some(&known) = self.gradients.get(&id) {
+            return known;
+        }
+        if !self.moves(graph, id) {
+            return graph.zero();
+        }
+        let result = match graph.operation(id).clone() {
+            Operation::Total(a) => {
+                let jacobian = self.jacobian(graph, a);
+                jacobian.column_totals(graph)
+            }
+            _ if choice(graph, id).is_some() => {
+                choose(graph, id, |graph, branch| self.gradient(graph, branch))
+            }
+            _ => {
+                let partials =
+                    partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
+                let mut terms = Vec::with_capacity(partials.len());
+                for (operand, partial) in partials {
+                    let inner = self.gradient(graph, operand);
+                    if !graph.is_zero(inner) {
+                        terms.push((1.0, graph.multiply(partial, inner)));
+                    }
+                }
+                graph.combine(&terms)
+            }
+        };
+        self.gradients.insert(id, result);
+        result
+    }
+
+    /// The Jacobian of a vector node: rows its own index, columns the modes.
+    pub fn jacobian(&mut self, graph: &mut Graph, id: Id) -> StructuredMatrix {
+        if let Some(known) = self.jacobians.get(&id) {
+            return known.clone();
+        }
+        let result = self.compute_jacobian(graph, id);
+        self.jacobians.insert(id, result.clone());
+        result
+    }
+
+    /// The Jacobian of a vector, or of the scalar that stands for each of its elements.
+    pub fn of_elements(&mut self, graph: &mut Graph, id: Id, rows: Space) -> StructuredMatrix {
+        if graph.shape(id) != Shape::Scalar {
+            return self.jacobian(graph, id);
+        }
+        let mut matrix = StructuredMatrix::zero(rows, self.space);
+        let (one, gradient) = (graph.one(), self.gradient(graph, id));
+        matrix.add_outer(graph, one, gradient);
+        matrix
+    }
+
+    fn compute_jacobian(&mut self, graph: &mut Graph, id: Id) -> StructuredMatrix {
+        let rows = match graph.shape(id) {
+            Shape::Vector(space) => space,
+            _ => self.space,
+        };
+        let mut result = StructuredMatrix::zero(rows, self.space);
+        if !self.moves(graph, id) {
+            return result;
+        }
+        if id == self.variable {
+            result.add_diagonal(graph, 1.0);
+            return result;
+        }
+        if let Operation::Apply {
+            matrix,
+            transposed,
+            vector,
+        } = *graph.operation(id)
+        {
+            return self
+                .jacobian(graph, vector)
+                .applied(graph, matrix, transposed);
+        }
+        if let Operation::CholeskySolve(factor, right) = *graph.operation(id) {
+            return self.of_elements(graph, right, rows).solved(graph, factor);
+        }
+        let partials = partial_derivatives(graph, id, |graph, operand| self.moves(graph, operand));
+        for (operand, partial) in partials {
+            match graph.shape(operand) {
+                Shape::Scalar => {
+                    let gradient = self.gradient(graph, operand);
+                    result.add_outer(graph, partial, gradient);
+                }
+                _ => {
+                    let inner = self.jacobian(graph, operand);
+                    result.add_scaled(graph, partial, &inner);
+                }
+            }
+        }
+        result
+    }
+}

@@ -1,0 +1,321 @@
+//! Formulas in LaTeX's mathematical mode, with the commands of amsmath.
+//!
+//! TeX breaks lines at the signs of sums that no fraction or stretched pair of parentheses
+//! holds together. So long sums stand in parentheses that do not stretch, and long quotients
+//! beside a stroke.
+
+use model_spec::model::Function;
+
+use super::letters;
+use super::symbol::Symbol;
+use super::tree::{Choice, Formula, Level, MatrixPart, Term, powers_of_ten, small_fraction};
+use crate::symbolic::table_text;
+
+/// Up to so many characters of plain text a part is held together.
+const HELD_TOGETHER: usize = 80;
+
+/// In sums of more terms fractions stand beside a stroke.
+const MOST_FRACTIONS: usize = 8;
+
+const TIMES: &str = "\\,";
+
+impl Formula {
+    /// In LaTeX's mathematical mode, with the commands of amsmath.
+    pub fn latex(&self) -> String {
+        at(self, Level::Sum)
+    }
+}
+
+/// A formula in its surroundings.
+fn at(formula: &Formula, level: Level) -> String {
+    if formula.set_level() < level {
+        return in_parentheses(formula);
+    }
+    match formula {
+        Formula::Number(value) => number(*value),
+        Formula::Symbol(symbol) => self::symbol(symbol),
+        Formula::Table(kind) => table_text::latex(*kind),
+        Formula::Sum(terms) => sum(terms),
+        Formula::Quotient { above, below } => quotient(above, below),
+        Formula::Power(base, exponent) => power(base, exponent),
+        Formula::Call(function, arguments) => call(*function, arguments),
+        Formula::Operation(name, operands) => operation(name, operands),
+        Formula::Choice(choice) => cases(choice),
+        Formula::Total(index, of) => {
+            format!("\\sum_{{{}}} {}", index.name(), at(of, Level::Product))
+        }
+        Formula::Applied(matrix, vector) => {
+            format!(
+                "\\left({}{TIMES}{}\\right)_{{i}}",
+                at(matrix, Level::Product),
+                at(vector, Level::Product)
+            )
+        }
+        Formula::Transposed(matrix) => format!("{{{}}}^{{\\mathsf{{T}}}}", at(matrix, Level::Base)),
+        Formula::Matrix(parts) => {
+            let parts: Vec<String> = parts.iter().map(matrix_part).collect();
+            parts.join(" + ")
+        }
+        Formula::Omitted => "\\dots".to_owned(),
+    }
+}
+
+fn in_parentheses(formula: &Formula) -> String {
+    let inner = formula.latex();
+    if is_long(formula) {
+        format!("\\bigl({inner}\\bigr)")
+    } else {
+        format!("\\left({inner}\\right)")
+    }
+}
+
+fn is_long(formula: &Formula) -> bool {
+    formula.to_string().len() > HELD_TOGETHER
+}
+
+fn sum(terms: &[Term]) -> String {
+    let with_strokes = terms.len() > MOST_FRACTIONS;
+    let at = |of: &Formula, level: Level| match of {
+        Formula::Quotient { above, below } if with_strokes && !above.is_empty() => {
+            beside_a_stroke(above, below)
+        }
+        _ => at(of, level),
+    };
+    let mut text = String::new();
+    for (place, term) in terms.iter().enumerate() {
+        text.push_str(match (term.factor < 0.0, place) {
+            (true, 0) => "-",
+            (false, 0) => "",
+            (true, _) => " - ",
+            (false, _) => " + ",
+        });
+        let magnitude = term.factor.abs();
+        match &term.of {
+            None => text.push_str(&number(magnitude)),
+            Some(of) if term.factor == 1.0 => text.push_str(&at(of, Level::Sum)),
+            Some(of) if magnitude == 1.0 => text.push_str(&at(of, Level::Product)),
+            Some(of) => {
+                let (factor, of) = (factor(magnitude), at(of, Level::Product));
+                text.push_str(&format!("{factor}{TIMES}{of}"));
+            }
+        }
+    }
+    text
+}
+
+/// Factors side by side; a sum over modes that others follow stands in parentheses.
+fn product(factors: &[Formula]) -> String {
+    if let [only] = factors {
+        return only.latex();
+    }
+    let last = factors.len().saturating_sub(1);
+    let factors: Vec<String> = factors
+        .iter()
+        .enumerate()
+        .map(|(place, factor)| match factor {
+            Formula::Total(..) if place < last => in_parentheses(factor),
+            _ => at(factor, Level::Product),
+        })
+        .collect();
+    factors.join(TIMES)
+}
+
+fn quotient(above: &[Formula], below: &[Formula]) -> String {
+    let numerator = match above {
+        [] => "1".to_owned(),
+        factors => product(factors),
+    };
+    if below.is_empty() {
+        // Alone a factor is as it would be without any product.
+        return match above {
+            [only] => at(only, Level::Product),
+            _ => numerator,
+        };
+    }
+    if !above.is_empty() && above.iter().chain(below).any(is_long) {
+        return beside_a_stroke(above, below);
+    }
+    format!("\\frac{{{numerator}}}{{{}}}", product(below))
+}
+
+/// A quotient, or a product, in one line, which can be broken.
+fn beside_a_stroke(above: &[Formula], below: &[Formula]) -> String {
+    let numerator = match above {
+        [only] => at(only, Level::Product),
+        several => product(several),
+    };
+    match below {
+        [] => numerator,
+        [Formula::Symbol(divisor)] => format!("{numerator}/{}", symbol(divisor)),
+        several => format!("{numerator}/\\bigl({}\\bigr)", product(several)),
+    }
+}
+
+/// A symbol takes an exponent as it is; braces keep that of anything else apart from its own.
+fn power(base: &Formula, exponent: &Formula) -> String {
+    let (base_text, exponent) = (at(base, Level::Base), exponent.latex());
+    match base {
+        Formula::Symbol(_) => format!("{base_text}^{{{exponent}}}"),
+        _ => format!("{{{base_text}}}^{{{exponent}}}"),
+    }
+}
+
+fn call(function: Function, arguments: &[Formula]) -> String {
+    match (function, arguments) {
+        (Function::Sqrt, [a]) => format!("\\sqrt{{{}}}", a.latex()),
+        (Function::Abs, [a]) => format!("\\left|{}\\right|", a.latex()),
+        (Function::Exp, [a]) => format!("e^{{{}}}", a.latex()),
+        _ => format!("{}{}", function_name(function), list(arguments)),
+    }
+}
+
+/// The command that sets a function's name.
+pub(super) fn function_name(function: Function) -> String {
+    match function {
+        Function::Asin => "\\arcsin".to_owned(),
+        Function::Acos => "\\arccos".to_owned(),
+        Function::Atan => "\\arctan".to_owned(),
+        Function::Sin
+        | Function::Cos
+        | Function::Tan
+        | Function::Sinh
+        | Function::Cosh
+        | Function::Tanh
+        | Function::Ln
+        | Function::Min
+        | Function::Max => format!("\\{}", function.name()),
+        _ => format!("\\operatorname{{{}}}", function.name()),
+    }
+}
+
+/// Symbols need no stretched parentheses.
+fn list(arguments: &[Formula]) -> String {
+    let long = arguments.iter().any(is_long);
+    let low = arguments.iter().all(|a| matches!(a, Formula::Symbol(_)));
+    let arguments: Vec<String> = arguments.iter().map(Formula::latex).collect();
+    let arguments = arguments.join(", ");
+    if low {
+        format!("({arguments})")
+    } else if long {
+        format!("\\bigl({arguments}\\bigr)")
+    } else {
+        format!("\\left({arguments}\\right)")
+    }
+}
+
+/// `gram_ii` with its indices below the line.
+fn operation(name: &str, operands: &[Formula]) -> String {
+    let (name, indices) = name.split_once('_').unwrap_or((name, ""));
+    format!(
+        "\\operatorname{{{name}}}{}{}",
+        below(&[indices]),
+        list(operands)
+    )
+}
+
+fn cases(choice: &Choice) -> String {
+    format!(
+        "\\begin{{cases}}{} & {} > {}\\\\ {} & \\text{{else}}\\end{{cases}}",
+        choice.then.latex(),
+        choice.a.latex(),
+        choice.b.latex(),
+        choice.otherwise.latex()
+    )
+}
+
+fn matrix_part(part: &MatrixPart) -> String {
+    match part {
+        MatrixPart::Diagonal(diagonal) => {
+            format!("\\delta_{{ij}}{TIMES}{}", at(diagonal, Level::Product))
+        }
+        MatrixPart::Outer(u, v) => format!(
+            "\\left[{}\\right]_{{i}}{TIMES}\\left[{}\\right]_{{j}}",
+            u.latex(),
+            v.latex()
+        ),
+        MatrixPart::Scaled(row, matrix, column) => format!(
+            "\\left[{}\\right]_{{i}}{TIMES}{}{TIMES}\\left[{}\\right]_{{j}}",
+            row.latex(),
+            at(matrix, Level::Product),
+            column.latex()
+        ),
+    }
+}
+
+/// A name with its dots above its head and everything else below the line.
+fn symbol(symbol: &Symbol) -> String {
+    let (head, mut parts) = symbol.parts();
+    let head = word(head);
+    let head = match symbol.dots {
+        0 => head,
+        1 => format!("\\dot{{{head}}}"),
+        _ => format!("\\ddot{{{head}}}"),
+    };
+    let indices: String = symbol.indices.iter().map(|index| index.name()).collect();
+    parts.push(&indices);
+    format!("{head}{}", below(&parts))
+}
+
+/// What stands below the line, the parts with commas between them.
+fn below(parts: &[&str]) -> String {
+    let parts: Vec<&str> = parts
+        .iter()
+        .filter(|part| !part.is_empty())
+        .map(|part| letters::command(part).unwrap_or(part))
+        .collect();
+    match parts.as_slice() {
+        [] => String::new(),
+        parts => format!("_{{{}}}", parts.join(",")),
+    }
+}
+
+fn word(head: &str) -> String {
+    match letters::command(head) {
+        Some(command) => command.to_owned(),
+        None if head.len() == 1 => head.to_owned(),
+        None => format!("\\mathrm{{{}}}", head.replace('_', "\\_")),
+    }
+}
+
+/// A magnitude in front of a product: a small fraction where it is one exactly.
+fn factor(magnitude: f64) -> String {
+    match small_fraction(magnitude) {
+        Some((numerator, denominator)) => format!("\\tfrac{{{numerator}}}{{{denominator}}}"),
+        None => number(magnitude),
+    }
+}
+
+fn number(value: f64) -> String {
+    match powers_of_ten(value) {
+        Some((mantissa, exponent)) if mantissa == "1" => format!("10^{{{exponent}}}"),
+        Some((mantissa, exponent)) => format!("{mantissa}\\cdot 10^{{{exponent}}}"),
+        None => format!("{value}"),
+    }
+}
+
+/// Characters of prose that have a meaning in LaTeX, escaped; letters that its fonts lack in
+/// mathematical mode, or by their numbers.
+pub(crate) fn prose(text: &str) -> String {
+    text.chars().map(prose_letter).collect()
+}
+
+fn prose_letter(c: char) -> String {
+    match c {
+        '\\' => "\\textbackslash{}".to_owned(),
+        '#' | '$' | '%' | '&' | '_' | '{' | '}' => format!("\\{c}"),
+        '~' | '^' => format!("\\{c}{{}}"),
+        '<' | '>' | '|' => format!("${c}$"),
+        c if c.is_ascii_graphic() || c == ' ' => c.to_string(),
+        c if c.is_whitespace() || c.is_control() => " ".to_owned(),
+        'Ð' | 'Þ' | 'ð' | 'þ' | '×' | '÷' => by_number(c),
+        'À'..='ÿ' | '–' | '—' | '‘' | '’' | '“' | '”' => c.to_string(),
+        _ => match letters::command_of(c) {
+            Some(command) => format!("${command}$"),
+            None => by_number(c),
+        },
+    }
+}
+
+fn by_number(c: char) -> String {
+    format!("U+{:04X}", u32::from(c))
+}

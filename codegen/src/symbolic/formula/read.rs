@@ -1,0 +1,290 @@
+//! From a node of the graph to its formula.
+
+use std::collections::{HashMap, HashSet};
+
+use model_spec::model::Model;
+
+use super::shared::{Shared, is_leaf, own_length};
+use super::symbol::{Index, Symbol};
+use super::tree::{Choice, Formula, MatrixPart, Term};
+use crate::symbolic::graph::{Argument, Assembly, Bits, Graph, Id, Operation, Shape, Variable};
+
+/// Up to this many characters a formula that stands by itself is written out.
+const ABRIDGED: u64 = 2000;
+
+/// Nothing is left out where what is left would be shorter than this.
+const SHORTEST: u64 = 40;
+
+/// Reads formulas off a graph.
+pub struct Reader<'a> {
+    graph: &'a Graph,
+    model: &'a Model,
+    shared: &'a Shared,
+    omitted: HashSet<Id>,
+}
+
+/// The formula of a node, with nothing but named nodes by their names. Of large models it can
+/// be exponentially longer than the graph.
+pub fn written_out(graph: &Graph, model: &Model, id: Id) -> Formula {
+    Reader::new(graph, model, &Shared::default()).formula(id)
+}
+
+/// The formula of a node for a message or a comment: parts of a very long one are left out.
+pub fn abridged(graph: &Graph, model: &Model, id: Id) -> Formula {
+    let shared = Shared::default();
+    let mut reader = Reader::new(graph, model, &shared);
+    let mut lengths = HashMap::new();
+    for node in graph.reachable(&[id]) {
+        if node == id || (graph.name(node).is_none() && !is_leaf(graph, node)) {
+            let length = own_length(graph, node, &lengths);
+            lengths.insert(node, length);
+        }
+    }
+    reader.omit(id, ABRIDGED, &lengths);
+    reader.formula(id)
+}
+
+impl<'a> Reader<'a> {
+    /// Of a graph of this model, with lines of their own for these nodes.
+    pub fn new(graph: &'a Graph, model: &'a Model, shared: &'a Shared) -> Self {
+        Self {
+            graph,
+            model,
+            shared,
+            omitted: HashSet::new(),
+        }
+    }
+
+    /// The formula of a node, also if the specification names it; the name of its line if it
+    /// has one.
+    pub fn formula(&self, id: Id) -> Formula {
+        match self.shared.name(id) {
+            Some(name) => Formula::Symbol(self.indexed(Symbol::plain(name), id)),
+            None => self.operation(id),
+        }
+    }
+
+    /// The node by its name, or its formula.
+    pub fn expression(&self, id: Id) -> Formula {
+        match self.graph.name(id) {
+            Some(name) => Formula::Symbol(self.indexed(self.symbol(name), id)),
+            None => self.formula(id),
+        }
+    }
+
+    /// The lines of the shared nodes: name and formula.
+    pub fn lines(&self) -> impl Iterator<Item = (Formula, Formula)> {
+        self.shared
+            .nodes()
+            .iter()
+            .map(|id| (self.formula(*id), self.operation(*id)))
+    }
+
+    /// What a name of the graph says: one that is made of the name of something that moves is
+    /// its rate or its acceleration.
+    pub fn symbol(&self, name: &str) -> Symbol {
+        for (ending, dots) in [("_dot", 1), ("_ddot", 2)] {
+            if let Some(stem) = name.strip_suffix(ending)
+                && self.moves(stem)
+            {
+                return Symbol::plain(stem).with_dots(dots);
+            }
+        }
+        Symbol::plain(name)
+    }
+
+    fn moves(&self, name: &str) -> bool {
+        let model = self.model;
+        model.coordinates.iter().any(|known| known.name == name)
+            || model.fields.iter().any(|known| known.coordinates == name)
+            || model.definitions.iter().any(|known| known.name == name)
+    }
+
+    /// Marks operands as left out so that the formula of a node keeps to a length.
+    fn omit(&mut self, id: Id, longest: u64, lengths: &HashMap<Id, u64>) {
+        if lengths.get(&id).is_none_or(|length| *length <= longest) {
+            return;
+        }
+        let operands = self.graph.operands(self.graph.operation(id));
+        let share = longest / (operands.len() as u64).max(1);
+        for operand in operands {
+            let too_long = lengths.get(&operand).is_some_and(|length| *length > share);
+            if too_long && share < SHORTEST {
+                self.omitted.insert(operand);
+            } else if too_long {
+                self.omit(operand, share, lengths);
+            }
+        }
+    }
+
+    fn indexed(&self, symbol: Symbol, id: Id) -> Symbol {
+        match self.graph.shape(id) {
+            Shape::Scalar => symbol,
+            Shape::Vector(_) => symbol.with_indices(&[Index::I]),
+            Shape::Matrix(..) => symbol.with_indices(&[Index::I, Index::J]),
+        }
+    }
+
+    fn node(&self, id: Id) -> Formula {
+        if self.omitted.contains(&id) {
+            return Formula::Omitted;
+        }
+        self.expression(id)
+    }
+
+    fn nodes(&self, ids: &[Id]) -> Vec<Formula> {
+        ids.iter().map(|id| self.node(*id)).collect()
+    }
+
+    fn boxed(&self, id: Id) -> Box<Formula> {
+        Box::new(self.node(id))
+    }
+
+    fn operation(&self, id: Id) -> Formula {
+        match self.graph.operation(id) {
+            Operation::Constant(bits) => Formula::Number(bits.value()),
+            Operation::Parameter(index) => Formula::named(&self.model.parameters[*index].name),
+            Operation::Coordinate(index) => {
+                Formula::Symbol(self.variable(Variable::Coordinate(*index)))
+            }
+            Operation::Rate(index) => Formula::Symbol(self.variable(Variable::Rate(*index))),
+            Operation::Input(index) => Formula::Symbol(self.variable(Variable::Input(*index))),
+            Operation::ModeCoordinates(field) => {
+                Formula::Symbol(self.variable(Variable::ModeCoordinates(*field)))
+            }
+            Operation::ModeRates(field) => {
+                Formula::Symbol(self.variable(Variable::ModeRates(*field)))
+            }
+            Operation::Time => Formula::named("t"),
+            Operation::Argument(argument, variable) => {
+                let operand = Formula::Symbol(self.variable(*variable));
+                Formula::Operation(argument_name(*argument), vec![operand])
+            }
+            Operation::Table(index) => Formula::Table(self.graph.table(*index).kind),
+            Operation::Sum(terms) => self.sum(terms),
+            Operation::Product(factors) => self.product(factors),
+            Operation::Call(function, arguments) => Formula::Call(*function, self.nodes(arguments)),
+            Operation::Power(base, exponent) => {
+                Formula::Power(self.boxed(*base), self.boxed(*exponent))
+            }
+            Operation::Select {
+                a,
+                b,
+                then,
+                otherwise,
+            } => Formula::Choice(Box::new(Choice {
+                a: self.node(*a),
+                b: self.node(*b),
+                then: self.node(*then),
+                otherwise: self.node(*otherwise),
+            })),
+            Operation::Total(a) => Formula::Total(Index::I, self.boxed(*a)),
+            other => self.matrix_operation(other),
+        }
+    }
+
+    /// The symbol of something that moves or drives.
+    fn variable(&self, variable: Variable) -> Symbol {
+        let model = self.model;
+        let modes = |field: usize| {
+            Symbol::plain(&model.fields[field].coordinates).with_indices(&[Index::I])
+        };
+        match variable {
+            Variable::Coordinate(index) => Symbol::plain(&model.coordinates[index].name),
+            Variable::Rate(index) => Symbol::plain(&model.coordinates[index].name).with_dots(1),
+            Variable::Input(index) => Symbol::plain(&model.inputs[index].name),
+            Variable::ModeCoordinates(field) => modes(field),
+            Variable::ModeRates(field) => modes(field).with_dots(1),
+        }
+    }
+
+    fn sum(&self, terms: &[(Bits, Id)]) -> Formula {
+        let term = |(factor, id): &(Bits, Id)| match self.graph.as_constant(*id) {
+            Some(constant) => Term {
+                factor: factor.value() * constant,
+                of: None,
+            },
+            None => Term {
+                factor: factor.value(),
+                of: Some(self.node(*id)),
+            },
+        };
+        Formula::Sum(terms.iter().map(term).collect())
+    }
+
+    fn product(&self, factors: &[(Id, i32)]) -> Formula {
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        for &(id, exponent) in factors {
+            let (id, exponent) = match self.graph.operation(id) {
+                Operation::PivotReciprocal(pivot) => (*pivot, -exponent),
+                _ => (id, exponent),
+            };
+            let side = if exponent > 0 { &mut above } else { &mut below };
+            side.push(match exponent.unsigned_abs() {
+                1 => self.node(id),
+                power => {
+                    let power = Formula::Number(f64::from(power));
+                    Formula::Power(self.boxed(id), Box::new(power))
+                }
+            });
+        }
+        Formula::Quotient { above, below }
+    }
+
+    fn matrix_operation(&self, operation: &Operation) -> Formula {
+        let operands = || self.nodes(&self.graph.operands(operation));
+        match operation {
+            Operation::Apply {
+                matrix,
+                transposed,
+                vector,
+            } => Formula::Applied(
+                Box::new(self.transposed(*matrix, *transposed)),
+                self.boxed(*vector),
+            ),
+            Operation::Gram { .. } => Formula::Operation("gram", operands()),
+            Operation::GramDiagonal { .. } => Formula::Operation("gram_ii", operands()),
+            Operation::Assemble(assembly) => self.assembly(assembly),
+            Operation::Cholesky(_) => Formula::Operation("cholesky", operands()),
+            Operation::CholeskySolve(..) => Formula::Operation("solve", operands()),
+            Operation::PivotReciprocal(pivot) => Formula::Quotient {
+                above: Vec::new(),
+                below: vec![self.node(*pivot)],
+            },
+            _ => Formula::Omitted,
+        }
+    }
+
+    fn transposed(&self, matrix: Id, transposed: bool) -> Formula {
+        if transposed {
+            Formula::Transposed(self.boxed(matrix))
+        } else {
+            self.node(matrix)
+        }
+    }
+
+    fn assembly(&self, assembly: &Assembly) -> Formula {
+        let diagonal = assembly.diagonal.into_iter();
+        let mut parts: Vec<MatrixPart> = diagonal
+            .map(|diagonal| MatrixPart::Diagonal(self.node(diagonal)))
+            .collect();
+        let outer = assembly.outer.iter();
+        parts.extend(outer.map(|(u, v)| MatrixPart::Outer(self.node(*u), self.node(*v))));
+        parts.extend(assembly.matrices.iter().map(|part| {
+            MatrixPart::Scaled(
+                self.node(part.row),
+                self.transposed(part.matrix, part.transposed),
+                self.node(part.column),
+            )
+        }));
+        Formula::Matrix(parts)
+    }
+}
+
+fn argument_name(argument: Argument) -> &'static str {
+    match argument {
+        Argument::Accelerations => "acceleration",
+        Argument::Direction => "direction",
+        Argument::Weights => "weight",
+    }
+}

@@ -1,0 +1,365 @@
+//! The hash-consed expression graph: every distinct expression stands in it once, so
+//! that differentiation and emission work on shared parts and nothing is expanded.
+//!
+//! A node is a scalar, a vector over an index space (a field's modes, or its quadrature
+//! nodes) or a matrix over two of them; element-wise operations broadcast scalars. Sums
+//! over modes therefore stay sums: the graph has the same size for any order. What
+//! the operations mean is in `operation`, how they simplify in `simplify`, their
+//! derivatives in `differentiate`.
+
+use std::collections::{HashMap, HashSet};
+
+use model_spec::model::Function;
+
+pub use crate::symbolic::operation::{
+    Argument, Assembly, Bits, Dependence, Id, Operation, ScaledMatrix, Shape, Space, Variable,
+};
+use crate::symbolic::tables::{Table, TableKind};
+
+struct Entry {
+    operation: Operation,
+    shape: Shape,
+    dependence: Dependence,
+    waits: u32,
+}
+
+/// The graph of one variant: its nodes, constant tables and the sizes of its spaces.
+pub struct Graph {
+    entries: Vec<Entry>,
+    known: HashMap<Operation, Id>,
+    tables: Vec<Table>,
+    orders: Vec<usize>,
+    names: HashMap<Id, String>,
+    taken: HashSet<String>,
+}
+
+impl Graph {
+    /// An empty graph for fields of these orders.
+    pub fn new(orders: &[usize]) -> Self {
+        Self {
+            entries: Vec::new(),
+            known: HashMap::new(),
+            tables: Vec::new(),
+            orders: orders.to_vec(),
+            names: HashMap::new(),
+            taken: HashSet::new(),
+        }
+    }
+
+    /// Keeps names from being given to nodes: those of the specification's quantities.
+    pub fn reserve_names<'n>(&mut self, names: impl Iterator<Item = &'n String>) {
+        self.taken.extend(names.cloned());
+    }
+
+    /// The names in use, of nodes and of quantities.
+    pub fn taken_names(&self) -> impl Iterator<Item = &str> {
+        self.taken.iter().map(String::as_str)
+    }
+
+    /// The order of each field.
+    pub fn orders(&self) -> &[usize] {
+        &self.orders
+    }
+
+    /// How many indices a space has.
+    pub fn size(&self, space: Space) -> usize {
+        match space {
+            Space::Modes(field) => self.orders[field],
+            Space::Nodes(field) => crate::symbolic::tables::quadrature_size(self.orders[field]),
+        }
+    }
+
+    /// How many numbers a node of this shape holds.
+    pub fn length(&self, shape: Shape) -> usize {
+        match shape {
+            Shape::Scalar => 1,
+            Shape::Vector(space) => self.size(space),
+            Shape::Matrix(rows, columns) => self.size(rows) * self.size(columns),
+        }
+    }
+
+    /// What a node computes.
+    pub fn operation(&self, id: Id) -> &Operation {
+        &self.entries[id.0 as usize].operation
+    }
+
+    /// A node's shape.
+    pub fn shape(&self, id: Id) -> Shape {
+        self.entries[id.0 as usize].shape
+    }
+
+    /// What a node depends on.
+    pub fn dependence(&self, id: Id) -> Dependence {
+        self.entries[id.0 as usize].dependence
+    }
+
+    /// How many elementary functions of the state stand one inside the other at most in what
+    /// a node is computed from. Each takes as long as some dozen additions in a row.
+    pub fn waits(&self, id: Id) -> u32 {
+        self.entries[id.0 as usize].waits
+    }
+
+    /// A table of constants.
+    pub fn table(&self, index: usize) -> &Table {
+        &self.tables[index]
+    }
+
+    /// How many nodes there are.
+    pub fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.entries.is_empty()
+    }
+
+    /// The name a node was given by the specification, if any.
+    pub fn name(&self, id: Id) -> Option<&str> {
+        self.names.get(&id).map(String::as_str)
+    }
+
+    /// Names a node after a quantity of the specification. Leaves keep their own names, a
+    /// node its first.
+    pub fn set_name(&mut self, id: Id, name: &str) {
+        let compound = !self.operands(self.operation(id)).is_empty();
+        if compound && !self.names.contains_key(&id) {
+            self.taken.insert(name.to_owned());
+            self.names.insert(id, name.to_owned());
+        }
+    }
+
+    /// Names a node, unless the name is in use.
+    pub fn suggest_name(&mut self, id: Id, name: &str) {
+        if !self.taken.contains(name) {
+            self.set_name(id, name);
+        }
+    }
+
+    /// The node of an operation that needs no simplification.
+    pub(crate) fn intern(&mut self, operation: Operation) -> Id {
+        if let Some(&id) = self.known.get(&operation) {
+            return id;
+        }
+        let shape = self.shape_of(&operation);
+        let dependence = self.dependence_of(&operation);
+        let waits = self.waits_of(&operation, dependence);
+        let id = Id(self.entries.len() as u32);
+        self.known.insert(operation.clone(), id);
+        self.entries.push(Entry {
+            operation,
+            shape,
+            dependence,
+            waits,
+        });
+        id
+    }
+
+    /// The node of a table of constants.
+    pub fn constants(
+        &mut self,
+        field: usize,
+        kind: TableKind,
+        values: impl FnOnce() -> Vec<f64>,
+    ) -> Id {
+        let index = match self
+            .tables
+            .iter()
+            .position(|t| t.field == field && t.kind == kind)
+        {
+            Some(index) => index,
+            None => {
+                self.tables.push(Table {
+                    field,
+                    kind,
+                    values: values(),
+                });
+                self.tables.len() - 1
+            }
+        };
+        self.intern(Operation::Table(index))
+    }
+
+    fn shape_of(&self, operation: &Operation) -> Shape {
+        match operation {
+            Operation::Constant(_)
+            | Operation::Parameter(_)
+            | Operation::Coordinate(_)
+            | Operation::Rate(_)
+            | Operation::Input(_)
+            | Operation::Time
+            | Operation::Total(_) => Shape::Scalar,
+            Operation::ModeCoordinates(field)
+            | Operation::ModeRates(field)
+            | Operation::Argument(
+                _,
+                Variable::ModeCoordinates(field) | Variable::ModeRates(field),
+            ) => Shape::Vector(Space::Modes(*field)),
+            Operation::Argument(..) => Shape::Scalar,
+            Operation::Table(index) => self.tables[*index].shape(),
+            Operation::Apply {
+                matrix, transposed, ..
+            } => match (self.shape(*matrix), transposed) {
+                (Shape::Matrix(rows, _), false) => Shape::Vector(rows),
+                (Shape::Matrix(_, columns), true) => Shape::Vector(columns),
+                (other, _) => other,
+            },
+            Operation::Gram { left, right, .. } => match (self.shape(*left), self.shape(*right)) {
+                (Shape::Matrix(_, a), Shape::Matrix(_, b)) => Shape::Matrix(a, b),
+                (other, _) => other,
+            },
+            Operation::GramDiagonal { left, .. } => match self.shape(*left) {
+                Shape::Matrix(_, columns) => Shape::Vector(columns),
+                other => other,
+            },
+            Operation::Assemble(assembly) => Shape::Matrix(assembly.rows, assembly.columns),
+            Operation::Cholesky(matrix) => self.shape(*matrix),
+            Operation::CholeskySolve(factor, right) => {
+                match (self.shape(*factor), self.shape(*right)) {
+                    (Shape::Matrix(rows, _), Shape::Matrix(_, columns)) => {
+                        Shape::Matrix(rows, columns)
+                    }
+                    (Shape::Matrix(rows, _), _) => Shape::Vector(rows),
+                    (other, _) => other,
+                }
+            }
+            Operation::Sum(_)
+            | Operation::Product(_)
+            | Operation::Call(..)
+            | Operation::Power(..)
+            | Operation::PivotReciprocal(_)
+            | Operation::Select { .. } => self
+                .operands(operation)
+                .into_iter()
+                .map(|id| self.shape(id))
+                .find(|shape| *shape != Shape::Scalar)
+                .unwrap_or(Shape::Scalar),
+        }
+    }
+
+    fn dependence_of(&self, operation: &Operation) -> Dependence {
+        match operation {
+            Operation::Parameter(_) => Dependence::PARAMETER,
+            Operation::Coordinate(_) | Operation::ModeCoordinates(_) => Dependence::COORDINATE,
+            Operation::Rate(_) | Operation::ModeRates(_) => Dependence::RATE,
+            Operation::Input(_) => Dependence::INPUT,
+            Operation::Time => Dependence::TIME,
+            Operation::Argument(..) => Dependence::ARGUMENT,
+            _ => self
+                .operands(operation)
+                .into_iter()
+                .map(|id| self.dependence(id))
+                .fold(Dependence::NONE, Dependence::join),
+        }
+    }
+
+    fn waits_of(&self, operation: &Operation, dependence: Dependence) -> u32 {
+        if dependence.is_prepared() {
+            return 0;
+        }
+        let own = match operation {
+            Operation::Call(function, _) => !is_quick(*function),
+            Operation::Power(..) => true,
+            _ => false,
+        };
+        let operands = self.operands(operation);
+        let inner = operands.into_iter().map(|id| self.waits(id)).max();
+        u32::from(own) + inner.unwrap_or(0)
+    }
+
+    /// The nodes an operation reads.
+    pub fn operands(&self, operation: &Operation) -> Vec<Id> {
+        match operation {
+            Operation::Constant(_)
+            | Operation::Parameter(_)
+            | Operation::Coordinate(_)
+            | Operation::Rate(_)
+            | Operation::Input(_)
+            | Operation::Time
+            | Operation::ModeCoordinates(_)
+            | Operation::ModeRates(_)
+            | Operation::Argument(..)
+            | Operation::Table(_) => Vec::new(),
+            Operation::Sum(terms) => terms.iter().map(|(_, id)| *id).collect(),
+            Operation::Product(factors) => factors.iter().map(|(id, _)| *id).collect(),
+            Operation::Call(_, arguments) => arguments.to_vec(),
+            Operation::Select {
+                a,
+                b,
+                then,
+                otherwise,
+            } => vec![*a, *b, *then, *otherwise],
+            Operation::Total(a) | Operation::Cholesky(a) | Operation::PivotReciprocal(a) => {
+                vec![*a]
+            }
+            Operation::Power(a, b) | Operation::CholeskySolve(a, b) => vec![*a, *b],
+            Operation::Apply { matrix, vector, .. } => vec![*matrix, *vector],
+            Operation::Gram {
+                left,
+                weight,
+                right,
+            }
+            | Operation::GramDiagonal {
+                left,
+                weight,
+                right,
+            } => vec![*left, *weight, *right],
+            Operation::Assemble(assembly) => assembly.operands(),
+        }
+    }
+
+    /// The leaf of a variable.
+    pub fn variable(&mut self, variable: Variable) -> Id {
+        self.intern(match variable {
+            Variable::Coordinate(index) => Operation::Coordinate(index),
+            Variable::ModeCoordinates(field) => Operation::ModeCoordinates(field),
+            Variable::Rate(index) => Operation::Rate(index),
+            Variable::ModeRates(field) => Operation::ModeRates(field),
+            Variable::Input(index) => Operation::Input(index),
+        })
+    }
+
+    /// How often each node is an operand of what `roots` are computed from.
+    pub fn uses(&self, roots: &[Id]) -> HashMap<Id, usize> {
+        let mut uses = HashMap::new();
+        for id in self.reachable(roots) {
+            for operand in self.operands(self.operation(id)) {
+                *uses.entry(operand).or_insert(0) += 1;
+            }
+        }
+        uses
+    }
+
+    /// Every node that `roots` are computed from, operands first. Takes as long as there are
+    /// such nodes, however large the graph is.
+    pub fn reachable(&self, roots: &[Id]) -> Vec<Id> {
+        let size = roots.iter().map(|root| root.0 as usize + 1).max();
+        let mut seen = vec![false; size.unwrap_or(0)];
+        let mut found = Vec::new();
+        let mut waiting = roots.to_vec();
+        while let Some(id) = waiting.pop() {
+            let is_new = !std::mem::replace(&mut seen[id.0 as usize], true);
+            if is_new {
+                found.push(id);
+                waiting.extend(self.operands(self.operation(id)));
+            }
+        }
+        // An operand is older than what is computed from it.
+        found.sort_unstable();
+        found
+    }
+}
+
+/// Whether a function takes no longer than a few additions.
+fn is_quick(function: Function) -> bool {
+    matches!(
+        function,
+        Function::Abs
+            | Function::Sign
+            | Function::Min
+            | Function::Max
+            | Function::Deadzone
+            | Function::Contact
+            | Function::Above
+    )
+}

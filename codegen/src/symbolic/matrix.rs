@@ -1,0 +1,184 @@
+//! Matrices over modes that keep their structure: a diagonal, outer products of vectors
+//! and scaled tables. Modal mass matrices have this form: a uniform beam's is diagonal, a
+//! tip mass adds one outer product, a basis that is not orthogonal a table.
+
+use crate::symbolic::graph::{Assembly, Graph, Id, Operation, ScaledMatrix, Shape, Space};
+
+/// diagonal + sum of u v^T + sum of diag(row) matrix diag(column).
+#[derive(Clone, Debug)]
+pub struct StructuredMatrix {
+    /// Index space of the rows.
+    pub rows: Space,
+    /// Index space of the columns.
+    pub columns: Space,
+    /// The diagonal (a vector, or a scalar for equal entries); only if rows = columns.
+    pub diagonal: Option<Id>,
+    /// Outer products u v^T; u and v are vectors, or scalars for equal entries.
+    pub outer: Vec<(Id, Id)>,
+    /// Scaled tables.
+    pub matrices: Vec<ScaledMatrix>,
+}
+
+impl StructuredMatrix {
+    /// The zero matrix.
+    pub fn zero(rows: Space, columns: Space) -> Self {
+        Self {
+            rows,
+            columns,
+            diagonal: None,
+            outer: Vec::new(),
+            matrices: Vec::new(),
+        }
+    }
+
+    /// Whether nothing stands in it.
+    pub fn is_zero(&self) -> bool {
+        self.diagonal.is_none() && self.outer.is_empty() && self.matrices.is_empty()
+    }
+
+    /// Adds a multiple of the identity.
+    pub fn add_diagonal(&mut self, graph: &mut Graph, value: f64) {
+        let value = graph.constant(value);
+        self.add_to_diagonal(graph, value);
+    }
+
+    fn add_to_diagonal(&mut self, graph: &mut Graph, value: Id) {
+        let sum = match self.diagonal {
+            Some(present) => graph.add(present, value),
+            None => value,
+        };
+        self.diagonal = (!graph.is_zero(sum)).then_some(sum);
+    }
+
+    /// Adds u v^T; outer products of the same v are collected.
+    pub fn add_outer(&mut self, graph: &mut Graph, u: Id, v: Id) {
+        if graph.is_zero(u) || graph.is_zero(v) {
+            return;
+        }
+        if let Some(present) = self.outer.iter().position(|(_, other)| *other == v) {
+            let sum = graph.add(self.outer[present].0, u);
+            if graph.is_zero(sum) {
+                self.outer.remove(present);
+            } else {
+                self.outer[present].0 = sum;
+            }
+        } else {
+            self.outer.push((u, v));
+        }
+    }
+
+    /// Adds diag(scale) other.
+    pub fn add_scaled(&mut self, graph: &mut Graph, scale: Id, other: &Self) {
+        if graph.is_zero(scale) {
+            return;
+        }
+        if let Some(diagonal) = other.diagonal {
+            let scaled = graph.multiply(scale, diagonal);
+            self.add_to_diagonal(graph, scaled);
+        }
+        for &(u, v) in &other.outer {
+            let scaled = graph.multiply(scale, u);
+            self.add_outer(graph, scaled, v);
+        }
+        for matrix in &other.matrices {
+            let row = graph.multiply(scale, matrix.row);
+            self.matrices.push(ScaledMatrix { row, ..*matrix });
+        }
+    }
+
+    /// matrix times this (or its transpose times this).
+    pub fn applied(&self, graph: &mut Graph, matrix: Id, transposed: bool) -> Self {
+        let rows = match (graph.shape(matrix), transposed) {
+            (Shape::Matrix(rows, _), false) => rows,
+            (Shape::Matrix(_, columns), true) => columns,
+            _ => self.rows,
+        };
+        let mut result = Self::zero(rows, self.columns);
+        let one = graph.one();
+        if let Some(diagonal) = self.diagonal {
+            result.matrices.push(ScaledMatrix {
+                row: one,
+                matrix,
+                transposed,
+                column: diagonal,
+            });
+        }
+        for &(u, v) in &self.outer {
+            let applied = graph.apply(matrix, transposed, u);
+            result.add_outer(graph, applied, v);
+        }
+        for inner in &self.matrices {
+            // Only shapes at quadrature nodes meet here: Phi^T diag(row) Phi.
+            let product = graph.intern(Operation::Gram {
+                left: matrix,
+                weight: inner.row,
+                right: inner.matrix,
+            });
+            result.matrices.push(ScaledMatrix {
+                row: one,
+                matrix: product,
+                transposed: false,
+                column: inner.column,
+            });
+        }
+        result
+    }
+
+    /// The solution of a system by its Cholesky factor with this as the right side.
+    pub fn solved(&self, graph: &mut Graph, factor: Id) -> Self {
+        let mut result = Self::zero(self.rows, self.columns);
+        for &(u, v) in &self.outer {
+            let solved = graph.cholesky_solve(factor, u);
+            result.add_outer(graph, solved, v);
+        }
+        let rest = Self {
+            outer: Vec::new(),
+            ..self.clone()
+        };
+        if !rest.is_zero() {
+            let right = rest.assemble(graph);
+            let (one, matrix) = (graph.one(), graph.cholesky_solve(factor, right));
+            result.matrices.push(ScaledMatrix {
+                row: one,
+                matrix,
+                transposed: false,
+                column: one,
+            });
+        }
+        result
+    }
+
+    /// The row vector of column sums: the gradient of the total of a vector whose
+    /// Jacobian this is.
+    pub fn column_totals(&self, graph: &mut Graph) -> Id {
+        let mut terms = Vec::new();
+        if let Some(diagonal) = self.diagonal {
+            terms.push((1.0, diagonal));
+        }
+        for &(u, v) in &self.outer {
+            let total = graph.total_over(self.rows, u);
+            terms.push((1.0, graph.multiply(total, v)));
+        }
+        for matrix in &self.matrices {
+            let applied = graph.apply(matrix.matrix, !matrix.transposed, matrix.row);
+            terms.push((1.0, graph.multiply(applied, matrix.column)));
+        }
+        graph.combine(&terms)
+    }
+
+    /// This as the parts of one node.
+    pub fn assembly(&self) -> Assembly {
+        Assembly {
+            rows: self.rows,
+            columns: self.columns,
+            diagonal: self.diagonal,
+            outer: self.outer.clone(),
+            matrices: self.matrices.clone(),
+        }
+    }
+
+    /// This as one assembled node.
+    pub fn assemble(&self, graph: &mut Graph) -> Id {
+        graph.intern(Operation::Assemble(Box::new(self.assembly())))
+    }
+}

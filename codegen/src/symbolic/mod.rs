@@ -1,0 +1,21 @@
+//! Expressions as nodes of one hash-consed graph, and what is done with them without knowing any
+//! mechanics.
+//!
+//! `operation` (of `arguments`) and `graph` (the nodes), `simplify` (the algebraic laws, applied
+//! by the constructors), `tables` and `table_text` (constants of a basis), `matrix` and
+//! `differentiate` (derivatives that keep their structure), `substitute`, `expand`, `degree` and
+//! `operation_count` (walks over nodes), `formula` (for people).
+
+pub(crate) mod arguments;
+pub(crate) mod degree;
+pub mod differentiate;
+pub(crate) mod expand;
+pub mod formula;
+pub mod graph;
+pub mod matrix;
+pub(crate) mod operation;
+pub(crate) mod operation_count;
+mod simplify;
+pub(crate) mod substitute;
+pub(crate) mod table_text;
+pub mod tables;

@@ -1,0 +1,22 @@
+//! How many operations nodes take per call: what expansions and orders of elimination are chosen by.
+
+use crate::symbolic::graph::{Graph, Id, Operation};
+
+/// Additions, multiplications and calls that depend on the state, element by element.
+pub fn count_operations(graph: &Graph, roots: &[Id]) -> usize {
+    graph
+        .reachable(roots)
+        .into_iter()
+        .filter(|id| !graph.dependence(*id).is_prepared())
+        .map(|id| {
+            let operation = graph.operation(id);
+            let operands = graph.operands(operation);
+            match operation {
+                Operation::Total(a) => graph.length(graph.shape(*a)),
+                Operation::Apply { matrix, .. } => 2 * graph.length(graph.shape(*matrix)),
+                Operation::CholeskySolve(factor, _) => 2 * graph.length(graph.shape(*factor)),
+                _ => operands.len() * graph.length(graph.shape(id)),
+            }
+        })
+        .sum()
+}

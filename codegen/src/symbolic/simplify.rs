@@ -1,0 +1,457 @@
+//! The constructors of the graph's nodes. Each applies a few algebraic laws, one per
+//! rule and stated beside it; none of them multiplies out a product of sums, so shared
+//! parts stay shared. Rounding may change under a law, values do not.
+
+use std::collections::BTreeMap;
+
+use model_spec::model::Function;
+
+use crate::symbolic::arguments::Arguments;
+use crate::symbolic::graph::{Bits, Graph, Id, Operation, Shape};
+
+/// Factors of a product with their exponents.
+type Factors = Vec<(Id, i32)>;
+
+impl Graph {
+    /// A number.
+    pub fn constant(&mut self, value: f64) -> Id {
+        self.intern(Operation::Constant(Bits::new(value)))
+    }
+
+    /// The number 0.
+    pub fn zero(&mut self) -> Id {
+        self.constant(0.0)
+    }
+
+    /// The number 1.
+    pub fn one(&mut self) -> Id {
+        self.constant(1.0)
+    }
+
+    /// The value of a constant node.
+    pub fn as_constant(&self, id: Id) -> Option<f64> {
+        match self.operation(id) {
+            Operation::Constant(bits) => Some(bits.value()),
+            _ => None,
+        }
+    }
+
+    /// Whether a node is the constant 0.
+    pub fn is_zero(&self, id: Id) -> bool {
+        self.as_constant(id) == Some(0.0)
+    }
+
+    /// c a.
+    pub fn scale(&mut self, factor: f64, a: Id) -> Id {
+        self.combine(&[(factor, a)])
+    }
+
+    /// -a.
+    pub fn negate(&mut self, a: Id) -> Id {
+        self.scale(-1.0, a)
+    }
+
+    /// a + b.
+    pub fn add(&mut self, a: Id, b: Id) -> Id {
+        self.combine(&[(1.0, a), (1.0, b)])
+    }
+
+    /// a - b.
+    pub fn subtract(&mut self, a: Id, b: Id) -> Id {
+        self.combine(&[(1.0, a), (-1.0, b)])
+    }
+
+    /// A linear combination. Laws: numbers are folded, c (k a) = (c k) a, and equal
+    /// nodes are collected; a sum inside a sum stays a node of its own.
+    pub fn combine(&mut self, terms: &[(f64, Id)]) -> Id {
+        let mut collected = BTreeMap::new();
+        for &(factor, id) in terms {
+            self.collect(&mut collected, factor, id, false);
+        }
+        self.sum_of(collected)
+    }
+
+    /// A linear combination in which sums inside sums are opened, so that equal terms
+    /// cancel across them.
+    pub fn combine_flat(&mut self, terms: &[(f64, Id)]) -> Id {
+        let mut collected = BTreeMap::new();
+        for &(factor, id) in terms {
+            self.collect(&mut collected, factor, id, true);
+        }
+        self.sum_of(collected)
+    }
+
+    fn collect(&mut self, into: &mut BTreeMap<Id, f64>, factor: f64, id: Id, open: bool) {
+        match self.operation(id) {
+            Operation::Constant(bits) => {
+                let value = bits.value();
+                let one = self.one();
+                *into.entry(one).or_insert(0.0) += factor * value;
+            }
+            Operation::Sum(terms) if open || terms.len() == 1 => {
+                for (inner, term) in terms.clone() {
+                    self.collect(into, factor * inner.value(), term, open);
+                }
+            }
+            _ => *into.entry(id).or_insert(0.0) += factor,
+        }
+    }
+
+    fn sum_of(&mut self, mut terms: BTreeMap<Id, f64>) -> Id {
+        terms.retain(|_, factor| *factor != 0.0);
+        self.merge_squared_sine_and_cosine(&mut terms);
+        let terms: Vec<(Bits, Id)> = terms
+            .into_iter()
+            .map(|(id, factor)| (Bits::new(factor), id))
+            .collect();
+        match terms.as_slice() {
+            [] => self.zero(),
+            [(factor, id)] if factor.value() == 1.0 => *id,
+            [(factor, id)] if self.as_constant(*id).is_some() => self.constant(factor.value()),
+            _ => self.intern(Operation::Sum(terms.into_boxed_slice())),
+        }
+    }
+
+    /// Law: c X sin(a)^2 + c X cos(a)^2 = c X.
+    fn merge_squared_sine_and_cosine(&mut self, terms: &mut BTreeMap<Id, f64>) {
+        let ids: Vec<Id> = terms.keys().copied().collect();
+        for id in ids {
+            let Some(&factor) = terms.get(&id) else {
+                continue;
+            };
+            let Some((rest, partner)) = self.squared_sine_partner(id) else {
+                continue;
+            };
+            if terms.get(&partner) == Some(&factor) {
+                terms.remove(&id);
+                terms.remove(&partner);
+                self.collect(terms, factor, rest, false);
+            }
+        }
+        terms.retain(|_, factor| *factor != 0.0);
+    }
+
+    /// For X sin(a)^2: X and X cos(a)^2.
+    fn squared_sine_partner(&mut self, id: Id) -> Option<(Id, Id)> {
+        let Operation::Product(factors) = self.operation(id) else {
+            return None;
+        };
+        let position = factors.iter().position(|(factor, exponent)| {
+            *exponent == 2 && matches!(self.operation(*factor), Operation::Call(Function::Sin, _))
+        })?;
+        let mut others = factors.to_vec();
+        let Operation::Call(_, argument) = *self.operation(others[position].0) else {
+            return None;
+        };
+        others.remove(position);
+        let rest = self.product(&others);
+        let cosine = self.call(Function::Cos, argument);
+        let partner = self.product(&[(rest, 1), (cosine, 2)]);
+        Some((rest, partner))
+    }
+
+    /// a b.
+    pub fn multiply(&mut self, a: Id, b: Id) -> Id {
+        self.product(&[(a, 1), (b, 1)])
+    }
+
+    /// a / b.
+    pub fn divide(&mut self, a: Id, b: Id) -> Id {
+        self.product(&[(a, 1), (b, -1)])
+    }
+
+    /// a^n.
+    pub fn integer_power(&mut self, a: Id, exponent: i32) -> Id {
+        self.product(&[(a, exponent)])
+    }
+
+    /// A product of integer powers. Laws: numeric factors move in front of the product,
+    /// products inside are opened, (a^m)^n = a^(m n), equal factors are collected, a^0 = 1.
+    /// Where that would make an exponent too large products inside stay closed.
+    pub fn product(&mut self, factors: &[(Id, i32)]) -> Id {
+        let (number, mut collected) = match self.opened_factors(factors) {
+            Some(opened) => opened,
+            None => (1.0, closed_factors(factors)),
+        };
+        collected.retain(|_, exponent| *exponent != 0);
+        self.apply_piecewise_laws(&mut collected);
+        if number == 0.0 {
+            return self.zero();
+        }
+        let factors: Vec<(Id, i32)> = collected.into_iter().collect();
+        let product = match factors.as_slice() {
+            [] => return self.constant(number),
+            [(id, 1)] => *id,
+            _ => self.intern(Operation::Product(factors.into_boxed_slice())),
+        };
+        self.scale(number, product)
+    }
+
+    /// The number and the powers of a product; `None` if an exponent is too large.
+    fn opened_factors(&self, factors: &[(Id, i32)]) -> Option<(f64, BTreeMap<Id, i32>)> {
+        let mut number = 1.0;
+        let mut collected = BTreeMap::new();
+        for &(id, exponent) in factors {
+            self.collect_factor(&mut number, &mut collected, id, exponent)?;
+        }
+        Some((number, collected))
+    }
+
+    fn collect_factor(
+        &self,
+        number: &mut f64,
+        into: &mut BTreeMap<Id, i32>,
+        id: Id,
+        exponent: i32,
+    ) -> Option<()> {
+        if exponent.abs() > MAX_EXPONENT {
+            return None;
+        }
+        match self.operation(id) {
+            Operation::Constant(bits) => *number *= power_of_number(bits.value(), exponent),
+            Operation::Sum(terms) if terms.len() == 1 => {
+                let (factor, inner) = terms[0];
+                *number *= power_of_number(factor.value(), exponent);
+                self.collect_factor(number, into, inner, exponent)?;
+            }
+            Operation::Product(factors) => {
+                for &(inner, power) in factors {
+                    self.collect_factor(number, into, inner, power.checked_mul(exponent)?)?;
+                }
+            }
+            _ => {
+                let total = into.entry(id).or_insert(0);
+                *total += exponent;
+                if total.abs() > MAX_EXPONENT {
+                    return None;
+                }
+            }
+        }
+        Some(())
+    }
+
+    /// Laws: contact^n = contact for n > 0, and deadzone(p, b)^n contact(p, b) =
+    /// deadzone(p, b)^n, since the force of Eq. (7) vanishes where the contact does.
+    fn apply_piecewise_laws(&mut self, factors: &mut BTreeMap<Id, i32>) {
+        let contacts: Vec<(Id, Arguments<Id>)> = factors
+            .keys()
+            .filter_map(|id| match self.operation(*id) {
+                Operation::Call(Function::Contact, arguments) => Some((*id, *arguments)),
+                _ => None,
+            })
+            .collect();
+        for (contact, arguments) in contacts {
+            let exponent = factors.get(&contact).copied().unwrap_or(0);
+            if exponent <= 0 {
+                continue;
+            }
+            factors.insert(contact, 1);
+            let deadzone = self.intern(Operation::Call(Function::Deadzone, arguments));
+            if factors.get(&deadzone).is_some_and(|power| *power > 0) {
+                factors.remove(&contact);
+            }
+        }
+    }
+
+    /// base^exponent. Laws: integer exponents become products, 1/2 a square root.
+    pub fn power(&mut self, base: Id, exponent: Id) -> Id {
+        match self.as_constant(exponent) {
+            Some(value) if value == value.round() && value.abs() <= 64.0 => {
+                self.integer_power(base, value as i32)
+            }
+            Some(value) if 2.0 * value == (2.0 * value).round() && value.abs() <= 32.0 => {
+                let root = self.call(Function::Sqrt, &[base]);
+                self.integer_power(root, (2.0 * value) as i32)
+            }
+            _ => self.intern(Operation::Power(base, exponent)),
+        }
+    }
+
+    /// A function of scalars or vectors. Laws: sin, cos, exp and sqrt of their simplest
+    /// numbers; odd functions take a minus sign out, even ones drop it.
+    pub fn call(&mut self, function: Function, arguments: impl Into<Arguments<Id>>) -> Id {
+        let arguments = arguments.into();
+        if let Arguments::One([a]) = arguments {
+            if let Some(value) = self.as_constant(a).and_then(|x| exact_value(function, x)) {
+                return self.constant(value);
+            }
+            if let Some(positive) = self.without_minus(a) {
+                match function {
+                    Function::Cos | Function::Cosh | Function::Abs => {
+                        return self.call(function, &[positive]);
+                    }
+                    Function::Sin
+                    | Function::Tan
+                    | Function::Asin
+                    | Function::Atan
+                    | Function::Sinh
+                    | Function::Tanh
+                    | Function::Sign => {
+                        let value = self.call(function, &[positive]);
+                        return self.negate(value);
+                    }
+                    _ => {}
+                }
+            }
+        }
+        self.intern(Operation::Call(function, arguments))
+    }
+
+    /// The node a in -a.
+    fn without_minus(&mut self, id: Id) -> Option<Id> {
+        match self.operation(id).clone() {
+            Operation::Sum(terms) if terms.iter().all(|(factor, _)| factor.value() < 0.0) => {
+                Some(self.negate_all(&terms))
+            }
+            Operation::Constant(bits) if bits.value() < 0.0 => Some(self.constant(-bits.value())),
+            _ => None,
+        }
+    }
+
+    fn negate_all(&mut self, terms: &[(Bits, Id)]) -> Id {
+        let negated: Vec<(f64, Id)> = terms.iter().map(|(f, id)| (-f.value(), *id)).collect();
+        self.combine(&negated)
+    }
+
+    /// `if a > b { then } else { otherwise }`. Law: equal branches need no choice.
+    pub fn select(&mut self, a: Id, b: Id, then: Id, otherwise: Id) -> Id {
+        if then == otherwise {
+            return then;
+        }
+        self.intern(Operation::Select {
+            a,
+            b,
+            then,
+            otherwise,
+        })
+    }
+
+    /// The factors of a product that are scalars, and the others.
+    pub(crate) fn scalar_factors(&self, factors: &[(Id, i32)]) -> (Factors, Factors) {
+        factors
+            .iter()
+            .partition(|(id, _)| self.shape(*id) == Shape::Scalar)
+    }
+
+    /// The sum of a vector's elements. Laws: scalar factors move in front of the sum, a
+    /// scalar is summed size times, an empty sum is 0.
+    pub fn total(&mut self, vector: Id) -> Id {
+        let Shape::Vector(space) = self.shape(vector) else {
+            return vector;
+        };
+        if self.size(space) == 0 {
+            return self.zero();
+        }
+        match self.operation(vector).clone() {
+            Operation::Sum(terms) if terms.len() == 1 => {
+                let inner = self.total(terms[0].1);
+                self.scale(terms[0].0.value(), inner)
+            }
+            Operation::Product(factors) => {
+                let (scalars, vectors) = self.scalar_factors(&factors);
+                if scalars.is_empty() {
+                    return self.intern(Operation::Total(vector));
+                }
+                let rest = self.product(&vectors);
+                let total = self.total(rest);
+                let scalar = self.product(&scalars);
+                self.multiply(scalar, total)
+            }
+            _ => self.intern(Operation::Total(vector)),
+        }
+    }
+
+    /// The sum over `space` of a scalar or vector.
+    pub fn total_over(&mut self, space: crate::symbolic::graph::Space, summand: Id) -> Id {
+        match self.shape(summand) {
+            Shape::Scalar => {
+                let size = self.size(space) as f64;
+                self.scale(size, summand)
+            }
+            _ => self.total(summand),
+        }
+    }
+
+    /// A matrix, or its transpose, times a vector (a scalar stands for the vector of
+    /// that value). Laws: scalar factors of the vector move in front; empty spaces and
+    /// zero vectors give 0.
+    pub fn apply(&mut self, matrix: Id, transposed: bool, vector: Id) -> Id {
+        let Shape::Matrix(rows, columns) = self.shape(matrix) else {
+            return self.zero();
+        };
+        if self.size(rows) == 0 || self.size(columns) == 0 || self.is_zero(vector) {
+            return self.zero();
+        }
+        match self.operation(vector).clone() {
+            Operation::Sum(terms) if terms.len() == 1 => {
+                let inner = self.apply(matrix, transposed, terms[0].1);
+                self.scale(terms[0].0.value(), inner)
+            }
+            Operation::Product(factors) => {
+                let (scalars, vectors) = self.scalar_factors(&factors);
+                if scalars.is_empty() {
+                    return self.intern_apply(matrix, transposed, vector);
+                }
+                let rest = self.product(&vectors);
+                let applied = self.intern_apply(matrix, transposed, rest);
+                let scalar = self.product(&scalars);
+                self.multiply(scalar, applied)
+            }
+            _ => self.intern_apply(matrix, transposed, vector),
+        }
+    }
+
+    /// The solution of a system by its Cholesky factor. Law: 0 for 0.
+    pub fn cholesky_solve(&mut self, factor: Id, vector: Id) -> Id {
+        if self.is_zero(vector) {
+            return vector;
+        }
+        self.intern(Operation::CholeskySolve(factor, vector))
+    }
+
+    fn intern_apply(&mut self, matrix: Id, transposed: bool, vector: Id) -> Id {
+        self.intern(Operation::Apply {
+            matrix,
+            transposed,
+            vector,
+        })
+    }
+}
+
+/// The largest exponent that equal factors are collected to.
+const MAX_EXPONENT: i32 = 4096;
+
+/// The factors as they are, equal ones collected.
+fn closed_factors(factors: &[(Id, i32)]) -> BTreeMap<Id, i32> {
+    let mut collected = BTreeMap::new();
+    for &(id, exponent) in factors {
+        *collected.entry(id).or_insert(0) += exponent;
+    }
+    collected
+}
+
+/// value^exponent by repeated multiplication: `powi` may round differently elsewhere.
+fn power_of_number(value: f64, exponent: i32) -> f64 {
+    let magnitude = (0..exponent.unsigned_abs()).fold(1.0, |product, _| product * value);
+    if exponent < 0 {
+        1.0 / magnitude
+    } else {
+        magnitude
+    }
+}
+
+fn exact_value(function: Function, x: f64) -> Option<f64> {
+    match function {
+        Function::Sin | Function::Tan | Function::Asin | Function::Atan if x == 0.0 => Some(0.0),
+        Function::Sinh | Function::Tanh if x == 0.0 => Some(0.0),
+        Function::Cos | Function::Cosh | Function::Exp if x == 0.0 => Some(1.0),
+        Function::Ln if x == 1.0 => Some(0.0),
+        Function::Sqrt if x >= 0.0 => Some(x.sqrt()),
+        Function::Abs => Some(x.abs()),
+        Function::Sign if x == 0.0 => Some(0.0),
+        Function::Sign => Some(x.signum()),
+        Function::Above if x > 0.0 => Some(1.0),
+        Function::Above if x <= 0.0 => Some(0.0),
+        _ => None,
+    }
+}

@@ -1,0 +1,92 @@
+//! Replacing nodes in an expression, by rebuilding what depends on them.
+
+use std::collections::HashMap;
+
+use crate::symbolic::graph::{Graph, Id, Operation};
+
+/// `id` with every node for which `replacement` gives another one replaced by it. Matrix
+/// factors, which depend on parameters alone, are kept.
+pub fn substitute(
+    graph: &mut Graph,
+    id: Id,
+    replacement: &dyn Fn(&mut Graph, Id) -> Option<Id>,
+    known: &mut HashMap<Id, Id>,
+) -> Id {
+    if let Some(&done) = known.get(&id) {
+        return done;
+    }
+    let result = match replacement(graph, id) {
+        Some(other) => other,
+        None => rebuild(graph, id, replacement, known),
+    };
+    known.insert(id, result);
+    result
+}
+
+fn rebuild(
+    graph: &mut Graph,
+    id: Id,
+    replacement: &dyn Fn(&mut Graph, Id) -> Option<Id>,
+    known: &mut HashMap<Id, Id>,
+) -> Id {
+    let operation = graph.operation(id).clone();
+    let mut inner = |graph: &mut Graph, id: Id| substitute(graph, id, replacement, known);
+    match operation {
+        Operation::Sum(terms) => {
+            let terms: Vec<(f64, Id)> = terms
+                .iter()
+                .map(|&(factor, term)| (factor.value(), inner(graph, term)))
+                .collect();
+            graph.combine(&terms)
+        }
+        Operation::Product(factors) => {
+            let factors: Vec<(Id, i32)> = factors
+                .iter()
+                .map(|&(factor, exponent)| (inner(graph, factor), exponent))
+                .collect();
+            graph.product(&factors)
+        }
+        Operation::Call(function, arguments) => {
+            let arguments = arguments.map(|a| inner(graph, a));
+            graph.call(function, arguments)
+        }
+        Operation::Power(base, exponent) => {
+            let (base, exponent) = (inner(graph, base), inner(graph, exponent));
+            graph.power(base, exponent)
+        }
+        Operation::Select {
+            a,
+            b,
+            then,
+            otherwise,
+        } => {
+            let (a, b) = (inner(graph, a), inner(graph, b));
+            let (then, otherwise) = (inner(graph, then), inner(graph, otherwise));
+            graph.select(a, b, then, otherwise)
+        }
+        Operation::Total(a) => {
+            let vector = inner(graph, a);
+            match graph.shape(a) {
+                crate::symbolic::graph::Shape::Vector(space) => graph.total_over(space, vector),
+                _ => vector,
+            }
+        }
+        Operation::Apply {
+            matrix,
+            transposed,
+            vector,
+        } => {
+            let vector = inner(graph, vector);
+            graph.apply(matrix, transposed, vector)
+        }
+        Operation::CholeskySolve(factor, vector) => {
+            let vector = inner(graph, vector);
+            graph.cholesky_solve(factor, vector)
+        }
+        Operation::PivotReciprocal(pivot) => {
+            let pivot = inner(graph, pivot);
+            graph.intern(Operation::PivotReciprocal(pivot))
+        }
+        _ => id,
+    }
+}

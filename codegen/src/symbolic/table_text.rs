@@ -1,0 +1,168 @@
+//! What a table of constants holds, in words: as plain text, as LaTeX, as documentation
+//! and as the name of a constant in emitted code.
+
+use crate::symbolic::tables::{Table, TableKind};
+
+fn primes(derivative: u8) -> String {
+    "'".repeat(usize::from(derivative))
+}
+
+fn power_of_s(power: u32) -> String {
+    match power {
+        0 => String::new(),
+        1 => "s ".to_owned(),
+        n => format!("s^{n} "),
+    }
+}
+
+/// What a table holds, in plain text: integrals run over s from 0 to 1, primes are
+/// derivatives by s.
+pub fn plain(kind: TableKind) -> String {
+    match kind {
+        TableKind::Wavenumber => "betal_i".to_owned(),
+        TableKind::Mixing => "xi_i".to_owned(),
+        TableKind::GrowingAmplitude => "((1 + xi_i)*exp(betal_i))".to_owned(),
+        TableKind::ShapeAtStart(d) => format!("phi_i{}(0)", primes(d)),
+        TableKind::ShapeAtEnd(d) => format!("phi_i{}(1)", primes(d)),
+        TableKind::Moment { power, derivative } => {
+            format!("int[{}phi_i{}]", power_of_s(power), primes(derivative))
+        }
+        TableKind::OwnMoment { power, left, right } if left == right => {
+            format!("int[{}phi_i{}^2]", power_of_s(power), primes(left))
+        }
+        TableKind::OwnMoment { power, left, right } => {
+            format!(
+                "int[{}phi_i{} phi_i{}]",
+                power_of_s(power),
+                primes(left),
+                primes(right)
+            )
+        }
+        TableKind::PairMoment { power, left, right } => {
+            format!(
+                "int[{}phi_i{} phi_j{}]",
+                power_of_s(power),
+                primes(left),
+                primes(right)
+            )
+        }
+        TableKind::NodePosition => "s_g".to_owned(),
+        TableKind::NodeWeight => "weight_g".to_owned(),
+        TableKind::ShapeAtNodes(d) => format!("phi_i{}(s_g)", primes(d)),
+    }
+}
+
+/// The same in LaTeX.
+pub fn latex(kind: TableKind) -> String {
+    let integral = |inner: String| format!("\\int_0^1 {inner}\\,ds");
+    let s = |power: u32| match power {
+        0 => String::new(),
+        1 => "s\\,".to_owned(),
+        n => format!("s^{{{n}}}\\,"),
+    };
+    let phi = |index: &str, d: u8| format!("\\varphi_{index}{}", primes(d));
+    match kind {
+        TableKind::Wavenumber => "(\\beta l)_i".to_owned(),
+        TableKind::Mixing => "\\xi_i".to_owned(),
+        TableKind::GrowingAmplitude => "(1 + \\xi_i)e^{(\\beta l)_i}".to_owned(),
+        TableKind::ShapeAtStart(d) => format!("{}(0)", phi("i", d)),
+        TableKind::ShapeAtEnd(d) => format!("{}(1)", phi("i", d)),
+        TableKind::Moment { power, derivative } => {
+            integral(format!("{}{}", s(power), phi("i", derivative)))
+        }
+        TableKind::OwnMoment { power, left, right } => {
+            integral(format!("{}{}{}", s(power), phi("i", left), phi("i", right)))
+        }
+        TableKind::PairMoment { power, left, right } => {
+            integral(format!("{}{}{}", s(power), phi("i", left), phi("j", right)))
+        }
+        TableKind::NodePosition => "s_g".to_owned(),
+        TableKind::NodeWeight => "w_g".to_owned(),
+        TableKind::ShapeAtNodes(d) => format!("{}(s_g)", phi("i", d)),
+    }
+}
+
+/// One line on what a table holds.
+pub fn doc(table: &Table) -> String {
+    match table.kind {
+        TableKind::Wavenumber => "beta_r l of the modes".to_owned(),
+        TableKind::Mixing => "xi_r of the modes, Eq. (17)".to_owned(),
+        TableKind::GrowingAmplitude => "(1 + xi_r) exp(beta_r l) of the modes".to_owned(),
+        TableKind::NodePosition => "Gauss-Legendre nodes on [0, 1]".to_owned(),
+        TableKind::NodeWeight => "Gauss-Legendre weights on [0, 1]".to_owned(),
+        kind => format!(
+            "{}, with s = x/l from 0 to 1 and primes for derivatives by s",
+            plain(kind)
+        ),
+    }
+}
+
+/// A table's name as a constant.
+pub fn constant_name(table: &Table) -> String {
+    let derivative = |d: u8| {
+        if d == 0 {
+            String::new()
+        } else {
+            format!("_D{d}")
+        }
+    };
+    let power = |k: u32| {
+        if k == 0 {
+            String::new()
+        } else {
+            format!("S{k}_")
+        }
+    };
+    let name = match table.kind {
+        TableKind::Wavenumber => "BETA_L".to_owned(),
+        TableKind::Mixing => "XI".to_owned(),
+        TableKind::GrowingAmplitude => "GROWING_AMPLITUDE".to_owned(),
+        TableKind::ShapeAtStart(d) => format!("PHI{}_AT_START", derivative(d)),
+        TableKind::ShapeAtEnd(d) => format!("PHI{}_AT_END", derivative(d)),
+        TableKind::Moment {
+            power: k,
+            derivative: d,
+        } => {
+            format!("INTEGRAL_{}PHI{}", power(k), derivative(d))
+        }
+        TableKind::OwnMoment {
+            power: k,
+            left,
+            right,
+        } if left == right => {
+            format!("INTEGRAL_{}PHI{}_SQUARED", power(k), derivative(left))
+        }
+        TableKind::OwnMoment {
+            power: k,
+            left,
+            right,
+        } => {
+            format!(
+                "INTEGRAL_{}PHI{}_PHI{}",
+                power(k),
+                derivative(left),
+                derivative(right)
+            )
+        }
+        TableKind::PairMoment {
+            power: k,
+            left,
+            right,
+        } => {
+            format!(
+                "INTEGRAL_{}PHI{}_BY_PHI{}",
+                power(k),
+                derivative(left),
+                derivative(right)
+            )
+        }
+        TableKind::NodePosition => "NODES".to_owned(),
+        TableKind::NodeWeight => "WEIGHTS".to_owned(),
+        TableKind::ShapeAtNodes(d) => format!("PHI{}_AT_NODES", derivative(d)),
+    };
+    if table.field == 0 {
+        name
+    } else {
+        format!("{name}_{}", table.field + 1)
+    }
+}
