@@ -87,7 +87,7 @@ mod tests {
 
     use crate::dataset::{Channel, Quantity, Record};
     use crate::march::Free;
-    use crate::plant::Plant;
+    use crate::model::plant::Plant;
 
     /// The rig, and the rig with teeth that deviate by more than twice the play.
     fn texts() -> (String, String) {

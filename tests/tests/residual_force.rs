@@ -5,10 +5,10 @@ use std::fs;
 use std::path::Path;
 
 use discover::dataset::read;
-use discover::residual_force::said::said;
+use discover::model::problem::Setting;
+use discover::residual_force::wording::said;
 use discover::residual_force::{Kind, Profile, ResidualForce, Simple, residual_force};
-use discover::search::null_fit;
-use discover::setting::Setting;
+use discover::search::found::null_fit;
 use model_spec::source::Source;
 
 const SPECIFICATION: &str = r#"

@@ -4,16 +4,18 @@
 use std::path::Path;
 use std::time::Instant;
 
+use discover::catalogue::{self, user_effects};
 use discover::dataset::{Dataset, read};
-use discover::fitting::Fit;
-use discover::floor::{Floor, floor};
-use discover::rerun::rerun;
+use discover::fit::full::Fit;
+use discover::fit::noise_floor::{Floor, floor};
+use discover::model::channel_checks;
+use discover::model::problem::Setting;
+use discover::report::resimulation::rerun;
+use discover::report::{discovery as document, location, page, write_back};
 use discover::residual_force::residual_force;
-use discover::residual_force::said::said_after;
-use discover::search::{null_fit, search};
-use discover::setting::Setting;
-use discover::trials::at_floor;
-use discover::{catalogue, document, extend, labels, locate, own, report};
+use discover::residual_force::wording::said_after;
+use discover::search::fitted::at_floor;
+use discover::search::found::{null_fit, search};
 use model_spec::source::Source;
 use serde_json::{Value, json};
 use sim::validate::certificate::Check;
@@ -42,11 +44,11 @@ pub fn compared(options: &arguments::Compare) -> Outcome<Value> {
     let (fit, floor) = null(&setting, &text, options.seed)?;
     let done = at_floor(&fit, floor.pooled);
     let force = residual_force(&setting, &fit, None);
-    let place = locate::located(&setting, &fit, force.as_ref());
+    let place = location::located(&setting, &fit, force.as_ref());
     let mut result = document::compared(&setting, &fit, &floor, done, &place);
     result["seconds"] = json!(begin.elapsed().as_secs_f64());
     let forces = force.as_ref().map(|force| (force, None));
-    let page = report::page(&setting, (&fit, None), forces, &result, (&text, &text));
+    let page = page::page(&setting, (&fit, None), forces, &result, (&text, &text));
     write_json(&options.out.join("comparison.json"), &result)?;
     write_file(&options.out.join("report.html"), page.as_bytes())?;
     Ok(result)
@@ -59,7 +61,7 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
         inputs(&options.spec, &options.dataset, options.order.as_deref())?;
     let effects = catalogue::effects(options.effects.as_deref()).map_err(Problem::Specification)?;
     let path = options.spec.display().to_string();
-    let homeless = own::placed(&effects, &path, &text).map_err(Problem::input)?;
+    let homeless = user_effects::placed(&effects, &path, &text).map_err(Problem::input)?;
     for note in &homeless {
         warn(&format!("note: {note}"));
     }
@@ -67,7 +69,7 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     let setting = Setting::new(&dataset, order, &path, &text);
     let (fit, floor_before) = null(&setting, &text, options.seed)?;
     let force = residual_force(&setting, &fit, None);
-    let mut place = locate::located(&setting, &fit, force.as_ref());
+    let mut place = location::located(&setting, &fit, force.as_ref());
     let found =
         search(&setting, fit, &effects, floor_before.pooled, &warn).map_err(Problem::input)?;
     let floor = match found.accepted.is_empty() {
@@ -81,8 +83,8 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     if let Some(left) = &left {
         place += &format!(" {}", said_after(left));
     }
-    let extended =
-        extend::extended(&setting, &text, found.best(), &found.accepted).map_err(Problem::input)?;
+    let extended = write_back::extended(&setting, &text, found.best(), &found.accepted)
+        .map_err(Problem::input)?;
     let mut result = document::discovered(&setting, &found, &floor, done, &place);
     let mut validation = validated(&setting.path, &extended, order)?;
     if !validation.is_null() {
@@ -96,7 +98,7 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     }
     result["validation"] = validation;
     result["seconds"] = json!(begin.elapsed().as_secs_f64());
-    let page = report::page(
+    let page = page::page(
         &setting,
         (&found.null, found.last.as_ref()),
         force.as_ref().map(|force| (force, left.as_ref())),
@@ -151,7 +153,7 @@ fn inputs(
 
 /// The null model's fit and the floor there.
 fn null(setting: &Setting<'_>, text: &str, seed: u64) -> Outcome<(Fit, Floor)> {
-    let notes = labels::check(setting, text);
+    let notes = channel_checks::check(setting, text);
     for note in notes.map_err(Problem::records)? {
         warn(&format!("note: {note}"));
     }

@@ -5,7 +5,7 @@ use model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use model_spec::suggest::did_you_mean;
 use model_spec::table::{Record, Written};
 
-use super::entry::text;
+use super::file::text;
 
 /// What the texts of an effect may hold.
 pub(super) struct Blanks {

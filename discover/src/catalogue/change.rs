@@ -5,7 +5,7 @@ use model_spec::edit::Section;
 use model_spec::table::Entry;
 
 use super::blanks::{Blanks, expression};
-use super::entry::{new_name, some, text};
+use super::file::{new_name, some, text};
 use super::{Change, SiteKind, Within};
 
 /// What an edit adds.

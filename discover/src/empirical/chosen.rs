@@ -5,15 +5,15 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::empirical::expressions::{Scales, Term, terms};
-use crate::fitting::Fit;
+use crate::fit::full::Fit;
+use crate::fit::residuals::correlation;
+use crate::model::problem::Setting;
+use crate::residual_force::basis_functions::Range;
 use crate::residual_force::equations::{Equation, Equations, Standing};
-use crate::residual_force::pushed::{Columns, pushed, stood};
+use crate::residual_force::force_response::{Columns, pushed, stood};
 use crate::residual_force::regression::{Regression, Sizes};
-use crate::residual_force::shapes::Range;
-use crate::response::At;
-use crate::rest::correlation;
-use crate::rule;
-use crate::setting::Setting;
+use crate::search::response::At;
+use crate::thresholds;
 
 /// A sum of terms in an equation.
 pub struct Expression {
@@ -93,7 +93,7 @@ fn best(
 ) -> Option<Set> {
     let count = blocks.iter().map(DMatrix::ncols).max()?;
     let mut known: Option<Set> = None;
-    for size in 1..=rule::UNNAMED_TERMS {
+    for size in 1..=thresholds::UNNAMED_TERMS {
         let sets = subsets(count, size).into_iter();
         let sizes = sets.map(|places| (regression.shared(&places), places));
         let Some((sizes, places)) = sizes.max_by(|a, b| a.0.gain.total_cmp(&b.0.gain)) else {
@@ -109,8 +109,8 @@ fn best(
         let squares = regression.squares - sizes.gain;
         let level = (squares / regression.numbers).max(1.0);
         let taken = sizes.gain - gain_before;
-        let is_enough = taken > 2.0 * rule::INFORMATION * level * over
-            && taken > rule::TERM_TAKES * (regression.squares - gain_before);
+        let is_enough = taken > 2.0 * thresholds::INFORMATION * level * over
+            && taken > thresholds::TERM_TAKES * (regression.squares - gain_before);
         if is_enough {
             known = Some(Set { places, sizes });
         }

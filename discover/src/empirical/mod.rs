@@ -9,17 +9,17 @@ pub mod expressions;
 use model_spec::edit::{Edit, NewForce, NewParameter, NewValue};
 use model_spec::model::Model;
 
-use crate::candidates::{Candidate, CandidateParameter, names};
+use crate::catalogue::candidate::{Candidate, CandidateParameter, names};
+use crate::catalogue::template::free_name;
 use crate::empirical::chosen::{Expression, chosen};
 use crate::empirical::expressions::{Of, Words};
-use crate::fitting::Fit;
-use crate::judge::{Evidence, Own, judge};
-use crate::placed::free_name;
+use crate::fit::full::Fit;
+use crate::model::problem::Setting;
 use crate::residual_force::{Ranked, residual_force};
-use crate::response::trial;
-use crate::rule;
-use crate::search::{Accepted, Found, Rejected};
-use crate::setting::Setting;
+use crate::search::acceptance::{Evidence, Own, judge};
+use crate::search::found::{Accepted, Found, Rejected};
+use crate::search::response::trial;
+use crate::thresholds;
 
 /// The name of what has none.
 pub const EMPIRICAL: &str = "empirical";
@@ -28,7 +28,7 @@ pub const EMPIRICAL: &str = "empirical";
 /// right model would leave, in noises; `said` is told what is done.
 pub fn add_empirical(setting: &Setting<'_>, found: &mut Found, floor: f64, said: &dyn Fn(&str)) {
     let before = found.best();
-    let is_wide = |left: f64| left > rule::UNNAMED_FROM * floor;
+    let is_wide = |left: f64| left > thresholds::UNNAMED_FROM * floor;
     if !(is_wide(before.train.pooled) && is_wide(before.test.pooled)) {
         return;
     }
@@ -79,10 +79,10 @@ fn sought(setting: &Setting<'_>, fit: &Fit) -> Option<Expression> {
     let explains = |ranked: &Ranked| ranked.by_state.max(ranked.by_time);
     let most = force.ranked.iter().map(explains).fold(0.0, f64::max);
     let mut as_well: Vec<&Ranked> = (force.ranked.iter())
-        .filter(|ranked| explains(ranked) >= rule::AS_WELL * most)
+        .filter(|ranked| explains(ranked) >= thresholds::AS_WELL * most)
         .collect();
     as_well.sort_by(|a, b| explains(b).total_cmp(&explains(a)));
-    let best = as_well.iter().take(rule::UNNAMED_EQUATIONS);
+    let best = as_well.iter().take(thresholds::UNNAMED_EQUATIONS);
     let among: Vec<usize> = best.map(|ranked| ranked.equation).collect();
     chosen(setting, fit, &among)
 }
@@ -186,7 +186,7 @@ fn simplest(
         let sizes = own.iter().zip(&fit.sd[known..]);
         let t: Vec<f64> = sizes.map(|(value, sd)| (value / sd).abs()).collect();
         let weakest = (0..t.len()).min_by(|a, b| t[*a].total_cmp(&t[*b]));
-        match weakest.filter(|term| t.len() > 1 && t[*term] < rule::SIGNIFICANCE) {
+        match weakest.filter(|term| t.len() > 1 && t[*term] < thresholds::SIGNIFICANCE) {
             Some(term) => {
                 expression.sizes = own.to_vec();
                 expression.sizes.remove(term);
@@ -245,7 +245,7 @@ fn believed(
         })
         .collect();
     let evidence = judge(before, after, &own)?;
-    let asked = rule::INFORMATION * (1 + own.len()) as f64;
+    let asked = thresholds::INFORMATION * (1 + own.len()) as f64;
     if evidence.information < asked {
         return Err(format!(
             "too little evidence in the training records: a gain of {:.1}, {asked} are asked for",
@@ -255,12 +255,12 @@ fn believed(
     let closes = |before: f64, after: f64| (before - after) / (before - floor);
     let train = closes(before.train.pooled, after.train.pooled);
     let test = closes(before.test.pooled, after.test.pooled);
-    if train.min(test) < rule::UNNAMED_CLOSES {
+    if train.min(test) < thresholds::UNNAMED_CLOSES {
         return Err(format!(
             "it closes {:.0} % of the gap in training and {:.0} % in test, {:.0} % are asked for",
             100.0 * train,
             100.0 * test,
-            100.0 * rule::UNNAMED_CLOSES
+            100.0 * thresholds::UNNAMED_CLOSES
         ));
     }
     Ok(evidence)

@@ -7,7 +7,7 @@ use sim::record::description::Description;
 
 use super::typical_step;
 use crate::dataset::{Dataset, Record, Refusal};
-use crate::windows::{Windows, judged};
+use crate::model::windows::{Windows, judged};
 
 /// A window with fewer samples says nothing of what happens inside it.
 const FEWEST_IN_WINDOW: f64 = 4.0;

@@ -8,10 +8,10 @@ use model_spec::model::{Expr, ExprKind, Model};
 use model_spec::source::Source;
 
 use crate::catalogue::SiteKind;
-use crate::fitting::Fit;
-use crate::plant::Plant;
-use crate::setting::Setting;
-use crate::sites::sites;
+use crate::catalogue::sites::sites;
+use crate::fit::full::Fit;
+use crate::model::plant::Plant;
+use crate::model::problem::Setting;
 
 /// An equation of motion.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,7 +5,7 @@ use sim::plot::{Axes, Frame, Panel, Plate, Series, plate};
 
 use crate::residual_force::equations::Equation;
 use crate::residual_force::{Profile, ResidualForce};
-use crate::rule;
+use crate::thresholds;
 
 /// What is not known to this many times the largest force is not drawn.
 const KNOWN: f64 = 0.5;
@@ -53,7 +53,7 @@ pub fn figures(before: &ResidualForce, after: Option<&ResidualForce>) -> String 
             let most = most(profile);
             let known = profile.sd.iter().filter(|sd| is_known(**sd, most));
             let is_drawn = known.count() >= ENOUGH;
-            let is_told = !view.by_window || profile.part > rule::STANDS_OUT;
+            let is_told = !view.by_window || profile.part > thresholds::STANDS_OUT;
             is_drawn && is_told && (view.axes != Axes::Time || is_resolved(before))
         })
         .collect();

@@ -5,30 +5,30 @@
 //! marched) and `regression` (how much of each there is), `looked` (families of shapes),
 //! `ranked` (equations compared), `profiles` (one of them in detail), `said` (words) and `figures`.
 
+pub mod basis_functions;
 pub mod equations;
+pub mod family_regression;
 pub mod figures;
-pub mod looked;
+mod finite_difference_response;
+pub mod force_response;
 pub mod profiles;
-pub mod pushed;
-pub mod ranked;
+pub mod ranking;
 pub mod regression;
-pub mod said;
-pub mod shapes;
-mod stepped;
+pub mod wording;
 
 use std::f64::consts::TAU;
 
-use crate::fitting::Fit;
-use crate::locate::peak_frequency;
+use crate::fit::full::Fit;
+use crate::model::problem::Setting;
+use crate::report::location::peak_frequency;
+use crate::residual_force::basis_functions::{Family, Over, Range};
 use crate::residual_force::equations::{Equation, Equations, Standing};
-use crate::residual_force::looked::Looked;
+use crate::residual_force::family_regression::Looked;
+use crate::residual_force::force_response::stood;
 use crate::residual_force::profiles::Blocks;
-use crate::residual_force::pushed::stood;
-use crate::residual_force::ranked::{Judged, simple};
-use crate::residual_force::shapes::{Family, Over, Range};
-use crate::response::At;
-use crate::rule;
-use crate::setting::Setting;
+use crate::residual_force::ranking::{Judged, simple};
+use crate::search::response::At;
+use crate::thresholds;
 
 /// Shaft orders that are looked at.
 const ORDERS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 36];
@@ -201,7 +201,7 @@ pub fn residual_force(
             false => Kind::Time,
             true => simple(&looked, judged.family, (&few, setting)),
         });
-    } else if found.frequency.part > rule::STANDS_OUT && number == judged.best {
+    } else if found.frequency.part > thresholds::STANDS_OUT && number == judged.best {
         // A line may stand between the bends over time.
         found.part = found.frequency.part;
         found.kind = Some(Kind::Time);

@@ -3,15 +3,15 @@
 
 use nalgebra::DVector;
 
-use crate::fitting::Fit;
+use crate::fit::full::Fit;
+use crate::model::problem::Setting;
+use crate::residual_force::basis_functions::{Family, Over, Range};
 use crate::residual_force::equations::Standing;
-use crate::residual_force::looked::{Looked, noise};
+use crate::residual_force::family_regression::{Looked, noise};
 use crate::residual_force::regression::{Each, Sizes};
-use crate::residual_force::shapes::{Family, Over, Range};
 use crate::residual_force::{Profile, ResidualForce};
-use crate::response::At;
-use crate::rule;
-use crate::setting::Setting;
+use crate::search::response::At;
+use crate::thresholds;
 
 /// What profiles are read from.
 pub(crate) struct Blocks<'b> {
@@ -172,7 +172,7 @@ fn deviations(sizes: &Sizes, inflation: f64) -> Vec<f64> {
     let variances = sizes.covariance.diagonal();
     let pairs = variances.iter().zip(&sizes.values);
     pairs
-        .map(|(v, size)| (inflation * v).sqrt().hypot(rule::STRAIGHT * size))
+        .map(|(v, size)| (inflation * v).sqrt().hypot(thresholds::STRAIGHT * size))
         .collect()
 }
 

@@ -5,18 +5,18 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::eliminated::Eliminator;
-use crate::fitting::Fit;
-use crate::response::At;
-use crate::rule;
-use crate::screen::add_prior;
+use crate::fit::full::Fit;
+use crate::fit::variable_projection::Eliminator;
+use crate::search::response::At;
+use crate::search::screening::add_prior;
+use crate::thresholds;
 
 /// Rounds in which the size of a force that differs from window to window is found.
 const ROUNDS: usize = 12;
 
 /// Nuisances that initial states do as well are told apart by one of these parts of their
 /// squares.
-const RIDGES: [f64; 3] = [rule::RIDGE, 1e-8, 1e-5];
+const RIDGES: [f64; 3] = [thresholds::RIDGE, 1e-8, 1e-5];
 
 /// Products of columns of shapes with each other and with the residual.
 pub struct Regression {
@@ -227,7 +227,7 @@ fn sizes(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Sizes {
     let count = right.len();
     let largest = gram.diagonal().iter().copied().fold(0.0, f64::max);
     let does: Vec<bool> = (0..count)
-        .map(|k| gram[(k, k)] > rule::RIDGE * largest)
+        .map(|k| gram[(k, k)] > thresholds::RIDGE * largest)
         .collect();
     let scale: Vec<f64> = (0..count)
         .map(|k| {
@@ -239,7 +239,7 @@ fn sizes(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Sizes {
         })
         .collect();
     let whole = DMatrix::from_fn(count, count, |r, c| match (r == c, does[r] && does[c]) {
-        (true, true) => 1.0 + rule::RIDGE,
+        (true, true) => 1.0 + thresholds::RIDGE,
         (true, false) => 1.0,
         (false, true) => gram[(r, c)] / (scale[r] * scale[c]),
         (false, false) => 0.0,

@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
-use discover::candidates::{Candidate, candidates};
+use discover::catalogue::candidate::{Candidate, candidates};
 use discover::catalogue::effects;
-use discover::sites::sites;
+use discover::catalogue::sites::sites;
 use eomgen_tests::program;
 use model_spec::edit::{self, Edit, SetParameter};
 use model_spec::source::Source;

@@ -4,9 +4,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use codegen::variant::Variant;
-use discover::candidates::{Candidate, candidates};
+use discover::catalogue::candidate::{Candidate, candidates};
+use discover::catalogue::sites::sites;
 use discover::catalogue::{Effect, SiteKind, effects};
-use discover::sites::sites;
 use eomgen_tests::models::shipped;
 use model_spec::source::Source;
 

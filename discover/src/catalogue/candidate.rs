@@ -1,0 +1,331 @@
+//! Candidates: an effect of the catalogue at a place of a model, with its blanks filled. A
+//! candidate can write itself into a specification.
+
+use std::collections::BTreeMap;
+
+use model_spec::edit::{self, Edit, EditError, NewParameter, NewValue, SetParameter};
+use model_spec::model::{Model, Parameter, ParameterValue};
+use model_spec::source::Source;
+
+use crate::catalogue::sites::Site;
+use crate::catalogue::template::{edits, filled, free_name, terms};
+use crate::catalogue::{Change, Effect, SiteKind};
+use crate::model::unknowns::{What, sign_bounds};
+
+/// The effect of a parameter that is off.
+pub const PARAMETER_SHIFT: &str = "parameter_shift";
+
+/// Shaft orders at which effects that repeat with an angle are tried, beside numbers of teeth.
+const ORDERS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, 24];
+
+/// An effect at a place.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// The effect's name.
+    pub effect: String,
+    /// The place's name.
+    pub on: String,
+    /// The angle and the order with which it repeats.
+    pub order: Option<(String, u32)>,
+    /// Whether it changes what happens between teeth with play.
+    pub on_mesh: bool,
+    /// Its parameters.
+    pub parameters: Vec<CandidateParameter>,
+    /// What the effect is.
+    pub says: String,
+    /// What would show it best.
+    pub experiment: String,
+    pub(crate) changes: Vec<Edit>,
+    /// The line that says most of the change.
+    pub term: String,
+    /// The unknown of the null model that gives up its prior, if that is the effect.
+    pub released: Option<What>,
+}
+
+/// A parameter of a candidate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CandidateParameter {
+    /// Its name in the specification.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Whether it must not be negative.
+    pub positive: bool,
+    /// Whether the effect is absent where it is infinite.
+    pub inverse: bool,
+    /// The size it must have for the effect to be itself, if it does not scale the effect.
+    pub shape: Option<f64>,
+    /// What a parameter that the model has already is shifted from.
+    pub shifts: Option<Shifts>,
+    pub(crate) doc: String,
+}
+
+/// What is known of a parameter of the model that may be off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shifts {
+    /// Its value in the specification, SI.
+    pub from: f64,
+    /// Its smallest and largest admissible value, SI.
+    pub bounds: (f64, f64),
+    /// The number of its units that one SI unit is.
+    per_si: f64,
+}
+
+impl CandidateParameter {
+    /// Its value where the effect is absent; 0 for what the model does not have yet.
+    pub fn base(&self) -> f64 {
+        self.shifts.as_ref().map_or(0.0, |shifts| shifts.from)
+    }
+
+    /// The number of its units that one SI unit is.
+    pub fn per_si(&self) -> f64 {
+        self.shifts.as_ref().map_or(1.0, |shifts| shifts.per_si)
+    }
+
+    fn edit(&self, value: f64, source: &str) -> Edit {
+        match &self.shifts {
+            Some(_) => Edit::SetParameter(SetParameter {
+                name: self.name.clone(),
+                value: value * self.per_si(),
+                source: source.to_owned(),
+            }),
+            None => Edit::AddParameter(NewParameter {
+                name: self.name.clone(),
+                value: NewValue::Number(value),
+                unit: self.unit.clone(),
+                doc: self.doc.clone(),
+                source: source.to_owned(),
+            }),
+        }
+    }
+}
+
+impl Candidate {
+    /// Its effect and place, and its order where there are several.
+    pub fn label(&self) -> String {
+        match &self.order {
+            Some((angle, order)) => format!(
+                "{} on {} ({order} per turn of {angle})",
+                self.effect, self.on
+            ),
+            None => format!("{} on {}", self.effect, self.on),
+        }
+    }
+
+    /// A specification's text with this effect, at these values of its parameters.
+    ///
+    /// # Errors
+    /// A place of the edits that the text lacks.
+    pub fn written(
+        &self,
+        text: &str,
+        name: &str,
+        values: &[f64],
+        source: &str,
+    ) -> Result<String, EditError> {
+        let pairs = self.parameters.iter().zip(values);
+        let mut edits: Vec<Edit> = pairs
+            .map(|(parameter, value)| parameter.edit(*value, source))
+            .collect();
+        edits.extend(self.changes.iter().cloned());
+        edit::apply(&Source::new(name, text), &edits)
+    }
+}
+
+/// All candidates for a model. `rates`: the usual rate of an axis by its name, where it is
+/// known.
+pub fn candidates(
+    model: &Model,
+    effects: &[Effect],
+    sites: &[Site],
+    rates: &BTreeMap<String, f64>,
+) -> Vec<Candidate> {
+    let angles: Vec<&Site> = sites
+        .iter()
+        .filter(|site| site.kind == SiteKind::Angle)
+        .collect();
+    let mut found = Vec::new();
+    for effect in effects {
+        for site in sites.iter().filter(|site| fits(effect.site, site.kind)) {
+            let own = [site];
+            let turning: &[&Site] = match effect.orders {
+                true if site.kind == SiteKind::Mesh => &angles,
+                true => &own,
+                false => &[],
+            };
+            if !effect.orders {
+                found.extend(candidate(model, effect, site, None, rates));
+            }
+            for angle in turning {
+                for order in orders(model) {
+                    found.extend(candidate(model, effect, site, Some((*angle, order)), rates));
+                }
+            }
+        }
+    }
+    found
+}
+
+fn fits(wanted: SiteKind, there: SiteKind) -> bool {
+    wanted == there || (wanted == SiteKind::Axis && there == SiteKind::Angle)
+}
+
+/// The usual shaft orders and the model's own numbers of teeth: whole numbers without a unit.
+fn orders(model: &Model) -> Vec<u32> {
+    let mut orders = ORDERS.to_vec();
+    for parameter in &model.parameters {
+        if let ParameterValue::Number(value) = parameter.value
+            && parameter.unit.text == "1"
+            && value.fract() == 0.0
+            && (2.0..1000.0).contains(&value)
+        {
+            orders.push(value as u32);
+        }
+    }
+    orders.sort_unstable();
+    orders.dedup();
+    orders
+}
+
+fn candidate(
+    model: &Model,
+    effect: &Effect,
+    site: &Site,
+    order: Option<(&Site, u32)>,
+    rates: &BTreeMap<String, f64>,
+) -> Option<Candidate> {
+    let mut words: BTreeMap<String, String> = site
+        .words
+        .iter()
+        .map(|(key, word)| ((*key).to_owned(), word.clone()))
+        .collect();
+    if let Some((angle, order)) = order {
+        words.insert("n".to_owned(), order.to_string());
+        words.insert("angle".to_owned(), angle.words["on"].clone());
+    }
+    let mut taken = names(model);
+    let mut parameters = Vec::new();
+    for parameter in &effect.parameters {
+        let name = free_name(&parameter.name, &site.name, &mut taken);
+        words.insert(parameter.name.clone(), name.clone());
+        let rate = rates.get(&site.name).copied().unwrap_or(1.0);
+        parameters.push(CandidateParameter {
+            name,
+            unit: plain_unit(&filled(&parameter.unit, &words)?),
+            positive: parameter.positive,
+            inverse: parameter.inverse,
+            shape: parameter.share.map(|share| share * rate),
+            shifts: None,
+            doc: parameter.doc.clone(),
+        });
+    }
+    for change in &effect.edits {
+        if let Change::Coordinate { name, .. } | Change::Definition { name, .. } = change {
+            let free = free_name(name, &site.name, &mut taken);
+            words.insert(name.clone(), free);
+        }
+    }
+    let mut changes = Vec::new();
+    let mut term = String::new();
+    for change in &effect.edits {
+        changes.extend(edits(model, change, site, &words)?);
+        if let Change::Term { value, .. }
+        | Change::Definition { value, .. }
+        | Change::Force { value, .. } = change
+        {
+            term = filled(value, &words)?;
+        }
+    }
+    Some(Candidate {
+        effect: effect.name.clone(),
+        on: site.name.clone(),
+        order: order.map(|(angle, order)| (angle.name.clone(), order)),
+        on_mesh: site.kind == SiteKind::Mesh,
+        parameters,
+        says: effect.says.clone(),
+        experiment: effect.experiment.clone(),
+        changes,
+        term,
+        released: None,
+    })
+}
+
+/// An unknown of the null model that gives up its prior.
+pub fn released(effect: &str, on: &str, says: &str, experiment: &str, what: &What) -> Candidate {
+    Candidate {
+        effect: effect.to_owned(),
+        on: on.to_owned(),
+        order: None,
+        on_mesh: false,
+        parameters: Vec::new(),
+        says: says.to_owned(),
+        experiment: experiment.to_owned(),
+        changes: Vec::new(),
+        term: String::new(),
+        released: Some(what.clone()),
+    }
+}
+
+/// A parameter of the model that may be off though nobody said so; none where it is 0 or no
+/// number.
+pub fn shift(parameter: &Parameter) -> Option<Candidate> {
+    let ParameterValue::Number(from) = parameter.value else {
+        return None;
+    };
+    let is_count = parameter.unit.text == "1" && from.fract() == 0.0;
+    if from == 0.0 || is_count {
+        return None;
+    }
+    let shifted = CandidateParameter {
+        name: parameter.name.clone(),
+        unit: parameter.unit.text.clone(),
+        positive: false,
+        inverse: false,
+        shape: None,
+        shifts: Some(Shifts {
+            from,
+            bounds: sign_bounds(parameter, from),
+            per_si: parameter.unit.from_si(1.0),
+        }),
+        doc: String::new(),
+    };
+    Some(Candidate {
+        parameters: vec![shifted],
+        released: None,
+        term: format!("{} shifted", parameter.name),
+        ..released(
+            PARAMETER_SHIFT,
+            &parameter.name,
+            "a parameter is not what the specification says",
+            "measure it by itself",
+            &What::Parameter(parameter.name.clone()),
+        )
+    })
+}
+
+/// Names that a new one must not have.
+pub(crate) fn names(model: &Model) -> Vec<String> {
+    let lists = [
+        model
+            .parameters
+            .iter()
+            .map(|p| p.name.clone())
+            .collect::<Vec<_>>(),
+        model.coordinates.iter().map(|c| c.name.clone()).collect(),
+        model.inputs.iter().map(|i| i.name.clone()).collect(),
+        model.definitions.iter().map(|d| d.name.clone()).collect(),
+        model
+            .fields
+            .iter()
+            .flat_map(|f| [f.name.clone(), f.along.clone(), f.coordinates.clone()])
+            .collect(),
+        model.coefficients.iter().map(|c| c.name.clone()).collect(),
+        terms(model),
+    ];
+    lists.concat()
+}
+
+/// `N m s` for `N m s/rad`: an angle counts as a number.
+fn plain_unit(unit: &str) -> String {
+    unit.replace("/rad^2", "").replace("/rad", "")
+}

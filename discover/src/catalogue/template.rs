@@ -1,0 +1,197 @@
+//! A change of the catalogue at a place of a model: its blanks filled, as edits of a specification.
+
+use std::collections::BTreeMap;
+
+use model_spec::edit::{Edit, NewCoordinate, NewForce, NewTerm, Section, Substitution};
+use model_spec::model::{Expr, Model};
+
+use crate::catalogue::sites::Site;
+use crate::catalogue::{Change, Within};
+
+/// The edits that a change of the catalogue comes to at a site, its blanks filled with these words;
+/// none if a word is missing, or what is replaced is not there.
+pub(crate) fn edits(
+    model: &Model,
+    change: &Change,
+    site: &Site,
+    words: &BTreeMap<String, String>,
+) -> Option<Vec<Edit>> {
+    let fill = |text: &String| filled(text, words);
+    let new = |name: &String| words.get(name).unwrap_or(name).clone();
+    let free = |name: &String| free_name(name, &site.name, &mut terms(model));
+    let term = |section: Section, name: String, value: &String| {
+        Some(Edit::AddTerm(NewTerm {
+            section,
+            name,
+            value: fill(value)?,
+            doc: String::new(),
+            source: String::new(),
+        }))
+    };
+    Some(vec![match change {
+        Change::Term {
+            section,
+            name,
+            value,
+        } => term(*section, free(name), value)?,
+        Change::Definition { name, value } => term(Section::Definitions, new(name), value)?,
+        Change::Force { name, on, value } => Edit::AddForce(NewForce {
+            name: free(name),
+            on: fill(on)?,
+            value: fill(value)?,
+            doc: String::new(),
+            source: String::new(),
+        }),
+        Change::Coordinate { name, unit, doc } => Edit::AddCoordinate(NewCoordinate {
+            name: new(name),
+            unit: fill(unit)?,
+            doc: doc.clone(),
+            initial: None,
+        }),
+        Change::Substitution {
+            within,
+            find,
+            replace,
+        } => return substitutions(model, within, site, (fill(find)?, fill(replace)?), words),
+    }])
+}
+
+/// What is replaced, section by section; none if it is nowhere.
+fn substitutions(
+    model: &Model,
+    within: &Within,
+    site: &Site,
+    (find, replace): (String, String),
+    words: &BTreeMap<String, String>,
+) -> Option<Vec<Edit>> {
+    let places: Vec<(Section, Vec<String>)> = match within {
+        Within::Kinetic(terms) => {
+            let terms: Option<Vec<String>> = terms.iter().map(|term| filled(term, words)).collect();
+            vec![(Section::Kinetic, terms?)]
+        }
+        Within::Site => holding(model, site, &find),
+        Within::Measured => measured(model, &find),
+    };
+    let substitutions: Vec<Edit> = (places.into_iter())
+        .filter(|(_, terms)| !terms.is_empty())
+        .map(|(section, terms)| {
+            Edit::Substitute(Substitution {
+                section,
+                terms,
+                find: find.clone(),
+                replace: replace.clone(),
+            })
+        })
+        .collect();
+    (!substitutions.is_empty()).then_some(substitutions)
+}
+
+/// The definitions and observables that hold an expression, however it is spaced.
+fn measured(model: &Model, find: &str) -> Vec<(Section, Vec<String>)> {
+    let plain = |text: &str| text.split_whitespace().collect::<String>();
+    let find = plain(find);
+    let holds = |value: &Expr| {
+        let text = model.source.text.get(value.span.start..value.span.end);
+        text.is_some_and(|text| plain(text).contains(&find))
+    };
+    let definitions = model.definitions.iter().filter(|d| holds(&d.value));
+    let observables = model.observables.iter().filter(|o| holds(&o.value));
+    vec![
+        (
+            Section::Definitions,
+            definitions.map(|d| d.name.clone()).collect(),
+        ),
+        (
+            Section::Observables,
+            observables.map(|o| o.name.clone()).collect(),
+        ),
+    ]
+}
+
+/// The site's terms that hold a name.
+fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)> {
+    let text = |section: Section, term: &str| {
+        let span = match section {
+            Section::Definitions => {
+                model
+                    .definitions
+                    .iter()
+                    .find(|d| d.name == term)?
+                    .value
+                    .span
+            }
+            Section::Forces => model.forces.iter().find(|f| f.name == term)?.value.span,
+            Section::Potential => model.potential.iter().find(|t| t.name == term)?.value.span,
+            Section::Dissipation => {
+                model
+                    .dissipation
+                    .iter()
+                    .find(|t| t.name == term)?
+                    .value
+                    .span
+            }
+            Section::Kinetic => model.kinetic.iter().find(|t| t.name == term)?.value.span,
+            Section::Observables => return None,
+        };
+        model.source.text.get(span.start..span.end)
+    };
+    let holds = |section: Section, term: &str| {
+        let words = text(section, term).unwrap_or_default();
+        words
+            .split(|c: char| !c.is_alphanumeric() && c != '_')
+            .any(|word| word == name)
+    };
+    let places = site.terms.iter();
+    places
+        .map(|(section, terms)| {
+            let terms = terms
+                .iter()
+                .filter(|term| holds(*section, term))
+                .cloned()
+                .collect();
+            (*section, terms)
+        })
+        .collect()
+}
+
+/// A text with its blanks filled; none if a word is missing.
+pub(crate) fn filled(text: &str, words: &BTreeMap<String, String>) -> Option<String> {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('{') {
+        let (key, behind) = after.split_once('}')?;
+        out.push_str(before);
+        out.push_str(words.get(key)?);
+        rest = behind;
+    }
+    out.push_str(rest);
+    Some(out)
+}
+
+/// A name that is not taken, near the wanted one; it is taken then.
+pub(crate) fn free_name(wanted: &str, site: &str, taken: &mut Vec<String>) -> String {
+    let mut name = wanted.to_owned();
+    if taken.contains(&name) {
+        name = format!("{wanted}_{site}");
+    }
+    let mut number = 2;
+    while taken.contains(&name) {
+        name = format!("{wanted}_{site}_{number}");
+        number += 1;
+    }
+    taken.push(name.clone());
+    name
+}
+
+/// The names of a model's terms and forces.
+pub(crate) fn terms(model: &Model) -> Vec<String> {
+    let energies = model
+        .kinetic
+        .iter()
+        .chain(&model.potential)
+        .chain(&model.dissipation);
+    let names = energies.map(|term| term.name.clone());
+    names
+        .chain(model.forces.iter().map(|force| force.name.clone()))
+        .collect()
+}

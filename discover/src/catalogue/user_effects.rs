@@ -1,0 +1,48 @@
+//! A user's effects at the places of a specification: what they add must be a specification, and
+//! one that has no place there is said, because it will not be tried.
+
+use std::collections::BTreeMap;
+
+use model_spec::source::Source;
+
+use crate::catalogue::Effect;
+use crate::catalogue::candidate::candidates;
+use crate::catalogue::sites::sites;
+use crate::search::response::absent;
+
+/// Writes each of the user's effects into a specification wherever it has a place; returns those that
+/// have none.
+///
+/// # Errors
+/// What is wrong with a specification that an effect leaves.
+pub fn placed(effects: &[Effect], path: &str, text: &str) -> Result<Vec<String>, String> {
+    let Ok(checked) = model_spec::check(Source::new(path, text)) else {
+        // What is wrong with the specification itself is said where it is read.
+        return Ok(Vec::new());
+    };
+    let model = checked.model;
+    let mut homeless = Vec::new();
+    for effect in effects.iter().filter(|effect| effect.is_own) {
+        let effect_alone = std::slice::from_ref(effect);
+        let mut found = candidates(&model, effect_alone, &sites(&model), &BTreeMap::new());
+        // Orders are but numbers in it.
+        found.dedup_by(|a, b| a.on == b.on);
+        for candidate in &found {
+            let values: Vec<f64> = candidate.parameters.iter().map(absent).collect();
+            let written = candidate.written(text, path, &values, "");
+            written.map_err(|error| {
+                format!(
+                    "the effect `{}` on `{}` does not leave a specification: {error}",
+                    effect.name, candidate.on
+                )
+            })?;
+        }
+        if found.is_empty() {
+            homeless.push(format!(
+                "the effect `{}` has no place in this model and is not tried",
+                effect.name
+            ));
+        }
+    }
+    Ok(homeless)
+}

@@ -1,0 +1,378 @@
+//! Estimation by separable Gauss-Newton steps: each window's initial state is eliminated from
+//! its own residuals by a QR factorisation, what is left depends on the unknowns alone. Steps
+//! are shortened until they help; every window may decide for itself how far its initial
+//! state follows, because impacts fold the outputs.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::fit::bounded_least_squares::least_squares;
+use crate::fit::sensitivity::{Crew, Linear};
+use crate::fit::shooting::{Residual, Shooting};
+use crate::fit::variable_projection::{Reduced, reduced, stacked};
+
+/// A step that lowers the sum of squares by less than this part is the last.
+const SETTLED: f64 = 1e-3;
+
+/// Parts of a step that are tried.
+pub(crate) const PARTS: [f64; 3] = [1.0, 0.3, 0.05];
+
+/// How the damping of a step grows where it does not help, and shrinks where it does.
+const DAMPING: [f64; 4] = [0.0, 0.03, 1.0, 30.0];
+
+/// Damping of an initial state's step, in weights of its prior: where a state's impacts fold
+/// the outputs, only shorter steps along what is well determined help.
+const START_DAMPING: [f64; 5] = [0.0, 1e2, 1e4, 1e6, 1e9];
+
+/// The most steps over one part of a window.
+const SETTLING_STEPS: usize = 6;
+
+/// What is known before of each window's initial state: mean and standard deviation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StartPrior {
+    /// One state per window.
+    pub mean: Vec<Vec<f64>>,
+    /// One standard deviation per state.
+    pub sd: Vec<f64>,
+}
+
+/// An estimate.
+#[derive(Clone, Debug, Default)]
+pub struct Estimate {
+    /// The unknowns.
+    pub theta: Vec<f64>,
+    /// The initial state of each window.
+    pub starts: Vec<Vec<f64>>,
+    /// The sum of squares of the residuals of each window, in noises; not finite where there
+    /// is no motion.
+    pub squares: Vec<f64>,
+    /// The sum of all, with what the priors add.
+    pub cost: f64,
+}
+
+/// Estimates the unknowns and the windows' initial states from given ones.
+pub fn estimate(
+    shooting: &Shooting<'_>,
+    prior: &StartPrior,
+    theta: &[f64],
+    starts: &[Vec<f64>],
+    steps: usize,
+) -> Estimate {
+    let mut present = evaluated(shooting, prior, theta.to_vec(), starts.to_vec());
+    for _ in 0..steps {
+        let level = level(shooting, &present);
+        let linear = shooting.linear(&present.theta, &present.starts, level);
+        let Some(next) = step(shooting, prior, &present, &linear) else {
+            break;
+        };
+        let gain = present.cost - next.cost;
+        let settled = gain < SETTLED * present.cost;
+        present = next;
+        if settled {
+            break;
+        }
+    }
+    present
+}
+
+/// The size of the residuals, in noises, at least one.
+pub fn level(shooting: &Shooting<'_>, estimate: &Estimate) -> f64 {
+    let finite = estimate.squares.iter().filter(|s| s.is_finite());
+    let (sum, count) = finite.fold((0.0, 0), |(sum, n), s| (sum + s, n + 1));
+    let samples: usize = shooting.windows.list.iter().map(|w| w.times.len()).sum();
+    let per_window = samples as f64 / shooting.windows.list.len().max(1) as f64;
+    let numbers = per_window * shooting.channels() as f64 * f64::from(count.max(1));
+    (sum / numbers).sqrt().max(1.0)
+}
+
+/// The cost at these unknowns and initial states.
+pub fn evaluated(
+    shooting: &Shooting<'_>,
+    prior: &StartPrior,
+    theta: Vec<f64>,
+    starts: Vec<Vec<f64>>,
+) -> Estimate {
+    let residuals = shooting.residuals(&theta, &starts);
+    let squares: Vec<f64> = residuals.iter().map(square).collect();
+    totalled(shooting, prior, theta, starts, squares)
+}
+
+fn square(residual: &Option<Residual>) -> f64 {
+    residual.as_ref().map_or(f64::INFINITY, Residual::square)
+}
+
+/// What the unknowns' priors add to the cost.
+fn prior_of_unknowns(shooting: &Shooting<'_>, theta: &[f64]) -> f64 {
+    let terms = shooting.unknowns.iter().zip(theta).map(|(unknown, value)| {
+        let (mean, sd) = unknown.prior.unwrap_or((*value, 1.0));
+        ((value - mean) / sd).powi(2)
+    });
+    shooting.prior_weight * terms.sum::<f64>()
+}
+
+/// What a window's prior adds to the cost.
+pub fn prior_of_start(prior: &StartPrior, place: usize, start: &[f64]) -> f64 {
+    let Some(mean) = prior.mean.get(place) else {
+        return 0.0;
+    };
+    let terms = start.iter().zip(mean).zip(&prior.sd);
+    terms.map(|((x, m), sd)| ((x - m) / sd).powi(2)).sum()
+}
+
+fn totalled(
+    shooting: &Shooting<'_>,
+    prior: &StartPrior,
+    theta: Vec<f64>,
+    starts: Vec<Vec<f64>>,
+    squares: Vec<f64>,
+) -> Estimate {
+    let of_starts = starts
+        .iter()
+        .enumerate()
+        .map(|(p, s)| prior_of_start(prior, p, s));
+    let cost =
+        squares.iter().sum::<f64>() + of_starts.sum::<f64>() + prior_of_unknowns(shooting, &theta);
+    Estimate {
+        theta,
+        starts,
+        squares,
+        cost,
+    }
+}
+
+/// The unknowns a part of a change further, as far as that is admissible.
+pub(crate) fn moved_unknowns(
+    shooting: &Shooting<'_>,
+    present: &Estimate,
+    change: &DVector<f64>,
+    part: f64,
+) -> Vec<f64> {
+    let pairs = present
+        .theta
+        .iter()
+        .zip(change.iter())
+        .zip(shooting.unknowns);
+    pairs
+        .map(|((value, change), unknown)| unknown.admissible(value + part * change))
+        .collect()
+}
+
+/// The windows' derivatives once their initial states are free.
+pub(crate) fn eliminated(
+    prior: &StartPrior,
+    present: &Estimate,
+    linear: &[Option<Linear>],
+) -> Vec<Option<Reduced>> {
+    let windows = linear.iter().enumerate();
+    windows
+        .map(|(place, linear)| {
+            Some(reduced(
+                linear.as_ref()?,
+                prior,
+                place,
+                &present.starts[place],
+            ))
+        })
+        .collect()
+}
+
+/// The next estimate, if there is one that is better.
+fn step(
+    shooting: &Shooting<'_>,
+    prior: &StartPrior,
+    present: &Estimate,
+    linear: &[Option<Linear>],
+) -> Option<Estimate> {
+    let windows = eliminated(prior, present, linear);
+    for damping in DAMPING {
+        let change = change_of_unknowns(shooting, present, &windows, damping);
+        for part in PARTS {
+            let theta = moved_unknowns(shooting, present, &change, part);
+            let next = followed(shooting, prior, present, &windows, theta);
+            if next.cost < present.cost {
+                return Some(next);
+            }
+            if change.norm() == 0.0 {
+                return None;
+            }
+        }
+    }
+    None
+}
+
+/// The bounded least-squares step of the unknowns.
+pub(crate) fn change_of_unknowns(
+    shooting: &Shooting<'_>,
+    present: &Estimate,
+    windows: &[Option<Reduced>],
+    damping: f64,
+) -> DVector<f64> {
+    let count = shooting.unknowns.len();
+    let mut factor = DMatrix::zeros(count + 1, count + 1);
+    for window in windows.iter().flatten() {
+        factor = stacked(&factor, &window.unknowns());
+    }
+    let mut rows = DMatrix::zeros(2 * count, count + 1);
+    for (place, unknown) in shooting.unknowns.iter().enumerate() {
+        if let Some((mean, sd)) = unknown.prior {
+            let weight = shooting.prior_weight.sqrt() / sd;
+            rows[(place, place)] = weight;
+            rows[(place, count)] = (present.theta[place] - mean) * weight;
+        }
+        rows[(count + place, place)] = damping * factor.column(place).norm();
+    }
+    let factor = stacked(&factor, &rows);
+    let a = factor.columns(0, count).into_owned();
+    let b = -factor.column(count).into_owned();
+    let bounds: Vec<(f64, f64)> = (shooting.unknowns.iter().zip(&present.theta))
+        .map(|(unknown, value)| {
+            (
+                (unknown.bounds.0 - value).min(0.0),
+                (unknown.bounds.1 - value).max(0.0),
+            )
+        })
+        .collect();
+    least_squares(&a, &b, &bounds)
+}
+
+/// The estimate at new unknowns: each window's initial state follows as far as it helps.
+fn followed(
+    shooting: &Shooting<'_>,
+    prior: &StartPrior,
+    present: &Estimate,
+    windows: &[Option<Reduced>],
+    theta: Vec<f64>,
+) -> Estimate {
+    let change = DVector::from_iterator(
+        theta.len(),
+        theta.iter().zip(&present.theta).map(|(new, old)| new - old),
+    );
+    let moved = |damping: f64| -> Vec<Vec<f64>> {
+        let pairs = present.starts.iter().zip(windows);
+        pairs
+            .map(|(start, window)| {
+                let step = window
+                    .as_ref()
+                    .and_then(|w| w.start_step(&change, damping, prior));
+                match step {
+                    Some(step) if shooting.ranges.is_some() => {
+                        let moved = start.iter().zip(step.iter()).map(|(x, d)| x + d);
+                        shooting.plant.admissible(moved.collect())
+                    }
+                    _ => start.clone(),
+                }
+            })
+            .collect()
+    };
+    let mut best = evaluated(shooting, prior, theta.clone(), moved(START_DAMPING[0]));
+    if shooting.ranges.is_none() {
+        return best;
+    }
+    // Most windows follow the whole step; the others are tried again, all at once.
+    for damping in &START_DAMPING[1..] {
+        let stuck: Vec<usize> = (0..best.squares.len())
+            .filter(|w| total(&best, prior, *w) > total(present, prior, *w))
+            .collect();
+        if stuck.is_empty() {
+            break;
+        }
+        let tried = moved(*damping);
+        let squares = some_squares(shooting, &theta, &tried, &stuck);
+        for (window, square) in stuck.iter().zip(squares) {
+            let with_prior = square + prior_of_start(prior, *window, &tried[*window]);
+            if with_prior < total(&best, prior, *window) {
+                best.squares[*window] = square;
+                best.starts[*window].clone_from(&tried[*window]);
+            }
+        }
+    }
+    let Estimate {
+        starts, squares, ..
+    } = best;
+    totalled(shooting, prior, theta, starts, squares)
+}
+
+fn total(estimate: &Estimate, prior: &StartPrior, window: usize) -> f64 {
+    estimate.squares[window] + prior_of_start(prior, window, &estimate.starts[window])
+}
+
+/// The sums of squares of some windows.
+fn some_squares(
+    shooting: &Shooting<'_>,
+    theta: &[f64],
+    starts: &[Vec<f64>],
+    places: &[usize],
+) -> Vec<f64> {
+    use rayon::prelude::*;
+    let (values, sensors) = (shooting.values(theta), shooting.sensors(theta));
+    let size = places
+        .len()
+        .div_ceil(rayon::current_num_threads().max(1))
+        .max(1);
+    let parts: Vec<Vec<f64>> = places
+        .par_chunks(size)
+        .map(|part| {
+            let mut runner = shooting.plant.at(&values).ok();
+            part.iter()
+                .map(|place| {
+                    let residual = runner.as_mut().and_then(|runner| {
+                        shooting.residual(runner, &sensors, *place, &starts[*place])
+                    });
+                    square(&residual)
+                })
+                .collect()
+        })
+        .collect();
+    parts.into_iter().flatten().collect()
+}
+
+/// One window's initial state, the unknowns held, by damped steps over a growing part of the
+/// window: a short motion is nearly linear in its initial state, a long one is folded by
+/// impacts.
+pub fn settle(
+    crew: &mut Crew<'_>,
+    prior: &StartPrior,
+    place: usize,
+    start: Vec<f64>,
+    horizons: &[f64],
+) -> Option<Vec<f64>> {
+    let mut present = start;
+    for horizon in horizons {
+        crew.see(*horizon);
+        present = settle_seen(crew, prior, place, present)?;
+    }
+    Some(present)
+}
+
+fn settle_seen(
+    crew: &mut Crew<'_>,
+    prior: &StartPrior,
+    place: usize,
+    start: Vec<f64>,
+) -> Option<Vec<f64>> {
+    let total = |residual: &Residual, start: &[f64]| {
+        residual.square() + prior_of_start(prior, place, start)
+    };
+    let mut cost = total(&crew.residual(place, &start)?, &start);
+    let mut present = start;
+    for _ in 0..SETTLING_STEPS {
+        let linear = crew.linear(place, &present)?;
+        let window = reduced(&linear, prior, place, &present);
+        let held = DVector::zeros(linear.by_unknown.ncols());
+        let better = START_DAMPING.iter().find_map(|damping| {
+            let step = window.start_step(&held, *damping, prior)?;
+            let moved = present.iter().zip(step.iter()).map(|(x, d)| x + d);
+            let moved = crew.admissible(moved.collect());
+            let total = total(&crew.residual(place, &moved)?, &moved);
+            (total < cost).then_some((moved, total))
+        });
+        let Some((moved, total)) = better else {
+            break;
+        };
+        let settled = cost - total < 1e-2 * total;
+        (present, cost) = (moved, total);
+        if settled {
+            break;
+        }
+    }
+    Some(present)
+}

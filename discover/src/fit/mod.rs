@@ -1,0 +1,17 @@
+//! A specification fitted to records by multiple shooting: residuals of windows ([`shooting`]),
+//! how they depend on initial states and unknowns ([`sensitivity`]), initial states eliminated
+//! ([`variable_projection`]), steps ([`gauss_newton`] with [`bounded_least_squares`],
+//! [`continuation`] from far away), [`initial_states`]; a [`preliminary`] fit and a [`full`] one,
+//! the [`residuals`] that it leaves, and the [`mod@noise_floor`] that a right model would leave.
+
+pub mod bounded_least_squares;
+pub mod continuation;
+pub mod full;
+pub mod gauss_newton;
+pub mod initial_states;
+pub mod noise_floor;
+pub mod preliminary;
+pub mod residuals;
+pub mod sensitivity;
+pub mod shooting;
+pub mod variable_projection;

@@ -1,0 +1,130 @@
+//! What an estimate leaves on a set of records: per channel, per block of time, and over how many
+//! samples it hangs together.
+
+use crate::fit::gauss_newton::Estimate;
+use crate::fit::shooting::Shooting;
+use crate::model::problem::Setting;
+
+/// Into so many blocks a set of windows is parted to judge what differs by chance.
+const BLOCKS: usize = 40;
+
+/// What is left on one set of records.
+#[derive(Clone, Debug, Default)]
+pub struct Rest {
+    /// Initial states, unknowns and sums of squares.
+    pub estimate: Estimate,
+    /// Residuals of each window, in noises.
+    pub residuals: Vec<Vec<f64>>,
+    /// For each block of time the sum of squares.
+    pub blocks: Vec<f64>,
+    /// The root mean square of each channel, SI.
+    pub channels: Vec<f64>,
+    /// The same in noises.
+    pub in_noises: Vec<f64>,
+    /// The root mean square of all, in noises.
+    pub pooled: f64,
+    /// How many samples a residual is correlated over.
+    pub correlation: f64,
+    /// The windows in which the motion cannot be followed; the others alone are in all this.
+    pub lost: Vec<usize>,
+}
+
+impl Rest {
+    /// The same, infinite where the motion cannot be followed in some window: what is left there is
+    /// not known, and the other windows do not stand for it.
+    pub fn whole(mut self) -> Self {
+        if !self.lost.is_empty() {
+            self.pooled = f64::INFINITY;
+            self.channels.fill(f64::INFINITY);
+            self.in_noises.fill(f64::INFINITY);
+        }
+        self
+    }
+}
+
+impl Setting<'_> {
+    /// What an estimate leaves.
+    pub fn rest(&self, shooting: &Shooting<'_>, estimate: Estimate) -> Rest {
+        let channels = shooting.channels();
+        let residuals = shooting.residuals(&estimate.theta, &estimate.starts);
+        let lost: Vec<usize> = (0..residuals.len())
+            .filter(|window| residuals[*window].is_none())
+            .collect();
+        let residuals: Vec<Vec<f64>> = residuals
+            .into_iter()
+            .map(|r| r.map(|r| r.values).unwrap_or_default())
+            .collect();
+        let mut sums = vec![(0.0, 0.0); channels];
+        for (window, residual) in shooting.windows.list.iter().zip(&residuals) {
+            for (place, value) in residual.iter().enumerate() {
+                if window.measured[place].is_finite() {
+                    let sum = &mut sums[place % channels];
+                    *sum = (sum.0 + value * value, sum.1 + 1.0);
+                }
+            }
+        }
+        let mean_square = |(sum, count): (f64, f64)| if count > 0.0 { sum / count } else { 0.0 };
+        let squares: Vec<f64> = sums.iter().map(|sum| mean_square(*sum)).collect();
+        let pooled = (squares.iter().sum::<f64>() / channels.max(1) as f64).sqrt();
+        Rest {
+            blocks: blocks(&residuals),
+            channels: squares
+                .iter()
+                .zip(&self.noise)
+                .map(|(s, noise)| s.sqrt() * noise)
+                .collect(),
+            in_noises: squares.iter().map(|s| s.sqrt()).collect(),
+            pooled,
+            correlation: correlation(&residuals, channels),
+            residuals,
+            estimate,
+            lost,
+        }
+    }
+}
+
+/// Sums of squares of blocks of time: windows parted, or put together, into about so many.
+fn blocks(residuals: &[Vec<f64>]) -> Vec<f64> {
+    let parts = BLOCKS.div_ceil(residuals.len().max(1));
+    let of_window = |residual: &Vec<f64>| {
+        let size = residual.len().div_ceil(parts).max(1);
+        let sums = residual
+            .chunks(size)
+            .map(|part| part.iter().map(|r| r * r).sum::<f64>());
+        sums.collect::<Vec<f64>>()
+    };
+    residuals.iter().flat_map(of_window).collect()
+}
+
+/// The samples over which a residual is correlated: one plus twice the sum of its positive
+/// autocorrelations, up to the first that is not, for the channel where it is longest.
+pub(crate) fn correlation(residuals: &[Vec<f64>], channels: usize) -> f64 {
+    let of_channel = |channel: usize| {
+        let columns: Vec<Vec<f64>> = residuals
+            .iter()
+            .map(|r| r.iter().skip(channel).step_by(channels).copied().collect())
+            .collect();
+        let longest = columns.iter().map(Vec::len).max().unwrap_or(0);
+        let at = |lag: usize| -> f64 {
+            let products = columns.iter().map(|c| {
+                c.iter()
+                    .zip(c.iter().skip(lag))
+                    .map(|(a, b)| a * b)
+                    .sum::<f64>()
+            });
+            products.sum()
+        };
+        let whole = at(0);
+        let mut time = 1.0;
+        for lag in 1..longest / 2 {
+            let part = at(lag) / whole;
+            // What white noise shows by chance is none.
+            if part.is_nan() || part < 0.05 {
+                break;
+            }
+            time += 2.0 * part;
+        }
+        time
+    };
+    (0..channels).map(of_channel).fold(1.0, f64::max)
+}

@@ -1,0 +1,406 @@
+//! How windows' outputs depend on their initial states and on the unknowns: by neighbouring
+//! motions that come along where the plant is marched, otherwise by difference quotients.
+
+use codegen::program::evaluator::{Evaluator, Point};
+use nalgebra::{DMatrix, DVector};
+
+use crate::fit::shooting::{Residual, Sensors, Shooting, samples_in};
+use crate::march::Drives;
+use crate::model::runner::{Runner, Shown};
+use crate::model::unknowns::{Unknown, What};
+use crate::model::windows::Window;
+
+/// A difference quotient moves the outputs by this part of what the residual is: far above
+/// rounding, and over the small folds that impacts leave in the outputs.
+const QUOTIENT: f64 = 0.3;
+
+/// A difference quotient is not taken over more than this part of a state's own range.
+const LARGEST_QUOTIENT: f64 = 0.03;
+
+/// A window's residuals and derivatives.
+pub struct Linear {
+    /// Simulated minus measured, in noises: row by row, a number per channel; 0 where nothing
+    /// was measured.
+    pub residual: DVector<f64>,
+    /// By the initial state.
+    pub by_state: DMatrix<f64>,
+    /// By the unknowns.
+    pub by_unknown: DMatrix<f64>,
+    /// The state at the window's end.
+    pub last: Vec<f64>,
+}
+
+/// The plant at the unknowns and at neighbouring values of each parameter.
+pub struct Crew<'a> {
+    shooting: Shooting<'a>,
+    base: Runner<'a>,
+    /// The base's equations.
+    equations: Evaluator,
+    sensors: Sensors,
+    /// For each unknown that is a parameter the neighbouring plant and the step.
+    neighbours: Vec<Option<(Neighbour<'a>, f64)>>,
+    level: f64,
+}
+
+/// A plant at neighbouring parameters.
+enum Neighbour<'a> {
+    /// One that runs itself.
+    Runs(Box<Runner<'a>>),
+    /// One whose accelerations, and what it shows, tell how a marched motion differs.
+    Drives(Box<Evaluator>, Option<Shown>),
+}
+
+impl<'a> Crew<'a> {
+    /// A state moved to where the model lives.
+    pub fn admissible(&self, state: Vec<f64>) -> Vec<f64> {
+        self.shooting.plant.admissible(state)
+    }
+
+    /// The crew at these unknowns, if there is a motion.
+    pub fn new(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
+        let values = shooting.values(theta);
+        let base = shooting.plant.at(&values).ok()?;
+        let equations = shooting.plant.evaluator(&values).0;
+        let mut neighbours = Vec::with_capacity(theta.len());
+        for (place, unknown) in shooting.unknowns.iter().enumerate() {
+            if !matches!(unknown.what, What::Parameter(_) | What::Inverse(_)) {
+                neighbours.push(None);
+                continue;
+            }
+            let step = quotient_step(unknown, theta[place]);
+            let mut moved = theta.to_vec();
+            moved[place] += step;
+            let values = shooting.values(&moved);
+            let neighbour = if base.is_marched() {
+                let (evaluator, shown) = shooting.plant.evaluator(&values);
+                Neighbour::Drives(Box::new(evaluator), shown)
+            } else {
+                Neighbour::Runs(Box::new(shooting.plant.at(&values).ok()?))
+            };
+            neighbours.push(Some((neighbour, step)));
+        }
+        Some(Self {
+            base,
+            equations,
+            sensors: shooting.sensors(theta),
+            neighbours,
+            level,
+            shooting: *shooting,
+        })
+    }
+
+    /// The crew at these unknowns, which are not differentiated by.
+    pub fn frozen(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
+        let values = shooting.values(theta);
+        Some(Self {
+            base: shooting.plant.at(&values).ok()?,
+            equations: shooting.plant.evaluator(&values).0,
+            sensors: shooting.sensors(theta),
+            neighbours: Vec::new(),
+            level,
+            shooting: *shooting,
+        })
+    }
+
+    /// From here on only this part of a window is looked at, from its beginning.
+    pub fn see(&mut self, part: f64) {
+        self.shooting.part = part;
+    }
+
+    /// The state that a window's motion reaches at a time, s.
+    pub fn carried(&mut self, place: usize, start: &[f64], until: f64) -> Option<Vec<f64>> {
+        let window = &self.shooting.windows.list[place];
+        let inputs = self.shooting.windows.inputs(window);
+        let states = self
+            .base
+            .states(start, &[window.times[0], until], inputs)
+            .ok()?;
+        states.into_iter().next_back()
+    }
+
+    /// A window's residuals alone.
+    pub fn residual(&mut self, place: usize, start: &[f64]) -> Option<Residual> {
+        let shooting = self.shooting;
+        shooting.residual(&mut self.base, &self.sensors, place, start)
+    }
+
+    /// A window's residuals and derivatives.
+    pub fn linear(&mut self, place: usize, start: &[f64]) -> Option<Linear> {
+        let found = match self.base.is_marched() {
+            true => self.by_march(place, start)?,
+            false => self.by_quotients(place, start)?,
+        };
+        let finite = found.residual.iter().chain(found.by_unknown.iter());
+        (finite
+            .chain(found.by_state.iter())
+            .all(|entry| entry.is_finite()))
+        .then_some(found)
+    }
+
+    /// The same with neighbouring motions that come along.
+    fn by_march(&mut self, place: usize, start: &[f64]) -> Option<Linear> {
+        let shooting = self.shooting;
+        let window = &shooting.windows.list[place];
+        let inputs = shooting.windows.inputs(window);
+        let times = &window.times[..samples_in(window, shooting.part)];
+        let moved = self.neighbours.iter_mut().flatten();
+        let moved = moved.filter_map(|(neighbour, step)| match neighbour {
+            Neighbour::Drives(evaluator, _) => Some((&mut **evaluator, *step)),
+            Neighbour::Runs(_) => None,
+        });
+        let mut drives = Differences::new(&mut self.equations, moved.collect());
+        let count = drives.count();
+        let by_state = shooting.ranges.is_some();
+        let marched = self
+            .base
+            .linearised(start, times, inputs, by_state, (count, &mut drives))?;
+        let seen = shooting.seen(times, &self.sensors, &marched.outputs.values);
+        let residual = DVector::from_vec(shooting.normalised(window, &seen));
+        let states = if by_state { start.len() } else { 0 };
+        let by_state = self.columns(window, times, states, &marched.by_state);
+        let driven = self.columns(window, times, count, &marched.by_drive);
+        let mut by_unknown = DMatrix::zeros(residual.len(), self.neighbours.len());
+        let mut drive = 0;
+        for (column, neighbour) in self.neighbours.iter().enumerate() {
+            let unknown = &shooting.unknowns[column];
+            let Some((neighbour, step)) = neighbour else {
+                let (sensors, step) = moved_sensors(&self.sensors, unknown);
+                let moved = shooting.seen(times, &sensors, &marched.outputs.values);
+                let moved = shooting.normalised(window, &moved);
+                for (row, (after, before)) in moved.iter().zip(residual.iter()).enumerate() {
+                    by_unknown[(row, column)] = (after - before) / step;
+                }
+                continue;
+            };
+            by_unknown.set_column(column, &driven.column(drive));
+            drive += 1;
+            let Neighbour::Drives(_, Some(shown)) = neighbour else {
+                continue;
+            };
+            if Some(shown) != self.base.shown() {
+                let mut moved = Vec::with_capacity(marched.outputs.values.len());
+                for state in &marched.states {
+                    shown.add_to(state, &mut moved);
+                }
+                let pairs = moved.iter_mut().zip(&marched.outputs.values);
+                pairs.for_each(|(moved, own)| *moved = (*moved - own) / step);
+                let own = self.columns(window, times, 1, &moved);
+                let mut column = by_unknown.column_mut(column);
+                column += own.column(0);
+            }
+        }
+        Some(Linear {
+            residual,
+            by_state,
+            by_unknown,
+            last: marched.outputs.last,
+        })
+    }
+
+    /// What drives do to a window's residuals, a column for each; none if neighbouring motions
+    /// do not come along.
+    pub(crate) fn driven(
+        &mut self,
+        place: usize,
+        start: &[f64],
+        (count, drives): (usize, &mut dyn Drives),
+    ) -> Option<DMatrix<f64>> {
+        let shooting = self.shooting;
+        let window = &shooting.windows.list[place];
+        let inputs = shooting.windows.inputs(window);
+        let times = &window.times[..samples_in(window, shooting.part)];
+        let found = self
+            .base
+            .linearised(start, times, inputs, false, (count, drives))?;
+        Some(self.columns(window, times, count, &found.by_drive))
+    }
+
+    /// The same by difference quotients.
+    fn by_quotients(&mut self, place: usize, start: &[f64]) -> Option<Linear> {
+        let shooting = self.shooting;
+        let window = &shooting.windows.list[place];
+        let inputs = shooting.windows.inputs(window);
+        let times = &window.times[..samples_in(window, shooting.part)];
+        let steps: Vec<f64> = (shooting.ranges.unwrap_or_default().iter())
+            .map(|range| LARGEST_QUOTIENT * range)
+            .collect();
+        let tangents = match shooting.ranges {
+            Some(_) => self.base.tangents(start, times, inputs, &steps),
+            None => None,
+        };
+        let (outputs, derivatives) = match tangents {
+            Some((outputs, derivatives)) => (outputs, Some(derivatives)),
+            None => (self.base.outputs(start, times, inputs).ok()?, None),
+        };
+        let seen = shooting.seen(times, &self.sensors, &outputs.values);
+        let residual = DVector::from_vec(shooting.normalised(window, &seen));
+        if residual.iter().any(|r| !r.is_finite()) {
+            return None;
+        }
+        let by_state = match derivatives {
+            Some(derivatives) => self.columns(window, times, start.len(), &derivatives),
+            None => self.by_state(place, start, &residual)?,
+        };
+        let mut by_unknown = DMatrix::zeros(residual.len(), self.neighbours.len());
+        for (column, neighbour) in self.neighbours.iter_mut().enumerate() {
+            let unknown = &shooting.unknowns[column];
+            let (moved, step) = match neighbour {
+                Some((Neighbour::Runs(runner), step)) => {
+                    let moved = runner.outputs(start, times, inputs).ok()?;
+                    (shooting.seen(times, &self.sensors, &moved.values), *step)
+                }
+                Some((Neighbour::Drives(..), _)) => return None,
+                None => {
+                    let (sensors, step) = moved_sensors(&self.sensors, unknown);
+                    (shooting.seen(times, &sensors, &outputs.values), step)
+                }
+            };
+            let moved = shooting.normalised(window, &moved);
+            for (row, (after, before)) in moved.iter().zip(residual.iter()).enumerate() {
+                by_unknown[(row, column)] = (after - before) / step;
+            }
+        }
+        Some(Linear {
+            residual,
+            by_state,
+            by_unknown,
+            last: outputs.last,
+        })
+    }
+
+    /// Derivatives of the quantities, for each sample a row per column, as the sensors show
+    /// them, in noises.
+    fn columns(
+        &self,
+        window: &Window,
+        times: &[f64],
+        count: usize,
+        derivatives: &[f64],
+    ) -> DMatrix<f64> {
+        let shooting = &self.shooting;
+        let channels = shooting.channels();
+        let sensors = Sensors {
+            bias: vec![0.0; channels],
+            ..self.sensors.clone()
+        };
+        let rows = times.len() * channels;
+        let mut matrix = DMatrix::zeros(rows, count);
+        let mut column = vec![0.0; rows];
+        for place in 0..count {
+            for sample in 0..times.len() {
+                let from = (sample * count + place) * channels;
+                let to = sample * channels;
+                column[to..to + channels].copy_from_slice(&derivatives[from..from + channels]);
+            }
+            let seen = shooting.seen(times, &sensors, &column);
+            let differences = shooting.differences(window, &seen, |seen, _| seen);
+            matrix.column_mut(place).copy_from_slice(&differences);
+        }
+        matrix
+    }
+
+    /// The derivative by the initial state; no columns where that is given.
+    fn by_state(
+        &mut self,
+        place: usize,
+        start: &[f64],
+        residual: &DVector<f64>,
+    ) -> Option<DMatrix<f64>> {
+        let shooting = self.shooting;
+        let Some(ranges) = shooting.ranges else {
+            return Some(DMatrix::zeros(residual.len(), 0));
+        };
+        let mut matrix = DMatrix::zeros(residual.len(), start.len());
+        let mut moved = start.to_vec();
+        for state in 0..start.len() {
+            let largest = LARGEST_QUOTIENT * ranges[state];
+            let mut step = largest;
+            // The step that moves the outputs as wanted is found by trying: what a state does
+            // to them differs by orders of magnitude.
+            for _ in 0..3 {
+                moved[state] = start[state] + step;
+                let after = self.residual(place, &moved)?;
+                let differences = after.values.iter().zip(residual.iter()).map(|(a, b)| a - b);
+                let mut column = matrix.column_mut(state);
+                let mut furthest: f64 = 0.0;
+                for (slot, difference) in column.iter_mut().zip(differences) {
+                    *slot = difference / step;
+                    furthest = furthest.max(difference.abs());
+                }
+                let wanted = QUOTIENT * self.level * 4.0;
+                if furthest <= 4.0 * wanted {
+                    break;
+                }
+                step *= wanted / furthest;
+            }
+            moved[state] = start[state];
+        }
+        Some(matrix)
+    }
+}
+
+/// Differences between the accelerations of a model and of others, per size, as drives of
+/// neighbouring motions.
+pub(crate) struct Differences<'c> {
+    base: &'c mut Evaluator,
+    moved: Vec<(&'c mut Evaluator, f64)>,
+    rates: [Vec<f64>; 2],
+}
+
+impl<'c> Differences<'c> {
+    /// Others with the sizes by which they differ.
+    pub fn new(base: &'c mut Evaluator, moved: Vec<(&'c mut Evaluator, f64)>) -> Self {
+        let states = 2 * base.program().degrees_of_freedom();
+        Self {
+            base,
+            moved,
+            rates: [vec![0.0; states], vec![0.0; states]],
+        }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.moved.len()
+    }
+}
+
+impl Drives for Differences<'_> {
+    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
+        let [base, moved] = &mut self.rates;
+        let half = base.len() / 2;
+        self.base.rates(Point { t, state, inputs }, base);
+        let slots = out.chunks_exact_mut(half.max(1));
+        for ((evaluator, step), slots) in self.moved.iter_mut().zip(slots) {
+            evaluator.rates(Point { t, state, inputs }, moved);
+            for (slot, (a, b)) in slots
+                .iter_mut()
+                .zip(moved[half..].iter().zip(&base[half..]))
+            {
+                *slot = (a - b) / *step;
+            }
+        }
+    }
+}
+
+/// The step of a parameter's difference quotient; away from a bound that is near.
+fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
+    let step = 0.01 * unknown.scale;
+    if value + step > unknown.bounds.1 {
+        -step
+    } else {
+        step
+    }
+}
+
+/// The sensors with one unknown moved, and the step.
+fn moved_sensors(sensors: &Sensors, unknown: &Unknown) -> (Sensors, f64) {
+    let step = 0.1 * unknown.scale;
+    let mut moved = sensors.clone();
+    match unknown.what {
+        What::Gain(place) => moved.gain[place] += step,
+        What::Bias(place) => moved.bias[place] += step,
+        What::Delay(place) => moved.delay[place] += step,
+        What::Parameter(_) | What::Inverse(_) => {}
+    }
+    (moved, step)
+}

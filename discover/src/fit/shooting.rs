@@ -1,0 +1,254 @@
+//! Multiple shooting: what the windows' outputs are at a state for each and at the unknowns,
+//! and how far they are from what was measured, in standard deviations of the sensors' noise.
+//! How they depend on both is found in [`crate::fit::sensitivity`]; what to make of it is decided elsewhere.
+
+use rayon::prelude::*;
+
+use crate::fit::sensitivity::{Crew, Linear};
+use crate::model::plant::Plant;
+use crate::model::runner::Runner;
+use crate::model::unknowns::{Unknown, What};
+use crate::model::windows::{Window, Windows, judged};
+
+/// The sensors' part of the unknowns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensors {
+    /// One gain per channel.
+    pub gain: Vec<f64>,
+    /// One bias per channel, SI.
+    pub bias: Vec<f64>,
+    /// One delay per channel, s.
+    pub delay: Vec<f64>,
+}
+
+/// Windows to be explained by a plant.
+#[derive(Clone, Copy)]
+pub struct Shooting<'a> {
+    /// The plant.
+    pub plant: &'a Plant,
+    /// The windows.
+    pub windows: &'a Windows<'a>,
+    /// The noise of each channel, SI.
+    pub noise: &'a [f64],
+    /// The unknowns.
+    pub unknowns: &'a [Unknown],
+    /// The range of each state, where initial states are estimated.
+    pub ranges: Option<&'a [f64]>,
+    /// The part of each window that is looked at, from its beginning.
+    pub part: f64,
+    /// How much the unknowns' priors count beside the residuals: the square of the misfit that
+    /// noise does not explain, times the samples over which it is correlated. A misfit says
+    /// nothing of a sensor beyond its own size.
+    pub prior_weight: f64,
+}
+
+/// A window's residuals.
+pub struct Residual {
+    /// Simulated minus measured, in noises: row by row, a number per channel; 0 where nothing
+    /// was measured.
+    pub values: Vec<f64>,
+    /// The state at the window's end.
+    pub last: Vec<f64>,
+}
+
+impl Residual {
+    /// The sum of squares.
+    pub fn square(&self) -> f64 {
+        self.values.iter().map(|r| r * r).sum()
+    }
+}
+
+impl<'a> Shooting<'a> {
+    /// How many channels there are.
+    pub fn channels(&self) -> usize {
+        self.noise.len()
+    }
+
+    /// The plant's parameters at these unknowns.
+    pub fn values(&self, theta: &[f64]) -> Vec<f64> {
+        let mut values = self.plant.values.clone();
+        for (unknown, value) in self.unknowns.iter().zip(theta) {
+            match &unknown.what {
+                What::Parameter(name) => self.plant.set(&mut values, name, *value),
+                What::Inverse(name) => self.plant.set(&mut values, name, 1.0 / value),
+                What::Gain(_) | What::Bias(_) | What::Delay(_) => {}
+            }
+        }
+        values
+    }
+
+    /// The sensors at these unknowns.
+    pub fn sensors(&self, theta: &[f64]) -> Sensors {
+        let channels = self.channels();
+        let mut sensors = Sensors {
+            gain: vec![1.0; channels],
+            bias: vec![0.0; channels],
+            delay: vec![0.0; channels],
+        };
+        for sensor in &self.plant.model.sensors {
+            // What the specification itself says of a sensor holds until it is estimated.
+            if let Some(place) = self.plant.channel(&sensor.channel) {
+                sensors.gain[place] = sensor.gain;
+                sensors.bias[place] = sensor.bias;
+                sensors.delay[place] = sensor.delay;
+            }
+        }
+        for (unknown, value) in self.unknowns.iter().zip(theta) {
+            match unknown.what {
+                What::Parameter(_) | What::Inverse(_) => {}
+                What::Gain(place) => sensors.gain[place] = *value,
+                What::Bias(place) => sensors.bias[place] = *value,
+                What::Delay(place) => sensors.delay[place] = *value,
+            }
+        }
+        sensors
+    }
+
+    /// The residuals of every window from these initial states; none where a motion cannot be
+    /// followed.
+    pub fn residuals(&self, theta: &[f64], starts: &[Vec<f64>]) -> Vec<Option<Residual>> {
+        let (values, sensors) = (self.values(theta), self.sensors(theta));
+        self.by_threads(|places| {
+            let Ok(mut runner) = self.plant.at(&values) else {
+                return places.map(|_| None).collect();
+            };
+            places
+                .map(|place| self.residual(&mut runner, &sensors, place, &starts[place]))
+                .collect()
+        })
+    }
+
+    /// One window's residuals.
+    pub fn residual(
+        &self,
+        runner: &mut Runner<'_>,
+        sensors: &Sensors,
+        place: usize,
+        start: &[f64],
+    ) -> Option<Residual> {
+        let window = &self.windows.list[place];
+        let inputs = self.windows.inputs(window);
+        let times = &window.times[..samples_in(window, self.part)];
+        let outputs = runner.outputs(start, times, inputs).ok()?;
+        let seen = self.seen(times, sensors, &outputs.values);
+        let values = self.normalised(window, &seen);
+        (values.iter().all(|r| r.is_finite())).then_some(Residual {
+            values,
+            last: outputs.last,
+        })
+    }
+
+    /// What the sensors show of a window's quantities.
+    pub fn seen(&self, times: &[f64], sensors: &Sensors, quantities: &[f64]) -> Vec<f64> {
+        let channels = self.channels();
+        let samples = times.len();
+        let mut seen = vec![0.0; quantities.len()];
+        for channel in 0..channels {
+            let (gain, bias) = (sensors.gain[channel], sensors.bias[channel]);
+            let delay = sensors.delay[channel];
+            for sample in 0..samples {
+                let quantity = if delay == 0.0 {
+                    quantities[sample * channels + channel]
+                } else {
+                    let at = times[sample] - delay;
+                    interpolated(times, quantities, (channels, channel), at, sample)
+                };
+                seen[sample * channels + channel] = gain * quantity + bias;
+            }
+        }
+        seen
+    }
+
+    /// Differences from what was measured, in noises.
+    pub(crate) fn normalised(&self, window: &Window, seen: &[f64]) -> Vec<f64> {
+        self.differences(window, seen, |seen, measured| seen - measured)
+    }
+
+    /// A function of what is seen and measured, in noises; 0 where nothing counts.
+    pub(crate) fn differences(
+        &self,
+        window: &Window,
+        seen: &[f64],
+        of: impl Fn(f64, f64) -> f64,
+    ) -> Vec<f64> {
+        let channels = self.channels();
+        let samples = seen.len() / channels;
+        let inside = judged(samples);
+        let pairs = seen.iter().zip(&window.measured).enumerate();
+        pairs
+            .map(|(place, (seen, measured))| {
+                if measured.is_nan() || !inside.contains(&(place / channels)) {
+                    0.0
+                } else {
+                    of(*seen, *measured) / self.noise[place % channels]
+                }
+            })
+            .collect()
+    }
+
+    /// Residuals and derivatives of every window. `level`: the size of the residuals, in
+    /// noises, over which quotients are taken.
+    pub fn linear(&self, theta: &[f64], starts: &[Vec<f64>], level: f64) -> Vec<Option<Linear>> {
+        self.by_threads(|places| {
+            let mut crew = Crew::new(self, theta, level);
+            places
+                .map(|place| crew.as_mut()?.linear(place, &starts[place]))
+                .collect()
+        })
+    }
+
+    /// Shares the windows out to the threads, neighbours together, and puts the answers in
+    /// order.
+    pub(crate) fn by_threads<T: Send>(
+        &self,
+        work: impl Fn(std::ops::Range<usize>) -> Vec<T> + Send + Sync,
+    ) -> Vec<T> {
+        let count = self.windows.list.len();
+        let threads = rayon::current_num_threads().max(1);
+        // The parts do not depend on the number of threads' speed, only on their number; what
+        // is computed for a window does not depend on its part.
+        let size = count.div_ceil(threads).max(1);
+        let parts: Vec<_> = (0..count.div_ceil(size))
+            .map(|part| part * size..((part + 1) * size).min(count))
+            .collect();
+        let answers: Vec<Vec<T>> = parts.into_par_iter().map(work).collect();
+        answers.into_iter().flatten().collect()
+    }
+}
+
+/// How many samples a part of a window holds.
+pub(crate) fn samples_in(window: &Window, part: f64) -> usize {
+    let count = window.times.len();
+    ((part * count as f64) as usize).clamp(count.min(8), count)
+}
+
+/// A channel's quantity at a time near a sample, by the cubic through its four neighbours.
+fn interpolated(
+    times: &[f64],
+    quantities: &[f64],
+    (channels, channel): (usize, usize),
+    at: f64,
+    near: usize,
+) -> f64 {
+    let last = times.len() - 1;
+    let mut left = near.min(last);
+    while left > 0 && times[left] > at {
+        left -= 1;
+    }
+    while left < last && times[left + 1] <= at {
+        left += 1;
+    }
+    let count = times.len().min(4);
+    let first = left.saturating_sub(1).min(times.len() - count);
+    let nodes = first..first + count;
+    nodes
+        .clone()
+        .map(|i| {
+            let weight: f64 = (nodes.clone())
+                .filter(|j| *j != i)
+                .map(|j| (at - times[j]) / (times[i] - times[j]))
+                .product();
+            weight * quantities[i * channels + channel]
+        })
+        .sum()
+}

@@ -1,0 +1,154 @@
+//! A window's derivatives with its initial state taken out, by a QR factorisation: what is left
+//! depends on the unknowns alone.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::fit::gauss_newton::StartPrior;
+use crate::fit::sensitivity::Linear;
+
+/// A window with its initial state eliminated.
+pub struct Reduced {
+    /// R of the QR factorisation of [by state | by unknowns | residual], priors included.
+    pub factor: DMatrix<f64>,
+    states: usize,
+}
+
+/// Eliminates a window's initial state.
+pub fn reduced(linear: &Linear, prior: &StartPrior, place: usize, start: &[f64]) -> Reduced {
+    let states = linear.by_state.ncols();
+    let unknowns = linear.by_unknown.ncols();
+    let rows = linear.residual.len();
+    let mut matrix = DMatrix::zeros(
+        (rows + states).max(states + unknowns + 1),
+        states + unknowns + 1,
+    );
+    matrix
+        .view_mut((0, 0), (rows, states))
+        .copy_from(&linear.by_state);
+    matrix
+        .view_mut((0, states), (rows, unknowns))
+        .copy_from(&linear.by_unknown);
+    matrix
+        .view_mut((0, states + unknowns), (rows, 1))
+        .copy_from(&linear.residual);
+    if let Some(mean) = prior.mean.get(place) {
+        for state in 0..states {
+            matrix[(rows + state, state)] = 1.0 / prior.sd[state];
+            matrix[(rows + state, states + unknowns)] =
+                (start[state] - mean[state]) / prior.sd[state];
+        }
+    }
+    Reduced {
+        factor: matrix.qr().r(),
+        states,
+    }
+}
+
+impl Reduced {
+    /// What the unknowns and the residual look like once the initial state is free.
+    pub fn unknowns(&self) -> DMatrix<f64> {
+        let rest = self.factor.ncols() - self.states;
+        self.factor
+            .view((self.states, self.states), (rest, rest))
+            .into_owned()
+    }
+
+    /// The initial state's step for a step of the unknowns, damped in every state by so many
+    /// of its prior's weights.
+    pub fn start_step(
+        &self,
+        unknowns: &DVector<f64>,
+        damping: f64,
+        prior: &StartPrior,
+    ) -> Option<DVector<f64>> {
+        let (n, p) = (self.states, unknowns.len());
+        let mut rows = DMatrix::zeros(2 * n.max(1), n + 1);
+        rows.view_mut((0, 0), (n, n))
+            .copy_from(&self.factor.view((0, 0), (n, n)));
+        let right =
+            -(self.factor.view((0, n), (n, p)) * unknowns + self.factor.column(n + p).rows(0, n));
+        rows.view_mut((0, n), (n, 1)).copy_from(&right);
+        for (state, sd) in prior.sd.iter().enumerate() {
+            rows[(n + state, state)] = damping.sqrt() / sd;
+        }
+        let factor = rows.qr().r();
+        let right = factor.column(n).rows(0, n).into_owned();
+        factor.view((0, 0), (n, n)).solve_upper_triangular(&right)
+    }
+}
+
+/// A window's derivatives with the means to take its initial state out of any column.
+#[derive(Clone)]
+pub struct Eliminator {
+    /// The residual.
+    pub residual: DVector<f64>,
+    /// By the unknowns.
+    pub by_unknown: DMatrix<f64>,
+    /// By the initial state, with the priors' rows below.
+    by_state: DMatrix<f64>,
+    /// What the priors' rows hold of the residual.
+    prior_residual: DVector<f64>,
+}
+
+impl Eliminator {
+    /// Takes a window's derivatives.
+    pub fn new(linear: &Linear, prior: &StartPrior, place: usize, start: &[f64]) -> Self {
+        let (rows, states) = linear.by_state.shape();
+        let mut by_state = DMatrix::zeros(rows + states, states);
+        by_state
+            .view_mut((0, 0), (rows, states))
+            .copy_from(&linear.by_state);
+        let mut prior_residual = DVector::zeros(states);
+        if let Some(mean) = prior.mean.get(place) {
+            for state in 0..states {
+                by_state[(rows + state, state)] = 1.0 / prior.sd[state];
+                prior_residual[state] = (start[state] - mean[state]) / prior.sd[state];
+            }
+        }
+        Self {
+            residual: linear.residual.clone(),
+            by_unknown: linear.by_unknown.clone(),
+            by_state,
+            prior_residual,
+        }
+    }
+
+    /// Products of columns, the residual last, with the initial state free.
+    pub fn products(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
+        let (rows, count) = columns.shape();
+        let states = self.by_state.ncols();
+        let mut whole = columns.transpose() * columns;
+        whole[(count - 1, count - 1)] += self.prior_residual.norm_squared();
+        if states == 0 {
+            return whole;
+        }
+        let q = self.by_state.clone().qr().q();
+        let mut along = q.rows(0, rows).transpose() * columns;
+        let of_prior = q.rows(rows, states).transpose() * &self.prior_residual;
+        let mut last = along.column_mut(count - 1);
+        last += of_prior;
+        whole - along.transpose() * along
+    }
+
+    /// A residual with the initial state free: what it cannot do away with.
+    pub fn left(&self, residual: &DVector<f64>) -> DVector<f64> {
+        let (rows, states) = (residual.len(), self.by_state.ncols());
+        if states == 0 {
+            return residual.clone();
+        }
+        let q = self.by_state.clone().qr().q();
+        let (of_residual, of_prior) = (q.rows(0, rows), q.rows(rows, states));
+        let along =
+            of_residual.transpose() * residual + of_prior.transpose() * &self.prior_residual;
+        residual - of_residual * along
+    }
+}
+
+/// The triangular factor of two blocks of rows.
+pub fn stacked(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    let columns = a.ncols();
+    let mut both = DMatrix::zeros((a.nrows() + b.nrows()).max(columns), columns);
+    both.view_mut((0, 0), a.shape()).copy_from(a);
+    both.view_mut((a.nrows(), 0), b.shape()).copy_from(b);
+    both.qr().r()
+}

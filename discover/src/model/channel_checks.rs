@@ -1,0 +1,175 @@
+//! Whether columns are what they are called: the model, as it is specified, is run through the
+//! beginning of a training record. A column that follows it with the other sign, with the
+//! factor between two units, or that follows another channel instead, has a wrong label. A
+//! model that lacks something makes none of these.
+
+use crate::dataset::Refusal;
+use crate::model::problem::Setting;
+
+/// The beginning of a record that is looked at, in samples.
+const SAMPLES: usize = 1000;
+
+/// A channel that moves by fewer noises, lines taken out, shows nothing.
+const MOVES: f64 = 20.0;
+
+/// Columns that follow each other this well are one quantity.
+const FOLLOWS: f64 = 0.98;
+
+/// A channel that follows the model less than this does not follow it: what a model lacks
+/// leaves most of the motion.
+const ASTRAY: f64 = 0.5;
+
+/// A factor is a given one if it agrees to this part of it. A hundredth for what parameters
+/// may be off, and as much again for what is lacking.
+const AGREES: f64 = 0.02;
+
+/// Factors between units that are often taken for each other.
+const FACTORS: [(f64, &str); 6] = [
+    (1e3, "a thousand times"),
+    (1e-3, "a thousandth of"),
+    (1e6, "a million times"),
+    (1e-6, "a millionth of"),
+    (57.295_779_513, "as if degrees were given, "),
+    (0.017_453_292_52, "as if radians were given for degrees, "),
+];
+
+/// Looks at the labels of the first training record; returns what is worth a remark.
+///
+/// # Errors
+/// A column with a wrong label.
+pub fn check(setting: &Setting<'_>, text: &str) -> Result<Vec<String>, Refusal> {
+    let mut notes = Vec::new();
+    let record = &setting.dataset.train[0];
+    let Ok(plant) = setting.plant(text, None) else {
+        return Ok(notes);
+    };
+    let first = setting.first_state(&plant, record);
+    let samples = record.times.len().min(SAMPLES);
+    let times = &record.times[..samples];
+    let run = plant
+        .at(&plant.values)
+        .and_then(|mut runner| runner.outputs(&first, times, &record.inputs));
+    // A model that cannot be run so far is judged by its fit.
+    let Ok(run) = run else { return Ok(notes) };
+    let channels = &setting.dataset.channels;
+    let count = channels.len();
+    let expected: Vec<Vec<f64>> = (0..count)
+        .map(|channel| {
+            let column = (0..samples).map(|sample| run.values[sample * count + channel]);
+            column.collect()
+        })
+        .collect();
+    for (place, channel) in channels.iter().enumerate() {
+        let measured = &record.channels[place][..samples];
+        let own = Likeness::of(times, &expected[place], measured, channel.noise);
+        let refuse = |message: String| {
+            Err(Refusal::file(
+                &record.path,
+                format!("channel `{}`: {message}", channel.name),
+            ))
+        };
+        if own.correlation < -FOLLOWS && (own.factor + 1.0).abs() < 0.2 {
+            return refuse(
+                "its column follows the model with the other sign; turn the column's sign, or \
+                 the observable's"
+                    .to_owned(),
+            );
+        }
+        let is = |factor: f64| (own.factor / factor - 1.0).abs() < AGREES;
+        if own.correlation > FOLLOWS {
+            if let Some((_, words)) = FACTORS.iter().find(|(factor, _)| is(*factor)) {
+                return refuse(format!(
+                    "its column is {words} what the model expects; is its unit right?"
+                ));
+            }
+            if (own.factor - 1.0).abs() < 0.2 {
+                continue;
+            }
+        }
+        for (other, instead) in channels.iter().enumerate() {
+            let alike = Likeness::of(times, &expected[other], measured, channel.noise);
+            if other != place && alike.correlation > FOLLOWS && (alike.factor - 1.0).abs() < AGREES
+            {
+                return refuse(format!(
+                    "its column is what the model expects of `{}`; are columns exchanged?",
+                    instead.name
+                ));
+            }
+        }
+        if own.correlation.abs() < ASTRAY && own.shows {
+            notes.push(format!(
+                "{}: `{}` does not follow the model (correlation {:.2}): are its column, and those of the inputs, the right ones?",
+                record.name, channel.name, own.correlation
+            ));
+        }
+    }
+    Ok(notes)
+}
+
+/// How a column follows what is expected, lines taken out of both.
+struct Likeness {
+    correlation: f64,
+    factor: f64,
+    /// Whether there is enough to be followed.
+    shows: bool,
+}
+
+impl Likeness {
+    fn of(times: &[f64], expected: &[f64], measured: &[f64], noise: f64) -> Self {
+        let none = Self {
+            correlation: 0.0,
+            factor: 0.0,
+            shows: false,
+        };
+        let known: Vec<usize> = (0..times.len())
+            .filter(|i| measured[*i].is_finite() && expected[*i].is_finite())
+            .collect();
+        if 2 * known.len() < times.len() {
+            return none;
+        }
+        let of = |column: &[f64]| {
+            let pairs: Vec<(f64, f64)> = known.iter().map(|i| (times[*i], column[*i])).collect();
+            without_line(&pairs)
+        };
+        let (a, b) = (of(expected), of(measured));
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
+        let (aa, ab, bb) = (dot(&a, &a), dot(&a, &b), dot(&b, &b));
+        let shows = (bb / known.len() as f64).sqrt() > MOVES * noise;
+        if !(shows && aa > 0.0 && ab.is_finite()) {
+            return none;
+        }
+        Self {
+            correlation: ab / (aa * bb).sqrt(),
+            factor: ab / aa,
+            shows,
+        }
+    }
+}
+
+/// Values with the line that fits them best taken out.
+fn without_line(pairs: &[(f64, f64)]) -> Vec<f64> {
+    let count = pairs.len() as f64;
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
+    let (t, x) = (mean(&|p| p.0), mean(&|p| p.1));
+    let square = mean(&|p| (p.0 - t).powi(2));
+    let slope = mean(&|p| (p.0 - t) * (p.1 - x)) / square;
+    let value = |p: &(f64, f64)| p.1 - x - slope * (p.0 - t);
+    pairs.iter().map(value).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Likeness, without_line};
+
+    #[test]
+    fn a_line_is_taken_out_and_nothing_else() {
+        let wave = |t: f64| (7.0 * t).sin();
+        let times: Vec<f64> = (0..500).map(|i| f64::from(i) * 0.01).collect();
+        let line: Vec<(f64, f64)> = times.iter().map(|t| (*t, 3.0 - 2.0 * t)).collect();
+        assert!(without_line(&line).iter().all(|v| v.abs() < 1e-12));
+        let expected: Vec<f64> = times.iter().map(|t| wave(*t)).collect();
+        let measured: Vec<f64> = times.iter().map(|t| 5.0 * t - 2.0 * wave(*t)).collect();
+        let alike = Likeness::of(&times, &expected, &measured, 1e-3);
+        assert!((alike.factor + 2.0).abs() < 1e-9 && alike.correlation < -0.999_999);
+    }
+}

@@ -1,0 +1,144 @@
+//! What is estimated beside the windows' initial states: parameters of the model and how the
+//! sensors differ from what they measure, each with its prior and its bounds.
+
+use model_spec::model::{Model, Parameter};
+
+use crate::dataset::{Channel, Dataset, Record};
+use crate::gate::typical_step;
+use crate::thresholds;
+
+/// What an unknown is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum What {
+    /// A parameter, by name.
+    Parameter(String),
+    /// One over a parameter, by name: an effect that is absent where it is infinite.
+    Inverse(String),
+    /// The gain of a channel, by its place.
+    Gain(usize),
+    /// The bias of a channel, SI.
+    Bias(usize),
+    /// The delay of a channel, s.
+    Delay(usize),
+}
+
+impl What {
+    /// Its value as a specification states it, from its estimate, SI.
+    pub fn stated(&self, value: f64) -> f64 {
+        match self {
+            Self::Inverse(_) => 1.0 / value,
+            Self::Parameter(_) | Self::Gain(_) | Self::Bias(_) | Self::Delay(_) => value,
+        }
+    }
+}
+
+/// Something to be estimated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unknown {
+    /// What it is.
+    pub what: What,
+    /// What it is called in messages.
+    pub label: String,
+    /// Where the estimate begins, SI.
+    pub start: f64,
+    /// Mean and standard deviation of what is known before, SI.
+    pub prior: Option<(f64, f64)>,
+    /// The smallest and the largest admissible value, SI.
+    pub bounds: (f64, f64),
+    /// The same where it need not be what was declared.
+    pub limits: (f64, f64),
+    /// A change that matters, SI.
+    pub scale: f64,
+}
+
+impl Unknown {
+    /// A value moved into the bounds.
+    pub fn admissible(&self, value: f64) -> f64 {
+        value.clamp(self.bounds.0, self.bounds.1)
+    }
+
+    /// The same without what was declared of it.
+    pub fn released(&self) -> Self {
+        Self {
+            prior: None,
+            bounds: self.limits,
+            ..self.clone()
+        }
+    }
+
+    /// One of the null model: within so many standard deviations of what was declared, because
+    /// beyond it is an effect.
+    fn declared((what, label): (What, String), (mean, sd): (f64, f64), limits: (f64, f64)) -> Self {
+        let reach = thresholds::SHIFTED * sd;
+        Self {
+            what,
+            label,
+            start: mean,
+            prior: Some((mean, sd)),
+            bounds: (limits.0.max(mean - reach), limits.1.min(mean + reach)),
+            limits,
+            scale: sd,
+        }
+    }
+}
+
+/// The unknowns of the null model: parameters declared uncertain and, where there is more
+/// than noise to tell them from, the sensors.
+pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)]) -> Vec<Unknown> {
+    let mut unknowns = Vec::new();
+    for uncertain in &dataset.uncertain {
+        let value = values.iter().find(|(name, _)| *name == uncertain.name);
+        let parameter = model.parameters.iter().find(|p| p.name == uncertain.name);
+        let (Some((_, value)), Some(parameter)) = (value, parameter) else {
+            continue;
+        };
+        let sd = uncertain.relative * value.abs();
+        let name = &uncertain.name;
+        let what = (What::Parameter(name.clone()), format!("`{name}`"));
+        let limits = sign_bounds(parameter, *value);
+        unknowns.push(Unknown::declared(what, (*value, sd), limits));
+    }
+    let step = dataset
+        .train
+        .first()
+        .map_or(0.0, |record: &Record| typical_step(&record.times));
+    for (place, channel) in dataset.channels.iter().enumerate() {
+        unknowns.extend(of_sensor(place, channel, step));
+    }
+    unknowns
+}
+
+/// The unknowns of one sensor, with the priors of a channel that says nothing else.
+pub fn of_sensor(place: usize, channel: &Channel, step: f64) -> [Unknown; 3] {
+    let gain = thresholds::GAIN_PRIOR;
+    let bias = thresholds::BIAS_PRIOR * channel.noise;
+    let delay = thresholds::DELAY_PRIOR * step;
+    let free = (f64::NEG_INFINITY, f64::INFINITY);
+    let late = (
+        -thresholds::LONGEST_LEAD * step,
+        thresholds::LONGEST_DELAY * step,
+    );
+    let called = |what: What, fault: &str| (what, format!("the {fault} of `{}`", channel.name));
+    [
+        Unknown::declared(called(What::Gain(place), "gain"), (1.0, gain), free),
+        Unknown::declared(called(What::Bias(place), "bias"), (0.0, bias), free),
+        // What no prior holds is late: no sensor sees ahead.
+        Unknown {
+            limits: (0.0, late.1),
+            ..Unknown::declared(called(What::Delay(place), "delay"), (0.0, delay), late)
+        },
+    ]
+}
+
+/// A parameter keeps its sign, and the bounds of the specification.
+pub fn sign_bounds(parameter: &Parameter, value: f64) -> (f64, f64) {
+    let (low, high) = match value {
+        v if v > 0.0 => (0.0, f64::INFINITY),
+        v if v < 0.0 => (f64::NEG_INFINITY, 0.0),
+        _ => (f64::NEG_INFINITY, f64::INFINITY),
+    };
+    (
+        parameter.min.map_or(low, |min| min.max(low)),
+        parameter.max.map_or(high, |max| max.min(high)),
+    )
+}

@@ -1,0 +1,110 @@
+//! The specification with what was found: effects added, refitted numbers set, sensors
+//! described, every comment kept.
+
+use model_spec::edit::{self, Edit, SetParameter, SetSensor};
+use model_spec::source::Source;
+
+use crate::fit::full::Fit;
+use crate::model::problem::Setting;
+use crate::model::unknowns::What;
+use crate::search::found::Accepted;
+
+/// Where nothing was found, a parameter or a sensor is set if its estimate moved by this part of its
+/// uncertainty. With an effect all are set: they were estimated together.
+const MOVED: f64 = 0.5;
+
+/// The text with effects and numbers of a fit.
+///
+/// # Errors
+/// An edit that cannot be made, in words.
+pub fn extended(
+    setting: &Setting<'_>,
+    text: &str,
+    fit: &Fit,
+    accepted: &[Accepted],
+) -> Result<String, String> {
+    let source = provenance(setting);
+    let theta = &fit.train.estimate.theta;
+    let mut text = text.to_owned();
+    let written = || {
+        accepted
+            .iter()
+            .filter(|effect| effect.candidate.released.is_none())
+    };
+    for effect in written() {
+        let values = fit.stated(&effect.unknowns);
+        let written = effect
+            .candidate
+            .written(&text, &setting.path, &values, &source);
+        text = written.map_err(|error| error.to_string())?;
+    }
+    let added: Vec<usize> = written()
+        .flat_map(|effect| effect.unknowns.clone())
+        .collect();
+    let mut edits = Vec::new();
+    for (place, unknown) in fit.unknowns.iter().enumerate() {
+        if let What::Parameter(name) = &unknown.what
+            && has_moved(fit, place, !accepted.is_empty())
+            && !added.contains(&place)
+            && let Some(parameter) = fit.plant.model.parameters.iter().find(|p| p.name == *name)
+        {
+            edits.push(Edit::SetParameter(SetParameter {
+                name: name.clone(),
+                value: parameter.unit.from_si(theta[place]),
+                source: source.clone(),
+            }));
+        }
+    }
+    edits.extend(sensors(setting, fit, !accepted.is_empty()));
+    edit::apply(&Source::new(setting.path.as_str(), text.as_str()), &edits)
+        .map_err(|error| error.to_string())
+}
+
+/// Where numbers come from.
+fn provenance(setting: &Setting<'_>) -> String {
+    let title = &setting.dataset.title;
+    let files = setting
+        .dataset
+        .train
+        .iter()
+        .filter_map(|record| record.path.file_name());
+    let files: Vec<String> = files
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect();
+    match title.is_empty() {
+        true => format!("fitted to {}", files.join(", ")),
+        false => format!("fitted to {title}, {}", files.join(", ")),
+    }
+}
+
+/// Whether an unknown's estimate differs from where it began, at all or by more than its uncertainty
+/// makes of it.
+fn has_moved(fit: &Fit, place: usize, at_all: bool) -> bool {
+    let least = if at_all { 0.0 } else { MOVED * fit.sd[place] };
+    (fit.train.estimate.theta[place] - fit.unknowns[place].start).abs() > least
+}
+
+/// The sensors that differ from true ones, at all or by more than their uncertainty.
+fn sensors(setting: &Setting<'_>, fit: &Fit, at_all: bool) -> Vec<Edit> {
+    let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+    let sensors = shooting.sensors(&fit.train.estimate.theta);
+    let moved = |channel: usize| {
+        fit.unknowns.iter().enumerate().any(|(place, unknown)| {
+            let own = matches!(unknown.what, What::Gain(c) | What::Bias(c) | What::Delay(c) if c == channel);
+            own && has_moved(fit, place, at_all)
+        })
+    };
+    let channels = setting.dataset.channels.iter().enumerate();
+    channels
+        .filter(|(place, _)| moved(*place))
+        .map(|(place, channel)| {
+            Edit::SetSensor(SetSensor {
+                channel: channel.name.clone(),
+                gain: sensors.gain[place],
+                bias: sensors.bias[place],
+                // A specification knows no sensor that sees ahead.
+                delay: sensors.delay[place].max(0.0),
+            })
+        })
+        .collect()
+}

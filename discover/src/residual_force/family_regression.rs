@@ -1,0 +1,124 @@
+//! Families of shapes whose columns stand beside each other in one regression. Which families, and
+//! what follows from their sizes, is decided elsewhere.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::fit::full::Fit;
+use crate::fit::residuals::correlation;
+use crate::model::problem::Setting;
+use crate::residual_force::basis_functions::{Family, Over};
+use crate::residual_force::equations::{Equations, Standing};
+use crate::residual_force::force_response::{Columns, pushed};
+use crate::residual_force::regression::{Regression, Sizes};
+use crate::search::response::At;
+use crate::thresholds;
+
+/// Columns of families with where each family's stand.
+pub(crate) struct Looked {
+    pub families: Vec<Family>,
+    pub firsts: Vec<usize>,
+    pub regression: Regression,
+    pub blocks: Vec<DMatrix<f64>>,
+}
+
+impl Looked {
+    pub fn at(
+        of: (&At, &Setting<'_>, &Fit),
+        equations: &Equations,
+        families: Vec<Family>,
+    ) -> Option<Self> {
+        let mut firsts = Vec::new();
+        let mut count = 0;
+        let mut own = Vec::new();
+        for family in &families {
+            firsts.push(count);
+            count += family.count();
+            own.extend(vec![family.equation; family.count()]);
+        }
+        let weights = |standings: &[Standing], _: &[f64], out: &mut [f64]| {
+            for (family, first) in families.iter().zip(&firsts) {
+                let slots = &mut out[*first..first + family.count()];
+                family.at(&standings[family.equation], slots);
+            }
+        };
+        let columns = Columns {
+            equations: own,
+            weights: &weights,
+        };
+        let blocks = pushed(of, equations, &columns)?;
+        let regression = Regression::new(of.0, of.2, &blocks)?;
+        Some(Self {
+            families,
+            firsts,
+            regression,
+            blocks,
+        })
+    }
+
+    pub fn range(&self, family: usize) -> std::ops::Range<usize> {
+        let first = self.firsts[family];
+        first..first + self.families[family].count()
+    }
+
+    pub fn shared(&self, family: usize) -> Sizes {
+        let places: Vec<usize> = self.range(family).collect();
+        self.regression.shared(&places)
+    }
+
+    /// The part of the squares that a family explains, beyond what as many numbers do by chance.
+    pub fn part(&self, family: usize) -> f64 {
+        let found = self.shared(family);
+        let chance = noise(self, found.gain) * found.values.len() as f64;
+        (found.gain - chance) / self.regression.squares
+    }
+
+    /// Over how many samples what a family leaves is correlated.
+    pub fn correlation(
+        &self,
+        (at, setting): (&At, &Setting<'_>),
+        family: usize,
+        level: f64,
+    ) -> f64 {
+        let count = self.blocks.iter().map(DMatrix::ncols).max().unwrap_or(0);
+        let range = self.range(family);
+        let whole = |sizes: Option<&Sizes>| {
+            let mut values = DVector::zeros(count);
+            if let Some(sizes) = sizes {
+                values
+                    .rows_mut(range.start, range.len())
+                    .copy_from(&sizes.values);
+            }
+            values
+        };
+        let of = (at, &self.blocks[..]);
+        let left = match self.families[family].over {
+            Over::Time => {
+                let found = self.regression.each(range.clone(), level);
+                let values = |window: usize| whole(found.windows[window].as_ref());
+                self.regression.left(of, &values, false)
+            }
+            _ => {
+                let found = self.shared(family);
+                self.regression.left(of, &|_| whole(Some(&found)), true)
+            }
+        };
+        correlation(&left, setting.noise.len())
+    }
+
+    /// What the variance of an uncorrelated unit residual is multiplied with: by the size of
+    /// what a family leaves, the samples over which that is correlated and what a straight line
+    /// does not see.
+    pub fn inflation(&self, of: (&At, &Setting<'_>), family: usize) -> f64 {
+        let left = noise(self, self.shared(family).gain);
+        left * self.correlation(of, family, 1.0) * thresholds::WIDER * thresholds::WIDER
+    }
+
+    pub fn find(&self, wanted: impl Fn(Over) -> bool) -> Option<usize> {
+        self.families.iter().position(|family| wanted(family.over))
+    }
+}
+
+/// The mean square that is left once so much is explained.
+pub(crate) fn noise(looked: &Looked, gain: f64) -> f64 {
+    ((looked.regression.squares - gain) / looked.regression.numbers).max(1.0)
+}

@@ -1,0 +1,194 @@
+//! Motions with small forces beside the one without, by Runge-Kutta steps, where no march
+//! carries neighbouring motions. Which forces is decided elsewhere.
+
+use codegen::program::evaluator::{Evaluator, Point};
+use nalgebra::DMatrix;
+
+use crate::fit::shooting::{Sensors, Shooting, samples_in};
+use crate::march::Drives;
+use crate::model::plant::Output;
+use crate::runge_kutta::RungeKutta;
+
+/// A force is taken that moves the outputs by this part of the misfit.
+const PART: f64 = 0.3;
+
+/// A first one changes accelerations by this part of their own.
+const FIRST: f64 = 1e-4;
+
+/// It need not be nearer to that than by this factor.
+const NEAR: f64 = 10.0;
+
+/// Whether each of a step's four slopes is at its beginning, its middle or its end.
+const POINTS: [usize; 4] = [0, 1, 1, 2];
+
+/// A window of a model that is run by Runge-Kutta steps.
+pub(crate) struct Stepped<'s> {
+    shooting: &'s Shooting<'s>,
+    sensors: Sensors,
+    evaluator: Evaluator,
+    observables: Vec<f64>,
+    place: usize,
+    steps: usize,
+}
+
+/// A step: the time in its middle, which decides what its inputs are, and the times and states
+/// where it begins, is half way and ends.
+struct Step {
+    middle: f64,
+    points: [(f64, Vec<f64>); 3],
+}
+
+impl<'s> Stepped<'s> {
+    /// A window at these unknowns; none if a solver decides on its steps.
+    pub fn new(shooting: &'s Shooting<'s>, theta: &[f64], place: usize) -> Option<Self> {
+        let plant = shooting.plant;
+        Some(Self {
+            sensors: Sensors {
+                bias: vec![0.0; shooting.channels()],
+                ..shooting.sensors(theta)
+            },
+            evaluator: plant.evaluator(&shooting.values(theta)).0,
+            observables: vec![0.0; plant.observables()],
+            steps: plant.steps?,
+            place,
+            shooting,
+        })
+    }
+
+    /// What each of some drives does to the outputs, in noises per unit of the drive. The drives
+    /// are those along the motion without them. `level`: the size of the residuals, in noises.
+    pub fn columns(
+        &mut self,
+        start: &[f64],
+        (count, drives): (usize, &mut dyn Drives),
+        level: f64,
+    ) -> Option<DMatrix<f64>> {
+        let half = start.len() / 2;
+        let mut steps = Vec::new();
+        let own = self.motion(start, None, Some(&mut steps))?;
+        let windows = self.shooting.windows;
+        let inputs = windows.inputs(&windows.list[self.place]);
+        let mut pushes = vec![Vec::with_capacity(3 * steps.len() * half); count];
+        let mut all = vec![0.0; count * half];
+        let (mut rates, mut square) = (vec![0.0; start.len()], 0.0);
+        for step in &steps {
+            for (t, state) in &step.points {
+                let inputs = inputs.at(step.middle);
+                drives.at(*t, state, inputs, &mut all);
+                for (push, now) in pushes.iter_mut().zip(all.chunks_exact(half)) {
+                    push.extend_from_slice(now);
+                }
+                let t = *t;
+                self.evaluator.rates(Point { t, state, inputs }, &mut rates);
+                square += rates[half..].iter().map(|a| a * a).sum::<f64>();
+            }
+        }
+        let mut matrix = DMatrix::zeros(own.len(), count);
+        let mut part = FIRST;
+        for (column, push) in pushes.iter().enumerate() {
+            let size: f64 = push.iter().map(|a| a * a).sum();
+            if size == 0.0 {
+                continue;
+            }
+            let usual = (square / size).sqrt();
+            let seen = self.change(start, (&own, push), part * usual)?;
+            let moved = (seen.iter().map(|c| c * c).sum::<f64>() / seen.len() as f64).sqrt();
+            // What the first moves tells how large the others may be.
+            let wanted = PART * level / (moved * usual);
+            if wanted.is_finite() && (wanted > NEAR * part || part > NEAR * wanted) {
+                part = wanted;
+                let seen = self.change(start, (&own, push), part * usual)?;
+                matrix.column_mut(column).copy_from_slice(&seen);
+                continue;
+            }
+            matrix.column_mut(column).copy_from_slice(&seen);
+        }
+        let is_finite = matrix.iter().all(|entry| entry.is_finite());
+        is_finite.then_some(matrix)
+    }
+
+    /// How far a push of this size moves the outputs, in noises per unit.
+    fn change(
+        &mut self,
+        start: &[f64],
+        (own, push): (&[f64], &[f64]),
+        size: f64,
+    ) -> Option<Vec<f64>> {
+        let moved = self.motion(start, Some((size, push)), None)?;
+        let changes: Vec<f64> = (moved.iter().zip(own))
+            .map(|(a, b)| (a - b) / size)
+            .collect();
+        let window = &self.shooting.windows.list[self.place];
+        let times = self.times();
+        let seen = self.shooting.seen(times, &self.sensors, &changes);
+        Some(self.shooting.differences(window, &seen, |seen, _| seen))
+    }
+
+    fn times(&self) -> &'s [f64] {
+        let window = &self.shooting.windows.list[self.place];
+        &window.times[..samples_in(window, self.shooting.part)]
+    }
+
+    /// The quantities along a motion, pushed if so, and its steps where they are wanted.
+    fn motion(
+        &mut self,
+        start: &[f64],
+        push: Option<(f64, &[f64])>,
+        mut visited: Option<&mut Vec<Step>>,
+    ) -> Option<Vec<f64>> {
+        let (half, times) = (start.len() / 2, self.times());
+        let windows = self.shooting.windows;
+        let inputs = windows.inputs(&windows.list[self.place]);
+        let mut state = start.to_vec();
+        let mut method = RungeKutta::new(start.len());
+        let mut shown = Vec::with_capacity(times.len() * self.shooting.channels());
+        self.show((*times.first()?, &state), inputs.at(times[0]), &mut shown);
+        let mut number = 0;
+        for pair in times.windows(2) {
+            let h = (pair[1] - pair[0]) / self.steps as f64;
+            for step in 0..self.steps {
+                let begin = pair[0] + step as f64 * h;
+                let middle = begin + 0.5 * h;
+                let held = inputs.at(middle);
+                let mut points = [const { (0.0, Vec::new()) }; 3];
+                method.step(&mut state, (begin, h), |stage, t, state, rates| {
+                    let point = POINTS[stage];
+                    let at = Point {
+                        t,
+                        state,
+                        inputs: held,
+                    };
+                    self.evaluator.rates(at, rates);
+                    if let Some((size, push)) = push {
+                        let first = (3 * number + point) * half;
+                        let pushed = rates[half..].iter_mut().zip(&push[first..]);
+                        pushed.for_each(|(k, a)| *k += size * a);
+                    }
+                    if visited.is_some() {
+                        points[point] = (t, state.to_vec());
+                    }
+                });
+                number += 1;
+                if let Some(visited) = &mut visited {
+                    visited.push(Step { middle, points });
+                }
+            }
+            self.show((pair[1], &state), inputs.at(pair[1]), &mut shown);
+        }
+        let is_finite = shown.iter().all(|value| value.is_finite());
+        is_finite.then_some(shown)
+    }
+
+    /// Appends the quantities at a state.
+    fn show(&mut self, (t, state): (f64, &[f64]), inputs: &[f64], shown: &mut Vec<f64>) {
+        let plant = self.shooting.plant;
+        if !plant.shows_states_only() {
+            let point = Point { t, state, inputs };
+            self.evaluator.observables(point, &mut self.observables);
+        }
+        shown.extend(plant.outputs.iter().map(|output| match *output {
+            Output::State(place) => state[place],
+            Output::Observable(place) => self.observables[place],
+        }));
+    }
+}

@@ -1,0 +1,154 @@
+//! The equations compared: in which a missing force explains most, whether that stands out, and
+//! the simple functions that it consists of.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::model::problem::Setting;
+use crate::residual_force::basis_functions::Over;
+use crate::residual_force::family_regression::{Looked, noise};
+use crate::residual_force::{Kind, Ranked, Simple};
+use crate::search::response::At;
+use crate::thresholds;
+
+/// How the equations compare.
+pub(crate) struct Judged {
+    /// For each the parts of the squares by rate or place and by time.
+    pub parts: Vec<(f64, f64)>,
+    pub best: usize,
+    /// The family that the best one's force is of.
+    pub family: usize,
+    pub is_state: bool,
+    pub part: f64,
+    pub stands_out: bool,
+}
+
+impl Judged {
+    /// Three families for each of so many equations: over rate, place and time.
+    pub fn of(looked: &Looked, count: usize, of: (&At, &Setting<'_>)) -> Option<Self> {
+        let regression = &looked.regression;
+        let states: Vec<(f64, usize)> = (0..count)
+            .map(|number| {
+                let part = |family: usize| (looked.part(family), family);
+                let (rate, place) = (part(3 * number), part(3 * number + 1));
+                if rate.0 >= place.0 { rate } else { place }
+            })
+            .collect();
+        let by_state = (0..count).max_by(|a, b| states[*a].0.total_cmp(&states[*b].0))?;
+        let level = noise(looked, looked.shared(states[by_state].1).gain);
+        let times: Vec<f64> = (0..count)
+            .map(|number| regression.each(looked.range(3 * number + 2), level).part)
+            .collect();
+        let by_time = (0..count).max_by(|a, b| times[*a].total_cmp(&times[*b]))?;
+        let is_state = states[by_state].0 > thresholds::STATE_EXPLAINS * times[by_time];
+        // What explains as much over rate or place is told apart by what it explains over time.
+        let most = states[by_state].0;
+        let as_well = |a: &usize| states[*a].0 >= most.min(thresholds::AS_WELL * most);
+        let by_state = (0..count)
+            .filter(as_well)
+            .max_by(|a, b| (states[*a].0 + times[*a]).total_cmp(&(states[*b].0 + times[*b])))?;
+        let (best, part, family) = match is_state {
+            true => (by_state, states[by_state].0, states[by_state].1),
+            false => (by_time, times[by_time], 3 * by_time + 2),
+        };
+        let correlation = looked.correlation(of, family, level);
+        let left = (1.0 - part).max(0.0) * regression.squares / regression.numbers;
+        let whitened = part * regression.squares / (2.0 * left.max(1.0) * correlation);
+        let parts = states.iter().zip(&times);
+        Some(Self {
+            parts: parts.map(|((state, _), time)| (*state, *time)).collect(),
+            best,
+            family,
+            is_state,
+            part,
+            stands_out: whitened > thresholds::INFORMATION && part > thresholds::STANDS_OUT,
+        })
+    }
+
+    pub fn ranked(&self, all: &[usize]) -> Vec<Ranked> {
+        let mut ranked: Vec<Ranked> = (all.iter().zip(&self.parts))
+            .map(|(equation, (by_state, by_time))| Ranked {
+                equation: *equation,
+                by_state: *by_state,
+                by_time: *by_time,
+            })
+            .collect();
+        let order = |of: &Ranked| {
+            if self.is_state {
+                of.by_state
+            } else {
+                of.by_time
+            }
+        };
+        ranked.sort_by(|a, b| order(b).total_cmp(&order(a)));
+        ranked
+    }
+}
+
+/// The simple functions, one or two, that a force over rate or place consists of nearly; nothing
+/// if it takes more.
+pub(crate) fn simple(looked: &Looked, family: usize, of: (&At, &Setting<'_>)) -> Kind {
+    let over = looked.families[family].over;
+    let bends = &looked.families[family].bends;
+    let half = bends.len() / 2;
+    let is_rate = over == Over::Rate;
+    let side = |place: usize| match is_rate {
+        true if place < half => -1.0,
+        true => 1.0,
+        false => bends[place].signum(),
+    };
+    let column = |of: Simple| {
+        let at = |place: usize| match of {
+            Simple::Constant => 1.0,
+            Simple::Sign => side(place),
+            Simple::Linear => bends[place],
+            Simple::Size => bends[place].abs(),
+            Simple::Square => bends[place] * bends[place].abs(),
+        };
+        DVector::from_fn(bends.len(), |place, _| at(place))
+    };
+    let known: &[Simple] = match (is_rate, over) {
+        (true, _) => &[
+            Simple::Sign,
+            Simple::Linear,
+            Simple::Constant,
+            Simple::Square,
+            Simple::Size,
+        ],
+        (false, Over::Turn) => &[Simple::Constant],
+        (false, _) => &[Simple::Linear, Simple::Constant],
+    };
+    let single = known.iter().map(|a| vec![*a]);
+    let pairs = known.iter().enumerate().flat_map(|(number, a)| {
+        let others = known[number + 1..].iter();
+        others.map(move |b| vec![*a, *b])
+    });
+    let sets: Vec<Vec<Simple>> = single.chain(pairs).collect();
+    let whole = looked.shared(family).gain;
+    let fitted = |set: &Vec<Simple>| {
+        let columns: Vec<DVector<f64>> = set.iter().map(|s| column(*s)).collect();
+        let sizes = looked
+            .regression
+            .sums(looked.range(family), &DMatrix::from_columns(&columns));
+        (set.clone(), sizes)
+    };
+    let enough = |count: usize| {
+        let of = sets.iter().filter(|set| set.len() == count).map(fitted);
+        let best = of.max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
+        best.filter(|(_, sizes)| sizes.gain > thresholds::IS_SIMPLE * whole)
+    };
+    let inflation = looked.inflation(of, family);
+    let said = enough(1)
+        .or_else(|| enough(2))
+        .map_or_else(Vec::new, |(set, sizes)| {
+            let sizes = (0..set.len()).map(|k| {
+                let sd = (inflation * sizes.covariance[(k, k)]).sqrt();
+                let straight = thresholds::STRAIGHT * sizes.values[k];
+                (set[k], sizes.values[k], sd.hypot(straight))
+            });
+            sizes.collect()
+        });
+    match is_rate {
+        true => Kind::Rate(said),
+        false => Kind::Place(said),
+    }
+}

@@ -1,0 +1,160 @@
+//! The residual force in plain words: on which equation, what it is like, and how much of the
+//! squares it explains. No more is said than its numbers support.
+
+use crate::residual_force::equations::Equation;
+use crate::residual_force::{Kind, Profile, ResidualForce, Simple};
+use crate::thresholds;
+
+/// One sentence or two on the residual force of the model as it is.
+pub fn said(force: &ResidualForce) -> String {
+    let Some(kind) = &force.kind else {
+        return "No force on a single equation stands out.".to_owned();
+    };
+    let equation = &force.equations[force.best];
+    let mut text = format!(
+        "The residual is best explained by a force on {}: {}, {:.0} % of the squares.",
+        equation.name,
+        shape(force, kind),
+        100.0 * force.part
+    );
+    let own = |ranked: &crate::residual_force::Ranked| match kind {
+        Kind::Time => ranked.by_time,
+        Kind::Rate(_) | Kind::Place(_) => ranked.by_state,
+    };
+    let others = force.ranked.iter().filter(|r| r.equation != force.best);
+    let as_well = others.filter(|r| own(r) > thresholds::AS_WELL * force.part);
+    let names: Vec<&str> = as_well
+        .map(|r| force.equations[r.equation].name.as_str())
+        .collect();
+    if !names.is_empty() {
+        text += &format!(" One on {} explains nearly as much.", names.join(" or "));
+    }
+    text
+}
+
+/// What is said of the residual force once something was found.
+pub fn said_after(force: &ResidualForce) -> String {
+    match &force.kind {
+        None => "Once what was found is in the model, no force stands out.".to_owned(),
+        Some(_) => said(force).replacen(
+            "The residual is best explained",
+            "What is left once what was found is in the model is best explained",
+            1,
+        ),
+    }
+}
+
+fn shape(force: &ResidualForce, kind: &Kind) -> String {
+    let equation = &force.equations[force.best];
+    match kind {
+        Kind::Rate(parts) if parts.is_empty() => over(force, &force.rate, true),
+        Kind::Place(parts) if parts.is_empty() => over(force, &force.place, false),
+        Kind::Rate(parts) => simple(parts, equation, true),
+        Kind::Place(parts) => simple(parts, equation, false),
+        Kind::Time => {
+            let frequencies = &force.frequency;
+            let is_looked_at = force.best == force.equation;
+            let (rate, place) = words(equation);
+            let text = format!("it is a function of neither the {rate} nor the {place} alone");
+            match frequencies.peak {
+                Some(peak) if is_looked_at && frequencies.part > 0.5 * force.part => format!(
+                    "{text}, most of it near {:.3} Hz with {}",
+                    frequencies.over[peak],
+                    in_unit(frequencies.values[peak], equation.force_unit())
+                ),
+                _ => text,
+            }
+        }
+    }
+}
+
+/// What rate and place are called.
+fn words(equation: &Equation) -> (&'static str, &'static str) {
+    match equation.unit {
+        "rad" => ("rate", "angle"),
+        _ => ("speed", "position"),
+    }
+}
+
+fn simple(parts: &[(Simple, f64, f64)], equation: &Equation, is_rate: bool) -> String {
+    let (rate, place) = words(equation);
+    let of = if is_rate { rate } else { place };
+    let force = equation.force_unit();
+    let by = match (is_rate, equation.unit) {
+        (true, "rad") => "s/rad",
+        (true, _) => "s/m",
+        (false, "rad") => "1/rad",
+        (false, _) => "1/m",
+    };
+    // N m/rad, not N m 1/rad; N/m.
+    let unit = match by.strip_prefix("1/") {
+        Some(below) => format!("{force}/{below}"),
+        None => format!("{force} {by}"),
+    };
+    let squared = match equation.unit {
+        "rad" => format!("{force} s^2/rad^2"),
+        _ => format!("{force} s^2/m^2"),
+    };
+    let along = |value: f64| if value < 0.0 { "against" } else { "with" };
+    let texts = parts.iter().map(|(simple, value, sd)| {
+        let number = |unit: &str| format!("{} +- {}", plain(value.abs()), in_unit(*sd, unit));
+        match simple {
+            Simple::Constant => format!("a constant {} +- {}", plain(*value), in_unit(*sd, force)),
+            Simple::Sign => format!("{} {} the {of}'s sign", number(force), along(*value)),
+            Simple::Linear => format!("{} {} the {of}", number(&unit), along(*value)),
+            Simple::Size => format!(
+                "{} times the {of}'s size, {}",
+                number(&unit),
+                if *value < 0.0 {
+                    "backwards"
+                } else {
+                    "forwards"
+                }
+            ),
+            Simple::Square => format!("{} {} the {of}'s square", number(&squared), along(*value)),
+        }
+    });
+    texts.collect::<Vec<String>>().join(" and ")
+}
+
+/// The lowest and the highest of a profile whose numbers are known.
+fn over(force: &ResidualForce, profile: &Profile, is_rate: bool) -> String {
+    let equation = &force.equations[force.best];
+    let (rate, place) = words(equation);
+    let (of, unit) = match is_rate {
+        true => (rate, equation.rate_unit()),
+        false => (place, equation.unit),
+    };
+    let is_known =
+        |k: &usize| profile.sd[*k] > 0.0 && profile.values[*k].abs() > 2.0 * profile.sd[*k];
+    let known: Vec<usize> = (0..profile.values.len()).filter(is_known).collect();
+    let order = |a: &&usize, b: &&usize| profile.values[**a].total_cmp(&profile.values[**b]);
+    let (low, high) = (known.iter().min_by(order), known.iter().max_by(order));
+    match (low, high) {
+        (Some(low), Some(high)) if low != high && force.best == force.equation => format!(
+            "it changes with the {of}, from {} at {} to {} at {}",
+            in_unit(profile.values[*low], equation.force_unit()),
+            in_unit(profile.over[*low], unit),
+            in_unit(profile.values[*high], equation.force_unit()),
+            in_unit(profile.over[*high], unit)
+        ),
+        _ => format!("it changes with the {of}"),
+    }
+}
+
+fn in_unit(value: f64, unit: &str) -> String {
+    format!("{} {unit}", plain(value))
+}
+
+/// Two significant digits.
+fn plain(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return "0".to_owned();
+    }
+    let digits = 1 - value.abs().log10().floor() as i32;
+    if (-3..=5).contains(&digits) {
+        format!("{value:.*}", digits.max(0) as usize)
+    } else {
+        format!("{value:.1e}")
+    }
+}

@@ -1,0 +1,173 @@
+//! The decision: whether a fit with an effect more is better than one without by so much that
+//! the effect is believed. Every limit stands in [`crate::thresholds`].
+
+use crate::fit::full::Fit;
+use crate::thresholds;
+
+/// What speaks for an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evidence {
+    /// The part by which the test records' gap falls.
+    pub held_out: f64,
+    /// How much the test records' squares fall, in standard errors over blocks of time.
+    pub held_out_errors: f64,
+    /// Half the fall of the training records' squares, whitened.
+    pub information: f64,
+    /// How many standard deviations the effect is large; of several the smallest.
+    pub t: f64,
+    /// What the effect does to the channel that shows it best, in noises.
+    pub size: f64,
+}
+
+/// An unknown of an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Own {
+    /// Its place among the unknowns of the fit.
+    pub place: usize,
+    /// Which of the effects that are judged together it belongs to, from 0.
+    pub effect: usize,
+    /// Its value where the effect is absent, SI.
+    pub base: f64,
+    /// Whether it shapes the effect without scaling it.
+    pub is_shape: bool,
+    /// One standard deviation of the prior that it gave up, SI.
+    pub prior: Option<f64>,
+}
+
+/// Judges a fit with effects whose unknowns these are.
+///
+/// # Errors
+/// Why they are not believed, in words.
+pub fn judge(before: &Fit, after: &Fit, own: &[Own]) -> Result<Evidence, String> {
+    let evidence = explains(before, after, own)?;
+    if evidence.t < thresholds::SIGNIFICANCE {
+        return Err(format!(
+            "its size is {:.1} standard deviations, {} are asked for",
+            evidence.t,
+            thresholds::SIGNIFICANCE
+        ));
+    }
+    // The null model does what is within a prior itself: what is beyond may be small beside it.
+    let has_prior = own.iter().all(|own| own.prior.is_some());
+    if !has_prior && evidence.size < thresholds::SIZE {
+        return Err(format!(
+            "what it does is {:.2} of the noise, {} are asked for",
+            evidence.size,
+            thresholds::SIZE
+        ));
+    }
+    Ok(evidence)
+}
+
+/// Judges whether the records are explained better, however uncertain the sizes are: something
+/// declared that does the same makes them so.
+///
+/// # Errors
+/// Why they are not, in words.
+pub fn explains(before: &Fit, after: &Fit, own: &[Own]) -> Result<Evidence, String> {
+    let evidence = evidence(before, after, own);
+    if let Some(reason) = at_bound(after, own) {
+        return Err(reason);
+    }
+    if let Some((name, off)) = within_prior(after, own) {
+        return Err(format!(
+            "{name} is {off:.1} standard deviations of its prior off, {} are asked for",
+            thresholds::SHIFTED
+        ));
+    }
+    if evidence.held_out < thresholds::HELD_OUT {
+        return Err(format!(
+            "the test records are no better for it: the gap falls by {:.1} %, {:.0} % are asked for",
+            100.0 * evidence.held_out,
+            100.0 * thresholds::HELD_OUT
+        ));
+    }
+    if evidence.held_out_errors < thresholds::STANDARD_ERRORS {
+        return Err(format!(
+            "the test records may be better by chance: {:.1} standard errors, {} are asked for",
+            evidence.held_out_errors,
+            thresholds::STANDARD_ERRORS
+        ));
+    }
+    if evidence.information < thresholds::INFORMATION {
+        return Err(format!(
+            "too little evidence in the training records: a gain of {:.1}, {} are asked for",
+            evidence.information,
+            thresholds::INFORMATION
+        ));
+    }
+    Ok(evidence)
+}
+
+/// What speaks for effects whose unknowns these are.
+pub fn evidence(before: &Fit, after: &Fit, own: &[Own]) -> Evidence {
+    let (old, new) = (&before.test, &after.test);
+    let falls: Vec<f64> = (old.blocks.iter().zip(&new.blocks))
+        .map(|(a, b)| a.sqrt() - b.sqrt())
+        .collect();
+    let count = falls.len() as f64;
+    let mean = falls.iter().sum::<f64>() / count;
+    let variance = falls.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    let fall = before.train.blocks.iter().sum::<f64>() - after.train.blocks.iter().sum::<f64>();
+    let whitening = (after.train.pooled * after.train.pooled).max(1.0) * after.train.correlation;
+    Evidence {
+        held_out: 1.0 - new.pooled / old.pooled,
+        held_out_errors: mean / (variance / count).sqrt(),
+        information: fall / (2.0 * whitening),
+        t: significance(after, own),
+        size: size(before, after),
+    }
+}
+
+/// What the effect does to the channel that shows it best, on the records that do, in noises: of
+/// the root mean square that is left the part that goes.
+fn size(before: &Fit, after: &Fit) -> f64 {
+    let channels = |of: fn(&Fit) -> &Vec<f64>| of(before).iter().zip(of(after));
+    let both = channels(|fit| &fit.train.in_noises).chain(channels(|fit| &fit.test.in_noises));
+    let sizes = both.map(|(old, new)| (old * old - new * new).max(0.0).sqrt());
+    sizes.fold(0.0, f64::max)
+}
+
+/// The size of an effect in standard deviations; of several the smallest. The two parts of a
+/// wave count together.
+fn significance(fit: &Fit, own: &[Own]) -> f64 {
+    let effects = own.iter().map(|own| own.effect + 1).max().unwrap_or(0);
+    let of = |effect: usize| {
+        let scaling = own
+            .iter()
+            .filter(|own| own.effect == effect && !own.is_shape);
+        let ratios =
+            scaling.map(|own| (fit.train.estimate.theta[own.place] - own.base) / fit.sd[own.place]);
+        ratios.map(|t| t * t).sum::<f64>().sqrt()
+    };
+    (0..effects).map(of).fold(f64::INFINITY, f64::min)
+}
+
+/// What is said of a parameter that a bound holds.
+fn at_bound(fit: &Fit, own: &[Own]) -> Option<String> {
+    let held = own.iter().find(|own| !own.is_shape && is_held(fit, own))?;
+    let name = &fit.unknowns[held.place].label;
+    Some(match held.prior {
+        Some(_) => format!("{name} runs to the end of what is admitted"),
+        None => format!("{name} has the wrong sign: held to it, the effect vanishes"),
+    })
+}
+
+/// Whether an unknown is held by one of its bounds.
+pub fn is_held(fit: &Fit, own: &Own) -> bool {
+    let unknown = &fit.unknowns[own.place];
+    let value = fit.train.estimate.theta[own.place];
+    value <= unknown.bounds.0 || value >= unknown.bounds.1
+}
+
+/// An unknown that gave up its prior and is within it still, and how far it is off.
+fn within_prior(fit: &Fit, own: &[Own]) -> Option<(String, f64)> {
+    own.iter().find_map(|own| {
+        let prior = own.prior?;
+        let off = (fit.train.estimate.theta[own.place] - own.base).abs() / prior;
+        // Beyond its prior for certain, not by what the record leaves open.
+        let sure = off - thresholds::STANDARD_ERRORS * fit.sd[own.place] / prior;
+        let is_off = sure > thresholds::SHIFTED;
+        (!is_off).then(|| (fit.unknowns[own.place].label.clone(), off))
+    })
+}

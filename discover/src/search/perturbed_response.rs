@@ -1,0 +1,162 @@
+//! Responses of candidates by motions of their own models, each at a size that moves the
+//! outputs by a part of the misfit: whatever a candidate changes needs no code of its own then.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::catalogue::candidate::Candidate;
+use crate::fit::full::Fit;
+use crate::fit::gauss_newton::Estimate;
+use crate::fit::sensitivity::Crew;
+use crate::fit::shooting::Shooting;
+use crate::fit::variable_projection::Eliminator;
+use crate::model::problem::Setting;
+use crate::model::unknowns::Unknown;
+use crate::search::response::{At, Columns, TRIAL, Trial, absent, mapped, silent, trial};
+
+/// Attempts to find a size, each at most so many powers of ten further.
+const ATTEMPTS: (usize, f64) = (8, 1e6);
+
+/// The responses of all candidates. Those of one effect at one place that differ in the order
+/// alone are of one size: it is searched for once.
+pub fn tried(
+    at: &At,
+    setting: &Setting<'_>,
+    fit: &Fit,
+    candidates: &[Candidate],
+) -> Vec<Result<Columns, String>> {
+    let alike = |a: &Candidate, b: &Candidate| {
+        let angle = |c: &Candidate| c.order.as_ref().map(|(angle, _)| angle.clone());
+        a.effect == b.effect && a.on == b.on && angle(a) == angle(b)
+    };
+    let groups: Vec<&[Candidate]> = candidates.chunk_by(alike).collect();
+    let found: Vec<Vec<Result<Columns, String>>> = groups
+        .par_iter()
+        .map(|group| {
+            let mut sizes: Vec<f64> = Vec::new();
+            let of_group = group.iter().map(|candidate| {
+                let found = response(at, setting, fit, candidate, &sizes);
+                if let Ok((trials, _)) = &found {
+                    sizes = trials.iter().map(|trial| trial.unknown.scale).collect();
+                }
+                found
+            });
+            of_group.collect()
+        })
+        .collect();
+    found.into_iter().flatten().collect()
+}
+
+/// What a candidate does in each window, a column per parameter that scales it.
+fn response(
+    at: &At,
+    setting: &Setting<'_>,
+    fit: &Fit,
+    candidate: &Candidate,
+    sizes: &[f64],
+) -> Result<Columns, String> {
+    let At {
+        places,
+        base,
+        level,
+        estimate,
+        part,
+    } = at;
+    let start: Vec<f64> = candidate.parameters.iter().map(absent).collect();
+    let (text, linear) = setting.with((&fit.text, &fit.linear), candidate, &start)?;
+    let plant = setting.plant(&text, Some(&linear))?;
+    let mut trials: Vec<Trial> = candidate.parameters.iter().map(trial).collect();
+    for (trial, size) in trials.iter_mut().zip(sizes) {
+        trial.unknown.scale = *size;
+    }
+    let extended: Vec<Unknown> = fit
+        .unknowns
+        .iter()
+        .cloned()
+        .chain(trials.iter().map(|t| t.unknown.clone()))
+        .collect();
+    let ranges = mapped(fit, &plant, &fit.ranges);
+    let whole = setting.shooting(&plant, &setting.train, &extended, &ranges);
+    let shooting = Shooting {
+        part: *part,
+        ..whole
+    };
+    let nuisances = fit.unknowns.len();
+    let mut columns = vec![Vec::new(); places.len()];
+    for place in 0..trials.len() {
+        if trials[place].is_shape {
+            continue;
+        }
+        let theta = |size: f64| {
+            let mut theta = estimate.theta.clone();
+            theta.extend(trials.iter().map(|trial| trial.unknown.start));
+            theta[nuisances + place] = trials[place].base + size;
+            theta
+        };
+        // The size is found on the first, the middle and the last of the windows.
+        let few = [0, places.len() / 2, places.len() - 1];
+        let size = trial_size(trials[place].unknown.scale, *level, |size| {
+            let changes = changes(
+                &shooting,
+                (fit, estimate),
+                &theta(size),
+                few.iter().map(|k| (places[*k], &base[*k])),
+            )?;
+            let numbers: f64 = changes.iter().map(|c| c.len() as f64).sum();
+            let square: f64 = changes.iter().map(DVector::norm_squared).sum();
+            Some((square / numbers).sqrt())
+        });
+        let Some(size) = size else {
+            return Err(silent());
+        };
+        let pairs = places.iter().copied().zip(base.iter());
+        let changes = changes(&shooting, (fit, estimate), &theta(size), pairs)
+            .ok_or("the motion with it cannot be followed")?;
+        for (window, change) in columns.iter_mut().zip(changes) {
+            window.push(change / size);
+        }
+        trials[place].unknown.scale = size;
+    }
+    let blocks = columns.iter().map(|columns| {
+        let rows = columns.first().map_or(0, |c: &DVector<f64>| c.len());
+        DMatrix::from_fn(rows, columns.len(), |r, c| columns[c][r])
+    });
+    Ok((trials, blocks.collect()))
+}
+
+/// Changes of the residuals in some windows; none if a motion cannot be followed.
+fn changes<'b>(
+    shooting: &Shooting<'_>,
+    (fit, estimate): (&Fit, &Estimate),
+    theta: &[f64],
+    windows: impl Iterator<Item = (usize, &'b Option<Eliminator>)>,
+) -> Option<Vec<DVector<f64>>> {
+    let mut crew = Crew::frozen(shooting, theta, 1.0)?;
+    let mut changes = Vec::new();
+    for (place, base) in windows {
+        let Some(base) = base else {
+            changes.push(DVector::zeros(0));
+            continue;
+        };
+        let start = mapped(fit, shooting.plant, &estimate.starts[place]);
+        let residual = crew.residual(place, &start)?;
+        changes.push(DVector::from_vec(residual.values) - &base.residual);
+    }
+    Some(changes)
+}
+
+/// The size of a parameter that moves the outputs as wanted; none if none does.
+fn trial_size(start: f64, level: f64, moved: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+    let wanted = TRIAL * level;
+    let mut size = start;
+    for _ in 0..ATTEMPTS.0 {
+        let factor = match moved(size) {
+            Some(change) if change > 0.2 * wanted && change < 5.0 * wanted => return Some(size),
+            Some(change) if change.is_finite() && change > 0.0 => wanted / change,
+            Some(_) => ATTEMPTS.1,
+            None => 1e-3,
+        };
+        size *= factor.clamp(1.0 / ATTEMPTS.1, ATTEMPTS.1);
+    }
+    None
+}

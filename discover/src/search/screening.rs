@@ -1,0 +1,454 @@
+//! Screening: what each candidate does to the windows' outputs, to first order, with initial
+//! states and nuisances free to take up what they can. From these responses follow how much
+//! of the misfit each candidate, or a set of them, may explain, and which look alike. Whoever
+//! passes is fitted in earnest elsewhere.
+
+use std::borrow::Cow;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::catalogue::candidate::Candidate;
+use crate::fit::bounded_least_squares::least_squares;
+use crate::fit::full::Fit;
+use crate::model::problem::Setting;
+use crate::search::response::{At, Base, Trial, responses};
+use crate::thresholds;
+
+/// A screened candidate.
+#[derive(Clone, Debug)]
+pub struct Response {
+    /// The candidate's place in the list.
+    pub candidate: usize,
+    /// Its unknowns.
+    pub trials: Vec<Trial>,
+    /// Where its columns stand.
+    columns: std::ops::Range<usize>,
+    /// The nuisance that gives up its prior, if that is the effect.
+    pub released: Option<usize>,
+    /// The part of what it does that initial states and nuisances cannot do as well.
+    pub visible: f64,
+    /// How much it lowers the sum of squares alone, in noises squared.
+    pub gain: f64,
+    /// The size at which it does.
+    pub values: Vec<f64>,
+}
+
+/// All responses.
+#[derive(Clone)]
+pub struct Screen {
+    /// Products of all columns: nuisances, candidates, the residual last.
+    products: DMatrix<f64>,
+    nuisances: usize,
+    /// What the prior of each nuisance adds to the products: a weight and how far it is off.
+    priors: Vec<(f64, f64)>,
+    bounds: Vec<(f64, f64)>,
+    /// The bounds of each nuisance once it is released.
+    limits: Vec<(f64, f64)>,
+    /// The candidates that do something, in their order.
+    pub responses: Vec<Response>,
+    /// The candidates that do nothing that could be seen, with why.
+    pub silent: Vec<(usize, String)>,
+    /// How many numbers were looked at.
+    pub numbers: f64,
+}
+
+/// Screens candidates at a fit, over a part of each window.
+pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate], part: f64) -> Screen {
+    let at = At::of(setting, fit, part);
+    let (base, places, estimate) = (&at.base, &at.places, &at.estimate);
+    let own: Vec<Candidate> = (candidates.iter().filter(|c| c.released.is_none()))
+        .cloned()
+        .collect();
+    let mut found = responses(&at, setting, fit, &own).into_iter();
+    let nuisances = fit.unknowns.len();
+    let mut responses = Vec::new();
+    let mut silent = Vec::new();
+    let mut blocks = Vec::new();
+    let mut columns = nuisances;
+    for (candidate, of) in candidates.iter().enumerate() {
+        let mut response = Response {
+            candidate,
+            trials: Vec::new(),
+            columns: columns..columns,
+            released: None,
+            visible: 0.0,
+            gain: 0.0,
+            values: Vec::new(),
+        };
+        if let Some(what) = &of.released {
+            response.released = (fit.unknowns.iter()).position(|unknown| unknown.what == *what);
+            responses.push(response);
+            continue;
+        }
+        match found.next() {
+            Some(Ok((trials, block))) => {
+                let scaling = trials.iter().filter(|trial| !trial.is_shape).count();
+                columns += scaling;
+                response.columns.end = columns;
+                response.trials = trials;
+                responses.push(response);
+                blocks.push(block);
+            }
+            Some(Err(reason)) => silent.push((candidate, reason)),
+            None => {}
+        }
+    }
+    let mut products = products(fit, places, base, &blocks, columns);
+    let (mut bounds, mut limits, mut priors) = (Vec::new(), Vec::new(), Vec::new());
+    for (place, unknown) in fit.unknowns.iter().enumerate() {
+        let value = estimate.theta[place];
+        bounds.push((unknown.bounds.0 - value, unknown.bounds.1 - value));
+        limits.push((unknown.limits.0 - value, unknown.limits.1 - value));
+        let prior = unknown.prior.map_or((0.0, 0.0), |(mean, sd)| {
+            (fit.prior_weight / (sd * sd), value - mean)
+        });
+        add_prior(&mut products, place, prior);
+        priors.push(prior);
+    }
+    for response in &responses {
+        let scaling = response.trials.iter().filter(|trial| !trial.is_shape);
+        bounds.extend(scaling.map(|trial| {
+            let (low, high) = trial.unknown.bounds;
+            (low - trial.base, high - trial.base)
+        }));
+    }
+    let mut screen = Screen {
+        products,
+        nuisances,
+        priors,
+        bounds,
+        limits,
+        responses,
+        silent,
+        numbers: base.iter().flatten().map(|b| b.residual.len() as f64).sum(),
+    };
+    screen.judge();
+    screen
+}
+
+/// Adds a prior, or takes it away where its weight is negative, to the products of a nuisance
+/// with itself and with the residual, which stands last.
+pub(crate) fn add_prior(products: &mut DMatrix<f64>, place: usize, (weight, off): (f64, f64)) {
+    let last = products.ncols() - 1;
+    products[(place, place)] += weight;
+    products[(place, last)] += weight * off;
+    products[(last, place)] += weight * off;
+    products[(last, last)] += weight * off * off;
+}
+
+/// Products of all columns with the initial states eliminated.
+fn products(
+    fit: &Fit,
+    places: &[usize],
+    base: &Base,
+    blocks: &[Vec<DMatrix<f64>>],
+    columns: usize,
+) -> DMatrix<f64> {
+    let nuisances = fit.unknowns.len();
+    let mut products = DMatrix::zeros(columns + 1, columns + 1);
+    for (window, base) in (0..places.len()).zip(base) {
+        let Some(base) = base else { continue };
+        let rows = base.residual.len();
+        let mut matrix = DMatrix::zeros(rows, columns + 1);
+        matrix.columns_mut(0, nuisances).copy_from(&base.by_unknown);
+        let mut column = nuisances;
+        for block in blocks {
+            let block = &block[window];
+            if block.nrows() == rows {
+                matrix.columns_mut(column, block.ncols()).copy_from(block);
+            }
+            column += block.ncols();
+        }
+        matrix.column_mut(columns).copy_from(&base.residual);
+        products += base.products(&matrix);
+    }
+    products
+}
+
+impl Screen {
+    /// How well each candidate does alone.
+    fn judge(&mut self) {
+        let alone = self.left(&[]).0;
+        for place in 0..self.responses.len() {
+            let (left, values) = self.left(&[place]);
+            let visible = self.visible(place);
+            let response = &mut self.responses[place];
+            response.gain = alone - left;
+            response.values = values;
+            response.visible = visible;
+        }
+    }
+
+    /// The products once the nuisances that these responses release have no priors, and those
+    /// nuisances.
+    fn released(&self, set: &[usize]) -> (Cow<'_, DMatrix<f64>>, Vec<usize>) {
+        let places: Vec<usize> = (set.iter())
+            .filter_map(|response| self.responses[*response].released)
+            .collect();
+        let mut products = Cow::Borrowed(&self.products);
+        for place in &places {
+            let (weight, off) = self.priors[*place];
+            add_prior(products.to_mut(), *place, (-weight, off));
+        }
+        (products, places)
+    }
+
+    /// The sum of squares that a set of responses leaves, and their sizes in order: how far
+    /// each is from absent.
+    pub fn left(&self, set: &[usize]) -> (f64, Vec<f64>) {
+        let mut places: Vec<usize> = (0..self.nuisances).collect();
+        for response in set {
+            places.extend(self.responses[*response].columns.clone());
+        }
+        let (products, released) = self.released(set);
+        let last = products.ncols() - 1;
+        let (a, b) = system(&products, &places);
+        let bounds: Vec<(f64, f64)> = places
+            .iter()
+            .map(|place| {
+                let (low, high) = match released.contains(place) {
+                    true => self.limits[*place],
+                    false => self.bounds[*place],
+                };
+                (low.min(0.0), high.max(0.0))
+            })
+            .collect();
+        let x = least_squares(&a, &b, &bounds);
+        let left = (&a * &x - &b).norm_squared() - b.norm_squared() + products[(last, last)];
+        let mut added = x.iter().skip(self.nuisances);
+        let sizes = set.iter().flat_map(|response| {
+            let response = &self.responses[*response];
+            match response.released {
+                Some(place) => vec![x[place]],
+                None => added
+                    .by_ref()
+                    .take(response.columns.len())
+                    .copied()
+                    .collect(),
+            }
+        });
+        let sizes = sizes.collect();
+        (left, sizes)
+    }
+
+    /// The same with a parameter of the model set to 0, its term deleted; none where that is
+    /// not admissible.
+    pub fn without(&self, nuisance: usize, value: f64) -> Option<Self> {
+        let (low, high) = self.bounds[nuisance];
+        if value == 0.0 || !(low..=high).contains(&-value) {
+            return None;
+        }
+        let last = self.products.ncols() - 1;
+        let mut products = self.products.clone();
+        let column = products.column(nuisance) * -value;
+        let mut residual = products.column_mut(last);
+        residual += column;
+        let row = products.row(nuisance) * -value;
+        let mut residual = products.row_mut(last);
+        residual += row;
+        let mut bounds = self.bounds.clone();
+        bounds[nuisance] = (0.0, 0.0);
+        Some(Self {
+            products,
+            bounds,
+            limits: self.limits.clone(),
+            nuisances: self.nuisances,
+            priors: self.priors.clone(),
+            responses: self.responses.clone(),
+            silent: Vec::new(),
+            numbers: self.numbers,
+        })
+    }
+
+    /// The same with a nuisance held where it is.
+    pub fn held(mut self, nuisance: usize) -> Self {
+        self.bounds[nuisance] = (0.0, 0.0);
+        self
+    }
+
+    /// The part of a response's square that the nuisances cannot do as well.
+    fn visible(&self, place: usize) -> f64 {
+        let (products, released) = self.released(&[place]);
+        let direction = self.direction(&products, place);
+        let own = product(&products, &direction, &direction);
+        let rest = self.without_nuisances((&products, &released), &direction, &direction);
+        if own > 0.0 {
+            (rest / own).max(0.0)
+        } else {
+            0.0
+        }
+    }
+
+    /// Where a response's columns stand, if only as those of a nuisance that it releases.
+    fn columns(&self, place: usize) -> std::ops::Range<usize> {
+        let response = &self.responses[place];
+        match response.released {
+            Some(place) => place..place + 1,
+            None => response.columns.clone(),
+        }
+    }
+
+    /// A response at its best size as a combination of columns.
+    fn direction(&self, products: &DMatrix<f64>, place: usize) -> DVector<f64> {
+        let response = &self.responses[place];
+        let mut direction = DVector::zeros(products.ncols());
+        let all_zero = response.values.iter().all(|v| *v == 0.0);
+        for (number, column) in self.columns(place).enumerate() {
+            direction[column] = if all_zero || response.values.is_empty() {
+                1.0 / products[(column, column)].sqrt().max(f64::MIN_POSITIVE)
+            } else {
+                response.values[number]
+            };
+        }
+        direction
+    }
+
+    /// The product of two directions once the nuisances, but those released, are taken out.
+    fn without_nuisances(
+        &self,
+        (products, released): (&DMatrix<f64>, &[usize]),
+        a: &DVector<f64>,
+        b: &DVector<f64>,
+    ) -> f64 {
+        let places: Vec<usize> = (0..self.nuisances)
+            .filter(|p| !released.contains(p))
+            .collect();
+        let n = places.len();
+        let whole = product(products, a, b);
+        let cross = |v: &DVector<f64>| (products * v).select_rows(&places);
+        let block = DMatrix::from_fn(n, n, |r, c| {
+            let ridge = if r == c { 1.0 + thresholds::RIDGE } else { 1.0 };
+            ridge * products[(places[r], places[c])]
+        });
+        match block.cholesky() {
+            Some(factor) => whole - cross(a).dot(&factor.solve(&cross(b))),
+            None => whole,
+        }
+    }
+
+    /// How much two responses look alike, 0 to 1, once the nuisances are taken out: how well
+    /// either can do what the other does. One of several parameters can do what one of few does
+    /// even where its own best size is another.
+    pub fn similarity(&self, a: usize, b: usize) -> f64 {
+        let (products, released) = self.released(&[a, b]);
+        let at = (&*products, &released[..]);
+        self.done_by(at, a, b).max(self.done_by(at, b, a))
+    }
+
+    /// The cosine between what a response does at its best size and the nearest of all that
+    /// another can do.
+    fn done_by(&self, at: (&DMatrix<f64>, &[usize]), response: usize, other: usize) -> f64 {
+        let wanted = self.direction(at.0, response);
+        let columns: Vec<DVector<f64>> = (self.columns(other))
+            .map(|column| {
+                let size = at.0[(column, column)].sqrt().max(f64::MIN_POSITIVE);
+                let mut unit = DVector::zeros(at.0.ncols());
+                unit[column] = 1.0 / size;
+                unit
+            })
+            .collect();
+        let count = columns.len();
+        let gram = DMatrix::from_fn(count, count, |r, c| {
+            let ridge = if r == c { thresholds::RIDGE } else { 0.0 };
+            self.without_nuisances(at, &columns[r], &columns[c]) + ridge
+        });
+        let right = DVector::from_fn(count, |r, _| {
+            self.without_nuisances(at, &columns[r], &wanted)
+        });
+        let size = self.without_nuisances(at, &wanted, &wanted);
+        match gram.cholesky() {
+            Some(factor) if size > 0.0 => {
+                let done = right.dot(&factor.solve(&right));
+                (done / size).max(0.0).sqrt().min(1.0)
+            }
+            _ => 0.0,
+        }
+    }
+}
+
+fn product(products: &DMatrix<f64>, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
+    a.dot(&(products * b))
+}
+
+/// A and b whose least squares are those of some columns against the residual, to be lowered
+/// to its negative.
+fn system(products: &DMatrix<f64>, places: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
+    let (count, last) = (places.len(), products.ncols() - 1);
+    let scale: Vec<f64> = places
+        .iter()
+        .map(|p| products[(*p, *p)].sqrt().max(f64::MIN_POSITIVE))
+        .collect();
+    let gram = DMatrix::from_fn(count, count, |r, c| {
+        let ridge = if r == c { thresholds::RIDGE } else { 0.0 };
+        products[(places[r], places[c])] / (scale[r] * scale[c]) + ridge
+    });
+    let right = DVector::from_fn(count, |r, _| -products[(places[r], last)] / scale[r]);
+    let Some(factor) = gram.cholesky() else {
+        return (DMatrix::zeros(count, count), DVector::zeros(count));
+    };
+    let lower = factor.l();
+    let b = lower
+        .solve_lower_triangular(&right)
+        .unwrap_or_else(|| DVector::zeros(count));
+    let a = DMatrix::from_fn(count, count, |r, c| lower[(c, r)] * scale[c]);
+    (a, b)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::{Response, Screen};
+
+    /// Responses with these columns, the last of which is the residual, and their best sizes.
+    fn screen(columns: &DMatrix<f64>, of: &[(std::ops::Range<usize>, &[f64])]) -> Screen {
+        let response =
+            |(candidate, (columns, values)): (usize, &(std::ops::Range<usize>, &[f64]))| Response {
+                candidate,
+                trials: Vec::new(),
+                columns: columns.clone(),
+                released: None,
+                visible: 1.0,
+                gain: 0.0,
+                values: values.to_vec(),
+            };
+        Screen {
+            products: columns.transpose() * columns,
+            nuisances: 0,
+            priors: Vec::new(),
+            bounds: Vec::new(),
+            limits: Vec::new(),
+            responses: of.iter().enumerate().map(response).collect(),
+            silent: Vec::new(),
+            numbers: columns.nrows() as f64,
+        }
+    }
+
+    #[test]
+    fn what_of_many_parameters_holds_what_of_one_looks_like_it() {
+        // Two parameters that do x and y, at their best size x alone; one does 3 x + 4 y, one z.
+        let columns = DMatrix::from_row_slice(
+            3,
+            5,
+            &[
+                1.0, 0.0, 3.0, 0.0, 1.0, //
+                0.0, 1.0, 4.0, 0.0, 0.0, //
+                0.0, 0.0, 0.0, 2.0, 0.0,
+            ],
+        );
+        let of: [(std::ops::Range<usize>, &[f64]); 3] =
+            [(0..2, &[1.0, 0.0]), (2..3, &[0.2]), (3..4, &[1.0])];
+        let screen = screen(&columns, &of);
+        assert!((screen.similarity(0, 1) - 1.0).abs() < 1e-6);
+        assert!((screen.similarity(1, 0) - 1.0).abs() < 1e-6);
+        assert!(screen.similarity(0, 2) < 1e-6 && screen.similarity(1, 2) < 1e-6);
+    }
+
+    #[test]
+    fn single_responses_look_alike_by_the_angle_between_them() {
+        let columns = DMatrix::from_row_slice(2, 3, &[1.0, 3.0, 1.0, 0.0, 4.0, 1.0]);
+        let of: [(std::ops::Range<usize>, &[f64]); 2] = [(0..1, &[-2.0]), (1..2, &[5.0])];
+        // The cosine of the angle in a triangle of sides 3, 4 and 5.
+        assert!((screen(&columns, &of).similarity(0, 1) - 0.6).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,293 @@
+//! Responses of candidates as neighbouring motions: along the fitted motion the accelerations
+//! of the candidate's model are compared with the fitted one's, and what they differ by drives
+//! a tangent vector. Hundreds of candidates are looked at in one march.
+
+use codegen::program::evaluator::{Evaluator, Point};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use crate::catalogue::candidate::Candidate;
+use crate::fit::full::Fit;
+use crate::fit::sensitivity::{Crew, Differences};
+use crate::fit::shooting::Shooting;
+use crate::model::plant::Plant;
+use crate::model::problem::Setting;
+use crate::search::response::{At, Columns, TRIAL, Trial, absent, silent, trial};
+
+/// A candidate is taken at a size that changes accelerations by this part of their own size,
+/// in any direction: small beside them, large beside rounding.
+const SMALL: f64 = 1e-4;
+
+/// A change is small and above rounding within these factors of that.
+const NEAR: (f64, f64) = (1e-3, 10.0);
+
+/// Attempts to find that size, each at most so many powers of ten further.
+const ATTEMPTS: (usize, f64) = (8, 1e6);
+
+/// Every so many samples of a window a size is tried.
+const TRIED: usize = 5;
+
+/// Where sizes are tried: a motion's points with their accelerations.
+struct Points {
+    times: Vec<f64>,
+    states: Vec<Vec<f64>>,
+    inputs: Vec<Vec<f64>>,
+    rates: Vec<Vec<f64>>,
+    /// The mean square of each acceleration.
+    squares: Vec<f64>,
+}
+
+/// A candidate's model with sizes at which it differs a little.
+struct Ready {
+    candidate: usize,
+    trials: Vec<Trial>,
+    plant: Plant,
+    /// For each parameter that scales it the values there, and the size.
+    moved: Vec<(Vec<f64>, f64)>,
+}
+
+/// For each candidate what it does, or why that cannot be seen; none where its own motion must
+/// tell.
+pub fn driven(
+    at: &At,
+    setting: &Setting<'_>,
+    fit: &Fit,
+    candidates: &[Candidate],
+) -> Vec<Option<Result<Columns, String>>> {
+    let mut found: Vec<Option<Result<Columns, String>>> = vec![None; candidates.len()];
+    let Some(points) = points(at, setting, fit) else {
+        return found;
+    };
+    let ready: Vec<Option<Result<Ready, String>>> = (0..candidates.len())
+        .into_par_iter()
+        .map(|place| ready(setting, fit, (place, &candidates[place]), &points))
+        .collect();
+    let mut all = Vec::new();
+    for (place, ready) in ready.into_iter().enumerate() {
+        match ready {
+            Some(Ok(ready)) => all.push(ready),
+            Some(Err(reason)) => found[place] = Some(Err(reason)),
+            None => {}
+        }
+    }
+    let windows = marched(at, setting, fit, &all);
+    let mut first = 0;
+    for mut of in all {
+        let columns = first..first + of.moved.len();
+        first = columns.end;
+        let blocks: Vec<DMatrix<f64>> = windows
+            .iter()
+            .map(|window| match window.ncols() {
+                0 => DMatrix::zeros(0, columns.len()),
+                _ => window.columns(columns.start, columns.len()).into_owned(),
+            })
+            .collect();
+        found[of.candidate] = Some(sized(&mut of.trials, blocks, at.level));
+    }
+    found
+}
+
+/// A candidate's columns with the sizes that would move the outputs by a part of the misfit.
+fn sized(trials: &mut [Trial], blocks: Vec<DMatrix<f64>>, level: f64) -> Result<Columns, String> {
+    let scaling = trials.iter_mut().filter(|trial| !trial.is_shape);
+    for (column, trial) in scaling.enumerate() {
+        let numbers: usize = blocks.iter().map(DMatrix::nrows).sum();
+        let square: f64 = blocks.iter().map(|b| b.column(column).norm_squared()).sum();
+        let size = (square / numbers.max(1) as f64).sqrt();
+        if size == 0.0 || !size.is_finite() {
+            return Err(silent());
+        }
+        trial.unknown.scale = TRIAL * level / size;
+    }
+    Ok((trials.to_vec(), blocks))
+}
+
+/// Points of the fitted motion; none if neighbouring motions do not come with it.
+fn points(at: &At, setting: &Setting<'_>, fit: &Fit) -> Option<Points> {
+    let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+    let At {
+        estimate, places, ..
+    } = at;
+    let values = shooting.values(&estimate.theta);
+    let mut runner = fit.plant.at(&values).ok()?;
+    if !runner.is_marched() {
+        return None;
+    }
+    let n = fit.plant.state_count();
+    let mut points = Points {
+        times: Vec::new(),
+        states: Vec::new(),
+        inputs: Vec::new(),
+        rates: Vec::new(),
+        squares: vec![0.0; n / 2],
+    };
+    for place in [0, places.len() / 2, places.len() - 1].map(|k| places[k]) {
+        let window = &setting.train.list[place];
+        let inputs = setting.train.inputs(window);
+        let Ok(states) = runner.states(&estimate.starts[place], &window.times, inputs) else {
+            continue;
+        };
+        let samples = window.times.iter().zip(states).step_by(TRIED);
+        for (t, state) in samples {
+            let rates = runner.rates(*t, &state, inputs.at(*t));
+            for (sum, rate) in points.squares.iter_mut().zip(&rates[n / 2..]) {
+                *sum += rate * rate;
+            }
+            points.times.push(*t);
+            points.states.push(state);
+            points.inputs.push(inputs.at(*t).to_vec());
+            points.rates.push(rates);
+        }
+    }
+    (!points.times.is_empty()).then_some(points)
+}
+
+/// A candidate with its sizes, if it has the fit's states and shows the same of them.
+fn ready(
+    setting: &Setting<'_>,
+    fit: &Fit,
+    (place, candidate): (usize, &Candidate),
+    points: &Points,
+) -> Option<Result<Ready, String>> {
+    let start: Vec<f64> = candidate.parameters.iter().map(absent).collect();
+    let text = match candidate.written(&fit.text, &setting.path, &start, "") {
+        Ok(text) => text,
+        Err(error) => return Some(Err(error.to_string())),
+    };
+    let channels = &setting.dataset.channels;
+    let plant = match Plant::equations(&text, &setting.path, setting.order, channels) {
+        Ok(plant) => plant,
+        Err(error) => return Some(Err(error)),
+    };
+    if plant.states != fit.plant.states || candidate.parameters.iter().any(|p| p.inverse) {
+        return None;
+    }
+    let shooting = setting.shooting(&plant, &setting.train, &fit.unknowns, &fit.ranges);
+    let values = shooting.values(&fit.train.estimate.theta);
+    let trials: Vec<Trial> = candidate.parameters.iter().map(trial).collect();
+    let mut moved = Vec::new();
+    for (parameter, trial) in candidate.parameters.iter().zip(&trials) {
+        if trial.is_shape {
+            continue;
+        }
+        let at = |size: f64| {
+            let mut values = values.clone();
+            plant.set(&mut values, &parameter.name, trial.base + size);
+            values
+        };
+        let Some(size) = small(&plant, &at, points) else {
+            return Some(Err(silent()));
+        };
+        moved.push((at(size), size));
+    }
+    let (_, shown) = plant.evaluator(&values);
+    let own = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+    let (_, of_fit) = fit.plant.evaluator(&own.values(&fit.train.estimate.theta));
+    if shown != of_fit {
+        return None;
+    }
+    Some(Ok(Ready {
+        candidate: place,
+        trials,
+        plant,
+        moved,
+    }))
+}
+
+/// The size of a parameter that changes accelerations by a small part; none if none does.
+fn small(plant: &Plant, at: &dyn Fn(f64) -> Vec<f64>, points: &Points) -> Option<f64> {
+    let mut size = 1.0;
+    for _ in 0..ATTEMPTS.0 {
+        let (mut evaluator, _) = plant.evaluator(&at(size));
+        let change = change(&mut evaluator, points);
+        let factor = if change == 0.0 {
+            ATTEMPTS.1
+        } else if !change.is_finite() {
+            1e-3
+        } else if change > NEAR.0 * SMALL && change < NEAR.1 * SMALL {
+            return Some(size);
+        } else {
+            SMALL / change
+        };
+        size *= factor.clamp(1.0 / ATTEMPTS.1, ATTEMPTS.1);
+    }
+    None
+}
+
+/// The largest part by which any acceleration differs, root mean square.
+fn change(evaluator: &mut Evaluator, points: &Points) -> f64 {
+    let half = points.squares.len();
+    let mut sums = vec![0.0; half];
+    let mut rates = vec![0.0; 2 * half];
+    for (place, t) in points.times.iter().enumerate() {
+        let (state, inputs) = (&points.states[place], &points.inputs[place]);
+        evaluator.rates(
+            Point {
+                t: *t,
+                state,
+                inputs,
+            },
+            &mut rates,
+        );
+        let pairs = rates[half..].iter().zip(&points.rates[place][half..]);
+        for (sum, (a, b)) in sums.iter_mut().zip(pairs) {
+            *sum += (a - b) * (a - b);
+        }
+    }
+    let parts = sums.iter().zip(&points.squares);
+    let parts = parts.map(|(sum, square)| (sum / square.max(f64::MIN_POSITIVE)).sqrt());
+    parts.fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+}
+
+/// For each window a column per parameter; no columns where the fit has no motion.
+fn marched(at: &At, setting: &Setting<'_>, fit: &Fit, ready: &[Ready]) -> Vec<DMatrix<f64>> {
+    let whole = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+    let shooting = Shooting {
+        part: at.part,
+        ..whole
+    };
+    let At {
+        estimate,
+        places,
+        base,
+        ..
+    } = at;
+    let size = places
+        .len()
+        .div_ceil(rayon::current_num_threads().max(1))
+        .max(1);
+    let parts: Vec<Vec<DMatrix<f64>>> = (0..places.len())
+        .collect::<Vec<_>>()
+        .par_chunks(size)
+        .map(|part| {
+            let none = || DMatrix::zeros(0, 0);
+            let Some(mut crew) = Crew::frozen(&shooting, &estimate.theta, 1.0) else {
+                return part.iter().map(|_| none()).collect();
+            };
+            let mut evaluators: Vec<(Evaluator, f64)> = ready
+                .iter()
+                .flat_map(|of| {
+                    of.moved
+                        .iter()
+                        .map(|(v, size)| (of.plant.evaluator(v).0, *size))
+                })
+                .collect();
+            let mut own = fit.plant.evaluator(&shooting.values(&estimate.theta)).0;
+            part.iter()
+                .map(|window| {
+                    if base[*window].is_none() {
+                        return none();
+                    }
+                    let place = places[*window];
+                    let moved = evaluators.iter_mut().map(|(e, size)| (e, *size)).collect();
+                    let mut drives = Differences::new(&mut own, moved);
+                    let count = drives.count();
+                    let start = &estimate.starts[place];
+                    let columns = crew.driven(place, start, (count, &mut drives));
+                    columns.unwrap_or_else(none)
+                })
+                .collect()
+        })
+        .collect();
+    parts.into_iter().flatten().collect()
+}
