@@ -8,8 +8,8 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group, criterion_main};
 use eomgen_benches::contenders::{equation_22, floor};
 use eomgen_benches::{at_all_orders, generated, state, variants};
-use sim::reference::PlanetaryArmParameters;
-use sim::reference::equation_22::{Eliminated, Equation22};
+use eomgen_paper::reference::PlanetaryArmParameters;
+use eomgen_paper::reference::equation_22::{Eliminated, Equation22};
 
 /// Results are looked at where they are written: a copy of them would be timed with the call.
 macro_rules! compare {

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
+use eomgen_paper::reference::PlanetaryArmParameters;
+use eomgen_paper::reference::equation_22::{Eliminated, Equation22};
 use model_spec::model::Model;
-use sim::reference::PlanetaryArmParameters;
-use sim::reference::equation_22::{Eliminated, Equation22};
 
 use crate::contenders::equation_22;
 use crate::instructions::CALLS;

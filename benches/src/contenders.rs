@@ -2,7 +2,7 @@
 //! functions are not inlined into other crates, so neither are the others. All write their
 //! result to where the caller wants it.
 
-use sim::reference::equation_22::{Equation22, copy_in_pairs};
+use eomgen_paper::reference::equation_22::{Equation22, copy_in_pairs};
 
 /// Calls a macro with every order that is compared and the module of [`crate::variants`]
 /// that holds it.

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use sim::plot::{Axes, Frame, Panel, Plate, PlotError, Series, plate};
+use eomgen_plot::{Axes, Frame, Panel, Plate, PlotError, Series, plate};
 
 use crate::instructions::Count;
 

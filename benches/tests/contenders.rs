@@ -1,8 +1,8 @@
 //! The contenders of the bench `rates` compute the same: a fast wrong one proves nothing.
 
 use eomgen_benches::{state, variants};
-use sim::reference::PlanetaryArmParameters;
-use sim::reference::equation_22::{Coefficients, Eliminated};
+use eomgen_paper::reference::PlanetaryArmParameters;
+use eomgen_paper::reference::equation_22::{Coefficients, Eliminated};
 
 /// Rounding of some tens of operations, relative to the largest term of a row.
 const TOLERANCE: f64 = 1e-12;

@@ -1,11 +1,11 @@
 //! A derived variant in motion: which solver takes it, its samples as a table, and the names
 //! of what a solver's errors give by number. Solvers themselves are the library's.
 
+use eomgen_compiled_model::driven::Driven;
 use model_spec::model::Model;
-use sim::derived::Driven;
-use sim::exact::{ExactError, PiecewiseLinear};
-use sim::record::HeldInputs;
-use sim::solve::{Method, Names, Settings, SolveError, Surface, Trajectory, simulate_into};
+use sim::inputs::HeldInputs;
+use sim::ode::{Method, Names, Settings, SolveError, Surface, Trajectory, simulate_into};
+use sim::piecewise_linear::{ExactError, PiecewiseLinear};
 
 use crate::arguments::Solver;
 use crate::problem::{Outcome, Problem, warn};

@@ -5,10 +5,10 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
+use eomgen_records::Refusal;
 use model_spec::diagnostic::Diagnostics;
 use model_spec::source::Source;
 use model_spec::variant::ModelError;
-use sim::record::Refusal;
 
 /// A command's end.
 pub type Outcome<T = ()> = Result<T, Problem>;

@@ -2,8 +2,8 @@
 //! leaves its range.
 
 use model_spec::model::Model;
-use sim::record::HeldInputs;
-use sim::solve::Trajectory;
+use sim::inputs::HeldInputs;
+use sim::ode::Trajectory;
 
 use crate::problem::{Outcome, Problem, warn};
 

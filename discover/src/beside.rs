@@ -3,7 +3,7 @@
 
 use codegen::program::evaluator::{Evaluator, Point};
 
-use crate::march::Force;
+use sim::exponential::Force;
 
 /// A model beside its linear part, at fixed parameters.
 pub(crate) struct Beside {
@@ -83,11 +83,12 @@ mod tests {
     use std::fs;
     use std::path::{Path, PathBuf};
 
-    use sim::record::HeldInputs;
+    use sim::inputs::HeldInputs;
 
-    use crate::dataset::{Channel, Quantity, Record};
-    use crate::march::Free;
     use crate::model::plant::Plant;
+    use eomgen_records::dataset::{Channel, Quantity};
+    use eomgen_records::record::Record;
+    use sim::exponential::Free;
 
     /// The rig, and the rig with teeth that deviate by more than twice the play.
     fn texts() -> (String, String) {

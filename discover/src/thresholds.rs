@@ -9,13 +9,6 @@ pub const BIAS_PRIOR: f64 = 10.0;
 /// Standard deviation of a sensor's delay, in samples: held somewhere between two of them.
 pub const DELAY_PRIOR: f64 = 0.5;
 
-/// The longest delay that a fit may take, in samples: what a filter of a few samples and a bus
-/// make together. So many samples at the beginning of each window cannot be judged.
-pub const LONGEST_DELAY: f64 = 8.0;
-
-/// How far a sensor may seem to see ahead, in samples: four standard deviations.
-pub const LONGEST_LEAD: f64 = 2.0;
-
 /// Standard deviation of a window's initial state around where the window before ended, in
 /// ranges of the state's own motion: next to nothing is known, yet a state that the window
 /// does not show stays where it may be.

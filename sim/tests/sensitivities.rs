@@ -5,8 +5,8 @@
 use std::path::Path;
 
 use model_spec::model::Model;
-use sim::exact::{By, Lyapunov, PiecewiseLinear};
-use sim::record::HeldInputs;
+use sim::inputs::HeldInputs;
+use sim::piecewise_linear::{By, Lyapunov, PiecewiseLinear};
 
 fn model(text_or_name: &str) -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))

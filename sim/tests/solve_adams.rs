@@ -1,13 +1,10 @@
 //! The method of Adams on problems with known solutions, and against Runge-Kutta.
 
-#[path = "systems/arm.rs"]
-mod arm;
 mod systems;
 
 use std::f64::consts::PI;
 
-use arm::Arm;
-use sim::solve::{Method, Settings, SolveError, System, Trajectory, simulate};
+use sim::ode::{Method, Settings, SolveError, System, Trajectory, simulate};
 use systems::{Functions, dead_zone, dry_friction, smooth};
 
 fn adams(tolerance: f64) -> Settings {
@@ -154,29 +151,4 @@ fn a_stiff_system_is_slow_and_not_an_error() {
     assert!((trajectory.last[0] - followed).abs() < 1e-5);
     // Steps of 1/1e4 to 2/1e4.
     assert!((5_000..20_000).contains(&trajectory.work.steps));
-}
-
-#[test]
-fn the_arm_moves_as_with_runge_kutta() {
-    let arm = Arm::<2>::default();
-    let initial = [0.0; 10];
-    let with_adams = run(&arm, &initial, 0.2, &adams(1e-9)).expect("a trajectory");
-    let settings = Settings::with_tolerance(1e-9);
-    let with_runge_kutta = run(&arm, &initial, 0.2, &settings).expect("a trajectory");
-    let guards = |trajectory: &Trajectory| -> Vec<usize> {
-        trajectory.switches.iter().map(|s| s.guard).collect()
-    };
-    println!("{:?} {:?}", with_adams.work, with_runge_kutta.work);
-    assert!(with_adams.switches.len() > 20);
-    assert_eq!(guards(&with_adams), guards(&with_runge_kutta));
-    let times = with_adams.switches.iter().zip(&with_runge_kutta.switches);
-    for (one, other) in times {
-        // Deflections agree to 1e-9 m, and surfaces are crossed at some 0.01 m/s.
-        assert!((one.t - other.t).abs() < 1e-7, "{one:?} {other:?}");
-    }
-    let deflections = with_adams.last.iter().zip(&with_runge_kutta.last).take(2);
-    for (one, other) in deflections {
-        println!("{:e}", one - other);
-        assert!((one - other).abs() < 1e-9, "{one} {other}");
-    }
 }

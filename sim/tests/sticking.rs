@@ -3,8 +3,8 @@
 //! zero, or as near as they can. It knows no surfaces, no regimes and no events.
 
 use model_spec::source::Source;
-use sim::exact::PiecewiseLinear;
-use sim::record::HeldInputs;
+use sim::inputs::HeldInputs;
+use sim::piecewise_linear::PiecewiseLinear;
 
 /// A motor drives a load through a shaft with play, rubbed dry at one end or at both.
 fn drive(more: &str) -> String {

@@ -3,14 +3,14 @@
 
 use codegen::mechanics::outputs::Request;
 use codegen::program::evaluator::Evaluator;
+use eomgen_validate::certificate::Certificate;
+use eomgen_validate::certify::{Subject, certify};
+use eomgen_validate::derived::Derived;
+use eomgen_validate::derived_requests::DerivedRequests;
+use eomgen_validate::requested::Requested;
+use eomgen_validate::variant::Variant;
 use model_spec::model::Model;
 use model_spec::source::Source;
-use sim::derived::Derived;
-use sim::requested::DerivedRequests;
-use sim::validate::certificate::Certificate;
-use sim::validate::certify::{Subject, certify};
-use sim::validate::requested::Requested;
-use sim::validate::variant::Variant;
 
 use crate::models::variant;
 

@@ -1,13 +1,13 @@
 //! Shipped specifications, their variants and random states. Nothing is checked here.
 
+use eomgen_validate::oracle::Oracle;
+use eomgen_validate::sampler::{Sample, Sampler};
 use std::path::{Path, PathBuf};
 
 use codegen::mechanics::equations::{Equations, derive};
 use codegen::program::evaluator::Evaluator;
 use codegen::program::lowering::lower;
 use model_spec::model::Model;
-use sim::validate::oracle::Oracle;
-use sim::validate::sampler::{Sample, Sampler};
 
 /// The project's folder.
 pub fn project() -> &'static Path {

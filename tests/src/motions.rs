@@ -3,13 +3,13 @@
 
 use std::fmt::Write;
 
+use eomgen_compiled_model::driven::Driven;
 use model_spec::check;
 use model_spec::model::Model;
 use model_spec::source::Source;
-use sim::derived::Driven;
-use sim::exact::{ExactError, PiecewiseLinear, Propagator};
-use sim::record::HeldInputs;
-use sim::solve::{Settings, SolveError, Trajectory, simulate};
+use sim::inputs::HeldInputs;
+use sim::ode::{Settings, SolveError, Trajectory, simulate};
+use sim::piecewise_linear::{ExactError, PiecewiseLinear, Propagator};
 
 use crate::models::variant;
 

@@ -2,8 +2,8 @@
 //! are pure numbers, and half-widths and offsets are few, so that functions rest on whole
 //! regions, at zero and at thresholds of others. Nothing is checked here.
 
-use sim::record::HeldInputs;
-use sim::validate::random::Random;
+use eomgen_validate::random::Random;
+use sim::inputs::HeldInputs;
 
 use crate::motions::Subject;
 

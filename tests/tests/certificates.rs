@@ -6,10 +6,26 @@ use codegen::mechanics::outputs::Request;
 use codegen::program::lowering::lower;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
+use eomgen_paper::by_hand::by_hand;
 use eomgen_tests::models::{load, project, shipped, variant};
-use sim::certificates::certificate;
-use sim::exact::PiecewiseLinear;
-use sim::validate::certificate::Certificate;
+use eomgen_validate::certificate::Certificate;
+use eomgen_validate::of_model::certificate;
+use model_spec::model::Model;
+use sim::piecewise_linear::PiecewiseLinear;
+
+/// The certificate of a source, with the equations that were written by hand for the model.
+fn with_references(
+    model: &Model,
+    order: usize,
+    requests: &[Request],
+    source: String,
+) -> Certificate {
+    let values = model
+        .parameter_values()
+        .expect("the parameters have values");
+    let by_hand = by_hand(model, order, &values);
+    certificate(model, order, requests, source, &by_hand).expect("the parameters have values")
+}
 
 /// The certificate of a shipped specification with every field at `order`.
 fn of(name: &str, order: usize) -> Certificate {
@@ -20,7 +36,7 @@ fn of(name: &str, order: usize) -> Certificate {
         .expect("the parameters have values");
     let program = lower(&model, &derived.equations, &values);
     let source = emit(&program, Packaging::Crate).expect("the program can be emitted");
-    certificate(&model, order, &[], source).expect("the parameters have values")
+    with_references(&model, order, &[], source)
 }
 
 /// Asserts that a certificate passes and that nothing was skipped but what `may_skip` names.
@@ -207,7 +223,7 @@ fn every_fault_of_what_was_requested_fails_its_own_check() {
         panic!("the arm can be derived");
     };
     let source = emit(&variant.program, Packaging::Crate).expect("the program can be emitted");
-    let of = |source: String| certificate(&model, 1, &requests, source).expect("values");
+    let of = |source: String| with_references(&model, 1, &requests, source);
     let right = of(source.clone());
     passes(&right, &["rates_by_inputs", "observables_by_inputs"]);
     for (text, fault, check) in FAULTS {
@@ -230,7 +246,7 @@ fn a_certificate_of_the_wrong_source_fails() {
     };
     let falsified = source(1).replacen("(2.0) * x_c_dot", "(3.0) * x_c_dot", 1);
     assert_ne!(falsified, source(1));
-    let found = certificate(&model, 1, &[], falsified).expect("the parameters have values");
+    let found = with_references(&model, 1, &[], falsified);
     let failed: Vec<&str> = found.failures().map(|check| check.name.as_str()).collect();
     assert_eq!(failed, ["emitted_rust"]);
 }

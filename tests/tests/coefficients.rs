@@ -3,10 +3,10 @@
 //! from them again.
 
 use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_paper::reference::PlanetaryArmParameters;
+use eomgen_paper::reference::equation_22::{Coefficients, ModeRow};
 use eomgen_tests::models::{load, samples, variant};
-use sim::reference::PlanetaryArmParameters;
-use sim::reference::equation_22::{Coefficients, ModeRow};
-use sim::validate::sampler::Sample;
+use eomgen_validate::sampler::Sample;
 
 /// Relative deviation allowed: both sides are some tens of roundings from the parameters,
 /// and a_16 loses a digit by cancellation.

@@ -3,10 +3,10 @@
 //! --test errata -- --nocapture` prints the table.
 
 use codegen::program::evaluator::Point;
+use eomgen_paper::reference::PlanetaryArmParameters;
+use eomgen_paper::reference::errata::errata_table;
 use eomgen_tests::models::{load, variant};
 use model_spec::model::Model;
-use sim::reference::PlanetaryArmParameters;
-use sim::reference::errata::errata_table;
 
 /// The specification's model with the parameters of the hand-written equations.
 fn with_parameters(model: &Model, parameters: &PlanetaryArmParameters) -> Model {

@@ -8,16 +8,16 @@
 
 use codegen::program::evaluator::Evaluator;
 use codegen::program::lowering::lower;
+use eomgen_compiled_model::driven::Driven;
 use eomgen_tests::models::load;
 use eomgen_tests::taylor::arm::Case;
 use eomgen_tests::taylor::double_double::DoubleDouble;
 use eomgen_tests::taylor::run::{LONGEST, Run};
 use eomgen_tests::taylor::scalar::Scalar;
 use model_spec::model::Model;
-use sim::derived::Driven;
-use sim::exact::PiecewiseLinear;
-use sim::record::HeldInputs;
-use sim::solve::{Settings, Trajectory, simulate};
+use sim::inputs::HeldInputs;
+use sim::ode::{Settings, Trajectory, simulate};
+use sim::piecewise_linear::PiecewiseLinear;
 
 /// The paper's faster ripple, 10 pi rad/s.
 const OMEGA: f64 = 31.41592653589793;

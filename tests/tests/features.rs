@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 use codegen::program::evaluator::Point;
 use codegen::rust::{Packaging, emit};
 use eomgen_tests::models::{samples, variant};
+use eomgen_validate::certify::ByHand;
+use eomgen_validate::of_model::certificate;
+use eomgen_validate::sampler::Sample;
 use model_spec::model::Model;
-use sim::certificates::certificate;
-use sim::validate::sampler::Sample;
 
 /// Declares a test per file, and that no file is forgotten.
 macro_rules! features {
@@ -94,7 +95,14 @@ fn certify(name: &str, orders: &[usize]) {
     let model = load(name);
     let mut failures = Vec::new();
     for &order in orders {
-        let certificate = certificate(&model, order, &[], emitted(&model, order)).unwrap();
+        let certificate = certificate(
+            &model,
+            order,
+            &[],
+            emitted(&model, order),
+            &ByHand::default(),
+        )
+        .unwrap();
         failures.extend(certificate.failures().map(|check| {
             format!(
                 "order {order}, {}: {:?} ({})",

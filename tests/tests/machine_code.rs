@@ -9,12 +9,12 @@ use codegen::mechanics::equations::derive;
 use codegen::program::evaluator::{Evaluator, Point};
 use codegen::program::lowering::lower;
 use codegen::program::{Op, Program};
+use eomgen_compiled_model::driven::Driven;
 use eomgen_tests::models::{load, project, shipped};
+use eomgen_validate::random::Random;
 use model_spec::model::Model;
-use sim::derived::Driven;
-use sim::record::HeldInputs;
-use sim::solve::{Settings, simulate};
-use sim::validate::random::Random;
+use sim::inputs::HeldInputs;
+use sim::ode::{Settings, simulate};
 
 /// Points compared for each program and set of parameters.
 const POINTS: usize = 40;

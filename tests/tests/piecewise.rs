@@ -10,11 +10,11 @@ use codegen::variant::Variant;
 use eomgen_tests::models::variant;
 use eomgen_tests::motions::{Subject, difference, grid};
 use eomgen_tests::piecewise::machine;
+use eomgen_validate::compiler::{self, Compiler};
+use eomgen_validate::random::Random;
 use model_spec::source::Source;
-use sim::exact::ExactError;
-use sim::solve::Trajectory;
-use sim::validate::compiler::{self, Compiler};
-use sim::validate::random::Random;
+use sim::ode::Trajectory;
+use sim::piecewise_linear::ExactError;
 
 /// What solvers and kernels may differ by.
 const AGREED: f64 = 1e-8;
@@ -165,7 +165,7 @@ push = { on = "y", value = "F*sign(u)" }
 "#,
     );
     let times = vec![0.0, 1.0, 2.0, 3.0];
-    let inputs = sim::record::HeldInputs::new(times, vec![0.0, 1.0, 0.0, -1.0], 1);
+    let inputs = sim::inputs::HeldInputs::new(times, vec![0.0, 1.0, 0.0, -1.0], 1);
     subject.inputs = inputs.expect("ascending times");
     let motion = subject.exact((0.0, 4.0), &[1.0, 2.0, 3.0, 4.0]);
     let rates: Vec<f64> = motion.states.iter().map(|state| state[1]).collect();

@@ -1,10 +1,10 @@
 //! The residual force: a carriage that drags another by a spring, with something hidden on the
 //! second. The motion is integrated here; the model knows of nothing but springs and dampers.
 
+use eomgen_records::read_dataset;
 use std::fs;
 use std::path::Path;
 
-use discover::dataset::read;
 use discover::model::problem::Setting;
 use discover::residual_force::wording::said;
 use discover::residual_force::{Kind, Profile, ResidualForce, Simple, residual_force};
@@ -132,7 +132,7 @@ fn found_by(hidden: &dyn Fn(f64, f64) -> f64, specification: &str) -> ResidualFo
 fn found_in(folder: &Path, specification: &str) -> ResidualForce {
     let model = model_spec::check(Source::new("two_carriages.toml", specification));
     let model = model.expect("a sound specification").model;
-    let dataset = read(&folder.join("dataset.toml"), &model).expect("a sound dataset");
+    let dataset = read_dataset(&folder.join("dataset.toml"), &model).expect("a sound dataset");
     let setting = Setting::new(&dataset, None, "two_carriages.toml", specification);
     let fit = null_fit(&setting, specification).expect("a fit");
     residual_force(&setting, &fit, None).expect("neighbouring motions")

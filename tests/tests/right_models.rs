@@ -3,7 +3,7 @@
 //! certificates pass, and say how much was looked at.
 
 use eomgen_tests::certified::{certificate, checked};
-use sim::validate::certificate::{Certificate, Check};
+use eomgen_validate::certificate::{Certificate, Check};
 
 /// Asserts that the model of a text passes; its certificate.
 fn passes(text: &str) -> Certificate {

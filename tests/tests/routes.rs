@@ -23,7 +23,7 @@ type Bits = Vec<u64>;
 
 fn points() -> Vec<(f64, [f64; 14])> {
     let drawn = samples(&load("planetary_arm"), ORDER, SEED, STATES_PER_REGIME);
-    let point = |sample: &sim::validate::sampler::Sample| {
+    let point = |sample: &eomgen_validate::sampler::Sample| {
         let state = sample.state.as_slice().try_into();
         (sample.time, state.expect("a state of the arm"))
     };

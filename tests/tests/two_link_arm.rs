@@ -1,9 +1,9 @@
 //! The arm of two flexible links: its motion keeps the energy, which the certificate's
 //! checks at single states cannot see.
 
+use eomgen_compiled_model::driven::Driven;
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{Subject, grid};
-use sim::derived::Driven;
 
 /// Let fall from the horizontal without friction and torque, for half a second: both links
 /// swing and bend. The step's relative error is 1e-11 of each state; the energy that a

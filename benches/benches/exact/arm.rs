@@ -3,7 +3,7 @@
 //! continuous. No solver is called here.
 
 use generated::planetary_arm_order_4 as g;
-use sim::solve::System;
+use sim::ode::System;
 
 /// Numbers in the state: x_sp, x_pr, x_c, q_1 .. q_4 (m), then their rates (m/s).
 pub const STATES: usize = g::STATES;

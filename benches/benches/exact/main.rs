@@ -16,9 +16,9 @@ use std::path::Path;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use model_spec::model::Model;
-use sim::exact::{PiecewiseLinear, Propagator};
-use sim::record::HeldInputs;
-use sim::solve::Trajectory;
+use sim::inputs::HeldInputs;
+use sim::ode::Trajectory;
+use sim::piecewise_linear::{PiecewiseLinear, Propagator};
 
 /// The orders at which the cost of a switch is told.
 const ORDERS: [usize; 4] = [0, 4, 16, 64];

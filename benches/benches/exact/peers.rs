@@ -4,7 +4,7 @@
 use differential_equations::methods::{Adaptive, DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 use differential_equations::status::Status;
-use sim::solve::{Method, Settings, simulate};
+use sim::ode::{Method, Settings, simulate};
 
 use crate::arm::{Located, Momentum, STATES};
 

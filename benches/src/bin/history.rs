@@ -13,8 +13,8 @@ use eomgen_benches::contenders::{equation_22, floor};
 use eomgen_benches::history::{Contenders, Times, curves, development, heading, line, table};
 use eomgen_benches::instructions::{ARGUMENT, available, counted, names};
 use eomgen_benches::{at_all_orders, cases, state, variants};
-use sim::reference::PlanetaryArmParameters;
-use sim::reference::equation_22::{Eliminated, Equation22};
+use eomgen_paper::reference::PlanetaryArmParameters;
+use eomgen_paper::reference::equation_22::{Eliminated, Equation22};
 
 /// Calls that are timed together.
 const CALLS: u32 = 100;

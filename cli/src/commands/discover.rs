@@ -1,11 +1,11 @@
 //! `eomgen compare` and `eomgen discover`: a model and its measurements. What is compared and
 //! what is found is the library's.
 
+use eomgen_validate::certificate::Check;
 use std::path::Path;
 use std::time::Instant;
 
 use discover::catalogue::{self, user_effects};
-use discover::dataset::{Dataset, read};
 use discover::fit::full::Fit;
 use discover::fit::noise_floor::{Floor, floor};
 use discover::model::channel_checks;
@@ -16,9 +16,10 @@ use discover::residual_force::residual_force;
 use discover::residual_force::wording::said_after;
 use discover::search::fitted::at_floor;
 use discover::search::found::{null_fit, search};
+use eomgen_records::dataset::Dataset;
+use eomgen_records::read_dataset;
 use model_spec::source::Source;
 use serde_json::{Value, json};
-use sim::validate::certificate::Check;
 
 use super::validate;
 use crate::arguments;
@@ -144,7 +145,7 @@ fn inputs(
     let text = model.source.text.to_string();
     orders(&model, order)?;
     let order = order.and_then(|order| order.trim().parse().ok());
-    let dataset = read(dataset, &model).map_err(Problem::records)?;
+    let dataset = read_dataset(dataset, &model).map_err(Problem::records)?;
     for note in &dataset.notes {
         warn(&format!("note: {note}"));
     }

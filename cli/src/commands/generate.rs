@@ -6,8 +6,8 @@ use std::path::Path;
 use codegen::program::Program;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
+use eomgen_validate::certificate::Certificate;
 use serde_json::json;
-use sim::validate::certificate::Certificate;
 
 use super::validate::{document, of_source};
 use super::{generate_all, generate_bench};

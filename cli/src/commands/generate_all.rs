@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use codegen::rust::Packaging;
+use eomgen_validate::of_model::unchecked;
 use model_spec::model::Model;
 use serde_json::{Value, json};
-use sim::certificates::unchecked;
 
 use super::generate::source;
 use super::validate::{document, of_source};

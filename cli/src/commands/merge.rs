@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use eomgen_sweep::{Folder, Job, Table, merge};
 use serde_json::{Value, json};
-use sim::sweep::{Folder, Job, Table, merge};
 
 use crate::arguments::Merge;
 use crate::figures::draw;

@@ -1,8 +1,9 @@
 //! `eomgen simulate`: a trajectory as a table, CSV or Parquet.
 
+use eomgen_records::read_inputs;
 use model_spec::model::Model;
 use serde_json::json;
-use sim::record::{HeldInputs, read_inputs};
+use sim::inputs::HeldInputs;
 
 use crate::arguments::{Simulate, Solver};
 use crate::motion::{Run, Simulated};

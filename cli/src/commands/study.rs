@@ -4,8 +4,8 @@
 use std::path::Path;
 use std::sync::Mutex;
 
+use eomgen_paper::studies::{StudyError, order, report, responses};
 use serde_json::Value;
-use sim::studies::{StudyError, order, report, responses};
 
 use crate::arguments::{Study, StudyName};
 use crate::output::{file_place, write_file};

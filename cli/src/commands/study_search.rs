@@ -3,16 +3,16 @@
 
 use std::path::Path;
 
+use eomgen_paper::studies::StudyError;
+use eomgen_paper::studies::arm::{Arm, Shapes, Undisclosed};
+use eomgen_paper::studies::case::Length;
+use eomgen_paper::studies::charts::charts;
+use eomgen_paper::studies::claims::CLAIMS;
+use eomgen_paper::studies::judge::Judgement;
+use eomgen_paper::studies::search::{Found, Judged, Request, judge_all, orders, ranked, search};
+use eomgen_paper::studies::sets::RANGES;
+use eomgen_paper::studies::tally::{exclusive, histogram, share_with, shares, undecided};
 use serde_json::{Value, json};
-use sim::studies::StudyError;
-use sim::studies::arm::{Arm, Shapes, Undisclosed};
-use sim::studies::case::Length;
-use sim::studies::charts::charts;
-use sim::studies::claims::CLAIMS;
-use sim::studies::judge::Judgement;
-use sim::studies::search::{Found, Judged, Request, judge_all, orders, ranked, search};
-use sim::studies::sets::RANGES;
-use sim::studies::tally::{exclusive, histogram, share_with, shares, undecided};
 
 use crate::arguments::{ModeShapes, StudySearch};
 use crate::claims_table::markdown;

@@ -1,11 +1,11 @@
 //! `eomgen sweep`: something measured over a grid of parameters, in parallel and in parts.
 
-use model_spec::model::Model;
-use serde_json::{Value, json};
-use sim::sweep::job::Plan;
-use sim::sweep::{
+use eomgen_sweep::job::Plan;
+use eomgen_sweep::{
     Axis, Family, Folder, Grid, Job, Lyapunov, Measure, Poincare, Shard, Span, SweepError,
 };
+use model_spec::model::Model;
+use serde_json::{Value, json};
 
 use super::merge::finish;
 use super::simulate::{setting, warn_of_inputs};
@@ -42,7 +42,7 @@ pub fn run(options: &Sweep) -> Outcome {
     };
     let threads = options.threads.map_or(0, usize::from);
     let done =
-        sim::sweep::run(&folder, &measures, shard, threads, &mut progress).map_err(refused)?;
+        eomgen_sweep::run(&folder, &measures, shard, threads, &mut progress).map_err(refused)?;
     drop(bar);
     let counts = json!({ "computed": done.computed, "found": done.found });
     let summary = format!(

@@ -6,11 +6,11 @@ use std::time::Instant;
 
 use codegen::report::Report;
 use codegen::rust::Packaging;
+use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
+use eomgen_validate::certificate::Certificate;
 use model_spec::source::Source;
 use serde_json::json;
-use sim::plot::{Panel, Reference, Series, TimeHistory, time_history};
-use sim::record::HeldInputs;
-use sim::validate::certificate::Certificate;
+use sim::inputs::HeldInputs;
 
 use super::generate::source;
 use super::tour_hidden::{Told, told};

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use model_spec::edit::{self, Edit, NewForce, NewParameter, NewValue};
 use model_spec::source::Source;
 use serde_json::Value;
-use sim::record::HeldInputs;
+use sim::inputs::HeldInputs;
 
 use super::discover;
 use crate::arguments::{Compare, Discover, Solver};

@@ -3,9 +3,10 @@
 use codegen::mechanics::outputs::Request;
 use codegen::rust::Packaging;
 use codegen::variant::Variant;
+use eomgen_paper::by_hand::by_hand;
+use eomgen_validate::certificate::{Certificate, Check};
+use eomgen_validate::of_model::certificate;
 use model_spec::model::Model;
-use sim::certificates::certificate;
-use sim::validate::certificate::{Certificate, Check};
 
 use super::generate::source;
 use crate::arguments::{Extra, Validate};
@@ -66,8 +67,10 @@ pub fn of_source(
     emitted: String,
 ) -> Outcome<Certificate> {
     let order = one_order(model, orders)?;
-    certificate(model, order, requests, emitted)
-        .map_err(|error| Problem::model(&model.source, error))
+    let refused = |error| Problem::model(&model.source, error);
+    let values = model.parameter_values().map_err(refused)?;
+    let by_hand = by_hand(model, order, &values);
+    certificate(model, order, requests, emitted, &by_hand).map_err(refused)
 }
 
 /// The order of all fields.

@@ -3,7 +3,7 @@
 //! The text is gone through once from left to right; what is not known is escaped and kept,
 //! so that every text gives a page.
 
-use sim::plot::symbol::Symbol;
+use eomgen_plot::symbol::Symbol;
 
 use super::markup::push_escaped;
 

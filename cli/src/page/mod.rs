@@ -92,7 +92,7 @@ pub struct Simulation<'a> {
 /// A figure with its caption.
 #[derive(Clone, Debug)]
 pub struct Figure<'a> {
-    /// An SVG element as `sim::plot` draws it. The one text that is not escaped.
+    /// An SVG element as `eomgen_plot` draws it. The one text that is not escaped.
     pub svg: &'a str,
     /// What to look for.
     pub caption: &'a str,

@@ -4,14 +4,15 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::dataset::{Channel, Initial, Quantity, Record};
 use crate::fit::gauss_newton::{StartPrior, settle};
 use crate::fit::sensitivity::Crew;
 use crate::fit::shooting::Shooting;
 use crate::model::plant::Plant;
 use crate::model::smoothing::{sloped, smoothed};
-use crate::model::windows::Windows;
 use crate::thresholds;
+use eomgen_records::dataset::{Channel, Initial, Quantity};
+use eomgen_records::record::Record;
+use eomgen_records::windows::Windows;
 
 /// Samples from which a first value and a first slope are read.
 const FIRST_SAMPLES: usize = 12;

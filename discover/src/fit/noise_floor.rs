@@ -3,11 +3,11 @@
 //! that noise, what a motion's own sensitivity makes of it, and what finding initial states
 //! costs are all in it.
 
-use crate::dataset::Record;
 use crate::fit::full::Fit;
 use crate::fit::gauss_newton::{self, StartPrior};
 use crate::model::problem::Setting;
-use crate::model::windows::Windows;
+use eomgen_records::record::Record;
+use eomgen_records::windows::Windows;
 
 /// What a right model would leave.
 #[derive(Clone, Debug, PartialEq)]

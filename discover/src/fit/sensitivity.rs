@@ -5,10 +5,10 @@ use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::shooting::{Residual, Sensors, Shooting, samples_in};
-use crate::march::Drives;
 use crate::model::runner::{Runner, Shown};
 use crate::model::unknowns::{Unknown, What};
-use crate::model::windows::Window;
+use eomgen_records::windows::Window;
+use sim::exponential::Drives;
 
 /// A difference quotient moves the outputs by this part of what the residual is: far above
 /// rounding, and over the small folds that impacts leave in the outputs.

@@ -8,7 +8,7 @@ use crate::fit::sensitivity::{Crew, Linear};
 use crate::model::plant::Plant;
 use crate::model::runner::Runner;
 use crate::model::unknowns::{Unknown, What};
-use crate::model::windows::{Window, Windows, judged};
+use eomgen_records::windows::{Window, Windows, judged};
 
 /// The sensors' part of the unknowns.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,8 +3,8 @@
 //! factor between two units, or that follows another channel instead, has a wrong label. A
 //! model that lacks something makes none of these.
 
-use crate::dataset::Refusal;
 use crate::model::problem::Setting;
+use eomgen_records::Refusal;
 
 /// The beginning of a record that is looked at, in samples.
 const SAMPLES: usize = 1000;

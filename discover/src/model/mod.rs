@@ -1,5 +1,5 @@
 //! What is estimated, and on what: a specification's model that can be run ([`plant`],
-//! [`runner`]), records cut into [`windows`], the [`unknowns`] with their priors, and the
+//! [`runner`]), records cut into [`windows`](eomgen_records::windows), the [`unknowns`] with their priors, and the
 //! estimation [`problem`] that all fits to one dataset share. [`channel_checks`] compares columns
 //! with what the model expects of them; [`smoothing`] has no delay.
 
@@ -9,4 +9,3 @@ pub mod problem;
 pub mod runner;
 pub mod smoothing;
 pub mod unknowns;
-pub mod windows;

@@ -9,13 +9,14 @@ use codegen::program::evaluator::{Evaluator, MachineCode};
 use codegen::variant::Variant;
 use model_spec::model::{Model, ParameterValue};
 use model_spec::source::Source;
-use sim::exact::PiecewiseLinear;
+use sim::piecewise_linear::PiecewiseLinear;
 
 use crate::beside::Beside;
-use crate::dataset::{Channel, Quantity, Record};
-use crate::gate::typical_step;
-use crate::march::March;
 use crate::model::runner::{Runner, Shown};
+use eomgen_records::dataset::{Channel, Quantity};
+use eomgen_records::record::Record;
+use eomgen_records::samples::typical_step;
+use sim::exponential::March;
 
 /// Switches per simulated second beyond which a trial motion is given up, 1/s.
 pub(crate) const FASTEST_SWITCHING: f64 = 1e5;

@@ -5,7 +5,6 @@ use model_spec::source::Source;
 use rayon::prelude::*;
 
 use crate::catalogue::candidate::Candidate;
-use crate::dataset::{Dataset, Record, Start};
 use crate::fit::continuation::Follow;
 use crate::fit::full::Fit;
 use crate::fit::gauss_newton::{self, Estimate, StartPrior};
@@ -13,8 +12,10 @@ use crate::fit::initial_states;
 use crate::fit::shooting::Shooting;
 use crate::model::plant::{Plant, is_linear};
 use crate::model::unknowns::Unknown;
-use crate::model::windows::Windows;
 use crate::thresholds;
+use eomgen_records::dataset::{Dataset, Start};
+use eomgen_records::record::Record;
+use eomgen_records::windows::Windows;
 
 /// The parts of a window over which initial states are fitted, one after the other.
 pub(crate) const HORIZONS: [f64; 4] = [0.08, 0.25, 0.5, 1.0];

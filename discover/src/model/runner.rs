@@ -6,14 +6,14 @@
 use std::cell::RefCell;
 
 use codegen::program::evaluator::{Evaluator, Point};
-use sim::exact::Propagator;
-use sim::record::HeldInputs;
-use sim::solve::{Settings, System, simulate};
+use sim::inputs::HeldInputs;
+use sim::ode::{Settings, System, simulate};
+use sim::piecewise_linear::Propagator;
 
 use crate::beside::Beside;
-use crate::march::{Company, Drives, Force, March, Tangents};
 use crate::model::plant::{Output, Plant};
-use crate::runge_kutta::RungeKutta;
+use sim::exponential::{Company, Drives, Force, March, Tangents};
+use sim::ode::runge_kutta::RungeKutta;
 
 /// Relative error of one step of the general solver: far below any sensor's noise.
 const TOLERANCE: f64 = 1e-7;

@@ -3,9 +3,11 @@
 
 use model_spec::model::{Model, Parameter};
 
-use crate::dataset::{Channel, Dataset, Record};
-use crate::gate::typical_step;
 use crate::thresholds;
+use eomgen_records::dataset::{Channel, Dataset};
+use eomgen_records::record::Record;
+use eomgen_records::samples::typical_step;
+use eomgen_records::windows::{LONGEST_DELAY, LONGEST_LEAD};
 
 /// What an unknown is.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,10 +116,7 @@ pub fn of_sensor(place: usize, channel: &Channel, step: f64) -> [Unknown; 3] {
     let bias = thresholds::BIAS_PRIOR * channel.noise;
     let delay = thresholds::DELAY_PRIOR * step;
     let free = (f64::NEG_INFINITY, f64::INFINITY);
-    let late = (
-        -thresholds::LONGEST_LEAD * step,
-        thresholds::LONGEST_DELAY * step,
-    );
+    let late = (-LONGEST_LEAD * step, LONGEST_DELAY * step);
     let called = |what: What, fault: &str| (what, format!("the {fault} of `{}`", channel.name));
     [
         Unknown::declared(called(What::Gain(place), "gain"), (1.0, gain), free),

@@ -1,8 +1,8 @@
 //! What was found as JSON documents: `comparison.json` and `discovery.json`.
 
+use eomgen_records::dataset::Channel;
 use serde_json::{Map, Value, json};
 
-use crate::dataset::Channel;
 use crate::empirical::EMPIRICAL;
 use crate::fit::full::Fit;
 use crate::fit::noise_floor::Floor;

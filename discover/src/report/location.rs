@@ -121,7 +121,7 @@ pub(crate) fn peak_frequency(setting: &Setting<'_>, fit: &Fit) -> Option<f64> {
 fn frequency(setting: &Setting<'_>, fit: &Fit, channel: usize) -> Option<f64> {
     let count = setting.noise.len();
     let length = fit.train.residuals.iter().map(|r| r.len() / count).max()?;
-    let step = crate::gate::typical_step(&setting.train.list.first()?.times);
+    let step = eomgen_records::samples::typical_step(&setting.train.list.first()?.times);
     if length < 8 || step <= 0.0 {
         return None;
     }

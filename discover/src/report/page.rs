@@ -2,8 +2,8 @@
 //! was found and what was not, and what changed in the specification. It refers to nothing
 //! outside.
 
+use eomgen_plot::{FrequencyAxis, Panel, Series, Spectrum, TimeHistory, spectrum, time_history};
 use serde_json::Value;
-use sim::plot::{FrequencyAxis, Panel, Series, Spectrum, TimeHistory, spectrum, time_history};
 
 use crate::fit::full::Fit;
 use crate::model::problem::Setting;
@@ -337,7 +337,7 @@ fn figures(setting: &Setting<'_>, before: &Fit, after: Option<&Fit>) -> String {
             .collect(),
     };
     let mut out = time_history(&history).unwrap_or_default();
-    let step = crate::gate::typical_step(&times);
+    let step = eomgen_records::samples::typical_step(&times);
     let spectra: Vec<Vec<(&str, Density)>> = columns
         .iter()
         .map(|series| {

@@ -5,8 +5,8 @@ use crate::fit::full::Fit;
 use crate::fit::gauss_newton::{Estimate, StartPrior, evaluated};
 use crate::model::problem::Setting;
 use crate::model::unknowns::{Unknown, What};
-use crate::model::windows::Windows;
 use crate::search::response::mapped;
+use eomgen_records::windows::Windows;
 
 /// What a specification leaves, root mean squares over all channels, in noises.
 #[derive(Clone, Copy, Debug, PartialEq)]

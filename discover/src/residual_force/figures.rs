@@ -1,7 +1,7 @@
 //! Pictures of the residual force: over time, rate, place, shaft order, frequency and amplitude,
 //! before and after. A bar at each point is one standard deviation to either side.
 
-use sim::plot::{Axes, Frame, Panel, Plate, Series, plate};
+use eomgen_plot::{Axes, Frame, Panel, Plate, Series, plate};
 
 use crate::residual_force::equations::Equation;
 use crate::residual_force::{Profile, ResidualForce};

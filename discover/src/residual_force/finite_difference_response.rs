@@ -5,9 +5,9 @@ use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 
 use crate::fit::shooting::{Sensors, Shooting, samples_in};
-use crate::march::Drives;
 use crate::model::plant::Output;
-use crate::runge_kutta::RungeKutta;
+use sim::exponential::Drives;
+use sim::ode::runge_kutta::RungeKutta;
 
 /// A force is taken that moves the outputs by this part of the misfit.
 const PART: f64 = 0.3;

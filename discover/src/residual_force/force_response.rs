@@ -10,11 +10,11 @@ use rayon::prelude::*;
 use crate::fit::full::Fit;
 use crate::fit::sensitivity::Crew;
 use crate::fit::shooting::{Shooting, samples_in};
-use crate::march::Drives;
 use crate::model::problem::Setting;
 use crate::residual_force::equations::{Asked, Equations, Standing};
 use crate::residual_force::finite_difference_response::Stepped;
 use crate::search::response::At;
+use sim::exponential::Drives;
 
 /// Weights of shapes in the equations: where each equation stands, and a weight per column.
 pub type Weights<'w> = dyn Fn(&[Standing], &[f64], &mut [f64]) + Sync + 'w;

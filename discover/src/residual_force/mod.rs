@@ -222,7 +222,7 @@ fn waves(
         let orders = ORDERS.into_iter().filter(turns);
         found.extend(orders.map(|order| Family::wave(equation, Over::Order(order))));
     }
-    let step = crate::gate::typical_step(&setting.dataset.train[0].times);
+    let step = eomgen_records::samples::typical_step(&setting.dataset.train[0].times);
     let (lowest, ratio, samples) = FREQUENCIES;
     let mut frequencies: Vec<f64> = peak_frequency(setting, fit).into_iter().collect();
     let mut periods = 1.0;

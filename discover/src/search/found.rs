@@ -9,7 +9,6 @@ use crate::fit::full::Fit;
 use crate::fit::residuals::Rest;
 use crate::model::problem::Setting;
 use crate::model::unknowns::{Unknown, What, of_null_model};
-use crate::model::windows::Windows;
 use crate::search::acceptance::{Evidence, evidence};
 use crate::search::backward_elimination::thin;
 use crate::search::fitted::{Task, Trial, at_floor, leaves_less};
@@ -17,6 +16,7 @@ use crate::search::round::Look;
 use crate::search::screening::Screen;
 use crate::search::selected::{Named, leaves_clearly_less};
 use crate::thresholds;
+use eomgen_records::windows::Windows;
 
 /// An effect that was believed.
 #[derive(Clone, Debug)]

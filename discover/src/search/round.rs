@@ -11,7 +11,6 @@ use model_spec::source::Source;
 use crate::catalogue::Effect;
 use crate::catalogue::candidate::{self, Candidate, candidates};
 use crate::catalogue::sites::{plays, sites};
-use crate::dataset::Quantity;
 use crate::fit::full::Fit;
 use crate::model::problem::{FIRST_PART, Setting};
 use crate::model::unknowns::{Unknown, What};
@@ -20,6 +19,7 @@ use crate::search::parameter_offsets::shifts;
 use crate::search::screening::{Screen, screen};
 use crate::search::selected::{Named, Searched, best_of, leaves_clearly_less, named};
 use crate::thresholds;
+use eomgen_records::dataset::Quantity;
 
 /// How motions are looked at while candidates are screened.
 #[derive(Clone, Copy, PartialEq)]

@@ -3,11 +3,11 @@
 
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{Subject, difference, grid};
-use sim::solve::Trajectory;
-use sim::validate::variant::Variant;
+use eomgen_validate::variant::Variant;
+use sim::ode::Trajectory;
 
 use eomgen_tests::models::variant;
-use sim::derived::Derived;
+use eomgen_validate::derived::Derived;
 
 /// What a component is at least compared with: m or m/s. Deflections are 1e-4 m.
 const SMALLEST: f64 = 1e-6;

@@ -1,10 +1,11 @@
 //! Sampled-and-held inputs: their jumps move the motion, switching surfaces and what keeps
 //! a stuck mass in its place.
 
+use eomgen_records::read_inputs;
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 use model_spec::model::Model;
-use sim::record::{HeldInputs, read_inputs};
+use sim::inputs::HeldInputs;
 
 /// Inputs that hold from the times given on.
 fn held(model: &Model, name: &str, unit: &str, steps: &[(f64, f64)]) -> HeldInputs {

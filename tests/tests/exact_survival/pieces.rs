@@ -2,7 +2,7 @@
 //! general solver.
 
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
-use sim::exact::ExactError;
+use sim::piecewise_linear::ExactError;
 
 /// Two masses with a force on the first, shaken.
 fn with_force(force: &str) -> Subject {

@@ -2,8 +2,8 @@
 
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, Subject};
-use sim::exact::ExactError;
-use sim::solve::SolveError;
+use sim::ode::SolveError;
+use sim::piecewise_linear::ExactError;
 
 fn mass(m: f64) -> Subject {
     let spec = Spec::default()

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
-use sim::exact::ExactError;
-use sim::solve::SolveError;
+use sim::ode::SolveError;
+use sim::piecewise_linear::ExactError;
 
 /// A ball that falls onto a spring at x = 0.
 fn ball(height: f64, speed: f64) -> Spec {

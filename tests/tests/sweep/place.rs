@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use eomgen_sweep::{Folder, Table, merge};
 use eomgen_tests::program::{accepted, refused};
-use sim::sweep::{Folder, Table, merge};
 
 /// m x'' + c x' + k x = F sin(omega t), with c in a unit of its own, so that units matter.
 pub const OSCILLATOR: &str = r#"

@@ -1,0 +1,367 @@
+//! What kind of motion it is, from several kinds of evidence and by one stated rule.
+//!
+//! The evidence is gathered elsewhere in this folder; here it is only weighed.
+
+use std::f64::consts::TAU;
+use std::fmt;
+
+use super::exponent::Exponent;
+
+/// A kind of motion under periodic forcing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// It repeats.
+    Periodic {
+        /// After how many forcing periods.
+        period_multiple: usize,
+    },
+    /// It has several frequencies without a common period.
+    QuasiPeriodic,
+    /// Neighbouring motions separate exponentially.
+    Chaotic,
+    /// The evidence is thin or contradicts itself.
+    Undecided,
+}
+
+/// What is known of a motion after its transient. What could not be had is `None`; a number
+/// that is not finite counts as `None`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evidence {
+    /// The largest Lyapunov exponent, 1/s.
+    pub exponent: Option<Exponent>,
+    /// K of the 0-1 test, of a series sampled once per forcing period.
+    pub chaos_indicator: Option<f64>,
+    /// The period found on the section, in forcing periods.
+    pub period: Option<usize>,
+    /// Of the power that is not the forcing's and its harmonics', the share that lies in discrete
+    /// lines of the spectrum. With them every forced motion has nearly all of it in lines.
+    pub line_share: Option<f64>,
+    /// The forcing frequency, rad/s.
+    pub forcing: f64,
+}
+
+/// A kind of motion with what speaks for it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Verdict {
+    /// The kind.
+    pub motion: Motion,
+    /// A sentence for people: the kind, the numbers and, if undecided, what is missing.
+    pub sentence: String,
+}
+
+/// The least growth that counts as such, per forcing period: neighbours drift apart by a
+/// factor e in 100 periods. A neutral direction of a finite record stays below.
+pub const LEAST_GROWTH: f64 = 0.01;
+/// The most growth per forcing period that may be hidden in the error of an exponent that
+/// passes for zero.
+pub const HIDDEN_GROWTH: f64 = 0.1;
+/// How many standard errors make an exponent significant.
+pub const SIGNIFICANCE: f64 = 3.0;
+/// From this K on the 0-1 test speaks for chaos by itself.
+pub const CHAOS: f64 = 0.8;
+/// Up to this K the 0-1 test speaks for regular motion by itself.
+pub const REGULAR: f64 = 0.2;
+/// Between the two, K and the spectrum must agree: K on its side of this.
+pub const MIDDLE: f64 = 0.5;
+/// A spectrum with a smaller share in lines is continuous.
+pub const CONTINUOUS: f64 = 0.5;
+/// A spectrum with a larger share in lines is discrete.
+pub const DISCRETE: f64 = 0.9;
+
+/// What the exponent says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Growth {
+    Positive,
+    NotPositive,
+    Unknown,
+}
+
+/// Weighs the evidence.
+///
+/// With l the exponent, s its standard error, T = 2 pi/forcing, K the chaos indicator and L
+/// the share of the power beside the forcing's harmonics that is in lines:
+///
+/// * l is *positive* if l > max(3 s, 0.01/T), and *not positive* if l <= max(3 s, 0.01/T)
+///   and l + 3 s <= 0.1/T: an error so large that it could hide growth is no evidence. A
+///   rigid rotation gives an exponent of zero, so the largest is often zero and not below.
+/// * **Chaotic**: l is positive, no period was found, and K >= 0.8, or K >= 0.5 with
+///   L < 0.5.
+/// * **Periodic**: l is not positive and a period was found. K and L are not asked: a period
+///   repeats to the tolerance of the section, and K of a motion repeating after many periods
+///   is no sharp test.
+/// * **Quasi-periodic**: l is not positive, no period was found, and K <= 0.2, or K <= 0.5
+///   with L > 0.9.
+/// * **Undecided**: everything else. Growth with a period, or growth without diffusion, is a
+///   contradiction: most often the record is too short or the transient has not passed.
+///
+/// A period beyond the longest looked for counts as none, so a motion of very long period is
+/// called quasi-periodic.
+pub fn classify(evidence: &Evidence) -> Verdict {
+    let (motion, reason) = judge(evidence);
+    Verdict {
+        motion,
+        sentence: format!("{motion}: {reason} ({}).", Numbers(evidence)),
+    }
+}
+
+fn judge(evidence: &Evidence) -> (Motion, &'static str) {
+    let k = finite(evidence.chaos_indicator);
+    let lines = finite(evidence.line_share);
+    match (growth(evidence), evidence.period, k) {
+        (Growth::Unknown, ..) => (Motion::Undecided, "the exponent is not known well enough"),
+        (Growth::Positive, Some(_), _) => (
+            Motion::Undecided,
+            "neighbouring motions separate, yet the section repeats",
+        ),
+        (Growth::NotPositive, Some(period_multiple), _) => (
+            Motion::Periodic { period_multiple },
+            "the section repeats and neighbouring motions stay together",
+        ),
+        (_, None, None) => (Motion::Undecided, "the 0-1 test is missing"),
+        (Growth::Positive, None, Some(k)) => judge_growing(k, lines),
+        (Growth::NotPositive, None, Some(k)) => judge_bounded(k, lines),
+    }
+}
+
+/// Neighbours separate and no period was found.
+fn judge_growing(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
+    let is_continuous = lines.is_some_and(|share| share < CONTINUOUS);
+    if k >= CHAOS {
+        let reason = "neighbouring motions separate and the section diffuses";
+        (Motion::Chaotic, reason)
+    } else if k >= MIDDLE && is_continuous {
+        let reason = "neighbouring motions separate and the spectrum is continuous";
+        (Motion::Chaotic, reason)
+    } else {
+        let reason = "neighbouring motions separate, yet the section does not diffuse";
+        (Motion::Undecided, reason)
+    }
+}
+
+/// Neighbours stay together and no period was found.
+fn judge_bounded(k: f64, lines: Option<f64>) -> (Motion, &'static str) {
+    let is_discrete = lines.is_some_and(|share| share > DISCRETE);
+    if k <= REGULAR {
+        let reason = "neighbouring motions stay together and the section neither repeats nor \
+                      diffuses";
+        (Motion::QuasiPeriodic, reason)
+    } else if k <= MIDDLE && is_discrete {
+        let reason = "neighbouring motions stay together, the section does not repeat and the \
+                      spectrum has lines only";
+        (Motion::QuasiPeriodic, reason)
+    } else {
+        let reason = "neighbouring motions stay together, yet the section diffuses";
+        (Motion::Undecided, reason)
+    }
+}
+
+fn growth(evidence: &Evidence) -> Growth {
+    let Some(Exponent {
+        value,
+        standard_error,
+    }) = evidence.exponent
+    else {
+        return Growth::Unknown;
+    };
+    let per_second = evidence.forcing / TAU;
+    let hidden = SIGNIFICANCE * standard_error;
+    let least = hidden.max(LEAST_GROWTH * per_second);
+    let is_known =
+        value.is_finite() && hidden.is_finite() && per_second.is_finite() && per_second > 0.0;
+    if is_known && value > least {
+        Growth::Positive
+    } else if is_known && value + hidden <= HIDDEN_GROWTH * per_second {
+        Growth::NotPositive
+    } else {
+        Growth::Unknown
+    }
+}
+
+fn finite(number: Option<f64>) -> Option<f64> {
+    number.filter(|number| number.is_finite())
+}
+
+impl fmt::Display for Motion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Periodic { period_multiple: 1 } => {
+                write!(f, "periodic with the period of the forcing")
+            }
+            Self::Periodic { period_multiple } => {
+                write!(f, "periodic with {period_multiple} periods of the forcing")
+            }
+            Self::QuasiPeriodic => write!(f, "quasi-periodic"),
+            Self::Chaotic => write!(f, "chaotic"),
+            Self::Undecided => write!(f, "undecided"),
+        }
+    }
+}
+
+/// The evidence as people read it.
+struct Numbers<'a>(&'a Evidence);
+
+impl fmt::Display for Numbers<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Evidence {
+            exponent,
+            chaos_indicator,
+            period,
+            line_share,
+            forcing,
+        } = self.0;
+        match exponent {
+            Some(exponent) => write!(
+                f,
+                "largest exponent {:.3} ± {:.3} 1/s, {:.3} per forcing period",
+                exponent.value,
+                exponent.standard_error,
+                exponent.value * TAU / forcing
+            )?,
+            None => write!(f, "no exponent")?,
+        }
+        match finite(*chaos_indicator) {
+            Some(k) => write!(f, "; 0-1 test K = {k:.2}")?,
+            None => write!(f, "; no 0-1 test")?,
+        }
+        match period {
+            Some(1) => write!(f, "; period 1 forcing period")?,
+            Some(period) => write!(f, "; period {period} forcing periods")?,
+            None => write!(f, "; no period found")?,
+        }
+        match finite(*line_share) {
+            Some(share) => write!(
+                f,
+                "; {:.0} % of the power beside the harmonics in lines",
+                100.0 * share
+            ),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exponent::mean_exponent;
+    use crate::maps::{circle, logistic};
+    use crate::poincare::Section;
+    use crate::spectrum::{Trend, welch};
+    use crate::zero_one::chaos_indicator;
+
+    const QUASI_PERIODIC: Evidence = Evidence {
+        exponent: Some(Exponent {
+            value: 0.001,
+            standard_error: 0.01,
+        }),
+        chaos_indicator: Some(0.02),
+        period: None,
+        line_share: Some(0.98),
+        forcing: 10.0 * std::f64::consts::PI,
+    };
+
+    fn growing(value: f64, standard_error: f64) -> Evidence {
+        Evidence {
+            exponent: Some(Exponent {
+                value,
+                standard_error,
+            }),
+            chaos_indicator: Some(0.97),
+            line_share: Some(0.2),
+            ..QUASI_PERIODIC
+        }
+    }
+
+    /// All that this folder finds in a map x -> f(x) with the slopes f'(x), one step per
+    /// second.
+    fn evidence(series: &[f64], slope: impl Fn(f64) -> f64) -> Evidence {
+        let growths: Vec<f64> = series.iter().map(|x| slope(*x).abs().ln()).collect();
+        let observed: Vec<f64> = series.iter().map(|x| (TAU * x).cos()).collect();
+        let section = Section {
+            points: &observed,
+            scale: &[2.0],
+        };
+        let spectrum = welch(&observed, 1.0, 250, Trend::Mean).unwrap();
+        Evidence {
+            exponent: mean_exponent(&growths, 1.0).ok(),
+            chaos_indicator: chaos_indicator(&observed).ok(),
+            period: section.shape(1e-6).unwrap().period,
+            line_share: spectrum.line_share(),
+            forcing: TAU,
+        }
+    }
+
+    #[test]
+    fn known_maps_are_called_what_they_are() {
+        let logistic_slope = |r: f64| move |x: f64| r * (1.0 - 2.0 * x);
+        let (golden, strength) = ((5_f64.sqrt() - 1.0) / 2.0, 0.8);
+        let circle_slope = |x: f64| 1.0 - strength * (TAU * x).cos();
+        for (motion, evidence) in [
+            (
+                Motion::Chaotic,
+                evidence(&logistic(4.0, 2000), logistic_slope(4.0)),
+            ),
+            (
+                Motion::Periodic { period_multiple: 4 },
+                evidence(&logistic(3.5, 2000), logistic_slope(3.5)),
+            ),
+            (
+                Motion::QuasiPeriodic,
+                evidence(&circle(golden, strength, 2000), circle_slope),
+            ),
+        ] {
+            let verdict = classify(&evidence);
+            assert_eq!(verdict.motion, motion, "{}", verdict.sentence);
+        }
+    }
+
+    #[test]
+    fn thin_evidence_decides_nothing() {
+        let (mut repeating, mut vague) = (growing(5.0, 0.1), [QUASI_PERIODIC; 5]);
+        repeating.period = Some(3);
+        vague[0].exponent = None;
+        vague[1].chaos_indicator = None;
+        vague[2].chaos_indicator = Some(0.6);
+        (vague[3].chaos_indicator, vague[3].line_share) = (Some(0.4), None);
+        vague[4].forcing = 0.0;
+        // 0.01 growth per period of 0.2 s is 0.05 1/s; 0.1 is 0.5 1/s: an error that hides
+        // growth, and diffusion with too little of it.
+        let thin = [(0.4, 0.2), (0.04, 0.0), (f64::NAN, 0.0)];
+        let thin = thin.map(|(value, error)| growing(value, error));
+        for evidence in thin.iter().chain(&vague).chain([&repeating]) {
+            let verdict = classify(evidence);
+            assert_eq!(verdict.motion, Motion::Undecided, "{}", verdict.sentence);
+        }
+    }
+
+    #[test]
+    fn the_spectrum_breaks_the_tie() {
+        let moderate = |evidence: Evidence, k| Evidence {
+            chaos_indicator: Some(k),
+            ..evidence
+        };
+        assert_eq!(
+            classify(&moderate(growing(5.0, 0.1), 0.6)).motion,
+            Motion::Chaotic
+        );
+        assert_eq!(
+            classify(&moderate(QUASI_PERIODIC, 0.4)).motion,
+            Motion::QuasiPeriodic
+        );
+    }
+
+    #[test]
+    fn the_sentence_gives_kind_and_numbers() {
+        assert_eq!(
+            classify(&growing(5.0, 0.25)).sentence,
+            "chaotic: neighbouring motions separate and the section diffuses (largest exponent \
+             5.000 ± 0.250 1/s, 1.000 per forcing period; 0-1 test K = 0.97; no period found; \
+             20 % of the power beside the harmonics in lines)."
+        );
+        let periodic = Evidence {
+            period: Some(2),
+            ..QUASI_PERIODIC
+        };
+        let sentence = classify(&periodic).sentence;
+        assert!(sentence.starts_with("periodic with 2 periods of the forcing: the section"));
+    }
+}

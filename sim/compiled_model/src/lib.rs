@@ -1,0 +1,3 @@
+//! A derived model that can be run.
+
+pub mod driven;

@@ -1,0 +1,299 @@
+//! Which hand-written equations belong to a model, as references for its certificate. The
+//! equations themselves are in [`crate::reference`].
+
+use model_spec::model::Model;
+use model_spec::source::Source;
+
+use crate::reference::closed_forms::{self, Situation};
+use crate::reference::equation_10::{self, ShaftMotion};
+use crate::reference::equation_22::{Coefficients, Equation22};
+use crate::reference::{Evaluation, PlanetaryArmParameters, equation_12};
+use crate::same_motion::difference;
+use eomgen_validate::certificate::Check;
+use eomgen_validate::certify::{ByHand, Reference};
+use eomgen_validate::checks::ROW_TOLERANCE;
+
+/// The paper's time scale omega_n = sqrt(k_sp/M_sp), in rad/s, and displacement scale b_c, in m.
+const PAPER_SCALES: (f64, f64) = (3.0885e4, 25e-6);
+
+/// The specifications that were written out by hand. A model of the same name may follow
+/// other conventions; only what has the very equations of one of them is the same machine.
+const SHIPPED: [&str; 8] = [
+    include_str!("../../../model-spec/models/planetary_arm.toml"),
+    include_str!("../../../model-spec/models/double_pendulum.toml"),
+    include_str!("../../../model-spec/models/cart_two_arms.toml"),
+    include_str!("../../../model-spec/models/furuta_pendulum.toml"),
+    include_str!("../../../model-spec/models/hub_beam_tip_mass.toml"),
+    include_str!("../../../model-spec/models/pendulum.toml"),
+    include_str!("../../../model-spec/models/emps.toml"),
+    include_str!("../../../model-spec/models/two_link_arm.toml"),
+];
+
+/// The arm's derived parameters that its hand-written equations take as they are.
+const GIVEN_OF_THE_ARM: [&str; 3] = ["I_s", "I_p", "I_c"];
+
+/// What was written by hand for `model` at `order`, with parameter values in SI.
+pub fn by_hand(model: &Model, order: usize, values: &[f64]) -> ByHand {
+    let known = match written(model) {
+        Ok(known) => known,
+        Err(reason) => return absent("reference", reason),
+    };
+    if known.name == "planetary_arm" {
+        return match arm_parameters(model, values) {
+            Some(parameters) => arm(parameters, order),
+            None => absent("reference", "a parameter is missing".to_owned()),
+        };
+    }
+    match closed_form(&known, model, order, values) {
+        Ok(reference) => ByHand {
+            references: vec![reference],
+            absent: Vec::new(),
+        },
+        Err(reason) => absent("reference closed_form", reason),
+    }
+}
+
+fn absent(name: &str, reason: String) -> ByHand {
+    ByHand {
+        references: Vec::new(),
+        absent: vec![Check::skipped(name, ROW_TOLERANCE, reason)],
+    }
+}
+
+/// The shipped specification with the equations of `model`, or why there is none.
+fn written(model: &Model) -> Result<Model, String> {
+    let mut reason = format!("nobody has written the equations of {} by hand", model.name);
+    for text in SHIPPED {
+        let Ok(checked) = model_spec::check(Source::new("a shipped specification", text)) else {
+            continue;
+        };
+        let known = checked.model;
+        let all: Vec<&str> = known.parameters.iter().map(|p| p.name.as_str()).collect();
+        let given = match known.name.as_str() {
+            "planetary_arm" => &GIVEN_OF_THE_ARM[..],
+            _ => &all,
+        };
+        match difference(model, &known, given) {
+            None => return Ok(known),
+            Some(found) if known.name == model.name => {
+                reason = format!("this is not the {} written by hand: {found}", known.name);
+            }
+            Some(_) => {}
+        }
+    }
+    Err(reason)
+}
+
+/// Eq. (12) and Eq. (10) for the rigid arm; Eq. (22) in SI and in the paper's scales for the flexible one.
+fn arm(parameters: PlanetaryArmParameters, order: usize) -> ByHand {
+    if order == 0 {
+        return ByHand {
+            references: rigid_arm(parameters),
+            absent: Vec::new(),
+        };
+    }
+    let coefficients = Coefficients::new(&parameters, order);
+    let mut found = ByHand {
+        references: vec![reference(
+            "equation_22",
+            move |t, state, _, accelerations| {
+                coefficients
+                    .evaluate(t, state)
+                    .map_or(f64::INFINITY, |expected| expected.deviation(accelerations))
+            },
+        )],
+        absent: Vec::new(),
+    };
+    match scaled(&parameters, order) {
+        Some(reference) => found.references.push(reference),
+        None => found.absent.push(Check::skipped(
+            "reference equation_22_dimensionless",
+            ROW_TOLERANCE,
+            "written out for 1 to 8, 16, 32, 64 and 128 modes",
+        )),
+    }
+    found
+}
+
+fn rigid_arm(parameters: PlanetaryArmParameters) -> Vec<Reference> {
+    vec![
+        reference(
+            "equation_12",
+            move |t, state, _, accelerations| match <&[f64; 6]>::try_from(state) {
+                Ok(state) => equation_12::corrected(&parameters, t, state).deviation(accelerations),
+                Err(_) => f64::INFINITY,
+            },
+        ),
+        reference("equation_10", move |t, state, _, accelerations| {
+            shaft_motion(&parameters, state, accelerations).map_or(f64::INFINITY, |motion| {
+                equation_10::corrected(&parameters, t, &motion).worst()
+            })
+        }),
+    ]
+}
+
+/// The shafts' angles, rates and accelerations, Eq. (1) to (5).
+fn shaft_motion(
+    parameters: &PlanetaryArmParameters,
+    state: &[f64],
+    accelerations: &[f64],
+) -> Option<ShaftMotion> {
+    let state = <&[f64; 6]>::try_from(state).ok()?;
+    let [a, b, c] = *<&[f64; 3]>::try_from(accelerations).ok()?;
+    let shafts = |x_sp: f64, x_pr: f64, x_c: f64| {
+        [
+            (x_sp + x_pr + 2.0 * x_c) / parameters.r_s(),
+            (x_pr + x_c) / parameters.r_p(),
+            x_c / parameters.r_c_cos_alpha(),
+        ]
+    };
+    Some(ShaftMotion {
+        // Nothing depends on where the arm points. Angles of a turned arm would cost the mesh
+        // deflections, differences of a micrometre, six digits.
+        angle: shafts(state[0], state[1], 0.0),
+        rate: shafts(state[3], state[4], state[5]),
+        acceleration: shafts(a, b, c),
+    })
+}
+
+/// Eq. (22) in dimensionless form; its order is fixed when it is compiled.
+fn scaled(parameters: &PlanetaryArmParameters, order: usize) -> Option<Reference> {
+    macro_rules! at_orders {
+        ($($s:literal)*) => {
+            match order {
+                $($s => Some(scaled_reference::<$s>(parameters)),)*
+                _ => None,
+            }
+        };
+    }
+    at_orders!(1 2 3 4 5 6 7 8 16 32 64 128)
+}
+
+fn scaled_reference<const S: usize>(parameters: &PlanetaryArmParameters) -> Reference {
+    let (omega_n, b_c) = PAPER_SCALES;
+    let equation = Equation22::<S>::new(parameters, omega_n, b_c);
+    let scales = Coefficients::new(parameters, S);
+    reference(
+        "equation_22_dimensionless",
+        move |t, state, _, accelerations| {
+            let (positions, rates) = state.split_at(state.len() / 2);
+            let scaled: Vec<f64> = positions
+                .iter()
+                .map(|x| x / b_c)
+                .chain(rates.iter().map(|v| v / (b_c * omega_n)))
+                .collect();
+            let mut out = vec![0.0; scaled.len()];
+            equation.rates(omega_n * t, &scaled, &mut out);
+            let Some(dimensional) = scales.evaluate(t, state) else {
+                return f64::INFINITY;
+            };
+            let expected = Evaluation {
+                accelerations: out[positions.len()..]
+                    .iter()
+                    .map(|a| a * b_c * omega_n * omega_n)
+                    .collect(),
+                scales: dimensional.scales,
+            };
+            expected.deviation(accelerations)
+        },
+    )
+}
+
+fn reference(
+    name: &str,
+    deviation: impl Fn(f64, &[f64], &[f64], &[f64]) -> f64 + 'static,
+) -> Reference {
+    Reference {
+        name: name.to_owned(),
+        deviation: Box::new(deviation),
+    }
+}
+
+/// The textbook equations of `known` with the values of `model`, or why they do not apply.
+fn closed_form(
+    known: &Model,
+    model: &Model,
+    order: usize,
+    values: &[f64],
+) -> Result<Reference, String> {
+    let form = closed_forms::find(&known.name).ok_or("there is no closed form")?;
+    // A parameter that only this model has stands in none of the equations, whatever its name.
+    let stands = |name: &str| known.parameters.iter().any(|own| own.name == name);
+    let parameters: Vec<(String, f64)> = model
+        .parameters
+        .iter()
+        .map(|parameter| parameter.name.clone())
+        .zip(values.iter().copied())
+        .filter(|(name, _)| stands(name))
+        .collect();
+    let names: Vec<String> = model
+        .inputs
+        .iter()
+        .map(|input| input.name.clone())
+        .collect();
+    let evaluate = move |state: &[f64], inputs: &[f64]| {
+        form(&Situation {
+            parameter: &|name| {
+                parameters
+                    .iter()
+                    .find(|(own, _)| own == name)
+                    .map(|(_, value)| *value)
+            },
+            input: &|name| {
+                inputs
+                    .get(names.iter().position(|own| own == name)?)
+                    .copied()
+            },
+            order,
+            state,
+        })
+    };
+    let modes: usize = order * model.fields.len();
+    let rest = vec![0.0; 2 * (model.coordinates.len() + modes)];
+    let still = vec![0.0; model.inputs.len()];
+    evaluate(&rest, &still).map_err(|unfit| unfit.to_string())?;
+    Ok(reference(
+        "closed_form",
+        move |_, state, inputs, accelerations| {
+            evaluate(state, inputs)
+                .map_or(f64::INFINITY, |expected| expected.deviation(accelerations))
+        },
+    ))
+}
+
+/// The arm's parameters by their names; `None` if one is missing.
+pub fn arm_parameters(model: &Model, values: &[f64]) -> Option<PlanetaryArmParameters> {
+    let value = |name: &str| {
+        let place = model
+            .parameters
+            .iter()
+            .position(|parameter| parameter.name == name)?;
+        values.get(place).copied()
+    };
+    Some(PlanetaryArmParameters {
+        k_sp: value("k_sp")?,
+        k_pr: value("k_pr")?,
+        c_sp: value("c_sp")?,
+        c_pr: value("c_pr")?,
+        b_sp: value("b_sp")?,
+        b_pr: value("b_pr")?,
+        m_p: value("m_p")?,
+        I_s: value("I_s")?,
+        I_p: value("I_p")?,
+        I_c: value("I_c")?,
+        rho: value("rho")?,
+        A: value("A")?,
+        l: value("l")?,
+        E: value("E")?,
+        I: value("I")?,
+        alpha: value("alpha")?,
+        z_s: value("z_s")?,
+        z_p: value("z_p")?,
+        z_r: value("z_r")?,
+        m: value("m")?,
+        a_m: value("a_m")?,
+        b_m: value("b_m")?,
+        F_w: value("F_w")?,
+        omega: value("omega")?,
+    })
+}

@@ -1,0 +1,238 @@
+//! The paper's arm at any values of what the paper does not disclose: propagators by order,
+//! and the lengths that turn a state into the paper's quantities.
+
+use std::f64::consts::TAU;
+
+use model_spec::model::Model;
+use model_spec::source::Source;
+
+use super::error::StudyError;
+use crate::reference::mode_shapes::ModeShape;
+use sim::piecewise_linear::{PiecewiseLinear, Propagator};
+
+/// The paper's arm as it is shipped.
+const SPECIFICATION: &str = include_str!("../../../../model-spec/models/planetary_arm.toml");
+
+/// What the paper does not disclose. Both meshes have the same damping.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Undisclosed {
+    /// The arm's second moment of area I, m^4.
+    pub second_moment: f64,
+    /// The motor's constant torque a_m of Eq. (11), N m.
+    pub a_m: f64,
+    /// The fall of the motor's torque with speed b_m, N m s.
+    pub b_m: f64,
+    /// The amplitude of the torque ripple F_w, N m.
+    pub f_w: f64,
+    /// The damping of both meshes c_sp = c_pr, N s/m.
+    pub c: f64,
+}
+
+impl Undisclosed {
+    /// The values assumed throughout the project; a square section of 10 mm.
+    pub const ASSUMED: Self = Self {
+        second_moment: 8.333e-10,
+        a_m: 2.0,
+        b_m: 0.05,
+        f_w: 5.0,
+        c: 650.0,
+    };
+}
+
+/// One of the paper's cases.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Case {
+    /// The modal truncation order S; 0 is the rigid arm.
+    pub order: usize,
+    /// Half the backlash of both meshes b, m.
+    pub backlash: f64,
+    /// The frequency of the torque ripple, rad/s.
+    pub omega: f64,
+    /// The rest.
+    pub undisclosed: Undisclosed,
+}
+
+impl Case {
+    /// The forcing period, s.
+    pub fn period(&self) -> f64 {
+        TAU / self.omega
+    }
+}
+
+/// Which mode shapes the arm is derived with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shapes {
+    /// Those of a clamped-free beam.
+    #[default]
+    Corrected,
+    /// Those that Eq. (18) and (19) print, with a root that is none and the wrong sign.
+    Printed,
+}
+
+impl Shapes {
+    /// The name of the basis in a specification.
+    fn basis(self) -> &'static str {
+        match self {
+            Self::Corrected => "\"clamped_free\"",
+            Self::Printed => "\"clamped_free_printed\"",
+        }
+    }
+
+    fn shape(self, number: usize) -> ModeShape {
+        match self {
+            Self::Corrected => ModeShape::clamped_free(number),
+            Self::Printed => ModeShape::printed(number),
+        }
+    }
+}
+
+/// The paper's arm, derived once for each order.
+pub struct Arm {
+    shapes: Shapes,
+    model: Model,
+    derived: Vec<(usize, PiecewiseLinear)>,
+    names: Vec<String>,
+    values: Vec<f64>,
+}
+
+impl Arm {
+    /// Derives the shipped arm at these modal truncation orders.
+    ///
+    /// # Errors
+    /// If it cannot be derived at an order.
+    pub fn new(orders: &[usize]) -> Result<Self, StudyError> {
+        Self::with(Shapes::Corrected, orders)
+    }
+
+    /// Derives the shipped arm with these mode shapes.
+    ///
+    /// # Errors
+    /// If it cannot be derived at an order.
+    pub fn with(shapes: Shapes, orders: &[usize]) -> Result<Self, StudyError> {
+        let text = SPECIFICATION.replace(Shapes::Corrected.basis(), shapes.basis());
+        let source = Source::new("planetary_arm.toml", text);
+        let checked = model_spec::check(source)
+            .map_err(|diagnostics| StudyError::Request(diagnostics.render(false)))?;
+        let model = checked.model;
+        let values = model
+            .parameter_values()
+            .map_err(|error| StudyError::Request(error.diagnostic().message))?;
+        let names = model.parameters.iter().map(|p| p.name.clone()).collect();
+        let mut derived = Vec::with_capacity(orders.len());
+        for &order in orders {
+            derived.push((order, PiecewiseLinear::of(&model, &[order])?));
+        }
+        Ok(Self {
+            shapes,
+            model,
+            derived,
+            names,
+            values,
+        })
+    }
+
+    /// The specification's model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The mode shapes it is derived with.
+    pub fn shapes(&self) -> Shapes {
+        self.shapes
+    }
+
+    /// A propagator of a case.
+    ///
+    /// # Errors
+    /// An order that was not derived, or values that no machine has.
+    pub fn propagator(&self, case: &Case) -> Result<Propagator, StudyError> {
+        let derived = self.derived.iter().find(|(order, _)| *order == case.order);
+        let Some((_, family)) = derived else {
+            return Err(StudyError::Request(format!(
+                "the arm was not derived at order {}",
+                case.order
+            )));
+        };
+        let values: Vec<f64> = family
+            .parameters()
+            .iter()
+            .map(|name| set(case, name).unwrap_or_else(|| self.shipped(name)))
+            .collect();
+        Ok(family.at(&values)?)
+    }
+
+    /// The value that the specification gives a parameter, SI.
+    fn shipped(&self, name: &str) -> f64 {
+        let place = self.names.iter().position(|known| known == name);
+        let value = place.and_then(|place| self.values.get(place));
+        value.copied().unwrap_or(f64::NAN)
+    }
+
+    /// The lengths of a case.
+    pub fn lengths(&self, case: &Case) -> Lengths {
+        let at = |name| self.shipped(name);
+        let (rho, area, l) = (at("rho"), at("A"), at("l"));
+        let bending = at("E") * case.undisclosed.second_moment / (rho * area * l.powi(4));
+        let shapes = (1..=case.order).map(|number| self.shapes.shape(number));
+        let shapes: Vec<ModeShape> = shapes.collect();
+        let carrier =
+            (at("I_c") + 3.0 * at("m_p") * at("r_c").powi(2) + rho * area * l.powi(3) / 3.0)
+                / at("i_sH").powi(2);
+        let planets = 3.0 * at("I_p") * (at("r_s") / (2.0 * at("r_p"))).powi(2);
+        let inertia = at("I_s") + planets + carrier;
+        Lengths {
+            transmission: l / (at("r_s") * at("i_sH")),
+            at_tip: shapes.iter().map(|shape| shape.value(1.0)).collect(),
+            natural: shapes
+                .iter()
+                .map(|shape| shape.beta_l.powi(2) * bending.sqrt() / TAU)
+                .collect(),
+            carrier_rate: (rho * area * l / inertia).sqrt() * at("r_s") / 2.0,
+            mesh_deflection: (rho * area * l / (3.0 * at("k_sp"))).sqrt(),
+            mesh_rate: (rho * area * l / at("M_s")).sqrt(),
+            inertia,
+        }
+    }
+}
+
+/// The value that a case gives a parameter, SI.
+fn set(case: &Case, name: &str) -> Option<f64> {
+    let Undisclosed {
+        second_moment,
+        a_m,
+        b_m,
+        f_w,
+        c,
+    } = case.undisclosed;
+    Some(match name {
+        "I" => second_moment,
+        "a_m" => a_m,
+        "b_m" => b_m,
+        "F_w" => f_w,
+        "c_sp" | "c_pr" => c,
+        "b_sp" | "b_pr" => case.backlash,
+        "omega" => case.omega,
+        _ => return None,
+    })
+}
+
+/// What turns a state into the paper's quantities.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lengths {
+    /// l dtheta/(x_sp + x_pr) of Eq. (23), (24): l/(r_s i_sH).
+    pub transmission: f64,
+    /// phi_i(l) of each mode.
+    pub at_tip: Vec<f64>,
+    /// The rate x_c' with which the whole drive has the kinetic energy of the arm moving at
+    /// unit rate.
+    pub carrier_rate: f64,
+    /// The deflection of a mesh with the energy of the arm moving at unit rate.
+    pub mesh_deflection: f64,
+    /// The rate of a mesh with that energy, carried by the sun.
+    pub mesh_rate: f64,
+    /// The natural frequencies of the clamped arm, Hz.
+    pub natural: Vec<f64>,
+    /// The inertia of the whole drive with a rigid arm and tight meshes, seen from the sun,
+    /// kg m^2.
+    pub inertia: f64,
+}

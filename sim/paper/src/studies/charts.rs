@@ -1,0 +1,87 @@
+//! The result of a search as figures: how many claims hold at once, and how often each does.
+
+use eomgen_plot::bars::{Histogram, Shares, histogram, shares};
+use eomgen_plot::{PlotError, Reference};
+
+use super::claims::CLAIMS;
+use super::error::StudyError;
+use super::judge::{Holding, Judgement};
+use super::report::Figure;
+use super::search::Found;
+use super::tally;
+
+/// The figures of a search, with the claims as judged at the assumed values.
+///
+/// # Errors
+/// If nothing was judged.
+pub fn charts(found: &Found, assumed: &[Judgement]) -> Result<Vec<Figure>, StudyError> {
+    let refused = |error: PlotError| StudyError::Request(error.to_string());
+    Ok(vec![
+        together(found, assumed).map_err(refused)?,
+        one_by_one(found).map_err(refused)?,
+    ])
+}
+
+/// How many of the sets have how many claims that hold.
+fn together(found: &Found, assumed: &[Judgement]) -> Result<Figure, PlotError> {
+    let holds = |judgement: &&Judgement| judgement.holding == Holding::Holds;
+    let mark = |label: &str, number: usize| Reference {
+        label: format!("{label}: {number}"),
+        value: number as f64,
+    };
+    let mut marks = vec![mark("assumed values", assumed.iter().filter(holds).count())];
+    if let Some(best) = found.confirmed.first() {
+        marks.push(mark("best", best.holding()));
+    }
+    marks.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let caption = format!(
+        "How many of the {} claims hold at once, for {} parameter sets",
+        CLAIMS.len(),
+        found.screened.len()
+    );
+    let svg = histogram(&Histogram {
+        title: caption.clone(),
+        number: "claims that hold".to_owned(),
+        count: "parameter sets".to_owned(),
+        counts: &tally::histogram(&found.screened),
+        marks,
+    })?;
+    Ok(figure("together.svg", caption, svg))
+}
+
+/// In what share of the sets each claim holds.
+fn one_by_one(found: &Found) -> Result<Figure, PlotError> {
+    let rows = CLAIMS.iter().zip(tally::shares(&found.screened));
+    let rows = rows.map(|(claim, share)| {
+        // Underscores would set what follows as a subscript.
+        let parts = vec![
+            share.holds_strictly,
+            share.holds - share.holds_strictly,
+            share.undecided,
+            share.fails,
+        ];
+        (claim.id.replace('_', " "), parts)
+    });
+    let caption = format!(
+        "How often each claim holds, over {} parameter sets",
+        found.screened.len()
+    );
+    let svg = shares(&Shares {
+        title: caption.clone(),
+        parts: ["holds strictly", "holds", "undecided", "fails"]
+            .map(str::to_owned)
+            .into(),
+        rows: rows.collect(),
+    })?;
+    Ok(figure("claims.svg", caption, svg))
+}
+
+fn figure(file: &str, caption: String, svg: String) -> Figure {
+    Figure {
+        file: file.to_owned(),
+        paper: String::new(),
+        caption,
+        cases: Vec::new(),
+        svg,
+    }
+}

@@ -1,0 +1,103 @@
+//! A case as the paper's figures show it: densely sampled series and their spectra. What is
+//! measured of a case is another matter, see [`super::case`](mod@super::case).
+
+use eomgen_analysis::spectrum::{PowerSpectrum, Trend, welch};
+use sim::inputs::HeldInputs;
+
+use super::arm::{Arm, Case};
+use super::case::Record;
+use super::error::StudyError;
+
+/// Samples per second: twice what the meshes' own vibration of 5 kHz needs.
+const RATE: f64 = 20_480.0;
+/// How long a case is recorded for its spectra, s: a whole number of forcing periods.
+const RECORDED: f64 = 40.0;
+/// Forcing periods in a segment of a spectrum, which is averaged over 19 segments and more.
+const SEGMENT: usize = 10;
+/// The time histories of the figures show so much, s: 5 or 10 forcing periods.
+pub(super) const WINDOW: f64 = 2.0;
+/// The spectra show this band, Hz: from below the forcing to above the meshes.
+pub(super) const BAND: (f64, f64) = (1.0, 1e4);
+
+/// A case sampled after its transient.
+#[derive(Clone, Debug)]
+pub struct Display {
+    /// What was run.
+    pub case: Case,
+    /// The natural frequencies of the clamped arm, Hz.
+    pub natural: Vec<f64>,
+    /// The series over the window that the figures show; times from the start at rest.
+    pub history: Record,
+    /// The spectrum of x_sp, m^2/Hz, over the band that the figures show.
+    pub x_sp: PowerSpectrum,
+    /// That of f_la.
+    pub f_la: PowerSpectrum,
+    /// That of dr.
+    pub dr: PowerSpectrum,
+}
+
+impl Display {
+    /// Runs a case from rest at zero and records it from `transient` s on.
+    ///
+    /// # Errors
+    /// Values that no machine has, switches without end.
+    pub fn of(arm: &Arm, case: &Case, transient: f64) -> Result<Self, StudyError> {
+        let per_period = (RATE * case.period()).round();
+        let step = case.period() / per_period;
+        let periods = (RECORDED / case.period()).round();
+        let times = even_times(transient, step, (periods * per_period) as usize);
+        let record = sampled(arm, case, &times)?;
+        let segment = SEGMENT * per_period as usize;
+        let spectrum = |values: &[f64]| -> Result<PowerSpectrum, StudyError> {
+            Ok(in_band(welch(values, step, segment, Trend::Mean)?))
+        };
+        Ok(Self {
+            case: *case,
+            natural: arm.lengths(case).natural,
+            x_sp: spectrum(&record.x_sp)?,
+            f_la: spectrum(&record.f_la)?,
+            dr: spectrum(&record.dr)?,
+            history: first(record, (WINDOW / step).ceil() as usize + 1),
+        })
+    }
+}
+
+/// Times `step` s apart.
+pub(super) fn even_times(begin: f64, step: f64, steps: usize) -> Vec<f64> {
+    (0..=steps).map(|n| begin + n as f64 * step).collect()
+}
+
+/// The series of a case, started from rest at zero, at these times in s.
+pub(super) fn sampled(arm: &Arm, case: &Case, times: &[f64]) -> Result<Record, StudyError> {
+    let mut propagator = arm.propagator(case)?;
+    let end = times.last().copied().unwrap_or_default();
+    let initial = vec![0.0; propagator.states()];
+    let none = HeldInputs::zero(0);
+    let trajectory = propagator.simulate(&initial, (0.0, end), times, &none, &mut |_| {})?;
+    let lengths = arm.lengths(case);
+    Ok(Record::of(times, &trajectory.states, &lengths))
+}
+
+fn in_band(spectrum: PowerSpectrum) -> PowerSpectrum {
+    let pairs = spectrum.frequency.into_iter().zip(spectrum.density);
+    let (frequency, density) = pairs
+        .filter(|(frequency, _)| (BAND.0..=BAND.1).contains(frequency))
+        .unzip();
+    PowerSpectrum { frequency, density }
+}
+
+/// The first samples of a record.
+fn first(mut record: Record, count: usize) -> Record {
+    let series = [
+        &mut record.times,
+        &mut record.x_sp,
+        &mut record.x_pr,
+        &mut record.transmission,
+        &mut record.dr,
+        &mut record.f_la,
+    ];
+    for values in series.into_iter().chain(&mut record.modal) {
+        values.truncate(count);
+    }
+    record
+}

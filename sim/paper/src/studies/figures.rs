@@ -1,0 +1,187 @@
+//! The paper's figures from displayed cases: a time history on the left, its power spectrum
+//! on the right, one row for each quantity or case.
+
+use std::f64::consts::TAU;
+
+use eomgen_analysis::spectrum::PowerSpectrum;
+use eomgen_plot::{Axes, Frame, Panel, Plate, Reference, Series, plate};
+
+use super::display::Display;
+use super::error::StudyError;
+use super::report::{Figure, id};
+
+/// Densities below this part of the greatest are rounding or leakage of the window; they are
+/// drawn at it, so that lines stand on a level ground.
+const FLOOR: f64 = 1e-13;
+
+/// A quantity of the figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Quantity {
+    MeshDeflection,
+    PositioningError,
+    ArmDeflection,
+}
+
+/// A row of a figure: one quantity of one or several cases, which are laid over each other.
+pub(super) struct Row<'a> {
+    pub title: String,
+    pub quantity: Quantity,
+    /// With their names in the legend.
+    pub cases: Vec<(String, &'a Display)>,
+}
+
+impl Quantity {
+    fn name(self) -> &'static str {
+        match self {
+            Self::MeshDeflection => "x_sp",
+            Self::PositioningError => "f_la",
+            Self::ArmDeflection => "dr",
+        }
+    }
+
+    fn history(self, display: &Display) -> &[f64] {
+        match self {
+            Self::MeshDeflection => &display.history.x_sp,
+            Self::PositioningError => &display.history.f_la,
+            Self::ArmDeflection => &display.history.dr,
+        }
+    }
+
+    fn spectrum(self, display: &Display) -> &PowerSpectrum {
+        match self {
+            Self::MeshDeflection => &display.x_sp,
+            Self::PositioningError => &display.f_la,
+            Self::ArmDeflection => &display.dr,
+        }
+    }
+}
+
+/// What a figure is called.
+pub(super) struct Heading {
+    pub file: String,
+    /// The paper's figure it corresponds to, or an empty text.
+    pub paper: String,
+    pub caption: String,
+}
+
+/// Draws rows of time history and spectrum.
+pub(super) fn rows(heading: Heading, rows: &[Row<'_>]) -> Result<Figure, StudyError> {
+    let drawn: Vec<Vec<Vec<f64>>> = rows.iter().map(densities).collect();
+    let frames = rows.iter().zip(&drawn);
+    let frames = frames.flat_map(|(row, drawn)| [history(row), spectrum(row, drawn)]);
+    let shown = rows.iter().flat_map(|row| &row.cases);
+    let mut cases: Vec<String> = shown.map(|(_, display)| id(&display.case)).collect();
+    cases.dedup();
+    figure(heading, cases, frames.collect())
+}
+
+/// Draws frames, two side by side.
+pub(super) fn figure(
+    Heading {
+        file,
+        paper,
+        caption,
+    }: Heading,
+    cases: Vec<String>,
+    frames: Vec<Frame<'_>>,
+) -> Result<Figure, StudyError> {
+    let of = Plate {
+        title: caption.clone(),
+        columns: 2,
+        frames,
+    };
+    let svg = plate(&of).map_err(|error| StudyError::Request(error.to_string()))?;
+    Ok(Figure {
+        file,
+        paper,
+        caption,
+        cases,
+        svg,
+    })
+}
+
+/// The densities of a row's cases as drawn.
+fn densities(row: &Row<'_>) -> Vec<Vec<f64>> {
+    let spectra = row.cases.iter().map(|(_, d)| row.quantity.spectrum(d));
+    spectra
+        .map(|spectrum| above_floor(&spectrum.density))
+        .collect()
+}
+
+/// Densities with what is too small to mean anything raised to the floor.
+pub(super) fn above_floor(density: &[f64]) -> Vec<f64> {
+    let floor = FLOOR * density.iter().copied().fold(0.0, f64::max);
+    density.iter().map(|density| density.max(floor)).collect()
+}
+
+fn history<'a>(row: &Row<'a>) -> Frame<'a> {
+    let curves = row.cases.iter().map(|(label, display)| Series {
+        label: label.clone(),
+        abscissa: &display.history.times,
+        values: row.quantity.history(display),
+    });
+    Frame {
+        panel: Panel {
+            title: row.title.clone(),
+            quantity: row.quantity.name().to_owned(),
+            unit: "m".to_owned(),
+            series: curves.collect(),
+            references: flanks(row),
+        },
+        ..Frame::default()
+    }
+}
+
+/// Where the flanks touch, in a time history of the mesh.
+fn flanks(row: &Row<'_>) -> Vec<Reference> {
+    let backlash = row.cases.first().map_or(0.0, |(_, d)| d.case.backlash);
+    if row.quantity != Quantity::MeshDeflection || backlash == 0.0 {
+        return Vec::new();
+    }
+    let flanks = [("+b", backlash), ("−b", -backlash)];
+    let lines = flanks.map(|(label, value)| Reference {
+        label: label.to_owned(),
+        value,
+    });
+    lines.into()
+}
+
+fn spectrum<'a>(row: &Row<'a>, drawn: &'a [Vec<f64>]) -> Frame<'a> {
+    let cases = row.cases.iter().zip(drawn);
+    let curves = cases.map(|((label, display), density)| Series {
+        label: label.clone(),
+        abscissa: &row.quantity.spectrum(display).frequency,
+        values: density,
+    });
+    Frame {
+        panel: density_panel(row.quantity.name(), curves.collect()),
+        axes: Axes::Frequency,
+        marks: row.cases.last().map_or_else(Vec::new, |(_, d)| marks(d)),
+        ..Frame::default()
+    }
+}
+
+/// A panel of power spectral densities of a length.
+pub(super) fn density_panel<'a>(of: &str, series: Vec<Series<'a>>) -> Panel<'a> {
+    Panel {
+        title: format!("power spectrum of {of}"),
+        quantity: "G_q".to_owned(),
+        unit: "m^2/Hz".to_owned(),
+        series,
+        references: Vec::new(),
+    }
+}
+
+/// The forcing and the first four natural frequencies of the clamped arm.
+pub(super) fn marks(display: &Display) -> Vec<Reference> {
+    let forcing = Reference {
+        label: "ω/2π".to_owned(),
+        value: display.case.omega / TAU,
+    };
+    let natural = display.natural.iter().take(4).enumerate();
+    let natural = natural.map(|(mode, frequency)| Reference {
+        label: format!("f_{}", mode + 1),
+        value: *frequency,
+    });
+    std::iter::once(forcing).chain(natural).collect()
+}

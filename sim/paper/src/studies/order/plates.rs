@@ -1,0 +1,192 @@
+//! The figures of the study: Fig. 4, and convergence where the motion is chaotic.
+
+use crate::studies::display::{Display, WINDOW};
+use crate::studies::error::StudyError;
+use crate::studies::figures::{Heading, above_floor, density_panel, figure, marks};
+use crate::studies::report::{Figure, id};
+use eomgen_plot::{Axes, Frame, Panel, Series};
+
+use super::differences::{Convergence, NAMES, at, largest, statistics};
+use super::{BACKLASH, REFERENCE, Run, SHORT, SHOWN, STATISTICS, STEP, TRANSIENT};
+
+/// dr without backlash with four and with five modes, as the paper's Fig. 4, and how the
+/// series converge.
+pub(super) fn fig_4(
+    runs: &[Run],
+    displays: &[Display],
+    convergence: &Convergence,
+) -> Result<Figure, StudyError> {
+    let (four, five) = (&at(runs, 4)?.start, &at(runs, 5)?.start);
+    // One second.
+    let count = ((1.0 / STEP) as usize + 1).min(four.dr.len());
+    let first = |values: &[f64]| values.get(..count).unwrap_or_default().to_vec();
+    let (t, dr_4, dr_5) = (first(&four.times), first(&four.dr), first(&five.dr));
+    let difference: Vec<f64> = dr_5.iter().zip(&dr_4).map(|(a, b)| a - b).collect();
+    let drawn: Vec<Vec<f64>> = displays
+        .iter()
+        .map(|d| above_floor(&d.dr.density))
+        .collect();
+    let frames = vec![
+        Frame {
+            overlaid: true,
+            ..history(
+                "(a) dr, b = 0, ω = 10π rad/s",
+                "dr",
+                &t,
+                &[("S = 4", &dr_4), ("S = 5", &dr_5)],
+            )
+        },
+        Frame {
+            overlaid: true,
+            ..spectra("(b)", displays, &drawn, "dr")
+        },
+        history(
+            "(c) dr with S = 5 less dr with S = 4",
+            "difference",
+            &t,
+            &[("", &difference)],
+        ),
+        over_order(
+            &format!("(d) rms difference to S = {REFERENCE}"),
+            "m",
+            "rms difference",
+            convergence,
+        ),
+    ];
+    let heading = Heading {
+        file: "fig_04.svg".to_owned(),
+        paper: "Fig. 4".to_owned(),
+        caption: format!(
+            "Deformation dr of the arm's end without backlash, omega = 10 pi rad/s, S = 4 and S = 5: from the \
+             start at rest (a), its spectrum after the transient (b), the difference of the two (c), \
+             and rms differences to S = {REFERENCE} over {WINDOW} s from the start (d), where f_la lies on dr"
+        ),
+    };
+    figure(heading, ids(displays), frames)
+}
+
+/// Convergence with backlash: over time, over a short and in the mean of a long time.
+pub(super) fn chaotic(
+    runs: &[Run],
+    displays: &[Display],
+    convergence: &Convergence,
+) -> Result<Figure, StudyError> {
+    let reference = &at(runs, REFERENCE)?.start;
+    let mut growths = Vec::with_capacity(SHOWN.len());
+    for order in SHOWN {
+        growths.push((order, largest(&at(runs, order)?.start, reference)));
+    }
+    let curves = growths.iter().map(|(order, (times, values))| Series {
+        label: format!("S = {order}"),
+        abscissa: times,
+        values,
+    });
+    let title = format!("(a) difference of x_sp to S = {REFERENCE}");
+    let growth = Frame {
+        panel: panel(&title, "difference", curves.collect()),
+        axes: Axes::Growth,
+        ..Frame::default()
+    };
+    let statistics = statistics(runs)?;
+    let drawn: Vec<Vec<f64>> = displays
+        .iter()
+        .map(|d| above_floor(&d.f_la.density))
+        .collect();
+    let milliseconds = SHORT * 1e3;
+    let frames = vec![
+        growth,
+        over_order(
+            &format!("(b) rms difference to S = {REFERENCE} over {milliseconds:.0} ms"),
+            "m",
+            "rms difference",
+            convergence,
+        ),
+        over_order(
+            &format!("(c) rms over {STATISTICS:.0} s, relative to S = {REFERENCE}"),
+            "",
+            "relative difference",
+            &statistics,
+        ),
+        spectra("(d)", displays, &drawn, "f_la"),
+    ];
+    let heading = Heading {
+        file: "convergence.svg".to_owned(),
+        paper: String::new(),
+        caption: format!(
+            "Convergence over the modal truncation order with b = {BACKLASH} um, omega = 10 pi rad/s, where the motion is chaotic: \
+             orders part exponentially (a, the largest difference in each 5 ms); differences over {SHORT} s from the start (b), where f_la lies on dr; rms over \
+             {STATISTICS} s after {TRANSIENT} s, compared with S = {REFERENCE} (c) and the spectrum of f_la (d)"
+        ),
+    };
+    figure(heading, ids(displays), frames)
+}
+
+fn ids(displays: &[Display]) -> Vec<String> {
+    displays.iter().map(|display| id(&display.case)).collect()
+}
+
+fn panel<'a>(title: &str, quantity: &str, series: Vec<Series<'a>>) -> Panel<'a> {
+    Panel {
+        title: title.to_owned(),
+        quantity: quantity.to_owned(),
+        unit: "m".to_owned(),
+        series,
+        references: Vec::new(),
+    }
+}
+
+fn history<'a>(
+    title: &str,
+    quantity: &str,
+    abscissa: &'a [f64],
+    curves: &[(&str, &'a Vec<f64>)],
+) -> Frame<'a> {
+    let curves = curves.iter().map(|(label, values)| Series {
+        label: (*label).to_owned(),
+        abscissa,
+        values,
+    });
+    Frame {
+        panel: panel(title, quantity, curves.collect()),
+        ..Frame::default()
+    }
+}
+
+fn over_order<'a>(title: &str, unit: &str, quantity: &str, of: &'a Convergence) -> Frame<'a> {
+    let curves = NAMES.iter().zip(&of.values).map(|(name, values)| Series {
+        label: (*name).to_owned(),
+        abscissa: &of.orders,
+        values,
+    });
+    Frame {
+        panel: Panel {
+            unit: unit.to_owned(),
+            ..panel(title, quantity, curves.collect())
+        },
+        axes: Axes::Count("S"),
+        overlaid: true,
+        ..Frame::default()
+    }
+}
+
+/// Spectra of dr or f_la, which have the same frequencies.
+fn spectra<'a>(
+    letter: &str,
+    displays: &'a [Display],
+    drawn: &'a [Vec<f64>],
+    of: &str,
+) -> Frame<'a> {
+    let curves = displays.iter().zip(drawn).map(|(display, density)| Series {
+        label: format!("S = {}", display.case.order),
+        abscissa: &display.dr.frequency,
+        values: density,
+    });
+    let mut panel = density_panel(of, curves.collect());
+    panel.title = format!("{letter} {}", panel.title);
+    Frame {
+        panel,
+        axes: Axes::Frequency,
+        marks: displays.last().map_or_else(Vec::new, marks),
+        ..Frame::default()
+    }
+}

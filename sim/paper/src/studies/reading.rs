@@ -1,0 +1,170 @@
+//! What the claims need of a measured case, without its series, and how the kind of its
+//! motion is read.
+
+use std::f64::consts::{PI, TAU};
+use std::fmt;
+
+use eomgen_analysis::classify::{Evidence, HIDDEN_GROWTH, Motion, SIGNIFICANCE};
+
+use super::arm::{Case, Undisclosed};
+use super::case::{Amplitude, Measurement};
+use super::kind::is_strong;
+
+/// One of the paper's two forcing frequencies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Forcing {
+    /// omega = 5 pi rad/s.
+    FivePi,
+    /// omega = 10 pi rad/s.
+    TenPi,
+}
+
+/// One of the paper's cases, whatever the undisclosed values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Key {
+    /// The modal truncation order; 0 is the rigid arm.
+    pub order: usize,
+    /// The forcing frequency.
+    pub forcing: Forcing,
+    /// Half the backlash, micrometres.
+    pub micrometres: u32,
+}
+
+impl Forcing {
+    /// In rad/s.
+    pub fn omega(self) -> f64 {
+        match self {
+            Self::FivePi => 5.0 * PI,
+            Self::TenPi => 10.0 * PI,
+        }
+    }
+}
+
+impl Key {
+    /// The flexible arm of the paper's order.
+    pub const fn flexible(forcing: Forcing, micrometres: u32) -> Self {
+        Self {
+            order: 4,
+            forcing,
+            micrometres,
+        }
+    }
+
+    /// The case at these undisclosed values.
+    pub fn case(self, undisclosed: Undisclosed) -> Case {
+        Case {
+            order: self.order,
+            backlash: f64::from(self.micrometres) * 1e-6,
+            omega: self.forcing.omega(),
+            undisclosed,
+        }
+    }
+}
+
+impl fmt::Display for Key {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let arm = match self.order {
+            0 => "rigid arm".to_owned(),
+            order => format!("S = {order}"),
+        };
+        let omega = match self.forcing {
+            Forcing::FivePi => "5 pi",
+            Forcing::TenPi => "10 pi",
+        };
+        write!(f, "{arm}, {omega}, b = {} um", self.micrometres)
+    }
+}
+
+/// The kind of a motion as the claims ask for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Periodic, or quasi-periodic, which the paper does not tell apart.
+    Regular,
+    /// Chaotic.
+    Chaotic,
+    /// Not known.
+    Unknown,
+}
+
+/// What the claims need of a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// The kind of motion.
+    pub kind: Kind,
+    /// Whether it is quasi-periodic in the strict sense: regular, and no period was found.
+    pub quasi_periodic: bool,
+    /// The kind with its numbers, for people.
+    pub sentence: String,
+    /// f_la as printed, m.
+    pub f_la: Amplitude,
+    /// dr - l dtheta, m.
+    pub f_la_signed: Amplitude,
+    /// l dtheta, m.
+    pub transmission: Amplitude,
+    /// dr, m.
+    pub dr: Amplitude,
+    /// The mean square of each mode's vibration at the tip, m^2.
+    pub vibration: Vec<f64>,
+}
+
+impl Reading {
+    /// Of a measurement.
+    ///
+    /// The verdict of [`eomgen_analysis::classify`] is taken where it decides. Where it is undecided, the
+    /// exponent alone decides for regular motion if it is not positive and no growth of more
+    /// than 0.1 per forcing period can hide in its error: the 0-1 test takes the slow beat of
+    /// a nearly undamped mode with the forcing for diffusion unless the record is much longer
+    /// than the beat. It alone decides for chaos where neighbours part by more than a factor e
+    /// per forcing period and no period was found.
+    pub fn of(measurement: &Measurement) -> Self {
+        let motion = measurement.verdict.motion;
+        let kind = match motion {
+            Motion::Periodic { .. } | Motion::QuasiPeriodic => Kind::Regular,
+            Motion::Chaotic => Kind::Chaotic,
+            Motion::Undecided if does_not_grow(&measurement.evidence) => Kind::Regular,
+            Motion::Undecided if grows_fast(measurement) => Kind::Chaotic,
+            Motion::Undecided => Kind::Unknown,
+        };
+        let note = match (motion, kind) {
+            (Motion::Undecided, Kind::Regular) => " Read as regular: the exponent is not positive.",
+            (Motion::Undecided, Kind::Chaotic) => " Read as chaotic: the exponent is large.",
+            _ => "",
+        };
+        Self {
+            kind,
+            quasi_periodic: kind == Kind::Regular && measurement.evidence.period.is_none(),
+            sentence: format!("{}{note}", measurement.verdict.sentence),
+            f_la: measurement.f_la,
+            f_la_signed: measurement.f_la_signed,
+            transmission: measurement.transmission,
+            dr: measurement.dr,
+            vibration: measurement.vibration.clone(),
+        }
+    }
+
+    /// The number, from 1, of the mode that vibrates most.
+    pub fn dominant_mode(&self) -> Option<usize> {
+        let most = self.vibration.iter().copied().fold(0.0, f64::max);
+        let place = self.vibration.iter().position(|power| *power == most);
+        place.filter(|_| most > 0.0).map(|mode| mode + 1)
+    }
+}
+
+/// Whether neighbours part so fast that the 0-1 test is not needed.
+fn grows_fast(measurement: &Measurement) -> bool {
+    let Evidence {
+        exponent, period, ..
+    } = &measurement.evidence;
+    let case = &measurement.case;
+    period.is_none() && exponent.is_some_and(|exponent| is_strong(&exponent, case))
+}
+
+/// Whether the exponent is zero or negative within its error, which is small.
+fn does_not_grow(evidence: &Evidence) -> bool {
+    let Some(exponent) = evidence.exponent else {
+        return false;
+    };
+    let error = SIGNIFICANCE * exponent.standard_error;
+    let bound = HIDDEN_GROWTH * evidence.forcing / TAU;
+    exponent.value <= error && exponent.value + error <= bound
+}

@@ -1,0 +1,224 @@
+//! What a dataset file says, bound to a model: names looked up, units and numbers checked.
+
+use crate::description::{ChannelColumn, Description, InitialState};
+use crate::units::unit;
+use model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use model_spec::model::{Model, ParameterValue};
+use model_spec::suggest::did_you_mean;
+use model_spec::table::{Name, Number, Written};
+use model_spec::unit::Unit;
+
+use crate::dataset::{Channel, Initial, Quantity, Uncertain};
+
+/// What is taken for the relative standard deviation of a parameter: a smaller one is exact, a
+/// larger one says nothing.
+const RELATIVE: (f64, f64) = (1e-9, 1e6);
+
+/// A dataset file for a model.
+pub struct Bound<'d> {
+    /// The unit of the time's column.
+    pub time: Unit,
+    /// For each input of the model its column and the column's unit.
+    pub inputs: Vec<Option<(&'d Written, Unit)>>,
+    /// The channels.
+    pub channels: Vec<Channel>,
+    /// The unit of each channel's column.
+    pub channel_units: Vec<Unit>,
+    /// What is known of the first state.
+    pub initial: Initial,
+    /// Which parameters may be refitted.
+    pub uncertain: Vec<Uncertain>,
+}
+
+/// Binds a dataset file to a model.
+///
+/// # Errors
+/// All names that the model does not have, units of other dimensions, and numbers that make no
+/// sense.
+pub fn bound<'d>(description: &'d Description, model: &Model) -> Result<Bound<'d>, Diagnostics> {
+    let mut found = Diagnostics::new(description.source.clone());
+    lists(description, &mut found);
+    let time = found.keep(time_unit(description));
+    let inputs = inputs(description, model, &mut found);
+    let (mut channels, mut channel_units) = (Vec::new(), Vec::new());
+    for entry in &description.channels {
+        if let Some((channel, unit)) = found.keep(channel(entry, model)) {
+            channels.push(channel);
+            channel_units.push(unit);
+        }
+    }
+    let initial = initial(&description.initial, model, &mut found);
+    let mut uncertain = Vec::new();
+    for (name, relative) in &description.uncertain {
+        uncertain.extend(found.keep(doubted(name, *relative, model)));
+    }
+    match time {
+        Some(time) if found.is_empty() => Ok(Bound {
+            time,
+            inputs,
+            channels,
+            channel_units,
+            initial,
+            uncertain,
+        }),
+        _ => Err(found),
+    }
+}
+
+/// The unit of the time's column.
+///
+/// # Errors
+/// What is no unit of time.
+pub fn time_unit(description: &Description) -> Result<Unit, Diagnostic> {
+    unit(&description.time.unit, "s")
+}
+
+/// For each input of the model its column and the column's unit.
+pub fn inputs<'d>(
+    description: &'d Description,
+    model: &Model,
+    found: &mut Diagnostics,
+) -> Vec<Option<(&'d Written, Unit)>> {
+    let of = |input: &model_spec::model::Input| {
+        let mut columns = description.inputs.iter();
+        let column = columns.find(|column| column.name.text == input.name)?;
+        let unit = found.keep(unit(&column.column.unit, &input.unit.text))?;
+        Some((&column.column.column, unit))
+    };
+    model.inputs.iter().map(of).collect()
+}
+
+/// There are records of both kinds and channels.
+fn lists(description: &Description, found: &mut Diagnostics) {
+    let records = &description.records;
+    for (kind, files) in [("train", &records.train), ("test", &records.test)] {
+        if files.is_empty() {
+            found.push(
+                Diagnostic::error(format!("[records] lists no {kind} record"))
+                    .at(records.span, "both kinds are needed")
+                    .help(format!("write {kind} = [\"{kind}.csv\"]")),
+            );
+        }
+    }
+    if description.channels.is_empty() {
+        found.push(
+            Diagnostic::error("there is no [channels.NAME]: nothing would be compared")
+                .at(records.span, "of these records")
+                .help("describe at least one measured quantity, with column, unit and noise"),
+        );
+    }
+}
+
+fn channel(entry: &ChannelColumn, model: &Model) -> Result<(Channel, Unit), Diagnostic> {
+    let (asked, span) = match &entry.observable {
+        Some(written) => (&written.text, written.span),
+        None => (&entry.name.text, entry.name.span),
+    };
+    let (quantity, expected) = quantity(model, asked).ok_or_else(|| {
+        let known = || {
+            let observables = model.observables.iter().map(|o| o.name.as_str());
+            observables.chain(model.coordinates.iter().map(|c| c.name.as_str()))
+        };
+        let listed: Vec<&str> = known().collect();
+        let listed = format!("it has {}", listed.join(", "));
+        Diagnostic::error(format!(
+            "the model has no observable or coordinate {}",
+            quoted(asked)
+        ))
+        .at(span, "this channel measures nothing")
+        .help(did_you_mean(asked, known()).unwrap_or(listed))
+    })?;
+    let unit = unit(&entry.column.unit, &expected)?;
+    let noise = unit.to_si(entry.noise.value);
+    if !(noise.is_finite() && noise > 0.0) {
+        return Err(
+            Diagnostic::error(format!("noise = {} is none", entry.noise.value)).at(
+                entry.noise.span,
+                "expected its standard deviation, greater than 0",
+            ),
+        );
+    }
+    let channel = Channel {
+        name: entry.name.text.clone(),
+        quantity,
+        unit: expected,
+        noise,
+    };
+    Ok((channel, unit))
+}
+
+/// A quantity of the model by name, and its SI unit.
+fn quantity(model: &Model, name: &str) -> Option<(Quantity, String)> {
+    if let Some(place) = model.observables.iter().position(|o| o.name == name) {
+        let unit = model.observables[place].unit.text.clone();
+        return Some((Quantity::Observable(place), unit));
+    }
+    if let Some(place) = model.coordinates.iter().position(|c| c.name == name) {
+        let unit = model.coordinates[place].unit.text.clone();
+        return Some((Quantity::Coordinate(place), unit));
+    }
+    let of = name.strip_suffix("_dot")?;
+    let place = model.coordinates.iter().position(|c| c.name == of)?;
+    let unit = format!("{}/s", model.coordinates[place].unit.text);
+    Some((Quantity::Rate(place), unit))
+}
+
+fn initial(written: &InitialState, model: &Model, found: &mut Diagnostics) -> Initial {
+    let values = match written {
+        InitialState::Rest => return Initial::Rest,
+        InitialState::Estimate => return Initial::Estimate,
+        InitialState::Given(values) => values,
+    };
+    let orders: Vec<usize> = model.fields.iter().map(|field| field.order).collect();
+    let names = model.state_names(&orders);
+    for (name, _) in values {
+        if !names.contains(&name.text) {
+            let known = names.iter().map(String::as_str);
+            let listed = format!("its states are {}", names.join(", "));
+            found.push(
+                Diagnostic::error(format!("the model has no state {}", quoted(&name.text)))
+                    .at(name.span, "not known here")
+                    .help(did_you_mean(&name.text, known).unwrap_or(listed)),
+            );
+        }
+    }
+    let values = values.iter();
+    Initial::Given(
+        values
+            .map(|(name, value)| (name.text.clone(), value.value))
+            .collect(),
+    )
+}
+
+/// A parameter that may be refitted.
+fn doubted(name: &Name, relative: Number, model: &Model) -> Result<Uncertain, Diagnostic> {
+    let parameter = model.parameters.iter().find(|p| p.name == name.text);
+    let wrong = |message: &str| Diagnostic::error(format!("{} {message}", quoted(&name.text)));
+    match parameter.map(|parameter| &parameter.value) {
+        None => {
+            let known = model.parameters.iter().map(|p| p.name.as_str());
+            Err(wrong("is no parameter: the model has no such parameter")
+                .at(name.span, "not known here")
+                .help_if(did_you_mean(&name.text, known)))
+        }
+        Some(ParameterValue::Expression(_)) => Err(wrong("is given by an expression")
+            .at(name.span, "follows from others")
+            .help("list what the expression is made of")),
+        Some(ParameterValue::Number(0.0)) => Err(wrong("is 0 in the specification")
+            .at(name.span, "a part of 0 is 0: it could not be refitted")
+            .help("give it the value that is expected, or leave it out")),
+        Some(ParameterValue::Number(_)) => {
+            if !(RELATIVE.0..=RELATIVE.1).contains(&relative.value) {
+                let (least, most) = RELATIVE;
+                return Err(wrong("has no standard deviation").at(
+                    relative.span,
+                    format!("expected a part of its value, greater than 0: {least:e} to {most:e}"),
+                ));
+            }
+            Ok(Uncertain {
+                name: name.text.clone(),
+                relative: relative.value,
+            })
+        }
+    }
+}

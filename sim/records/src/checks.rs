@@ -1,0 +1,257 @@
+//! Whether a record can be believed: what makes an answer impossible is refused, what only
+//! weakens it is noted. Units are checked where they are read, in [`crate::dataset`].
+
+use crate::description::Description;
+
+use crate::coverage::{self, STILL, span};
+use crate::dataset::Dataset;
+use crate::record::Record;
+use crate::refusal::Refusal;
+use crate::samples::typical_step;
+
+/// A channel of which more than this part is missing is refused.
+const MOST_MISSING: f64 = 0.5;
+
+/// A channel that spans more noises has a wrong unit or a wrong noise: no sensor resolves so
+/// much.
+const MOST_NOISES: f64 = 1e10;
+
+/// Steps that differ from the usual one by more than this part of it are jitter.
+const JITTER: f64 = 0.1;
+
+/// A channel that stands at its largest or smallest value for this part of the samples, more
+/// than once in a row, is clipped.
+const CLIPPED: f64 = 0.02;
+
+/// Records that differ by less than this many noises (root mean square) are one record: two
+/// measurements of the same motion differ by the square root of two.
+const SAME: f64 = 0.3;
+
+/// A channel that spans fewer noises cannot tell records apart.
+const MOVES: f64 = 20.0;
+
+/// Samples that are compared first when records are laid on each other.
+const PROBES: usize = 16;
+
+/// Looks at all records; returns what is worth a remark.
+///
+/// # Errors
+/// The first thing that makes an answer impossible.
+pub fn examine(dataset: &Dataset, description: &Description) -> Result<Vec<String>, Refusal> {
+    let mut notes = Vec::new();
+    for record in dataset.train.iter().chain(&dataset.test) {
+        notes.extend(timing(record));
+        notes.extend(held_inputs(record));
+        for (channel, column) in dataset.channels.iter().zip(&record.channels) {
+            notes.extend(values(record, &channel.name, channel.noise, column)?);
+        }
+        different_channels(dataset, record)?;
+    }
+    notes.extend(coverage::check(dataset, description)?);
+    for test in &dataset.test {
+        for train in &dataset.train {
+            different_records(dataset, train, test)?;
+        }
+    }
+    Ok(notes)
+}
+
+/// Remarks on the times of a record.
+fn timing(record: &Record) -> Option<String> {
+    let step = typical_step(&record.times);
+    let steps = record.times.windows(2).map(|pair| pair[1] - pair[0]);
+    let uneven = steps.filter(|s| (s - step).abs() > JITTER * step).count();
+    (uneven > 0).then(|| {
+        format!(
+            "{}: {uneven} of {} steps differ from {step:.6} s by more than {:.0} %",
+            record.name,
+            record.times.len() - 1,
+            100.0 * JITTER
+        )
+    })
+}
+
+/// Remarks on inputs of which samples are missing.
+pub(crate) fn held_inputs(record: &Record) -> Option<String> {
+    let missing = |column: &&Vec<f64>| column.iter().any(|value| !value.is_finite());
+    let count = record.input_columns.iter().filter(missing).count();
+    (count > 0).then(|| {
+        format!(
+            "{}: samples of {count} inputs are missing; the one before is held",
+            record.name
+        )
+    })
+}
+
+/// A channel of one record.
+fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec<String>, Refusal> {
+    let mut notes = Vec::new();
+    let known: Vec<f64> = column.iter().copied().filter(|v| v.is_finite()).collect();
+    let missing = column.len() - known.len();
+    let refuse = |message: String| Err(Refusal::file(&record.path, message));
+    if missing as f64 > MOST_MISSING * column.len() as f64 {
+        return refuse(format!(
+            "channel `{name}`: {missing} of {} samples are missing; expected most of them",
+            column.len()
+        ));
+    }
+    if missing > 0 {
+        notes.push(format!(
+            "{}: {missing} samples of `{name}` are missing and left out",
+            record.name
+        ));
+    }
+    let low = known.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = known.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if low == high {
+        return refuse(format!(
+            "channel `{name}` is {low} throughout: the sensor is dead or the column another; \
+             expected one that moves, or a dataset without it"
+        ));
+    }
+    if (high - low) / noise >= MOST_NOISES {
+        return refuse(format!(
+            "channel `{name}` goes from {low:.3e} to {high:.3e} with a noise of {noise:.1e}, in SI; \
+             expected its unit and its noise to be right"
+        ));
+    }
+    if high - low < STILL * noise {
+        notes.push(format!(
+            "{}: `{name}` moves by less than two noises",
+            record.name
+        ));
+    }
+    for limit in [low, high] {
+        let at = known
+            .windows(2)
+            .filter(|p| p[0] == limit && p[1] == limit)
+            .count();
+        if at as f64 > CLIPPED * known.len() as f64 {
+            notes.push(format!(
+                "{}: `{name}` stands at {limit} for {at} samples: it may be clipped",
+                record.name
+            ));
+        }
+    }
+    Ok(notes)
+}
+
+/// No channel is another one, of either sign.
+fn different_channels(dataset: &Dataset, record: &Record) -> Result<(), Refusal> {
+    for (a, first) in record.channels.iter().enumerate() {
+        for (b, second) in record.channels.iter().enumerate().skip(a + 1) {
+            for sign in [1.0, -1.0] {
+                let known = |(x, y): &(&f64, &f64)| x.is_finite() && y.is_finite();
+                let mut pairs = first.iter().zip(second).filter(known).peekable();
+                if pairs.peek().is_some() && pairs.all(|(x, y)| *x == sign * y) {
+                    return Err(Refusal::file(
+                        &record.path,
+                        format!(
+                            "the channels `{}` and `{}` are one column; expected one each",
+                            dataset.channels[a].name, dataset.channels[b].name
+                        ),
+                    ));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A test record is not a training record again, later or earlier, of either sign.
+fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result<(), Refusal> {
+    let file = |record: &Record| record.path.canonicalize().ok();
+    if file(train).is_some() && file(train) == file(test) {
+        return Err(Refusal::file(
+            &test.path,
+            format!(
+                "{} and {} are one file; expected another measurement",
+                test.name, train.name
+            ),
+        ));
+    }
+    // The channel that moves most tells records apart best.
+    let in_noises = |place: usize| span(&train.channels[place]) / dataset.channels[place].noise;
+    let Some(channel) =
+        (0..dataset.channels.len()).max_by(|a, b| in_noises(*a).total_cmp(&in_noises(*b)))
+    else {
+        return Ok(());
+    };
+    if in_noises(channel) < MOVES {
+        return Ok(());
+    }
+    let (a, b) = (&train.channels[channel], &test.channels[channel]);
+    let noise = dataset.channels[channel].noise;
+    let shortest = a.len().min(b.len()) / 2;
+    let range = (b.len() - shortest) as isize;
+    for lag in -((a.len() - shortest) as isize)..=range {
+        for sign in [1.0, -1.0] {
+            if is_same(a, b, lag, sign, noise) {
+                return Err(Refusal::file(
+                    &test.path,
+                    format!(
+                        "{} is {} again{}{}; expected another measurement",
+                        test.name,
+                        train.name,
+                        if lag == 0 {
+                            String::new()
+                        } else {
+                            format!(", {lag} samples later")
+                        },
+                        if sign < 0.0 {
+                            ", with the other sign"
+                        } else {
+                            ""
+                        }
+                    ),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether one column laid on another with a lag is the same to less than noise.
+fn is_same(a: &[f64], b: &[f64], lag: isize, sign: f64, noise: f64) -> bool {
+    let begin = (-lag).max(0) as usize;
+    let end = a.len().min((b.len() as isize - lag).max(0) as usize);
+    if end <= begin + PROBES {
+        return false;
+    }
+    let difference = |place: usize| a[place] - sign * b[(place as isize + lag) as usize];
+    let probe = |k: usize| difference(begin + k * (end - begin) / PROBES);
+    if (0..PROBES).any(|k| probe(k).abs() > 2.0 * noise) {
+        return false;
+    }
+    let most = (SAME * noise).powi(2) * (end - begin) as f64;
+    let (mut sum, mut count) = (0.0, 0);
+    for difference in (begin..end).map(difference).filter(|d| d.is_finite()) {
+        sum += difference * difference;
+        count += 1;
+        if sum > most {
+            return false;
+        }
+    }
+    // What is laid on each other must be enough, and must move.
+    let low = a[begin..end].iter().copied().fold(f64::INFINITY, f64::min);
+    let high = a[begin..end]
+        .iter()
+        .copied()
+        .fold(f64::NEG_INFINITY, f64::max);
+    let moves = high - low > MOVES * noise;
+    moves && 2 * count > end - begin && sum < (SAME * noise).powi(2) * count as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_same;
+
+    #[test]
+    fn a_record_laid_on_itself_is_found_at_its_lag_and_sign() {
+        let motion: Vec<f64> = (0..500).map(|i| (0.01 * f64::from(i * i)).sin()).collect();
+        let later: Vec<f64> = motion[100..].iter().map(|v| -v).collect();
+        assert!(is_same(&motion, &later, -100, -1.0, 1e-3));
+        assert!(!is_same(&motion, &later, -99, -1.0, 1e-3));
+        assert!(!is_same(&motion, &later, -100, 1.0, 1e-3));
+    }
+}

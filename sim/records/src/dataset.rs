@@ -1,0 +1,83 @@
+//! Measured records and what their dataset file says of them. Everything is in SI.
+
+use std::path::PathBuf;
+
+use crate::record::Record;
+
+/// What a channel measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// An observable, by its place.
+    Observable(usize),
+    /// A coordinate, by its place.
+    Coordinate(usize),
+    /// The rate of a coordinate, by the coordinate's place.
+    Rate(usize),
+}
+
+/// A measured channel.
+#[derive(Clone, Debug)]
+pub struct Channel {
+    /// Its name in the dataset.
+    pub name: String,
+    /// What it measures.
+    pub quantity: Quantity,
+    /// The quantity's SI unit.
+    pub unit: String,
+    /// One standard deviation of its noise, SI.
+    pub noise: f64,
+}
+
+/// A parameter of the model that may be refitted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Uncertain {
+    /// Its name.
+    pub name: String,
+    /// One standard deviation of its prior, relative to the specification's value.
+    pub relative: f64,
+}
+
+/// What is known of a record's first state.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Initial {
+    /// As the model's own initial values say, at rest.
+    Rest,
+    /// Nothing.
+    Estimate,
+    /// These states, by name, SI.
+    Given(Vec<(String, f64)>),
+}
+
+/// Where a window's initial state comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// Estimated inside the window.
+    Fitted,
+    /// Read from the smoothed record.
+    Smoothed,
+}
+
+/// Records with their description.
+#[derive(Clone, Debug)]
+pub struct Dataset {
+    /// The dataset's file.
+    pub path: PathBuf,
+    /// One line for people.
+    pub title: String,
+    /// Records to learn from.
+    pub train: Vec<Record>,
+    /// Records to be judged by.
+    pub test: Vec<Record>,
+    /// What was measured.
+    pub channels: Vec<Channel>,
+    /// What is known of the first state.
+    pub initial: Initial,
+    /// The length of a window, s; none if every record is one window.
+    pub window: Option<f64>,
+    /// Where a window's initial state comes from.
+    pub start: Start,
+    /// Which parameters may be refitted.
+    pub uncertain: Vec<Uncertain>,
+    /// What is worth a remark.
+    pub notes: Vec<String>,
+}

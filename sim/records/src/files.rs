@@ -1,0 +1,63 @@
+//! The files of records: by their number in a dataset file, and never outside its folder.
+
+use std::path::{Component, Path, PathBuf};
+
+use model_spec::diagnostic::Diagnostic;
+use model_spec::table::Written;
+
+use crate::description::Description;
+
+/// The file of `train[0]`.
+///
+/// # Errors
+/// There is no such record.
+pub fn numbered<'d>(description: &'d Description, record: &str) -> Result<&'d Written, String> {
+    let records = &description.records;
+    let none = || {
+        format!(
+            "{}: there is no record `{record}`; it lists {} as train[..] and {} as test[..], numbered from 0",
+            description.source.path,
+            records.train.len(),
+            records.test.len()
+        )
+    };
+    let (list, rest) = match (record.strip_prefix("train["), record.strip_prefix("test[")) {
+        (Some(rest), _) => (&records.train, rest),
+        (_, Some(rest)) => (&records.test, rest),
+        _ => return Err(none()),
+    };
+    let index = rest.strip_suffix(']').and_then(|i| i.parse().ok());
+    let index: usize = index.ok_or_else(none)?;
+    list.get(index).ok_or_else(none)
+}
+
+/// A record's file, in the dataset's folder or below. Links are followed: where they lead
+/// counts.
+///
+/// # Errors
+/// A name that leads out of that folder.
+pub fn beside(dataset: &Path, file: &Written) -> Result<PathBuf, Diagnostic> {
+    let relative = Path::new(&file.text);
+    let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+    let folder = match dataset.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    };
+    let place = folder.join(relative);
+    // What is not there is said by whoever reads it.
+    let leads_out = match (place.canonicalize(), folder.canonicalize()) {
+        (Ok(place), Ok(folder)) => !place.starts_with(folder),
+        _ => false,
+    };
+    if leads_out || !relative.components().all(inside) {
+        let name = &file.text;
+        return Err(Diagnostic::error(format!(
+            "the record \"{name}\" lies outside the dataset's folder"
+        ))
+        .at(
+            file.span,
+            "expected a file beside the dataset file or below",
+        ));
+    }
+    Ok(dataset.parent().unwrap_or(Path::new(".")).join(relative))
+}

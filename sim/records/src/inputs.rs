@@ -1,0 +1,69 @@
+//! The inputs of a record alone, for a simulation that is driven by them.
+
+use std::path::Path;
+
+use model_spec::diagnostic::Diagnostics;
+use model_spec::model::Model;
+use model_spec::suggest::did_you_mean;
+use sim::inputs::HeldInputs;
+
+use crate::bound;
+use crate::checks::held_inputs;
+use crate::description::Description;
+use crate::files::numbered;
+use crate::record::Columns;
+use crate::refusal::Refusal;
+
+/// The inputs of `model` from a record of a dataset, and what is worth a warning.
+///
+/// `record` is `train[0]`, `test[1]`, ... Channels are not read.
+///
+/// # Errors
+/// What is wrong with the dataset file or with the record.
+pub fn read_inputs(
+    dataset: &Path,
+    record: &str,
+    model: &Model,
+) -> Result<(HeldInputs, Vec<String>), Refusal> {
+    let description = Description::read(dataset)?;
+    let file = numbered(&description, record).map_err(Refusal::Record)?;
+    let mut found = Diagnostics::new(description.source.clone());
+    let time = found.keep(bound::time_unit(&description));
+    let inputs = bound::inputs(&description, model, &mut found);
+    let Some(time) = time.filter(|_| found.is_empty()) else {
+        return Err(found.into());
+    };
+    let columns = Columns {
+        description: &description,
+        path: dataset,
+        time: &time,
+        inputs: &inputs,
+        channels: &[],
+        model,
+    };
+    let record = columns.record(record, file)?;
+    let mut warnings = notes_of_inputs(&description, model);
+    warnings.extend(held_inputs(&record));
+    Ok((record.inputs, warnings))
+}
+
+/// Inputs that the model or the dataset lacks.
+pub fn notes_of_inputs(description: &Description, model: &Model) -> Vec<String> {
+    let inputs = || model.inputs.iter().map(|input| input.name.as_str());
+    let mut notes = Vec::new();
+    for column in &description.inputs {
+        let name = column.name.text.as_str();
+        if inputs().all(|input| input != name) {
+            let meant = did_you_mean(name, inputs()).map_or(String::new(), |m| format!("; {m}"));
+            notes.push(format!(
+                "the model has no input `{name}`: that column is not used{meant}"
+            ));
+        }
+    }
+    for input in inputs() {
+        if (description.inputs.iter()).all(|column| column.name.text != input) {
+            notes.push(format!("the dataset has no input `{input}`: it is 0"));
+        }
+    }
+    notes
+}

@@ -1,0 +1,206 @@
+//! Columns of numbers from a Parquet file: doubles, floats and integers, not nested.
+
+use std::path::Path;
+
+use bytes::Bytes;
+use parquet::basic::Type as Physical;
+use parquet::errors::ParquetError;
+use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+
+use crate::columns::{MOST_SAMPLES, places, too_many};
+use crate::refusal::Refusal;
+
+/// Reads these columns; a missing number is NaN.
+///
+/// # Errors
+/// A file that is not whole, a column that is not there or holds no numbers.
+pub fn read(path: &Path, bytes: Vec<u8>, wanted: &[&str]) -> Result<Vec<Vec<f64>>, Refusal> {
+    // Some damage that the crate does not look for makes it panic.
+    let said = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| {}));
+    let columns = std::panic::catch_unwind(|| decoded(path, bytes, wanted));
+    std::panic::set_hook(said);
+    columns.unwrap_or_else(|_| {
+        Err(Refusal::file(
+            path,
+            "is not a Parquet file that can be read: it is damaged",
+        ))
+    })
+}
+
+fn decoded(path: &Path, bytes: Vec<u8>, wanted: &[&str]) -> Result<Vec<Vec<f64>>, Refusal> {
+    let broken = |error: ParquetError| {
+        Refusal::file(
+            path,
+            format!("is not a Parquet file that can be read: {error}"),
+        )
+    };
+    let length = bytes.len();
+    let reader = SerializedFileReader::new(Bytes::from(bytes)).map_err(broken)?;
+    if !is_whole(reader.metadata(), length) {
+        return Err(Refusal::file(
+            path,
+            "is not a Parquet file that can be read: it tells of columns outside itself",
+        ));
+    }
+    let metadata = reader.metadata().file_metadata();
+    let schema = metadata.schema_descr_ptr();
+    let columns = schema.columns();
+    if metadata.num_rows() > MOST_SAMPLES as i64 {
+        return Err(too_many(path));
+    }
+    if columns.iter().any(|column| column.path().parts().len() > 1) {
+        return Err(Refusal::file(
+            path,
+            "has columns inside columns; expected one number per column and row",
+        ));
+    }
+    let there: Vec<&str> = columns.iter().map(|column| column.name()).collect();
+    let places = places(path, &there, wanted)?;
+    for place in &places {
+        let kind = columns[*place].physical_type();
+        if !matches!(
+            kind,
+            Physical::DOUBLE | Physical::FLOAT | Physical::INT32 | Physical::INT64
+        ) {
+            let name = there[*place];
+            return Err(Refusal::file(
+                path,
+                format!("the column `{name}` holds {kind}; expected numbers"),
+            ));
+        }
+    }
+    let mut values = vec![Vec::new(); wanted.len()];
+    for row in reader.get_row_iter(None).map_err(broken)? {
+        let row = row.map_err(broken)?;
+        if values[0].len() == MOST_SAMPLES {
+            return Err(too_many(path));
+        }
+        for (column, place) in values.iter_mut().zip(&places) {
+            let field = row.get_column_iter().nth(*place).map(|(_, field)| field);
+            column.push(field.map_or(Ok(f64::NAN), |field| number(path, there[*place], field))?);
+        }
+    }
+    Ok(values)
+}
+
+/// Whether all that a file tells of lies inside it: the reader takes that for granted.
+fn is_whole(metadata: &ParquetMetaData, length: usize) -> bool {
+    let inside = |offset: i64, size: i64| {
+        let end = offset.checked_add(size);
+        offset >= 0 && size >= 0 && end.is_some_and(|end| end as u64 <= length as u64)
+    };
+    let whole = |column: &ColumnChunkMetaData| {
+        let begin = column
+            .dictionary_page_offset()
+            .unwrap_or(column.data_page_offset());
+        inside(begin, column.compressed_size())
+            && inside(column.data_page_offset(), 0)
+            && column.num_values() >= 0
+    };
+    let groups = metadata.row_groups().iter();
+    groups
+        .clone()
+        .all(|group| group.num_rows() >= 0 && group.columns().iter().all(whole))
+        && groups.map(|group| group.num_rows() as i128).sum::<i128>()
+            == i128::from(metadata.file_metadata().num_rows())
+}
+
+fn number(path: &Path, name: &str, field: &Field) -> Result<f64, Refusal> {
+    let value = match field {
+        Field::Double(value) => *value,
+        Field::Float(value) => f64::from(*value),
+        Field::Byte(value) => f64::from(*value),
+        Field::Short(value) => f64::from(*value),
+        Field::Int(value) => f64::from(*value),
+        Field::Long(value) => *value as f64,
+        Field::UByte(value) => f64::from(*value),
+        Field::UShort(value) => f64::from(*value),
+        Field::UInt(value) => f64::from(*value),
+        Field::ULong(value) => *value as f64,
+        Field::Null => f64::NAN,
+        _ => {
+            return Err(Refusal::file(
+                path,
+                format!("the column `{name}` holds dates or texts; expected numbers"),
+            ));
+        }
+    };
+    Ok(if value.is_finite() { value } else { f64::NAN })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+    use std::sync::Arc;
+
+    use parquet::basic::{Compression, Repetition, Type as Physical};
+    use parquet::data_type::{DoubleType, Int64Type};
+    use parquet::file::properties::WriterProperties;
+    use parquet::file::writer::SerializedFileWriter;
+    use parquet::schema::types::Type;
+
+    use super::read;
+
+    /// Columns `t` (double, compressed) and `n` (integers, some missing).
+    fn file(rows: i64) -> Vec<u8> {
+        let field = |name: &str, kind: Physical, repetition: Repetition| {
+            let field = Type::primitive_type_builder(name, kind).with_repetition(repetition);
+            Arc::new(field.build().expect("a column"))
+        };
+        let fields = vec![
+            field("t", Physical::DOUBLE, Repetition::REQUIRED),
+            field("n", Physical::INT64, Repetition::OPTIONAL),
+        ];
+        let schema = Type::group_type_builder("record").with_fields(fields);
+        let schema = Arc::new(schema.build().expect("a schema"));
+        let properties = WriterProperties::builder().set_compression(Compression::SNAPPY);
+        let mut bytes = Vec::new();
+        let mut file = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties.build()))
+            .expect("a file");
+        let mut group = file.next_row_group().expect("a group");
+        let times: Vec<f64> = (0..rows).map(|i| 0.5 * i as f64).collect();
+        let mut column = group.next_column().expect("a column").expect("a column");
+        let written = column.typed::<DoubleType>().write_batch(&times, None, None);
+        assert_eq!(written.ok(), Some(times.len()));
+        column.close().expect("a column");
+        let present: Vec<i16> = (0..rows).map(|i| i16::from(i % 3 != 0)).collect();
+        let numbers: Vec<i64> = (0..rows).filter(|i| i % 3 != 0).collect();
+        let mut column = group.next_column().expect("a column").expect("a column");
+        let typed = column.typed::<Int64Type>();
+        typed
+            .write_batch(&numbers, Some(&present), None)
+            .expect("numbers");
+        column.close().expect("a column");
+        group.close().expect("a group");
+        file.close().expect("a file");
+        bytes
+    }
+
+    #[test]
+    fn compressed_columns_and_missing_integers_are_read() {
+        let columns = read(Path::new("a.parquet"), file(10), &["n", "t"]).expect("a record");
+        assert!(columns[0][0].is_nan() && columns[0][3].is_nan());
+        assert_eq!(columns[0][1..3], [1.0, 2.0]);
+        assert_eq!(
+            columns[1],
+            (0..10).map(|i| 0.5 * f64::from(i)).collect::<Vec<_>>()
+        );
+    }
+
+    #[test]
+    fn no_damage_makes_it_panic() {
+        let whole = file(40);
+        for place in 0..whole.len() {
+            let answer = |bytes| read(Path::new("a.parquet"), bytes, &["t", "n"]);
+            assert!(answer(whole[..place].to_vec()).is_err());
+            for damage in [0x01, 0x80, 0xff] {
+                let mut bytes = whole.clone();
+                bytes[place] ^= damage;
+                answer(bytes).ok();
+            }
+        }
+    }
+}

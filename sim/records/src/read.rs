@@ -1,0 +1,58 @@
+//! A dataset file with its records, read, checked and bound to a model.
+
+use std::path::Path;
+
+use model_spec::model::Model;
+use model_spec::table::Written;
+
+use crate::bound::bound;
+use crate::checks::examine;
+use crate::dataset::{Dataset, Start};
+use crate::description::Description;
+use crate::inputs::notes_of_inputs;
+use crate::record::{Columns, Record};
+use crate::refusal::Refusal;
+
+/// Reads a dataset for a model.
+///
+/// # Errors
+/// What is wrong with the dataset file, or the first thing that is wrong with a record, each with
+/// its place.
+pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
+    let description = Description::read(path)?;
+    let bound = bound(&description, model)?;
+    let mut dataset = Dataset {
+        path: path.to_owned(),
+        title: description.title.clone(),
+        train: Vec::new(),
+        test: Vec::new(),
+        channels: bound.channels,
+        initial: bound.initial,
+        window: description.windows.length.map(|length| length.value),
+        start: match description.windows.smoothed {
+            true => Start::Smoothed,
+            false => Start::Fitted,
+        },
+        uncertain: bound.uncertain,
+        notes: notes_of_inputs(&description, model),
+    };
+    let columns = Columns {
+        description: &description,
+        path,
+        time: &bound.time,
+        inputs: &bound.inputs,
+        channels: &bound.channel_units,
+        model,
+    };
+    let read = |kind: &str, files: &[Written]| -> Result<Vec<Record>, Refusal> {
+        let files = files.iter().enumerate();
+        files
+            .map(|(place, file)| columns.record(&format!("{kind}[{place}]"), file))
+            .collect()
+    };
+    dataset.train = read("train", &description.records.train)?;
+    dataset.test = read("test", &description.records.test)?;
+    let notes = examine(&dataset, &description)?;
+    dataset.notes.extend(notes);
+    Ok(dataset)
+}

@@ -1,0 +1,69 @@
+//! What one column of samples must be before anything is done with it.
+
+use std::path::Path;
+
+use crate::refusal::Refusal;
+
+/// A record with fewer samples says nothing.
+const FEWEST_SAMPLES: usize = 50;
+
+/// An input is held over what is missing of it; more than this part is refused.
+const MOST_HELD: f64 = 0.1;
+
+/// Times are finite and ascend.
+///
+/// # Errors
+/// The first line where they do not.
+pub fn check_times(path: &Path, times: &[f64]) -> Result<(), Refusal> {
+    // The first line holds the names.
+    let line = |sample: usize| sample as u64 + 2;
+    if let Some(sample) = times.iter().position(|t| !t.is_finite()) {
+        return Err(Refusal::line(
+            path,
+            line(sample),
+            "the time is missing; expected a number",
+        ));
+    }
+    if let Some(sample) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
+        return Err(Refusal::line(
+            path,
+            line(sample + 1),
+            "the time does not increase; expected samples in order, each once",
+        ));
+    }
+    if times.len() < FEWEST_SAMPLES {
+        return Err(Refusal::file(
+            path,
+            format!(
+                "holds {} samples; expected {FEWEST_SAMPLES} or more",
+                times.len()
+            ),
+        ));
+    }
+    Ok(())
+}
+
+/// An input is known nearly everywhere.
+///
+/// # Errors
+/// An input of which much is missing.
+pub fn check_input(path: &Path, name: &str, column: &[f64]) -> Result<(), Refusal> {
+    let missing = column.iter().filter(|value| !value.is_finite()).count();
+    if missing as f64 > MOST_HELD * column.len() as f64 {
+        return Err(Refusal::file(
+            path,
+            format!(
+                "input `{name}`: {missing} of {} samples are missing; expected nearly all of them",
+                column.len()
+            ),
+        ));
+    }
+    Ok(())
+}
+
+/// The median of the steps between samples, s.
+pub fn typical_step(times: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
+}

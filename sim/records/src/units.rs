@@ -1,0 +1,27 @@
+//! Units of a dataset file.
+
+use model_spec::diagnostic::Diagnostic;
+use model_spec::table::Written;
+use model_spec::unit::Unit;
+
+/// A unit of a dataset file that has the dimension of the expected one.
+///
+/// # Errors
+/// What is no unit, or another quantity's.
+pub fn unit(written: &Written, expected: &str) -> Result<Unit, Diagnostic> {
+    let wrong = |message: String| Diagnostic::error(message);
+    let text = &written.text;
+    let unit = Unit::parse(text).map_err(|error| {
+        wrong(format!("unit \"{text}\": {error}")).at(written.span, format!("expected {expected}"))
+    })?;
+    let wanted = Unit::parse(expected).map_err(|error| wrong(error.to_string()))?;
+    if unit.dimension == wanted.dimension {
+        return Ok(unit);
+    }
+    Err(
+        wrong(format!("the column is in {text}, expected {expected}")).at(
+            written.span,
+            format!("expected {expected}, or a unit of its dimension"),
+        ),
+    )
+}

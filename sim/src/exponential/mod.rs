@@ -1,0 +1,402 @@
+//! Marching: the motion of a model that is linear between its switching surfaces, but for
+//! small terms, in steps of one length.
+//!
+//! A step takes the linear part exactly, by a matrix made once for each regime; terms that are
+//! not linear are held over it and corrected at its end (the exponential method of Heun, of
+//! second order). Where a surface is crossed within a step, the crossing is found by the cubic
+//! through both ends and the step is made in parts. What a propagator from switch to switch
+//! does to rounding this does to a small part of any sensor's noise, several times faster, and
+//! neighbouring motions come with it. The files: `kernels` (products), `surfaces`, `regime`
+//! (matrices of a step), `crossing` (where a step meets a surface), `parts` (steps through
+//! surfaces), `beyond` (what is not linear), `tangents`, `slopes` (what these feel of that).
+
+mod beyond;
+mod crossing;
+mod kernels;
+mod parts;
+mod regime;
+mod slopes;
+mod surfaces;
+mod tangents;
+
+use std::collections::HashMap;
+
+use crate::inputs::HeldInputs;
+use codegen::program::affine::AffineEvaluator;
+
+pub use beyond::Force;
+use beyond::{Apart, Excess};
+use crossing::first_crossing;
+use regime::Regime;
+use slopes::Slopes;
+use surfaces::{Side, Surfaces, dot};
+pub use tangents::{Drives, Free, Tangents};
+
+/// The fastest mode turns by so many radians in a step: the cubic through a step's ends then
+/// knows where a surface is crossed to a hundredth, and finds it from there.
+const TURN: f64 = 1.5;
+
+/// Steps from sample to sample at least: forces that are held over a step follow a motion
+/// that the samples show.
+const LEAST_STEPS: f64 = 4.0;
+
+/// Steps from sample to sample at most; a model that needs more is not marched.
+const MOST_STEPS: f64 = 256.0;
+
+/// Intervals that differ from whole steps by less than this part are whole steps: so do the
+/// times of records with rounded or jittering clocks, which err by no more than that.
+const JITTER: f64 = 1e-4;
+
+/// A model at fixed parameters, ready to be marched.
+pub struct March {
+    evaluator: AffineEvaluator,
+    surfaces: Surfaces,
+    regimes: Vec<Regime>,
+    known: HashMap<Vec<Side>, Option<usize>>,
+    states: usize,
+    /// The length of a step, s.
+    step: f64,
+    /// The sides on which the linear part alone would be, those for which that was asked last
+    /// with their regime, and how that differs from the one where the motion is.
+    own: Vec<Side>,
+    last_own: (Vec<Side>, usize),
+    apart: Apart,
+}
+
+/// Where a motion stands.
+struct Motion {
+    t: f64,
+    state: Vec<f64>,
+    sides: Vec<Side>,
+    regime: usize,
+    /// A unit constant and the inputs.
+    given: Vec<f64>,
+    /// What these add to a step.
+    base: Vec<f64>,
+    /// Functions of the surfaces and their rates.
+    watched: Vec<f64>,
+    /// What is not linear there.
+    excess: Excess,
+    /// A step's end, what is not linear there, and half of what that changed.
+    next: Vec<f64>,
+    later: Excess,
+    change: Vec<f64>,
+}
+
+/// Who goes along.
+pub struct Company<'c, 'd> {
+    /// Accelerations beyond the linear ones.
+    pub force: Option<&'c mut dyn Force>,
+    /// Neighbouring motions.
+    pub tangents: Option<&'c mut Tangents<'d>>,
+}
+
+/// Who is shown the samples: each one's place, the state there and the neighbouring motions.
+pub type Show<'s> = dyn FnMut(usize, &[f64], Option<&Tangents<'_>>) + 's;
+
+impl March {
+    /// A march of a model at its parameters, for samples so far apart, s, in so many times the
+    /// steps that its linear part needs; none if it is not of a kind that can be marched.
+    pub fn new(mut evaluator: AffineEvaluator, sample: f64, refinement: f64) -> Option<Self> {
+        let surfaces = Surfaces::of(&mut evaluator)?;
+        let system = evaluator.system(&vec![0.0; evaluator.guard_count()]);
+        if !system.phases.is_empty()
+            || !evaluator.half_widths_are_right()
+            || !evaluator.pivots_are_positive()
+        {
+            return None;
+        }
+        let turns = sample * regime::fastest(&mut evaluator, &surfaces) / TURN;
+        let steps = turns.ceil().max(LEAST_STEPS) * refinement;
+        (steps <= MOST_STEPS).then(|| Self {
+            states: evaluator.states(),
+            surfaces,
+            regimes: Vec::new(),
+            known: HashMap::new(),
+            step: sample / steps,
+            evaluator,
+            own: Vec::new(),
+            last_own: (Vec::new(), 0),
+            apart: Apart::default(),
+        })
+    }
+
+    /// Runs from `initial` at the first of the samples (s, ascending) to the last; `show` is
+    /// given each sample's place, the state there and the neighbouring motions.
+    ///
+    /// # Errors
+    /// Why the motion cannot be followed, in words.
+    pub fn run(
+        &mut self,
+        initial: &[f64],
+        samples: &[f64],
+        inputs: &HeldInputs,
+        mut company: Company<'_, '_>,
+        show: &mut Show<'_>,
+    ) -> Result<(), String> {
+        let Some(begin) = samples.first() else {
+            return Ok(());
+        };
+        let mut motion = self.start(*begin, initial, inputs, &mut company)?;
+        show(0, &motion.state, company.tangents.as_deref());
+        for (place, end) in samples.iter().enumerate().skip(1) {
+            while motion.t < *end {
+                // Times of samples and of inputs may differ by rounding.
+                let near = motion.t + 1e-3 * self.step;
+                let change = inputs
+                    .next_change(near)
+                    .filter(|next| *next < *end - 1e-3 * self.step);
+                let until = change.unwrap_or(*end);
+                let values = inputs.at(0.5 * (motion.t + until));
+                self.interval(&mut motion, until, values, &mut company)?;
+                motion.t = until;
+            }
+            if motion.state.iter().any(|x| !x.is_finite()) {
+                return Err("the motion grows beyond all bounds".to_owned());
+            }
+            show(place, &motion.state, company.tangents.as_deref());
+        }
+        Ok(())
+    }
+
+    fn start(
+        &mut self,
+        t: f64,
+        initial: &[f64],
+        inputs: &HeldInputs,
+        company: &mut Company<'_, '_>,
+    ) -> Result<Motion, String> {
+        let values = inputs.at(t + 1e-3 * self.step);
+        let mut given = vec![1.0];
+        given.extend(values);
+        let count = self.surfaces.guards.len();
+        let mut motion = Motion {
+            t,
+            state: initial.to_vec(),
+            sides: vec![Side::Below; count],
+            regime: 0,
+            given,
+            base: Vec::new(),
+            watched: Vec::new(),
+            excess: Excess::none(self.states / 2, count),
+            next: Vec::new(),
+            later: Excess::none(self.states / 2, count),
+            change: Vec::new(),
+        };
+        motion.regime = self.regime(&motion.sides)?;
+        let functions = &self.regimes[motion.regime].functions;
+        if let Some(force) = &mut company.force {
+            let surfaces = (&self.surfaces, &functions[..]);
+            let at = (t, initial, &motion.given[..]);
+            motion.later.find(&mut **force, surfaces, at);
+        }
+        let functions = functions.iter().zip(&motion.later.moved);
+        let distances: Vec<f64> = functions
+            .map(|(row, moved)| row.at(initial, &motion.given) + moved)
+            .collect();
+        let sides = distances.iter().map(|distance| Side::of(*distance));
+        motion.sides = sides.collect();
+        motion.regime = self.regime(&motion.sides)?;
+        let alone = &mut Company {
+            force: None,
+            tangents: None,
+        };
+        for (surface, distance) in distances.into_iter().enumerate() {
+            if distance == 0.0 {
+                self.cross(&mut motion, t, (surface, 0.0), alone)?;
+                if motion.sides[surface] == Side::Above {
+                    self.cross(&mut motion, t, (surface, 0.0), alone)?;
+                }
+            }
+        }
+        if let Some(force) = &mut company.force {
+            self.meet(&mut motion, t, &mut **force)?;
+        }
+        if let Some(tangents) = &mut company.tangents {
+            tangents.begin(t, &motion.state, values);
+            if company.force.is_some() {
+                tangents.slopes = Some(Slopes::new(self.states, count));
+            }
+        }
+        Ok(motion)
+    }
+
+    /// The regime with these sides.
+    fn regime(&mut self, sides: &[Side]) -> Result<usize, String> {
+        self.known_regime(sides)
+            .ok_or_else(|| "a regime cannot be prepared".to_owned())
+    }
+
+    fn known_regime(&mut self, sides: &[Side]) -> Option<usize> {
+        if let Some(known) = self.known.get(sides) {
+            return *known;
+        }
+        let made = Regime::new(&mut self.evaluator, &self.surfaces, sides, self.step);
+        let place = made.map(|regime| {
+            self.regimes.push(regime);
+            self.regimes.len() - 1
+        });
+        self.known.insert(sides.to_vec(), place);
+        place
+    }
+
+    /// Goes on with constant inputs to a time, s.
+    fn interval(
+        &mut self,
+        motion: &mut Motion,
+        until: f64,
+        inputs: &[f64],
+        company: &mut Company<'_, '_>,
+    ) -> Result<(), String> {
+        motion.given.truncate(1);
+        motion.given.extend(inputs);
+        if let Some(force) = &mut company.force {
+            let t = motion.t;
+            self.meet(motion, t, &mut **force)?;
+        }
+        self.prepare(motion);
+        if let Some(tangents) = &mut company.tangents {
+            tangents.meet(motion.t, &motion.state, inputs);
+        }
+        let begin = motion.t;
+        let count = ((until - begin) / self.step).ceil().max(1.0);
+        let rounded = ((until - begin) / self.step).round();
+        let whole = (rounded * self.step - (until - begin)).abs() < JITTER * (until - begin);
+        let count = if whole { rounded.max(1.0) } else { count };
+        let length = (until - begin) / count;
+        for place in 1..=count as usize {
+            self.release(motion, begin + (place - 1) as f64 * length, company)?;
+            let end = begin + place as f64 * length;
+            if !(whole && self.whole_step(motion, end, company)?) {
+                self.parts(motion, length, end, inputs, company)?;
+            }
+        }
+        self.bring(motion, until, company)
+    }
+
+    /// Prepares for steps in the present regime with the present inputs.
+    fn prepare(&self, motion: &mut Motion) {
+        let regime = &self.regimes[motion.regime];
+        motion.base.clear();
+        motion.base.resize(regime.step.rows, 0.0);
+        regime
+            .step_given
+            .add_product(&motion.given, &mut motion.base);
+        self.watch(motion);
+    }
+
+    /// Finds the surfaces' functions and, but for how they are moved, their rates where the
+    /// motion stands.
+    fn watch(&self, motion: &mut Motion) {
+        let regime = &self.regimes[motion.regime];
+        let half = self.states / 2;
+        motion.watched.clear();
+        let rows = regime.functions.iter().zip(&motion.excess.moved);
+        motion
+            .watched
+            .extend(rows.map(|(row, moved)| row.at(&motion.state, &motion.given) + moved));
+        for (row, function) in regime.rates.iter().zip(&regime.functions) {
+            let forced = dot(&function.state[half..], &motion.excess.force);
+            motion
+                .watched
+                .push(row.at(&motion.state, &motion.given) + forced);
+        }
+    }
+
+    /// Lets go what is no longer held.
+    fn release(
+        &mut self,
+        motion: &mut Motion,
+        t: f64,
+        company: &mut Company<'_, '_>,
+    ) -> Result<(), String> {
+        let regime = &self.regimes[motion.regime];
+        if regime.held.is_empty() {
+            return Ok(());
+        }
+        let mut changed = false;
+        for (surface, side) in &regime.held {
+            let side = side.at(&motion.state, &motion.given);
+            if !(0.0..=1.0).contains(&side) {
+                motion.sides[*surface] = Side::of(side - 1.0);
+                changed = true;
+            }
+        }
+        if changed {
+            self.bring(motion, t, company)?;
+            if let Some(tangents) = &mut company.tangents {
+                tangents.forget_slopes();
+            }
+            motion.regime = self.regime(&motion.sides)?;
+            self.prepare(motion);
+        }
+        Ok(())
+    }
+
+    /// Makes a whole step if no surface is crossed within.
+    fn whole_step(
+        &mut self,
+        motion: &mut Motion,
+        end: f64,
+        company: &mut Company<'_, '_>,
+    ) -> Result<bool, String> {
+        let (n, half) = (self.states, self.states / 2);
+        let regime = &self.regimes[motion.regime];
+        motion.next.clear();
+        motion.next.extend_from_slice(&motion.base);
+        regime.step.add_product(&motion.state, &mut motion.next);
+        if let Some(force) = &mut company.force {
+            let held = &motion.excess.force;
+            regime.step_force.add_product(held, &mut motion.next);
+            let here = (motion.regime, &motion.sides[..]);
+            let at = (end, &motion.next[..n], &motion.given[..]);
+            self.beyond(here, at, &mut **force, &mut motion.later)?;
+            let pairs = motion.later.force.iter().zip(&motion.excess.force);
+            motion.change.clear();
+            motion
+                .change
+                .extend(pairs.map(|(new, old)| 0.5 * (new - old)));
+            let regime = &self.regimes[motion.regime];
+            regime
+                .step_force
+                .add_product(&motion.change, &mut motion.next);
+        }
+        let regime = &self.regimes[motion.regime];
+        let surfaces = motion.sides.len();
+        let (function, rate) = motion.watched.split_at(surfaces);
+        let crossed = (0..surfaces).any(|place| {
+            let later = motion.later.moved[place];
+            let slope = (later - motion.excess.moved[place]) / self.step;
+            let ends = (
+                (function[place], rate[place] + slope),
+                (
+                    motion.next[n + place] + later,
+                    motion.next[n + surfaces + place] + slope,
+                ),
+            );
+            first_crossing(motion.sides[place], ends, self.step).is_some()
+        });
+        if crossed {
+            return Ok(false);
+        }
+        motion.state.copy_from_slice(&motion.next[..n]);
+        motion
+            .watched
+            .copy_from_slice(&motion.next[n..n + 2 * surfaces]);
+        if company.force.is_some() {
+            std::mem::swap(&mut motion.excess, &mut motion.later);
+            for place in 0..surfaces {
+                let row = &regime.functions[place].state[half..];
+                motion.watched[place] += motion.excess.moved[place];
+                motion.watched[surfaces + place] += dot(row, &motion.excess.force);
+            }
+        }
+        if company.tangents.as_deref_mut().is_some_and(Tangents::step) {
+            self.bring(motion, end, company)?;
+        }
+        Ok(true)
+    }
+}
+
+#[cfg(test)]
+mod tests;

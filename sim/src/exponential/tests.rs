@@ -1,0 +1,243 @@
+use std::fs;
+use std::path::Path;
+
+use crate::inputs::HeldInputs;
+use crate::piecewise_linear::PiecewiseLinear;
+use model_spec::model::Model;
+use model_spec::source::Source;
+
+use super::{Company, Drives, Free, March, Tangents};
+
+fn rig() -> Model {
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm_rig.toml");
+    let text = fs::read_to_string(path).expect("the rig");
+    model_spec::check(Source::new("rig", &*text))
+        .expect("valid")
+        .model
+}
+
+fn torque(times: &[f64]) -> HeldInputs {
+    let values = times
+        .iter()
+        .map(|t| (20.0 * t).sin() + 0.5 * (73.0 * t).sin());
+    HeldInputs::new(times.to_vec(), values.collect(), 1).expect("as many values as times")
+}
+
+fn run(march: &mut March, initial: &[f64], times: &[f64], inputs: &HeldInputs) -> Vec<Vec<f64>> {
+    let mut states = Vec::new();
+    let company = Company {
+        force: None,
+        tangents: None,
+    };
+    march
+        .run(initial, times, inputs, company, &mut |_, state, _| {
+            states.push(state.to_vec());
+        })
+        .expect("a motion");
+    states
+}
+
+#[test]
+fn a_march_follows_the_exact_motion_through_its_switches() {
+    let model = rig();
+    let exact = PiecewiseLinear::of(&model, &[4]).expect("piecewise linear");
+    let values: Vec<f64> = exact_values(&model);
+    let times: Vec<f64> = (0..200).map(|k| f64::from(k) * 5e-4).collect();
+    let inputs = torque(&times);
+    let initial = vec![0.0; 14];
+    let mut propagator = exact.at(&values).expect("a propagator");
+    let wanted = propagator
+        .simulate(&initial, (0.0, times[199]), &times, &inputs, &mut |_| {})
+        .expect("a motion");
+    assert!(wanted.switches.len() > 20);
+    let mut march = March::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be marched");
+    let found = run(&mut march, &initial, &times, &inputs);
+    // Deflections of the meshes, the carrier's way and the beam's modes: of micrometres and
+    // millimetres; a sensor of the rig resolves 0.7 um.
+    for (sample, (a, b)) in found.iter().zip(&wanted.states).enumerate() {
+        for place in 0..7 {
+            let difference = (a[place] - b[place]).abs();
+            assert!(
+                difference < 2e-8,
+                "{place} at sample {sample}: {difference:e}"
+            );
+        }
+    }
+}
+
+/// Whose surfaces rest on whole regions, which a march would take to be negative there.
+#[test]
+fn what_surfaces_of_surfaces_move_is_not_marched() {
+    let text = r#"
+[model]
+name = "preload"
+[parameters]
+m = { value = 1, unit = "kg" }
+F = { value = 10, unit = "N" }
+b = { value = 0.1, unit = "m" }
+[coordinates]
+y = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+T = "1/2*m*dot(y)^2"
+[forces]
+springs = { on = "y", value = "-F*JUMP" }
+push = { on = "y", value = "u" }
+"#;
+    let marched = |jump: &str| {
+        let source = Source::new("preload", text.replace("JUMP", jump).as_str());
+        let model = model_spec::check(source).expect("valid").model;
+        let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+        March::new(exact.evaluator(&exact_values(&model)), 1e-3, 1.0).is_some()
+    };
+    assert!(marched("sign(y)"));
+    assert!(marched("above(dot(y))"));
+    for jump in [
+        "sign(deadzone(y, b))",
+        "contact(contact(y, b), 0)",
+        "sign(u)",
+    ] {
+        assert!(!marched(jump), "{jump}");
+    }
+}
+
+fn exact_values(model: &Model) -> Vec<f64> {
+    let all = model.parameter_values().expect("values");
+    let independent = model
+        .parameters
+        .iter()
+        .zip(&all)
+        .filter(|(p, _)| matches!(p.value, model_spec::model::ParameterValue::Number(_)));
+    independent.map(|(_, value)| *value).collect()
+}
+
+#[test]
+fn tangents_are_differences_of_neighbouring_motions() {
+    let model = rig();
+    let exact = PiecewiseLinear::of(&model, &[4]).expect("piecewise linear");
+    let values = exact_values(&model);
+    let times: Vec<f64> = (0..60).map(|k| f64::from(k) * 5e-4).collect();
+    let inputs = torque(&times);
+    let mut initial = vec![0.0; 14];
+    (initial[0], initial[7]) = (3e-5, 0.01);
+    let mut march = March::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be marched");
+    let mut free = Free;
+    let mut tangents = Tangents::new(14, true, 0, &mut free);
+    let mut found = vec![0.0; 14 * 14];
+    let company = Company {
+        force: None,
+        tangents: Some(&mut tangents),
+    };
+    march
+        .run(&initial, &times, &inputs, company, &mut |_, _, tangents| {
+            let tangents = tangents.expect("tangents");
+            for place in 0..14 {
+                let first = place * tangents.stride;
+                found[place * 14..(place + 1) * 14]
+                    .copy_from_slice(&tangents.vectors[first..first + 14]);
+            }
+        })
+        .expect("a motion");
+    let steps = [
+        1e-9, 1e-9, 1e-9, 1e-8, 1e-8, 1e-8, 1e-8, 1e-6, 1e-6, 1e-6, 1e-5, 1e-5, 1e-5, 1e-5,
+    ];
+    for place in 0..14 {
+        let mut ends = Vec::new();
+        for sign in [1.0, -1.0] {
+            let mut moved = initial.clone();
+            moved[place] += sign * steps[place];
+            ends.push(run(&mut march, &moved, &times, &inputs)[59].clone());
+        }
+        let scale: f64 = (0..7)
+            .map(|k| found[place * 14 + k].abs())
+            .fold(0.0, f64::max);
+        for k in 0..7 {
+            let quotient = (ends[0][k] - ends[1][k]) / (2.0 * steps[place]);
+            let difference = (found[place * 14 + k] - quotient).abs();
+            assert!(
+                difference < 1e-2 * scale,
+                "{k} by {place}: {difference:e} of {scale:e}"
+            );
+        }
+    }
+}
+
+/// A mass of 2 kg pushed by an input against dry friction of 3 N.
+fn sliding() -> Model {
+    let text = r#"
+[model]
+name = "block"
+[parameters]
+m = { value = 2, unit = "kg" }
+T = { value = 3, unit = "N" }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+block = "1/2*m*dot(x)^2"
+[forces]
+push = { on = "x", value = "u" }
+friction = { on = "x", value = "-T*sign(dot(x))" }
+"#;
+    model_spec::check(Source::new("block", text))
+        .expect("valid")
+        .model
+}
+
+#[test]
+fn dry_friction_holds_and_lets_go() {
+    let model = sliding();
+    let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+    let mut march = March::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0).expect("can be marched");
+    // Held for a second, 1 m/s^2 for the next, slowed down by 1.5 m/s^2, held again.
+    let inputs = HeldInputs::new(vec![0.0, 1.0, 2.0], vec![2.0, 5.0, 0.0], 1).expect("inputs");
+    let times: Vec<f64> = (0..=400).map(|k| f64::from(k) * 0.01).collect();
+    let states = run(&mut march, &[0.0, 0.0], &times, &inputs);
+    assert!(states[100][0].abs() < 1e-12);
+    assert!((states[200][0] - 0.5).abs() < 1e-9 && (states[200][1] - 1.0).abs() < 1e-9);
+    let stop = 0.5 + 1.0 / 3.0;
+    assert!((states[400][0] - stop).abs() < 1e-9, "{:?}", states[400]);
+    assert!(states[400][1].abs() < 1e-12);
+}
+
+/// An acceleration of 1 drives the second of two vectors.
+struct Push;
+
+impl Drives for Push {
+    fn at(&mut self, _: f64, _: &[f64], _: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(&[0.0, 1.0]);
+    }
+}
+
+#[test]
+fn a_driven_tangent_is_the_motion_of_what_drives_it() {
+    let model = sliding();
+    let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
+    let mut march = March::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0).expect("can be marched");
+    let inputs = HeldInputs::new(vec![0.0], vec![5.0], 1).expect("inputs");
+    let times: Vec<f64> = (0..=100).map(|k| f64::from(k) * 0.01).collect();
+    let mut push = Push;
+    let mut tangents = Tangents::new(2, false, 2, &mut push);
+    let mut last = Vec::new();
+    let company = Company {
+        force: None,
+        tangents: Some(&mut tangents),
+    };
+    march
+        .run(
+            &[0.0, 0.1],
+            &times,
+            &inputs,
+            company,
+            &mut |_, _, tangents| {
+                let tangents = tangents.expect("tangents");
+                last = tangents.vectors[..2 * tangents.stride].to_vec();
+            },
+        )
+        .expect("a motion");
+    let stride = last.len() / 2;
+    assert!(last[0] == 0.0 && (last[stride] - 0.5).abs() < 1e-12);
+}

@@ -1,0 +1,81 @@
+//! Inputs of a model over time.
+
+/// Inputs that are constant between the times of a record. Before the first sample the
+/// first one holds, after the last one the last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeldInputs {
+    times: Vec<f64>,
+    /// One row per time, one number per input.
+    values: Vec<f64>,
+    count: usize,
+}
+
+impl HeldInputs {
+    /// Inputs that are zero at all times.
+    pub fn zero(count: usize) -> Self {
+        Self {
+            times: vec![0.0],
+            values: vec![0.0; count],
+            count,
+        }
+    }
+
+    /// Inputs from rows of `count` numbers, one row for each of the ascending times (s), each
+    /// held until the next; none if there is no row, or not as many numbers as rows hold.
+    pub fn new(times: Vec<f64>, values: Vec<f64>, count: usize) -> Option<Self> {
+        let whole = !times.is_empty() && values.len() == times.len() * count;
+        whole.then_some(Self {
+            times,
+            values,
+            count,
+        })
+    }
+
+    /// The inputs at a time, in the order of the model.
+    pub fn at(&self, t: f64) -> &[f64] {
+        let after = self.times.partition_point(|time| *time <= t);
+        let row = after.saturating_sub(1);
+        &self.values[row * self.count..(row + 1) * self.count]
+    }
+
+    /// The next time after `t` at which an input changes.
+    pub fn next_change(&self, t: f64) -> Option<f64> {
+        if self.count == 0 {
+            return None;
+        }
+        let after = self.times.partition_point(|time| *time <= t);
+        self.times.get(after).copied()
+    }
+
+    /// The times of the samples, in s.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::HeldInputs;
+
+    #[test]
+    fn an_input_is_held_from_its_sample_to_the_next() {
+        let held = HeldInputs {
+            times: vec![0.0, 1.0, 2.0],
+            values: vec![5.0, 6.0, 7.0],
+            count: 1,
+        };
+        assert_eq!(held.at(-1.0), [5.0]);
+        assert_eq!(held.at(0.999), [5.0]);
+        assert_eq!(held.at(1.0), [6.0]);
+        assert_eq!(held.at(9.0), [7.0]);
+        assert_eq!(held.next_change(0.0), Some(1.0));
+        assert_eq!(held.next_change(1.5), Some(2.0));
+        assert_eq!(held.next_change(2.0), None);
+    }
+
+    #[test]
+    fn no_input_never_changes() {
+        assert_eq!(HeldInputs::zero(0).next_change(0.0), None);
+        assert_eq!(HeldInputs::zero(2).at(3.0), [0.0, 0.0]);
+    }
+}

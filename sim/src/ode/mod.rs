@@ -1,0 +1,52 @@
+//! A general solver for y' = f(t, y) with switching surfaces.
+//!
+//! The pipeline: a [`System`] is evaluated under `watch`, which notices when a trial
+//! leaves the regime the step began in; a `stepper` makes single steps, those of the
+//! Dormand-Prince method of order 8 (`dormand_prince`) or of Adams' method of variable
+//! order (`adams`, of `attempt`s that continue a `history`); `crossing` approaches a switching
+//! surface by steps that stay on one side and then steps over it; `driver` strings these
+//! together into a [`Trajectory`], `stiffness` being asked whether there will be an end; an
+//! `error` says why there is none, with `names`. A step therefore never averages over a kink or a jump
+//! of the right-hand side, which is what ruins the order of a method applied blindly.
+//!
+//! The Runge-Kutta steps come from the crate `differential-equations`. Its interpolation
+//! between steps is not used: in version 0.7 that of its DOP853 is of order 4 instead of
+//! 7, and the tables of its Verner methods carry eleven digits. A state inside a step is
+//! computed instead by one shorter step from the same start, which has the full order.
+//! Its predictor-corrector method is no multistep method of variable step: it replaces
+//! its memory by three Runge-Kutta steps after every step, without control of their
+//! error, so Adams' method is written here.
+//!
+//! # Tolerance
+//!
+//! `tolerance` is relative and holds for every component by itself: a step's estimated
+//! error in component i stays below `tolerance` times (|y_i| + the largest |y_i| so
+//! far), in the root-mean-square over the components. Nothing is said about units, so
+//! mesh deflections of micrometres and rotations of several radians get the same number
+//! of digits. While a component has not moved yet its largest magnitude counts as
+//! [`SMALLEST_MAGNITUDE`].
+
+mod adams;
+mod attempt;
+mod crossing;
+mod dormand_prince;
+mod driver;
+mod error;
+mod history;
+mod magnitudes;
+mod names;
+mod request;
+pub mod runge_kutta;
+mod settings;
+mod stepper;
+mod stiffness;
+mod system;
+mod trajectory;
+mod watch;
+
+pub use driver::{simulate, simulate_into};
+pub use error::{NOT_POSITIVE, SolveError};
+pub use names::{Names, Surface};
+pub use settings::{Method, SMALLEST_MAGNITUDE, Settings};
+pub use system::System;
+pub use trajectory::{Switch, Trajectory, Work};

@@ -1,0 +1,44 @@
+//! One step of the classical Runge-Kutta method. Which steps, and what is made of them, is
+//! decided elsewhere.
+
+/// At each of a step's four slopes the part of the step that has passed.
+const PARTS: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
+
+/// Room for a step of a model with so many states.
+pub struct RungeKutta {
+    slopes: [Vec<f64>; 4],
+    trial: Vec<f64>,
+}
+
+impl RungeKutta {
+    /// For so many states.
+    pub fn new(states: usize) -> Self {
+        Self {
+            slopes: [(); 4].map(|()| vec![0.0; states]),
+            trial: vec![0.0; states],
+        }
+    }
+
+    /// Moves a state on from a time by a length, s. `rates` is given the number of the slope, the
+    /// time and the state there, and writes the rates.
+    pub fn step(
+        &mut self,
+        state: &mut [f64],
+        (begin, h): (f64, f64),
+        mut rates: impl FnMut(usize, f64, &[f64], &mut [f64]),
+    ) {
+        for (stage, part) in PARTS.into_iter().enumerate() {
+            self.trial.copy_from_slice(state);
+            if stage > 0 {
+                let slope = self.trial.iter_mut().zip(&self.slopes[stage - 1]);
+                slope.for_each(|(x, k)| *x += part * h * k);
+            }
+            let slope = &mut self.slopes[stage];
+            rates(stage, begin + part * h, &self.trial, slope);
+        }
+        for (place, x) in state.iter_mut().enumerate() {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|stage: usize| self.slopes[stage][place]);
+            *x += h / 6.0 * (a + 2.0 * (b + c) + d);
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! The rates of the state at one state, as the exact solver has them.
+
+use super::clock::Clock;
+use super::dependents::{Asking, Standing};
+use super::error::ExactError;
+use super::groups::Place;
+use super::propagator::Propagator;
+use crate::ode::SolveError;
+
+/// Rates of the state with their sizes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rates {
+    /// The rates, one per state.
+    pub values: Vec<f64>,
+    /// The sum of the magnitudes of what each is made of.
+    pub sizes: Vec<f64>,
+}
+
+impl Propagator {
+    /// The rates at a time, s, a state and inputs, in the regime that a motion from there
+    /// begins in; on a switching surface, where the sides differ, those of its lower side.
+    ///
+    /// # Errors
+    /// If there are not as many states and inputs as the model has.
+    pub fn rates(&mut self, t: f64, state: &[f64], inputs: &[f64]) -> Result<Rates, ExactError> {
+        if state.len() != self.states || inputs.len() < self.inputs {
+            let problem = format!("expected {} states and {} inputs", self.states, self.inputs);
+            return Err(SolveError::Request { problem }.into());
+        }
+        let inputs = &inputs[..self.inputs];
+        let phases = self.phases_at(Clock::at(t));
+        let standing = Standing {
+            state,
+            inputs,
+            phases: &phases,
+        };
+        let places = if self.has_dependents() {
+            let mut places = vec![Place::Between(0); self.groups.len()];
+            self.settle(&mut places, Asking::Start, standing);
+            places
+        } else {
+            self.places_at(state, inputs, &phases).0
+        };
+        let outline = self.outline(&places);
+        Ok(self.outlines[outline].rates(standing))
+    }
+}

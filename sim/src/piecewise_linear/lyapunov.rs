@@ -1,0 +1,252 @@
+//! Lyapunov exponents: how fast neighbouring motions part (Benettin, Galgani, Giorgilli and
+//! Strelcyn 1980), with tangent vectors that are carried exactly.
+//!
+//! Coordinates that no rate and no switch feels, such as the angle of a rotation nothing
+//! restrains, have exponents of zero that say nothing; they are left out.
+
+use super::error::ExactError;
+use super::flow::Flow;
+use super::propagator::{Change, Follow, Motion, Propagator, Segment};
+use super::tangent::Tangents;
+use crate::inputs::HeldInputs;
+use crate::ode::SolveError;
+
+/// How long and how often the growth of tangent vectors is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lyapunov {
+    /// Time before anything is measured, s; tangent vectors turn into place in its second half.
+    pub transient: f64,
+    /// Time between two measurements, s.
+    pub interval: f64,
+    /// How many measurements.
+    pub intervals: usize,
+    /// How many exponents, the largest first.
+    pub exponents: usize,
+}
+
+/// The growth of tangent vectors.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Growth {
+    /// Time between two measurements, s.
+    pub interval: f64,
+    /// For each exponent the growth ln |v_after| / |v_before| over every interval. Divided by
+    /// the interval their means are the exponents, in 1/s, the largest first.
+    pub growths: Vec<Vec<f64>>,
+    /// The state at the end of every interval.
+    pub section: Vec<Vec<f64>>,
+    /// Switches over the whole time.
+    pub switches: u64,
+}
+
+/// A motion with tangent vectors beside it, to be followed on as long as one likes.
+pub struct Carried {
+    motion: Motion,
+    frame: Frame,
+}
+
+impl Carried {
+    /// For each tangent vector ln |v_after| / |v_before| over the last stretch.
+    pub fn growth(&self) -> &[f64] {
+        &self.frame.growth
+    }
+
+    /// The state at the end of the last stretch.
+    pub fn state(&self) -> &[f64] {
+        self.motion.state()
+    }
+
+    /// Switches so far.
+    pub fn switches(&self) -> u64 {
+        self.motion.switches()
+    }
+}
+
+impl Propagator {
+    /// The motion from `initial` at time `t`, s, on, with one tangent vector. Its length is
+    /// the root of the sum of (weight times entry)^2; what has the weight 0 is left out of it.
+    ///
+    /// # Errors
+    /// As for [`Propagator::start`], or if not every state has a weight.
+    pub fn carried(
+        &mut self,
+        initial: &[f64],
+        t: f64,
+        inputs: &HeldInputs,
+        weights: &[f64],
+    ) -> Result<Carried, ExactError> {
+        if weights.len() != self.states || weights.iter().any(|w| !(*w >= 0.0 && w.is_finite())) {
+            let problem = format!("expected {} weights of 0 or more", self.states);
+            return Err(SolveError::Request { problem }.into());
+        }
+        Ok(Carried {
+            motion: self.start(t, initial, inputs)?,
+            frame: Frame::new(weights, 1),
+        })
+    }
+
+    /// Follows a motion and its tangent vectors on to a time, s; then these are orthonormal
+    /// again.
+    ///
+    /// # Errors
+    /// As for [`Propagator::simulate`].
+    pub fn carry(
+        &mut self,
+        carried: &mut Carried,
+        end: f64,
+        inputs: &HeldInputs,
+    ) -> Result<(), ExactError> {
+        let Carried { motion, frame } = carried;
+        frame.growth.fill(0.0);
+        self.follow_until(motion, end, inputs, frame)?;
+        frame.orthonormalise();
+        Ok(())
+    }
+
+    /// The growth of neighbouring motions, from `initial` at time `t`, s, on.
+    ///
+    /// At most as many exponents are given as there are states that matter.
+    ///
+    /// # Errors
+    /// As for [`Propagator::simulate`], or if the request makes no sense.
+    pub fn lyapunov(
+        &mut self,
+        initial: &[f64],
+        t: f64,
+        inputs: &HeldInputs,
+        request: &Lyapunov,
+    ) -> Result<Growth, ExactError> {
+        request.check()?;
+        let felt = self.felt_states();
+        let wanted = request.exponents.min(felt.iter().filter(|f| **f).count());
+        let mut motion = self.start(t, initial, inputs)?;
+        let weights: Vec<f64> = felt.iter().map(|felt| f64::from(u8::from(*felt))).collect();
+        let mut nobody = Frame::new(&weights, 0);
+        self.follow_until(
+            &mut motion,
+            t + 0.5 * request.transient,
+            inputs,
+            &mut nobody,
+        )?;
+        let mut carried = Carried {
+            motion,
+            frame: Frame::new(&weights, wanted),
+        };
+        let measured_from = t + request.transient;
+        self.carry(&mut carried, measured_from, inputs)?;
+        let mut growths = vec![Vec::with_capacity(request.intervals); wanted];
+        let mut section = Vec::with_capacity(request.intervals);
+        for index in 1..=request.intervals {
+            let end = measured_from + index as f64 * request.interval;
+            self.carry(&mut carried, end, inputs)?;
+            for (all, growth) in growths.iter_mut().zip(carried.growth()) {
+                all.push(*growth);
+            }
+            section.push(carried.state().to_vec());
+        }
+        Ok(Growth {
+            interval: request.interval,
+            growths,
+            section,
+            switches: carried.switches(),
+        })
+    }
+}
+
+impl Lyapunov {
+    fn check(&self) -> Result<(), SolveError> {
+        let times = self.transient >= 0.0 && self.interval > 0.0;
+        if times && self.transient.is_finite() && self.interval.is_finite() && self.intervals > 0 {
+            return Ok(());
+        }
+        Err(SolveError::Request {
+            problem: "expected a transient of 0 s or more, an interval above 0 s and at least \
+                      one interval"
+                .to_owned(),
+        })
+    }
+}
+
+/// Tangent vectors that are kept orthonormal.
+struct Frame {
+    tangents: Tangents,
+    /// The squared weight of each state in a length.
+    metric: Vec<f64>,
+    /// ln of what each vector has grown by.
+    growth: Vec<f64>,
+}
+
+impl Frame {
+    /// The first unit vectors, turned a little against each other.
+    fn new(weights: &[f64], count: usize) -> Self {
+        let felt = weights
+            .iter()
+            .enumerate()
+            .filter(|(_, weight)| **weight > 0.0);
+        let felt: Vec<(usize, f64)> = felt.map(|(state, weight)| (state, *weight)).collect();
+        let vectors = (0..count)
+            .map(|index| {
+                let mut vector = vec![0.0; weights.len()];
+                for (k, (state, weight)) in felt.iter().enumerate() {
+                    let turned = if k == index {
+                        1.0
+                    } else {
+                        0.1 / (1 + k + index) as f64
+                    };
+                    vector[*state] = turned / weight;
+                }
+                vector
+            })
+            .collect();
+        let mut frame = Self {
+            tangents: Tangents::new(vectors),
+            metric: weights.iter().map(|weight| weight * weight).collect(),
+            growth: vec![0.0; count],
+        };
+        frame.orthonormalise();
+        frame.growth.fill(0.0);
+        frame
+    }
+
+    /// Gram-Schmidt; the lengths go to the growth.
+    fn orthonormalise(&mut self) {
+        let vectors = &mut self.tangents.vectors;
+        for index in 0..vectors.len() {
+            let (done, rest) = vectors.split_at_mut(index);
+            let vector = &mut rest[0];
+            for (slot, metric) in vector.iter_mut().zip(&self.metric) {
+                if *metric == 0.0 {
+                    *slot = 0.0;
+                }
+            }
+            for earlier in done {
+                let along = product(&self.metric, earlier, vector);
+                vector
+                    .iter_mut()
+                    .zip(earlier)
+                    .for_each(|(slot, e)| *slot -= along * *e);
+            }
+            let length = product(&self.metric, vector, vector).sqrt();
+            self.growth[index] += length.ln();
+            vector.iter_mut().for_each(|slot| *slot /= length);
+        }
+    }
+}
+
+fn product(metric: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    let pairs = a.iter().zip(b).zip(metric);
+    pairs.map(|((a, b), metric)| metric * a * b).sum()
+}
+
+impl Follow for Frame {
+    fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
+        self.tangents.flowed(segment, flow);
+        // Vectors that shrink fast would turn into the first one.
+        if self.tangents.vectors.len() > 1 {
+            self.orthonormalise();
+        }
+    }
+
+    fn switched(&mut self, change: &Change<'_>) {
+        self.tangents.switched(change);
+    }
+}

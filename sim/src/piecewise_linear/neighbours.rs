@@ -1,0 +1,88 @@
+//! A motion with its neighbours to first order: how the states at samples depend on the
+//! initial state. One propagator serves many motions at the same parameters, so that its
+//! regimes are prepared once. What parameters do is in [`super::sensitivity`].
+
+use super::error::ExactError;
+use super::flow::Flow;
+use super::follow::Samples;
+use super::propagator::{Change, Follow, Propagator, Segment};
+use super::sensitivity::Sensitivities;
+use super::tangent::Tangents;
+use crate::inputs::HeldInputs;
+
+impl Propagator {
+    /// Simulates from `initial` over `span` (begin, end; s) and carries these directions of
+    /// the initial state along; returns states and derivatives at `samples` (s, ascending).
+    ///
+    /// # Errors
+    /// As for [`Propagator::simulate`].
+    pub fn neighbours(
+        &mut self,
+        initial: &[f64],
+        span: (f64, f64),
+        samples: &[f64],
+        inputs: &HeldInputs,
+        directions: Vec<Vec<f64>>,
+    ) -> Result<Sensitivities, ExactError> {
+        let samples = Samples::new(span, samples)?;
+        let mut motion = self.start(span.0, initial, inputs)?;
+        let mut carrier = Carrier {
+            samples,
+            tangents: Tangents::new(directions),
+            at_sample: Tangents::default(),
+            derivatives: Vec::new(),
+        };
+        carrier.take_until(span.0, initial);
+        self.follow_until(&mut motion, span.1, inputs, &mut carrier)?;
+        carrier.take_until(span.1, motion.state());
+        Ok(Sensitivities {
+            times: carrier.samples.times,
+            states: carrier.samples.states,
+            derivatives: carrier.derivatives,
+        })
+    }
+}
+
+/// Carries directions along and takes them at samples.
+struct Carrier<'s> {
+    samples: Samples<'s>,
+    tangents: Tangents,
+    /// Scratch: the directions at a sample within a segment.
+    at_sample: Tangents,
+    derivatives: Vec<Vec<Vec<f64>>>,
+}
+
+impl Carrier<'_> {
+    /// Takes the samples until a time at which state and directions are known.
+    fn take_until(&mut self, t: f64, state: &[f64]) {
+        self.samples.take_until(t, state);
+        let taken = self.samples.times.len();
+        self.derivatives
+            .resize(taken, self.tangents.vectors.clone());
+    }
+}
+
+impl Follow for Carrier<'_> {
+    fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
+        // Inputs change at samples: the last sample of a segment mostly stands at its end.
+        let mut at_end = false;
+        while let Some(after) = self.samples.next_in(segment) {
+            self.samples.take_in(segment, after, flow);
+            if after >= segment.tau {
+                at_end = true;
+                break;
+            }
+            self.at_sample.vectors.clone_from(&self.tangents.vectors);
+            self.at_sample.advance(segment.regime, after);
+            self.derivatives.push(self.at_sample.vectors.clone());
+        }
+        self.tangents.advance(segment.regime, segment.tau);
+        if at_end {
+            self.derivatives.push(self.tangents.vectors.clone());
+        }
+    }
+
+    fn switched(&mut self, change: &Change<'_>) {
+        self.tangents.switch(change, &[]);
+    }
+}

@@ -1,0 +1,481 @@
+//! From switch to switch. Which regimes there are is in `entered`, what lies beyond a limit in
+//! `beyond`.
+
+use std::collections::HashMap;
+
+use codegen::program::affine::AffineEvaluator;
+use fearless_simd::{Level, Simd, dispatch};
+use nalgebra::{Complex, DVector};
+
+use super::clock::Clock;
+use super::dependents::{Asking, Standing};
+use super::entered::Entered;
+use super::error::ExactError;
+use super::flow::Flow;
+use super::functional::Linear;
+use super::groups::{Group, Place, groups};
+use super::outline::Outline;
+use super::passage::{Limit, Passage};
+use super::regime::Regime;
+use super::search::{Effort, Found, passed, search};
+use super::switching::switched_rate;
+use crate::inputs::HeldInputs;
+use crate::ode::{SolveError, Switch};
+
+/// Switches in one instant before the motion is moved on by the shortest step.
+const AT_ONCE: u32 = 16;
+
+/// Decays that are slower than what switches by this factor are carried as polynomials: as
+/// modes they would hold large amplitudes that cancel.
+const SLOW: f64 = 1e-2;
+
+/// A motion that would need more steps than this, hours of them, is not begun.
+const MOST_STEPS: f64 = 1e8;
+
+/// Over this many switches their rate is averaged.
+const SWITCHES_AVERAGED: u64 = 1024;
+
+/// Exact motion at fixed parameters.
+pub struct Propagator {
+    pub(super) evaluator: AffineEvaluator,
+    pub(super) groups: Vec<Group>,
+    pub(super) regimes: Vec<Entered>,
+    pub(super) known: HashMap<Vec<Place>, usize>,
+    /// For each group whether its function feels the sides of others, or is of inputs alone.
+    pub(super) dependent: Vec<bool>,
+    pub(super) outlines: Vec<Outline>,
+    pub(super) outlined: HashMap<Vec<Place>, usize>,
+    /// By the regime before, the function and its limit, and the regime after, where the
+    /// constant saltation matrix is kept, if it is constant.
+    pub(super) passed: HashMap<(usize, usize, bool, usize), Option<usize>>,
+    flow: Flow,
+    pub(super) inputs: usize,
+    pub(super) states: usize,
+    pub(super) phases: Vec<[f64; 2]>,
+    pub(super) saltations: Vec<DVector<f64>>,
+    /// Decays up to this rate are slow beside what happens between switches, 1/s.
+    pub(super) slow: f64,
+    /// Give up when switches come faster than this on average, 1/s.
+    pub max_switch_rate: f64,
+}
+
+/// Where a motion stands.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    pub(super) clock: Clock,
+    pub(super) state: Vec<f64>,
+    pub(super) regime: usize,
+    at_once: u32,
+    /// Whether functions may have jumped beyond their limits, and which.
+    jumped: Option<Jumped>,
+    /// Switches so far and the time at which the present average began.
+    switches: u64,
+    averaged_from: f64,
+    /// The groups whose functions are leaving a surface that held the motion.
+    pub(super) departing: Vec<usize>,
+    /// What was done so far.
+    pub(super) effort: Effort,
+    /// The state at the start of the present segment.
+    before: Vec<f64>,
+    /// exp(i theta) of the phases now.
+    phases: Vec<Complex<f64>>,
+}
+
+/// Whose functions may have jumped beyond their limits.
+#[derive(Clone, Copy, Debug)]
+enum Jumped {
+    /// Those of any group.
+    Any,
+    /// Those of any group but this one.
+    AnyBut(usize),
+    /// The shares of both sides, where a motion is held on a surface.
+    Held,
+}
+
+impl Jumped {
+    fn may_be(self, group: usize, places: &[Place]) -> bool {
+        match self {
+            Self::Any => true,
+            Self::AnyBut(one) => group != one,
+            Self::Held => matches!(places[group], Place::On(_)),
+        }
+    }
+}
+
+/// Who follows a motion.
+pub(super) trait Follow {
+    /// The motion went on in one regime; `flow` stands at the end and may be moved.
+    fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow);
+
+    /// The motion changed from one regime to another at a switching surface.
+    fn switched(&mut self, change: &Change<'_>);
+}
+
+/// A motion within one regime.
+pub(super) struct Segment<'a> {
+    pub regime: &'a Regime,
+    pub places: &'a [Place],
+    /// When it began.
+    pub start: Clock,
+    /// The state then.
+    pub state: &'a [f64],
+    pub inputs: &'a [f64],
+    /// How long it took, s.
+    pub tau: f64,
+}
+
+/// A change of regime.
+pub(super) struct Change<'a> {
+    pub clock: Clock,
+    /// Where the groups stood before.
+    pub places: &'a [Place],
+    /// The index of the function that reached its limit, and whether its upper one.
+    pub limit: (usize, bool),
+    pub before: &'a Regime,
+    pub after: &'a Regime,
+    /// The function that reached its limit, as the regime before has it.
+    pub function: &'a Linear,
+    pub state: &'a [f64],
+    pub inputs: &'a [f64],
+    pub phases: &'a [Complex<f64>],
+    /// The part of the function's rate that is not due to the state's, 1/s times its unit.
+    pub explicit_rate: f64,
+    /// u of the saltation matrix I + u grad g, if that is constant.
+    pub saltation: Option<&'a DVector<f64>>,
+    /// The first of the surfaces that were reached, and whether it is positive from here on.
+    pub switch: Switch,
+}
+
+impl Motion {
+    /// The time, s.
+    pub fn time(&self) -> f64 {
+        self.clock.time()
+    }
+
+    /// The state.
+    pub fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// How many switches there were.
+    pub fn switches(&self) -> u64 {
+        self.switches
+    }
+}
+
+impl Propagator {
+    pub(super) fn new(mut evaluator: AffineEvaluator) -> Result<Self, ExactError> {
+        let sides = vec![0.0; evaluator.guard_count()];
+        let system = evaluator.system(&sides);
+        if !evaluator.half_widths_are_right() {
+            return Err(ExactError::NegativeHalfWidth);
+        }
+        if !evaluator.pivots_are_positive() {
+            return Err(ExactError::NotPositiveDefinite);
+        }
+        if system.guards.constant.iter().any(|c| !c.is_finite()) {
+            return Err(ExactError::NotFinite);
+        }
+        let groups = groups(&evaluator, &system);
+        let rests = evaluator.guards_rest();
+        let rests = |group: &Group| group.ranks.iter().flatten().any(|guard| rests[*guard]);
+        Ok(Self {
+            dependent: groups.iter().map(rests).collect(),
+            outlines: Vec::new(),
+            outlined: HashMap::new(),
+            passed: HashMap::new(),
+            groups,
+            regimes: Vec::new(),
+            known: HashMap::new(),
+            flow: Flow::default(),
+            inputs: evaluator.inputs(),
+            states: evaluator.states(),
+            phases: system.phases.clone(),
+            saltations: Vec::new(),
+            slow: SLOW * switched_rate(&mut evaluator, &system),
+            max_switch_rate: crate::ode::Settings::default().max_switch_rate,
+            evaluator,
+        })
+    }
+
+    /// Numbers in the state.
+    pub fn states(&self) -> usize {
+        self.states
+    }
+
+    /// How many regimes have been entered so far.
+    pub fn regimes(&self) -> usize {
+        self.regimes.len()
+    }
+
+    /// A motion from a state at a time, s.
+    ///
+    /// # Errors
+    /// If a regime cannot be prepared.
+    pub fn start(
+        &mut self,
+        t: f64,
+        state: &[f64],
+        inputs: &HeldInputs,
+    ) -> Result<Motion, ExactError> {
+        if state.len() != self.states || state.iter().any(|y| !y.is_finite()) || !t.is_finite() {
+            let problem = format!(
+                "expected {} finite initial values and a finite time",
+                self.states
+            );
+            return Err(SolveError::Request { problem }.into());
+        }
+        // The same motion from the same start, whatever was computed before.
+        for entered in &mut self.regimes {
+            entered.rung = 0;
+        }
+        let clock = Clock::at(t);
+        let regime = self.regime_at(clock, state, held(inputs, t, self.inputs))?;
+        Ok(Motion {
+            clock,
+            state: state.to_vec(),
+            regime,
+            at_once: 0,
+            jumped: None,
+            departing: Vec::new(),
+            switches: 0,
+            averaged_from: t,
+            effort: Effort::default(),
+            before: state.to_vec(),
+            phases: self.phases_at(clock),
+        })
+    }
+
+    pub(super) fn phases_at(&self, clock: Clock) -> Vec<Complex<f64>> {
+        self.phases
+            .iter()
+            .map(|phase| clock.phase(*phase))
+            .collect()
+    }
+
+    /// Goes on to a time, s, or to the next switch if that comes before; returns whether the
+    /// time was reached.
+    pub(super) fn advance(
+        &mut self,
+        motion: &mut Motion,
+        end: f64,
+        inputs: &HeldInputs,
+        follow: &mut dyn Follow,
+    ) -> Result<bool, ExactError> {
+        let now = motion.time();
+        let breakpoint = inputs.next_change(now).filter(|next| *next < end);
+        let target = breakpoint.unwrap_or(end);
+        let remaining = motion.clock.until(target);
+        self.check_window(motion, remaining)?;
+        let values = held(inputs, now, self.inputs);
+        let Entered {
+            regime,
+            rung,
+            places,
+            ..
+        } = &mut self.regimes[motion.regime];
+        motion.before.copy_from_slice(&motion.state);
+        let flow = &mut self.flow;
+        let length = remaining.min(regime.ladder.window);
+        let start = motion.clock;
+        let (found, leapt) = dispatch!(Level::new(), simd => {
+            go_on(simd, flow, (regime, places), motion, (values, length), rung)
+        });
+        let reached = match found {
+            Found::Nothing if length < remaining => {
+                motion.clock = start.plus(length);
+                false
+            }
+            Found::Nothing => {
+                motion.clock = Clock::at(target);
+                motion.jumped = breakpoint.map(|_| Jumped::Any);
+                breakpoint.is_none()
+            }
+            Found::Limit { .. } => {
+                motion.clock = start.plus(flow.tau);
+                false
+            }
+        };
+        for (slot, phase) in motion.phases.iter_mut().zip(&self.phases) {
+            *slot = motion.clock.phase(*phase);
+        }
+        if let Some(state) = motion.state.iter().position(|y| !y.is_finite()) {
+            return Err(SolveError::NotFinite { t: now, state }.into());
+        }
+        let tau = flow.tau;
+        let segment = Segment {
+            regime,
+            places,
+            start,
+            state: &motion.before,
+            inputs: values,
+            tau,
+        };
+        follow.flowed(&segment, flow);
+        if found == Found::Nothing && breakpoint.is_some() {
+            self.take_inputs(motion, inputs)?;
+        }
+        if let Found::Limit { functional, upper } = found {
+            motion.at_once = if tau > 0.0 { 0 } else { motion.at_once + 1 };
+            self.switch(motion, (functional, upper, leapt), inputs, follow)?;
+        }
+        Ok(reached)
+    }
+
+    /// Refuses a motion so fast, or a time so long, that there would be no end.
+    fn check_window(&self, motion: &Motion, remaining: f64) -> Result<(), SolveError> {
+        let window = self.regimes[motion.regime].regime.ladder.window;
+        if remaining <= MOST_STEPS * window {
+            return Ok(());
+        }
+        Err(SolveError::Request {
+            problem: format!(
+                "at t = {:?} s there are {remaining:e} s to go in steps of at most {window:e} s, \
+                 with no end in sight; expected a shorter time, or parameters of a slower motion",
+                motion.time()
+            ),
+        })
+    }
+
+    /// Enters the regime that inputs lead to which have changed, where what they switch has one
+    /// value while they are held.
+    fn take_inputs(&mut self, motion: &mut Motion, inputs: &HeldInputs) -> Result<(), ExactError> {
+        if !self.has_dependents() {
+            return Ok(());
+        }
+        let mut places = self.regimes[motion.regime].places.clone();
+        let before = self.outline(&places);
+        let standing = Standing {
+            state: &motion.state,
+            inputs: held(inputs, motion.time(), self.inputs),
+            phases: &motion.phases,
+        };
+        self.settle(&mut places, Asking::Jump(before), standing);
+        motion.regime = self.regime(&places, motion.time())?;
+        Ok(())
+    }
+
+    /// Enters the regime beyond a limit.
+    fn switch(
+        &mut self,
+        motion: &mut Motion,
+        (functional, upper, leapt): (usize, bool, bool),
+        inputs: &HeldInputs,
+        follow: &mut dyn Follow,
+    ) -> Result<(), ExactError> {
+        let before = motion.regime;
+        let values = held(inputs, motion.time(), self.inputs);
+        let standing = Standing {
+            state: &motion.state,
+            inputs: values,
+            phases: &motion.phases,
+        };
+        let group = self.regimes[before].regime.functionals[functional]
+            .limits
+            .group;
+        let limit = Limit {
+            before,
+            functional,
+            group,
+            upper,
+            leapt,
+            t: motion.time(),
+        };
+        let Passage {
+            after,
+            saltation,
+            moves_others,
+        } = self.passage(&limit, standing)?;
+        let (rank, to_positive) = limit.rank(self.regimes[before].places[group]);
+        let phases = &motion.phases;
+        let guard = self.groups[group].ranks[rank][0];
+        let function = &self.regimes[before].regime.functionals[functional].linear;
+        follow.switched(&Change {
+            clock: motion.clock,
+            places: &self.regimes[before].places,
+            limit: (functional, upper),
+            before: &self.regimes[before].regime,
+            after: &self.regimes[after].regime,
+            function,
+            explicit_rate: self.explicit_rate(function, phases),
+            saltation: saltation.map(|place| &self.saltations[place]),
+            state: &motion.state,
+            inputs: values,
+            phases,
+            switch: Switch {
+                t: motion.time(),
+                guard,
+                to_positive,
+            },
+        });
+        motion.regime = after;
+        self.let_go(motion, before);
+        if leapt {
+            // A jump may have led over more than one limit.
+            motion.jumped = Some(Jumped::Any);
+        } else if self.has_dependents() {
+            // The others were put where they belong.
+            motion.jumped = Some(Jumped::Held);
+        } else if moves_others {
+            motion.jumped = Some(Jumped::AnyBut(group));
+        }
+        self.count_switch(motion, guard)
+    }
+
+    fn count_switch(&self, motion: &mut Motion, guard: usize) -> Result<(), ExactError> {
+        motion.switches += 1;
+        if motion.switches.is_multiple_of(SWITCHES_AVERAGED) {
+            let (t, rate) = (motion.time(), self.max_switch_rate);
+            if (t - motion.averaged_from) * rate < SWITCHES_AVERAGED as f64 {
+                return Err(SolveError::TooManySwitches { t, guard, rate }.into());
+            }
+            motion.averaged_from = t;
+        }
+        Ok(())
+    }
+}
+
+/// Moves the state on within a regime, for `length` s at most, to the first limit that is
+/// reached: which one it is, and whether a jump led over it.
+#[inline(always)]
+fn go_on<S: Simd>(
+    simd: S,
+    flow: &mut Flow,
+    (regime, places): (&Regime, &[Place]),
+    motion: &mut Motion,
+    (inputs, length): (&[f64], f64),
+    rung: &mut usize,
+) -> (Found, bool) {
+    flow.start(simd, regime, &motion.state, inputs, &motion.phases);
+    // A group's function stands at the group's place among the functions.
+    for group in &motion.departing {
+        flow.depart(simd, regime, *group);
+    }
+    if motion.at_once > AT_ONCE {
+        // Rounding alone decides between surfaces: the motion itself must.
+        if let Some(shortest) = regime.ladder.rungs.last() {
+            flow.step(simd, regime, shortest);
+        }
+        motion.at_once = 0;
+    }
+    let leap = match motion.jumped.take() {
+        Some(jumped) => passed(simd, flow, regime, |group| jumped.may_be(group, places)),
+        None => None,
+    };
+    let found = match leap {
+        Some(found) => found,
+        None => search(simd, flow, regime, length, rung, &mut motion.effort),
+    };
+    motion.departing.retain(|group| flow.is_departing(*group));
+    if found == Found::Nothing {
+        flow.go_to(simd, regime, length);
+    }
+    flow.state(simd, regime, &mut motion.state);
+    (found, leap.is_some())
+}
+
+/// The inputs in force from a time on, as many as the model has.
+fn held(inputs: &HeldInputs, t: f64, count: usize) -> &[f64] {
+    let all = inputs.at(t);
+    &all[..count.min(all.len())]
+}

@@ -1,0 +1,88 @@
+//! A simulation with samples, in the form that the general solver gives.
+
+use super::error::ExactError;
+use super::flow::Flow;
+use super::follow::Samples;
+use super::propagator::{Change, Follow, Propagator, Segment};
+use crate::inputs::HeldInputs;
+use crate::ode::{Switch, Trajectory};
+
+impl Propagator {
+    /// Simulates from `initial` over `span` (begin, end; s) and returns the states at
+    /// `samples` (s, ascending, inside the span). `progress` is called with the time that is
+    /// reached, at every switch and in between.
+    ///
+    /// There is no tolerance: samples and switches are right up to rounding.
+    ///
+    /// # Errors
+    /// If the request makes no sense, a regime cannot be prepared, or switches come faster
+    /// than [`Propagator::max_switch_rate`].
+    pub fn simulate(
+        &mut self,
+        initial: &[f64],
+        span: (f64, f64),
+        samples: &[f64],
+        inputs: &HeldInputs,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Trajectory, ExactError> {
+        let mut trajectory = Trajectory::default();
+        let request = (initial, span, samples);
+        self.simulate_into(&mut trajectory, request, inputs, progress)?;
+        Ok(trajectory)
+    }
+
+    /// The same, with the initial state, the span and the samples in one; `trajectory`, which
+    /// is empty before, holds all that was found, also where the motion could not be followed
+    /// to the end.
+    ///
+    /// # Errors
+    /// As for [`Propagator::simulate`].
+    pub fn simulate_into(
+        &mut self,
+        trajectory: &mut Trajectory,
+        (initial, span, samples): (&[f64], (f64, f64), &[f64]),
+        inputs: &HeldInputs,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<(), ExactError> {
+        let samples = Samples::new(span, samples)?;
+        let mut motion = self.start(span.0, initial, inputs)?;
+        let mut recorder = Recorder {
+            samples,
+            switches: Vec::new(),
+            progress,
+        };
+        recorder.samples.take_until(span.0, initial);
+        let ended = self.follow_until(&mut motion, span.1, inputs, &mut recorder);
+        if ended.is_ok() {
+            // The last switch may stand at the end, up to rounding.
+            recorder.samples.take_until(span.1, motion.state());
+        }
+        trajectory.times = recorder.samples.times;
+        trajectory.states = recorder.samples.states;
+        trajectory.switches = recorder.switches;
+        trajectory.last = motion.state().to_vec();
+        trajectory.work.steps = motion.effort.steps;
+        trajectory.work.trials = motion.effort.newton;
+        ended
+    }
+}
+
+/// Takes samples and notes switches.
+struct Recorder<'s> {
+    samples: Samples<'s>,
+    switches: Vec<Switch>,
+    progress: &'s mut dyn FnMut(f64),
+}
+
+impl Follow for Recorder<'_> {
+    fn flowed(&mut self, segment: &Segment<'_>, flow: &mut Flow) {
+        while let Some(after) = self.samples.next_in(segment) {
+            self.samples.take_in(segment, after, flow);
+        }
+        (self.progress)(segment.start.plus(segment.tau).time());
+    }
+
+    fn switched(&mut self, change: &Change<'_>) {
+        self.switches.push(change.switch);
+    }
+}

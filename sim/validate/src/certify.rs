@@ -1,0 +1,178 @@
+//! Runs every check that applies to a model at one order and writes the certificate.
+
+use super::certificate::{Certificate, Certified, Check, Worst};
+use super::checks::requested::Judged;
+use super::checks::{
+    MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, exact, nesting, regimes, requested, states,
+};
+use super::oracle::{Oracle, OracleError};
+use super::requested::Requested;
+use super::variant::Variant;
+use model_spec::model::{MAX_ORDER, Model};
+use model_spec::source::sha256;
+
+pub use super::checks::emitted::{Emitted, EmittedFunction};
+pub use super::checks::exact::{Derivative, Sized};
+pub use super::checks::states::Reference;
+
+/// What was written by hand for a model.
+#[derive(Default)]
+pub struct ByHand {
+    /// The equations.
+    pub references: Vec<Reference>,
+    /// A line for each that does not apply, with the reason.
+    pub absent: Vec<Check>,
+}
+
+/// What is to be judged.
+pub struct Subject<'s> {
+    /// The checked model.
+    pub model: &'s Model,
+    /// The order.
+    pub order: usize,
+    /// Parameters in SI, in the order of the model.
+    pub parameters: &'s [f64],
+    /// Makes the variant of an order, with these parameters.
+    pub variants: &'s dyn Fn(usize) -> Result<Box<dyn Variant>, String>,
+    /// Equations written by hand for this model.
+    pub references: &'s [Reference],
+    /// Lines for equations written by hand that do not apply to it, with the reason.
+    pub absent: &'s [Check],
+    /// Makes what was requested of this order, with these parameters; none if nothing was.
+    pub requested: Option<&'s dyn Fn() -> Result<Box<dyn Requested>, String>>,
+    /// The emitted source with the specification's own parameters, or why there is none.
+    pub emitted: Result<Emitted, String>,
+    /// The emitted source with kernels of regimes, or why there is none; its functions are not
+    /// compared.
+    pub regimes: Result<Emitted, String>,
+    /// The derivative that the exact solver integrates, or why there is none.
+    pub exact: Result<&'s Derivative<'s>, String>,
+}
+
+/// The certificate of `subject`. What keeps a check from being made at all, such as a
+/// variant that cannot be derived, is a failed check.
+pub fn certify(subject: &Subject<'_>) -> Certificate {
+    let checks = all_checks(subject).unwrap_or_else(|message| {
+        let worst = Worst::of(f64::INFINITY, message);
+        vec![Check::made("accelerations", worst, ROW_TOLERANCE)]
+    });
+    let emitted = subject.emitted.as_ref().ok();
+    let about = about(subject.model, subject.order, subject.parameters, emitted);
+    Certificate::new(about, checks)
+}
+
+/// What the certificate of a model at an order, with parameters in SI, is about.
+pub fn about(
+    model: &Model,
+    order: usize,
+    parameters: &[f64],
+    emitted: Option<&Emitted>,
+) -> Certified {
+    let names = model.parameters.iter().map(|known| known.name.clone());
+    Certified {
+        model: model.name.clone(),
+        order,
+        specification_sha256: model.source.hash(),
+        source_sha256: emitted.map(|emitted| sha256(&emitted.source)),
+        with: emitted
+            .and_then(|emitted| emitted.requests.clone())
+            .unwrap_or_default(),
+        parameters: names.zip(parameters.iter().copied()).collect(),
+    }
+}
+
+fn all_checks(subject: &Subject<'_>) -> Result<Vec<Check>, String> {
+    let oracle = oracle(subject, subject.order)?;
+    let mut variant = (subject.variants)(subject.order)?;
+    let variant = variant.as_mut();
+    let mut checks = states::check(&oracle, variant, subject.references).map_err(text)?;
+    checks.extend_from_slice(subject.absent);
+    checks.push(balance::check(&oracle, variant).map_err(text)?);
+    checks.extend(nested(subject, &oracle, variant)?);
+    checks.extend(rigid(subject, variant)?);
+    let mut requested = subject.requested.map(|make| make()).transpose()?;
+    if let Some(requested) = &mut requested {
+        let judged = Judged {
+            oracle: &oracle,
+            model: subject.model,
+            order: subject.order,
+            parameters: subject.parameters,
+        };
+        let found = requested::check(&judged, variant, requested.as_mut());
+        checks.extend(found.map_err(text)?);
+    }
+    checks.extend(match &subject.emitted {
+        Ok(emitted) => {
+            let requested = requested.as_deref_mut();
+            emitted::check(&oracle, variant, requested, emitted).map_err(text)?
+        }
+        Err(reason) => emitted::skipped(None, reason),
+    });
+    checks.push(match &subject.regimes {
+        Ok(emitted) => regimes::check(&oracle, variant, emitted).map_err(text)?,
+        Err(reason) => regimes::skipped(reason),
+    });
+    checks.push(match &subject.exact {
+        Ok(derivative) => exact::check(&oracle, variant, *derivative).map_err(text)?,
+        Err(reason) => exact::skipped(reason),
+    });
+    Ok(checks)
+}
+
+fn oracle(subject: &Subject<'_>, order: usize) -> Result<Oracle, String> {
+    Oracle::new(subject.model, order, subject.parameters).map_err(text)
+}
+
+fn text(error: OracleError) -> String {
+    format!("the oracle cannot judge this model: {error}")
+}
+
+/// This order inside the next; at the highest order, the one before inside this.
+fn nested(
+    subject: &Subject<'_>,
+    oracle: &Oracle,
+    variant: &mut dyn Variant,
+) -> Result<Vec<Check>, String> {
+    if subject.model.fields.is_empty() {
+        return Ok(skipped("nesting", "the model has no field"));
+    }
+    let found = if subject.order < MAX_ORDER {
+        let mut larger = (subject.variants)(subject.order + 1)?;
+        nesting::check("nesting", oracle, variant, larger.as_mut())
+    } else {
+        let order = subject.order.saturating_sub(1);
+        let smaller = self::oracle(subject, order)?;
+        let mut small = (subject.variants)(order)?;
+        nesting::check("nesting", &smaller, small.as_mut(), variant)
+    };
+    Ok(found.map_err(text)?.into())
+}
+
+/// The rigid model inside this one.
+fn rigid(subject: &Subject<'_>, variant: &mut dyn Variant) -> Result<Vec<Check>, String> {
+    const NAME: &str = "rigid_limit";
+    if subject.model.fields.is_empty() {
+        return Ok(skipped(NAME, "the model has no field"));
+    }
+    if subject.order == 0 {
+        return Ok(skipped(NAME, "this is the rigid model"));
+    }
+    let oracle = oracle(subject, 0)?;
+    if oracle.size() == 0 {
+        return Ok(skipped(NAME, "nothing is left without the field"));
+    }
+    let mut rigid = (subject.variants)(0)?;
+    let found = nesting::check(NAME, &oracle, rigid.as_mut(), variant).map_err(text)?;
+    Ok(found.into())
+}
+
+/// The three checks of a nesting, skipped.
+fn skipped(name: &str, reason: &str) -> Vec<Check> {
+    [
+        ("mass", MASS_TOLERANCE),
+        ("bias", ROW_TOLERANCE),
+        ("forces", ROW_TOLERANCE),
+    ]
+    .map(|(part, tolerance)| Check::skipped(format!("{name}_{part}"), tolerance, reason))
+    .into()
+}

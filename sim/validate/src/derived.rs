@@ -1,0 +1,108 @@
+//! A derived model seen by the certificate: the evaluator of its program behind its trait. No
+//! equation is written here.
+
+use codegen::program::evaluator::{Evaluator, Point};
+use sim::ode::NOT_POSITIVE;
+
+use crate::variant::Variant;
+
+/// A derived variant with fixed parameters.
+pub struct Derived {
+    evaluator: Evaluator,
+}
+
+impl Derived {
+    /// Takes an evaluator, prepared with the parameters to be used.
+    pub fn new(evaluator: Evaluator) -> Self {
+        Self { evaluator }
+    }
+
+    fn scalars(&self) -> usize {
+        self.evaluator.program().observables.len()
+    }
+
+    fn observable(&mut self, point: Point<'_>, from_the_end: usize) -> f64 {
+        let mut values = vec![0.0; self.scalars()];
+        self.evaluator.observables(point, &mut values);
+        values[values.len() - from_the_end]
+    }
+}
+
+impl Variant for Derived {
+    fn coordinate_names(&self) -> Vec<String> {
+        let program = self.evaluator.program();
+        let mut names = program.state_names();
+        names.truncate(program.degrees_of_freedom());
+        names
+    }
+
+    fn rates(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+        rates: &mut [f64],
+    ) -> Result<(), String> {
+        if !self.evaluator.pivots_are_positive() {
+            return Err(NOT_POSITIVE.to_owned());
+        }
+        self.evaluator.rates(point(time, state, inputs), rates);
+        Ok(())
+    }
+
+    fn mass_matrix(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+        mass: &mut [f64],
+    ) -> Result<(), String> {
+        self.evaluator.mass_matrix(point(time, state, inputs), mass);
+        Ok(())
+    }
+
+    fn bias_and_forces(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+        bias: &mut [f64],
+        forces: &mut [f64],
+    ) -> Result<(), String> {
+        self.evaluator
+            .bias_and_forces(point(time, state, inputs), bias, forces);
+        Ok(())
+    }
+
+    fn energy(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<f64, String> {
+        Ok(self.observable(point(time, state, inputs), 2))
+    }
+
+    fn power(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<f64, String> {
+        Ok(self.observable(point(time, state, inputs), 1))
+    }
+
+    fn guards(&mut self, time: f64, state: &[f64], inputs: &[f64]) -> Result<Vec<f64>, String> {
+        let mut values = vec![0.0; self.evaluator.guard_count()];
+        self.evaluator
+            .guards(point(time, state, inputs), &mut values);
+        Ok(values)
+    }
+
+    /// `energy` and `power` stand last.
+    fn observables(
+        &mut self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Vec<f64>, String> {
+        let mut values = vec![0.0; self.scalars()];
+        self.evaluator
+            .observables(point(time, state, inputs), &mut values);
+        Ok(values)
+    }
+}
+
+fn point<'a>(t: f64, state: &'a [f64], inputs: &'a [f64]) -> Point<'a> {
+    Point { t, state, inputs }
+}

@@ -1,0 +1,169 @@
+//! The certificate of a model at one order: its derivation and its emitted source go
+//! before the checks, with what its caller knows to have been written by hand for it.
+
+use std::cell::RefCell;
+
+use codegen::mechanics::equations::derive;
+use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::requested;
+use codegen::program::Program;
+use codegen::program::evaluator::Evaluator;
+use codegen::program::lowering::lower_requested;
+use codegen::rust::{Packaging, emit};
+use model_spec::model::Model;
+use model_spec::variant::ModelError;
+
+use crate::certificate::Certificate;
+use crate::certify::{ByHand, Emitted, EmittedFunction, Sized, Subject, about, certify};
+use crate::derived::Derived;
+use crate::derived_requests::DerivedRequests;
+use crate::requested::Requested;
+use crate::variant::Variant;
+use sim::piecewise_linear::{PiecewiseLinear, Propagator};
+
+/// The certificate of `model` with every field at `order`; `emitted` is the source of
+/// that variant with `requests`, as a file by itself.
+///
+/// # Errors
+/// If the parameters have no finite values.
+pub fn certificate(
+    model: &Model,
+    order: usize,
+    requests: &[Request],
+    emitted: String,
+    by_hand: &ByHand,
+) -> Result<Certificate, ModelError> {
+    let parameters = model.parameter_values()?;
+    let variants = |order: usize| variant(model, order, &parameters);
+    let on_request = || on_request(model, order, &parameters, requests);
+    let propagator = exact(model, order).map(RefCell::new);
+    let derivative = |time: f64, state: &[f64], inputs: &[f64]| match &propagator {
+        Ok(propagator) => rates(&mut propagator.borrow_mut(), time, state, inputs),
+        Err(reason) => Err(reason.clone()),
+    };
+    let emitted = source(model, requests, emitted);
+    Ok(certify(&Subject {
+        model,
+        order,
+        parameters: &parameters,
+        variants: &variants,
+        references: &by_hand.references,
+        absent: &by_hand.absent,
+        requested: (!requests.is_empty()).then_some(&on_request),
+        regimes: kernels(model, order, &parameters, &emitted.input_fields),
+        emitted: Ok(emitted),
+        exact: match &propagator {
+            Ok(_) => Ok(&derivative),
+            Err(reason) => Err(reason.clone()),
+        },
+    }))
+}
+
+/// The same without its checks, so that it has not passed: what a certificate has to say
+/// that it is about.
+///
+/// # Errors
+/// As [`certificate`].
+pub fn unchecked(
+    model: &Model,
+    order: usize,
+    requests: &[Request],
+    emitted: String,
+) -> Result<Certificate, ModelError> {
+    let parameters = model.parameter_values()?;
+    let emitted = source(model, requests, emitted);
+    let about = about(model, order, &parameters, Some(&emitted));
+    Ok(Certificate::new(about, Vec::new()))
+}
+
+/// The emitted source with what is to be compared of it.
+fn source(model: &Model, requests: &[Request], source: String) -> Emitted {
+    let inputs = model.inputs.iter();
+    let names = requests.iter().map(|request| request.name().to_owned());
+    Emitted {
+        source,
+        input_fields: inputs.map(|input| input.name.clone()).collect(),
+        functions: vec![
+            EmittedFunction::Rates,
+            EmittedFunction::Observables,
+            EmittedFunction::Energy,
+            EmittedFunction::Power,
+            EmittedFunction::Guards,
+            EmittedFunction::MassMatrix,
+        ],
+        requests: Some(names.collect()),
+    }
+}
+
+/// The source of a variant with kernels of its regimes, or why there is none.
+fn kernels(
+    model: &Model,
+    order: usize,
+    parameters: &[f64],
+    input_fields: &[String],
+) -> Result<Emitted, String> {
+    let program = program(model, order, parameters, &[Request::Regimes])?;
+    if program.guards.is_empty() {
+        return Err("the model has no piecewise function".to_owned());
+    }
+    let source = emit(&program, Packaging::Crate).map_err(|error| error.to_string())?;
+    Ok(Emitted {
+        source,
+        input_fields: input_fields.to_vec(),
+        functions: Vec::new(),
+        requests: None,
+    })
+}
+
+/// What propagates a model exactly, or why nothing does.
+fn exact(model: &Model, order: usize) -> Result<Propagator, String> {
+    let orders = vec![order; model.fields.len()];
+    let linear = PiecewiseLinear::of(model, &orders);
+    let propagator = linear.and_then(|linear| linear.propagator(model));
+    propagator.map_err(|error| error.to_string())
+}
+
+/// The rates as a propagator has them.
+fn rates(
+    propagator: &mut Propagator,
+    time: f64,
+    state: &[f64],
+    inputs: &[f64],
+) -> Result<Sized, String> {
+    let found = propagator.rates(time, state, inputs);
+    let found = found.map_err(|error| error.to_string())?;
+    Ok(Sized {
+        rates: found.values,
+        sizes: found.sizes,
+    })
+}
+
+/// The variant of a model with every field at `order`, at parameter values in SI.
+fn variant(model: &Model, order: usize, parameters: &[f64]) -> Result<Box<dyn Variant>, String> {
+    let evaluator = Evaluator::new(program(model, order, parameters, &[])?);
+    Ok(Box::new(Derived::new(evaluator)))
+}
+
+/// What was requested of that variant.
+fn on_request(
+    model: &Model,
+    order: usize,
+    parameters: &[f64],
+    requests: &[Request],
+) -> Result<Box<dyn Requested>, String> {
+    let evaluator = Evaluator::new(program(model, order, parameters, requests)?);
+    Ok(Box::new(DerivedRequests::new(evaluator)))
+}
+
+/// The program of that variant with what is requested.
+fn program(
+    model: &Model,
+    order: usize,
+    parameters: &[f64],
+    requests: &[Request],
+) -> Result<Program, String> {
+    let orders = vec![order; model.fields.len()];
+    let mut equations = derive(model, &orders).map_err(|error| error.to_string())?;
+    let requested = requested(&mut equations, requests).map_err(|error| error.to_string())?;
+    Ok(lower_requested(model, &equations, parameters, &requested))
+}
