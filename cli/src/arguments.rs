@@ -270,14 +270,13 @@ pub enum Solver {
     Adams,
 }
 
-impl Solver {
-    /// As it is typed.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Auto => "auto",
-            Self::Exact => "exact",
-            Self::Rk => "rk",
-            Self::Adams => "adams",
+impl From<Solver> for eomgen_compiled_model::Solver {
+    fn from(solver: Solver) -> Self {
+        match solver {
+            Solver::Auto => Self::Auto,
+            Solver::Exact => Self::Exact,
+            Solver::Rk => Self::Rk,
+            Solver::Adams => Self::Adams,
         }
     }
 }

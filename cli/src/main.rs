@@ -9,6 +9,7 @@ mod arguments;
 mod claims_table;
 mod commands;
 mod figures;
+mod model;
 mod motion;
 mod output;
 mod page;
@@ -17,7 +18,6 @@ mod problem;
 mod progress;
 mod ranges;
 mod table;
-mod variant;
 
 use std::process::ExitCode;
 

@@ -5,6 +5,7 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
+use eomgen_compiled_model::Error;
 use eomgen_records::Refusal;
 use model_spec::diagnostic::Diagnostics;
 use model_spec::source::Source;
@@ -21,6 +22,15 @@ pub enum Problem {
     Specification(Diagnostics),
     /// The command ran and the answer is no; what there is to say is said.
     Failed,
+}
+
+impl From<Error> for Problem {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Specification(found) => Self::Specification(found),
+            Error::Request(reason) | Error::Stopped { reason, .. } => Self::Input(reason),
+        }
+    }
 }
 
 impl Problem {

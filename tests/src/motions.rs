@@ -1,9 +1,11 @@
 //! Models made on the spot and their motions by the exact and by the general solver. What
 //! the two have in common ends at the derived equations. Nothing is checked here.
 
+use std::cell::RefCell;
 use std::fmt::Write;
 
-use eomgen_compiled_model::driven::Driven;
+use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_compiled_model::Driven;
 use model_spec::check;
 use model_spec::model::Model;
 use model_spec::source::Source;
@@ -153,9 +155,10 @@ impl Subject {
     }
 
     /// The model as the general solver takes it.
-    pub fn driven(&self) -> Driven {
+    pub fn driven(&self) -> Driven<RefCell<Evaluator>, &HeldInputs> {
         let evaluator = variant(&self.model, self.order).evaluator;
-        Driven::new(evaluator, self.inputs.clone()).expect("a positive mass matrix")
+        assert!(evaluator.pivots_are_positive());
+        Driven::new(RefCell::new(evaluator), &self.inputs)
     }
 
     /// The motion by the general solver.
@@ -173,16 +176,17 @@ impl Subject {
         simulate(&driven, &self.initial, span, times, &settings, &mut |_| {})
     }
 
-    /// The energy at a state, J.
-    pub fn energy(&self, driven: &Driven, t: f64, state: &[f64]) -> f64 {
-        let count = variant(&self.model, self.order)
-            .evaluator
-            .program()
-            .observables
-            .len();
-        let mut values = vec![0.0; count];
-        driven.observables(t, state, &mut values);
-        values[count - 2]
+    /// The energies at these times and states, J.
+    pub fn energies(&self, times: &[f64], states: &[Vec<f64>]) -> Vec<f64> {
+        let mut evaluator = variant(&self.model, self.order).evaluator;
+        let mut values = vec![0.0; evaluator.program().observables.len()];
+        let pairs = times.iter().zip(states);
+        let energy = |(&t, state): (&f64, &Vec<f64>)| {
+            let inputs = self.inputs.at(t);
+            evaluator.observables(Point { t, state, inputs }, &mut values);
+            values[values.len() - 2]
+        };
+        pairs.map(energy).collect()
     }
 }
 

@@ -2,17 +2,18 @@
 
 use std::io::IsTerminal;
 
+use eomgen_compiled_model::CompiledModel;
 use model_spec::diagnostic::Diagnostics;
 use serde_json::{Value, json};
 
 use crate::arguments::Check;
+use crate::model::{derive, orders};
 use crate::problem::{Outcome, Problem, say, warn};
-use crate::variant::{Variant, derive_variant, orders};
 
 /// Runs the command. A derivation is part of the check: what cannot be derived is an
 /// error of the specification too.
 pub fn run(options: &Check) -> Outcome {
-    let (variant, warnings) = match examine(options) {
+    let (compiled, warnings) = match examine(options) {
         Ok(found) => found,
         Err(problem) => {
             if let (true, Problem::Specification(found)) = (options.json, &problem) {
@@ -23,33 +24,33 @@ pub fn run(options: &Check) -> Outcome {
         }
     };
     if options.json {
-        return say(&format!("{:#}\n", record(&variant, &warnings)));
+        return say(&format!("{:#}\n", record(&compiled, &warnings)));
     }
     if !warnings.is_empty() {
         warn(&warnings.render(std::io::stderr().is_terminal()));
     }
-    say(&summary(&variant))
+    say(&summary(&compiled))
 }
 
-fn examine(options: &Check) -> Outcome<(Variant, Diagnostics)> {
+fn examine(options: &Check) -> Outcome<(CompiledModel, Diagnostics)> {
     let checked = model_spec::load(&options.spec).map_err(Problem::Specification)?;
     let orders = orders(&checked.model, options.order.as_deref())?;
-    Ok((derive_variant(checked.model, &orders)?, checked.warnings))
+    Ok((derive(checked.model, &orders)?, checked.warnings))
 }
 
-fn record(variant: &Variant, warnings: &Diagnostics) -> Value {
+fn record(compiled: &CompiledModel, warnings: &Diagnostics) -> Value {
     json!({
         "passed": true,
-        "model": variant.model.name,
-        "orders": variant.equations.graph.orders(),
-        "state": variant.program.state_names(),
+        "model": compiled.model().name,
+        "orders": compiled.equations().graph.orders(),
+        "state": compiled.program().state_names(),
         "diagnostics": warnings.records(),
     })
 }
 
-fn summary(variant: &Variant) -> String {
-    let model = &variant.model;
-    let fields = match variant.equations.graph.orders() {
+fn summary(compiled: &CompiledModel) -> String {
+    let model = compiled.model();
+    let fields = match compiled.equations().graph.orders() {
         [] => "no field".to_owned(),
         orders => {
             let list: Vec<String> = orders.iter().map(usize::to_string).collect();

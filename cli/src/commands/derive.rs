@@ -1,21 +1,22 @@
 //! `eomgen derive`: the equations of motion on stdout.
 
+use codegen::program::evaluator::Evaluator;
 use codegen::report::Report;
 
 use crate::arguments::{Derive, Format};
+use crate::model::load_to_read;
 use crate::problem::{Outcome, Problem, say};
-use crate::variant::Variant;
 
 /// Runs the command.
 pub fn run(options: &Derive) -> Outcome {
-    let variant = Variant::load_to_read(&options.spec, options.order.as_deref())?;
+    let compiled = load_to_read(&options.spec, options.order.as_deref())?;
     let format = if options.json {
         Format::Json
     } else {
         options.format
     };
-    let evaluator = variant.evaluator();
-    let report = Report::new(&variant.model, &variant.equations, &evaluator);
+    let evaluator = Evaluator::new(compiled.program().clone());
+    let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
     match format {
         Format::Text => say(&report.text()),
         Format::Latex => say(&report.latex()),

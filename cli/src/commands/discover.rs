@@ -23,9 +23,9 @@ use serde_json::{Value, json};
 
 use super::validate;
 use crate::arguments;
+use crate::model::{load, orders};
 use crate::output::write_file;
 use crate::problem::{Outcome, Problem, say, warn};
-use crate::variant::{load, orders};
 
 /// Runs `compare`.
 pub fn compare(options: &arguments::Compare) -> Outcome {

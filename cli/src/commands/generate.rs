@@ -12,9 +12,9 @@ use serde_json::json;
 use super::validate::{document, of_source};
 use super::{generate_all, generate_bench};
 use crate::arguments::{Extra, Generate, Target};
+use crate::model::{load, orders};
 use crate::output::write_file;
 use crate::problem::{Outcome, Problem, say, warn};
-use crate::variant::{load, orders};
 
 /// Runs the command.
 pub fn run(options: &Generate) -> Outcome {

@@ -9,10 +9,10 @@ use serde_json::{Value, json};
 
 use super::generate::source;
 use super::validate::{document, of_source};
+use crate::model::{derive, load};
 use crate::output::write_file;
 use crate::problem::{Outcome, Problem, say, warn};
 use crate::progress::Note;
-use crate::variant::{derive_variant, load};
 
 /// The specification whose variants are checked in.
 const SPECIFICATION: &str = "model-spec/models/planetary_arm.toml";
@@ -120,8 +120,8 @@ fn variants(model: &Model) -> Outcome<Vec<CheckedIn>> {
             0 => format!("{}_rigid", model.name),
             order => format!("{}_order_{order}", model.name),
         };
-        let derived = derive_variant(model.clone(), &vec![order; model.fields.len()])?;
-        let text = source(&derived.program, Packaging::Module)?;
+        let derived = derive(model.clone(), &vec![order; model.fields.len()])?;
+        let text = source(derived.program(), Packaging::Module)?;
         Ok(CheckedIn { name, order, text })
     };
     (0..=HIGHEST_ORDER).map(variant).collect()

@@ -1,17 +1,18 @@
 //! `eomgen simulate`: a trajectory as a table, CSV or Parquet.
 
+use eomgen_compiled_model::{DEFAULT_TOLERANCE, Motion, Request};
 use eomgen_records::read_inputs;
 use model_spec::model::Model;
 use serde_json::json;
 use sim::inputs::HeldInputs;
 
 use crate::arguments::{Simulate, Solver};
-use crate::motion::{Run, Simulated};
+use crate::model::{derive, load, orders};
+use crate::motion::{columns, follow, in_words, table};
 use crate::output::Destination;
 use crate::problem::{Outcome, Problem, warn};
 use crate::ranges::warn_of_ranges;
 use crate::table::Table;
-use crate::variant::{derive_variant, load, orders};
 
 /// The most numbers written, rows times columns: a few GB of memory.
 const MOST_NUMBERS: f64 = 1e8;
@@ -19,16 +20,13 @@ const MOST_NUMBERS: f64 = 1e8;
 /// Rows where nothing is said about them.
 const DEFAULT_ROWS: f64 = 1000.0;
 
-/// The relative tolerance where nothing is said about it.
-const DEFAULT_TOLERANCE: f64 = 1e-9;
-
 /// Runs the command.
 pub fn run(options: &Simulate) -> Outcome {
     let destination = Destination::of(&options.out, options.json)?;
     let model = with_settings(load(&options.spec)?.model, &options.set)?;
     let orders = orders(&model, options.order.as_deref())?;
-    let variant = derive_variant(model, &orders)?;
-    let inputs = inputs(options, &variant.model)?;
+    let compiled = derive(model, &orders)?;
+    let inputs = inputs(options, compiled.model())?;
     let span = span(options, &inputs)?;
     let times = match options.sample {
         None if options.record.is_some() => record_times(&inputs, span)?,
@@ -37,15 +35,21 @@ pub fn run(options: &Simulate) -> Outcome {
     if options.solver == Solver::Exact && options.tolerance.is_some() {
         warn("warning: --tolerance has no effect on the exact solver: only rounding limits it");
     }
-    let tolerance = options.tolerance.unwrap_or(DEFAULT_TOLERANCE);
-    let run = Run::new(&variant, inputs, options.solver, tolerance)?;
-    check_size(times.len(), run.columns().len())?;
-    let simulated = run.follow(&times)?;
-    warn_of_ranges(&variant.model, &simulated.trajectory, run.inputs())?;
-    let table = run.table(&simulated.trajectory);
+    let run = compiled.at_declared()?;
+    check_size(times.len(), columns(&run).len())?;
+    let request = Request {
+        initial: run.initial(),
+        times: &times,
+        inputs: &inputs,
+        solver: options.solver.into(),
+        tolerance: options.tolerance.unwrap_or(DEFAULT_TOLERANCE),
+    };
+    let motion = follow(&run, &request)?;
+    warn_of_ranges(compiled.model(), &motion.trajectory, &inputs)?;
+    let table = table(&run, &motion)?;
     destination.write(&table.encode(&options.out)?)?;
-    destination.summarise(&summary(options, &table, &simulated))?;
-    match &simulated.stopped {
+    destination.summarise(&summary(options, &table, &motion))?;
+    match &motion.stopped {
         Some(stopped) => {
             warn(&format!("error: {}", stopped.reason));
             Err(Problem::Failed)
@@ -55,27 +59,27 @@ pub fn run(options: &Simulate) -> Outcome {
 }
 
 /// What is said at the end.
-fn summary(options: &Simulate, table: &Table, simulated: &Simulated) -> String {
+fn summary(options: &Simulate, table: &Table, motion: &Motion) -> String {
     let file = options.out.display();
-    let (rows, switches) = (table.rows(), simulated.trajectory.switches.len());
-    let work = simulated.trajectory.work;
+    let (rows, switches) = (table.rows(), motion.trajectory.switches.len());
+    let work = motion.trajectory.work;
     if options.json {
         let document = json!({
             "file": file.to_string(),
-            "solver": simulated.solver.name(),
+            "solver": motion.solver.name(),
             "rows": rows,
             "switches": switches,
             "steps": work.steps,
             "rejected": work.rejected,
             "evaluations": work.evaluations,
-            "stopped": simulated.stopped.as_ref().map(|stopped| json!({
+            "stopped": motion.stopped.as_ref().map(|stopped| json!({
                 "t": stopped.t,
                 "reason": stopped.reason,
             })),
         });
         return format!("{document:#}\n");
     }
-    let how = simulated.work();
+    let how = in_words(motion);
     format!("{file}: {rows} rows, {switches} switches, {how}\n")
 }
 

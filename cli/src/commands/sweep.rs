@@ -1,18 +1,18 @@
 //! `eomgen sweep`: something measured over a grid of parameters, in parallel and in parts.
 
+use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_sweep::job::Plan;
-use eomgen_sweep::{
-    Axis, Family, Folder, Grid, Job, Lyapunov, Measure, Poincare, Shard, Span, SweepError,
-};
+use eomgen_sweep::parameters::columns;
+use eomgen_sweep::{Axis, Folder, Grid, Job, Lyapunov, Measure, Poincare, Shard, Span, SweepError};
 use model_spec::model::Model;
 use serde_json::{Value, json};
 
 use super::merge::finish;
 use super::simulate::{setting, warn_of_inputs};
 use crate::arguments::Sweep;
+use crate::model::{load, orders};
 use crate::problem::{Outcome, Problem, say};
 use crate::progress::Bar;
-use crate::variant::{derive_unjudged, load, orders};
 
 /// What can be measured.
 const MEASURES: [&str; 2] = ["lyapunov", "poincare"];
@@ -31,9 +31,9 @@ pub fn run(options: &Sweep) -> Outcome {
         .iter()
         .map(|assignment| setting(assignment))
         .collect::<Outcome<Vec<_>>>()?;
-    let family = family(options, &grid, &set)?;
-    let measures = measures(options, &family, &grid)?;
-    let job = job(&family, &grid, &set, &measures)?;
+    let model = model(options, &grid, &set)?;
+    let measures = measures(options, &model, &grid)?;
+    let job = job(&model, &grid, &set, &measures)?;
     let folder = Folder::open(&options.out, job).map_err(refused)?;
     let mut bar = None;
     let mut progress = |computed: usize, whole: usize| {
@@ -99,7 +99,7 @@ fn grid(options: &Sweep) -> Outcome<Grid> {
 }
 
 /// The model derived at the grid's first point, where all varied parameters are numbers.
-fn family(options: &Sweep, grid: &Grid, set: &[(&str, f64)]) -> Outcome<Family> {
+fn model(options: &Sweep, grid: &Grid, set: &[(&str, f64)]) -> Outcome<CompiledModel> {
     if let Some((name, _)) = set
         .iter()
         .find(|(name, _)| grid.names().any(|varied| varied == *name))
@@ -118,14 +118,10 @@ fn family(options: &Sweep, grid: &Grid, set: &[(&str, f64)]) -> Outcome<Family> 
     let first = at(0)?;
     warn_of_inputs(&first);
     let orders = orders(&first, options.order.as_deref())?;
-    let variant = derive_unjudged(first, &orders)?;
-    let family = Family::new(variant.model, variant.program);
-    // Exact propagation calls no right-hand side.
-    let code = match family.exact() {
-        Ok(_) => None,
-        Err(_) => jit::code(family.program()),
-    };
-    Ok(family.with_code(code))
+    Ok(CompiledModel::derive_unjudged(
+        first,
+        Orders::Each(&orders),
+    )?)
 }
 
 fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Outcome<Model> {
@@ -137,7 +133,7 @@ fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Outcome<Model> {
 /// What is asked for, in the order of the command line.
 fn measures<'a>(
     options: &Sweep,
-    family: &'a Family,
+    model: &'a CompiledModel,
     grid: &Grid,
 ) -> Outcome<Vec<Box<dyn Measure + 'a>>> {
     let lines = grid.axes().iter().filter(|axis| axis.count > 1).count();
@@ -148,28 +144,26 @@ fn measures<'a>(
     let frequency = &options.frequency;
     let measure = |name: &String| -> Outcome<Box<dyn Measure + 'a>> {
         Ok(match name.as_str() {
-            "lyapunov" => Box::new(Lyapunov::new(family, frequency, span).map_err(refused)?),
-            _ => Box::new(Poincare::new(family, frequency, span, lines == 1).map_err(refused)?),
+            "lyapunov" => Box::new(Lyapunov::new(model, frequency, span).map_err(refused)?),
+            _ => Box::new(Poincare::new(model, frequency, span, lines == 1).map_err(refused)?),
         })
     };
     options.measure.iter().map(measure).collect()
 }
 
 fn job(
-    family: &Family,
+    compiled: &CompiledModel,
     grid: &Grid,
     set: &[(&str, f64)],
     measures: &[Box<dyn Measure + '_>],
 ) -> Outcome<Job> {
-    let model = family.model();
-    let fields = family.program().fields.iter();
-    let orders: Vec<usize> = fields.map(|field| field.order).collect();
+    let (model, orders) = (compiled.model(), compiled.orders());
     let plan = Plan::new(
         &model.source,
         &model.name,
-        &orders,
+        orders,
         set,
-        family.columns(grid.names()).map_err(refused)?,
+        columns(model, grid).map_err(refused)?,
         grid,
         measures.iter().map(|measure| measure.describe()).collect(),
     );

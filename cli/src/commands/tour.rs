@@ -4,25 +4,26 @@
 use std::path::Path;
 use std::time::Instant;
 
+use codegen::program::evaluator::Evaluator;
 use codegen::report::Report;
 use codegen::rust::Packaging;
+use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
 use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
 use eomgen_validate::certificate::Certificate;
 use model_spec::source::Source;
 use serde_json::json;
-use sim::inputs::HeldInputs;
 
 use super::generate::source;
 use super::tour_hidden::{Told, told};
 use super::validate;
-use crate::arguments::{Solver, Tour};
-use crate::motion::{Run, Simulated};
+use crate::arguments::Tour;
+use crate::model::derive;
+use crate::motion::{in_words, simulate, table};
 use crate::output::{file_place, write_file};
 use crate::page;
 use crate::problem::{Outcome, Problem, say};
 use crate::progress::Note;
 use crate::table::Table;
-use crate::variant::{Variant, derive_variant};
 
 /// The paper's arm.
 const SPECIFICATION: &str = include_str!("../../../model-spec/models/planetary_arm.toml");
@@ -66,32 +67,39 @@ pub fn run(options: &Tour) -> Outcome {
     let checked = model_spec::check(Source::new(SPECIFICATION_PATH, SPECIFICATION))
         .map_err(Problem::Specification)?;
     watch.lap("read and check the specification");
-    let variant = derive_variant(checked.model, &[ORDER])?;
+    let compiled = derive(checked.model, &[ORDER])?;
     watch.lap("derive the equations and lower them to a program");
-    let rust = source(&variant.program, Packaging::Crate)?;
+    let rust = source(compiled.program(), Packaging::Crate)?;
     watch.lap("emit Rust");
     drop(note);
     let note = Note::new("validating against independent equations");
-    let certificate = validate::of(&variant.model, &[ORDER], &[])?;
+    let certificate = validate::of(compiled.model(), &[ORDER], &[])?;
     watch.lap("validate, including a compilation of the emitted Rust");
     drop(note);
-    let run = Run::new(&variant, HeldInputs::zero(0), Solver::Auto, TOLERANCE)?;
+    let run = compiled.at_declared()?;
     let times: Vec<f64> = (0..=(UNTIL / SAMPLE) as usize)
         .map(|i| i as f64 * SAMPLE)
         .collect();
-    let simulated = run.simulate(&times)?;
-    let table = run.table(&simulated.trajectory);
+    let request = Request {
+        initial: run.initial(),
+        times: &times,
+        inputs: &run.no_inputs(),
+        solver: Solver::Auto,
+        tolerance: TOLERANCE,
+    };
+    let motion = simulate(&run, &request)?;
+    let table = table(&run, &motion)?;
     watch.lap("simulate two seconds");
-    let figure = figure(&variant, &table)?;
-    leave(options, &variant, &rust, &certificate, &table, &figure)?;
+    let figure = figure(&run, &table)?;
+    leave(options, &compiled, &rust, &certificate, &table, &figure)?;
     let note = Note::new("finding a friction that is hidden in a stage");
     let told = told(&options.out)?;
     watch.lap("hide a friction in a stage, compare, discover");
     drop(note);
     let parts = (&rust[..], &figure[..], &told);
-    let page = page_text(&variant, parts, &certificate, &simulated, &watch)?;
+    let page = page_text(&compiled, parts, &certificate, &motion, &watch)?;
     write_file(&path, page.as_bytes())?;
-    say(&summary(options.json, &certificate, &simulated, &path))?;
+    say(&summary(options.json, &certificate, &motion, &path))?;
     if certificate.passed {
         Ok(())
     } else {
@@ -100,11 +108,8 @@ pub fn run(options: &Tour) -> Outcome {
 }
 
 /// What is said at the end.
-fn summary(json: bool, certificate: &Certificate, simulated: &Simulated, page: &Path) -> String {
-    let (checks, switches) = (
-        certificate.checks.len(),
-        simulated.trajectory.switches.len(),
-    );
+fn summary(json: bool, certificate: &Certificate, motion: &Motion, page: &Path) -> String {
+    let (checks, switches) = (certificate.checks.len(), motion.trajectory.switches.len());
     if json {
         let document = json!({
             "page": page.display().to_string(),
@@ -128,7 +133,7 @@ fn summary(json: bool, certificate: &Certificate, simulated: &Simulated, page: &
 /// The files that the page shows.
 fn leave(
     options: &Tour,
-    variant: &Variant,
+    compiled: &CompiledModel,
     rust: &str,
     certificate: &Certificate,
     table: &Table,
@@ -139,7 +144,7 @@ fn leave(
         .map_err(|error| Problem::input(error.to_string()))?;
     write_file(
         &out.join("planetary_arm.toml"),
-        variant.model.source.text.as_bytes(),
+        compiled.model().source.text.as_bytes(),
     )?;
     write_file(&out.join("lib.rs"), rust.as_bytes())?;
     write_file(
@@ -152,20 +157,15 @@ fn leave(
 }
 
 /// The mesh deflection and the positioning error over time.
-fn figure(variant: &Variant, table: &Table) -> Outcome<String> {
+fn figure(run: &Instance<'_>, table: &Table) -> Outcome<String> {
     let column = |name: &str| {
         table
             .column(name)
             .ok_or_else(|| Problem::input(format!("the trajectory has no column {name}")))
     };
     let t = column("t")?;
-    let backlash = variant
-        .program
-        .parameters
-        .iter()
-        .find(|parameter| parameter.quantity.name == "b_sp")
-        .map_or(f64::NAN, |parameter| parameter.value);
-    let panel = |title: &str, name: &str, references: Vec<Reference>| {
+    let backlash = run.value("b_sp").unwrap_or(f64::NAN);
+    let panel = |title: &str, name: &str, references: Vec<Reference>| -> Outcome<Panel<'_>> {
         Ok(Panel {
             title: title.to_owned(),
             quantity: name.to_owned(),
@@ -206,19 +206,19 @@ fn figure(variant: &Variant, table: &Table) -> Outcome<String> {
 
 /// The page. `parts`: the emitted Rust, the figure and what was found.
 fn page_text(
-    variant: &Variant,
+    compiled: &CompiledModel,
     (rust, figure, told): (&str, &str, &Told),
     certificate: &Certificate,
-    simulated: &Simulated,
+    motion: &Motion,
     watch: &Stopwatch,
 ) -> Outcome<String> {
-    let evaluator = variant.evaluator();
-    let report = Report::new(&variant.model, &variant.equations, &evaluator);
+    let evaluator = Evaluator::new(compiled.program().clone());
+    let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
     let summary = format!(
         "From rest over {UNTIL} s at order {ORDER} with the paper's values and those assumed where it gives none: \
          the meshes made or lost contact {} times, {}.",
-        simulated.trajectory.switches.len(),
-        simulated.work()
+        motion.trajectory.switches.len(),
+        in_words(motion)
     );
     let checks = certificate
         .checks
@@ -234,7 +234,7 @@ fn page_text(
         .collect();
     let found = told.summary();
     let tour = page::Tour {
-        title: &variant.model.title,
+        title: &compiled.model().title,
         generated_by: concat!("eomgen ", env!("CARGO_PKG_VERSION")),
         specification: page::Specification {
             path: SPECIFICATION_PATH,

@@ -3,19 +3,20 @@
 
 use std::path::{Path, PathBuf};
 
+use eomgen_compiled_model::{Request, Solver};
 use model_spec::edit::{self, Edit, NewForce, NewParameter, NewValue};
 use model_spec::source::Source;
 use serde_json::Value;
 use sim::inputs::HeldInputs;
 
 use super::discover;
-use crate::arguments::{Compare, Discover, Solver};
-use crate::motion::Run;
+use crate::arguments::{Compare, Discover};
+use crate::model::derive;
+use crate::motion::{simulate, table};
 use crate::output::write_file;
 use crate::page;
 use crate::problem::{Outcome, Problem};
 use crate::table::Table;
-use crate::variant::derive_variant;
 
 /// The stage as it is known.
 const SPECIFICATION: &str = include_str!("../../../model-spec/models/emps.toml");
@@ -118,7 +119,7 @@ fn truth() -> Outcome<String> {
 fn record(truth: &str, turn: f64) -> Outcome<Table> {
     let checked =
         model_spec::check(Source::new("stage.toml", truth)).map_err(Problem::Specification)?;
-    let variant = derive_variant(checked.model, &[])?;
+    let compiled = derive(checked.model, &[])?;
     let times: Vec<f64> = (0..SAMPLES).map(|i| i as f64 * SAMPLE).collect();
     let force = |t: &f64| {
         let slow = 300.0 * (5.0 * t + turn).cos();
@@ -127,8 +128,15 @@ fn record(truth: &str, turn: f64) -> Outcome<Table> {
     let forces: Vec<f64> = times.iter().map(force).collect();
     let inputs = HeldInputs::new(times.clone(), forces.clone(), 1)
         .ok_or_else(|| Problem::input("the stage has no force"))?;
-    let run = Run::new(&variant, inputs, Solver::Rk, TOLERANCE)?;
-    let motion = run.table(&run.simulate(&times)?.trajectory);
+    let run = compiled.at_declared()?;
+    let request = Request {
+        initial: run.initial(),
+        times: &times,
+        inputs: &inputs,
+        solver: Solver::Rk,
+        tolerance: TOLERANCE,
+    };
+    let motion = table(&run, &simulate(&run, &request)?)?;
     let positions = motion
         .column("q")
         .ok_or_else(|| Problem::input("the stage has no position"))?;

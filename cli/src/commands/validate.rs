@@ -10,10 +10,10 @@ use model_spec::model::Model;
 
 use super::generate::source;
 use crate::arguments::{Extra, Validate};
+use crate::model::{load, orders};
 use crate::output::Destination;
 use crate::problem::{Outcome, Problem, say};
 use crate::progress::Note;
-use crate::variant::{load, orders};
 
 /// Runs the command.
 pub fn run(options: &Validate) -> Outcome {

@@ -179,7 +179,7 @@ fn simplest(
     mut expression: Expression,
 ) -> Result<(Candidate, Fit), String> {
     loop {
-        let candidate = written(&before.plant.model, &expression);
+        let candidate = written(before.plant.model(), &expression);
         let fit = fitted(setting, before, &candidate, &expression)?;
         let known = before.unknowns.len();
         let own = &fit.train.estimate.theta[known..];

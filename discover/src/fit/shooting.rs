@@ -85,7 +85,7 @@ impl<'a> Shooting<'a> {
             bias: vec![0.0; channels],
             delay: vec![0.0; channels],
         };
-        for sensor in &self.plant.model.sensors {
+        for sensor in &self.plant.model().sensors {
             // What the specification itself says of a sensor holds until it is estimated.
             if let Some(place) = self.plant.channel(&sensor.channel) {
                 sensors.gain[place] = sensor.gain;

@@ -2,14 +2,9 @@
 //! switches, and the measured quantities among its outputs. It runs in [`crate::model::runner`]; what
 //! is estimated with it is decided elsewhere.
 
-use std::sync::Arc;
-
-use codegen::program::Program;
-use codegen::program::evaluator::{Evaluator, MachineCode};
-use codegen::variant::Variant;
+use codegen::program::evaluator::Evaluator;
+use eomgen_compiled_model::{CompiledModel, Error, Orders};
 use model_spec::model::{Model, ParameterValue};
-use model_spec::source::Source;
-use sim::piecewise_linear::PiecewiseLinear;
 
 use crate::beside::Beside;
 use crate::model::runner::{Runner, Shown};
@@ -32,10 +27,8 @@ const MARCHING_ERROR: f64 = 0.2;
 
 /// A derived model with its measured outputs.
 pub struct Plant {
-    /// The checked model.
-    pub model: Model,
-    /// The order of each field.
-    pub orders: Vec<usize>,
+    /// The model.
+    compiled: CompiledModel,
     /// The names of the independent parameters, in the order of their values.
     pub parameters: Vec<String>,
     /// The values the specification gives them, SI.
@@ -44,7 +37,6 @@ pub struct Plant {
     pub states: Vec<String>,
     /// Where each coordinate lives, for those of which the specification says so.
     ranges: Vec<Option<(f64, f64)>>,
-    code: Code,
     linear: Option<LinearPart>,
     pub(crate) outputs: Vec<Output>,
     channels: Vec<String>,
@@ -57,36 +49,13 @@ pub struct Plant {
     refinement: f64,
 }
 
-/// A program with its machine code.
-struct Code {
-    program: Program,
-    code: Option<Arc<dyn MachineCode>>,
-}
-
-impl Code {
-    fn of(program: Program) -> Self {
-        Self {
-            code: jit::code(&program),
-            program,
-        }
-    }
-
-    fn evaluator(&self, values: &[f64]) -> Evaluator {
-        let mut evaluator = match &self.code {
-            Some(code) => Evaluator::with_code(self.program.clone(), code.clone()),
-            None => Evaluator::new(self.program.clone()),
-        };
-        evaluator.prepare(values);
-        evaluator
-    }
-}
-
 /// What of a model is linear between switches.
-struct LinearPart {
-    exact: PiecewiseLinear,
-    /// Where it is not all: the program of this part and, for each of its parameters, the
-    /// place among the whole model's.
-    beside: Option<(Code, Vec<usize>)>,
+enum LinearPart {
+    /// All of it.
+    Whole,
+    /// The model of this part and, for each of its parameters, the place among the whole
+    /// model's.
+    Part(Box<CompiledModel>, Vec<usize>),
 }
 
 /// Where a channel's quantity is found.
@@ -110,11 +79,8 @@ impl Plant {
         channels: &[Channel],
     ) -> Result<Self, String> {
         let mut plant = Self::equations(text, name, order, channels)?;
-        plant.linear = match (PiecewiseLinear::of(&plant.model, &plant.orders), linear) {
-            (Ok(exact), _) => Some(LinearPart {
-                exact,
-                beside: None,
-            }),
+        plant.linear = match (plant.compiled.piecewise_linear(), linear) {
+            (Ok(_), _) => Some(LinearPart::Whole),
             (Err(_), Some(linear)) => linear_part(linear, name, order, &plant),
             (Err(_), None) => None,
         };
@@ -131,27 +97,19 @@ impl Plant {
         order: Option<usize>,
         channels: &[Channel],
     ) -> Result<Self, String> {
-        let checked = model_spec::check(Source::new(name, text)).map_err(|d| d.render(false))?;
-        let model = checked.model;
-        let orders = model.orders(order).map_err(|error| error.to_string())?;
-        let variant = Variant::derive(&model, &orders).map_err(|d| d.render(false))?;
-        let states = model.state_names(&orders);
-        let ranges = model
-            .coordinate_ranges()
-            .map_err(|error| error.to_string())?;
-        let program = variant.program;
-        let independent =
+        let compiled = compiled(text, name, order).map_err(in_words)?;
+        let ranges = compiled.model().coordinate_ranges();
+        let ranges = ranges.map_err(|error| error.to_string())?;
+        let program = compiled.program();
+        let is_number =
             |p: &&model_spec::model::Parameter| matches!(p.value, ParameterValue::Number(_));
-        let parameters = model
-            .parameters
-            .iter()
-            .filter(independent)
-            .map(|p| p.name.clone())
-            .collect::<Vec<_>>();
+        let independent = compiled.model().parameters.iter().filter(is_number);
+        let parameters = independent.map(|p| p.name.clone()).collect();
+        let degrees = program.degrees_of_freedom();
         let outputs = channels.iter().map(|channel| match channel.quantity {
             Quantity::Observable(place) => Output::Observable(place),
             Quantity::Coordinate(place) => Output::State(place),
-            Quantity::Rate(place) => Output::State(program.degrees_of_freedom() + place),
+            Quantity::Rate(place) => Output::State(degrees + place),
         });
         Ok(Self {
             outputs: outputs.collect(),
@@ -161,15 +119,13 @@ impl Plant {
                 .collect(),
             parameters,
             values: program.default_parameters(),
-            states,
+            states: compiled.state_names(),
             ranges,
-            code: Code::of(program),
             linear: None,
             steps: None,
             sample: 0.0,
             refinement: 1.0,
-            model,
-            orders,
+            compiled,
         })
     }
 
@@ -181,6 +137,16 @@ impl Plant {
             }
         }
         state
+    }
+
+    /// The checked model.
+    pub fn model(&self) -> &Model {
+        self.compiled.model()
+    }
+
+    /// The order of each field.
+    pub fn orders(&self) -> &[usize] {
+        self.compiled.orders()
     }
 
     /// The place of an independent parameter among the values.
@@ -213,20 +179,18 @@ impl Plant {
 
     /// How many observables the model has.
     pub(crate) fn observables(&self) -> usize {
-        self.code.program.observables.len()
+        self.compiled.program().observables.len()
     }
 
     /// A text with no terms but those that are linear between switches is enough for the
     /// whole model.
     pub fn is_linear(&self) -> bool {
-        self.linear
-            .as_ref()
-            .is_some_and(|part| part.beside.is_none())
+        matches!(self.linear, Some(LinearPart::Whole))
     }
 
     /// The initial state that the specification gives.
     pub fn initial(&self) -> Vec<f64> {
-        let given = self.model.initial_state(&self.orders);
+        let given = self.compiled.model().initial_state(self.compiled.orders());
         given.unwrap_or_else(|_| vec![0.0; self.state_count()])
     }
 
@@ -285,39 +249,39 @@ impl Plant {
     /// # Errors
     /// Values at which there is no motion, in words.
     pub fn at(&self, values: &[f64]) -> Result<Runner<'_>, String> {
-        let mut evaluator = self.code.evaluator(values);
+        let mut evaluator = self.compiled.evaluator(values);
         if !evaluator.pivots_are_positive() {
             return Err("the mass matrix is not positive definite".to_owned());
         }
         let shown = Shown::of(self, &mut evaluator);
         let mut runner = Runner::new(self, evaluator, shown);
-        let Some(part) = &self.linear else {
-            return Ok(runner);
-        };
-        let own = match &part.beside {
-            None => values.to_vec(),
-            Some((_, places)) => places.iter().map(|place| values[*place]).collect(),
-        };
-        let evaluator = part.exact.evaluator(&own);
-        runner.march = March::new(evaluator, self.sample, self.refinement);
-        match (&runner.march, &part.beside) {
-            (Some(_), None) => {}
-            (Some(_), Some((code, _))) => {
-                let whole = self.code.evaluator(values);
-                runner.beside = Some(Beside::new(whole, code.evaluator(&own)));
+        let (linear, own) = match &self.linear {
+            None => return Ok(runner),
+            Some(LinearPart::Whole) => (&self.compiled, values.to_vec()),
+            Some(LinearPart::Part(part, places)) => {
+                let own = places.iter().map(|place| values[*place]);
+                (&**part, own.collect())
             }
-            (None, None) => {
-                let exact = part.exact.at(values).map_err(|error| error.to_string())?;
+        };
+        let exact = linear.piecewise_linear().map_err(ToString::to_string)?;
+        runner.march = March::new(exact.evaluator(&own), self.sample, self.refinement);
+        match (&runner.march, self.is_linear()) {
+            (None, true) => {
+                let exact = exact.at(values).map_err(|error| error.to_string())?;
                 runner.propagate(exact, FASTEST_SWITCHING);
             }
-            (None, Some(_)) => {}
+            (Some(_), false) => {
+                let whole = self.compiled.evaluator(values);
+                runner.beside = Some(Beside::new(whole, linear.evaluator(&own)));
+            }
+            (Some(_), true) | (None, false) => {}
         }
         Ok(runner)
     }
 
     /// The model's equations at these values, to be compared with others.
     pub(crate) fn evaluator(&self, values: &[f64]) -> (Evaluator, Option<Shown>) {
-        let mut evaluator = self.code.evaluator(values);
+        let mut evaluator = self.compiled.evaluator(values);
         let shown = Shown::of(self, &mut evaluator);
         (evaluator, shown)
     }
@@ -325,28 +289,32 @@ impl Plant {
 
 /// Whether a text's model is linear between its switches.
 pub fn is_linear(text: &str, name: &str, order: Option<usize>) -> bool {
-    let Ok(checked) = model_spec::check(Source::new(name, text)) else {
-        return false;
-    };
-    let orders = checked.model.orders(order);
-    orders.is_ok_and(|orders| PiecewiseLinear::of(&checked.model, &orders).is_ok())
+    compiled(text, name, order).is_ok_and(|compiled| compiled.piecewise_linear().is_ok())
 }
 
 /// The linear part of a model whose text is given, if it has the model's states.
 fn linear_part(text: &str, name: &str, order: Option<usize>, plant: &Plant) -> Option<LinearPart> {
-    let model = model_spec::check(Source::new(name, text)).ok()?.model;
-    let orders = model.orders(order).ok()?;
-    if model.state_names(&orders) != plant.states {
+    let part = compiled(text, name, order).ok()?;
+    if part.state_names() != plant.states {
         return None;
     }
-    let exact = PiecewiseLinear::of(&model, &orders).ok()?;
+    let exact = part.piecewise_linear().ok()?;
     let places = exact.parameters().iter().map(|own| plant.place(own));
     let places = places.collect::<Option<Vec<usize>>>()?;
-    let program = Variant::derive(&model, &orders).ok()?.program;
-    Some(LinearPart {
-        exact,
-        beside: Some((Code::of(program), places)),
-    })
+    Some(LinearPart::Part(Box::new(part), places))
+}
+
+/// The model of a text.
+fn compiled(text: &str, name: &str, order: Option<usize>) -> Result<CompiledModel, Error> {
+    CompiledModel::of_text(name, text, order.map_or(Orders::Declared, Orders::All))
+}
+
+/// What is wrong with a text, for a file or a page.
+fn in_words(error: Error) -> String {
+    match error {
+        Error::Specification(found) => found.render(false),
+        other => other.to_string(),
+    }
 }
 
 #[cfg(test)]

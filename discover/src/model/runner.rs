@@ -6,8 +6,9 @@
 use std::cell::RefCell;
 
 use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_compiled_model::Driven;
 use sim::inputs::HeldInputs;
-use sim::ode::{Settings, System, simulate};
+use sim::ode::{Settings, simulate};
 use sim::piecewise_linear::Propagator;
 
 use crate::beside::Beside;
@@ -37,7 +38,7 @@ impl Shown {
     /// the state, or depend on more than it.
     pub(crate) fn of(plant: &Plant, evaluator: &mut Evaluator) -> Option<Self> {
         let n = plant.state_count();
-        let inputs = plant.model.inputs.len();
+        let inputs = plant.model().inputs.len();
         let mut observables = vec![0.0; plant.observables()];
         let mut show = |t: f64, state: &[f64], inputs: &[f64]| -> Vec<f64> {
             if !plant.shows_states_only() {
@@ -242,11 +243,7 @@ impl<'p> Runner<'p> {
             max_switch_rate: crate::model::plant::FASTEST_SWITCHING,
             ..Settings::with_tolerance(TOLERANCE)
         };
-        let driven = Driven {
-            evaluator: &self.evaluator,
-            inputs,
-            states: self.plant.state_count(),
-        };
+        let driven = Driven::new(&self.evaluator, inputs);
         simulate(&driven, initial, span, samples, &settings, &mut |_| {})
             .map(|trajectory| trajectory.states)
             .map_err(|error| error.to_string())
@@ -387,46 +384,5 @@ impl<'p> Runner<'p> {
         let point = Point { t, state, inputs };
         self.evaluator.get_mut().rates(point, &mut rates);
         rates
-    }
-}
-
-/// A model as the general solver sees it.
-struct Driven<'a> {
-    evaluator: &'a RefCell<Evaluator>,
-    inputs: &'a HeldInputs,
-    states: usize,
-}
-
-impl Driven<'_> {
-    fn point<'b>(&'b self, t: f64, state: &'b [f64]) -> Point<'b> {
-        Point {
-            t,
-            state,
-            inputs: self.inputs.at(t),
-        }
-    }
-}
-
-impl System for Driven<'_> {
-    fn states(&self) -> usize {
-        self.states
-    }
-
-    fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        let mut evaluator = self.evaluator.borrow_mut();
-        evaluator.rates(self.point(t, y), out);
-    }
-
-    fn guard_count(&self) -> usize {
-        self.evaluator.borrow().guard_count()
-    }
-
-    fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        let mut evaluator = self.evaluator.borrow_mut();
-        evaluator.guards(self.point(t, y), out);
-    }
-
-    fn next_breakpoint(&self, t: f64) -> Option<f64> {
-        self.inputs.next_change(t)
     }
 }

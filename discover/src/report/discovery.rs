@@ -210,7 +210,7 @@ fn named(setting: &Setting<'_>, fit: &Fit, what: &What) -> Option<(String, f64, 
         }
         What::Delay(_) => Some(("delay".to_owned(), 1.0, "s".to_owned())),
         What::Parameter(name) => {
-            let mut parameters = fit.plant.model.parameters.iter();
+            let mut parameters = fit.plant.model().parameters.iter();
             let parameter = parameters.find(|p| p.name == *name)?;
             let unit = parameter.unit.text.clone();
             Some((name.clone(), parameter.unit.from_si(1.0), unit))
@@ -232,7 +232,13 @@ fn refitted(fit: &Fit, accepted: &[Accepted]) -> Value {
         {
             continue;
         }
-        if let Some(parameter) = fit.plant.model.parameters.iter().find(|p| p.name == *name) {
+        if let Some(parameter) = fit
+            .plant
+            .model()
+            .parameters
+            .iter()
+            .find(|p| p.name == *name)
+        {
             let of = |si: f64| parameter.unit.from_si(si);
             let entry = json!({
                 "value": of(fit.train.estimate.theta[place]),

@@ -46,7 +46,12 @@ pub fn extended(
         if let What::Parameter(name) = &unknown.what
             && has_moved(fit, place, !accepted.is_empty())
             && !added.contains(&place)
-            && let Some(parameter) = fit.plant.model.parameters.iter().find(|p| p.name == *name)
+            && let Some(parameter) = fit
+                .plant
+                .model()
+                .parameters
+                .iter()
+                .find(|p| p.name == *name)
         {
             edits.push(Edit::SetParameter(SetParameter {
                 name: name.clone(),

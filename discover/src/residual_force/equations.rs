@@ -73,7 +73,7 @@ pub struct Asked {
 impl Equations {
     /// The equations of a fitted model; none if a force cannot be written into it.
     pub fn of(setting: &Setting<'_>, fit: &Fit) -> Option<Self> {
-        let list = equations(&fit.plant.model);
+        let list = equations(fit.plant.model());
         let names = |word: &str, number: usize| format!("{word}_of_equation_{number}");
         let mut edits = Vec::new();
         for (number, equation) in list.iter().enumerate() {
@@ -113,7 +113,7 @@ impl Equations {
             return None;
         }
         let observable = |name: String| {
-            let mut observables = plant.model.observables.iter();
+            let mut observables = plant.model().observables.iter();
             observables.position(|observable| observable.name == name)
         };
         let numbers = 0..list.len();

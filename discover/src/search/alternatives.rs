@@ -83,7 +83,7 @@ impl Round<'_> {
         if rivals.is_empty() {
             return Default::default();
         }
-        let model = &trial.fit.plant.model;
+        let model = trial.fit.plant.model();
         let known = candidates(
             model,
             effects,

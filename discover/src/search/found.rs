@@ -75,7 +75,7 @@ pub fn null_fit(setting: &Setting<'_>, text: &str) -> Result<Fit, String> {
         .cloned()
         .zip(plant.values.iter().copied())
         .collect();
-    let unknowns = of_null_model(setting.dataset, &plant.model, &values);
+    let unknowns = of_null_model(setting.dataset, plant.model(), &values);
     let theta: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
     let texts = || (text.to_owned(), text.to_owned());
     // Sensors that are free from the first step on find what is off by much, and now and then

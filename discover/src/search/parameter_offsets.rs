@@ -18,7 +18,7 @@ pub fn shifts(fit: &Fit) -> Vec<Candidate> {
         };
         fit.unknowns.iter().any(of)
     };
-    let parameters = fit.plant.model.parameters.iter();
+    let parameters = fit.plant.model().parameters.iter();
     let free = parameters.filter(|parameter| !is_known(&parameter.name));
     free.filter_map(candidate::shift).collect()
 }

@@ -235,7 +235,7 @@ impl Look<'_> {
     /// looked at where all play is closed, and nothing else is there.
     fn candidates(&self, fit: &Fit, view: View) -> (Vec<Candidate>, Vec<Candidate>) {
         let (setting, has_play) = (self.task.setting, view != View::NoPlay);
-        let model = &fit.plant.model;
+        let model = fit.plant.model();
         let mut all = candidates(
             model,
             self.effects,
@@ -276,7 +276,7 @@ fn is_any(searched: &[Searched], is: &dyn Fn(&Trial) -> bool) -> bool {
 
 /// The model with all play closed, fitted; none if there is no play.
 fn without_play(setting: &Setting<'_>, fit: &Fit) -> Option<Fit> {
-    let edits: Vec<Edit> = plays(&fit.plant.model)
+    let edits: Vec<Edit> = plays(fit.plant.model())
         .into_iter()
         .map(|name| {
             Edit::SetParameter(SetParameter {

@@ -1,39 +1,41 @@
 //! A derived model seen by the solvers: the evaluator of its program and the inputs that drive
 //! it behind their trait.
 
-use std::cell::RefCell;
+use std::borrow::Borrow;
+use std::cell::{RefCell, RefMut};
 
 use codegen::program::evaluator::{Evaluator, Point};
 use codegen::program::{Op, ValueId};
 use sim::inputs::HeldInputs;
-use sim::ode::{NOT_POSITIVE, Surface, System};
+use sim::ode::{Surface, System};
 
-/// A derived variant driven by inputs, as the solver sees it.
-pub struct Driven {
-    evaluator: RefCell<Evaluator>,
-    inputs: HeldInputs,
+/// A derived model driven by inputs, as the solvers see it; it owns or borrows both. The mass
+/// matrix has positive pivots at the evaluator's parameters.
+pub struct Driven<E, I> {
+    evaluator: E,
+    inputs: I,
 }
 
-impl Driven {
+impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
     /// Takes an evaluator, prepared with the parameters to be used, and its inputs.
-    ///
-    /// # Errors
-    /// If the mass matrix is not positive definite.
-    pub fn new(evaluator: Evaluator, inputs: HeldInputs) -> Result<Self, String> {
-        if !evaluator.pivots_are_positive() {
-            return Err(NOT_POSITIVE.to_owned());
-        }
-        Ok(Self {
-            evaluator: RefCell::new(evaluator),
-            inputs,
-        })
+    pub fn new(evaluator: E, inputs: I) -> Self {
+        Self { evaluator, inputs }
+    }
+
+    fn evaluator(&self) -> RefMut<'_, Evaluator> {
+        self.evaluator.borrow().borrow_mut()
+    }
+
+    fn point<'p>(&'p self, t: f64, state: &'p [f64]) -> Point<'p> {
+        let inputs = self.inputs.borrow().at(t);
+        Point { t, state, inputs }
     }
 
     /// The switching functions, those over modes one by one. A speed is one that depends on rates,
     /// and on no coordinate where nothing moves.
     pub fn surfaces(&self) -> Vec<Surface> {
         let (here, there) = (self.guards_at_rest(0.11), self.guards_at_rest(0.17));
-        let evaluator = self.evaluator.borrow();
+        let evaluator = self.evaluator();
         let program = evaluator.program();
         let is_rate =
             |id: &ValueId| matches!(program.value(*id).op, Op::Rate(_) | Op::ModeRates(_));
@@ -61,46 +63,35 @@ impl Driven {
         self.guards(0.0, &state, &mut values);
         values
     }
-
-    /// The observables at a state, `energy` and `power` last.
-    pub fn observables(&self, t: f64, state: &[f64], out: &mut [f64]) {
-        let inputs = self.inputs.at(t);
-        self.evaluator
-            .borrow_mut()
-            .observables(point(t, state, inputs), out);
-    }
 }
 
-impl System for Driven {
+impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, I> {
     fn states(&self) -> usize {
-        self.evaluator.borrow().program().states()
+        self.evaluator().program().states()
     }
 
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        let inputs = self.inputs.at(t);
-        self.evaluator.borrow_mut().rates(point(t, y, inputs), out);
+        self.evaluator().rates(self.point(t, y), out);
     }
 
     fn guard_count(&self) -> usize {
-        self.evaluator.borrow().guard_count()
+        self.evaluator().guard_count()
     }
 
     fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        let inputs = self.inputs.at(t);
-        self.evaluator.borrow_mut().guards(point(t, y, inputs), out);
+        self.evaluator().guards(self.point(t, y), out);
     }
 
     fn indefinite(&self, t: f64, y: &[f64]) -> Option<usize> {
-        let inputs = self.inputs.at(t);
-        let mut evaluator = self.evaluator.borrow_mut();
+        let mut evaluator = self.evaluator();
         let size = evaluator.program().degrees_of_freedom();
         let mut mass = vec![0.0; size * size];
-        evaluator.mass_matrix(point(t, y, inputs), &mut mass);
+        evaluator.mass_matrix(self.point(t, y), &mut mass);
         first_not_positive(&mut mass, size)
     }
 
     fn next_breakpoint(&self, t: f64) -> Option<f64> {
-        self.inputs.next_change(t)
+        self.inputs.borrow().next_change(t)
     }
 }
 
@@ -132,8 +123,4 @@ fn first_not_positive(matrix: &mut [f64], size: usize) -> Option<usize> {
         }
     }
     None
-}
-
-fn point<'a>(t: f64, state: &'a [f64], inputs: &'a [f64]) -> Point<'a> {
-    Point { t, state, inputs }
 }

@@ -1,3 +1,54 @@
-//! A derived model that can be run.
+//! A derived model that can be run: what the command line, sweeps, studies, discovery and every
+//! other host bind to.
+//!
+//! A [`CompiledModel`] owns what is made of a specification once, its program, machine code and
+//! piecewise-linear form; an [`Instance`] is that model at one set of parameter values, and
+//! simulates; a [`Motion`] says which [`Solver`] it comes from and why. Nothing is derived or
+//! integrated here: that is the business of `codegen` and `sim`.
+//!
+//! ```
+//! use eomgen_compiled_model::{CompiledModel, Orders, Solver};
+//!
+//! let text = r#"
+//! [model]
+//! name = "oscillator"
+//!
+//! [parameters]
+//! m = { value = 2, unit = "kg" }
+//! k = { value = 8, unit = "N/m" }
+//!
+//! [coordinates]
+//! x = { unit = "m", initial = 0.1 }
+//!
+//! [kinetic]
+//! mass = "1/2*m*dot(x)^2"
+//!
+//! [potential]
+//! spring = "1/2*k*x^2"
+//! "#;
+//! let model = CompiledModel::of_text("oscillator.toml", text, Orders::Declared)?;
+//! let run = model.with(&[("k", 18.0)])?;
+//! let times = [0.0, 0.5, 1.0];
+//! let motion = run.simulate(run.initial(), &times, &run.no_inputs(), Solver::Auto)?;
+//! assert_eq!(motion.solver, Solver::Exact);
+//! for (t, state) in times.iter().zip(&motion.trajectory.states) {
+//!     assert!((state[0] - 0.1 * (3.0 * t).cos()).abs() < 1e-12);
+//! }
+//! let observables = run.observables(&motion)?;
+//! assert!((observables[2][0] - 0.09).abs() < 1e-12); // the energy, J
+//! # Ok::<(), eomgen_compiled_model::Error>(())
+//! ```
 
-pub mod driven;
+mod driven;
+mod error;
+mod instance;
+mod model;
+mod motion;
+mod simulate;
+
+pub use driven::Driven;
+pub use error::Error;
+pub use instance::Instance;
+pub use model::{CompiledModel, Orders};
+pub use motion::{Choice, Motion, Solver, Stopped};
+pub use simulate::{DEFAULT_TOLERANCE, Request};

@@ -1,8 +1,8 @@
 //! Maps over parameters: a grid of parameter values, something measured at every point, in
 //! parallel, in parts that survive a kill and can be computed on several machines.
 //!
-//! The pipeline: [`grid`] (what is varied), [`measure`] (what is measured; [`family`] has
-//! the model at a point, [`span`] how long is looked; [`poincare`] and [`lyapunov`] are
+//! The pipeline: [`grid`] (what is varied, [`parameters`] of the model), [`measure`] (what is
+//! measured; `forcing` is its period, [`span`] how long is looked; [`poincare`] and [`lyapunov`] are
 //! measures), [`job`] (all of that as data, with a
 //! hash that names it), [`folder`] and `part` (the job and its finished chunks as files),
 //! [`shard`] (who computes which chunk), [`run`](mod@run) (computing them), [`merge`](mod@merge) (all chunks to one
@@ -16,13 +16,15 @@
 //! leave no trace in it.
 
 pub mod error;
-pub mod family;
+mod failure;
 pub mod folder;
+mod forcing;
 pub mod grid;
 pub mod job;
 pub mod lyapunov;
 pub mod measure;
 pub mod merge;
+pub mod parameters;
 mod part;
 pub mod poincare;
 pub mod run;
@@ -30,7 +32,6 @@ pub mod shard;
 pub mod span;
 
 pub use error::SweepError;
-pub use family::{Family, Member};
 pub use folder::Folder;
 pub use grid::{Axis, Grid};
 pub use job::Job;

@@ -4,36 +4,35 @@
 use std::collections::BTreeMap;
 
 use super::error::SweepError;
-use super::family::{Family, Frequency};
+use super::forcing::{Frequency, frequency};
 use super::measure::{Column, Description, Failure, Measure, Worker};
 use super::span::Span;
 use eomgen_analysis::exponent::{FEWEST, mean_exponent};
+use eomgen_compiled_model::CompiledModel;
 use sim::piecewise_linear::{ExactError, Lyapunov as Request};
 
-/// Measures a family of models that are linear between their switches.
+/// Measures a model at many parameter values that are linear between their switches.
 pub struct Lyapunov<'a> {
-    family: &'a Family,
-    frequency_name: String,
+    model: &'a CompiledModel,
     frequency: Frequency,
     span: Span,
 }
 
 impl<'a> Lyapunov<'a> {
-    /// Measures over `span`, once per forcing period; `frequency` names the parameter that
+    /// Measures over `span`, once per forcing period; `forcing` names the parameter that
     /// is the angular frequency of the forcing.
     ///
     /// # Errors
     /// A model that is not linear between its switches or has no such parameter, a span that
     /// makes no sense.
-    pub fn new(family: &'a Family, frequency: &str, span: Span) -> Result<Self, SweepError> {
+    pub fn new(model: &'a CompiledModel, forcing: &str, span: Span) -> Result<Self, SweepError> {
         span.check("lyapunov", FEWEST)?;
-        if let Err(error) = family.exact() {
+        if let Err(error) = model.piecewise_linear() {
             return Err(SweepError::Request(refusal(error)));
         }
         Ok(Self {
-            frequency: family.frequency(frequency)?,
-            frequency_name: frequency.to_owned(),
-            family,
+            frequency: frequency(model.model(), forcing)?,
+            model,
             span,
         })
     }
@@ -61,7 +60,7 @@ impl Measure for Lyapunov<'_> {
                     period"
                 .to_owned(),
             options: BTreeMap::from([
-                option("frequency", self.frequency_name.clone()),
+                option("frequency", self.frequency.name().to_owned()),
                 option("transient", self.span.transient.to_string()),
                 option("periods", self.span.periods.to_string()),
             ]),
@@ -92,17 +91,17 @@ impl Measure for Lyapunov<'_> {
 
 impl Worker for &Lyapunov<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
-        let member = self.family.member(settings)?;
-        let period = member.period(self.frequency)?;
+        let instance = self.model.with(settings)?;
+        let period = self.frequency.period(&instance)?;
         let request = Request {
             transient: self.span.transient as f64 * period,
             interval: period,
             intervals: self.span.periods,
             exponents: 1,
         };
-        let mut propagator = self.family.propagator(&member)?;
-        let inputs = self.family.inputs();
-        let growth = propagator.lyapunov(&member.initial, 0.0, &inputs, &request)?;
+        let mut propagator = instance.propagator()?;
+        let inputs = instance.no_inputs();
+        let growth = propagator.lyapunov(instance.initial(), 0.0, &inputs, &request)?;
         let first = growth.growths.first().ok_or(Failure::Undefined)?;
         let exponent = mean_exponent(first, period).map_err(|_| Failure::Undefined)?;
         let whole = (self.span.transient + self.span.periods) as f64 * period;

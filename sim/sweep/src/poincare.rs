@@ -1,13 +1,15 @@
 //! The measure `poincare`: the first coordinate seen once per forcing period. Where the model
 //! is linear between its switches the motion is exact, elsewhere it is the general solver's.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
 use super::error::SweepError;
-use super::family::{Family, Frequency, Member};
+use super::forcing::{Frequency, frequency};
 use super::measure::{Column, Description, Failure, Measure, Worker};
 use super::span::Span;
 use eomgen_analysis::poincare::{LONGEST_PERIOD, Section};
+use eomgen_compiled_model::{CompiledModel, Driven, Instance};
 use sim::ode::{Settings, Trajectory, simulate};
 
 /// Looks at the motion per forcing period: one belongs to the section, all together give the
@@ -20,10 +22,9 @@ const EQUAL: f64 = 1e-3;
 /// The most points of the section that become columns.
 pub const MOST_POINTS_KEPT: usize = 1000;
 
-/// Measures a family of models.
+/// Measures a model at many parameter values.
 pub struct Poincare<'a> {
-    family: &'a Family,
-    frequency_name: String,
+    model: &'a CompiledModel,
     frequency: Frequency,
     coordinate: String,
     unit: String,
@@ -33,15 +34,15 @@ pub struct Poincare<'a> {
 }
 
 impl<'a> Poincare<'a> {
-    /// Measures over `span`; `frequency` names the parameter that is the angular frequency
+    /// Measures over `span`; `forcing` names the parameter that is the angular frequency
     /// of the forcing. With `keep_points` the points themselves become columns: the
     /// bifurcation diagram.
     ///
     /// # Errors
     /// A model without a coordinate or without that parameter, a span that makes no sense.
     pub fn new(
-        family: &'a Family,
-        frequency: &str,
+        model: &'a CompiledModel,
+        forcing: &str,
         span: Span,
         keep_points: bool,
     ) -> Result<Self, SweepError> {
@@ -53,15 +54,14 @@ impl<'a> Poincare<'a> {
                 span.periods
             ));
         }
-        let Some(first) = family.model().coordinates.first() else {
+        let Some(first) = model.model().coordinates.first() else {
             return refused("the model has no coordinate to look at".to_owned());
         };
         Ok(Self {
-            frequency: family.frequency(frequency)?,
-            frequency_name: frequency.to_owned(),
+            frequency: frequency(model.model(), forcing)?,
             coordinate: first.name.clone(),
             unit: first.unit.to_string(),
-            family,
+            model,
             span,
             keep_points,
             settings: Settings::default(),
@@ -118,7 +118,7 @@ impl Measure for Poincare<'_> {
     fn describe(&self) -> Description {
         let (name, points) = (&self.coordinate, self.points());
         let option = |name: &str, value: String| (name.to_owned(), value);
-        let solver = match self.family.exact() {
+        let solver = match self.model.piecewise_linear() {
             Ok(_) => vec![option("solver", "exact".to_owned())],
             Err(_) => vec![
                 option("solver", "rk".to_owned()),
@@ -136,10 +136,10 @@ impl Measure for Poincare<'_> {
                 "{name} at t = k 2 pi/{}, k the whole numbers after the transient; period and \
                  clusters also of its rate, points being equal within {EQUAL} of the extent of \
                  the motion",
-                self.frequency_name
+                self.frequency.name()
             ),
             options: BTreeMap::from_iter(solver.into_iter().chain([
-                option("frequency", self.frequency_name.clone()),
+                option("frequency", self.frequency.name().to_owned()),
                 option("transient", self.span.transient.to_string()),
                 option("periods", self.span.periods.to_string()),
             ])),
@@ -156,10 +156,10 @@ impl Measure for Poincare<'_> {
 
 impl Worker for &Poincare<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
-        let member = self.family.member(settings)?;
-        let times = self.times(member.period(self.frequency)?);
-        let motion = self.motion(&member, &times)?;
-        let rate = member.initial.len() / 2;
+        let instance = self.model.with(settings)?;
+        let times = self.times(self.frequency.period(&instance)?);
+        let motion = self.motion(&instance, &times)?;
+        let rate = instance.initial().len() / 2;
         let seen: Vec<[f64; 2]> = motion.states.iter().map(|y| [y[0], y[rate]]).collect();
         let numbers = statistics(&seen).ok_or(Failure::Undefined)?;
         let points = on_section(&seen).map(|[x, _]| x);
@@ -173,15 +173,16 @@ impl Worker for &Poincare<'_> {
 
 impl Poincare<'_> {
     /// The states at these times, s.
-    fn motion(&self, member: &Member, times: &[f64]) -> Result<Trajectory, Failure> {
+    fn motion(&self, instance: &Instance<'_>, times: &[f64]) -> Result<Trajectory, Failure> {
         let span = (0.0, times.last().copied().ok_or(Failure::Undefined)?);
-        let (initial, quiet) = (&member.initial, &mut |_: f64| {});
-        if self.family.exact().is_ok() {
-            let mut propagator = self.family.propagator(member)?;
-            let inputs = self.family.inputs();
+        let (initial, quiet) = (instance.initial(), &mut |_: f64| {});
+        if self.model.piecewise_linear().is_ok() {
+            let mut propagator = instance.propagator()?;
+            let inputs = instance.no_inputs();
             return Ok(propagator.simulate(initial, span, times, &inputs, quiet)?);
         }
-        let system = self.family.driven(member)?;
+        let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
+        let system = Driven::new(&evaluator, &inputs);
         Ok(simulate(
             &system,
             initial,

@@ -19,7 +19,8 @@ use crate::derived::Derived;
 use crate::derived_requests::DerivedRequests;
 use crate::requested::Requested;
 use crate::variant::Variant;
-use sim::piecewise_linear::{PiecewiseLinear, Propagator};
+use eomgen_compiled_model::{CompiledModel, Orders};
+use sim::piecewise_linear::Propagator;
 
 /// The certificate of `model` with every field at `order`; `emitted` is the source of
 /// that variant with `requests`, as a file by itself.
@@ -118,9 +119,10 @@ fn kernels(
 /// What propagates a model exactly, or why nothing does.
 fn exact(model: &Model, order: usize) -> Result<Propagator, String> {
     let orders = vec![order; model.fields.len()];
-    let linear = PiecewiseLinear::of(model, &orders);
-    let propagator = linear.and_then(|linear| linear.propagator(model));
-    propagator.map_err(|error| error.to_string())
+    let compiled = CompiledModel::derive_unjudged(model.clone(), Orders::Each(&orders));
+    let compiled = compiled.map_err(|error| error.to_string())?;
+    let instance = compiled.at_declared().map_err(|error| error.to_string())?;
+    instance.propagator().map_err(|error| error.to_string())
 }
 
 /// The rates as a propagator has them.

@@ -334,15 +334,11 @@ fn energy_without_loss() {
         let values = [&lossless[..], &[("b_sp", b), ("b_pr", b)]].concat();
         let subject = moving(order, &values, [1e-4, -3e-5], [0.0, 0.0]);
         let motion = subject.exact((0.0, 1.0), &grid(1.0, 100));
-        let driven = subject.driven();
-        let before = subject.energy(&driven, 0.0, &subject.initial);
-        let worst = motion
-            .states
-            .iter()
-            .zip(&motion.times)
-            .fold(0.0_f64, |worst, (y, t)| {
-                worst.max((subject.energy(&driven, *t, y) / before - 1.0).abs())
-            });
+        let before = subject.energies(&[0.0], std::slice::from_ref(&subject.initial))[0];
+        let energies = subject.energies(&motion.times, &motion.states);
+        let worst = energies.iter().fold(0.0_f64, |worst, energy| {
+            worst.max((energy / before - 1.0).abs())
+        });
         println!(
             "S = {order}, b = {b:e}: {worst:.1e}, {} switches",
             motion.switches.len()

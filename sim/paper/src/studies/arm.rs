@@ -8,7 +8,8 @@ use model_spec::source::Source;
 
 use super::error::StudyError;
 use crate::reference::mode_shapes::ModeShape;
-use sim::piecewise_linear::{PiecewiseLinear, Propagator};
+use eomgen_compiled_model::{CompiledModel, Orders};
+use sim::piecewise_linear::Propagator;
 
 /// The paper's arm as it is shipped.
 const SPECIFICATION: &str = include_str!("../../../../model-spec/models/planetary_arm.toml");
@@ -90,7 +91,7 @@ impl Shapes {
 pub struct Arm {
     shapes: Shapes,
     model: Model,
-    derived: Vec<(usize, PiecewiseLinear)>,
+    derived: Vec<(usize, CompiledModel)>,
     names: Vec<String>,
     values: Vec<f64>,
 }
@@ -120,7 +121,9 @@ impl Arm {
         let names = model.parameters.iter().map(|p| p.name.clone()).collect();
         let mut derived = Vec::with_capacity(orders.len());
         for &order in orders {
-            derived.push((order, PiecewiseLinear::of(&model, &[order])?));
+            let compiled = CompiledModel::derive(model.clone(), Orders::All(order))?;
+            compiled.piecewise_linear().map_err(Clone::clone)?;
+            derived.push((order, compiled));
         }
         Ok(Self {
             shapes,
@@ -147,18 +150,13 @@ impl Arm {
     /// An order that was not derived, or values that no machine has.
     pub fn propagator(&self, case: &Case) -> Result<Propagator, StudyError> {
         let derived = self.derived.iter().find(|(order, _)| *order == case.order);
-        let Some((_, family)) = derived else {
+        let Some((_, compiled)) = derived else {
             return Err(StudyError::Request(format!(
                 "the arm was not derived at order {}",
                 case.order
             )));
         };
-        let values: Vec<f64> = family
-            .parameters()
-            .iter()
-            .map(|name| set(case, name).unwrap_or_else(|| self.shipped(name)))
-            .collect();
-        Ok(family.at(&values)?)
+        Ok(compiled.with(&settings(case))?.propagator()?)
     }
 
     /// The value that the specification gives a parameter, SI.
@@ -195,8 +193,8 @@ impl Arm {
     }
 }
 
-/// The value that a case gives a parameter, SI.
-fn set(case: &Case, name: &str) -> Option<f64> {
+/// The parameters that a case sets, in the specification's units, which are SI.
+fn settings(case: &Case) -> [(&'static str, f64); 9] {
     let Undisclosed {
         second_moment,
         a_m,
@@ -204,16 +202,17 @@ fn set(case: &Case, name: &str) -> Option<f64> {
         f_w,
         c,
     } = case.undisclosed;
-    Some(match name {
-        "I" => second_moment,
-        "a_m" => a_m,
-        "b_m" => b_m,
-        "F_w" => f_w,
-        "c_sp" | "c_pr" => c,
-        "b_sp" | "b_pr" => case.backlash,
-        "omega" => case.omega,
-        _ => return None,
-    })
+    [
+        ("I", second_moment),
+        ("a_m", a_m),
+        ("b_m", b_m),
+        ("F_w", f_w),
+        ("c_sp", c),
+        ("c_pr", c),
+        ("b_sp", case.backlash),
+        ("b_pr", case.backlash),
+        ("omega", case.omega),
+    ]
 }
 
 /// What turns a state into the paper's quantities.

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use eomgen_analysis::AnalysisError;
+use eomgen_compiled_model::Error;
 use sim::piecewise_linear::ExactError;
 
 /// Why a study could not be made.
@@ -33,6 +34,12 @@ impl std::error::Error for StudyError {}
 impl From<ExactError> for StudyError {
     fn from(error: ExactError) -> Self {
         Self::Motion(error)
+    }
+}
+
+impl From<Error> for StudyError {
+    fn from(error: Error) -> Self {
+        Self::Request(error.to_string())
     }
 }
 

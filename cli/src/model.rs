@@ -1,0 +1,50 @@
+//! From the path of a specification to a compiled model, with messages for people.
+
+use std::io::IsTerminal;
+use std::path::Path;
+
+use eomgen_compiled_model::{CompiledModel, Orders};
+use model_spec::Checked;
+use model_spec::model::Model;
+
+use crate::problem::{Outcome, Problem, warn};
+
+/// Reads and checks a specification; warnings go to stderr.
+pub fn load(path: &Path) -> Outcome<Checked> {
+    let checked = model_spec::load(path).map_err(Problem::Specification)?;
+    if !checked.warnings.is_empty() {
+        warn(&checked.warnings.render(std::io::stderr().is_terminal()));
+    }
+    Ok(checked)
+}
+
+/// The orders of a model's fields. A text that is no order is refused with what would be.
+pub fn orders(model: &Model, text: Option<&str>) -> Outcome<Vec<usize>> {
+    let order = match text {
+        None => None,
+        Some(text) => Some(text.trim().parse::<usize>().map_err(|_| {
+            Problem::input(format!(
+                "--order {text}: expected a whole number from 0 to {}",
+                model_spec::model::MAX_ORDER
+            ))
+        })?),
+    };
+    model
+        .orders(order)
+        .map_err(|error| Problem::model(&model.source, error))
+}
+
+/// Derives a model at the given orders.
+pub fn derive(model: Model, orders: &[usize]) -> Outcome<CompiledModel> {
+    Ok(CompiledModel::derive(model, Orders::Each(orders))?)
+}
+
+/// Loads, checks and derives for readers: also what has no inertia somewhere.
+pub fn load_to_read(path: &Path, order: Option<&str>) -> Outcome<CompiledModel> {
+    let model = load(path)?.model;
+    let orders = orders(&model, order)?;
+    Ok(CompiledModel::derive_unjudged(
+        model,
+        Orders::Each(&orders),
+    )?)
+}

@@ -1,0 +1,133 @@
+//! A compiled model at one set of parameter values.
+
+use std::cell::RefCell;
+
+use codegen::program::evaluator::{Evaluator, Point};
+use model_spec::diagnostic::{Diagnostic, Diagnostics};
+use model_spec::model::ParameterValue;
+use sim::inputs::HeldInputs;
+use sim::ode::NOT_POSITIVE;
+use sim::piecewise_linear::{ExactError, Propagator};
+
+use crate::error::Error;
+use crate::model::CompiledModel;
+use crate::motion::Motion;
+
+/// A compiled model with values for all its parameters and the initial state that follows.
+pub struct Instance<'m> {
+    pub(crate) model: &'m CompiledModel,
+    /// The independent parameters, SI.
+    parameters: Vec<f64>,
+    /// All parameters of the specification, SI.
+    values: Vec<f64>,
+    initial: Vec<f64>,
+}
+
+impl<'m> Instance<'m> {
+    pub(crate) fn new(
+        compiled: &'m CompiledModel,
+        settings: &[(&str, f64)],
+    ) -> Result<Self, Error> {
+        let declared = compiled.model();
+        let refused = |error| Error::model(declared, error);
+        let independent = compiled.parameter_names();
+        let model = declared.with_parameters(settings).map_err(refused)?;
+        let is_expression = |name: &&str| {
+            let mut parameters = declared.parameters.iter();
+            let known = parameters.find(|known| known.name == *name);
+            known.is_some_and(|known| matches!(known.value, ParameterValue::Expression(_)))
+        };
+        if let Some(name) = settings.iter().map(|(name, _)| *name).find(is_expression) {
+            let message =
+                format!("`{name}` is given by an expression, which is part of the equations");
+            let wrong = Diagnostic::error(message);
+            let wrong = wrong.help("set it in the model before the model is derived");
+            return Err(Diagnostics::one(declared.source.clone(), wrong).into());
+        }
+        let values = model.parameter_values().map_err(refused)?;
+        let place = |name: &String| model.parameters.iter().position(|p| p.name == *name);
+        let parameters = independent.iter().map(|name| {
+            // Every parameter of a program is one of its model.
+            place(name).map_or(f64::NAN, |place| values[place])
+        });
+        Ok(Self {
+            model: compiled,
+            parameters: parameters.collect(),
+            initial: model.initial_state(compiled.orders()).map_err(refused)?,
+            values,
+        })
+    }
+
+    /// The compiled model.
+    pub fn model(&self) -> &'m CompiledModel {
+        self.model
+    }
+
+    /// The independent parameters, SI, in the order of
+    /// [`parameter_names`](CompiledModel::parameter_names).
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// The value of any parameter of the specification, SI.
+    pub fn value(&self, name: &str) -> Option<f64> {
+        let parameters = &self.model.model().parameters;
+        let place = parameters.iter().position(|known| known.name == name)?;
+        self.values.get(place).copied()
+    }
+
+    /// The initial state that the specification gives, SI.
+    pub fn initial(&self) -> &[f64] {
+        &self.initial
+    }
+
+    /// Inputs of 0, as many as the model has.
+    pub fn no_inputs(&self) -> HeldInputs {
+        HeldInputs::zero(self.model.model().inputs.len())
+    }
+
+    /// An evaluator at these parameters.
+    ///
+    /// # Errors
+    /// [`Error::Request`] where the mass matrix is not positive definite.
+    pub fn evaluator(&self) -> Result<Evaluator, Error> {
+        let evaluator = self.model.evaluator(&self.parameters);
+        if evaluator.pivots_are_positive() {
+            Ok(evaluator)
+        } else {
+            Err(Error::Request(NOT_POSITIVE.to_owned()))
+        }
+    }
+
+    /// A propagator from switch to switch at these parameters.
+    ///
+    /// # Errors
+    /// The term that is not linear between switches, or coefficients that are no numbers.
+    pub fn propagator(&self) -> Result<Propagator, ExactError> {
+        let exact = self.model.piecewise_linear().map_err(Clone::clone)?;
+        let value = |name: &String| self.value(name).unwrap_or(f64::NAN);
+        let values: Vec<f64> = exact.parameters().iter().map(value).collect();
+        exact.at(&values)
+    }
+
+    /// The observables at every state of a motion, `energy` and `power` last: a row per sample.
+    ///
+    /// # Errors
+    /// As [`Instance::evaluator`].
+    pub fn observables(&self, motion: &Motion) -> Result<Vec<Vec<f64>>, Error> {
+        let evaluator = RefCell::new(self.evaluator()?);
+        let trajectory = &motion.trajectory;
+        let rows = trajectory.times.iter().zip(&trajectory.states);
+        let observe = |(t, state): (&f64, &Vec<f64>)| {
+            let mut row = vec![0.0; self.model.program().observables.len()];
+            let point = Point {
+                t: *t,
+                state,
+                inputs: motion.inputs.at(*t),
+            };
+            evaluator.borrow_mut().observables(point, &mut row);
+            row
+        };
+        Ok(rows.map(observe).collect())
+    }
+}

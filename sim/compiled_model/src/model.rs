@@ -1,0 +1,207 @@
+//! A model with all that is made of it once: its equations, program, machine code and
+//! piecewise-linear form.
+
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+use codegen::mechanics::equations::Equations;
+use codegen::program::Program;
+use codegen::program::evaluator::{Evaluator, MachineCode};
+use codegen::variant::Variant;
+use model_spec::Checked;
+use model_spec::model::Model;
+use model_spec::source::Source;
+use sim::piecewise_linear::{ExactError, PiecewiseLinear};
+
+use crate::error::Error;
+use crate::instance::Instance;
+
+/// The modal truncation orders that a model is derived at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Orders<'o> {
+    /// Those that the specification declares.
+    Declared,
+    /// This one for every field.
+    All(usize),
+    /// One for each field, in the order of the specification.
+    Each(&'o [usize]),
+}
+
+impl Orders<'_> {
+    /// The order of each field of a model.
+    ///
+    /// # Errors
+    /// An order above the limit, orders where there is no field, or as many as there are not.
+    pub fn of(self, model: &Model) -> Result<Vec<usize>, Error> {
+        let one = match self {
+            Self::Declared => None,
+            Self::All(order) => Some(order),
+            Self::Each(orders) if orders.len() == model.fields.len() => {
+                for order in orders {
+                    let checked = model.orders(Some(*order));
+                    checked.map_err(|error| Error::model(model, error))?;
+                }
+                return Ok(orders.to_vec());
+            }
+            Self::Each(orders) => {
+                return Err(Error::Request(format!(
+                    "{} orders are given for {} fields of the model `{}`",
+                    orders.len(),
+                    model.fields.len(),
+                    model.name
+                )));
+            }
+        };
+        let orders = model.orders(one);
+        orders.map_err(|error| Error::model(model, error))
+    }
+}
+
+/// A derived model that can be run at any values of its independent parameters. Machine code
+/// and the piecewise-linear form are made when they are first asked for, once; the model may
+/// be shared between threads.
+pub struct CompiledModel {
+    model: Model,
+    orders: Vec<usize>,
+    equations: Equations,
+    program: Program,
+    code: OnceLock<Option<Arc<dyn MachineCode>>>,
+    piecewise_linear: OnceLock<Result<PiecewiseLinear, ExactError>>,
+}
+
+impl CompiledModel {
+    /// Reads, checks and derives a specification. Its warnings are dropped: who shows them reads
+    /// it with [`model_spec::load`] and goes on with [`CompiledModel::derive`].
+    ///
+    /// # Errors
+    /// [`Error::Specification`] with what is wrong, each at its place.
+    pub fn load(path: impl AsRef<Path>, orders: Orders<'_>) -> Result<Self, Error> {
+        let Checked { model, .. } = model_spec::load(path.as_ref())?;
+        Self::derive(model, orders)
+    }
+
+    /// The same from a text; `name` stands for its file in messages.
+    ///
+    /// # Errors
+    /// As [`CompiledModel::load`].
+    pub fn of_text(name: &str, text: &str, orders: Orders<'_>) -> Result<Self, Error> {
+        let Checked { model, .. } = model_spec::check(Source::new(name, text))?;
+        Self::derive(model, orders)
+    }
+
+    /// Derives a checked model.
+    ///
+    /// # Errors
+    /// [`Error::Specification`]: orders, parameter values that are not admissible, what cannot
+    /// be derived, and coordinates without inertia at the initial state.
+    pub fn derive(model: Model, orders: Orders<'_>) -> Result<Self, Error> {
+        let orders = orders.of(&model)?;
+        let derived = Variant::derive(&model, &orders)?;
+        Ok(Self::new(model, orders, derived))
+    }
+
+    /// The same for readers, and for who judges other parameters: also a model in which
+    /// something has no inertia at its own parameters and initial state.
+    ///
+    /// # Errors
+    /// As [`CompiledModel::derive`], but those about inertia.
+    pub fn derive_unjudged(model: Model, orders: Orders<'_>) -> Result<Self, Error> {
+        let orders = orders.of(&model)?;
+        let derived = Variant::derive_to_read(&model, &orders, &[])?;
+        Ok(Self::new(model, orders, derived))
+    }
+
+    fn new(model: Model, orders: Vec<usize>, derived: Variant) -> Self {
+        Self {
+            model,
+            orders,
+            equations: derived.equations,
+            program: derived.program,
+            code: OnceLock::new(),
+            piecewise_linear: OnceLock::new(),
+        }
+    }
+
+    /// The checked model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The order of each field.
+    pub fn orders(&self) -> &[usize] {
+        &self.orders
+    }
+
+    /// The equations of motion.
+    pub fn equations(&self) -> &Equations {
+        &self.equations
+    }
+
+    /// The program of the equations.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// The names of the states: coordinates and modes, then their rates.
+    pub fn state_names(&self) -> Vec<String> {
+        self.program.state_names()
+    }
+
+    /// The names of the observables, `energy` and `power` last.
+    pub fn observable_names(&self) -> Vec<String> {
+        let observables = self.program.observables.iter();
+        observables.map(|known| known.name.clone()).collect()
+    }
+
+    /// The names of the independent parameters, those given by a number, in the order of their
+    /// values.
+    pub fn parameter_names(&self) -> Vec<String> {
+        let parameters = self.program.parameters.iter();
+        parameters
+            .map(|known| known.quantity.name.clone())
+            .collect()
+    }
+
+    /// An evaluator of the program at these values of the independent parameters, SI: machine
+    /// code where this kind of machine is known, interpreted elsewhere, with the same numbers.
+    pub fn evaluator(&self, parameters: &[f64]) -> Evaluator {
+        let code = self.code.get_or_init(|| jit::code(&self.program));
+        let program = self.program.clone();
+        let mut evaluator = match code {
+            Some(code) => Evaluator::with_code(program, code.clone()),
+            None => Evaluator::new(program),
+        };
+        evaluator.prepare(parameters);
+        evaluator
+    }
+
+    /// The model's form that is linear between its switches.
+    ///
+    /// # Errors
+    /// The term that is not linear there.
+    pub fn piecewise_linear(&self) -> Result<&PiecewiseLinear, &ExactError> {
+        let made = self
+            .piecewise_linear
+            .get_or_init(|| PiecewiseLinear::of(&self.model, &self.orders));
+        made.as_ref()
+    }
+
+    /// The model at the values that its specification gives.
+    ///
+    /// # Errors
+    /// Values or initial states that are not admissible.
+    pub fn at_declared(&self) -> Result<Instance<'_>, Error> {
+        self.with(&[])
+    }
+
+    /// The model with some independent parameters set, each a number in the unit that the
+    /// specification declares; what depends on them is computed anew.
+    ///
+    /// # Errors
+    /// An unknown name, a value that is not admissible, and a parameter that the specification
+    /// gives by an expression: it is part of the equations, and has to be set in the model before
+    /// that is derived.
+    pub fn with(&self, settings: &[(&str, f64)]) -> Result<Instance<'_>, Error> {
+        Instance::new(self, settings)
+    }
+}

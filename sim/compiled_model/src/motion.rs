@@ -1,0 +1,66 @@
+//! A simulated motion, the solver it comes from, and why it is that one.
+
+use sim::inputs::HeldInputs;
+use sim::ode::Trajectory;
+
+/// How to integrate.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Solver {
+    /// [`Solver::Exact`] where the model is linear between its switches, else [`Solver::Rk`].
+    #[default]
+    Auto,
+    /// From switch to switch without any error but rounding; for models that are linear
+    /// between their switches.
+    Exact,
+    /// Runge-Kutta of order 8 with location of the switching surfaces.
+    Rk,
+    /// Adams' multistep method of variable order, the paper's, with the same location.
+    Adams,
+}
+
+impl Solver {
+    /// Its name on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Exact => "exact",
+            Self::Rk => "rk",
+            Self::Adams => "adams",
+        }
+    }
+}
+
+/// A motion at the samples that a solver came to.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// The states at the samples, the switches and the work.
+    pub trajectory: Trajectory,
+    /// What drove it.
+    pub inputs: HeldInputs,
+    /// Who computed it; never [`Solver::Auto`].
+    pub solver: Solver,
+    /// Why [`Solver::Auto`] took that solver; none where the solver was asked for.
+    pub choice: Option<Choice>,
+    /// Why the solver did not come to the end, if it did not.
+    pub stopped: Option<Stopped>,
+}
+
+/// Why a solver was taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Choice {
+    /// The model is linear between its switches.
+    PiecewiseLinear,
+    /// It is not: the reason names the term.
+    NotLinear(String),
+    /// It is, but the exact solver does not follow this motion, for this reason.
+    NotFollowed(String),
+}
+
+/// Why a solver did not come to the end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stopped {
+    /// Where the motion stands, s, if that is known.
+    pub t: Option<f64>,
+    /// What is wrong, with names, and what to do.
+    pub reason: String,
+}

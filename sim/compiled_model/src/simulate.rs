@@ -1,0 +1,197 @@
+//! From an initial state over time: which solver takes a motion, and what its errors say by
+//! number put in names. Solvers themselves are the crate `sim`'s.
+
+use std::cell::RefCell;
+
+use sim::inputs::HeldInputs;
+use sim::ode::{Method, Names, Settings, SolveError, Surface, Trajectory, simulate_into};
+use sim::piecewise_linear::{ExactError, Propagator};
+
+use crate::driven::Driven;
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::motion::{Choice, Motion, Solver, Stopped};
+
+/// The relative tolerance where nothing is said about it.
+pub const DEFAULT_TOLERANCE: f64 = 1e-9;
+
+/// What is to be simulated.
+#[derive(Clone, Copy, Debug)]
+pub struct Request<'r> {
+    /// The state at the first of the times, SI.
+    pub initial: &'r [f64],
+    /// The times of the samples, s, ascending.
+    pub times: &'r [f64],
+    /// What drives the motion.
+    pub inputs: &'r HeldInputs,
+    /// How to integrate.
+    pub solver: Solver,
+    /// The relative tolerance of solvers that have one.
+    pub tolerance: f64,
+}
+
+impl Request<'_> {
+    /// The first and the last of the times, s.
+    fn span(&self) -> (f64, f64) {
+        let first = self.times.first().copied().unwrap_or(0.0);
+        (first, self.times.last().copied().unwrap_or(first))
+    }
+}
+
+impl Instance<'_> {
+    /// The states at the given times (s, ascending) of the motion that starts with `initial`
+    /// (SI) at the first of them.
+    ///
+    /// # Errors
+    /// A request that makes no sense, a solver that does not take the model, and
+    /// [`Error::Stopped`] where the motion could not be followed to the end;
+    /// [`Instance::follow`] keeps what was found until there.
+    pub fn simulate(
+        &self,
+        initial: &[f64],
+        times: &[f64],
+        inputs: &HeldInputs,
+        solver: Solver,
+    ) -> Result<Motion, Error> {
+        let request = Request {
+            initial,
+            times,
+            inputs,
+            solver,
+            tolerance: DEFAULT_TOLERANCE,
+        };
+        let motion = self.follow(&request, &mut |_| {})?;
+        match motion.stopped {
+            None => Ok(motion),
+            Some(Stopped { t, reason }) => Err(Error::Stopped { t, reason }),
+        }
+    }
+
+    /// The same, of the times that the solver comes to. `progress` is told the time of the motion.
+    ///
+    /// # Errors
+    /// A request that makes no sense, a solver that does not take the model, a motion that
+    /// stops before it has begun.
+    pub fn follow(
+        &self,
+        request: &Request<'_>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Motion, Error> {
+        let runge_kutta = (Method::DormandPrince853, Solver::Rk);
+        let exact = match request.solver {
+            Solver::Rk => return self.general(request, runge_kutta, None, progress),
+            Solver::Adams => {
+                return self.general(request, (Method::Adams, Solver::Adams), None, progress);
+            }
+            Solver::Exact | Solver::Auto => self.model.piecewise_linear(),
+        };
+        let is_free = request.solver == Solver::Auto;
+        if let Err(error) = exact {
+            if is_free {
+                let choice = Some(Choice::NotLinear(error.to_string()));
+                return self.general(request, runge_kutta, choice, progress);
+            }
+            return Err(error.into());
+        }
+        // Judged as for the other solvers, and it gives the switching functions their names.
+        let evaluator = RefCell::new(self.evaluator()?);
+        let mut trajectory = Trajectory::default();
+        let ended = self.propagator().and_then(|mut propagator| {
+            propagate(&mut propagator, &mut trajectory, request, progress)
+        });
+        let Err(error) = ended else {
+            let choice = is_free.then_some(Choice::PiecewiseLinear);
+            return Ok(motion(trajectory, request, Solver::Exact, choice));
+        };
+        let surfaces = Driven::new(&evaluator, request.inputs).surfaces();
+        let reason = self.named(&surfaces, |names| error.named(names));
+        if is_free && is_for_the_general(&error) {
+            let choice = Some(Choice::NotFollowed(reason));
+            return self.general(request, runge_kutta, choice, progress);
+        }
+        let choice = is_free.then_some(Choice::PiecewiseLinear);
+        let t = error.time();
+        let so_far = motion(trajectory, request, Solver::Exact, choice);
+        stopped(so_far, Stopped { t, reason })
+    }
+
+    /// With a solver for any model.
+    fn general(
+        &self,
+        request: &Request<'_>,
+        (method, solver): (Method, Solver),
+        choice: Option<Choice>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Motion, Error> {
+        let settings = Settings {
+            method,
+            ..Settings::with_tolerance(request.tolerance)
+        };
+        let evaluator = RefCell::new(self.evaluator()?);
+        let system = Driven::new(&evaluator, request.inputs);
+        let mut trajectory = Trajectory::default();
+        let asked = (request.initial, request.span(), request.times);
+        let ended = simulate_into(&mut trajectory, &system, asked, &settings, progress);
+        let so_far = motion(trajectory, request, solver, choice);
+        match ended {
+            Ok(()) => Ok(so_far),
+            Err(error) => {
+                let (t, surfaces) = (SolveError::time(&error), system.surfaces());
+                let reason = self.named(&surfaces, |names| error.named(names));
+                stopped(so_far, Stopped { t, reason })
+            }
+        }
+    }
+
+    /// What an error says where its numbers stand for these states and switching functions.
+    fn named(&self, surfaces: &[Surface], say: impl FnOnce(&Names<'_>) -> String) -> String {
+        let states = self.model.state_names();
+        say(&Names {
+            states: &states,
+            surfaces,
+        })
+    }
+}
+
+fn propagate(
+    propagator: &mut Propagator,
+    trajectory: &mut Trajectory,
+    request: &Request<'_>,
+    progress: &mut dyn FnMut(f64),
+) -> Result<(), ExactError> {
+    let asked = (request.initial, request.span(), request.times);
+    propagator.simulate_into(trajectory, asked, request.inputs, progress)
+}
+
+fn motion(
+    trajectory: Trajectory,
+    request: &Request<'_>,
+    solver: Solver,
+    choice: Option<Choice>,
+) -> Motion {
+    Motion {
+        trajectory,
+        inputs: request.inputs.clone(),
+        solver,
+        choice,
+        stopped: None,
+    }
+}
+
+/// What was found before a solver stopped; an error if it stopped before it had begun.
+fn stopped(mut motion: Motion, why: Stopped) -> Result<Motion, Error> {
+    // A request that makes no sense may be refused where the motion begins.
+    if motion.trajectory.times.len() <= usize::from(why.t.is_none()) {
+        return Err(Error::Stopped {
+            t: why.t,
+            reason: why.reason,
+        });
+    }
+    motion.stopped = Some(why);
+    Ok(motion)
+}
+
+/// Whether the general solver may do better.
+fn is_for_the_general(error: &ExactError) -> bool {
+    matches!(error, ExactError::Held { .. } | ExactError::NotConverged)
+}

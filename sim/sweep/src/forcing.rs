@@ -1,0 +1,60 @@
+//! The forcing of a model: which parameter is its angular frequency, and its period.
+
+use std::f64::consts::TAU;
+
+use eomgen_compiled_model::Instance;
+use model_spec::model::Model;
+use model_spec::unit::Unit;
+
+use crate::error::SweepError;
+use crate::measure::Failure;
+
+/// The parameter that is the angular frequency of the forcing.
+///
+/// # Errors
+/// No such parameter, or one that is no frequency.
+pub fn frequency(model: &Model, name: &str) -> Result<Frequency, SweepError> {
+    let parameters = &model.parameters;
+    let Some(place) = parameters.iter().position(|known| known.name == name) else {
+        return Err(SweepError::Request(format!(
+            "the model `{}` has no parameter `{name}`: give --frequency NAME, the parameter \
+             that is the angular frequency of the forcing in rad/s",
+            model.name
+        )));
+    };
+    let unit = &parameters[place].unit;
+    let expected = Unit::parse("rad/s").map(|unit| unit.dimension);
+    if Ok(unit.dimension) != expected {
+        return Err(SweepError::Request(format!(
+            "--frequency {name}: its unit is {unit}, where an angular frequency is in rad/s"
+        )));
+    }
+    Ok(Frequency {
+        name: parameters[place].name.clone(),
+    })
+}
+
+/// Which parameter is the angular frequency of the forcing.
+#[derive(Clone, Debug)]
+pub struct Frequency {
+    name: String,
+}
+
+impl Frequency {
+    /// The name of the parameter.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The period of the forcing, in s.
+    ///
+    /// # Errors
+    /// [`Failure::Undefined`] where the frequency is not positive.
+    pub fn period(&self, instance: &Instance<'_>) -> Result<f64, Failure> {
+        let period = TAU / instance.value(&self.name).unwrap_or(f64::NAN);
+        if period > 0.0 && period.is_finite() {
+            return Ok(period);
+        }
+        Err(Failure::Undefined)
+    }
+}
