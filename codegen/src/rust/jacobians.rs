@@ -8,132 +8,111 @@ use super::expression::{Expression, array, assignment, infix};
 use super::file::File;
 use super::functions::Needed;
 use super::roots::entry_roots;
+use super::signature::stage;
 use super::types::literal;
 use crate::program::{Entry, Extent, Jacobian, Request, ValueId};
 
-impl File<'_> {
-    pub(super) fn jacobians(&self, needed: &mut Needed) -> Emitted<String> {
-        let requested = &self.program.requested;
-        if requested.jacobians.is_empty() {
-            return Ok(String::new());
-        }
-        let mut text = String::new();
-        for jacobian in &requested.jacobians {
-            text += &self.pattern(jacobian);
-            text += &self.jacobian(jacobian, needed)?;
-        }
-        if requested.requests.contains(&Request::Linearisation) {
-            text += LINEARISATION;
-            text += &self.stage(
-                "/// The linearisation about a point.\n",
-                "linearise",
-                "Linearisation<T>",
-                &self.linearise(),
-            );
-        }
-        Ok(text + PATTERN)
+pub(super) fn jacobians(file: &File<'_>, needed: &mut Needed) -> Emitted<String> {
+    let requested = &file.program.requested;
+    if requested.jacobians.is_empty() {
+        return Ok(String::new());
     }
-
-    /// The statements of the linearisation: every part from its own function.
-    fn linearise(&self) -> String {
-        let arguments = ["t", "state", "inputs", "coefficients"].map(Expression::atom);
-        let parts = [
-            "rates",
-            "observables",
-            "rates_by_state",
-            "rates_by_inputs",
-            "observables_by_state",
-            "observables_by_inputs",
-        ];
-        let call = |part: &str| Expression::call(&format!("{}{part}", self.inlined()), &arguments);
-        let computed = parts.map(|part| assignment(&format!("let {part}"), call(part)) + "\n");
-        let fields = ["A", "B", "C", "D"].iter().zip(&parts[2..]);
-        let dense =
-            fields.map(|(field, part)| format!("{field}: {}.dense(&{part})", part.to_uppercase()));
-        let fields: Vec<String> = parts[..2]
-            .iter()
-            .map(|part| (*part).to_owned())
-            .chain(dense)
-            .collect();
-        computed.concat() + &literal("Linearisation", &fields)
+    let mut text = String::new();
+    for jacobian in &requested.jacobians {
+        text += &pattern(jacobian);
+        text += &nonzeros(file, jacobian, needed)?;
     }
-
-    /// Names and numbers of what Jacobians are taken by.
-    pub(super) fn jacobian_constants(&self) -> String {
-        let program = self.program;
-        if program.requested.jacobians.is_empty() && program.requested.products.is_none() {
-            return String::new();
-        }
-        let quoted = |names: Vec<&String>| {
-            let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
-            array(&quoted)
-        };
-        let parameters = program.parameters.iter().map(|p| &p.quantity.name);
-        format!(
-            "/// Inputs.\n\
-             pub const INPUTS: usize = {};\n\
-             /// Names of the inputs, in their order.\n\
-             pub const INPUT_NAMES: [&'static str; INPUTS] = {};\n\
-             /// Parameters.\n\
-             pub const PARAMETERS: usize = {};\n\
-             /// Names of the parameters, in their order.\n\
-             pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = {};\n",
-            program.inputs.len(),
-            quoted(program.inputs.iter().map(|i| &i.name).collect()),
-            program.parameters.len(),
-            quoted(parameters.collect()),
-        )
-    }
-
-    fn pattern(&self, jacobian: &Jacobian<ValueId>) -> String {
-        let name = jacobian.name.to_uppercase();
-        let blocks: Vec<String> = jacobian
-            .entries
-            .iter()
-            .map(|e| {
-                let diagonal = usize::from(e.diagonal);
-                format!(
-                    "[{}, {}, {}, {}, {diagonal}]",
-                    e.row, e.rows, e.column, e.columns
-                )
-            })
-            .collect();
-        let nonzeros = jacobian.nonzeros();
-        let blocks = Expression::atom(format!("&{}", array(&blocks)));
-        format!(
-            "/// Structural nonzeros of [`{}`].\n\
-             pub const {name}_NONZEROS: usize = {nonzeros};\n\
-             /// Where they stand in the matrix of {} x {}.\n\
-             pub static {name}: Pattern<{nonzeros}> = {};\n",
-            jacobian.name,
-            jacobian.rows,
-            jacobian.columns,
-            Expression::call("pattern", &[blocks])
-        )
-    }
-
-    fn jacobian(&self, jacobian: &Jacobian<ValueId>, needed: &mut Needed) -> Emitted<String> {
-        let roots = entry_roots(self.program, jacobian);
-        let mut body = self.body(&roots, needed)?;
-        let constant = format!("{}_NONZEROS", jacobian.name.to_uppercase());
-        body.push(&format!("let mut values = [T::number(0.0); {constant}];"));
-        for (entry, (start, width)) in jacobian.entries.iter().zip(jacobian.places()) {
-            write_entry(&mut body, entry, start, width)?;
-        }
-        body.push("values");
-        let (what, by) = jacobian
-            .name
-            .split_once("_by_")
-            .unwrap_or((jacobian.name, "state"));
-        let head = format!(
-            "/// The Jacobian of the {what} by the {by}: its structural nonzeros, row by row, at the\n\
-             /// places of [`{}`].\n\
-             #[allow(unused_variables, unused_mut)]\n",
-            jacobian.name.to_uppercase()
+    if requested.requests.contains(&Request::Linearisation) {
+        text += LINEARISATION;
+        text += &stage(
+            file,
+            "/// The linearisation about a point.\n",
+            "linearise",
+            "Linearisation<T>",
+            &linearise(file),
         );
-        let result = format!("[T; {constant}]");
-        Ok(self.stage(&head, jacobian.name, &result, &body.statements()))
     }
+    Ok(text + PATTERN)
+}
+
+/// The statements of the linearisation: every part from its own function.
+fn linearise(file: &File<'_>) -> String {
+    let arguments = ["t", "state", "inputs", "coefficients"].map(Expression::atom);
+    let parts = [
+        "rates",
+        "observables",
+        "rates_by_state",
+        "rates_by_inputs",
+        "observables_by_state",
+        "observables_by_inputs",
+    ];
+    let call = |part: &str| Expression::call(&format!("{}{part}", file.inlined()), &arguments);
+    let computed = parts.map(|part| assignment(&format!("let {part}"), call(part)) + "\n");
+    let fields = ["A", "B", "C", "D"].iter().zip(&parts[2..]);
+    let dense =
+        fields.map(|(field, part)| format!("{field}: {}.dense(&{part})", part.to_uppercase()));
+    let fields: Vec<String> = parts[..2]
+        .iter()
+        .map(|part| (*part).to_owned())
+        .chain(dense)
+        .collect();
+    computed.concat() + &literal("Linearisation", &fields)
+}
+
+fn pattern(jacobian: &Jacobian<ValueId>) -> String {
+    let name = jacobian.name.to_uppercase();
+    let blocks: Vec<String> = jacobian
+        .entries
+        .iter()
+        .map(|e| {
+            let diagonal = usize::from(e.diagonal);
+            format!(
+                "[{}, {}, {}, {}, {diagonal}]",
+                e.row, e.rows, e.column, e.columns
+            )
+        })
+        .collect();
+    let nonzeros = jacobian.nonzeros();
+    let blocks = Expression::atom(format!("&{}", array(&blocks)));
+    format!(
+        "/// Structural nonzeros of [`{}`].\n\
+         pub const {name}_NONZEROS: usize = {nonzeros};\n\
+         /// Where they stand in the matrix of {} x {}.\n\
+         pub static {name}: Pattern<{nonzeros}> = {};\n",
+        jacobian.name,
+        jacobian.rows,
+        jacobian.columns,
+        Expression::call("pattern", &[blocks])
+    )
+}
+
+fn nonzeros(file: &File<'_>, jacobian: &Jacobian<ValueId>, needed: &mut Needed) -> Emitted<String> {
+    let roots = entry_roots(file.program, jacobian);
+    let mut body = file.body(&roots, needed)?;
+    let constant = format!("{}_NONZEROS", jacobian.name.to_uppercase());
+    body.push(&format!("let mut values = [T::number(0.0); {constant}];"));
+    for (entry, (start, width)) in jacobian.entries.iter().zip(jacobian.places()) {
+        write_entry(&mut body, entry, start, width)?;
+    }
+    body.push("values");
+    let (what, by) = jacobian
+        .name
+        .split_once("_by_")
+        .unwrap_or((jacobian.name, "state"));
+    let head = format!(
+        "/// The Jacobian of the {what} by the {by}: its structural nonzeros, row by row, at the\n\
+         /// places of [`{}`].\n\
+         #[allow(unused_variables, unused_mut)]\n",
+        jacobian.name.to_uppercase()
+    );
+    let result = format!("[T; {constant}]");
+    Ok(stage(
+        file,
+        &head,
+        jacobian.name,
+        &result,
+        &body.statements(),
+    ))
 }
 
 /// The loop or statement of a block: `start` is the place of its first nonzero, `width` the

@@ -8,6 +8,8 @@
 
 mod blocks;
 mod body;
+mod constants;
+mod emit;
 mod emit_error;
 mod expression;
 mod file;
@@ -20,11 +22,13 @@ mod outputs;
 mod piecewise;
 mod regimes;
 mod roots;
+mod rows;
 mod scalar;
 mod sides;
+mod signature;
 mod slopes;
 mod stages;
 mod types;
 
+pub use emit::{ITEMS_MODULE, Packaging, emit};
 pub use emit_error::EmitError;
-pub use file::{ITEMS_MODULE, Packaging, emit};

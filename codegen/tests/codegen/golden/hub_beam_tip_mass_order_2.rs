@@ -49,6 +49,28 @@ pub const SPECIFICATION_SHA256: &'static str = "5a673f0b14db7a31d38ef2c487e53a8e
 /// Version of the generator.
 pub const GENERATOR_VERSION: &'static str = "0.1.0";
 
+/// Inputs.
+pub const INPUTS: usize = 1;
+
+/// Names of the inputs, in their order.
+pub const INPUT_NAMES: [&'static str; INPUTS] = ["u"];
+
+/// Parameters.
+pub const PARAMETERS: usize = 9;
+
+/// Names of the parameters, in their order.
+pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = [
+    "J_h",
+    "rho",
+    "A",
+    "l",
+    "E",
+    "I",
+    "M_t",
+    "J_t",
+    "c",
+];
+
 /// Parameters of the model. `Default` gives the specification's values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T = f64> {
@@ -103,6 +125,21 @@ impl Parameters {
         }
     }
 }
+impl<T: Copy> From<[T; PARAMETERS]> for Parameters<T> {
+    fn from(numbers: [T; PARAMETERS]) -> Self {
+        Self {
+            J_h: numbers[0],
+            rho: numbers[1],
+            A: numbers[2],
+            l: numbers[3],
+            E: numbers[4],
+            I: numbers[5],
+            M_t: numbers[6],
+            J_t: numbers[7],
+            c: numbers[8],
+        }
+    }
+}
 
 /// Signals supplied at run time. `Default` gives zeros.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,6 +150,11 @@ pub struct Inputs<T = f64> {
 impl<T: Scalar> Default for Inputs<T> {
     fn default() -> Self {
         Self { u: T::number(0.0) }
+    }
+}
+impl<T: Copy> From<[T; INPUTS]> for Inputs<T> {
+    fn from(numbers: [T; INPUTS]) -> Self {
+        Self { u: numbers[0] }
     }
 }
 

@@ -37,6 +37,18 @@ pub const SPECIFICATION_SHA256: &'static str = "683b86cddda2f4c47ea60a0b1d58b7a9
 /// Version of the generator.
 pub const GENERATOR_VERSION: &'static str = "0.1.0";
 
+/// Inputs.
+pub const INPUTS: usize = 0;
+
+/// Names of the inputs, in their order.
+pub const INPUT_NAMES: [&'static str; INPUTS] = [];
+
+/// Parameters.
+pub const PARAMETERS: usize = 5;
+
+/// Names of the parameters, in their order.
+pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = ["m", "a", "I", "k", "g"];
+
 /// Parameters of the model. `Default` gives the specification's values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T = f64> {
@@ -75,10 +87,26 @@ impl Parameters {
         }
     }
 }
+impl<T: Copy> From<[T; PARAMETERS]> for Parameters<T> {
+    fn from(numbers: [T; PARAMETERS]) -> Self {
+        Self {
+            m: numbers[0],
+            a: numbers[1],
+            I: numbers[2],
+            k: numbers[3],
+            g: numbers[4],
+        }
+    }
+}
 
 /// Signals supplied at run time. `Default` gives zeros.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inputs {}
+impl<T: Copy> From<[T; INPUTS]> for Inputs {
+    fn from(_: [T; INPUTS]) -> Self {
+        Self {}
+    }
+}
 
 /// What depends on the parameters alone: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,68 @@
+//! The constants of an emitted file: sizes, and the names of what arrays hold, in their order.
+
+use super::expression::array;
+use super::file::File;
+
+/// Sizes and names of what the file computes with, and where it comes from.
+pub(super) fn constants(file: &File<'_>) -> String {
+    let program = file.program;
+    let orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
+    let states = program.state_names();
+    let state_names = quoted(states.iter().map(String::as_str));
+    let observables = program.observables.iter().map(|o| o.name.as_str());
+    format!(
+        "/// Modal truncation order of each field.\n\
+         pub const ORDERS: [usize; {}] = {};\n\
+         /// Degrees of freedom: coordinates and modes.\n\
+         pub const DEGREES_OF_FREEDOM: usize = {};\n\
+         /// Numbers in the state: coordinates, modes, and the rates of both.\n\
+         pub const STATES: usize = {};\n\
+         /// Names of the state, in its order.\n\
+         pub const STATE_NAMES: [&'static str; STATES] = {state_names};\n\
+         /// Numbers that [`observables`] returns.\n\
+         pub const OBSERVABLES: usize = {};\n\
+         /// Names of the observables, in their order.\n\
+         pub const OBSERVABLE_NAMES: [&'static str; OBSERVABLES] = {};\n\
+         /// Switching surfaces.\n\
+         pub const GUARDS: usize = {};\n\
+         /// SHA-256 of the specification.\n\
+         pub const SPECIFICATION_SHA256: &'static str = \"{}\";\n\
+         /// Version of the generator.\n\
+         pub const GENERATOR_VERSION: &'static str = \"{}\";\n",
+        orders.len(),
+        array(&orders),
+        program.degrees_of_freedom(),
+        program.states(),
+        program.observables.len(),
+        quoted(observables),
+        file.guard_count(),
+        program.spec_hash,
+        env!("CARGO_PKG_VERSION"),
+    ) + &names(file)
+}
+
+/// The inputs and the parameters: how many, and their names.
+fn names(file: &File<'_>) -> String {
+    let program = file.program;
+    let parameters = program.parameters.iter().map(|p| p.quantity.name.as_str());
+    format!(
+        "/// Inputs.\n\
+         pub const INPUTS: usize = {};\n\
+         /// Names of the inputs, in their order.\n\
+         pub const INPUT_NAMES: [&'static str; INPUTS] = {};\n\
+         /// Parameters.\n\
+         pub const PARAMETERS: usize = {};\n\
+         /// Names of the parameters, in their order.\n\
+         pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = {};\n",
+        program.inputs.len(),
+        quoted(program.inputs.iter().map(|i| i.name.as_str())),
+        program.parameters.len(),
+        quoted(parameters),
+    )
+}
+
+/// An array of these names as string literals.
+fn quoted<'n>(names: impl Iterator<Item = &'n str>) -> String {
+    let quoted: Vec<String> = names.map(|name| format!("\"{name}\"")).collect();
+    array(&quoted)
+}

@@ -1,0 +1,138 @@
+//! The items of an emitted file and their order: constants, parameters, coefficients,
+//! inputs, then one function per stage.
+
+use std::collections::BTreeSet;
+
+use super::constants;
+use super::emit_error::{EmitError, Emitted};
+use super::expression::array;
+use super::file::File;
+use super::functions::Needed;
+use super::functions::items;
+use super::layout;
+use super::literals::{block, doc, file_doc, identifier, number};
+use super::outputs;
+use super::regimes;
+use super::roots::stage_roots;
+use super::scalar::{COEFFICIENT, SCALAR};
+use super::stages;
+use super::types;
+use crate::program::{Extent, Op, Program};
+
+/// What the emitted file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Packaging {
+    /// The root of a crate of its own.
+    Crate,
+    /// A module of a crate that is `no_std` already.
+    Module,
+    /// What a module is filled with, by `include!` or by a macro, where the attributes of
+    /// a file may not stand: the items come out of an inner module, [`ITEMS_MODULE`], that
+    /// keeps its helpers to itself.
+    Items,
+}
+
+/// The inner module of [`Packaging::Items`].
+pub const ITEMS_MODULE: &str = "eomgen_emitted";
+
+/// The source of a program as Rust.
+///
+/// # Errors
+/// If a name of the program is no Rust identifier.
+pub fn emit(program: &Program, packaging: Packaging) -> Result<String, EmitError> {
+    let file = File::new(program)?;
+    Ok(layout::source(&marked(&file, packaging)?))
+}
+
+/// The file as marked text.
+fn marked(file: &File<'_>, packaging: Packaging) -> Emitted<String> {
+    let mut needed = Needed::default();
+    let items = [
+        constants::constants(file),
+        types::parameters(file)?,
+        types::inputs(file)?,
+        types::coefficients(file, &mut needed)?,
+        stages::rates(file, &mut needed)?,
+        stages::observables(file, &mut needed)?,
+        stages::guards(file, &mut needed)?,
+        stages::mass_matrix(file, &mut needed)?,
+        regimes::regimes(file, &mut needed)?,
+        outputs::requested(file, &mut needed)?,
+        tables(file)?,
+        SCALAR.to_owned(),
+        if file.for_lanes() { COEFFICIENT } else { "" }.to_owned(),
+        items(&needed),
+    ]
+    .concat();
+    let documentation = documentation(file);
+    let allowed = "#![allow(non_snake_case)]\n#![allow(clippy::all)]\n#![forbid(unsafe_code)]\n";
+    Ok(match packaging {
+        Packaging::Crate => file_doc(&documentation) + "#![no_std]\n" + allowed + &items,
+        Packaging::Module => file_doc(&documentation) + allowed + &items,
+        Packaging::Items => {
+            doc(&documentation)
+                + "#[allow(non_snake_case, dead_code, clippy::all, clippy::pedantic, clippy::nursery)]\n"
+                + "#[forbid(unsafe_code)]\n"
+                + &block(&format!("mod {ITEMS_MODULE} {{"), &items, "}")
+                + "#[allow(unused_imports)]\n"
+                + &format!("pub use {ITEMS_MODULE}::*;\n")
+        }
+    })
+}
+
+/// What the file is and where it comes from, by lines.
+fn documentation(file: &File<'_>) -> Vec<String> {
+    let program = file.program;
+    let orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
+    let order = if orders.is_empty() {
+        "rigid".to_owned()
+    } else {
+        format!("modal truncation order {}", orders.join(", "))
+    };
+    vec![
+        format!("{}: equations of motion, {order}.", program.title.trim_end_matches('.')),
+        String::new(),
+        format!(
+            "Emitted by eomgen {} from the specification `{}` (SHA-256 {}).",
+            env!("CARGO_PKG_VERSION"),
+            program.name,
+            program.spec_hash
+        ),
+        "Do not edit: change the specification and generate again.".to_owned(),
+        String::new(),
+        format!("State: {}.", program.state_names().join(", ")),
+        "All quantities are in SI units. Nothing here allocates, panics or needs the standard library."
+            .to_owned(),
+    ]
+}
+
+/// The tables that some stage reads.
+fn tables(file: &File<'_>) -> Emitted<String> {
+    let program = file.program;
+    let mut roots = stage_roots(program);
+    roots.extend(&program.pivots);
+    let reached = program.reachable(&roots);
+    let mut items = String::new();
+    let used: BTreeSet<usize> = reached
+        .iter()
+        .filter_map(|id| match program.value(*id).op {
+            Op::Table(place) => Some(place),
+            _ => None,
+        })
+        .collect();
+    for place in used {
+        let table = &program.tables[place];
+        let name = identifier(&table.name)?;
+        let values: Vec<String> = table.values.iter().map(|v| number(*v)).collect();
+        let (extent, content) = match table.extent {
+            Extent::Matrix(rows, columns) => {
+                let lines: Vec<String> = values.chunks(columns.max(1)).map(array).collect();
+                (format!("[[f64; {columns}]; {rows}]"), array(&lines))
+            }
+            other => (format!("[f64; {}]", other.length()), array(&values)),
+        };
+        items.push_str(&doc(std::slice::from_ref(&table.doc)));
+        items.push_str(&format!("static {name}: {extent} = {content};\n"));
+    }
+    Ok(items)
+}

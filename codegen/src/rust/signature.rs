@@ -1,0 +1,119 @@
+//! What every emitted function that is called with prepared coefficients looks like.
+
+use super::expression::Expression;
+use super::file::File;
+use super::layout::{DEEPER, SHALLOWER};
+use super::literals::block;
+
+/// What arguments and results of the rates are.
+pub(super) const ORDER: &str = "`t` in s; `state` and the rates in the order of [`STATE_NAMES`].";
+
+/// What an emitted function is called with and returns, beside what all are called with.
+pub(super) struct Signature<'a> {
+    pub(super) name: &'a str,
+    /// Constants among the generic parameters, each with its comma.
+    pub(super) constant: &'a str,
+    /// Further arguments, a line each.
+    pub(super) arguments: &'a str,
+    /// Empty for nothing.
+    pub(super) result: &'a str,
+}
+
+impl<'a> Signature<'a> {
+    /// No more than a name and a result.
+    pub(super) fn of(name: &'a str, result: &'a str) -> Self {
+        Self {
+            name,
+            constant: "",
+            arguments: "",
+            result,
+        }
+    }
+}
+
+/// A function that is called with prepared coefficients.
+pub(super) fn stage(
+    file: &File<'_>,
+    head: &str,
+    name: &str,
+    result: &str,
+    statements: &str,
+) -> String {
+    stage_with(file, head, &Signature::of(name, result), statements)
+}
+
+/// The same with more than a name and a result.
+pub(super) fn stage_with(
+    file: &File<'_>,
+    head: &str,
+    with: &Signature<'_>,
+    statements: &str,
+) -> String {
+    let &Signature {
+        name,
+        constant,
+        arguments,
+        result,
+    } = with;
+    let returned = if result.is_empty() {
+        String::new()
+    } else {
+        format!(" -> {result}")
+    };
+    let signature = |name: &str, generics: &str, coefficients: &str| {
+        format!(
+            "pub fn {name}<{constant}{generics}>(\n\
+             {DEEPER}t: T,\n\
+             state: &[T; STATES],\n\
+             inputs: &{},\n\
+             coefficients: &{coefficients},\n\
+             {arguments}{SHALLOWER}){returned} {{",
+            file.generic("Inputs"),
+        )
+    };
+    let coefficients = file.generic("Coefficients");
+    let whole = format!("{head}{}", signature(name, "T: Scalar", &coefficients));
+    if !file.for_lanes() {
+        return block(&whole, statements, "}");
+    }
+    let further: Vec<&str> = arguments
+        .lines()
+        .filter_map(|line| line.split(':').next())
+        .collect();
+    let passed = [
+        &["t", "state", "inputs", "coefficients"],
+        further.as_slice(),
+    ]
+    .concat();
+    let passed: Vec<Expression> = passed.into_iter().map(Expression::atom).collect();
+    let inlined = format!("{}{name}", file.inlined());
+    let call = Expression::call(&format!("{inlined}{}", given(file, constant)), &passed);
+    let call = format!("{call}\n");
+    let allowed = head.lines().filter(|line| line.starts_with("#["));
+    let allowed: String = allowed.map(|line| format!("{line}\n")).collect();
+    let inlined_head = format!(
+        "/// [`{name}`], inlined where it is called, to be compiled for the registers there.\n\
+         {allowed}#[inline(always)]\n"
+    );
+    let generics = if file.fields.is_empty() {
+        "T: Scalar"
+    } else {
+        "T: Scalar, C: Coefficient<T>"
+    };
+    let read = coefficients.replace("<T>", "<C>");
+    let signature = signature(&inlined, generics, &read);
+    block(&whole, &call, "}") + &block(&format!("{inlined_head}{signature}"), statements, "}")
+}
+
+/// What follows the name of a function for lanes that is called with constants.
+fn given(file: &File<'_>, constant: &str) -> String {
+    let constants: Vec<&str> = constant
+        .split(", ")
+        .filter_map(|one| one.strip_prefix("const ")?.split(':').next())
+        .collect();
+    match (constants.is_empty(), file.fields.is_empty()) {
+        (true, _) => String::new(),
+        (false, true) => format!("::<{}, _>", constants.join(", ")),
+        (false, false) => format!("::<{}, _, _>", constants.join(", ")),
+    }
+}
