@@ -1,5 +1,49 @@
 //! From a checked model to equations of motion, and from these to programs and source.
 //!
+//! ```
+//! use codegen::program::evaluator::{Evaluator, Point};
+//! use codegen::rust::{Packaging, emit};
+//! use codegen::variant::Variant;
+//! use model_spec::source::Source;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let text = r#"
+//! [model]
+//! name = "pendulum"
+//!
+//! [parameters]
+//! m = { value = 0.15, unit = "kg" }
+//! l = { value = 0.3, unit = "m" }
+//! g = { value = 9.81, unit = "m/s^2" }
+//!
+//! [coordinates]
+//! theta = { unit = "rad" }
+//!
+//! [kinetic]
+//! bob = "1/2*m*(l*dot(theta))^2"
+//!
+//! [potential]
+//! gravity = "-m*g*l*cos(theta)"
+//! "#;
+//! let model = model_spec::check(Source::new("pendulum.toml", text))?.model;
+//!
+//! // Derived for fields of these orders: a pendulum has none.
+//! let variant = Variant::derive(&model, &[])?;
+//!
+//! // The rates of the state (theta, theta_dot), in rad/s and rad/s^2.
+//! let mut evaluator = Evaluator::new(variant.program.clone());
+//! let (state, mut rates) = ([0.5, 0.0], [0.0; 2]);
+//! evaluator.rates(Point { t: 0.0, state: &state, inputs: &[] }, &mut rates);
+//! assert_eq!(rates[0], 0.0);
+//! assert!((rates[1] + 9.81 / 0.3 * 0.5_f64.sin()).abs() < 1e-12);
+//!
+//! // The same as a source file that depends on nothing.
+//! let file = emit(&variant.program, Packaging::Crate)?;
+//! assert!(file.contains("pub fn rates<T: Scalar>("));
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! Four stages, one folder each; a stage reads those above it and no other:
 //!
 //! 1. [`symbolic`]: expressions as nodes of one hash-consed graph, their simplification,

@@ -1,5 +1,16 @@
 //! Elementary functions as plain floating-point operations: the same bits everywhere.
 //!
+//! ```
+//! use elementary::{Function, exp, sin_cos};
+//!
+//! let (sine, cosine) = sin_cos(0.5);
+//! assert!((sine * sine + cosine * cosine - 1.0).abs() < 1e-15);
+//!
+//! // The operations of the exponential as data: run, they give its very bits.
+//! let kernel = Function::Exp.kernel();
+//! assert_eq!(kernel.evaluate(&[0.5]), [exp(0.5)]);
+//! ```
+//!
 //! `core` has no sine, not even a square root, and the last bit of those in system libraries differs
 //! from one to the next. Here each function is written once, as a branch-free straight line of
 //! IEEE 754 double-precision operations in a fixed order, generic over [`Real`]:

@@ -1,6 +1,44 @@
 //! Compiles programs of equations of motion to machine code in this process, with no
 //! compiler installed: the same bits as the interpreter and as emitted Rust.
 //!
+//! ```
+//! use codegen::program::evaluator::{Evaluator, Point};
+//! use codegen::variant::Variant;
+//! use model_spec::source::Source;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let text = r#"
+//! [model]
+//! name = "oscillator"
+//!
+//! [parameters]
+//! m = { value = 2, unit = "kg" }
+//! k = { value = 50, unit = "N/m" }
+//!
+//! [coordinates]
+//! x = { unit = "m" }
+//!
+//! [kinetic]
+//! mass = "1/2*m*dot(x)^2"
+//!
+//! [potential]
+//! spring = "1/2*k*x^2"
+//! "#;
+//! let model = model_spec::check(Source::new("oscillator.toml", text))?.model;
+//! let program = Variant::derive(&model, &[])?.program;
+//!
+//! // x and its rate, in m and m/s.
+//! let state = [0.1, 0.3];
+//! let point = Point { t: 0.0, state: &state, inputs: &[] };
+//! let (mut compiled, mut interpreted) = ([0.0; 2], [0.0; 2]);
+//! jit::evaluator(program.clone()).rates(point, &mut compiled);
+//! Evaluator::new(program).rates(point, &mut interpreted);
+//! assert_eq!(compiled, interpreted);
+//! assert!((compiled[1] + 2.5).abs() < 1e-15);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! The pipeline, file by file: `compile` takes a `Program`; `stage` walks the values of
 //! one stage and decides which live in registers and which in memory; `loops` writes loops
 //! over modes; `elements` writes an element of a vector, or two neighbouring ones in one

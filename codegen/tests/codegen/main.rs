@@ -2,6 +2,7 @@
 //! their derivatives, guards and solved systems, and the emitted source. Specifications
 //! that exercise whole features are certified in the workspace's own tests.
 
+mod arrays;
 mod definiteness;
 mod emission;
 mod expressions;
@@ -11,6 +12,7 @@ mod inertia;
 mod misplaced;
 mod modes;
 mod names;
+mod oldest_compiler;
 mod operations;
 mod reports;
 mod requests;

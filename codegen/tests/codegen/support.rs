@@ -108,10 +108,16 @@ pub fn folder(name: &str) -> PathBuf {
 
 /// Compiles a source as a library by plain `rustc`, warnings denied.
 pub fn compile(name: &str, source: &str, options: &[&str]) -> PathBuf {
+    let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    compile_by(Command::new(compiler), name, source, options)
+}
+
+/// The same by this compiler.
+pub fn compile_by(mut compiler: Command, name: &str, source: &str, options: &[&str]) -> PathBuf {
     let folder = folder(name);
     let path = folder.join("lib.rs");
     std::fs::write(&path, source).unwrap();
-    let output = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()))
+    let output = compiler
         .args([
             "--crate-type",
             "lib",

@@ -1,0 +1,109 @@
+//! What every emitted file says of its parameters and inputs: how many there are, their names,
+//! and both as arrays, of any number type and of none at all.
+
+use std::process::Command;
+
+use codegen::rust::{Packaging, emit};
+
+use crate::support::{compile, emitted, folder, model, program, shipped};
+
+/// Assertions that `From` puts number k of an array into the field with name k.
+fn assertions(kind: &str, count: &str, names: &[&str]) -> String {
+    let numbers: Vec<String> = (1..=names.len()).map(|k| format!("{k}")).collect();
+    let mut text = format!(
+        "    assert_eq!(emitted::{count}, {});\n\
+         \x20   let numbers: [u8; emitted::{count}] = [{}];\n\
+         \x20   let of = emitted::{kind}::from(numbers);\n",
+        names.len(),
+        numbers.join(", ")
+    );
+    for (name, number) in names.iter().zip(&numbers) {
+        text += &format!("    assert_eq!(of.{name}, {number});\n");
+    }
+    text + "    let _ = of;\n"
+}
+
+/// A program that fails where an array does not come into the fields by their names.
+fn checks(parameters: &[&str], inputs: &[&str]) -> String {
+    format!(
+        "#[allow(dead_code)]\nmod emitted;\n\nfn main() {{\n\
+         \x20   let names: [&str; {}] = {parameters:?};\n\
+         \x20   assert_eq!(emitted::PARAMETER_NAMES, names);\n\
+         \x20   let names: [&str; {}] = {inputs:?};\n\
+         \x20   assert_eq!(emitted::INPUT_NAMES, names);\n{}{}}}\n",
+        parameters.len(),
+        inputs.len(),
+        assertions("Parameters", "PARAMETERS", parameters),
+        assertions("Inputs", "INPUTS", inputs),
+    )
+}
+
+/// Compiles the checks with the emitted module and runs them.
+fn run(name: &str, module: &str, checks: &str) {
+    let folder = folder(name);
+    std::fs::write(folder.join("emitted.rs"), module).unwrap();
+    std::fs::write(folder.join("main.rs"), checks).unwrap();
+    let program = folder.join("checks");
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    for command in [
+        Command::new(rustc)
+            .args(["--edition", "2021", "-o"])
+            .arg(&program)
+            .arg(folder.join("main.rs")),
+        &mut Command::new(&program),
+    ] {
+        let output = command.output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{name}: {said}");
+    }
+}
+
+#[test]
+fn arrays_come_into_the_fields_by_their_names() {
+    for name in ["hub_beam_tip_mass", "pendulum", "planetary_arm_rig"] {
+        let program = program(&shipped(name), 1);
+        let module = emit(&program, Packaging::Module).unwrap();
+        let parameters: Vec<&str> = program
+            .parameters
+            .iter()
+            .map(|parameter| parameter.quantity.name.as_str())
+            .collect();
+        let inputs: Vec<&str> = program.inputs.iter().map(|i| i.name.as_str()).collect();
+        run(
+            &format!("arrays_{name}"),
+            &module,
+            &checks(&parameters, &inputs),
+        );
+    }
+}
+
+/// Nothing to name: the constants are 0, the arrays empty, and the file compiles all the same.
+#[test]
+fn a_model_without_parameters_and_inputs_has_empty_arrays() {
+    let text = "[model]\nname = \"free\"\ntitle = \"Free\"\n\
+                [coordinates]\nx = { unit = \"m kg^(1/2)\" }\n\
+                [kinetic]\nfree = \"1/2*dot(x)^2\"\n";
+    let model = model(text);
+    assert!(emitted(&model, 0).contains("pub const PARAMETERS: usize = 0;"));
+    let module = emit(&program(&model, 0), Packaging::Module).unwrap();
+    run("arrays_of_nothing", &module, &checks(&[], &[]));
+}
+
+/// A field of no modes and no coordinate beside it: a state of no numbers.
+#[test]
+fn a_model_without_a_state_compiles() {
+    let text = "[model]\nname = \"still\"\ntitle = \"Still\"\n\
+                [parameters]\nrho = { value = 2, unit = \"kg/m\" }\nl = { value = 1, unit = \"m\" }\n\
+                [fields.w]\nalong = \"x\"\nfrom = \"0\"\nto = \"l\"\nbasis = \"clamped_free\"\n\
+                coordinates = \"q\"\norder = 2\nunit = \"m\"\n\
+                [kinetic]\nbeam = \"1/2*integral(rho*dot(w)^2, w)\"\n";
+    let source = emitted(&model(text), 0);
+    assert!(source.contains("pub const STATES: usize = 0;"));
+    for edition in ["2015", "2024"] {
+        compile(
+            "no_state",
+            &source,
+            &["--edition", edition, "--emit=metadata"],
+        );
+    }
+}
