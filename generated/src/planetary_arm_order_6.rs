@@ -67,6 +67,43 @@ pub const SPECIFICATION_SHA256: &'static str = "f6f74b40cfbe4f1a78359fb6b00716cb
 /// Version of the generator.
 pub const GENERATOR_VERSION: &'static str = "0.1.0";
 
+/// Inputs.
+pub const INPUTS: usize = 0;
+
+/// Names of the inputs, in their order.
+pub const INPUT_NAMES: [&'static str; INPUTS] = [];
+
+/// Parameters.
+pub const PARAMETERS: usize = 24;
+
+/// Names of the parameters, in their order.
+pub const PARAMETER_NAMES: [&'static str; PARAMETERS] = [
+    "z_s",
+    "z_p",
+    "z_r",
+    "m",
+    "alpha",
+    "M_s",
+    "M_p",
+    "m_c",
+    "m_p",
+    "k_sp",
+    "k_pr",
+    "c_sp",
+    "c_pr",
+    "b_sp",
+    "b_pr",
+    "rho",
+    "A",
+    "l",
+    "E",
+    "I",
+    "a_m",
+    "b_m",
+    "F_w",
+    "omega",
+];
+
 /// Parameters of the model. `Default` gives the specification's values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters<T = f64> {
@@ -181,10 +218,45 @@ impl Parameters {
         }
     }
 }
+impl<T: Copy> From<[T; PARAMETERS]> for Parameters<T> {
+    fn from(numbers: [T; PARAMETERS]) -> Self {
+        Self {
+            z_s: numbers[0],
+            z_p: numbers[1],
+            z_r: numbers[2],
+            m: numbers[3],
+            alpha: numbers[4],
+            M_s: numbers[5],
+            M_p: numbers[6],
+            m_c: numbers[7],
+            m_p: numbers[8],
+            k_sp: numbers[9],
+            k_pr: numbers[10],
+            c_sp: numbers[11],
+            c_pr: numbers[12],
+            b_sp: numbers[13],
+            b_pr: numbers[14],
+            rho: numbers[15],
+            A: numbers[16],
+            l: numbers[17],
+            E: numbers[18],
+            I: numbers[19],
+            a_m: numbers[20],
+            b_m: numbers[21],
+            F_w: numbers[22],
+            omega: numbers[23],
+        }
+    }
+}
 
 /// Signals supplied at run time. `Default` gives zeros.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inputs {}
+impl<T: Copy> From<[T; INPUTS]> for Inputs {
+    fn from(_: [T; INPUTS]) -> Self {
+        Self {}
+    }
+}
 
 /// What depends on the parameters alone: prepare once, use in every call.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -126,18 +126,7 @@ pub(super) fn coefficients(file: &File<'_>, needed: &mut Needed) -> Emitted<Stri
         declared(numbers)
     );
     casts.push("positive_definite: self.positive_definite".to_owned());
-    let unused = if file.program.parameters.is_empty() {
-        "#[allow(unused_variables)]\n"
-    } else {
-        ""
-    };
-    let parameters = file.generic("Parameters");
-    let opening = format!(
-        "/// The coefficients of these parameters.\n{unused}\
-         pub fn prepare(parameters: &{parameters}) -> Self {{"
-    );
-    let statements = body.statements() + &literal("Self", &values);
-    let prepare = block(&opening, &statements, "}");
+    let prepare = preparation(file, &(body.statements() + &literal("Self", &values)));
     let generic = if numbers {
         "impl<T: Scalar> Coefficients<T> {"
     } else {
@@ -149,6 +138,31 @@ pub(super) fn coefficients(file: &File<'_>, needed: &mut Needed) -> Emitted<Stri
         String::new()
     };
     Ok(block(&head, &fields, "}") + &block(generic, &prepare, "}") + &cast)
+}
+
+/// The function that prepares the coefficients by these statements. Where no coefficient is a
+/// number, the parameters alone say of which type the numbers are, or nobody does.
+fn preparation(file: &File<'_>, statements: &str) -> String {
+    let parameters = file.generic("Parameters");
+    let (with_coefficients, with_parameters) =
+        (!file.fields.is_empty(), !file.program.parameters.is_empty());
+    let unused = if statements.contains("parameters") {
+        ""
+    } else {
+        "#[allow(unused_variables)]\n"
+    };
+    let own = if with_parameters && !with_coefficients {
+        "<T: Scalar>"
+    } else {
+        ""
+    };
+    let opening = format!(
+        "/// The coefficients of these parameters.\n{unused}\
+         pub fn prepare{own}(parameters: &{parameters}) -> Self {{"
+    );
+    let nobody = !with_coefficients && !with_parameters && statements.contains("T::");
+    let declared = if nobody { "type T = f64;\n" } else { "" };
+    block(&opening, &format!("{declared}{statements}"), "}")
 }
 
 fn prepared_roots(file: &File<'_>) -> Vec<ValueId> {

@@ -107,3 +107,18 @@ fn a_model_without_a_state_compiles() {
         );
     }
 }
+
+/// Parameters of which no coefficient comes, though the mass matrix has a pivot.
+#[test]
+fn a_model_whose_parameters_nothing_needs_compiles() {
+    let text = "[model]\nname = \"idle\"\ntitle = \"Idle\"\n\
+                [parameters]\nk = { value = 3, unit = \"N/m\" }\n\
+                [coordinates]\nx = { unit = \"m kg^(1/2)\" }\n\
+                [kinetic]\nfree = \"1/2*dot(x)^2\"\n";
+    let module = emit(&program(&model(text), 0), Packaging::Module).unwrap();
+    let prepared = "    let coefficients = emitted::Coefficients::prepare(&emitted::Parameters::default());\n\
+                    \x20   assert!(coefficients.positive_definite);\n}\n";
+    let checks = checks(&["k"], &[]);
+    let checks = format!("{}{prepared}", checks.trim_end_matches("}\n"));
+    run("arrays_of_idle", &module, &checks);
+}
