@@ -5,7 +5,7 @@
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 use serde::Serialize;
 
-use crate::source::Source;
+use crate::source::{Source, character_start};
 use crate::span::Span;
 
 /// The most findings listed; one bad file can hold thousands.
@@ -365,8 +365,8 @@ impl Diagnostics {
     /// The span as byte offsets of whole characters within the text.
     fn inside(&self, span: Span) -> std::ops::Range<usize> {
         let text = &self.source.text;
-        let start = text.floor_char_boundary(span.start);
-        let end = text.floor_char_boundary(span.end);
+        let start = character_start(text, span.start);
+        let end = character_start(text, span.end);
         start..end.max(start)
     }
 }

@@ -1,5 +1,5 @@
 //! From TOML to raw entries: which sections a specification has and which it needs. The
-//! keys of a section's entries are the business of `entries`; names are not looked up and
+//! entries of a section are the business of `entries`; names are not looked up and
 //! expressions not parsed here.
 
 use toml_edit::Document as Toml;
@@ -8,6 +8,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::entries::{
     coefficient, coordinate, field, force, input, name_of, observable, parameter, sensor, term,
 };
+use crate::keys;
 use crate::raw::Document;
 use crate::source::Source;
 use crate::span::Span;
@@ -17,23 +18,6 @@ use crate::toml_file::grammar_error;
 
 /// The most named things a specification may hold.
 pub const MAX_ENTRIES: usize = 2000;
-
-/// The sections of a specification.
-pub const SECTIONS: [&str; 13] = [
-    "model",
-    "parameters",
-    "coordinates",
-    "inputs",
-    "fields",
-    "definitions",
-    "kinetic",
-    "potential",
-    "dissipation",
-    "forces",
-    "observables",
-    "coefficients",
-    "sensors",
-];
 
 /// Reads the sections of a specification.
 ///
@@ -104,7 +88,7 @@ impl<'d> Reader<'d> {
                     &entry.name,
                     self.section("fields").is_some(),
                 ));
-            } else if !SECTIONS.contains(&name) {
+            } else if keys::sections().all(|known| known != name) {
                 self.found.push_with(|| unknown_section(&entry.name));
             }
         }
@@ -142,7 +126,7 @@ impl<'d> Reader<'d> {
             );
             return None;
         };
-        let known = ["name", "title", "order"];
+        let known = [&keys::MODEL[..], &["order"]].concat();
         let has_fields = self.section("fields").is_some();
         let record = entry.record(&known, "{ name = \"my_machine\" }", &mut self.found)?;
         if let Some(order) = record.get("order") {
@@ -181,10 +165,11 @@ impl<'d> Reader<'d> {
 }
 
 fn unknown_section(name: &Name) -> Diagnostic {
-    let listed = format!("the sections are {}", SECTIONS.join(", "));
+    let known: Vec<&str> = keys::sections().collect();
+    let listed = format!("the sections are {}", known.join(", "));
     Diagnostic::error(format!("unknown section {}", quoted(&name.text)))
         .at(name.span, "not known")
-        .help(did_you_mean(&name.text, SECTIONS).unwrap_or(listed))
+        .help(did_you_mean(&name.text, known).unwrap_or(listed))
 }
 
 fn misplaced_order(name: &Name, has_fields: bool) -> Diagnostic {

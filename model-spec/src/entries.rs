@@ -1,7 +1,8 @@
-//! Reading one entry of each section: which keys it has, which of them it needs, and of
-//! which kind their values are.
+//! Reading one entry of each section: which of its keys it needs, and of which kind their
+//! values are.
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
+use crate::keys;
 use crate::model::Basis;
 use crate::raw::{
     RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawInput, RawParameter, RawRange,
@@ -25,8 +26,7 @@ pub fn name_of(written: Written) -> Name {
 
 /// An entry of `[parameters]`.
 pub fn parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParameter> {
-    let known = ["value", "unit", "doc", "source", "min", "max"];
-    let record = entry.record(&known, PARAMETER_EXAMPLE, found)?;
+    let record = entry.record(&keys::PARAMETER, PARAMETER_EXAMPLE, found)?;
     let help = "give a number in the declared unit, or an expression of other parameters";
     let value = record.require("value", help, found)?.quantity();
     Some(RawParameter {
@@ -42,8 +42,7 @@ pub fn parameter(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawParame
 
 /// An entry of `[coordinates]`.
 pub fn coordinate(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoordinate> {
-    let known = ["unit", "doc", "initial", "initial_rate", "range"];
-    let record = entry.record(&known, COORDINATE_EXAMPLE, found)?;
+    let record = entry.record(&keys::COORDINATE, COORDINATE_EXAMPLE, found)?;
     Some(RawCoordinate {
         name: entry.name.clone(),
         unit: required_unit(&record, found),
@@ -70,8 +69,7 @@ fn required_unit(record: &Record<'_>, found: &mut Diagnostics) -> Option<Written
 
 /// An entry of `[inputs]`.
 pub fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
-    let known = ["unit", "doc", "range"];
-    let record = entry.record(&known, "{ unit = \"N m\" }", found)?;
+    let record = entry.record(&keys::INPUT, "{ unit = \"N m\" }", found)?;
     Some(RawInput {
         name: entry.name.clone(),
         unit: required_unit(&record, found),
@@ -82,17 +80,7 @@ pub fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
 
 /// A `[fields.NAME]`.
 pub fn field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
-    let known = [
-        "along",
-        "from",
-        "to",
-        "basis",
-        "coordinates",
-        "order",
-        "unit",
-        "doc",
-    ];
-    let record = entry.record(&known, FIELD_EXAMPLE, found)?;
+    let record = entry.record(&keys::FIELD, FIELD_EXAMPLE, found)?;
     let along = record
         .require("along", "name the position: along = \"x\"", found)
         .cloned();
@@ -123,15 +111,13 @@ pub fn field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
 }
 
 fn basis_named(written: &Written) -> Result<Basis, Diagnostic> {
-    match written.text.as_str() {
-        "clamped_free" => Ok(Basis::ClampedFree),
-        "clamped_free_printed" => Ok(Basis::ClampedFreePrinted),
-        other => Err(
-            Diagnostic::error(format!("unknown basis {}", quoted(other)))
-                .at(written.span, "not known")
-                .help("known are clamped_free and clamped_free_printed"),
-        ),
-    }
+    let meant = keys::BASES.iter().find(|(name, _)| *name == written.text);
+    meant.map(|(_, basis)| *basis).ok_or_else(|| {
+        let known: Vec<&str> = keys::BASES.iter().map(|(name, _)| *name).collect();
+        Diagnostic::error(format!("unknown basis {}", quoted(&written.text)))
+            .at(written.span, "not known")
+            .help(format!("known are {}", known.join(" and ")))
+    })
 }
 
 /// An entry of `[definitions]`, of an energy or of the dissipation.
@@ -144,7 +130,7 @@ pub fn term(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
             origin: String::new(),
         });
     }
-    let record = entry.record(&["value", "doc", "source"], "\"1/2*m*dot(x)^2\"", found)?;
+    let record = entry.record(&keys::TERM, "\"1/2*m*dot(x)^2\"", found)?;
     term_of(&record, found)
 }
 
@@ -162,7 +148,7 @@ fn term_of(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
 
 /// An entry of `[forces]` and what it works on.
 pub fn force(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
-    let record = entry.record(&["on", "value", "doc", "source"], FORCE_EXAMPLE, found)?;
+    let record = entry.record(&keys::FORCE, FORCE_EXAMPLE, found)?;
     let help = "say what the force does work on: on = \"theta\"";
     let on = record.require("on", help, found).map(Entry::quantity);
     let term = term_of(&record, found);
@@ -177,8 +163,7 @@ pub fn observable(
     if !entry.is_table() {
         return Some((term(entry, found)?, None));
     }
-    let known = ["value", "unit", "doc", "source"];
-    let record = entry.record(&known, "\"at(w, l)\"", found)?;
+    let record = entry.record(&keys::OBSERVABLE, "\"at(w, l)\"", found)?;
     let unit = record.written("unit", found);
     Some((term_of(&record, found)?, unit))
 }
@@ -195,9 +180,8 @@ pub fn coefficient(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawCoef
             doc: String::new(),
         });
     }
-    let known = ["value", "of", "by", "times", "each", "doc"];
     let example = "{ of = \"x_c\", by = \"dot(x_c)\" }";
-    let record = entry.record(&known, example, found)?;
+    let record = entry.record(&keys::COEFFICIENT, example, found)?;
     Some(RawCoefficient {
         name,
         kind: coefficient_kind(&record, found)?,
@@ -229,7 +213,7 @@ fn coefficient_kind(record: &Record<'_>, found: &mut Diagnostics) -> Option<RawC
 
 /// A `[sensors.CHANNEL]`.
 pub fn sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
-    let record = entry.record(&["gain", "bias", "delay"], "{ gain = 1, bias = 0 }", found)?;
+    let record = entry.record(&keys::SENSOR, "{ gain = 1, bias = 0 }", found)?;
     let mut number = |key, absent| record.number(key, found).map_or(absent, |n| n.value);
     Some(RawSensor {
         channel: entry.name.clone(),

@@ -5,7 +5,8 @@
 //! `motion` (what may stand where), `units_check` and `infer` (units of every expression), `checks`,
 //! [`model`] (the result). [`load()`] and [`check`] go all the way. What is wrong is said by
 //! [`diagnostic`]; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers.
-//! [`toml_file`] and [`mod@table`] read other files of TOML with their places as well. Nothing here knows how
+//! [`toml_file`] and [`mod@table`] read other files of TOML with their places as well. [`models`] are
+//! the specifications shipped. Nothing here knows how
 //! equations are derived.
 
 pub mod ast;
@@ -19,9 +20,11 @@ pub mod evaluate;
 mod expression;
 mod functions;
 mod infer;
+mod keys;
 pub mod lexer;
 mod load;
 pub mod model;
+pub mod models;
 mod motion;
 mod names;
 mod order;
@@ -29,6 +32,7 @@ pub mod parser;
 mod raw;
 mod resolve;
 mod scale;
+pub mod schema;
 pub mod source;
 pub mod span;
 pub mod suggest;

@@ -41,7 +41,7 @@ impl Source {
     /// The line and column of a byte offset; an offset past the end is the end, one
     /// inside a character is that character's.
     pub fn place(&self, offset: usize) -> Place {
-        let offset = self.text.floor_char_boundary(offset);
+        let offset = character_start(&self.text, offset);
         let before = &self.text[..offset];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         Place {
@@ -49,6 +49,16 @@ impl Source {
             column: before[line_start..].chars().count() + 1,
         }
     }
+}
+
+/// Where the character begins that holds this byte; the end of the text for what lies past it. As
+/// `str::floor_char_boundary`, which the oldest compiler supported does not have.
+pub fn character_start(text: &str, offset: usize) -> usize {
+    let mut start = offset.min(text.len());
+    while !text.is_char_boundary(start) {
+        start -= 1;
+    }
+    start
 }
 
 /// SHA-256 of a text's bytes, 64 lower-case hexadecimal digits.

@@ -5,6 +5,7 @@ use model_spec::ast::{BinaryOperator, Syntax, SyntaxKind};
 use model_spec::check;
 use model_spec::dimension::Dimension;
 use model_spec::lexer::tokens;
+use model_spec::models;
 use model_spec::parser::parse;
 use model_spec::source::Source;
 use model_spec::span::Span;
@@ -148,7 +149,7 @@ proptest! {
 
     #[test]
     fn pieces_of_a_specification_are_no_reason_to_panic(start in 0usize..9000, length in 0usize..9000) {
-        let whole = include_str!("../models/planetary_arm.toml");
+        let whole = models::PLANETARY_ARM.text;
         let start = whole.floor_char_boundary(start);
         let end = whole.floor_char_boundary(start + length);
         let without = format!("{}{}", &whole[..start], &whole[end..]);

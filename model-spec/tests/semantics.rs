@@ -3,6 +3,7 @@
 use model_spec::Checked;
 use model_spec::diagnostic::Severity;
 use model_spec::model::{CoefficientKind, ExprKind, MAX_ORDER, Model};
+use model_spec::models;
 use model_spec::source::Source;
 
 const BEAM: &str = r#"[model]
@@ -139,7 +140,7 @@ fn orders_are_the_fields_own_or_given() {
     assert_eq!(model.orders(Some(0)), Ok(vec![0]));
     assert_eq!(model.orders(Some(MAX_ORDER)), Ok(vec![MAX_ORDER]));
     assert!(model.orders(Some(MAX_ORDER + 1)).is_err());
-    let rigid = include_str!("../models/pendulum.toml");
+    let rigid = models::PENDULUM.text;
     let rigid = checked(rigid).model;
     assert_eq!(
         (rigid.orders(None), rigid.orders(Some(0))),

@@ -4,6 +4,7 @@
 use std::path::Path;
 
 use model_spec::model::Model;
+use model_spec::models;
 
 fn shipped(name: &str) -> Model {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
@@ -97,4 +98,16 @@ fn units_of_observables_are_those_declared_or_inferred() {
     assert_eq!(units, ["m", "rad"]);
     assert_eq!(value(&model, "E"), 70e9);
     assert_eq!(value(&model, "I"), 67.5e-12);
+}
+
+#[test]
+fn the_constants_are_the_files() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let files = std::fs::read_dir(&folder).expect("the models are there");
+    assert_eq!(models::ALL.len(), files.count());
+    for model in models::ALL {
+        let file = folder.join(model.source().path);
+        let text = std::fs::read_to_string(&file).expect("a file of the constant's name");
+        assert!(model.text == text, "{}", file.display());
+    }
 }

@@ -10,6 +10,7 @@ use codegen::rust::Packaging;
 use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
 use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
 use eomgen_validate::certificate::Certificate;
+use model_spec::models;
 use model_spec::source::Source;
 use serde_json::json;
 
@@ -26,7 +27,7 @@ use crate::progress::Note;
 use crate::table::Table;
 
 /// The paper's arm.
-const SPECIFICATION: &str = include_str!("../../../model-spec/models/planetary_arm.toml");
+const SPECIFICATION: &str = models::PLANETARY_ARM.text;
 
 /// Where it stands in the project.
 const SPECIFICATION_PATH: &str = "model-spec/models/planetary_arm.toml";

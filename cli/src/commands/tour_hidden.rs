@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use eomgen_compiled_model::{Request, Solver};
 use model_spec::edit::{self, Edit, NewForce, NewParameter, NewValue};
+use model_spec::models;
 use model_spec::source::Source;
 use serde_json::Value;
 use sim::inputs::HeldInputs;
@@ -19,7 +20,7 @@ use crate::problem::{Outcome, Problem};
 use crate::table::Table;
 
 /// The stage as it is known.
-const SPECIFICATION: &str = include_str!("../../../model-spec/models/emps.toml");
+const SPECIFICATION: &str = models::EMPS.text;
 
 /// What is hidden: a dry friction, N, and the speed within which it turns, m/s. Smooth, unlike
 /// the jump that is looked for.

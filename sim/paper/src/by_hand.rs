@@ -2,6 +2,7 @@
 //! equations themselves are in [`crate::reference`].
 
 use model_spec::model::Model;
+use model_spec::models;
 use model_spec::source::Source;
 
 use crate::reference::closed_forms::{self, Situation};
@@ -19,14 +20,14 @@ const PAPER_SCALES: (f64, f64) = (3.0885e4, 25e-6);
 /// The specifications that were written out by hand. A model of the same name may follow
 /// other conventions; only what has the very equations of one of them is the same machine.
 const SHIPPED: [&str; 8] = [
-    include_str!("../../../model-spec/models/planetary_arm.toml"),
-    include_str!("../../../model-spec/models/double_pendulum.toml"),
-    include_str!("../../../model-spec/models/cart_two_arms.toml"),
-    include_str!("../../../model-spec/models/furuta_pendulum.toml"),
-    include_str!("../../../model-spec/models/hub_beam_tip_mass.toml"),
-    include_str!("../../../model-spec/models/pendulum.toml"),
-    include_str!("../../../model-spec/models/emps.toml"),
-    include_str!("../../../model-spec/models/two_link_arm.toml"),
+    models::PLANETARY_ARM.text,
+    models::DOUBLE_PENDULUM.text,
+    models::CART_TWO_ARMS.text,
+    models::FURUTA_PENDULUM.text,
+    models::HUB_BEAM_TIP_MASS.text,
+    models::PENDULUM.text,
+    models::EMPS.text,
+    models::TWO_LINK_ARM.text,
 ];
 
 /// The arm's derived parameters that its hand-written equations take as they are.

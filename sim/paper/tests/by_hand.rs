@@ -3,11 +3,12 @@
 
 use eomgen_paper::by_hand::by_hand;
 use model_spec::model::Model;
+use model_spec::models;
 use model_spec::source::Source;
 
-const EMPS: &str = include_str!("../../../model-spec/models/emps.toml");
-const ARM: &str = include_str!("../../../model-spec/models/planetary_arm.toml");
-const TWO_LINKS: &str = include_str!("../../../model-spec/models/two_link_arm.toml");
+const EMPS: &str = models::EMPS.text;
+const ARM: &str = models::PLANETARY_ARM.text;
+const TWO_LINKS: &str = models::TWO_LINK_ARM.text;
 
 fn model(text: &str) -> Model {
     model_spec::check(Source::new("a.toml", text))

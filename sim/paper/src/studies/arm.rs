@@ -4,6 +4,7 @@
 use std::f64::consts::TAU;
 
 use model_spec::model::Model;
+use model_spec::models;
 use model_spec::source::Source;
 
 use super::error::StudyError;
@@ -12,7 +13,7 @@ use eomgen_compiled_model::{CompiledModel, Orders};
 use sim::piecewise_linear::Propagator;
 
 /// The paper's arm as it is shipped.
-const SPECIFICATION: &str = include_str!("../../../../model-spec/models/planetary_arm.toml");
+const SPECIFICATION: &str = models::PLANETARY_ARM.text;
 
 /// What the paper does not disclose. Both meshes have the same damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
