@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 use codegen::mechanics::outputs::{Request, UnknownRequest};
 
 /// From a specification of a mechanical system's energies to fast, checked equations of
@@ -71,6 +72,19 @@ pub enum Command {
     /// find what a stage lacks, and leave one HTML page.
     #[command(after_help = "Example:\n  eomgen tour --out tour")]
     Tour(Tour),
+    /// Print the JSON schema of specifications, by which an editor completes and checks them.
+    #[command(
+        after_help = "Example:\n  eomgen schema > eomgen.schema.json\nA specification beside it then begins with the line\n  #:schema ./eomgen.schema.json"
+    )]
+    Schema,
+    /// Print a shell's completions of commands and options.
+    #[command(
+        after_help = "Examples:\n  eomgen completions bash > ~/.local/share/bash-completion/completions/eomgen\n  eomgen completions fish > ~/.config/fish/completions/eomgen.fish\n  eomgen completions zsh > ~/.zfunc/_eomgen"
+    )]
+    Completions(Completions),
+    /// Write man pages, one of the program and one of every command.
+    #[command(after_help = "Example:\n  eomgen man --out ~/.local/share/man/man1")]
+    Man(Man),
 }
 
 /// Options of `check`.
@@ -419,6 +433,22 @@ pub struct Tour {
     /// Print one JSON document on what was left.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Options of `completions`.
+#[derive(Args)]
+pub struct Completions {
+    /// The shell.
+    #[arg(value_enum)]
+    pub shell: Shell,
+}
+
+/// Options of `man`.
+#[derive(Args)]
+pub struct Man {
+    /// The folder to write to.
+    #[arg(long)]
+    pub out: PathBuf,
 }
 
 /// The paper's studies.

@@ -41,6 +41,9 @@ fn main() -> ExitCode {
         Command::StudySearch(options) => commands::study_search::run(&options),
         Command::Study(options) => commands::study::run(&options),
         Command::Tour(options) => commands::tour::run(&options),
+        Command::Schema => commands::schema::run(),
+        Command::Completions(options) => commands::completions::run(&options),
+        Command::Man(options) => commands::man::run(&options),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

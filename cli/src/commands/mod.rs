@@ -1,12 +1,15 @@
 //! One file per command.
 
 pub mod check;
+pub mod completions;
 pub mod derive;
 pub mod discover;
 pub mod generate;
 mod generate_all;
 mod generate_bench;
+pub mod man;
 pub mod merge;
+pub mod schema;
 pub mod simulate;
 pub mod study;
 pub mod study_search;

@@ -1,0 +1,14 @@
+//! `eomgen completions`: what a shell needs to complete commands and options.
+
+use clap::CommandFactory;
+
+use crate::arguments::{Arguments, Completions};
+use crate::problem::{Outcome, say_bytes};
+
+/// Runs the command.
+pub fn run(options: &Completions) -> Outcome {
+    let mut script = Vec::new();
+    let mut program = Arguments::command();
+    clap_complete::generate(options.shell, &mut program, "eomgen", &mut script);
+    say_bytes(&script)
+}

@@ -1,0 +1,27 @@
+//! `eomgen man`: a man page of the program and one of every command.
+
+use clap::CommandFactory;
+use clap_mangen::Man as Page;
+
+use crate::arguments::{Arguments, Man};
+use crate::output::write_file;
+use crate::problem::{Outcome, Problem, say};
+
+/// Runs the command.
+pub fn run(options: &Man) -> Outcome {
+    let mut program = Arguments::command().disable_help_subcommand(true);
+    // Gives every command its whole name, as `eomgen-check`.
+    program.build();
+    let commands: Vec<_> = program.get_subcommands().cloned().collect();
+    let mut written = 0;
+    for command in std::iter::once(program).chain(commands) {
+        let page = Page::new(command.disable_help_subcommand(true));
+        let path = options.out.join(page.get_filename());
+        let mut text = Vec::new();
+        page.render(&mut text)
+            .map_err(|error| Problem::file("write", &path, &error))?;
+        write_file(&path, &text)?;
+        written += 1;
+    }
+    say(&format!("{}: {written} pages\n", options.out.display()))
+}
