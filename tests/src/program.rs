@@ -16,23 +16,37 @@ pub fn path() -> &'static Path {
     BUILT.get_or_init(build)
 }
 
-/// Builds into the folder that the running test was built into.
-fn build() -> PathBuf {
+/// The folder and the profile that the running test was built with.
+pub fn target() -> (PathBuf, String) {
     let test = std::env::current_exe().expect("the running test has a path");
     let profile = test.ancestors().nth(2).expect("target/PROFILE/deps/TEST");
     let target = profile.parent().expect("target/PROFILE");
     let name = profile.file_name().expect("a profile").to_string_lossy();
+    let profile = if name == "debug" { "dev" } else { &*name };
+    (target.to_owned(), profile.to_owned())
+}
+
+/// Cargo in the project's folder, to be given arguments: a command that builds.
+pub fn cargo() -> std::process::Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = std::process::Command::new(cargo)
-        .args(["build", "--quiet", "--package", "eomgen-cli", "--profile"])
-        .arg(if name == "debug" { "dev" } else { &*name })
-        .arg("--target-dir")
-        .arg(target)
-        .current_dir(project())
+    let mut command = std::process::Command::new(cargo);
+    command.current_dir(project());
+    command
+}
+
+/// Builds into the folder that the running test was built into.
+fn build() -> PathBuf {
+    let (target, profile) = target();
+    let status = cargo()
+        .args(["build", "--quiet", "--package", "eomgen-cli"])
+        .args(["--profile", &profile, "--target-dir"])
+        .arg(&target)
         .status()
         .expect("cargo can be run");
     assert!(status.success(), "the program does not build");
-    profile.join(format!("eomgen{}", std::env::consts::EXE_SUFFIX))
+    let folder = if profile == "dev" { "debug" } else { &profile };
+    let name = format!("eomgen{}", std::env::consts::EXE_SUFFIX);
+    target.join(folder).join(name)
 }
 
 /// The program, to be given arguments.

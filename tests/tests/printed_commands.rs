@@ -28,7 +28,10 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// What another test runs, with the file that does.
-const ELSEWHERE: [(&str, &str); 8] = [
+const ELSEWHERE: [(&str, &str); 10] = [
+    ("cargo install --path cli", "tests/tests/installed.rs"),
+    // What it would bring into a project.
+    ("cargo add eomgen", "tests/tests/packages.rs"),
     // The bench of a small machine, built and run.
     (
         "cd emps && cargo bench -- --",
@@ -236,6 +239,7 @@ fn form(command: &str) -> Form<'_> {
         ["cargo", "run", "--release", "--", ..] => {
             Form::Program(command.trim_start_matches("cargo run --release -- "))
         }
+        ["eomgen", ..] => Form::Program(command.trim_start_matches("eomgen ")),
         ["rustc", ..] => Form::Compilers,
         ["cargo", "test", "--release", ref rest @ ..] => match rest {
             ["--workspace"] => Form::Tests(""),

@@ -1,0 +1,170 @@
+//! The packages, as a registry would have them: each says what it is and whose, is built from
+//! its own files, and needs packages that can be had as well.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use eomgen_tests::models::project;
+use serde_json::Value;
+
+fn cargo(arguments: &[&str]) -> String {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo)
+        .args(arguments)
+        .args(["--offline", "--locked"])
+        .current_dir(project())
+        .output()
+        .expect("cargo can be run");
+    assert!(output.status.success(), "{output:?}");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// The workspace's packages that are published, and all.
+fn packages() -> (Vec<Value>, Vec<Value>) {
+    let metadata = cargo(&["metadata", "--format-version", "1", "--no-deps"]);
+    let mut metadata: Value = serde_json::from_str(&metadata).expect("JSON");
+    let Value::Array(all) = metadata["packages"].take() else {
+        panic!("no packages: {metadata}");
+    };
+    // `publish = false` is the empty list of registries.
+    let published = all.iter().filter(|package| package["publish"].is_null());
+    (published.cloned().collect(), all)
+}
+
+fn name(package: &Value) -> &str {
+    package["name"].as_str().expect("a name")
+}
+
+fn folder(package: &Value) -> &Path {
+    let manifest = Path::new(package["manifest_path"].as_str().expect("a path"));
+    manifest.parent().expect("a folder")
+}
+
+/// All files of Rust below a folder.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).into_iter().flatten() {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            found.extend(sources(&path));
+        } else if path.extension().is_some_and(|end| end == "rs") {
+            found.push(path);
+        }
+    }
+    found
+}
+
+#[test]
+fn what_is_published_says_what_it_is() {
+    let (published, all) = packages();
+    assert!(published.len() >= 8 && published.len() < all.len());
+    for package in &published {
+        let shown = name(package);
+        for field in [
+            "description",
+            "license",
+            "repository",
+            "readme",
+            "rust_version",
+        ] {
+            assert!(package[field].is_string(), "{shown} has no {field}");
+        }
+        for field in ["keywords", "categories"] {
+            let words = package[field].as_array().expect("a list");
+            assert!((1..=5).contains(&words.len()), "{shown}: {field} {words:?}");
+        }
+        assert!(
+            package["metadata"]["docs"]["rs"].is_object(),
+            "{shown} has no settings for docs.rs"
+        );
+        for licence in ["LICENSE-MIT", "LICENSE-APACHE"] {
+            let own = std::fs::read(folder(package).join(licence)).unwrap_or_default();
+            let whole = std::fs::read(project().join(licence)).expect("a licence");
+            assert!(own == whole, "{shown} has no {licence}");
+        }
+    }
+}
+
+#[test]
+fn the_repository_is_named_in_one_line() {
+    let (published, all) = packages();
+    let repository = published[0]["repository"].as_str().expect("a URL");
+    let manifests = all.iter().map(|package| folder(package).join("Cargo.toml"));
+    let manifests = manifests.chain([project().join("Cargo.toml")]);
+    let text = |path: PathBuf| std::fs::read_to_string(path).expect("a manifest");
+    let lines: usize = manifests
+        .map(|path| text(path).matches(repository).count())
+        .sum();
+    assert_eq!(lines, 1, "{repository}");
+}
+
+#[test]
+fn what_is_published_needs_only_what_is_published() {
+    let (published, _) = packages();
+    let known: Vec<&str> = published.iter().map(name).collect();
+    for package in &published {
+        let needed = package["dependencies"].as_array().expect("a list");
+        // What tests need stays behind.
+        let needed = needed.iter().filter(|needed| needed["kind"] != "dev");
+        for needed in needed.filter(|needed| needed["path"].is_string()) {
+            let shown = format!("{} needs {}", name(package), name(needed));
+            assert!(
+                known.contains(&name(needed)),
+                "{shown}, which is not published"
+            );
+            assert_ne!(needed["req"], "*", "{shown} of no version");
+        }
+    }
+}
+
+#[test]
+fn no_source_includes_a_file_outside_its_package() {
+    for package in packages().0 {
+        let root = folder(&package).canonicalize().expect("a folder");
+        for source in sources(&root.join("src")) {
+            let text = std::fs::read_to_string(&source).expect("a source");
+            for macro_name in ["include_str!(", "include_bytes!(", "include!("] {
+                for part in text.split(macro_name).skip(1) {
+                    let Some(path) = part.trim_start().strip_prefix('"') else {
+                        continue;
+                    };
+                    let path = path.split('"').next().expect("its end");
+                    let file = source.parent().expect("a folder").join(path).canonicalize();
+                    let inside = file.is_ok_and(|file| file.starts_with(&root));
+                    assert!(inside, "{} includes {path}", source.display());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_macro_alone_brings_no_solver() {
+    let tree = [
+        "tree",
+        "--package",
+        "eomgen",
+        "--edges",
+        "normal,build",
+        "--prefix",
+        "none",
+    ];
+    let tree = cargo(&tree);
+    let mut names: Vec<&str> = tree
+        .lines()
+        .filter_map(|line| line.split(' ').next())
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    assert!(names.contains(&"eomgen-codegen"), "{names:?}");
+    for solver in [
+        "eomgen-sim",
+        "eomgen-jit",
+        "eomgen-discover",
+        "nalgebra",
+        "rayon",
+    ] {
+        assert!(!names.contains(&solver), "{solver}");
+    }
+    assert!(names.len() <= 40, "{}: {names:?}", names.len());
+}
