@@ -1,6 +1,6 @@
 //! Flexible single-link arm on a 2K-H planetary reducer with backlash: equations of motion, modal truncation order 7.
 //!
-//! Emitted by eomgen 0.1.0 from the specification `planetary_arm` (SHA-256 f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e).
+//! Emitted by eomgen 0.2.0 from the specification `planetary_arm` (SHA-256 f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e).
 //! Do not edit: change the specification and generate again.
 //!
 //! State: x_sp, x_pr, x_c, q_1, q_2, q_3, q_4, q_5, q_6, q_7, x_sp_dot, x_pr_dot, x_c_dot, q_1_dot, q_2_dot, q_3_dot, q_4_dot, q_5_dot, q_6_dot, q_7_dot.
@@ -67,7 +67,7 @@ pub const GUARDS: usize = 4;
 pub const SPECIFICATION_SHA256: &'static str = "f6f74b40cfbe4f1a78359fb6b00716cbaaf50ac5d844f506baff6fcfb0a6c75e";
 
 /// Version of the generator.
-pub const GENERATOR_VERSION: &'static str = "0.1.0";
+pub const GENERATOR_VERSION: &'static str = "0.2.0";
 
 /// Inputs.
 pub const INPUTS: usize = 0;

@@ -1,6 +1,6 @@
 //! Hub-driven flexible beam with a tip mass: equations of motion, modal truncation order 2.
 //!
-//! Emitted by eomgen 0.1.0 from the specification `hub_beam_tip_mass` (SHA-256 5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e).
+//! Emitted by eomgen 0.2.0 from the specification `hub_beam_tip_mass` (SHA-256 5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e).
 //! Do not edit: change the specification and generate again.
 //!
 //! State: theta, q_1, q_2, theta_dot, q_1_dot, q_2_dot.
@@ -47,7 +47,7 @@ pub const GUARDS: usize = 0;
 pub const SPECIFICATION_SHA256: &'static str = "5a673f0b14db7a31d38ef2c487e53a8e52ea6c332f254be714846748c9ef3b5e";
 
 /// Version of the generator.
-pub const GENERATOR_VERSION: &'static str = "0.1.0";
+pub const GENERATOR_VERSION: &'static str = "0.2.0";
 
 /// Inputs.
 pub const INPUTS: usize = 1;

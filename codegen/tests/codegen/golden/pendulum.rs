@@ -1,6 +1,6 @@
 //! Pendulum arm with viscous friction: equations of motion, rigid.
 //!
-//! Emitted by eomgen 0.1.0 from the specification `pendulum` (SHA-256 683b86cddda2f4c47ea60a0b1d58b7a99fa825a2631fbf37b000b9ac4c8c8694).
+//! Emitted by eomgen 0.2.0 from the specification `pendulum` (SHA-256 683b86cddda2f4c47ea60a0b1d58b7a99fa825a2631fbf37b000b9ac4c8c8694).
 //! Do not edit: change the specification and generate again.
 //!
 //! State: theta, theta_dot.
@@ -35,7 +35,7 @@ pub const GUARDS: usize = 0;
 pub const SPECIFICATION_SHA256: &'static str = "683b86cddda2f4c47ea60a0b1d58b7a99fa825a2631fbf37b000b9ac4c8c8694";
 
 /// Version of the generator.
-pub const GENERATOR_VERSION: &'static str = "0.1.0";
+pub const GENERATOR_VERSION: &'static str = "0.2.0";
 
 /// Inputs.
 pub const INPUTS: usize = 0;

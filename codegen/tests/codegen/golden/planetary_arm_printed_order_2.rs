@@ -1,6 +1,6 @@
 //! Flexible single-link arm on a 2K-H planetary reducer with backlash: equations of motion, modal truncation order 2.
 //!
-//! Emitted by eomgen 0.1.0 from the specification `planetary_arm` (SHA-256 ca1da03e38ab298dc8c26921ea1f282533a07e2e7fee89a580cd1e97b6afbdc3).
+//! Emitted by eomgen 0.2.0 from the specification `planetary_arm` (SHA-256 ca1da03e38ab298dc8c26921ea1f282533a07e2e7fee89a580cd1e97b6afbdc3).
 //! Do not edit: change the specification and generate again.
 //!
 //! State: x_sp, x_pr, x_c, q_1, q_2, x_sp_dot, x_pr_dot, x_c_dot, q_1_dot, q_2_dot.
@@ -58,7 +58,7 @@ pub const GUARDS: usize = 4;
 pub const SPECIFICATION_SHA256: &'static str = "ca1da03e38ab298dc8c26921ea1f282533a07e2e7fee89a580cd1e97b6afbdc3";
 
 /// Version of the generator.
-pub const GENERATOR_VERSION: &'static str = "0.1.0";
+pub const GENERATOR_VERSION: &'static str = "0.2.0";
 
 /// Inputs.
 pub const INPUTS: usize = 0;
