@@ -1,6 +1,9 @@
 //! Every command that README.md and docs/ print does what they say: the program's are run, in
 //! the order of the pages and in one folder, as a reader would; the others are found where
 //! `.ci/run` runs them. A command of a form that is not known here fails.
+//!
+//! A reader's folder is made of links here, and shells are those of Unix.
+#![cfg(unix)]
 
 use std::collections::BTreeMap;
 use std::path::Path;
