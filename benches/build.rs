@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 
@@ -16,7 +16,7 @@ const ORDERS: [usize; 9] = [0, 1, 2, 4, 8, 16, 32, 64, 128];
 const FULL_ORDERS: [usize; 3] = [4, 16, 64];
 
 /// What is requested there.
-const REQUESTS: &[Request] = &[Request::Jacobians, Request::Products, Request::Lanes];
+const OUTPUTS: &[Output] = &[Output::Jacobians, Output::Products, Output::Lanes];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let specification =
@@ -28,9 +28,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         .model;
     let mut modules = String::new();
     let plain = ORDERS.map(|order| (format!("order_{order}"), order, [].as_slice()));
-    let full = FULL_ORDERS.map(|order| (format!("full_order_{order}"), order, REQUESTS));
-    for (name, order, requests) in plain.into_iter().chain(full) {
-        let variant = Variant::derive_with(&model, &[order], requests)
+    let full = FULL_ORDERS.map(|order| (format!("full_order_{order}"), order, OUTPUTS));
+    for (name, order, outputs) in plain.into_iter().chain(full) {
+        let variant = Variant::derive_with(&model, &[order], outputs)
             .map_err(|problems| problems.render(false))?;
         let path = out.join(format!("{name}.rs"));
         std::fs::write(&path, emit(&variant.program, Packaging::Module)?)?;

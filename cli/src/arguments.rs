@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use codegen::mechanics::outputs::{Request, UnknownRequest};
+use codegen::mechanics::outputs::{Output, UnknownOutput};
 
 /// From a specification of a mechanical system's energies to fast, checked equations of
 /// motion in Rust.
@@ -183,16 +183,16 @@ pub enum Target {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Extra {
     /// Functions in the source.
-    Request(Request),
+    Output(Output),
     /// A benchmark beside it.
     Bench,
 }
 
 impl Extra {
     /// The functions among what was asked for.
-    pub fn requests(all: &[Self]) -> Vec<Request> {
+    pub fn outputs(all: &[Self]) -> Vec<Output> {
         let request = |extra: &Self| match extra {
-            Self::Request(request) => Some(*request),
+            Self::Output(output) => Some(*output),
             Self::Bench => None,
         };
         all.iter().filter_map(request).collect()
@@ -206,8 +206,8 @@ impl std::str::FromStr for Extra {
         if name == "bench" {
             return Ok(Self::Bench);
         }
-        let request = name.parse().map(Self::Request);
-        request.map_err(|error: UnknownRequest| format!("{error}, bench"))
+        let output = name.parse().map(Self::Output);
+        output.map_err(|error: UnknownOutput| format!("{error}, bench"))
     }
 }
 

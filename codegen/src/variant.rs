@@ -7,11 +7,11 @@ use model_spec::model::Model;
 
 use crate::mechanics::equations::{Equations, derive};
 use crate::mechanics::inertia;
-use crate::mechanics::outputs::Request;
-use crate::mechanics::outputs::requested;
+use crate::mechanics::outputs::Output;
+use crate::mechanics::outputs::derive_outputs;
 use crate::program::Program;
 use crate::program::evaluator::{Evaluator, Point};
-use crate::program::lowering::lower_requested;
+use crate::program::lowering::lower_with_outputs;
 
 /// A model derived at one order for each of its fields.
 pub struct Variant {
@@ -31,16 +31,16 @@ impl Variant {
         Self::derive_with(model, orders, &[])
     }
 
-    /// The same, with what is requested beside the rates.
+    /// The same, with outputs beside the rates.
     ///
     /// # Errors
     /// The same, and what cannot be differentiated.
     pub fn derive_with(
         model: &Model,
         orders: &[usize],
-        requests: &[Request],
+        outputs: &[Output],
     ) -> Result<Self, Diagnostics> {
-        let variant = Self::derive_to_read(model, orders, requests)?;
+        let variant = Self::derive_to_read(model, orders, outputs)?;
         let found = |diagnostic| Diagnostics::one(model.source.clone(), diagnostic);
         let mass = initial_mass_matrix(model, orders, &variant.program).map_err(found)?;
         inertia::check(model, orders, &variant.equations, &mass).map_err(found)?;
@@ -55,21 +55,21 @@ impl Variant {
     pub fn derive_to_read(
         model: &Model,
         orders: &[usize],
-        requests: &[Request],
+        outputs: &[Output],
     ) -> Result<Self, Diagnostics> {
         let found = |diagnostic| Diagnostics::one(model.source.clone(), diagnostic);
         let values = model
             .parameter_values()
             .map_err(|error| found(error.diagnostic()))?;
         let mut equations = derive(model, orders).map_err(|error| found(error.diagnostic()))?;
-        let requested = requested(&mut equations, requests).map_err(|error| {
+        let outputs = derive_outputs(&mut equations, outputs).map_err(|error| {
             let message = Diagnostic::error(error.to_string());
             found(match model.kinetic.first() {
                 Some(term) => message.at(term.value.span, "in this energy or the next"),
                 None => message,
             })
         })?;
-        let program = lower_requested(model, &equations, &values, &requested);
+        let program = lower_with_outputs(model, &equations, &values, &outputs);
         Ok(Self { equations, program })
     }
 }

@@ -27,7 +27,7 @@
 
 use std::path::{Path, PathBuf};
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 use model_spec::Checked;
@@ -81,10 +81,10 @@ pub fn generate_with(
     orders: &[usize],
     with: &[&str],
 ) -> Result<Vec<PathBuf>, Error> {
-    let requests = with
+    let outputs = with
         .iter()
         .map(|name| name.parse())
-        .collect::<Result<Vec<Request>, _>>()
+        .collect::<Result<Vec<Output>, _>>()
         .map_err(|error| Error(error.to_string()))?;
     let folder = std::env::var_os("OUT_DIR").map(PathBuf::from);
     let Some(folder) = folder else {
@@ -98,13 +98,13 @@ pub fn generate_with(
     for warning in checked.warnings.records() {
         println!("cargo::warning={}", line(&warning));
     }
-    variants(&checked, orders, &requests, &folder)
+    variants(&checked, orders, &outputs, &folder)
 }
 
 fn variants(
     checked: &Checked,
     orders: &[usize],
-    requests: &[Request],
+    outputs: &[Output],
     folder: &Path,
 ) -> Result<Vec<PathBuf>, Error> {
     let name = &checked.model.name;
@@ -112,7 +112,7 @@ fn variants(
         return Ok(vec![variant(
             checked,
             None,
-            requests,
+            outputs,
             &folder.join(format!("{name}.rs")),
         )?]);
     }
@@ -121,7 +121,7 @@ fn variants(
             0 => format!("{name}_rigid.rs"),
             order => format!("{name}_order_{order}.rs"),
         };
-        variant(checked, Some(*order), requests, &folder.join(file))
+        variant(checked, Some(*order), outputs, &folder.join(file))
     };
     orders.iter().map(of).collect()
 }
@@ -129,7 +129,7 @@ fn variants(
 fn variant(
     checked: &Checked,
     order: Option<usize>,
-    requests: &[Request],
+    outputs: &[Output],
     path: &Path,
 ) -> Result<PathBuf, Error> {
     let model = &checked.model;
@@ -137,8 +137,7 @@ fn variant(
         let found = Diagnostics::one(model.source.clone(), error.diagnostic());
         refused(&found)
     })?;
-    let variant =
-        Variant::derive_with(model, &orders, requests).map_err(|found| refused(&found))?;
+    let variant = Variant::derive_with(model, &orders, outputs).map_err(|found| refused(&found))?;
     let text =
         emit(&variant.program, Packaging::Items).map_err(|error| Error(error.to_string()))?;
     write(path, &text)
@@ -228,8 +227,8 @@ mod tests {
     #[test]
     fn what_is_requested_is_emitted_besides() {
         let folder = tempfile::tempdir().expect("a folder");
-        let requests = [Request::Products, Request::GuardRates];
-        let paths = variants(&arm(), &[2], &requests, folder.path()).expect("generated");
+        let outputs = [Output::Products, Output::GuardRates];
+        let paths = variants(&arm(), &[2], &outputs, folder.path()).expect("generated");
         let text = std::fs::read_to_string(&paths[0]).expect("readable");
         for function in [
             "rates",

@@ -1,7 +1,7 @@
 //! Certificates of models given as text, without compiling what would be emitted: whether a
 //! right model passes and a wrong one fails.
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::program::evaluator::Evaluator;
 use eomgen_validate::certificate::Certificate;
 use eomgen_validate::certify::{Subject, certify};
@@ -28,7 +28,7 @@ pub fn certificate(model: &Model, subject: &Model) -> Certificate {
 }
 
 /// The same, with what is requested of `subject`.
-pub fn certificate_with(model: &Model, subject: &Model, requests: &[Request]) -> Certificate {
+pub fn certificate_with(model: &Model, subject: &Model, outputs: &[Output]) -> Certificate {
     let parameters = model.parameter_values().expect("values");
     let variants = |order: usize| {
         let evaluator = variant(subject, order).evaluator;
@@ -37,7 +37,7 @@ pub fn certificate_with(model: &Model, subject: &Model, requests: &[Request]) ->
     let order = model.fields.first().map_or(0, |field| field.order);
     let orders: Vec<usize> = subject.fields.iter().map(|field| field.order).collect();
     let requested = || {
-        let derived = codegen::variant::Variant::derive_with(subject, &orders, requests);
+        let derived = codegen::variant::Variant::derive_with(subject, &orders, outputs);
         let program = derived.map_err(|found| found.render(false))?.program;
         Ok(Box::new(DerivedRequests::new(Evaluator::new(program))) as Box<dyn Requested>)
     };
@@ -48,7 +48,7 @@ pub fn certificate_with(model: &Model, subject: &Model, requests: &[Request]) ->
         variants: &variants,
         references: &[],
         absent: &[],
-        requested: (!requests.is_empty()).then_some(&requested),
+        requested: (!outputs.is_empty()).then_some(&requested),
         emitted: Err("judged elsewhere".to_owned()),
         regimes: Err("judged elsewhere".to_owned()),
         exact: Err("judged elsewhere".to_owned()),

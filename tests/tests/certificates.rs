@@ -2,7 +2,7 @@
 //! is made and passes, and fails where it should. What each check means and its tolerance
 //! stand in the certificate.
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::program::lowering::lower;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
@@ -14,17 +14,12 @@ use model_spec::model::Model;
 use sim::piecewise_linear::PiecewiseLinear;
 
 /// The certificate of a source, with the equations that were written by hand for the model.
-fn with_references(
-    model: &Model,
-    order: usize,
-    requests: &[Request],
-    source: String,
-) -> Certificate {
+fn with_references(model: &Model, order: usize, outputs: &[Output], source: String) -> Certificate {
     let values = model
         .parameter_values()
         .expect("the parameters have values");
     let by_hand = by_hand(model, order, &values);
-    certificate(model, order, requests, source, &by_hand).expect("the parameters have values")
+    certificate(model, order, outputs, source, &by_hand).expect("the parameters have values")
 }
 
 /// The certificate of a shipped specification with every field at `order`.
@@ -218,12 +213,12 @@ const FAULTS: [(&str, &str, &str); 4] = [
 #[test]
 fn every_fault_of_what_was_requested_fails_its_own_check() {
     let model = load("planetary_arm");
-    let requests = [Request::Products, Request::Linearisation, Request::Lanes];
-    let Ok(variant) = Variant::derive_with(&model, &[1], &requests) else {
+    let outputs = [Output::Products, Output::Linearisation, Output::Lanes];
+    let Ok(variant) = Variant::derive_with(&model, &[1], &outputs) else {
         panic!("the arm can be derived");
     };
     let source = emit(&variant.program, Packaging::Crate).expect("the program can be emitted");
-    let of = |source: String| with_references(&model, 1, &requests, source);
+    let of = |source: String| with_references(&model, 1, &outputs, source);
     let right = of(source.clone());
     passes(&right, &["rates_by_inputs", "observables_by_inputs"]);
     for (text, fault, check) in FAULTS {

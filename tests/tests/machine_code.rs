@@ -139,7 +139,7 @@ impl Pair {
         let [prepared, found]: [Vec<f64>; 2] = self.both().map(|evaluator| {
             evaluator.prepare(parameters);
             let program = evaluator.program();
-            let ids = program.ids().filter(|id| program.value(*id).prepared);
+            let ids = program.ids().filter(|id| program.value(*id).parameter_only);
             ids.flat_map(|id| evaluator.slice(id).to_vec()).collect()
         });
         self.same("prepare", &prepared, &found, parameters);

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::program::evaluator::Point;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
@@ -330,7 +330,7 @@ fn compare_motions(subject: &Subject, place: &str, tally: &mut Tally) {
 
 /// What is emitted of a machine, with kernels of regimes.
 fn kernel(subject: &Subject) -> String {
-    let derived = Variant::derive_with(&subject.model, &[], &[Request::Regimes]);
+    let derived = Variant::derive_with(&subject.model, &[], &[Output::Regimes]);
     let program = derived.expect("a model that can be derived").program;
     emit(&program, Packaging::Module).expect("names that Rust knows")
 }

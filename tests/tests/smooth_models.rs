@@ -8,7 +8,7 @@
 //!       cargo test --release -p eomgen-tests --test smooth_models -- --nocapture
 //! ```
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::program::evaluator::Point;
 use eomgen_tests::certified::{certificate, certificate_with, checked};
 use eomgen_tests::models::variant;
@@ -76,12 +76,12 @@ fn right_models_are_not_called_wrong() {
 }
 
 /// What is judged beside the equations themselves.
-const REQUESTS: [Request; 5] = [
-    Request::BiasForces,
-    Request::InverseDynamics,
-    Request::GuardRates,
-    Request::Jacobians,
-    Request::Products,
+const OUTPUTS: [Output; 5] = [
+    Output::BiasForces,
+    Output::InverseDynamics,
+    Output::GuardRates,
+    Output::Jacobians,
+    Output::Products,
 ];
 
 #[test]
@@ -94,7 +94,7 @@ fn what_is_requested_of_right_models_is_not_called_wrong() {
     let mut alarms = Vec::new();
     for place in 0..count {
         let (written, model) = next(&mut models);
-        let certificate = certificate_with(&model, &model, &REQUESTS);
+        let certificate = certificate_with(&model, &model, &OUTPUTS);
         let made = certificate
             .checks
             .iter()

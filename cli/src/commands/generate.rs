@@ -28,19 +28,19 @@ fn one(options: &Generate, spec: &Path, out: &Path) -> Outcome {
     let Target::Rust = options.target;
     let model = load(spec)?.model;
     let orders = orders(&model, options.order.as_deref())?;
-    let requests = Extra::requests(&options.with);
+    let outputs = Extra::outputs(&options.with);
     let variant =
-        Variant::derive_with(&model, &orders, &requests).map_err(Problem::Specification)?;
+        Variant::derive_with(&model, &orders, &outputs).map_err(Problem::Specification)?;
     let text = source(&variant.program, Packaging::Crate)?;
     let certificate = match options.certify {
-        true => Some(of_source(&model, &orders, &requests, text.clone())?),
+        true => Some(of_source(&model, &orders, &outputs, text.clone())?),
         false => None,
     };
     let path = out.join("lib.rs");
     write_file(&path, text.as_bytes())?;
     let mut files = vec![path];
     if options.with.contains(&Extra::Bench) {
-        files.extend(generate_bench::leave(&model, &variant, &requests, out)?);
+        files.extend(generate_bench::leave(&model, &variant, &outputs, out)?);
     }
     if let Some(certificate) = &certificate {
         let path = out.join("certificate.json");

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::variant::Variant;
 use model_spec::model::Model;
 
@@ -15,14 +15,14 @@ use crate::problem::{Outcome, Problem};
 pub fn leave(
     model: &Model,
     variant: &Variant,
-    requests: &[Request],
+    outputs: &[Output],
     out: &Path,
 ) -> Outcome<Vec<PathBuf>> {
     let state = model
         .initial_state(variant.equations.graph.orders())
         .map_err(|error| Problem::model(&model.source, error))?;
     let bench = out.join("benches").join("rates.rs");
-    write_file(&bench, source(&state, requests).as_bytes())?;
+    write_file(&bench, source(&state, outputs).as_bytes())?;
     let manifest = out.join("Cargo.toml");
     if manifest.exists() {
         return Ok(vec![bench]);
@@ -58,27 +58,27 @@ harness = false
 }
 
 /// The benchmark: rates and observables, and whatever was requested.
-fn source(state: &[f64], requests: &[Request]) -> String {
+fn source(state: &[f64], outputs: &[Output]) -> String {
     let state: Vec<String> = state.iter().map(|number| format!("{number:?}")).collect();
-    let has = |request| requests.contains(&request);
+    let has = |request| outputs.contains(&request);
     let mut functions = vec![("rates", ""), ("observables", "")];
     let mut add = |request, calls: &[(&'static str, &'static str)]| {
         if has(request) {
             functions.extend_from_slice(calls);
         }
     };
-    add(Request::BiasForces, &[("bias_forces", "")]);
+    add(Output::BiasForces, &[("bias_forces", "")]);
     add(
-        Request::InverseDynamics,
+        Output::InverseDynamics,
         &[("inverse_dynamics", ", &[1.0; DEGREES_OF_FREEDOM]")],
     );
-    add(Request::GuardRates, &[("guard_rates", "")]);
+    add(Output::GuardRates, &[("guard_rates", "")]);
     add(
-        Request::Jacobians,
+        Output::Jacobians,
         &[("rates_by_state", ""), ("rates_by_parameters", "")],
     );
     add(
-        Request::Products,
+        Output::Products,
         &[
             (
                 "jacobian_vector_product",
@@ -87,7 +87,7 @@ fn source(state: &[f64], requests: &[Request]) -> String {
             ("vector_jacobian_product", ", &[1.0; STATES]"),
         ],
     );
-    add(Request::Linearisation, &[("linearise", "")]);
+    add(Output::Linearisation, &[("linearise", "")]);
     let calls: Vec<String> = functions.iter().map(call).collect();
     let head = format!(
         r#"//! How long a call of the emitted functions takes, at the initial state of the

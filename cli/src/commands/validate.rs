@@ -1,6 +1,6 @@
 //! `eomgen validate`: the certificate of a variant.
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::rust::Packaging;
 use codegen::variant::Variant;
 use eomgen_paper::by_hand::by_hand;
@@ -25,7 +25,7 @@ pub fn run(options: &Validate) -> Outcome {
     let orders = orders(&model, options.order.as_deref())?;
     let certificate = {
         let _note = Note::new(format!("validating {}", model.name));
-        of(&model, &orders, &Extra::requests(&options.with))?
+        of(&model, &orders, &Extra::outputs(&options.with))?
     };
     let text = document(&certificate)?;
     if let Some(destination) = &destination {
@@ -51,26 +51,26 @@ pub fn document(certificate: &Certificate) -> Outcome<String> {
 }
 
 /// The certificate of a model at the given orders, which are one for all fields, as it is
-/// emitted with `requests`.
-pub fn of(model: &Model, orders: &[usize], requests: &[Request]) -> Outcome<Certificate> {
+/// emitted with `outputs`.
+pub fn of(model: &Model, orders: &[usize], outputs: &[Output]) -> Outcome<Certificate> {
     one_order(model, orders)?;
-    let variant = Variant::derive_with(model, orders, requests).map_err(Problem::Specification)?;
+    let variant = Variant::derive_with(model, orders, outputs).map_err(Problem::Specification)?;
     let emitted = source(&variant.program, Packaging::Crate)?;
-    of_source(model, orders, requests, emitted)
+    of_source(model, orders, outputs, emitted)
 }
 
 /// The certificate of a source that was emitted so.
 pub fn of_source(
     model: &Model,
     orders: &[usize],
-    requests: &[Request],
+    outputs: &[Output],
     emitted: String,
 ) -> Outcome<Certificate> {
     let order = one_order(model, orders)?;
     let refused = |error| Problem::model(&model.source, error);
     let values = model.parameter_values().map_err(refused)?;
     let by_hand = by_hand(model, order, &values);
-    certificate(model, order, requests, emitted, &by_hand).map_err(refused)
+    certificate(model, order, outputs, emitted, &by_hand).map_err(refused)
 }
 
 /// The order of all fields.

@@ -1,7 +1,7 @@
 //! The step that shows the derived equations: definitions, energies, M q'' + c = f entry by
 //! entry, the named coefficients with their values, the accelerations, what switches.
 
-use codegen::report::{CoefficientLine, Entry, Line, Report, Sentence, Solution};
+use codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
 use codegen::symbolic::formula::{Formula, Symbol};
 
 use super::markup::{escaped, number, table};
@@ -124,7 +124,7 @@ fn energies(report: &Report) -> String {
     heading("Kinetic and potential energy") + &equations(&rows)
 }
 
-fn mass_matrix(entries: &[Entry]) -> String {
+fn mass_matrix(entries: &[MassMatrixEntry]) -> String {
     let rows: String = entries
         .iter()
         .map(|entry| {

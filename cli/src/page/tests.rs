@@ -1,7 +1,7 @@
 //! The whole page: every step is there, nothing refers to the outside, and text from a
 //! specification stays text.
 
-use codegen::report::{CoefficientLine, Entry, Line, Report, Sentence, Solution};
+use codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
 use codegen::symbolic::formula::Formula;
 
 use super::*;
@@ -26,7 +26,7 @@ fn report(text: &str) -> Report {
         kinetic: Formula::named(text),
         potential: Formula::named(text),
         shared: vec![line(text, text)],
-        mass_matrix: vec![Entry {
+        mass_matrix: vec![MassMatrixEntry {
             row: Formula::named(text),
             column: Formula::named(text),
             formula: Formula::named(text),

@@ -2,31 +2,10 @@
 //! element from the operands' elements of the same index.
 
 use codegen::program::{Extent, Op, PARTIAL_SUMS, ValueId};
-use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Opcode, Type, Value, types};
+use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Opcode, Value, types};
 
-use crate::loops::{At, Lanes, SHORT, pairs};
+use crate::lanes::{Array, At, Lanes, SHORT, pairs};
 use crate::stage::Writer;
-
-/// Numbers in memory.
-#[derive(Clone, Copy, Debug)]
-pub struct Array {
-    /// Where they are counted from.
-    pub base: Value,
-    /// Which number from there is the first.
-    pub start: usize,
-    /// Whether nothing in this function writes them.
-    pub constant: bool,
-}
-
-impl Lanes {
-    /// The type of a register's content.
-    pub fn kind(self) -> Type {
-        match self {
-            Self::One => types::F64,
-            Self::Two => types::F64X2,
-        }
-    }
-}
 
 /// How memory is accessed: every address lies within what the caller lends.
 fn flags(lanes: Lanes, constant: bool) -> MemFlagsData {

@@ -14,7 +14,7 @@ use elementary::{Function as Elementary, Kernel, Operation};
 use model_spec::model::Function;
 
 use crate::branches::Branches;
-use crate::loops::Lanes;
+use crate::lanes::Lanes;
 use crate::stage::Writer;
 
 /// The sign bit.

@@ -43,7 +43,7 @@
 //! one stage and decides which live in registers and which in memory; `loops` writes loops
 //! over modes; `elements` writes an element of a vector, or two neighbouring ones in one
 //! register; `functions` the elementary functions from their kernels,
-//! those of one number with the branches of `branches`; `matrices` the
+//! those of one number with `branching` where `branches` finds it worth it; `matrices` the
 //! matrix operations; `constants` collects literals; `machine` hands all of it to Cranelift
 //! and holds the code that comes back.
 //!
@@ -58,11 +58,15 @@ use codegen::program::evaluator::{Evaluator, MachineCode};
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod branches;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod branching;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod constants;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod elements;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod functions;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod lanes;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod loops;
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]

@@ -4,65 +4,11 @@
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{BlockArg, InstBuilder, Value, types};
 
+use crate::lanes::{At, SHORT, pairs};
 use crate::stage::Writer;
-
-/// Vectors up to this length are written out and live in registers: four of the sixteen
-/// that there are.
-pub const SHORT: usize = 8;
 
 /// Elements per turn of a loop.
 const TURN: usize = 4;
-
-/// How many neighbouring elements one register holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Lanes {
-    /// One.
-    One,
-    /// Two.
-    Two,
-}
-
-/// Which element, or two neighbouring ones.
-#[derive(Clone, Copy, Debug)]
-pub struct At {
-    /// Bytes that a loop adds.
-    pub moving: Option<Value>,
-    /// The element where the loop stands at 0.
-    pub element: usize,
-    /// How many.
-    pub lanes: Lanes,
-}
-
-impl At {
-    /// Element number `element`.
-    pub fn one(element: usize) -> Self {
-        Self {
-            moving: None,
-            element,
-            lanes: Lanes::One,
-        }
-    }
-
-    /// Elements number `element` and the next.
-    pub fn two(moving: Option<Value>, element: usize) -> Self {
-        Self {
-            moving,
-            element,
-            lanes: Lanes::Two,
-        }
-    }
-}
-
-/// The elements `from..to` in pairs, a single one last.
-pub fn pairs(from: usize, to: usize) -> impl Iterator<Item = At> {
-    (from..to).step_by(2).map(move |element| {
-        if element + 1 < to {
-            At::two(None, element)
-        } else {
-            At::one(element)
-        }
-    })
-}
 
 impl Writer<'_, '_, '_> {
     /// Goes through the elements `0..length`.

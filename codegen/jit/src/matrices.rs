@@ -4,8 +4,8 @@
 use codegen::program::{Extent, Op, ScaledValue, ValueId};
 use cranelift_codegen::ir::{InstBuilder, Value, types};
 
-use crate::elements::Array;
-use crate::loops::{At, Lanes};
+use crate::lanes::Array;
+use crate::lanes::{At, Lanes};
 use crate::stage::Writer;
 
 /// A matrix in memory, row by row; a scalar stands for every element.

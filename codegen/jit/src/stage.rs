@@ -17,8 +17,7 @@ use elementary::{Function as Elementary, Kernel};
 
 use crate::branches::Branches;
 use crate::constants::Constants;
-use crate::elements::Array;
-use crate::loops::{At, Lanes, SHORT};
+use crate::lanes::{Array, At, Lanes, SHORT};
 
 /// What a function computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -143,7 +142,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             Task::Prepare => self
                 .program
                 .ids()
-                .filter(|id| self.program.value(*id).prepared)
+                .filter(|id| self.program.value(*id).parameter_only)
                 .collect(),
             Task::PerCall(_) => self.program.per_call(&self.roots()),
         }
@@ -204,7 +203,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             Op::Parameter(_) | Op::Argument(..) => {
                 (self.call.memory, self.shared.places.offset(id))
             }
-            _ if value.prepared && self.task != Task::Prepare => {
+            _ if value.parameter_only && self.task != Task::Prepare => {
                 (self.call.memory, self.shared.places.offset(id))
             }
             _ => return None,
@@ -235,7 +234,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
                 let constant = matches!(
                     value.op,
                     Op::Table(_) | Op::Constant(_) | Op::Parameter(_) | Op::Argument(..)
-                ) || value.prepared && self.task != Task::Prepare;
+                ) || value.parameter_only && self.task != Task::Prepare;
                 (constant || self.stored.contains(&id)).then(|| Array {
                     constant,
                     ..self.place(id)

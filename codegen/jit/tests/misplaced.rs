@@ -21,7 +21,9 @@ fn a_leaf_that_is_asked_for_by_elements_is_refused() {
     let vector = program.ids().find(|id| {
         let value = program.value(*id);
         let is_vector = matches!(value.extent, Extent::Vector(_));
-        is_vector && !value.prepared && matches!(value.op, Op::Multiply(..) | Op::Subtract(..))
+        is_vector
+            && !value.parameter_only
+            && matches!(value.op, Op::Multiply(..) | Op::Subtract(..))
     });
     let vector = vector.expect("a vector that is computed per call");
     program.values[vector.index()].op = Op::Coordinate(0);

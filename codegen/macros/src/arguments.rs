@@ -1,7 +1,7 @@
 //! What stands in the brackets of the macro: a file and an order, or sections. What the
 //! sections hold is the business of `tables`.
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use proc_macro2::{Span, TokenStream};
 use syn::parse::{Parse, ParseStream};
 use syn::token::Brace;
@@ -10,9 +10,9 @@ use syn::{Error, Ident, LitInt, LitStr, Token, bracketed};
 /// The arguments of the macro.
 pub enum Arguments {
     /// `spec = "..."`, and `order = ...` and `with = [...]` if they are given.
-    File(LitStr, Option<Order>, Vec<Request>),
+    File(LitStr, Option<Order>, Vec<Output>),
     /// `section { ... } ...`, not looked at yet, after `with = [...]` if it is given.
-    Sections(TokenStream, Vec<Request>),
+    Sections(TokenStream, Vec<Output>),
 }
 
 /// A modal truncation order.
@@ -51,9 +51,9 @@ fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
     let begin = input.span();
     let (mut path, mut order, mut with) = (None, None, None);
     while !input.is_empty() {
-        if let (None, None, Some(requests), true) = (&path, &order, &with, input.peek2(Brace)) {
-            let requests = Vec::clone(requests);
-            return Ok(Arguments::Sections(input.parse()?, requests));
+        if let (None, None, Some(outputs), true) = (&path, &order, &with, input.peek2(Brace)) {
+            let outputs = Vec::clone(outputs);
+            return Ok(Arguments::Sections(input.parse()?, outputs));
         }
         let key: Ident = input
             .parse()
@@ -71,7 +71,7 @@ fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
         let repeated = match key.to_string().as_str() {
             "spec" => path.replace(path_after(&key, input)?).is_some(),
             "order" => order.replace(order_after(&key, input)?).is_some(),
-            "with" => with.replace(requests(input)?).is_some(),
+            "with" => with.replace(outputs(input)?).is_some(),
             _ => {
                 let message =
                     format!("unknown argument `{key}`\nhelp: known are spec, order and with");
@@ -98,15 +98,15 @@ fn file(input: ParseStream<'_>) -> syn::Result<Arguments> {
 }
 
 /// `[jacobians, products]`
-fn requests(input: ParseStream<'_>) -> syn::Result<Vec<Request>> {
+fn outputs(input: ParseStream<'_>) -> syn::Result<Vec<Output>> {
     let list;
     bracketed!(list in input);
     let names = list.parse_terminated(Ident::parse, Token![,])?;
-    let request = |name: &Ident| {
-        let known: Result<Request, _> = name.to_string().parse();
+    let output = |name: &Ident| {
+        let known: Result<Output, _> = name.to_string().parse();
         known.map_err(|error| Error::new(name.span(), error.to_string()))
     };
-    names.iter().map(request).collect()
+    names.iter().map(output).collect()
 }
 
 fn path_after(key: &Ident, input: ParseStream<'_>) -> syn::Result<LitStr> {

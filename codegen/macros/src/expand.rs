@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 use model_spec::diagnostic::Diagnostics;
@@ -27,15 +27,15 @@ pub fn model(input: TokenStream, root: Option<&Path>) -> TokenStream {
 
 fn items(input: TokenStream, root: Option<&Path>) -> syn::Result<TokenStream> {
     match syn::parse2(input)? {
-        Arguments::File(path, order, requests) => file(&path, order, &requests, root),
-        Arguments::Sections(stream, requests) => in_place(stream, &requests),
+        Arguments::File(path, order, outputs) => file(&path, order, &outputs, root),
+        Arguments::Sections(stream, outputs) => in_place(stream, &outputs),
     }
 }
 
 fn file(
     path: &LitStr,
     order: Option<Order>,
-    requests: &[Request],
+    outputs: &[Output],
     root: Option<&Path>,
 ) -> syn::Result<TokenStream> {
     let place = path.span();
@@ -54,7 +54,7 @@ fn file(
         Error::new(place, described(&error))
     })?;
     let variant =
-        Variant::derive_with(&model, &orders, requests).map_err(|found| in_file(&found, place))?;
+        Variant::derive_with(&model, &orders, outputs).map_err(|found| in_file(&found, place))?;
     let items = emitted(&variant)?;
     let warnings = warnings_in_file(&checked.warnings, place);
     let Some(path) = root.join(&written).to_str().map(str::to_owned) else {
@@ -81,7 +81,7 @@ fn refused(found: &Diagnostics, path: &Path, place: Span) -> Error {
     }
 }
 
-fn in_place(stream: TokenStream, requests: &[Request]) -> syn::Result<TokenStream> {
+fn in_place(stream: TokenStream, outputs: &[Output]) -> syn::Result<TokenStream> {
     let placed = specification(&sections(stream)?)?;
     let source = Source::new(IN_PLACE, placed.text.as_str());
     let checked = model_spec::check(source).map_err(|found| at_tokens(&found, &placed))?;
@@ -89,7 +89,7 @@ fn in_place(stream: TokenStream, requests: &[Request]) -> syn::Result<TokenStrea
     let orders = model
         .orders(None)
         .map_err(|error| Error::new(Span::call_site(), described(&error)))?;
-    let variant = Variant::derive_with(&model, &orders, requests)
+    let variant = Variant::derive_with(&model, &orders, outputs)
         .map_err(|found| at_tokens(&found, &placed))?;
     let items = emitted(&variant)?;
     let warnings = warnings_at_tokens(&checked.warnings, &placed);

@@ -9,7 +9,7 @@ use model_spec::model::{Coefficient, CoefficientKind, Expr, ExprKind};
 use crate::mechanics::solve::Accelerations;
 use crate::mechanics::translate::{DeriveError, Derived, Translator};
 use crate::symbolic::differentiate::{ModalDerivative, by_scalar};
-use crate::symbolic::graph::{Graph, Id, Operation};
+use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::matrix::StructuredMatrix;
 use crate::symbolic::substitute::substitute;
 
@@ -19,7 +19,7 @@ pub struct NamedCoefficient {
     /// Its name.
     pub name: String,
     /// Its value: a scalar, or a vector over the modes.
-    pub value: Id,
+    pub value: NodeId,
     /// For a factor: where it stands.
     pub factor: Option<Factor>,
 }
@@ -28,16 +28,16 @@ pub struct NamedCoefficient {
 #[derive(Clone, Copy, Debug)]
 pub struct Factor {
     /// The row.
-    pub row: Row,
+    pub row: EquationRow,
     /// What it multiplies.
-    pub by: Id,
+    pub by: NodeId,
     /// What the row is multiplied with, if anything.
-    pub times: Option<Id>,
+    pub times: Option<NodeId>,
 }
 
 /// A row of the equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Row {
+pub enum EquationRow {
     /// A coordinate's.
     Coordinate(usize),
     /// Every mode of a field.
@@ -77,8 +77,8 @@ fn one(
     };
     let row = row_of(of)?;
     let acceleration = match row {
-        Row::Coordinate(index) => accelerations.rows.scalars[index],
-        Row::Modes(field) => accelerations.rows.modal[field],
+        EquationRow::Coordinate(index) => accelerations.rows.scalars[index],
+        EquationRow::Modes(field) => accelerations.rows.modal[field],
     };
     let multiplied = translator.node(by)?;
     let factor = factor_of(&mut translator.graph, acceleration, multiplied);
@@ -101,10 +101,10 @@ fn one(
     })
 }
 
-fn row_of(of: &Expr) -> Derived<Row> {
+fn row_of(of: &Expr) -> Derived<EquationRow> {
     match of.kind {
-        ExprKind::Coordinate(index) => Ok(Row::Coordinate(index)),
-        ExprKind::ModeCoordinate(field) => Ok(Row::Modes(field)),
+        ExprKind::Coordinate(index) => Ok(EquationRow::Coordinate(index)),
+        ExprKind::ModeCoordinate(field) => Ok(EquationRow::Modes(field)),
         _ => Err(DeriveError {
             span: of.span,
             message: "`of` names a coordinate or a field's mode coordinates".into(),
@@ -114,7 +114,7 @@ fn row_of(of: &Expr) -> Derived<Row> {
 }
 
 /// times * factor; a matrix factor is scaled row by row.
-fn scale_factor(graph: &mut Graph, times: Id, factor: Id) -> Id {
+fn scale_factor(graph: &mut Graph, times: NodeId, factor: NodeId) -> NodeId {
     match graph.operation(factor).clone() {
         Operation::Assemble(assembly) => {
             let source = StructuredMatrix {
@@ -135,12 +135,12 @@ fn scale_factor(graph: &mut Graph, times: Id, factor: Id) -> Id {
 /// The factor with which `by` enters a row: its derivative by every factor of `by`, with
 /// the motion and every other switching function at 0. For `by` = 1 what is left of the
 /// row there.
-fn factor_of(graph: &mut Graph, row: Id, by: Id) -> Id {
+fn factor_of(graph: &mut Graph, row: NodeId, by: NodeId) -> NodeId {
     if let Operation::ModeCoordinates(_) | Operation::ModeRates(_) = graph.operation(by) {
         let at_rest = at_rest_except(graph, row, &[by]);
         return by_modes(graph, at_rest, by);
     }
-    let factors: Vec<Id> = match graph.operation(by).clone() {
+    let factors: Vec<NodeId> = match graph.operation(by).clone() {
         Operation::Product(factors) => factors.iter().map(|(factor, _)| *factor).collect(),
         Operation::Constant(_) => Vec::new(),
         _ => vec![by],
@@ -153,7 +153,7 @@ fn factor_of(graph: &mut Graph, row: Id, by: Id) -> Id {
 }
 
 /// A row's derivative by modes: a vector for a coordinate's row, a matrix for modes'.
-fn by_modes(graph: &mut Graph, row: Id, variable: Id) -> Id {
+fn by_modes(graph: &mut Graph, row: NodeId, variable: NodeId) -> NodeId {
     let Some(mut derivative) = ModalDerivative::new(graph, variable) else {
         return graph.zero();
     };
@@ -167,9 +167,9 @@ fn by_modes(graph: &mut Graph, row: Id, variable: Id) -> Id {
 }
 
 /// With every coordinate, rate and switching function 0, except those to be kept.
-fn at_rest_except(graph: &mut Graph, id: Id, kept: &[Id]) -> Id {
-    let replacement = |graph: &mut Graph, node: Id| {
-        if kept.contains(&node) || graph.dependence(node).is_prepared() {
+fn at_rest_except(graph: &mut Graph, id: NodeId, kept: &[NodeId]) -> NodeId {
+    let replacement = |graph: &mut Graph, node: NodeId| {
+        if kept.contains(&node) || graph.dependence(node).is_parameter_only() {
             return Some(node);
         }
         let moves = match graph.operation(node) {

@@ -7,12 +7,12 @@ use model_spec::model::{Model, ParameterValue, Term};
 use crate::mechanics::coefficients::{NamedCoefficient, named};
 use crate::mechanics::forces::{applied_forces, guards, power};
 use crate::mechanics::guard::Guard;
-use crate::mechanics::lagrange::{Kind, Layout};
-use crate::mechanics::mass_matrix::MassMatrix;
-use crate::mechanics::rows::Rows;
+use crate::mechanics::lagrange::{GradientBy, Variables};
+use crate::mechanics::mass_matrix::{MassMatrix, ModalMassBlock};
+use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::{Accelerations, solve};
 use crate::mechanics::translate::{Derived, Translator};
-use crate::symbolic::graph::{Graph, Id};
+use crate::symbolic::graph::{Graph, NodeId};
 
 /// The equations of motion of one model at one order.
 pub struct Equations {
@@ -23,37 +23,36 @@ pub struct Equations {
     /// Names of the parameters.
     pub parameter_names: Vec<String>,
     /// For each parameter, the node of its expression, if it is derived from others.
-    pub derived_parameters: Vec<Option<Id>>,
+    pub derived_parameters: Vec<Option<NodeId>>,
     /// T, in J.
-    pub kinetic: Id,
+    pub kinetic: NodeId,
     /// V, in J.
-    pub potential: Id,
+    pub potential: NodeId,
     /// The mass matrix.
     pub mass: MassMatrix,
     /// Velocity terms c of M q'' + c = f: what is quadratic in the rates and not a force.
-    pub velocity_terms: Rows,
+    pub velocity_terms: RowNodes,
     /// Generalised forces f: -dV/dq - dR/dq' + Q.
-    pub forces: Rows,
+    pub forces: RowNodes,
     /// The accelerations and how they were solved for.
     pub accelerations: Accelerations,
     /// Power of all non-conservative forces, in W: d(T + V)/dt.
-    pub power: Id,
+    pub power: NodeId,
     /// The switching surfaces: a node that changes sign, with what it means.
     pub guards: Vec<Guard>,
     /// The specification's observables.
-    pub observables: Vec<Id>,
+    pub observables: Vec<NodeId>,
     /// The specification's named coefficients.
     pub coefficients: Vec<NamedCoefficient>,
     /// The terms of the energies and of the dissipation and the forces, in the order of the
     /// specification: kinetic, potential, dissipation, forces.
-    pub terms: Vec<Id>,
+    pub terms: Vec<NodeId>,
     /// Nodes of the definitions that anything uses.
-    pub definitions: Vec<Option<Id>>,
+    pub definitions: Vec<Option<NodeId>>,
     /// How many inputs there are.
     pub inputs: usize,
-    /// The modal blocks of the mass matrix on and above the diagonal as nodes: field of
-    /// the rows, block, field of the columns.
-    pub modal_blocks: Vec<(usize, Id, usize)>,
+    /// The modal blocks of the mass matrix on and above the diagonal as nodes.
+    pub modal_blocks: Vec<ModalMassBlock>,
 }
 
 /// Derives the equations of motion for fields of these orders.
@@ -64,19 +63,19 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     let kinetic = total_of(&mut translator, &model.kinetic, "T", &mut terms)?;
     let potential = total_of(&mut translator, &model.potential, "V", &mut terms)?;
     let dissipation = total_of(&mut translator, &model.dissipation, "R", &mut terms)?;
-    let layout = Layout::new(model, orders);
-    let momenta = layout.gradient(&mut translator.graph, kinetic, Kind::Rates);
-    let mass = layout.mass_matrix(&mut translator.graph, &momenta);
+    let variables = Variables::new(model, orders);
+    let momenta = variables.gradient(&mut translator.graph, kinetic, GradientBy::Rates);
+    let mass = variables.mass_matrix(&mut translator.graph, &momenta);
     name_mass_matrix(&mut translator.graph, model, &mass);
-    let velocity_terms = layout.velocity_terms(&mut translator.graph, kinetic, &momenta);
-    let applied = applied_forces(&mut translator, &layout, dissipation, &mut terms)?;
-    let forces = layout.with_potential(&mut translator.graph, &applied, potential);
-    let right_side = layout.difference(&mut translator.graph, &forces, &velocity_terms);
+    let velocity_terms = variables.velocity_terms(&mut translator.graph, kinetic, &momenta);
+    let applied = applied_forces(&mut translator, &variables, dissipation, &mut terms)?;
+    let forces = variables.with_potential(&mut translator.graph, &applied, potential);
+    let right_side = variables.difference(&mut translator.graph, &forces, &velocity_terms);
     let accelerations = solve(&mut translator.graph, &mass, &right_side);
     name_accelerations(&mut translator.graph, model, &accelerations);
     let power = power(
         &mut translator.graph,
-        &layout,
+        &variables,
         kinetic,
         potential,
         &applied,
@@ -87,7 +86,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         .observables
         .iter()
         .map(|o| translator.node(&o.value))
-        .collect::<Derived<Vec<Id>>>()?;
+        .collect::<Derived<Vec<NodeId>>>()?;
     for (observable, node) in model.observables.iter().zip(&observables) {
         translator.graph.set_name(*node, &observable.name);
     }
@@ -151,7 +150,7 @@ fn name_accelerations(graph: &mut Graph, model: &Model, accelerations: &Accelera
     }
 }
 
-fn derived_parameters(translator: &mut Translator) -> Derived<Vec<Option<Id>>> {
+fn derived_parameters(translator: &mut Translator) -> Derived<Vec<Option<NodeId>>> {
     let model = translator.model;
     model
         .parameters
@@ -168,8 +167,8 @@ fn total_of(
     translator: &mut Translator,
     terms: &[Term],
     symbol: &str,
-    named: &mut Vec<Id>,
-) -> Derived<Id> {
+    named: &mut Vec<NodeId>,
+) -> Derived<NodeId> {
     let mut nodes = Vec::with_capacity(terms.len());
     for term in terms {
         let node = translator.node(&term.value)?;

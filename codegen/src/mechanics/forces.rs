@@ -4,22 +4,22 @@
 use model_spec::model::Function;
 
 use crate::mechanics::guard::Guard;
-use crate::mechanics::lagrange::{Kind, Layout};
-use crate::mechanics::rows::Rows;
+use crate::mechanics::lagrange::{GradientBy, Variables};
+use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::Accelerations;
 use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion};
 use crate::symbolic::differentiate::{Direction, by_scalar};
-use crate::symbolic::graph::{Dependence, Graph, Id, Operation};
+use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
 /// -dR/dq' and the forces by virtual work, Q_j = value d(on)/dq_j.
 pub(crate) fn applied_forces(
     translator: &mut Translator,
-    layout: &Layout,
-    dissipation: Id,
-    named: &mut Vec<Id>,
-) -> Derived<Rows> {
-    let drag = layout.gradient(&mut translator.graph, dissipation, Kind::Rates);
-    let mut rows: Vec<(f64, Rows)> = vec![(-1.0, drag)];
+    variables: &Variables,
+    dissipation: NodeId,
+    named: &mut Vec<NodeId>,
+) -> Derived<RowNodes> {
+    let drag = variables.gradient(&mut translator.graph, dissipation, GradientBy::Rates);
+    let mut rows: Vec<(f64, RowNodes)> = vec![(-1.0, drag)];
     for force in &translator.model.forces {
         let value = translator.node(&force.value)?;
         // A force may be called what means something else in a formula.
@@ -37,35 +37,35 @@ pub(crate) fn applied_forces(
                 ),
             });
         }
-        let mut gradient = layout.gradient(&mut translator.graph, on, Kind::Coordinates);
+        let mut gradient = variables.gradient(&mut translator.graph, on, GradientBy::Coordinates);
         for node in gradient.scalars.iter_mut().chain(&mut gradient.modal) {
             *node = translator.graph.multiply(*node, value);
         }
         rows.push((1.0, gradient));
     }
-    Ok(layout.combine(&mut translator.graph, &rows))
+    Ok(variables.combine(&mut translator.graph, &rows))
 }
 
 /// d(T + V)/dt for the forces and explicit times: Q q' + dV/dt - dT/dt (partial derivatives by
 /// the time), and, if T is no quadratic form of the rates, d(2 T - p q')/dt on top.
 pub(crate) fn power(
     graph: &mut Graph,
-    layout: &Layout,
-    kinetic: Id,
-    potential: Id,
-    applied: &Rows,
-    momenta: &Rows,
+    variables: &Variables,
+    kinetic: NodeId,
+    potential: NodeId,
+    applied: &RowNodes,
+    momenta: &RowNodes,
     accelerations: &Accelerations,
-) -> Id {
+) -> NodeId {
     let time = graph.intern(Operation::Time);
-    let work = layout.dot_rates(graph, applied);
+    let work = variables.dot_rates(graph, applied);
     let potential_rate = by_scalar(graph, potential, time);
     let mut terms = vec![(1.0, work), (1.0, potential_rate)];
     let kinetic_rate = by_scalar(graph, kinetic, time);
     if !crate::symbolic::degree::is_quadratic_in_rates(graph, kinetic) {
-        let twice = layout.dot_rates(graph, momenta);
+        let twice = variables.dot_rates(graph, momenta);
         let rest = graph.combine_flat(&[(2.0, kinetic), (-1.0, twice)]);
-        let tangent = |graph: &mut Graph, leaf: Id| match *graph.operation(leaf) {
+        let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
             Operation::Rate(index) => accelerations.rows.scalars[index],
             Operation::ModeRates(field) => accelerations.rows.modal[field],
             _ => along_motion(graph, leaf),
@@ -79,10 +79,10 @@ pub(crate) fn power(
 
 /// The distinct switching surfaces of everything the motion depends on, in the order in
 /// which the graph met them.
-pub(crate) fn guards(graph: &mut Graph, roots: &[Id]) -> Vec<Guard> {
+pub(crate) fn guards(graph: &mut Graph, roots: &[NodeId]) -> Vec<Guard> {
     let mut found: Vec<Guard> = Vec::new();
     for id in graph.reachable(roots) {
-        if graph.dependence(id).is_prepared() {
+        if graph.dependence(id).is_parameter_only() {
             continue;
         }
         let (function, arguments) = match graph.operation(id).clone() {
@@ -113,29 +113,29 @@ pub(crate) enum Surfaces {
     /// Nowhere.
     None,
     /// Where p changes sign.
-    One(Id),
+    One(NodeId),
     /// Where p changes sign: -p, which is positive where p is negative.
-    Turned(Id),
+    Turned(NodeId),
     /// Where p passes b or -b: positive above the one, and above the other.
     Between {
         /// p - b.
-        above: Id,
+        above: NodeId,
         /// p + b.
-        beyond: Id,
+        beyond: NodeId,
     },
     /// Where p leaves the rest between -b and b, on which it may stay through a whole region:
     /// both are positive outside, and neither is where p is exactly b or -b.
     Outside {
         /// p - b, or p.
-        above: Id,
+        above: NodeId,
         /// -p - b, or -p.
-        below: Id,
+        below: NodeId,
     },
 }
 
 impl Surfaces {
     /// The nodes.
-    pub fn all(self) -> impl Iterator<Item = Id> {
+    pub fn all(self) -> impl Iterator<Item = NodeId> {
         let (first, second) = match self {
             Self::None => (None, None),
             Self::One(surface) | Self::Turned(surface) => (Some(surface), None),
@@ -148,7 +148,7 @@ impl Surfaces {
 
 /// Where a piecewise function switches. What jumps by a switching function that may vanish on a
 /// whole region has a surface for either side of it, as it has a value of its own there.
-pub(crate) fn surfaces(graph: &mut Graph, function: Function, arguments: &[Id]) -> Surfaces {
+pub(crate) fn surfaces(graph: &mut Graph, function: Function, arguments: &[NodeId]) -> Surfaces {
     match (function, arguments) {
         (Function::Contact, &[p, b]) if may_rest(graph, p) => {
             let beyond = graph.add(p, b);
@@ -176,13 +176,13 @@ pub(crate) fn surfaces(graph: &mut Graph, function: Function, arguments: &[Id]) 
 
 /// Whether the first of a sum's terms that move is subtracted: the surface is then that of what
 /// others, such as min(p, 0), are written with.
-fn begins_with_minus(graph: &Graph, id: Id) -> bool {
+fn begins_with_minus(graph: &Graph, id: NodeId) -> bool {
     let Operation::Sum(terms) = graph.operation(id) else {
         return false;
     };
     let mut moving = terms
         .iter()
-        .filter(|(_, term)| !graph.dependence(*term).is_prepared());
+        .filter(|(_, term)| !graph.dependence(*term).is_parameter_only());
     moving
         .next()
         .is_some_and(|(factor, _)| factor.value() < 0.0)
@@ -190,7 +190,7 @@ fn begins_with_minus(graph: &Graph, id: Id) -> bool {
 
 /// Whether a switching function may have one value on a whole region: it holds a piecewise
 /// function itself, or is of inputs alone, which may be held.
-pub(crate) fn may_rest(graph: &Graph, id: Id) -> bool {
+pub(crate) fn may_rest(graph: &Graph, id: NodeId) -> bool {
     let moves = Dependence::COORDINATE
         .join(Dependence::RATE)
         .join(Dependence::TIME);
@@ -203,7 +203,7 @@ pub(crate) fn may_rest(graph: &Graph, id: Id) -> bool {
             Operation::Call(function, _) => is_piecewise(*function),
             _ => false,
         };
-        switches && !graph.dependence(part).is_prepared()
+        switches && !graph.dependence(part).is_parameter_only()
     })
 }
 

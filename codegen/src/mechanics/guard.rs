@@ -2,13 +2,13 @@
 
 use model_spec::model::Function;
 
-use crate::symbolic::graph::Id;
+use crate::symbolic::graph::NodeId;
 
 /// A switching surface.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Guard {
     /// Changes sign where the model switches.
-    pub value: Id,
+    pub value: NodeId,
     /// The function that switches.
     pub function: Function,
 }

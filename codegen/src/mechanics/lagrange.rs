@@ -4,26 +4,26 @@
 use model_spec::model::Model;
 
 use crate::mechanics::mass_matrix::MassMatrix;
-use crate::mechanics::rows::Rows;
+use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::along_motion;
 use crate::symbolic::differentiate::{ModalDerivative, by_scalar};
 use crate::symbolic::expand::{MOST_EXPANSIONS, expand_once};
-use crate::symbolic::graph::{Graph, Id, Operation, Space};
+use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use crate::symbolic::operation_count::count_operations;
 
 /// What a gradient is taken by.
-pub(crate) enum Kind {
+pub(crate) enum GradientBy {
     Coordinates,
     Rates,
 }
 
 /// Which variables there are.
-pub(crate) struct Layout {
+pub(crate) struct Variables {
     coordinates: usize,
     fields: usize,
 }
 
-impl Layout {
+impl Variables {
     pub(crate) fn new(model: &Model, orders: &[usize]) -> Self {
         Self {
             coordinates: model.coordinates.len(),
@@ -32,12 +32,12 @@ impl Layout {
     }
 
     /// The gradient of a scalar by coordinates or by rates.
-    pub(crate) fn gradient(&self, graph: &mut Graph, scalar: Id, kind: Kind) -> Rows {
+    pub(crate) fn gradient(&self, graph: &mut Graph, scalar: NodeId, kind: GradientBy) -> RowNodes {
         let scalars = (0..self.coordinates)
             .map(|index| {
                 let variable = graph.intern(match kind {
-                    Kind::Coordinates => Operation::Coordinate(index),
-                    Kind::Rates => Operation::Rate(index),
+                    GradientBy::Coordinates => Operation::Coordinate(index),
+                    GradientBy::Rates => Operation::Rate(index),
                 });
                 by_scalar(graph, scalar, variable)
             })
@@ -48,25 +48,25 @@ impl Layout {
                 None => graph.zero(),
             })
             .collect();
-        Rows { scalars, modal }
+        RowNodes { scalars, modal }
     }
 
-    fn modal(&self, graph: &mut Graph, field: usize, kind: &Kind) -> Option<ModalDerivative> {
+    fn modal(&self, graph: &mut Graph, field: usize, kind: &GradientBy) -> Option<ModalDerivative> {
         let variable = graph.intern(match kind {
-            Kind::Coordinates => Operation::ModeCoordinates(field),
-            Kind::Rates => Operation::ModeRates(field),
+            GradientBy::Coordinates => Operation::ModeCoordinates(field),
+            GradientBy::Rates => Operation::ModeRates(field),
         });
         ModalDerivative::new(graph, variable)
     }
 
-    pub(crate) fn mass_matrix(&self, graph: &mut Graph, momenta: &Rows) -> MassMatrix {
-        let rates: Vec<Id> = (0..self.coordinates)
+    pub(crate) fn mass_matrix(&self, graph: &mut Graph, momenta: &RowNodes) -> MassMatrix {
+        let rates: Vec<NodeId> = (0..self.coordinates)
             .map(|index| graph.intern(Operation::Rate(index)))
             .collect();
         // By symmetry an entry comes from the momentum of the smaller index.
-        let mut scalars: Vec<Vec<Id>> = Vec::with_capacity(self.coordinates);
+        let mut scalars: Vec<Vec<NodeId>> = Vec::with_capacity(self.coordinates);
         for row in 0..self.coordinates {
-            let mut entries: Vec<Id> = scalars.iter().map(|above| above[row]).collect();
+            let mut entries: Vec<NodeId> = scalars.iter().map(|above| above[row]).collect();
             for &rate in &rates[row..] {
                 let entry = by_scalar(graph, momenta.scalars[row], rate);
                 entries.push(cheaper_expansion(graph, entry));
@@ -76,7 +76,7 @@ impl Layout {
         let mut coupling = vec![Vec::new(); self.coordinates];
         let mut modal = vec![Vec::new(); self.fields];
         for field in 0..self.fields {
-            let Some(mut derivative) = self.modal(graph, field, &Kind::Rates) else {
+            let Some(mut derivative) = self.modal(graph, field, &GradientBy::Rates) else {
                 continue;
             };
             for (row, entries) in coupling.iter_mut().enumerate() {
@@ -96,9 +96,14 @@ impl Layout {
     }
 
     /// The rate of the momenta along the motion without accelerations, minus dT/dq.
-    pub(crate) fn velocity_terms(&self, graph: &mut Graph, kinetic: Id, momenta: &Rows) -> Rows {
-        let gradient = self.gradient(graph, kinetic, Kind::Coordinates);
-        let mut row = |momentum: Id, slope: Id| {
+    pub(crate) fn velocity_terms(
+        &self,
+        graph: &mut Graph,
+        kinetic: NodeId,
+        momenta: &RowNodes,
+    ) -> RowNodes {
+        let gradient = self.gradient(graph, kinetic, GradientBy::Coordinates);
+        let mut row = |momentum: NodeId, slope: NodeId| {
             let rate = along_motion(graph, momentum);
             let difference = graph.combine_flat(&[(1.0, rate), (-1.0, slope)]);
             cheaper_expansion(graph, difference)
@@ -115,36 +120,43 @@ impl Layout {
             .zip(&gradient.modal)
             .map(|(p, g)| row(*p, *g))
             .collect();
-        Rows { scalars, modal }
+        RowNodes { scalars, modal }
     }
 
-    pub(crate) fn with_potential(&self, graph: &mut Graph, applied: &Rows, potential: Id) -> Rows {
-        let gradient = self.gradient(graph, potential, Kind::Coordinates);
+    pub(crate) fn with_potential(
+        &self,
+        graph: &mut Graph,
+        applied: &RowNodes,
+        potential: NodeId,
+    ) -> RowNodes {
+        let gradient = self.gradient(graph, potential, GradientBy::Coordinates);
         self.combine(graph, &[(1.0, applied.clone()), (-1.0, gradient)])
     }
 
-    pub(crate) fn difference(&self, graph: &mut Graph, a: &Rows, b: &Rows) -> Rows {
+    pub(crate) fn difference(&self, graph: &mut Graph, a: &RowNodes, b: &RowNodes) -> RowNodes {
         self.combine(graph, &[(1.0, a.clone()), (-1.0, b.clone())])
     }
 
-    pub(crate) fn combine(&self, graph: &mut Graph, rows: &[(f64, Rows)]) -> Rows {
+    pub(crate) fn combine(&self, graph: &mut Graph, rows: &[(f64, RowNodes)]) -> RowNodes {
         let scalars = (0..self.coordinates)
             .map(|j| {
-                let terms: Vec<(f64, Id)> = rows.iter().map(|(c, r)| (*c, r.scalars[j])).collect();
+                let terms: Vec<(f64, NodeId)> =
+                    rows.iter().map(|(c, r)| (*c, r.scalars[j])).collect();
                 graph.combine_flat(&terms)
             })
             .collect();
         let modal = (0..self.fields)
             .map(|f| {
-                let terms: Vec<(f64, Id)> = rows.iter().map(|(c, r)| (*c, r.modal[f])).collect();
+                let terms: Vec<(f64, NodeId)> =
+                    rows.iter().map(|(c, r)| (*c, r.modal[f])).collect();
                 graph.combine_flat(&terms)
             })
             .collect();
-        Rows { scalars, modal }
+        RowNodes { scalars, modal }
     }
 
     /// The sum over all rows of a row times its rate.
-    pub(crate) fn dot_rates(&self, graph: &mut Graph, rows: &Rows) -> Id {
+    pub(crate) fn dot_rates(&self, graph: &mut Graph, rows: &RowNodes) -> NodeId {
         let mut terms = Vec::new();
         for (index, &row) in rows.scalars.iter().enumerate() {
             let rate = graph.intern(Operation::Rate(index));
@@ -162,7 +174,7 @@ impl Layout {
 /// A node multiplied out where that is cheaper. Of a velocity term the rate of a momentum
 /// and the slope of the kinetic energy share terms that cancel, but often only inside
 /// products: d/dt(dv/dq') = dv/dq for the rate v of anything that depends on coordinates.
-fn cheaper_expansion(graph: &mut Graph, term: Id) -> Id {
+fn cheaper_expansion(graph: &mut Graph, term: NodeId) -> NodeId {
     let mut best = term;
     let mut operations = count_operations(graph, &[term]);
     let mut expanded = term;

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use model_spec::model::Function;
 
 use crate::mechanics::equations::Equations;
-use crate::symbolic::graph::{Dependence, Graph, Id, Operation, Shape};
+use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};
 
 /// What kind of model it is between its switching surfaces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub enum Linearity {
     /// Linear between switching surfaces that are linear themselves.
     PiecewiseLinear,
     /// Not linear because of this node, the first that is found.
-    Nonlinear(Id),
+    Nonlinear(NodeId),
 }
 
 /// The kind of model that the equations are.
@@ -31,7 +31,7 @@ pub fn linearity(equations: &Equations) -> Linearity {
         known: HashMap::new(),
     };
     let mass = &equations.mass;
-    let blocks = equations.modal_blocks.iter().map(|(_, block, _)| *block);
+    let blocks = equations.modal_blocks.iter().map(|block| block.matrix);
     let masses = mass
         .scalars
         .iter()
@@ -40,7 +40,7 @@ pub fn linearity(equations: &Equations) -> Linearity {
         .copied()
         .chain(blocks);
     for entry in masses {
-        if !graph.dependence(entry).is_prepared() {
+        if !graph.dependence(entry).is_parameter_only() {
             return Linearity::Nonlinear(entry);
         }
     }
@@ -63,13 +63,13 @@ pub fn linearity(equations: &Equations) -> Linearity {
 /// Degrees of nodes in what moves.
 struct Degrees<'g> {
     graph: &'g Graph,
-    known: HashMap<Id, Result<u32, Id>>,
+    known: HashMap<NodeId, Result<u32, NodeId>>,
 }
 
 impl Degrees<'_> {
     /// The degree of a node with the switching sides given, or the node in the way.
-    fn of(&mut self, id: Id) -> Result<u32, Id> {
-        if self.graph.dependence(id).is_prepared() {
+    fn of(&mut self, id: NodeId) -> Result<u32, NodeId> {
+        if self.graph.dependence(id).is_parameter_only() {
             return Ok(0);
         }
         if let Some(&known) = self.known.get(&id) {
@@ -80,7 +80,7 @@ impl Degrees<'_> {
         degree
     }
 
-    fn compute(&mut self, id: Id) -> Result<u32, Id> {
+    fn compute(&mut self, id: NodeId) -> Result<u32, NodeId> {
         let graph = self.graph;
         match graph.operation(id) {
             Operation::Coordinate(_)
@@ -118,7 +118,12 @@ impl Degrees<'_> {
         }
     }
 
-    fn call(&mut self, id: Id, function: Function, arguments: &[Id]) -> Result<u32, Id> {
+    fn call(
+        &mut self,
+        id: NodeId,
+        function: Function,
+        arguments: &[NodeId],
+    ) -> Result<u32, NodeId> {
         let scalar = self.graph.shape(id) == Shape::Scalar;
         match (function, arguments) {
             (Function::Sin | Function::Cos, &[a]) if self.is_phase(a) => Ok(1),
@@ -133,14 +138,14 @@ impl Degrees<'_> {
         }
     }
 
-    fn highest(&mut self, parts: impl IntoIterator<Item = Id>) -> Result<u32, Id> {
+    fn highest(&mut self, parts: impl IntoIterator<Item = NodeId>) -> Result<u32, NodeId> {
         parts
             .into_iter()
             .try_fold(0, |highest, part| Ok(self.of(part)?.max(highest)))
     }
 
     /// Whether a node is a phase omega t + phi.
-    fn is_phase(&self, id: Id) -> bool {
+    fn is_phase(&self, id: NodeId) -> bool {
         let moving = Dependence::COORDINATE
             .join(Dependence::RATE)
             .join(Dependence::INPUT);
@@ -150,12 +155,12 @@ impl Degrees<'_> {
         match self.graph.operation(id) {
             Operation::Time => true,
             Operation::Sum(terms) => terms.iter().all(|(_, term)| {
-                self.graph.dependence(*term).is_prepared() || self.is_phase(*term)
+                self.graph.dependence(*term).is_parameter_only() || self.is_phase(*term)
             }),
             Operation::Product(factors) => {
-                let timed: Vec<&(Id, i32)> = factors
+                let timed: Vec<&(NodeId, i32)> = factors
                     .iter()
-                    .filter(|(factor, _)| !self.graph.dependence(*factor).is_prepared())
+                    .filter(|(factor, _)| !self.graph.dependence(*factor).is_parameter_only())
                     .collect();
                 matches!(timed.as_slice(), [(factor, 1)] if self.is_phase(*factor))
             }

@@ -1,26 +1,42 @@
 //! The mass matrix by its blocks: coordinates, modes, and the coupling between them.
 
-use crate::symbolic::graph::{Graph, Id};
+use crate::symbolic::graph::{Graph, NodeId};
 use crate::symbolic::matrix::StructuredMatrix;
 
 /// The mass matrix by blocks.
 #[derive(Clone, Debug)]
 pub struct MassMatrix {
     /// coordinates x coordinates
-    pub scalars: Vec<Vec<Id>>,
+    pub scalars: Vec<Vec<NodeId>>,
     /// For each coordinate and field the vector over the modes.
-    pub coupling: Vec<Vec<Id>>,
+    pub coupling: Vec<Vec<NodeId>>,
     /// For each pair of fields the block over their modes.
     pub modal: Vec<Vec<StructuredMatrix>>,
 }
 
+/// A block of the mass matrix over the modes of two fields, as one node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ModalMassBlock {
+    /// The field of the rows.
+    pub rows: usize,
+    /// The field of the columns.
+    pub columns: usize,
+    /// Modes of the one times modes of the other.
+    pub matrix: NodeId,
+}
+
 impl MassMatrix {
-    pub(crate) fn assembled_blocks(&self, graph: &mut Graph) -> Vec<(usize, Id, usize)> {
+    /// The blocks over modes on and above the diagonal that are not 0.
+    pub(crate) fn assembled_blocks(&self, graph: &mut Graph) -> Vec<ModalMassBlock> {
         let mut blocks = Vec::new();
         for (row, columns) in self.modal.iter().enumerate() {
             for (column, block) in columns.iter().enumerate().skip(row) {
                 if !block.is_zero() {
-                    blocks.push((row, block.assemble(graph), column));
+                    blocks.push(ModalMassBlock {
+                        rows: row,
+                        columns: column,
+                        matrix: block.assemble(graph),
+                    });
                 }
             }
         }

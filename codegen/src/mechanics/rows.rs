@@ -1,19 +1,19 @@
 //! What a vector over all degrees of freedom is made of: a number per coordinate, a vector per field.
 
-use crate::symbolic::graph::Id;
+use crate::symbolic::graph::NodeId;
 
 /// One entry per coordinate, then one vector per field.
 #[derive(Clone, Debug)]
-pub struct Rows {
+pub struct RowNodes {
     /// Scalars, one per coordinate.
-    pub scalars: Vec<Id>,
+    pub scalars: Vec<NodeId>,
     /// Vectors over the modes, one per field.
-    pub modal: Vec<Id>,
+    pub modal: Vec<NodeId>,
 }
 
-impl Rows {
+impl RowNodes {
     /// All nodes, coordinates first.
-    pub fn nodes(&self) -> Vec<Id> {
+    pub fn nodes(&self) -> Vec<NodeId> {
         self.scalars.iter().chain(&self.modal).copied().collect()
     }
 }

@@ -13,7 +13,7 @@ use crate::mechanics::fields::function::FieldFunction;
 use crate::mechanics::fields::term::Atom;
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::differentiate::Direction;
-use crate::symbolic::graph::{Graph, Id, Operation, Space};
+use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 
 /// Why a model could not be derived, and where in its source.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,8 +52,8 @@ pub struct Translator<'m> {
     pub model: &'m Model,
     /// The graph that grows.
     pub graph: Graph,
-    definitions: HashMap<usize, Id>,
-    coefficients: Vec<Id>,
+    definitions: HashMap<usize, NodeId>,
+    coefficients: Vec<NodeId>,
 }
 
 impl<'m> Translator<'m> {
@@ -75,19 +75,19 @@ impl<'m> Translator<'m> {
     }
 
     /// Records the node of the next named coefficient, so that later ones may refer to it.
-    pub fn push_coefficient(&mut self, node: Id) {
+    pub fn push_coefficient(&mut self, node: NodeId) {
         self.coefficients.push(node);
     }
 
     /// The node of each definition that was used so far.
-    pub fn definition_nodes(&self) -> Vec<Option<Id>> {
+    pub fn definition_nodes(&self) -> Vec<Option<NodeId>> {
         (0..self.model.definitions.len())
             .map(|index| self.definitions.get(&index).copied())
             .collect()
     }
 
     /// The node of a scalar expression (a vector inside a sum over modes).
-    pub fn node(&mut self, expr: &Expr) -> Derived<Id> {
+    pub fn node(&mut self, expr: &Expr) -> Derived<NodeId> {
         match &expr.kind {
             ExprKind::Number(value) => Ok(self.graph.constant(*value)),
             ExprKind::Pi => Ok(self.graph.constant(std::f64::consts::PI)),
@@ -137,12 +137,12 @@ impl<'m> Translator<'m> {
         }
     }
 
-    fn nodes(&mut self, expressions: &[Expr]) -> Derived<Vec<Id>> {
+    fn nodes(&mut self, expressions: &[Expr]) -> Derived<Vec<NodeId>> {
         expressions.iter().map(|e| self.node(e)).collect()
     }
 
     /// The node of a binary operation.
-    pub fn binary(&mut self, operator: BinaryOperator, left: Id, right: Id) -> Id {
+    pub fn binary(&mut self, operator: BinaryOperator, left: NodeId, right: NodeId) -> NodeId {
         match operator {
             BinaryOperator::Add => self.graph.add(left, right),
             BinaryOperator::Subtract => self.graph.subtract(left, right),
@@ -152,7 +152,7 @@ impl<'m> Translator<'m> {
         }
     }
 
-    fn definition(&mut self, index: usize) -> Derived<Id> {
+    fn definition(&mut self, index: usize) -> Derived<NodeId> {
         if let Some(&known) = self.definitions.get(&index) {
             return Ok(known);
         }
@@ -164,7 +164,7 @@ impl<'m> Translator<'m> {
     }
 
     /// The time derivative of a coordinate, definition or mode coordinate.
-    fn dot(&mut self, operand: &Expr) -> Derived<Id> {
+    fn dot(&mut self, operand: &Expr) -> Derived<NodeId> {
         match operand.kind {
             ExprKind::Coordinate(index) => Ok(self.graph.intern(Operation::Rate(index))),
             ExprKind::ModeCoordinate(field) => Ok(self.graph.intern(Operation::ModeRates(field))),
@@ -198,7 +198,7 @@ impl<'m> Translator<'m> {
         }
     }
 
-    fn at(&mut self, field: usize, value: &Expr, position: &Expr) -> Derived<Id> {
+    fn at(&mut self, field: usize, value: &Expr, position: &Expr) -> Derived<NodeId> {
         let function = self.field_function(field, value)?;
         let position = self.node(position)?;
         let domain = self.domain(field)?;
@@ -207,7 +207,7 @@ impl<'m> Translator<'m> {
             .map_err(|m| error(value, m))
     }
 
-    fn integral(&mut self, field: usize, integrand: &Expr) -> Derived<Id> {
+    fn integral(&mut self, field: usize, integrand: &Expr) -> Derived<NodeId> {
         let function = self.field_function(field, integrand)?;
         let domain = self.domain(field)?;
         function
@@ -288,8 +288,8 @@ fn field_atom(expr: &Expr) -> Option<Atom> {
 
 /// The time derivative of a node along the motion, without accelerations: coordinates
 /// move with their rates, time with 1.
-pub fn along_motion(graph: &mut Graph, node: Id) -> Id {
-    let tangent = |graph: &mut Graph, leaf: Id| match *graph.operation(leaf) {
+pub fn along_motion(graph: &mut Graph, node: NodeId) -> NodeId {
+    let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
         Operation::Coordinate(index) => graph.intern(Operation::Rate(index)),
         Operation::ModeCoordinates(field) => graph.intern(Operation::ModeRates(field)),
         Operation::Time => graph.one(),

@@ -20,7 +20,8 @@ mod operation_count;
 mod types;
 
 pub use crate::mechanics::outputs::{
-    Decided, Entry, Jacobian, Products, Request, Requested, SURFACES_OF_A_REGIME, Switch,
+    BlockPlace, Decided, Jacobian, JacobianBlock, Output, Outputs, Products, SURFACES_OF_A_REGIME,
+    Switch,
 };
 pub use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::graph::{Argument, Variable};

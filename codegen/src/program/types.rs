@@ -2,7 +2,7 @@
 
 use model_spec::model::Function;
 
-use crate::mechanics::outputs::Requested;
+use crate::mechanics::outputs::Outputs;
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::graph::{Argument, Variable};
 
@@ -226,8 +226,9 @@ pub struct Value {
     pub op: Op,
     /// How many numbers it holds.
     pub extent: Extent,
-    /// Whether it depends on parameters and constants alone.
-    pub prepared: bool,
+    /// Whether it depends on parameters and constants alone: it belongs to the stage that is
+    /// computed once for a set of parameters.
+    pub parameter_only: bool,
     /// The specification's name for it, if it has one.
     pub name: Option<String>,
 }
@@ -341,8 +342,8 @@ pub struct Program {
     pub pivots: Vec<ValueId>,
     /// Values of the coefficients the specification names.
     pub coefficient_values: Vec<ValueId>,
-    /// What was requested beside all this.
-    pub requested: Requested<ValueId, RowValues>,
+    /// The outputs on request beside all this.
+    pub outputs: Outputs<ValueId, RowValues>,
 }
 
 /// A table of constants.
@@ -441,7 +442,7 @@ impl Program {
     pub fn per_call(&self, roots: &[ValueId]) -> Vec<ValueId> {
         self.reachable(roots)
             .into_iter()
-            .filter(|id| !self.value(*id).prepared)
+            .filter(|id| !self.value(*id).parameter_only)
             .collect()
     }
 }

@@ -17,7 +17,7 @@ use crate::mechanics::equations::Equations;
 use crate::program::evaluator::Evaluator;
 use crate::symbolic::formula::{Formula, Reader, Shared};
 use outline::Outline;
-pub use types::{CoefficientLine, Entry, Line, Report, Sentence, Solution};
+pub use types::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
 use writer::Writer;
 
 impl Report {

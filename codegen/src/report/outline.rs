@@ -3,15 +3,15 @@
 
 use model_spec::model::{Model, Term};
 
-use crate::mechanics::coefficients::Row;
+use crate::mechanics::coefficients::EquationRow;
 use crate::mechanics::equations::Equations;
 use crate::mechanics::linearity::{Linearity, linearity};
-use crate::mechanics::rows::Rows;
+use crate::mechanics::rows::RowNodes;
 use crate::symbolic::formula::{Formula, Index, Symbol};
-use crate::symbolic::graph::{Graph, Id, Space};
+use crate::symbolic::graph::{Graph, NodeId, Space};
 
 /// A node with the name it is shown under.
-pub(super) type Shown = (Formula, Id);
+pub(super) type Shown = (Formula, NodeId);
 
 /// The nodes of a report, part by part.
 pub(super) struct Outline<'a> {
@@ -22,7 +22,7 @@ pub(super) struct Outline<'a> {
     /// The terms of the specification, each under its own name.
     pub terms: Vec<Shown>,
     /// Nonzero entries of the mass matrix: row, column, node.
-    pub mass_matrix: Vec<(Formula, Formula, Id)>,
+    pub mass_matrix: Vec<(Formula, Formula, NodeId)>,
     /// Nonzero velocity terms.
     pub velocity_terms: Vec<Shown>,
     /// Nonzero generalised forces.
@@ -52,7 +52,7 @@ impl<'a> Outline<'a> {
     }
 
     /// All nodes whose formulas are written.
-    pub fn nodes(&self) -> Vec<Id> {
+    pub fn nodes(&self) -> Vec<NodeId> {
         let equations = self.equations;
         let shown = [
             &self.definitions,
@@ -60,7 +60,7 @@ impl<'a> Outline<'a> {
             &self.velocity_terms,
             &self.forces,
         ];
-        let mut nodes: Vec<Id> = shown.into_iter().flatten().map(|(_, node)| *node).collect();
+        let mut nodes: Vec<NodeId> = shown.into_iter().flatten().map(|(_, node)| *node).collect();
         nodes.extend(self.mass_matrix.iter().map(|(_, _, node)| *node));
         let pivots = equations.accelerations.pivots.iter();
         nodes.extend(pivots.filter(|pivot| self.graph().name(**pivot).is_some()));
@@ -73,20 +73,20 @@ impl<'a> Outline<'a> {
     }
 
     /// The symbol of a row: its coordinate, or its field's mode coordinates.
-    pub fn row_symbol(&self, row: Row) -> Symbol {
+    pub fn row_symbol(&self, row: EquationRow) -> Symbol {
         match row {
-            Row::Coordinate(index) => Symbol::plain(&self.model.coordinates[index].name),
-            Row::Modes(field) => {
+            EquationRow::Coordinate(index) => Symbol::plain(&self.model.coordinates[index].name),
+            EquationRow::Modes(field) => {
                 Symbol::plain(&self.model.fields[field].coordinates).with_indices(&[Index::I])
             }
         }
     }
 
     /// Whether a row has any element at these orders.
-    pub fn is_present(&self, row: Row) -> bool {
+    pub fn is_present(&self, row: EquationRow) -> bool {
         match row {
-            Row::Coordinate(_) => true,
-            Row::Modes(field) => self.graph().size(Space::Modes(field)) > 0,
+            EquationRow::Coordinate(_) => true,
+            EquationRow::Modes(field) => self.graph().size(Space::Modes(field)) > 0,
         }
     }
 
@@ -117,21 +117,21 @@ impl<'a> Outline<'a> {
             .collect()
     }
 
-    fn rows(&self, rows: &Rows) -> Vec<Shown> {
+    fn rows(&self, rows: &RowNodes) -> Vec<Shown> {
         let scalars = rows.scalars.iter().enumerate();
         let modal = rows.modal.iter().enumerate();
         scalars
-            .map(|(index, id)| (Row::Coordinate(index), *id))
-            .chain(modal.map(|(field, id)| (Row::Modes(field), *id)))
+            .map(|(index, id)| (EquationRow::Coordinate(index), *id))
+            .chain(modal.map(|(field, id)| (EquationRow::Modes(field), *id)))
             .filter(|(row, id)| !self.graph().is_zero(*id) && self.is_present(*row))
             .map(|(row, id)| (Formula::Symbol(self.row_symbol(row)), id))
             .collect()
     }
 
-    fn mass_matrix(&self) -> Vec<(Formula, Formula, Id)> {
+    fn mass_matrix(&self) -> Vec<(Formula, Formula, NodeId)> {
         let mass = &self.equations.mass;
         let mut entries = Vec::new();
-        let mut push = |row: Row, column: Row, id: Id| {
+        let mut push = |row: EquationRow, column: EquationRow, id: NodeId| {
             if !self.graph().is_zero(id) && self.is_present(row) && self.is_present(column) {
                 let [row, column] = [row, column].map(|of| Formula::Symbol(self.row_symbol(of)));
                 entries.push((row, column, id));
@@ -139,14 +139,23 @@ impl<'a> Outline<'a> {
         };
         for (row, values) in mass.scalars.iter().enumerate() {
             for (column, id) in values.iter().enumerate().skip(row) {
-                push(Row::Coordinate(row), Row::Coordinate(column), *id);
+                push(
+                    EquationRow::Coordinate(row),
+                    EquationRow::Coordinate(column),
+                    *id,
+                );
             }
             for (field, id) in mass.coupling[row].iter().enumerate() {
-                push(Row::Coordinate(row), Row::Modes(field), *id);
+                push(EquationRow::Coordinate(row), EquationRow::Modes(field), *id);
             }
         }
-        for (row, id, column) in &self.equations.modal_blocks {
-            push(Row::Modes(*row), Row::Modes(*column), *id);
+        for block in &self.equations.modal_blocks {
+            let (row, column) = (block.rows, block.columns);
+            push(
+                EquationRow::Modes(row),
+                EquationRow::Modes(column),
+                block.matrix,
+            );
         }
         entries
     }

@@ -29,7 +29,7 @@ pub struct Report {
     /// a line needs none but those before it. Empty where everything is written out.
     pub shared: Vec<Line>,
     /// Nonzero entries of the mass matrix on and above the diagonal.
-    pub mass_matrix: Vec<Entry>,
+    pub mass_matrix: Vec<MassMatrixEntry>,
     /// The pivots of the factorisation.
     pub pivots: Vec<Line>,
     /// Nonzero velocity terms c.
@@ -59,8 +59,8 @@ pub struct Line {
 
 /// An entry of the mass matrix.
 #[derive(Clone, Debug, Serialize)]
-pub struct Entry {
-    /// Row.
+pub struct MassMatrixEntry {
+    /// EquationRow.
     pub row: Formula,
     /// Column.
     pub column: Formula,

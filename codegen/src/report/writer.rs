@@ -3,13 +3,13 @@
 use model_spec::model::Term;
 
 use super::outline::{Outline, Shown};
-use super::types::{CoefficientLine, Entry, Line, Sentence};
-use crate::mechanics::coefficients::Row;
+use super::types::{CoefficientLine, Line, MassMatrixEntry, Sentence};
+use crate::mechanics::coefficients::EquationRow;
 use crate::mechanics::equations::Equations;
 use crate::mechanics::linearity::Linearity;
 use crate::program::evaluator::Evaluator;
 use crate::symbolic::formula::{Formula, Index, Reader};
-use crate::symbolic::graph::{Id, Shape};
+use crate::symbolic::graph::{NodeId, Shape};
 
 /// What the parts are written from.
 pub(super) struct Writer<'a> {
@@ -58,7 +58,7 @@ impl Writer<'_> {
     }
 
     /// The nodes that have names, with their formulas.
-    pub fn named(&self, nodes: &[Id]) -> Vec<Line> {
+    pub fn named(&self, nodes: &[NodeId]) -> Vec<Line> {
         let mut lines: Vec<Line> = Vec::new();
         for &node in nodes {
             let Some(name) = self.equations.graph.name(node) else {
@@ -75,10 +75,10 @@ impl Writer<'_> {
         lines
     }
 
-    pub fn mass_matrix(&self) -> Vec<Entry> {
+    pub fn mass_matrix(&self) -> Vec<MassMatrixEntry> {
         let entries = self.outline.mass_matrix.iter();
         entries
-            .map(|(row, column, node)| Entry {
+            .map(|(row, column, node)| MassMatrixEntry {
                 row: row.clone(),
                 column: column.clone(),
                 formula: self.reader.formula(*node),
@@ -94,7 +94,7 @@ impl Writer<'_> {
             .map(|(coefficient, value)| CoefficientLine {
                 name: Formula::named(&coefficient.name),
                 formula: self.reader.formula(coefficient.value),
-                values: if evaluator.program().value(*value).prepared {
+                values: if evaluator.program().value(*value).parameter_only {
                     evaluator.slice(*value).to_vec()
                 } else {
                     Vec::new()
@@ -105,7 +105,7 @@ impl Writer<'_> {
 
     /// Each row whose factors the specification names, as the sum of these.
     pub fn accelerations(&self) -> Vec<Line> {
-        let mut rows: Vec<(Row, Formula, Vec<Formula>)> = Vec::new();
+        let mut rows: Vec<(EquationRow, Formula, Vec<Formula>)> = Vec::new();
         for coefficient in &self.equations.coefficients {
             let Some(factor) = &coefficient.factor else {
                 continue;
@@ -135,7 +135,7 @@ impl Writer<'_> {
     }
 
     /// A named factor times what it multiplies.
-    fn named_term(&self, name: &str, value: Id, by: Id) -> Formula {
+    fn named_term(&self, name: &str, value: NodeId, by: NodeId) -> Formula {
         let graph = &self.equations.graph;
         let multiplied = self.reader.expression(by);
         let indexed =

@@ -13,7 +13,7 @@ use super::literals::{block, identifier};
 use super::names::Names;
 use super::sides::{Switches, of_side};
 use crate::program::evaluator::{Law, law};
-use crate::program::{Argument, Extent, Op, PARTIAL_SUMS, Program, Request, ValueId, Variable};
+use crate::program::{Argument, Extent, Op, Output, PARTIAL_SUMS, Program, ValueId, Variable};
 use elementary::Function as Elementary;
 use model_spec::model::Function;
 
@@ -92,7 +92,7 @@ impl<'a> Body<'a> {
         self.program
             .reachable(roots)
             .into_iter()
-            .filter(|id| self.program.value(*id).prepared == prepare)
+            .filter(|id| self.program.value(*id).parameter_only == prepare)
             .collect()
     }
 
@@ -285,7 +285,7 @@ impl<'a> Body<'a> {
 
     /// The expression that computes a value.
     fn own_expression(&mut self, id: ValueId, index: Option<&str>) -> Emitted<Expression> {
-        if let Some(leaf) = self.leaf_or_prepared(id, index)? {
+        if let Some(leaf) = self.leaf_or_coefficient(id, index)? {
             return Ok(leaf);
         }
         let op = self.program.value(id).op.clone();
@@ -348,7 +348,7 @@ impl<'a> Body<'a> {
     }
 
     /// Constants, tables, state, and what was prepared before this stage.
-    fn leaf_or_prepared(&self, id: ValueId, index: Option<&str>) -> Emitted<Option<Expression>> {
+    fn leaf_or_coefficient(&self, id: ValueId, index: Option<&str>) -> Emitted<Option<Expression>> {
         let value = self.program.value(id);
         let program = self.program;
         let place = |offset: usize| {
@@ -375,7 +375,7 @@ impl<'a> Body<'a> {
                 Expression::element(argument_name(argument), &place)
             }
             _ => match &self.access {
-                Access::Coefficients(fields) if value.prepared => {
+                Access::Coefficients(fields) if value.parameter_only => {
                     let Some(name) = fields.get(&id) else {
                         return Err(EmitError::Value(format!(
                             "value {} was not prepared",
@@ -404,7 +404,7 @@ impl<'a> Body<'a> {
     }
 
     fn for_lanes(&self) -> bool {
-        self.program.requested.requests.contains(&Request::Lanes)
+        self.program.outputs.kinds.contains(&Output::Lanes)
     }
 
     fn leaf(&self, id: ValueId) -> Emitted<Expression> {
@@ -438,14 +438,14 @@ impl<'a> Body<'a> {
             let name = identifier(&self.program.tables[place].name)?;
             return Ok(Expression::converted(format!("{name}[{index}]")));
         }
-        if let Some(name) = self.prepared_name(id) {
+        if let Some(name) = self.coefficient_name(id) {
             return Ok(self.coefficient(name, Some(index)));
         }
         Ok(Expression::element(&self.numbers(id)?, index))
     }
 
     /// The name of a value among the coefficients that this stage reads.
-    fn prepared_name(&self, id: ValueId) -> Option<&'a str> {
+    fn coefficient_name(&self, id: ValueId) -> Option<&'a str> {
         match self.access {
             Access::Coefficients(fields) => fields.get(&id).map(String::as_str),
             Access::Prepare => None,
@@ -469,7 +469,7 @@ impl<'a> Body<'a> {
             };
             return Ok(format!("{function}(&{name})"));
         }
-        let Some(name) = self.prepared_name(id) else {
+        let Some(name) = self.coefficient_name(id) else {
             return Err(EmitError::Value(format!(
                 "value {} is no array",
                 id.index()

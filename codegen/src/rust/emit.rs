@@ -57,7 +57,7 @@ fn marked(file: &File<'_>, packaging: Packaging) -> Emitted<String> {
         stages::guards(file, &mut needed)?,
         stages::mass_matrix(file, &mut needed)?,
         regimes::regimes(file, &mut needed)?,
-        outputs::requested(file, &mut needed)?,
+        outputs::outputs(file, &mut needed)?,
         tables(file)?,
         SCALAR.to_owned(),
         if file.for_lanes() { COEFFICIENT } else { "" }.to_owned(),

@@ -7,7 +7,7 @@ use super::emit_error::Emitted;
 use super::functions::Needed;
 use super::names::Names;
 use super::roots::coefficient_values;
-use crate::program::{Program, Request, ValueId};
+use crate::program::{Output, Program, ValueId};
 
 /// What a file is written from.
 pub(super) struct File<'p> {
@@ -42,7 +42,7 @@ impl<'p> File<'p> {
 
     /// Whether every function is written a second time, for lanes.
     pub(super) fn for_lanes(&self) -> bool {
-        self.program.requested.requests.contains(&Request::Lanes)
+        self.program.outputs.kinds.contains(&Output::Lanes)
     }
 
     /// What the names of functions that emitted functions call begin with.

@@ -10,19 +10,20 @@ use super::functions::Needed;
 use super::roots::entry_roots;
 use super::signature::stage;
 use super::types::literal;
-use crate::program::{Entry, Extent, Jacobian, Request, ValueId};
+use crate::program::BlockPlace;
+use crate::program::{Extent, Jacobian, JacobianBlock, Output, ValueId};
 
 pub(super) fn jacobians(file: &File<'_>, needed: &mut Needed) -> Emitted<String> {
-    let requested = &file.program.requested;
-    if requested.jacobians.is_empty() {
+    let outputs = &file.program.outputs;
+    if outputs.jacobians.is_empty() {
         return Ok(String::new());
     }
     let mut text = String::new();
-    for jacobian in &requested.jacobians {
+    for jacobian in &outputs.jacobians {
         text += &pattern(jacobian);
         text += &nonzeros(file, jacobian, needed)?;
     }
-    if requested.requests.contains(&Request::Linearisation) {
+    if outputs.kinds.contains(&Output::Linearisation) {
         text += LINEARISATION;
         text += &stage(
             file,
@@ -91,7 +92,7 @@ fn nonzeros(file: &File<'_>, jacobian: &Jacobian<ValueId>, needed: &mut Needed) 
     let mut body = file.body(&roots, needed)?;
     let constant = format!("{}_NONZEROS", jacobian.name.to_uppercase());
     body.push(&format!("let mut values = [T::number(0.0); {constant}];"));
-    for (entry, (start, width)) in jacobian.entries.iter().zip(jacobian.places()) {
+    for (entry, BlockPlace { start, width }) in jacobian.entries.iter().zip(jacobian.places()) {
         write_entry(&mut body, entry, start, width)?;
     }
     body.push("values");
@@ -119,7 +120,7 @@ fn nonzeros(file: &File<'_>, jacobian: &Jacobian<ValueId>, needed: &mut Needed) 
 /// distance from one row to the next.
 fn write_entry(
     body: &mut Body<'_>,
-    entry: &Entry<ValueId>,
+    entry: &JacobianBlock<ValueId>,
     start: usize,
     width: usize,
 ) -> Emitted<()> {

@@ -83,7 +83,7 @@ impl Names {
     pub fn new(program: &Program) -> Self {
         let tables = program.tables.iter().map(|table| table.name.clone());
         let flags = (1..=program.pivots.len()).map(|number| format!("positive_{number}"));
-        let patterns = program.requested.jacobians.iter().flat_map(|jacobian| {
+        let patterns = program.outputs.jacobians.iter().flat_map(|jacobian| {
             let name = jacobian.name.to_uppercase();
             [format!("{name}_NONZEROS"), name]
         });

@@ -1,4 +1,4 @@
-//! The emitted functions that were requested, but for Jacobians: bias forces, inverse
+//! The emitted outputs on request, but for Jacobians: bias forces, inverse
 //! dynamics, rates of the guards, products with the Jacobian.
 
 use super::blocks::add_to;
@@ -15,26 +15,26 @@ use super::types::literal;
 use crate::program::{Products, RowValues, ValueId, Variable};
 
 /// All of them, Jacobians last.
-pub(super) fn requested(file: &File<'_>, needed: &mut Needed) -> Emitted<String> {
-    let requested = &file.program.requested;
+pub(super) fn outputs(file: &File<'_>, needed: &mut Needed) -> Emitted<String> {
+    let outputs = &file.program.outputs;
     let mut text = String::new();
-    if let Some(rows) = &requested.bias_forces {
+    if let Some(rows) = &outputs.bias_forces {
         let head = "/// Bias forces c - f of M q'' + c = f, in the order of the first half of\n\
                     /// [`STATE_NAMES`]: the forces missing for no acceleration.\n";
         text += &rows_function(file, (head, "bias_forces", ""), rows, needed)?;
     }
-    if let Some(rows) = &requested.inverse_dynamics {
+    if let Some(rows) = &outputs.inverse_dynamics {
         let head = "/// Inverse dynamics M a + c - f: the generalised forces that have to act besides\n\
                     /// those of the model for the accelerations a, in the order of the first half of\n\
                     /// [`STATE_NAMES`].\n";
         let argument = "accelerations: &[T; DEGREES_OF_FREEDOM],\n";
         text += &rows_function(file, (head, "inverse_dynamics", argument), rows, needed)?;
     }
-    if let Some(rates) = &requested.guard_rates {
+    if let Some(rates) = &outputs.guard_rates {
         let line = "Rates of the switching surfaces along the motion, the inputs held.";
         text += &guard_values(file, "guard_rates", line, rates, needed)?;
     }
-    if let Some(products) = &requested.products {
+    if let Some(products) = &outputs.products {
         text += &jacobian_vector_product(file, products, needed)?;
         text += &vector_jacobian_product(file, products, needed)?;
         text += &product_by_parameters(file, products, needed)?;

@@ -14,7 +14,7 @@ use crate::program::SURFACES_OF_A_REGIME;
 
 /// The number of a state's regime, and the rates in a regime.
 pub(super) fn regimes(file: &File<'_>, needed: &mut Needed) -> Emitted<String> {
-    let Some(switches) = &file.program.requested.regimes else {
+    let Some(switches) = &file.program.outputs.regimes else {
         return Ok(String::new());
     };
     let switches = switches.iter().map(|switch| (switch.value, switch.decided));

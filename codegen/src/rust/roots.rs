@@ -22,7 +22,7 @@ pub(super) fn stage_roots(program: &Program) -> Vec<ValueId> {
     roots.extend(&program.observable_values);
     roots.extend(program.guards.iter().map(|g| g.value));
     roots.extend(mass_roots(program));
-    roots.extend(requested_roots(program));
+    roots.extend(output_roots(program));
     roots
 }
 
@@ -32,35 +32,35 @@ pub(super) fn coefficient_values(program: &Program) -> Vec<ValueId> {
     let mut read: BTreeSet<ValueId> = program
         .reachable(&roots)
         .into_iter()
-        .filter(|id| !program.value(*id).prepared)
+        .filter(|id| !program.value(*id).parameter_only)
         .flat_map(|id| program.value(id).op.operands())
         .collect();
     read.extend(roots);
     read.retain(|id| {
         let value = program.value(*id);
-        value.prepared && !matches!(value.op, Op::Constant(_) | Op::Table(_))
+        value.parameter_only && !matches!(value.op, Op::Constant(_) | Op::Table(_))
     });
     read.into_iter()
         .filter(|id| program.value(*id).extent.length() > 0)
         .collect()
 }
 
-/// The values that the requested functions are written from.
-fn requested_roots(program: &Program) -> Vec<ValueId> {
-    let requested = &program.requested;
-    let rows = [&requested.bias_forces, &requested.inverse_dynamics];
+/// The values that the outputs on request are written from.
+fn output_roots(program: &Program) -> Vec<ValueId> {
+    let outputs = &program.outputs;
+    let rows = [&outputs.bias_forces, &outputs.inverse_dynamics];
     let mut roots: Vec<ValueId> = rows
         .into_iter()
         .flatten()
         .flat_map(RowValues::all)
         .collect();
-    roots.extend(requested.guard_rates.iter().flatten());
-    if let Some(products) = &requested.products {
+    roots.extend(outputs.guard_rates.iter().flatten());
+    if let Some(products) = &outputs.products {
         roots.extend(products.forward.all());
         roots.extend(products.reverse.iter().map(|(_, id)| *id));
         roots.extend(products.by_parameters.entries.iter().map(|e| e.value));
     }
-    for jacobian in &requested.jacobians {
+    for jacobian in &outputs.jacobians {
         roots.extend(entry_roots(program, jacobian));
     }
     roots.retain(|id| !matches!(program.value(*id).op, Op::Constant(_)));

@@ -78,7 +78,12 @@ fn array_conversion(file: &File<'_>, name: &str, count: &str) -> String {
 }
 
 pub(super) fn coefficients(file: &File<'_>, needed: &mut Needed) -> Emitted<String> {
-    let mut body = Body::new(file.program, Access::Prepare, &prepared_roots(file), needed)?;
+    let mut body = Body::new(
+        file.program,
+        Access::Prepare,
+        &preparation_roots(file),
+        needed,
+    )?;
     let mut fields = String::new();
     let (mut values, mut casts) = (Vec::new(), Vec::new());
     for id in &file.fields {
@@ -165,7 +170,7 @@ fn preparation(file: &File<'_>, statements: &str) -> String {
     block(&opening, &format!("{declared}{statements}"), "}")
 }
 
-fn prepared_roots(file: &File<'_>) -> Vec<ValueId> {
+fn preparation_roots(file: &File<'_>) -> Vec<ValueId> {
     file.fields
         .iter()
         .chain(&file.program.pivots)

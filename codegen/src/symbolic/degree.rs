@@ -3,16 +3,16 @@
 
 use std::collections::HashMap;
 
-use crate::symbolic::graph::{Dependence, Graph, Id, Operation};
+use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
 /// Whether a node is, by its structure, a homogeneous quadratic form of the rates.
-pub fn is_quadratic_in_rates(graph: &Graph, id: Id) -> bool {
+pub fn is_quadratic_in_rates(graph: &Graph, id: NodeId) -> bool {
     graph.is_zero(id) || degree(graph, id, &mut HashMap::new()) == Some(2)
 }
 
 /// The degree of a homogeneous polynomial of the rates; `None` if it is none, or if its
 /// structure does not tell.
-fn degree(graph: &Graph, id: Id, known: &mut HashMap<Id, Option<i32>>) -> Option<i32> {
+fn degree(graph: &Graph, id: NodeId, known: &mut HashMap<NodeId, Option<i32>>) -> Option<i32> {
     if !graph.dependence(id).has(Dependence::RATE) {
         return Some(0);
     }

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
-use crate::symbolic::graph::{Graph, Id, Operation, Shape, Space};
+use crate::symbolic::graph::{Graph, NodeId, Operation, Shape, Space};
 use crate::symbolic::matrix::StructuredMatrix;
 
 /// Which nodes move at all along a direction. Asked before a derivative is formed: most of
@@ -16,13 +16,18 @@ use crate::symbolic::matrix::StructuredMatrix;
 /// constant would be formed for nothing.
 #[derive(Default)]
 struct Moving {
-    known: HashMap<Id, bool>,
+    known: HashMap<NodeId, bool>,
 }
 
 impl Moving {
     /// Whether anything that `id` is computed from moves, by what `leaf` says of nodes that
     /// it knows and of all that have no operands.
-    fn has(&mut self, graph: &Graph, id: Id, leaf: &dyn Fn(&Graph, Id) -> Option<bool>) -> bool {
+    fn has(
+        &mut self,
+        graph: &Graph,
+        id: NodeId,
+        leaf: &dyn Fn(&Graph, NodeId) -> Option<bool>,
+    ) -> bool {
         if let Some(&known) = self.known.get(&id) {
             return known;
         }
@@ -39,13 +44,13 @@ impl Moving {
 }
 
 /// The derivative of a leaf.
-pub type Tangent<'a> = dyn Fn(&mut Graph, Id) -> Id + 'a;
+pub type Tangent<'a> = dyn Fn(&mut Graph, NodeId) -> NodeId + 'a;
 
 /// Values that the leaves of the graph have as derivatives.
 #[derive(Default)]
 pub struct Direction<'a> {
     tangent: Option<&'a Tangent<'a>>,
-    known: HashMap<Id, Id>,
+    known: HashMap<NodeId, NodeId>,
     moving: Moving,
 }
 
@@ -60,12 +65,12 @@ impl<'a> Direction<'a> {
     }
 
     /// Treats `id` as a variable whose derivative is `tangent`.
-    pub fn seed(&mut self, id: Id, tangent: Id) {
+    pub fn seed(&mut self, id: NodeId, tangent: NodeId) {
         self.known.insert(id, tangent);
     }
 
     /// The derivative of `id` along the direction.
-    pub fn derivative(&mut self, graph: &mut Graph, id: Id) -> Id {
+    pub fn derivative(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
         if let Some(&known) = self.known.get(&id) {
             return known;
         }
@@ -76,7 +81,7 @@ impl<'a> Direction<'a> {
 
     /// Whether `id` can have a derivative other than 0. No tangent is asked for, which would
     /// put its nodes into the graph out of turn.
-    fn moves(&mut self, graph: &Graph, id: Id) -> bool {
+    fn moves(&mut self, graph: &Graph, id: NodeId) -> bool {
         let (known, tangents) = (&self.known, self.tangent.is_some());
         self.moving
             .has(graph, id, &|graph, id| match known.get(&id) {
@@ -84,11 +89,11 @@ impl<'a> Direction<'a> {
                 None => graph
                     .operands(graph.operation(id))
                     .is_empty()
-                    .then(|| tangents && !graph.dependence(id).is_prepared()),
+                    .then(|| tangents && !graph.dependence(id).is_parameter_only()),
             })
     }
 
-    fn compute(&mut self, graph: &mut Graph, id: Id) -> Id {
+    fn compute(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
         if !self.moves(graph, id) {
             return graph.zero();
         }
@@ -139,7 +144,7 @@ impl<'a> Direction<'a> {
 
 /// The derivative of a node by a scalar node taken as a variable of its own: a leaf, or an
 /// expression whose own operands then count as constant.
-pub fn by_scalar(graph: &mut Graph, id: Id, variable: Id) -> Id {
+pub fn by_scalar(graph: &mut Graph, id: NodeId, variable: NodeId) -> NodeId {
     let mut direction = Direction::default();
     let one = graph.one();
     direction.seed(variable, one);
@@ -148,7 +153,7 @@ pub fn by_scalar(graph: &mut Graph, id: Id, variable: Id) -> Id {
 
 /// For a node that is one of two others: a and b of the condition a > b, the node where it
 /// holds, the node elsewhere.
-pub(crate) fn choice(graph: &Graph, id: Id) -> Option<[Id; 4]> {
+pub(crate) fn choice(graph: &Graph, id: NodeId) -> Option<[NodeId; 4]> {
     match graph.operation(id) {
         &Operation::Select {
             a,
@@ -167,7 +172,11 @@ pub(crate) fn choice(graph: &Graph, id: Id) -> Option<[Id; 4]> {
 
 /// The derivative of such a node. The derivatives are chosen between, not multiplied by 1
 /// and 0: that of the branch not taken may be infinite or no number.
-fn choose(graph: &mut Graph, id: Id, mut derivative: impl FnMut(&mut Graph, Id) -> Id) -> Id {
+fn choose(
+    graph: &mut Graph,
+    id: NodeId,
+    mut derivative: impl FnMut(&mut Graph, NodeId) -> NodeId,
+) -> NodeId {
     let Some([a, b, then, otherwise]) = choice(graph, id) else {
         return graph.zero();
     };
@@ -180,9 +189,9 @@ fn choose(graph: &mut Graph, id: Id, mut derivative: impl FnMut(&mut Graph, Id) 
 /// are in `matrix_derivatives`, and with the state they do not move.
 pub(crate) fn partial_derivatives(
     graph: &mut Graph,
-    id: Id,
-    mut moves: impl FnMut(&Graph, Id) -> bool,
-) -> Vec<(Id, Id)> {
+    id: NodeId,
+    mut moves: impl FnMut(&Graph, NodeId) -> bool,
+) -> Vec<(NodeId, NodeId)> {
     if let Some([a, b, then, otherwise]) = choice(graph, id) {
         let (zero, one) = (graph.zero(), graph.one());
         let taken = graph.select(a, b, one, zero);
@@ -205,7 +214,7 @@ pub(crate) fn partial_derivatives(
                 if !moves(graph, factor) {
                     return None;
                 }
-                let lowered: Vec<(Id, i32)> = factors
+                let lowered: Vec<(NodeId, i32)> = factors
                     .iter()
                     .map(|&(other, power)| (other, if other == factor { power - 1 } else { power }))
                     .collect();
@@ -225,7 +234,12 @@ pub(crate) fn partial_derivatives(
     }
 }
 
-fn power_derivatives(graph: &mut Graph, id: Id, base: Id, exponent: Id) -> Vec<(Id, Id)> {
+fn power_derivatives(
+    graph: &mut Graph,
+    id: NodeId,
+    base: NodeId,
+    exponent: NodeId,
+) -> Vec<(NodeId, NodeId)> {
     let minus_one = graph.constant(-1.0);
     let lowered = graph.add(exponent, minus_one);
     let power = graph.power(base, lowered);
@@ -237,10 +251,10 @@ fn power_derivatives(graph: &mut Graph, id: Id, base: Id, exponent: Id) -> Vec<(
 
 fn function_derivatives(
     graph: &mut Graph,
-    id: Id,
+    id: NodeId,
     function: Function,
-    arguments: Arguments<Id>,
-) -> Vec<(Id, Id)> {
+    arguments: Arguments<NodeId>,
+) -> Vec<(NodeId, NodeId)> {
     match (function, &*arguments) {
         (Function::Atan2, &[y, x]) => {
             let squares = [graph.integer_power(y, 2), graph.integer_power(x, 2)];
@@ -264,9 +278,14 @@ fn function_derivatives(
 }
 
 /// The derivative of a function of one argument; `None` where it is 0 almost everywhere.
-fn derivative_of_function(graph: &mut Graph, id: Id, function: Function, a: Id) -> Option<Id> {
+fn derivative_of_function(
+    graph: &mut Graph,
+    id: NodeId,
+    function: Function,
+    a: NodeId,
+) -> Option<NodeId> {
     let one = graph.one();
-    let square = |graph: &mut Graph, x: Id| graph.integer_power(x, 2);
+    let square = |graph: &mut Graph, x: NodeId| graph.integer_power(x, 2);
     Some(match function {
         Function::Sin => graph.call(Function::Cos, &[a]),
         Function::Cos => {
@@ -312,16 +331,16 @@ fn derivative_of_function(graph: &mut Graph, id: Id, function: Function, a: Id) 
 
 /// Derivatives by the modes of one field.
 pub struct ModalDerivative {
-    variable: Id,
+    variable: NodeId,
     space: Space,
     moving: Moving,
-    gradients: HashMap<Id, Id>,
-    jacobians: HashMap<Id, StructuredMatrix>,
+    gradients: HashMap<NodeId, NodeId>,
+    jacobians: HashMap<NodeId, StructuredMatrix>,
 }
 
 impl ModalDerivative {
     /// Derivatives by the vector leaf `variable` (a field's mode coordinates or rates).
-    pub fn new(graph: &Graph, variable: Id) -> Option<Self> {
+    pub fn new(graph: &Graph, variable: NodeId) -> Option<Self> {
         match graph.shape(variable) {
             Shape::Vector(space) => Some(Self {
                 variable,
@@ -334,7 +353,7 @@ impl ModalDerivative {
         }
     }
 
-    fn moves(&mut self, graph: &Graph, id: Id) -> bool {
+    fn moves(&mut self, graph: &Graph, id: NodeId) -> bool {
         let variable = self.variable;
         self.moving.has(graph, id, &|graph, id| {
             let leaf = graph.operands(graph.operation(id)).is_empty();
@@ -343,7 +362,7 @@ impl ModalDerivative {
     }
 
     /// The gradient of a scalar node: a vector over the modes, or 0.
-    pub fn gradient(&mut self, graph: &mut Graph, id: Id) -> Id {
+    pub fn gradient(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
         if let Some(&known) = self.gradients.get(&id) {
             return known;
         }
@@ -376,7 +395,7 @@ impl ModalDerivative {
     }
 
     /// The Jacobian of a vector node: rows its own index, columns the modes.
-    pub fn jacobian(&mut self, graph: &mut Graph, id: Id) -> StructuredMatrix {
+    pub fn jacobian(&mut self, graph: &mut Graph, id: NodeId) -> StructuredMatrix {
         if let Some(known) = self.jacobians.get(&id) {
             return known.clone();
         }
@@ -386,7 +405,7 @@ impl ModalDerivative {
     }
 
     /// The Jacobian of a vector, or of the scalar that stands for each of its elements.
-    pub fn of_elements(&mut self, graph: &mut Graph, id: Id, rows: Space) -> StructuredMatrix {
+    pub fn of_elements(&mut self, graph: &mut Graph, id: NodeId, rows: Space) -> StructuredMatrix {
         if graph.shape(id) != Shape::Scalar {
             return self.jacobian(graph, id);
         }
@@ -396,7 +415,7 @@ impl ModalDerivative {
         matrix
     }
 
-    fn compute_jacobian(&mut self, graph: &mut Graph, id: Id) -> StructuredMatrix {
+    fn compute_jacobian(&mut self, graph: &mut Graph, id: NodeId) -> StructuredMatrix {
         let rows = match graph.shape(id) {
             Shape::Vector(space) => space,
             _ => self.space,

@@ -1,7 +1,7 @@
 //! Multiplying out, a level at a time and within bounds. The derivation does not do this
 //! as a rule: it is tried where terms are known to cancel, and kept if it pays.
 
-use crate::symbolic::graph::{Graph, Id, Operation};
+use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 /// How many levels are tried.
 pub const MOST_EXPANSIONS: usize = 4;
@@ -11,8 +11,8 @@ const MOST_TERMS: usize = 200;
 
 /// A sum in which every product with a sum among its factors is multiplied out by one of
 /// them; `None` if there is nothing to multiply out, or too much.
-pub fn expand_once(graph: &mut Graph, id: Id) -> Option<Id> {
-    let terms: Vec<(f64, Id)> = match graph.operation(id) {
+pub fn expand_once(graph: &mut Graph, id: NodeId) -> Option<NodeId> {
+    let terms: Vec<(f64, NodeId)> = match graph.operation(id) {
         Operation::Sum(terms) => terms.iter().map(|(c, term)| (c.value(), *term)).collect(),
         Operation::Product(_) => vec![(1.0, id)],
         _ => return None,
@@ -35,7 +35,7 @@ pub fn expand_once(graph: &mut Graph, id: Id) -> Option<Id> {
 }
 
 /// The terms of a product that has a sum as a factor, to the first power or squared.
-fn expanded_product(graph: &mut Graph, id: Id) -> Option<Vec<(f64, Id)>> {
+fn expanded_product(graph: &mut Graph, id: NodeId) -> Option<Vec<(f64, NodeId)>> {
     let Operation::Product(factors) = graph.operation(id).clone() else {
         return None;
     };

@@ -12,24 +12,24 @@ use std::collections::{HashMap, HashSet};
 use model_spec::model::Function;
 
 pub use crate::symbolic::operation::{
-    Argument, Assembly, Bits, Dependence, Id, Operation, ScaledMatrix, Shape, Space, Variable,
+    Argument, Assembly, Bits, Dependence, NodeId, Operation, ScaledMatrix, Shape, Space, Variable,
 };
 use crate::symbolic::tables::{Table, TableKind};
 
-struct Entry {
+struct Node {
     operation: Operation,
     shape: Shape,
     dependence: Dependence,
-    waits: u32,
+    critical_path: u32,
 }
 
 /// The graph of one variant: its nodes, constant tables and the sizes of its spaces.
 pub struct Graph {
-    entries: Vec<Entry>,
-    known: HashMap<Operation, Id>,
+    nodes: Vec<Node>,
+    known: HashMap<Operation, NodeId>,
     tables: Vec<Table>,
     orders: Vec<usize>,
-    names: HashMap<Id, String>,
+    names: HashMap<NodeId, String>,
     taken: HashSet<String>,
 }
 
@@ -37,7 +37,7 @@ impl Graph {
     /// An empty graph for fields of these orders.
     pub fn new(orders: &[usize]) -> Self {
         Self {
-            entries: Vec::new(),
+            nodes: Vec::new(),
             known: HashMap::new(),
             tables: Vec::new(),
             orders: orders.to_vec(),
@@ -79,24 +79,24 @@ impl Graph {
     }
 
     /// What a node computes.
-    pub fn operation(&self, id: Id) -> &Operation {
-        &self.entries[id.0 as usize].operation
+    pub fn operation(&self, id: NodeId) -> &Operation {
+        &self.nodes[id.0 as usize].operation
     }
 
     /// A node's shape.
-    pub fn shape(&self, id: Id) -> Shape {
-        self.entries[id.0 as usize].shape
+    pub fn shape(&self, id: NodeId) -> Shape {
+        self.nodes[id.0 as usize].shape
     }
 
     /// What a node depends on.
-    pub fn dependence(&self, id: Id) -> Dependence {
-        self.entries[id.0 as usize].dependence
+    pub fn dependence(&self, id: NodeId) -> Dependence {
+        self.nodes[id.0 as usize].dependence
     }
 
-    /// How many elementary functions of the state stand one inside the other at most in what
-    /// a node is computed from. Each takes as long as some dozen additions in a row.
-    pub fn waits(&self, id: Id) -> u32 {
-        self.entries[id.0 as usize].waits
+    /// The length of the critical path to a node, in elementary functions of the state: how many
+    /// stand one inside the other at most. Each takes as long as some dozen additions in a row.
+    pub fn critical_path(&self, id: NodeId) -> u32 {
+        self.nodes[id.0 as usize].critical_path
     }
 
     /// A table of constants.
@@ -106,22 +106,22 @@ impl Graph {
 
     /// How many nodes there are.
     pub fn len(&self) -> usize {
-        self.entries.len()
+        self.nodes.len()
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.entries.is_empty()
+        self.nodes.is_empty()
     }
 
     /// The name a node was given by the specification, if any.
-    pub fn name(&self, id: Id) -> Option<&str> {
+    pub fn name(&self, id: NodeId) -> Option<&str> {
         self.names.get(&id).map(String::as_str)
     }
 
     /// Names a node after a quantity of the specification. Leaves keep their own names, a
     /// node its first.
-    pub fn set_name(&mut self, id: Id, name: &str) {
+    pub fn set_name(&mut self, id: NodeId, name: &str) {
         let compound = !self.operands(self.operation(id)).is_empty();
         if compound && !self.names.contains_key(&id) {
             self.taken.insert(name.to_owned());
@@ -130,27 +130,27 @@ impl Graph {
     }
 
     /// Names a node, unless the name is in use.
-    pub fn suggest_name(&mut self, id: Id, name: &str) {
+    pub fn suggest_name(&mut self, id: NodeId, name: &str) {
         if !self.taken.contains(name) {
             self.set_name(id, name);
         }
     }
 
     /// The node of an operation that needs no simplification.
-    pub(crate) fn intern(&mut self, operation: Operation) -> Id {
+    pub(crate) fn intern(&mut self, operation: Operation) -> NodeId {
         if let Some(&id) = self.known.get(&operation) {
             return id;
         }
         let shape = self.shape_of(&operation);
         let dependence = self.dependence_of(&operation);
-        let waits = self.waits_of(&operation, dependence);
-        let id = Id(self.entries.len() as u32);
+        let critical_path = self.critical_path_of(&operation, dependence);
+        let id = NodeId(self.nodes.len() as u32);
         self.known.insert(operation.clone(), id);
-        self.entries.push(Entry {
+        self.nodes.push(Node {
             operation,
             shape,
             dependence,
-            waits,
+            critical_path,
         });
         id
     }
@@ -161,7 +161,7 @@ impl Graph {
         field: usize,
         kind: TableKind,
         values: impl FnOnce() -> Vec<f64>,
-    ) -> Id {
+    ) -> NodeId {
         let index = match self
             .tables
             .iter()
@@ -253,8 +253,8 @@ impl Graph {
         }
     }
 
-    fn waits_of(&self, operation: &Operation, dependence: Dependence) -> u32 {
-        if dependence.is_prepared() {
+    fn critical_path_of(&self, operation: &Operation, dependence: Dependence) -> u32 {
+        if dependence.is_parameter_only() {
             return 0;
         }
         let own = match operation {
@@ -263,12 +263,12 @@ impl Graph {
             _ => false,
         };
         let operands = self.operands(operation);
-        let inner = operands.into_iter().map(|id| self.waits(id)).max();
+        let inner = operands.into_iter().map(|id| self.critical_path(id)).max();
         u32::from(own) + inner.unwrap_or(0)
     }
 
     /// The nodes an operation reads.
-    pub fn operands(&self, operation: &Operation) -> Vec<Id> {
+    pub fn operands(&self, operation: &Operation) -> Vec<NodeId> {
         match operation {
             Operation::Constant(_)
             | Operation::Parameter(_)
@@ -309,7 +309,7 @@ impl Graph {
     }
 
     /// The leaf of a variable.
-    pub fn variable(&mut self, variable: Variable) -> Id {
+    pub fn variable(&mut self, variable: Variable) -> NodeId {
         self.intern(match variable {
             Variable::Coordinate(index) => Operation::Coordinate(index),
             Variable::ModeCoordinates(field) => Operation::ModeCoordinates(field),
@@ -320,7 +320,7 @@ impl Graph {
     }
 
     /// How often each node is an operand of what `roots` are computed from.
-    pub fn uses(&self, roots: &[Id]) -> HashMap<Id, usize> {
+    pub fn uses(&self, roots: &[NodeId]) -> HashMap<NodeId, usize> {
         let mut uses = HashMap::new();
         for id in self.reachable(roots) {
             for operand in self.operands(self.operation(id)) {
@@ -332,7 +332,7 @@ impl Graph {
 
     /// Every node that `roots` are computed from, operands first. Takes as long as there are
     /// such nodes, however large the graph is.
-    pub fn reachable(&self, roots: &[Id]) -> Vec<Id> {
+    pub fn reachable(&self, roots: &[NodeId]) -> Vec<NodeId> {
         let size = roots.iter().map(|root| root.0 as usize + 1).max();
         let mut seen = vec![false; size.unwrap_or(0)];
         let mut found = Vec::new();

@@ -2,7 +2,7 @@
 //! and scaled tables. Modal mass matrices have this form: a uniform beam's is diagonal, a
 //! tip mass adds one outer product, a basis that is not orthogonal a table.
 
-use crate::symbolic::graph::{Assembly, Graph, Id, Operation, ScaledMatrix, Shape, Space};
+use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, ScaledMatrix, Shape, Space};
 
 /// diagonal + sum of u v^T + sum of diag(row) matrix diag(column).
 #[derive(Clone, Debug)]
@@ -12,9 +12,9 @@ pub struct StructuredMatrix {
     /// Index space of the columns.
     pub columns: Space,
     /// The diagonal (a vector, or a scalar for equal entries); only if rows = columns.
-    pub diagonal: Option<Id>,
+    pub diagonal: Option<NodeId>,
     /// Outer products u v^T; u and v are vectors, or scalars for equal entries.
-    pub outer: Vec<(Id, Id)>,
+    pub outer: Vec<(NodeId, NodeId)>,
     /// Scaled tables.
     pub matrices: Vec<ScaledMatrix>,
 }
@@ -42,7 +42,7 @@ impl StructuredMatrix {
         self.add_to_diagonal(graph, value);
     }
 
-    fn add_to_diagonal(&mut self, graph: &mut Graph, value: Id) {
+    fn add_to_diagonal(&mut self, graph: &mut Graph, value: NodeId) {
         let sum = match self.diagonal {
             Some(present) => graph.add(present, value),
             None => value,
@@ -51,7 +51,7 @@ impl StructuredMatrix {
     }
 
     /// Adds u v^T; outer products of the same v are collected.
-    pub fn add_outer(&mut self, graph: &mut Graph, u: Id, v: Id) {
+    pub fn add_outer(&mut self, graph: &mut Graph, u: NodeId, v: NodeId) {
         if graph.is_zero(u) || graph.is_zero(v) {
             return;
         }
@@ -68,7 +68,7 @@ impl StructuredMatrix {
     }
 
     /// Adds diag(scale) other.
-    pub fn add_scaled(&mut self, graph: &mut Graph, scale: Id, other: &Self) {
+    pub fn add_scaled(&mut self, graph: &mut Graph, scale: NodeId, other: &Self) {
         if graph.is_zero(scale) {
             return;
         }
@@ -87,7 +87,7 @@ impl StructuredMatrix {
     }
 
     /// matrix times this (or its transpose times this).
-    pub fn applied(&self, graph: &mut Graph, matrix: Id, transposed: bool) -> Self {
+    pub fn applied(&self, graph: &mut Graph, matrix: NodeId, transposed: bool) -> Self {
         let rows = match (graph.shape(matrix), transposed) {
             (Shape::Matrix(rows, _), false) => rows,
             (Shape::Matrix(_, columns), true) => columns,
@@ -125,7 +125,7 @@ impl StructuredMatrix {
     }
 
     /// The solution of a system by its Cholesky factor with this as the right side.
-    pub fn solved(&self, graph: &mut Graph, factor: Id) -> Self {
+    pub fn solved(&self, graph: &mut Graph, factor: NodeId) -> Self {
         let mut result = Self::zero(self.rows, self.columns);
         for &(u, v) in &self.outer {
             let solved = graph.cholesky_solve(factor, u);
@@ -150,7 +150,7 @@ impl StructuredMatrix {
 
     /// The row vector of column sums: the gradient of the total of a vector whose
     /// Jacobian this is.
-    pub fn column_totals(&self, graph: &mut Graph) -> Id {
+    pub fn column_totals(&self, graph: &mut Graph) -> NodeId {
         let mut terms = Vec::new();
         if let Some(diagonal) = self.diagonal {
             terms.push((1.0, diagonal));
@@ -178,7 +178,7 @@ impl StructuredMatrix {
     }
 
     /// This as one assembled node.
-    pub fn assemble(&self, graph: &mut Graph) -> Id {
+    pub fn assemble(&self, graph: &mut Graph) -> NodeId {
         graph.intern(Operation::Assemble(Box::new(self.assembly())))
     }
 }

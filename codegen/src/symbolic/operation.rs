@@ -6,7 +6,7 @@ use crate::symbolic::arguments::Arguments;
 
 /// A node of a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Id(pub(crate) u32);
+pub struct NodeId(pub(crate) u32);
 
 /// An index space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -59,7 +59,7 @@ pub enum Variable {
     Input(usize),
 }
 
-/// What some requested functions are called with besides state and inputs: a number for each
+/// What some outputs are called with besides state and inputs: a number for each
 /// of these variables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Argument {
@@ -96,64 +96,64 @@ pub enum Operation {
     Table(usize),
     /// A linear combination with numeric factors, in the order of the nodes; the
     /// constant 1 as a node carries a constant term.
-    Sum(Box<[(Bits, Id)]>),
+    Sum(Box<[(Bits, NodeId)]>),
     /// A product of integer powers, in the order of the nodes.
-    Product(Box<[(Id, i32)]>),
+    Product(Box<[(NodeId, i32)]>),
     /// A function applied element by element.
-    Call(Function, Arguments<Id>),
+    Call(Function, Arguments<NodeId>),
     /// A real power `base^exponent` with an exponent that is no integer literal.
-    Power(Id, Id),
+    Power(NodeId, NodeId),
     /// `if a > b { then } else { otherwise }`.
     Select {
         /// Compared.
-        a: Id,
+        a: NodeId,
         /// Compared with.
-        b: Id,
+        b: NodeId,
         /// Value where a > b.
-        then: Id,
+        then: NodeId,
         /// Value elsewhere.
-        otherwise: Id,
+        otherwise: NodeId,
     },
     /// The sum of a vector's elements.
-    Total(Id),
+    Total(NodeId),
     /// A matrix, or its transpose, times a vector.
     Apply {
         /// The matrix.
-        matrix: Id,
+        matrix: NodeId,
         /// Whether its transpose is meant.
         transposed: bool,
         /// The vector.
-        vector: Id,
+        vector: NodeId,
     },
     /// left^T diag(weight) right, for tables over quadrature nodes.
     Gram {
         /// Matrix nodes x modes.
-        left: Id,
+        left: NodeId,
         /// Vector over the nodes.
-        weight: Id,
+        weight: NodeId,
         /// Matrix nodes x modes.
-        right: Id,
+        right: NodeId,
     },
     /// The diagonal of left^T diag(weight) right.
     GramDiagonal {
         /// Matrix nodes x modes.
-        left: Id,
+        left: NodeId,
         /// Vector over the nodes.
-        weight: Id,
+        weight: NodeId,
         /// Matrix nodes x modes.
-        right: Id,
+        right: NodeId,
     },
     /// A matrix put together from a diagonal, outer products u v^T and
     /// row-scaled and column-scaled matrices.
     Assemble(Box<Assembly>),
     /// The lower Cholesky factor of a symmetric positive definite matrix. A pivot that
     /// is not positive makes the factor NaN.
-    Cholesky(Id),
+    Cholesky(NodeId),
     /// The solution of a system by its Cholesky factor; the right side is a vector, a scalar
     /// that stands for one, or a matrix.
-    CholeskySolve(Id, Id),
+    CholeskySolve(NodeId, NodeId),
     /// The reciprocal of a pivot, NaN where it is not positive.
-    PivotReciprocal(Id),
+    PivotReciprocal(NodeId),
 }
 
 /// The parts of an assembled matrix.
@@ -164,9 +164,9 @@ pub struct Assembly {
     /// Index space of the columns.
     pub columns: Space,
     /// The diagonal, a vector or a scalar; only of a square matrix.
-    pub diagonal: Option<Id>,
+    pub diagonal: Option<NodeId>,
     /// Outer products u v^T.
-    pub outer: Vec<(Id, Id)>,
+    pub outer: Vec<(NodeId, NodeId)>,
     /// diag(row) matrix diag(column), the matrix transposed if so said.
     pub matrices: Vec<ScaledMatrix>,
 }
@@ -175,13 +175,13 @@ pub struct Assembly {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ScaledMatrix {
     /// Scales the rows: scalar or vector.
-    pub row: Id,
+    pub row: NodeId,
     /// The matrix.
-    pub matrix: Id,
+    pub matrix: NodeId,
     /// Whether its transpose is meant.
     pub transposed: bool,
     /// Scales the columns: scalar or vector.
-    pub column: Id,
+    pub column: NodeId,
 }
 
 /// What a node depends on.
@@ -207,14 +207,14 @@ impl Dependence {
     }
 
     /// Whether it depends on nothing but parameters and constants.
-    pub fn is_prepared(self) -> bool {
+    pub fn is_parameter_only(self) -> bool {
         self.0 & !Self::PARAMETER.0 == 0
     }
 }
 
 impl Assembly {
-    pub(crate) fn operands(&self) -> Vec<Id> {
-        let mut all: Vec<Id> = self.diagonal.into_iter().collect();
+    pub(crate) fn operands(&self) -> Vec<NodeId> {
+        let mut all: Vec<NodeId> = self.diagonal.into_iter().collect();
         all.extend(self.outer.iter().flat_map(|(u, v)| [*u, *v]));
         all.extend(
             self.matrices

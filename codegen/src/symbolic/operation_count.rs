@@ -1,13 +1,13 @@
 //! How many operations nodes take per call: what expansions and orders of elimination are chosen by.
 
-use crate::symbolic::graph::{Graph, Id, Operation};
+use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 /// Additions, multiplications and calls that depend on the state, element by element.
-pub fn count_operations(graph: &Graph, roots: &[Id]) -> usize {
+pub fn count_operations(graph: &Graph, roots: &[NodeId]) -> usize {
     graph
         .reachable(roots)
         .into_iter()
-        .filter(|id| !graph.dependence(*id).is_prepared())
+        .filter(|id| !graph.dependence(*id).is_parameter_only())
         .map(|id| {
             let operation = graph.operation(id);
             let operands = graph.operands(operation);

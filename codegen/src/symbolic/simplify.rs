@@ -7,29 +7,29 @@ use std::collections::BTreeMap;
 use model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
-use crate::symbolic::graph::{Bits, Graph, Id, Operation, Shape};
+use crate::symbolic::graph::{Bits, Graph, NodeId, Operation, Shape};
 
 /// Factors of a product with their exponents.
-type Factors = Vec<(Id, i32)>;
+type Factors = Vec<(NodeId, i32)>;
 
 impl Graph {
     /// A number.
-    pub fn constant(&mut self, value: f64) -> Id {
+    pub fn constant(&mut self, value: f64) -> NodeId {
         self.intern(Operation::Constant(Bits::new(value)))
     }
 
     /// The number 0.
-    pub fn zero(&mut self) -> Id {
+    pub fn zero(&mut self) -> NodeId {
         self.constant(0.0)
     }
 
     /// The number 1.
-    pub fn one(&mut self) -> Id {
+    pub fn one(&mut self) -> NodeId {
         self.constant(1.0)
     }
 
     /// The value of a constant node.
-    pub fn as_constant(&self, id: Id) -> Option<f64> {
+    pub fn as_constant(&self, id: NodeId) -> Option<f64> {
         match self.operation(id) {
             Operation::Constant(bits) => Some(bits.value()),
             _ => None,
@@ -37,33 +37,33 @@ impl Graph {
     }
 
     /// Whether a node is the constant 0.
-    pub fn is_zero(&self, id: Id) -> bool {
+    pub fn is_zero(&self, id: NodeId) -> bool {
         self.as_constant(id) == Some(0.0)
     }
 
     /// c a.
-    pub fn scale(&mut self, factor: f64, a: Id) -> Id {
+    pub fn scale(&mut self, factor: f64, a: NodeId) -> NodeId {
         self.combine(&[(factor, a)])
     }
 
     /// -a.
-    pub fn negate(&mut self, a: Id) -> Id {
+    pub fn negate(&mut self, a: NodeId) -> NodeId {
         self.scale(-1.0, a)
     }
 
     /// a + b.
-    pub fn add(&mut self, a: Id, b: Id) -> Id {
+    pub fn add(&mut self, a: NodeId, b: NodeId) -> NodeId {
         self.combine(&[(1.0, a), (1.0, b)])
     }
 
     /// a - b.
-    pub fn subtract(&mut self, a: Id, b: Id) -> Id {
+    pub fn subtract(&mut self, a: NodeId, b: NodeId) -> NodeId {
         self.combine(&[(1.0, a), (-1.0, b)])
     }
 
     /// A linear combination. Laws: numbers are folded, c (k a) = (c k) a, and equal
     /// nodes are collected; a sum inside a sum stays a node of its own.
-    pub fn combine(&mut self, terms: &[(f64, Id)]) -> Id {
+    pub fn combine(&mut self, terms: &[(f64, NodeId)]) -> NodeId {
         let mut collected = BTreeMap::new();
         for &(factor, id) in terms {
             self.collect(&mut collected, factor, id, false);
@@ -73,7 +73,7 @@ impl Graph {
 
     /// A linear combination in which sums inside sums are opened, so that equal terms
     /// cancel across them.
-    pub fn combine_flat(&mut self, terms: &[(f64, Id)]) -> Id {
+    pub fn combine_flat(&mut self, terms: &[(f64, NodeId)]) -> NodeId {
         let mut collected = BTreeMap::new();
         for &(factor, id) in terms {
             self.collect(&mut collected, factor, id, true);
@@ -81,7 +81,7 @@ impl Graph {
         self.sum_of(collected)
     }
 
-    fn collect(&mut self, into: &mut BTreeMap<Id, f64>, factor: f64, id: Id, open: bool) {
+    fn collect(&mut self, into: &mut BTreeMap<NodeId, f64>, factor: f64, id: NodeId, open: bool) {
         match self.operation(id) {
             Operation::Constant(bits) => {
                 let value = bits.value();
@@ -97,10 +97,10 @@ impl Graph {
         }
     }
 
-    fn sum_of(&mut self, mut terms: BTreeMap<Id, f64>) -> Id {
+    fn sum_of(&mut self, mut terms: BTreeMap<NodeId, f64>) -> NodeId {
         terms.retain(|_, factor| *factor != 0.0);
         self.merge_squared_sine_and_cosine(&mut terms);
-        let terms: Vec<(Bits, Id)> = terms
+        let terms: Vec<(Bits, NodeId)> = terms
             .into_iter()
             .map(|(id, factor)| (Bits::new(factor), id))
             .collect();
@@ -113,8 +113,8 @@ impl Graph {
     }
 
     /// Law: c X sin(a)^2 + c X cos(a)^2 = c X.
-    fn merge_squared_sine_and_cosine(&mut self, terms: &mut BTreeMap<Id, f64>) {
-        let ids: Vec<Id> = terms.keys().copied().collect();
+    fn merge_squared_sine_and_cosine(&mut self, terms: &mut BTreeMap<NodeId, f64>) {
+        let ids: Vec<NodeId> = terms.keys().copied().collect();
         for id in ids {
             let Some(&factor) = terms.get(&id) else {
                 continue;
@@ -132,7 +132,7 @@ impl Graph {
     }
 
     /// For X sin(a)^2: X and X cos(a)^2.
-    fn squared_sine_partner(&mut self, id: Id) -> Option<(Id, Id)> {
+    fn squared_sine_partner(&mut self, id: NodeId) -> Option<(NodeId, NodeId)> {
         let Operation::Product(factors) = self.operation(id) else {
             return None;
         };
@@ -151,24 +151,24 @@ impl Graph {
     }
 
     /// a b.
-    pub fn multiply(&mut self, a: Id, b: Id) -> Id {
+    pub fn multiply(&mut self, a: NodeId, b: NodeId) -> NodeId {
         self.product(&[(a, 1), (b, 1)])
     }
 
     /// a / b.
-    pub fn divide(&mut self, a: Id, b: Id) -> Id {
+    pub fn divide(&mut self, a: NodeId, b: NodeId) -> NodeId {
         self.product(&[(a, 1), (b, -1)])
     }
 
     /// a^n.
-    pub fn integer_power(&mut self, a: Id, exponent: i32) -> Id {
+    pub fn integer_power(&mut self, a: NodeId, exponent: i32) -> NodeId {
         self.product(&[(a, exponent)])
     }
 
     /// A product of integer powers. Laws: numeric factors move in front of the product,
     /// products inside are opened, (a^m)^n = a^(m n), equal factors are collected, a^0 = 1.
     /// Where that would make an exponent too large products inside stay closed.
-    pub fn product(&mut self, factors: &[(Id, i32)]) -> Id {
+    pub fn product(&mut self, factors: &[(NodeId, i32)]) -> NodeId {
         let (number, mut collected) = match self.opened_factors(factors) {
             Some(opened) => opened,
             None => (1.0, closed_factors(factors)),
@@ -178,7 +178,7 @@ impl Graph {
         if number == 0.0 {
             return self.zero();
         }
-        let factors: Vec<(Id, i32)> = collected.into_iter().collect();
+        let factors: Vec<(NodeId, i32)> = collected.into_iter().collect();
         let product = match factors.as_slice() {
             [] => return self.constant(number),
             [(id, 1)] => *id,
@@ -188,7 +188,7 @@ impl Graph {
     }
 
     /// The number and the powers of a product; `None` if an exponent is too large.
-    fn opened_factors(&self, factors: &[(Id, i32)]) -> Option<(f64, BTreeMap<Id, i32>)> {
+    fn opened_factors(&self, factors: &[(NodeId, i32)]) -> Option<(f64, BTreeMap<NodeId, i32>)> {
         let mut number = 1.0;
         let mut collected = BTreeMap::new();
         for &(id, exponent) in factors {
@@ -200,8 +200,8 @@ impl Graph {
     fn collect_factor(
         &self,
         number: &mut f64,
-        into: &mut BTreeMap<Id, i32>,
-        id: Id,
+        into: &mut BTreeMap<NodeId, i32>,
+        id: NodeId,
         exponent: i32,
     ) -> Option<()> {
         if exponent.abs() > MAX_EXPONENT {
@@ -232,8 +232,8 @@ impl Graph {
 
     /// Laws: contact^n = contact for n > 0, and deadzone(p, b)^n contact(p, b) =
     /// deadzone(p, b)^n, since the force of Eq. (7) vanishes where the contact does.
-    fn apply_piecewise_laws(&mut self, factors: &mut BTreeMap<Id, i32>) {
-        let contacts: Vec<(Id, Arguments<Id>)> = factors
+    fn apply_piecewise_laws(&mut self, factors: &mut BTreeMap<NodeId, i32>) {
+        let contacts: Vec<(NodeId, Arguments<NodeId>)> = factors
             .keys()
             .filter_map(|id| match self.operation(*id) {
                 Operation::Call(Function::Contact, arguments) => Some((*id, *arguments)),
@@ -254,7 +254,7 @@ impl Graph {
     }
 
     /// base^exponent. Laws: integer exponents become products, 1/2 a square root.
-    pub fn power(&mut self, base: Id, exponent: Id) -> Id {
+    pub fn power(&mut self, base: NodeId, exponent: NodeId) -> NodeId {
         match self.as_constant(exponent) {
             Some(value) if value == value.round() && value.abs() <= 64.0 => {
                 self.integer_power(base, value as i32)
@@ -269,7 +269,7 @@ impl Graph {
 
     /// A function of scalars or vectors. Laws: sin, cos, exp and sqrt of their simplest
     /// numbers; odd functions take a minus sign out, even ones drop it.
-    pub fn call(&mut self, function: Function, arguments: impl Into<Arguments<Id>>) -> Id {
+    pub fn call(&mut self, function: Function, arguments: impl Into<Arguments<NodeId>>) -> NodeId {
         let arguments = arguments.into();
         if let Arguments::One([a]) = arguments {
             if let Some(value) = self.as_constant(a).and_then(|x| exact_value(function, x)) {
@@ -298,7 +298,7 @@ impl Graph {
     }
 
     /// The node a in -a.
-    fn without_minus(&mut self, id: Id) -> Option<Id> {
+    fn without_minus(&mut self, id: NodeId) -> Option<NodeId> {
         match self.operation(id).clone() {
             Operation::Sum(terms) if terms.iter().all(|(factor, _)| factor.value() < 0.0) => {
                 Some(self.negate_all(&terms))
@@ -308,13 +308,13 @@ impl Graph {
         }
     }
 
-    fn negate_all(&mut self, terms: &[(Bits, Id)]) -> Id {
-        let negated: Vec<(f64, Id)> = terms.iter().map(|(f, id)| (-f.value(), *id)).collect();
+    fn negate_all(&mut self, terms: &[(Bits, NodeId)]) -> NodeId {
+        let negated: Vec<(f64, NodeId)> = terms.iter().map(|(f, id)| (-f.value(), *id)).collect();
         self.combine(&negated)
     }
 
     /// `if a > b { then } else { otherwise }`. Law: equal branches need no choice.
-    pub fn select(&mut self, a: Id, b: Id, then: Id, otherwise: Id) -> Id {
+    pub fn select(&mut self, a: NodeId, b: NodeId, then: NodeId, otherwise: NodeId) -> NodeId {
         if then == otherwise {
             return then;
         }
@@ -327,7 +327,7 @@ impl Graph {
     }
 
     /// The factors of a product that are scalars, and the others.
-    pub(crate) fn scalar_factors(&self, factors: &[(Id, i32)]) -> (Factors, Factors) {
+    pub(crate) fn scalar_factors(&self, factors: &[(NodeId, i32)]) -> (Factors, Factors) {
         factors
             .iter()
             .partition(|(id, _)| self.shape(*id) == Shape::Scalar)
@@ -335,7 +335,7 @@ impl Graph {
 
     /// The sum of a vector's elements. Laws: scalar factors move in front of the sum, a
     /// scalar is summed size times, an empty sum is 0.
-    pub fn total(&mut self, vector: Id) -> Id {
+    pub fn total(&mut self, vector: NodeId) -> NodeId {
         let Shape::Vector(space) = self.shape(vector) else {
             return vector;
         };
@@ -362,7 +362,7 @@ impl Graph {
     }
 
     /// The sum over `space` of a scalar or vector.
-    pub fn total_over(&mut self, space: crate::symbolic::graph::Space, summand: Id) -> Id {
+    pub fn total_over(&mut self, space: crate::symbolic::graph::Space, summand: NodeId) -> NodeId {
         match self.shape(summand) {
             Shape::Scalar => {
                 let size = self.size(space) as f64;
@@ -375,7 +375,7 @@ impl Graph {
     /// A matrix, or its transpose, times a vector (a scalar stands for the vector of
     /// that value). Laws: scalar factors of the vector move in front; empty spaces and
     /// zero vectors give 0.
-    pub fn apply(&mut self, matrix: Id, transposed: bool, vector: Id) -> Id {
+    pub fn apply(&mut self, matrix: NodeId, transposed: bool, vector: NodeId) -> NodeId {
         let Shape::Matrix(rows, columns) = self.shape(matrix) else {
             return self.zero();
         };
@@ -402,14 +402,14 @@ impl Graph {
     }
 
     /// The solution of a system by its Cholesky factor. Law: 0 for 0.
-    pub fn cholesky_solve(&mut self, factor: Id, vector: Id) -> Id {
+    pub fn cholesky_solve(&mut self, factor: NodeId, vector: NodeId) -> NodeId {
         if self.is_zero(vector) {
             return vector;
         }
         self.intern(Operation::CholeskySolve(factor, vector))
     }
 
-    fn intern_apply(&mut self, matrix: Id, transposed: bool, vector: Id) -> Id {
+    fn intern_apply(&mut self, matrix: NodeId, transposed: bool, vector: NodeId) -> NodeId {
         self.intern(Operation::Apply {
             matrix,
             transposed,
@@ -422,7 +422,7 @@ impl Graph {
 const MAX_EXPONENT: i32 = 4096;
 
 /// The factors as they are, equal ones collected.
-fn closed_factors(factors: &[(Id, i32)]) -> BTreeMap<Id, i32> {
+fn closed_factors(factors: &[(NodeId, i32)]) -> BTreeMap<NodeId, i32> {
     let mut collected = BTreeMap::new();
     for &(id, exponent) in factors {
         *collected.entry(id).or_insert(0) += exponent;

@@ -2,16 +2,16 @@
 
 use std::collections::HashMap;
 
-use crate::symbolic::graph::{Graph, Id, Operation};
+use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 /// `id` with every node for which `replacement` gives another one replaced by it. Matrix
 /// factors, which depend on parameters alone, are kept.
 pub fn substitute(
     graph: &mut Graph,
-    id: Id,
-    replacement: &dyn Fn(&mut Graph, Id) -> Option<Id>,
-    known: &mut HashMap<Id, Id>,
-) -> Id {
+    id: NodeId,
+    replacement: &dyn Fn(&mut Graph, NodeId) -> Option<NodeId>,
+    known: &mut HashMap<NodeId, NodeId>,
+) -> NodeId {
     if let Some(&done) = known.get(&id) {
         return done;
     }
@@ -25,22 +25,22 @@ pub fn substitute(
 
 fn rebuild(
     graph: &mut Graph,
-    id: Id,
-    replacement: &dyn Fn(&mut Graph, Id) -> Option<Id>,
-    known: &mut HashMap<Id, Id>,
-) -> Id {
+    id: NodeId,
+    replacement: &dyn Fn(&mut Graph, NodeId) -> Option<NodeId>,
+    known: &mut HashMap<NodeId, NodeId>,
+) -> NodeId {
     let operation = graph.operation(id).clone();
-    let mut inner = |graph: &mut Graph, id: Id| substitute(graph, id, replacement, known);
+    let mut inner = |graph: &mut Graph, id: NodeId| substitute(graph, id, replacement, known);
     match operation {
         Operation::Sum(terms) => {
-            let terms: Vec<(f64, Id)> = terms
+            let terms: Vec<(f64, NodeId)> = terms
                 .iter()
                 .map(|&(factor, term)| (factor.value(), inner(graph, term)))
                 .collect();
             graph.combine(&terms)
         }
         Operation::Product(factors) => {
-            let factors: Vec<(Id, i32)> = factors
+            let factors: Vec<(NodeId, i32)> = factors
                 .iter()
                 .map(|&(factor, exponent)| (inner(graph, factor), exponent))
                 .collect();

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
 
@@ -75,7 +75,7 @@ fn the_printed_basis_is_emitted_as_kept() {
 #[test]
 fn the_regimes_of_the_arm_are_emitted_as_kept() {
     let model = shipped("planetary_arm");
-    let Ok(variant) = Variant::derive_with(&model, &[2], &[Request::Regimes]) else {
+    let Ok(variant) = Variant::derive_with(&model, &[2], &[Output::Regimes]) else {
         panic!("the arm has regimes");
     };
     let source = emit(&variant.program, Packaging::Crate).unwrap();

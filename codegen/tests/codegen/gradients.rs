@@ -1,7 +1,7 @@
 //! Gradients backward through branches: what is infinite or no number in a branch that is not
 //! taken does not come through.
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::program::evaluator::{Evaluator, Point};
 use codegen::variant::Variant;
 
@@ -30,7 +30,7 @@ push = { on = "x", value = "max(F, k*sqrt(x/l) + F*(x/l)^2)" }
 /// The gradients of 11 times the acceleration by the state and by the parameters.
 fn gradients(x: f64) -> ([f64; 2], [f64; 4]) {
     let model = crate::support::model(PUSHED);
-    let variant = Variant::derive_with(&model, &[], &[Request::Products])
+    let variant = Variant::derive_with(&model, &[], &[Output::Products])
         .unwrap_or_else(|found| panic!("{}", found.render(false)));
     let mut evaluator = Evaluator::new(variant.program);
     let point = Point {

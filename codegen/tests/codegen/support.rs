@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use codegen::mechanics::equations::{Equations, derive};
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::program::Program;
 use codegen::program::evaluator::{Evaluator, Point};
 use codegen::program::lowering::lower;
@@ -60,7 +60,7 @@ pub fn emitted(model: &Model, order: usize) -> String {
 /// The program of a model with every field at one order and everything that can be requested.
 pub fn program_with_all(model: &Model, order: usize) -> Program {
     let orders = vec![order; model.fields.len()];
-    match Variant::derive_with(model, &orders, &Request::ALL) {
+    match Variant::derive_with(model, &orders, &Output::ALL) {
         Ok(variant) => variant.program,
         Err(found) => panic!("{}", found.render(false)),
     }

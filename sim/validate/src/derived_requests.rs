@@ -1,6 +1,7 @@
 //! What was requested of a derived model, seen by the certificate: the evaluator of its
 //! program behind the trait. Nothing is derived here.
 
+use codegen::program::BlockPlace;
 use codegen::program::Jacobian;
 use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
@@ -34,7 +35,7 @@ fn point(at: &Sample) -> Point<'_> {
 
 impl Requested for DerivedRequests {
     fn names(&self) -> Vec<String> {
-        let requests = self.evaluator.program().requested.requests.iter();
+        let requests = self.evaluator.program().outputs.kinds.iter();
         requests.map(|request| request.name().to_owned()).collect()
     }
 
@@ -68,7 +69,7 @@ impl Requested for DerivedRequests {
     }
 
     fn jacobian(&mut self, name: &str, at: &Sample) -> Option<DMatrix<f64>> {
-        let jacobians = &self.evaluator.program().requested.jacobians;
+        let jacobians = &self.evaluator.program().outputs.jacobians;
         let place = jacobians.iter().position(|known| known.name == name)?;
         let jacobian = jacobians[place].clone();
         let mut nonzeros = vec![f64::NAN; jacobian.nonzeros()];
@@ -120,7 +121,7 @@ impl Requested for DerivedRequests {
 /// A Jacobian with its zeros.
 fn dense<N>(jacobian: &Jacobian<N>, nonzeros: &[f64]) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(jacobian.rows, jacobian.columns);
-    for (entry, (start, width)) in jacobian.entries.iter().zip(jacobian.places()) {
+    for (entry, BlockPlace { start, width }) in jacobian.entries.iter().zip(jacobian.places()) {
         for row in 0..entry.rows {
             for place in 0..entry.width() {
                 let column = if entry.diagonal { row } else { place };

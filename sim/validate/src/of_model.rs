@@ -4,11 +4,11 @@
 use std::cell::RefCell;
 
 use codegen::mechanics::equations::derive;
-use codegen::mechanics::outputs::Request;
-use codegen::mechanics::outputs::requested;
+use codegen::mechanics::outputs::Output;
+use codegen::mechanics::outputs::derive_outputs;
 use codegen::program::Program;
 use codegen::program::evaluator::Evaluator;
-use codegen::program::lowering::lower_requested;
+use codegen::program::lowering::lower_with_outputs;
 use codegen::rust::{Packaging, emit};
 use model_spec::model::Model;
 use model_spec::variant::ModelError;
@@ -30,19 +30,19 @@ use sim::piecewise_linear::Propagator;
 pub fn certificate(
     model: &Model,
     order: usize,
-    requests: &[Request],
+    outputs: &[Output],
     emitted: String,
     by_hand: &ByHand,
 ) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
     let variants = |order: usize| variant(model, order, &parameters);
-    let on_request = || on_request(model, order, &parameters, requests);
+    let on_request = || on_request(model, order, &parameters, outputs);
     let propagator = exact(model, order).map(RefCell::new);
     let derivative = |time: f64, state: &[f64], inputs: &[f64]| match &propagator {
         Ok(propagator) => rates(&mut propagator.borrow_mut(), time, state, inputs),
         Err(reason) => Err(reason.clone()),
     };
-    let emitted = source(model, requests, emitted);
+    let emitted = source(model, outputs, emitted);
     Ok(certify(&Subject {
         model,
         order,
@@ -50,7 +50,7 @@ pub fn certificate(
         variants: &variants,
         references: &by_hand.references,
         absent: &by_hand.absent,
-        requested: (!requests.is_empty()).then_some(&on_request),
+        requested: (!outputs.is_empty()).then_some(&on_request),
         regimes: kernels(model, order, &parameters, &emitted.input_fields),
         emitted: Ok(emitted),
         exact: match &propagator {
@@ -68,19 +68,19 @@ pub fn certificate(
 pub fn unchecked(
     model: &Model,
     order: usize,
-    requests: &[Request],
+    outputs: &[Output],
     emitted: String,
 ) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
-    let emitted = source(model, requests, emitted);
+    let emitted = source(model, outputs, emitted);
     let about = about(model, order, &parameters, Some(&emitted));
     Ok(Certificate::new(about, Vec::new()))
 }
 
 /// The emitted source with what is to be compared of it.
-fn source(model: &Model, requests: &[Request], source: String) -> Emitted {
+fn source(model: &Model, outputs: &[Output], source: String) -> Emitted {
     let inputs = model.inputs.iter();
-    let names = requests.iter().map(|request| request.name().to_owned());
+    let names = outputs.iter().map(|output| output.name().to_owned());
     Emitted {
         source,
         input_fields: inputs.map(|input| input.name.clone()).collect(),
@@ -103,7 +103,7 @@ fn kernels(
     parameters: &[f64],
     input_fields: &[String],
 ) -> Result<Emitted, String> {
-    let program = program(model, order, parameters, &[Request::Regimes])?;
+    let program = program(model, order, parameters, &[Output::Regimes])?;
     if program.guards.is_empty() {
         return Err("the model has no piecewise function".to_owned());
     }
@@ -151,9 +151,9 @@ fn on_request(
     model: &Model,
     order: usize,
     parameters: &[f64],
-    requests: &[Request],
+    outputs: &[Output],
 ) -> Result<Box<dyn Requested>, String> {
-    let evaluator = Evaluator::new(program(model, order, parameters, requests)?);
+    let evaluator = Evaluator::new(program(model, order, parameters, outputs)?);
     Ok(Box::new(DerivedRequests::new(evaluator)))
 }
 
@@ -162,10 +162,12 @@ fn program(
     model: &Model,
     order: usize,
     parameters: &[f64],
-    requests: &[Request],
+    outputs: &[Output],
 ) -> Result<Program, String> {
     let orders = vec![order; model.fields.len()];
     let mut equations = derive(model, &orders).map_err(|error| error.to_string())?;
-    let requested = requested(&mut equations, requests).map_err(|error| error.to_string())?;
-    Ok(lower_requested(model, &equations, parameters, &requested))
+    let requested = derive_outputs(&mut equations, outputs).map_err(|error| error.to_string())?;
+    Ok(lower_with_outputs(
+        model, &equations, parameters, &requested,
+    ))
 }

@@ -21,9 +21,9 @@ use model_spec::model::Function;
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::may_rest;
 use crate::mechanics::linearity::{Linearity, linearity};
-use crate::mechanics::rows::Rows;
+use crate::mechanics::rows::RowNodes;
 use crate::symbolic::differentiate::by_scalar;
-use crate::symbolic::graph::{Graph, Id, Operation, Shape, Space};
+use crate::symbolic::graph::{Graph, NodeId, Operation, Shape, Space};
 use crate::symbolic::substitute::substitute;
 
 pub(crate) use rows::AffineRow;
@@ -33,7 +33,7 @@ pub struct AffineEquations {
     pub(crate) graph: Graph,
     pub(crate) parameter_names: Vec<String>,
     /// For each parameter the node of its expression; the sides follow, with none.
-    pub(crate) derived_parameters: Vec<Option<Id>>,
+    pub(crate) derived_parameters: Vec<Option<NodeId>>,
     /// One per coordinate.
     pub(crate) scalars: Vec<AffineRow>,
     /// One per field: its coefficients hold a number or a row per mode.
@@ -46,24 +46,24 @@ pub struct AffineEquations {
     /// other surfaces, or is of inputs alone.
     pub(crate) guards_rest: Vec<bool>,
     /// What must not be negative: half-widths of dead zones.
-    pub(crate) half_widths: Vec<Id>,
+    pub(crate) half_widths: Vec<NodeId>,
     pub(crate) phases: Vec<PhaseNodes>,
     /// Pivots of the mass matrix.
-    pub(crate) pivots: Vec<Id>,
+    pub(crate) pivots: Vec<NodeId>,
 }
 
 /// A phase rate t + offset.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhaseNodes {
-    pub rate: Id,
-    pub offset: Id,
+    pub rate: NodeId,
+    pub offset: NodeId,
 }
 
 /// The coefficients of a piecewise-linear model.
 ///
 /// # Errors
 /// The node that is not linear between switching surfaces, if there is one.
-pub fn affine(mut equations: Equations) -> Result<AffineEquations, Id> {
+pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
     if let Linearity::Nonlinear(node) = linearity(&equations) {
         return Err(node);
     }
@@ -76,12 +76,12 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, Id> {
     let mut with_sides = sides::Sides::of(&mut equations);
     let graph = &mut equations.graph;
     let known = &mut with_sides.known;
-    let mut replaced = |graph: &mut Graph, id: Id| substitute(graph, id, &|_, _| None, known);
-    let accelerations = Rows {
+    let mut replaced = |graph: &mut Graph, id: NodeId| substitute(graph, id, &|_, _| None, known);
+    let accelerations = RowNodes {
         scalars: each(graph, &equations.accelerations.rows.scalars, &mut replaced),
         modal: each(graph, &equations.accelerations.rows.modal, &mut replaced),
     };
-    let surfaces: Vec<Id> = equations.guards.iter().map(|guard| guard.value).collect();
+    let surfaces: Vec<NodeId> = equations.guards.iter().map(|guard| guard.value).collect();
     let guards = each(graph, &surfaces, &mut replaced);
     let moving = [accelerations.nodes(), guards.clone()].concat();
     let sinusoids = rows::Sinusoids::in_nodes(graph, &moving);
@@ -94,7 +94,7 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, Id> {
         .collect();
     let guard_rows = read(&mut reader, graph, &guards);
     let rows = scalars.iter().chain(&modal).chain(&guard_rows);
-    let unsettled = |id: &Id| !graph.dependence(*id).is_prepared();
+    let unsettled = |id: &NodeId| !graph.dependence(*id).is_parameter_only();
     if let Some(node) = rows.flat_map(AffineRow::nodes).find(unsettled) {
         return Err(node);
     }
@@ -131,31 +131,31 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, Id> {
 
 fn each(
     graph: &mut Graph,
-    nodes: &[Id],
-    replaced: &mut dyn FnMut(&mut Graph, Id) -> Id,
-) -> Vec<Id> {
+    nodes: &[NodeId],
+    replaced: &mut dyn FnMut(&mut Graph, NodeId) -> NodeId,
+) -> Vec<NodeId> {
     nodes.iter().map(|id| replaced(graph, *id)).collect()
 }
 
-fn read(reader: &mut rows::Reader<'_>, graph: &mut Graph, nodes: &[Id]) -> Vec<AffineRow> {
+fn read(reader: &mut rows::Reader<'_>, graph: &mut Graph, nodes: &[NodeId]) -> Vec<AffineRow> {
     nodes
         .iter()
         .map(|id| reader.row(graph, *id, None))
         .collect()
 }
 
-fn at_time_zero(graph: &mut Graph, phase: Id, time: Id) -> Id {
-    let zero = |graph: &mut Graph, node: Id| (node == time).then(|| graph.zero());
+fn at_time_zero(graph: &mut Graph, phase: NodeId, time: NodeId) -> NodeId {
+    let zero = |graph: &mut Graph, node: NodeId| (node == time).then(|| graph.zero());
     substitute(graph, phase, &zero, &mut HashMap::new())
 }
 
 /// For each surface the first one that it is parallel to, itself included.
-fn parallel(graph: &mut Graph, surfaces: &[Id]) -> Vec<usize> {
+fn parallel(graph: &mut Graph, surfaces: &[NodeId]) -> Vec<usize> {
     let mut firsts = Vec::with_capacity(surfaces.len());
     for (index, &surface) in surfaces.iter().enumerate() {
         let first = (0..index).find(|&other| {
             let difference = graph.combine_flat(&[(1.0, surface), (-1.0, surfaces[other])]);
-            graph.dependence(difference).is_prepared()
+            graph.dependence(difference).is_parameter_only()
         });
         firsts.push(first.unwrap_or(index));
     }
@@ -163,7 +163,7 @@ fn parallel(graph: &mut Graph, surfaces: &[Id]) -> Vec<usize> {
 }
 
 /// How many inputs there are, up to the last one used.
-fn input_count(graph: &Graph, nodes: &[Id]) -> usize {
+fn input_count(graph: &Graph, nodes: &[NodeId]) -> usize {
     let inputs = graph
         .reachable(nodes)
         .into_iter()

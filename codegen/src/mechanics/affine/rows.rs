@@ -5,28 +5,28 @@ use std::collections::HashMap;
 
 use model_spec::model::Function;
 
-use crate::mechanics::rows::Rows;
+use crate::mechanics::rows::RowNodes;
 use crate::symbolic::differentiate::{ModalDerivative, by_scalar};
-use crate::symbolic::graph::{Graph, Id, Operation, Space};
+use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use crate::symbolic::substitute::substitute;
 
 /// The coefficients of an expression: of a scalar numbers, and vectors for the modes; of a
 /// vector over modes vectors, and matrices for the modes.
 #[derive(Clone, Debug)]
 pub(crate) struct AffineRow {
-    pub coordinates: Vec<Id>,
-    pub mode_coordinates: Vec<Id>,
-    pub rates: Vec<Id>,
-    pub mode_rates: Vec<Id>,
-    pub inputs: Vec<Id>,
-    pub sines: Vec<Id>,
-    pub cosines: Vec<Id>,
-    pub constant: Id,
+    pub coordinates: Vec<NodeId>,
+    pub mode_coordinates: Vec<NodeId>,
+    pub rates: Vec<NodeId>,
+    pub mode_rates: Vec<NodeId>,
+    pub inputs: Vec<NodeId>,
+    pub sines: Vec<NodeId>,
+    pub cosines: Vec<NodeId>,
+    pub constant: NodeId,
 }
 
 impl AffineRow {
     /// All coefficients.
-    pub fn nodes(&self) -> impl Iterator<Item = Id> + '_ {
+    pub fn nodes(&self) -> impl Iterator<Item = NodeId> + '_ {
         let blocks = [
             &self.coordinates,
             &self.mode_coordinates,
@@ -44,17 +44,17 @@ impl AffineRow {
 /// The sines and cosines of time.
 pub(super) struct Sinusoids {
     /// The distinct phases.
-    pub phases: Vec<Id>,
+    pub phases: Vec<NodeId>,
     /// For each phase its sine and its cosine.
-    calls: Vec<[Id; 2]>,
+    calls: Vec<[NodeId; 2]>,
 }
 
 impl Sinusoids {
     /// Those that `nodes` hold.
-    pub fn in_nodes(graph: &mut Graph, nodes: &[Id]) -> Self {
+    pub fn in_nodes(graph: &mut Graph, nodes: &[NodeId]) -> Self {
         let mut phases = Vec::new();
         for id in graph.reachable(nodes) {
-            if graph.dependence(id).is_prepared() {
+            if graph.dependence(id).is_parameter_only() {
                 continue;
             }
             if let Operation::Call(Function::Sin | Function::Cos, arguments) = graph.operation(id)
@@ -77,17 +77,22 @@ impl Sinusoids {
 /// Reads coefficients off expressions.
 pub(super) struct Reader<'a> {
     sinusoids: &'a Sinusoids,
-    coordinates: Vec<Id>,
-    rates: Vec<Id>,
-    inputs: Vec<Id>,
+    coordinates: Vec<NodeId>,
+    rates: Vec<NodeId>,
+    inputs: Vec<NodeId>,
     modes: Vec<ModalDerivative>,
     mode_rates: Vec<ModalDerivative>,
-    at_rest: HashMap<Id, Id>,
+    at_rest: HashMap<NodeId, NodeId>,
 }
 
 impl<'a> Reader<'a> {
     /// A reader for a model whose accelerations have these rows.
-    pub fn new(rows: &Rows, graph: &mut Graph, sinusoids: &'a Sinusoids, inputs: usize) -> Self {
+    pub fn new(
+        rows: &RowNodes,
+        graph: &mut Graph,
+        sinusoids: &'a Sinusoids,
+        inputs: usize,
+    ) -> Self {
         let scalars = 0..rows.scalars.len();
         let fields = 0..rows.modal.len();
         let mut modal = |operation: fn(usize) -> Operation| -> Vec<ModalDerivative> {
@@ -118,8 +123,8 @@ impl<'a> Reader<'a> {
     }
 
     /// The coefficients of `id`, which stands for each element of `elements` if these are given.
-    pub fn row(&mut self, graph: &mut Graph, id: Id, elements: Option<Space>) -> AffineRow {
-        let by = |graph: &mut Graph, variables: &[Id]| -> Vec<Id> {
+    pub fn row(&mut self, graph: &mut Graph, id: NodeId, elements: Option<Space>) -> AffineRow {
+        let by = |graph: &mut Graph, variables: &[NodeId]| -> Vec<NodeId> {
             variables
                 .iter()
                 .map(|variable| by_scalar(graph, id, *variable))
@@ -127,7 +132,7 @@ impl<'a> Reader<'a> {
         };
         let (coordinates, rates) = (by(graph, &self.coordinates), by(graph, &self.rates));
         let inputs = by(graph, &self.inputs);
-        let by_calls = |graph: &mut Graph, place: usize| -> Vec<Id> {
+        let by_calls = |graph: &mut Graph, place: usize| -> Vec<NodeId> {
             let calls = self.sinusoids.calls.iter();
             calls
                 .map(|pair| by_scalar(graph, id, pair[place]))
@@ -146,9 +151,9 @@ impl<'a> Reader<'a> {
     }
 
     /// What is left where nothing moves, nothing is put in and every sinusoid is 0.
-    fn constant(&mut self, graph: &mut Graph, id: Id) -> Id {
+    fn constant(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
         let sinusoids = self.sinusoids;
-        let replacement = |graph: &mut Graph, node: Id| {
+        let replacement = |graph: &mut Graph, node: NodeId| {
             let moves = match graph.operation(node) {
                 Operation::Coordinate(_)
                 | Operation::Rate(_)
@@ -166,10 +171,10 @@ impl<'a> Reader<'a> {
 /// The derivative by each field's modes: a vector for a scalar, a matrix for elements.
 fn by_modes(
     graph: &mut Graph,
-    id: Id,
+    id: NodeId,
     elements: Option<Space>,
     fields: &mut [ModalDerivative],
-) -> Vec<Id> {
+) -> Vec<NodeId> {
     fields
         .iter_mut()
         .map(|field| match elements {

@@ -6,22 +6,22 @@ use model_spec::model::Function;
 
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::{Surfaces, surfaces};
-use crate::symbolic::graph::{Graph, Id, Operation};
+use crate::symbolic::graph::{Graph, NodeId, Operation};
 use crate::symbolic::substitute::substitute;
 
 /// Replacements for every switching function of a model.
 pub(super) struct Sides {
     /// A node to the one that stands for it.
-    pub known: HashMap<Id, Id>,
+    pub known: HashMap<NodeId, NodeId>,
     /// Half-widths of dead zones: what is written here holds for those that are not negative.
-    pub half_widths: Vec<Id>,
+    pub half_widths: Vec<NodeId>,
 }
 
 impl Sides {
     /// Replaces what switches in the accelerations and in the surfaces themselves.
     pub fn of(equations: &mut Equations) -> Self {
         let first_side = equations.parameter_names.len();
-        let values: Vec<Id> = equations.guards.iter().map(|guard| guard.value).collect();
+        let values: Vec<NodeId> = equations.guards.iter().map(|guard| guard.value).collect();
         let roots = [equations.accelerations.rows.nodes(), values.clone()].concat();
         let graph = &mut equations.graph;
         let mut sides = Self {
@@ -30,10 +30,10 @@ impl Sides {
         };
         // Operands come first: what stands inside of a switching function is replaced by then.
         for id in graph.reachable(&roots) {
-            if graph.dependence(id).is_prepared() {
+            if graph.dependence(id).is_parameter_only() {
                 continue;
             }
-            let parameter = |graph: &mut Graph, surface: Id| {
+            let parameter = |graph: &mut Graph, surface: NodeId| {
                 let index = values.iter().position(|value| *value == surface)?;
                 Some(graph.intern(Operation::Parameter(first_side + index)))
             };
@@ -47,9 +47,9 @@ impl Sides {
     fn replacement(
         &mut self,
         graph: &mut Graph,
-        id: Id,
-        parameter: &dyn Fn(&mut Graph, Id) -> Option<Id>,
-    ) -> Option<Id> {
+        id: NodeId,
+        parameter: &dyn Fn(&mut Graph, NodeId) -> Option<NodeId>,
+    ) -> Option<NodeId> {
         match graph.operation(id).clone() {
             Operation::Call(function, arguments) => {
                 self.call(graph, function, &arguments, parameter)
@@ -80,15 +80,15 @@ impl Sides {
         &mut self,
         graph: &mut Graph,
         function: Function,
-        arguments: &[Id],
-        parameter: &dyn Fn(&mut Graph, Id) -> Option<Id>,
-    ) -> Option<Id> {
+        arguments: &[NodeId],
+        parameter: &dyn Fn(&mut Graph, NodeId) -> Option<NodeId>,
+    ) -> Option<NodeId> {
         let surfaces = surfaces(graph, function, arguments);
         let sides = surfaces
             .all()
             .map(|surface| parameter(graph, surface))
-            .collect::<Option<Vec<Id>>>()?;
-        let inner: Vec<Id> = arguments.iter().map(|a| self.inner(graph, *a)).collect();
+            .collect::<Option<Vec<NodeId>>>()?;
+        let inner: Vec<NodeId> = arguments.iter().map(|a| self.inner(graph, *a)).collect();
         if let (Function::Contact, &[_, b]) = (function, inner.as_slice()) {
             self.half_widths.push(b);
         }
@@ -126,25 +126,25 @@ impl Sides {
         })
     }
 
-    fn inner(&mut self, graph: &mut Graph, id: Id) -> Id {
+    fn inner(&mut self, graph: &mut Graph, id: NodeId) -> NodeId {
         substitute(graph, id, &|_, _| None, &mut self.known)
     }
 }
 
 /// 1 - side.
-fn opposite(graph: &mut Graph, side: Id) -> Id {
+fn opposite(graph: &mut Graph, side: NodeId) -> NodeId {
     let one = graph.one();
     graph.subtract(one, side)
 }
 
 /// 2 side - 1.
-fn sign(graph: &mut Graph, side: Id) -> Id {
+fn sign(graph: &mut Graph, side: NodeId) -> NodeId {
     let one = graph.one();
     graph.combine(&[(2.0, side), (-1.0, one)])
 }
 
 /// side a + (1 - side) b, so that a side of 0 or 1 leaves the other untouched.
-fn between(graph: &mut Graph, side: Id, a: Id, b: Id) -> Id {
+fn between(graph: &mut Graph, side: NodeId, a: NodeId, b: NodeId) -> NodeId {
     let other = opposite(graph, side);
     let (a, b) = (graph.multiply(side, a), graph.multiply(other, b));
     graph.add(a, b)

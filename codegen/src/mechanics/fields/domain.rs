@@ -3,7 +3,7 @@
 use model_spec::model::Basis;
 
 use super::modes;
-use crate::symbolic::graph::{Graph, Id};
+use crate::symbolic::graph::{Graph, NodeId};
 use crate::symbolic::tables::TableKind;
 
 /// The domain of a field, as nodes.
@@ -13,16 +13,16 @@ pub struct Domain {
     /// Its mode shapes.
     pub basis: Basis,
     /// Where it starts.
-    pub from: Id,
+    pub from: NodeId,
     /// Where it ends.
-    pub to: Id,
+    pub to: NodeId,
     /// to - from
-    pub length: Id,
+    pub length: NodeId,
 }
 
 impl Domain {
     /// The node of one of the field's tables.
-    pub fn table(&self, graph: &mut Graph, kind: TableKind) -> Id {
+    pub fn table(&self, graph: &mut Graph, kind: TableKind) -> NodeId {
         let order = graph.orders()[self.field];
         let basis = self.basis;
         graph.constants(self.field, kind, || modes::table(basis, order, kind))

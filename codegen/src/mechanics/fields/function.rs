@@ -11,17 +11,17 @@
 use model_spec::ast::BinaryOperator;
 use model_spec::model::Function;
 
-use super::term::{Atom, Term};
+use super::term::{Atom, IntegrandTerm};
 use crate::mechanics::fields::domain::Domain;
 use crate::mechanics::fields::moments::{integral_of_term, shapes_at};
 use crate::symbolic::arguments::Arguments;
-use crate::symbolic::graph::{Graph, Id, Space};
+use crate::symbolic::graph::{Graph, NodeId, Space};
 use crate::symbolic::tables::TableKind;
 
 /// A function of the position along a field.
 #[derive(Clone, Debug)]
 pub struct FieldFunction {
-    terms: Vec<Term>,
+    terms: Vec<IntegrandTerm>,
 }
 
 /// The most terms an integrand may have when products of its sums are formed.
@@ -34,9 +34,9 @@ type Outcome<T> = Result<T, String>;
 
 impl FieldFunction {
     /// Something that does not vary along the field.
-    pub fn constant(scalar: Id) -> Self {
+    pub fn constant(scalar: NodeId) -> Self {
         Self {
-            terms: vec![Term {
+            terms: vec![IntegrandTerm {
                 scalar,
                 power: 0,
                 weight: None,
@@ -110,20 +110,20 @@ impl FieldFunction {
         arguments: &[Self],
     ) -> Outcome<Self> {
         let operands = |all| Arguments::of(all).ok_or("a function takes one or two arguments");
-        let scalars: Option<Vec<Id>> = arguments.iter().map(Self::as_scalar).collect();
+        let scalars: Option<Vec<NodeId>> = arguments.iter().map(Self::as_scalar).collect();
         if let Some(scalars) = scalars {
             return Ok(Self::constant(graph.call(function, operands(scalars)?)));
         }
         let values = arguments
             .iter()
             .map(|a| a.values(graph, domain))
-            .collect::<Outcome<Vec<Id>>>()?;
+            .collect::<Outcome<Vec<NodeId>>>()?;
         let result = graph.call(function, operands(values)?);
         Ok(Self::weight(graph, result))
     }
 
     /// The value at a position (parameters only).
-    pub fn at(&self, graph: &mut Graph, domain: &Domain, position: Id) -> Outcome<Id> {
+    pub fn at(&self, graph: &mut Graph, domain: &Domain, position: NodeId) -> Outcome<NodeId> {
         let from_start = graph.subtract(position, domain.from);
         let s = graph.divide(from_start, domain.length);
         let mut terms = Vec::new();
@@ -152,7 +152,7 @@ impl FieldFunction {
     }
 
     /// The integral over the domain.
-    pub fn integral(&self, graph: &mut Graph, domain: &Domain) -> Outcome<Id> {
+    pub fn integral(&self, graph: &mut Graph, domain: &Domain) -> Outcome<NodeId> {
         let mut terms = Vec::new();
         for term in &self.terms {
             let value = integral_of_term(graph, domain, term);
@@ -162,14 +162,14 @@ impl FieldFunction {
         Ok(graph.combine(&terms))
     }
 
-    fn weight(graph: &mut Graph, values: Id) -> Self {
+    fn weight(graph: &mut Graph, values: NodeId) -> Self {
         let mut function = Self::constant(graph.one());
         function.terms[0].weight = Some(values);
         function
     }
 
     /// The scalar, if this does not vary along the field.
-    fn as_scalar(&self) -> Option<Id> {
+    fn as_scalar(&self) -> Option<NodeId> {
         match self.terms.as_slice() {
             [term] if term.power == 0 && term.weight.is_none() && term.atoms.is_empty() => {
                 Some(term.scalar)
@@ -211,7 +211,7 @@ impl FieldFunction {
                 let mut atoms = [a.atoms.clone(), b.atoms.clone()].concat();
                 atoms.sort();
                 let (power, weight) = within_moments(graph, domain, a.power + b.power, weight);
-                terms.push(Term {
+                terms.push(IntegrandTerm {
                     scalar: graph.multiply(a.scalar, b.scalar),
                     power,
                     weight,
@@ -245,7 +245,7 @@ impl FieldFunction {
     }
 
     /// The values at the quadrature nodes: a vector over the nodes, or a scalar.
-    fn values(&self, graph: &mut Graph, domain: &Domain) -> Outcome<Id> {
+    fn values(&self, graph: &mut Graph, domain: &Domain) -> Outcome<NodeId> {
         let s = domain.table(graph, TableKind::NodePosition);
         let mut terms = Vec::new();
         for term in &self.terms {
@@ -269,8 +269,8 @@ fn within_moments(
     graph: &mut Graph,
     domain: &Domain,
     power: u32,
-    weight: Option<Id>,
-) -> (u32, Option<Id>) {
+    weight: Option<NodeId>,
+) -> (u32, Option<NodeId>) {
     if power <= MAX_MOMENT {
         return (power, weight);
     }
@@ -280,8 +280,8 @@ fn within_moments(
     (0, Some(graph.product(&factors)))
 }
 
-fn collect_like_terms(graph: &mut Graph, terms: Vec<Term>) -> Vec<Term> {
-    let mut collected: Vec<Term> = Vec::new();
+fn collect_like_terms(graph: &mut Graph, terms: Vec<IntegrandTerm>) -> Vec<IntegrandTerm> {
+    let mut collected: Vec<IntegrandTerm> = Vec::new();
     for term in terms {
         let alike = collected.iter().position(|other| {
             other.power == term.power && other.weight == term.weight && other.atoms == term.atoms
@@ -296,7 +296,7 @@ fn collect_like_terms(graph: &mut Graph, terms: Vec<Term>) -> Vec<Term> {
     collected
 }
 
-fn bounded(terms: Vec<Term>) -> Outcome<FieldFunction> {
+fn bounded(terms: Vec<IntegrandTerm>) -> Outcome<FieldFunction> {
     if terms.len() > MAX_TERMS {
         return Err(too_many_terms());
     }

@@ -11,7 +11,7 @@
 use elementary::Function;
 use model_spec::model::Basis;
 
-use crate::mechanics::fields::quadrature::gauss_legendre;
+use crate::mechanics::fields::quadrature::{QuadratureRule, gauss_legendre};
 use crate::symbolic::tables::{TableKind, quadrature_size};
 
 /// One mode of a basis.
@@ -151,16 +151,16 @@ pub fn table(basis: Basis, order: usize, kind: TableKind) -> Vec<f64> {
             own_moments(basis, &modes, power, left, right)
         }
         TableKind::PairMoment { power, left, right } => pair_moments(&modes, power, left, right),
-        TableKind::NodePosition => gauss_legendre(quadrature_size(order)).0,
-        TableKind::NodeWeight => gauss_legendre(quadrature_size(order)).1,
+        TableKind::NodePosition => gauss_legendre(quadrature_size(order)).nodes,
+        TableKind::NodeWeight => gauss_legendre(quadrature_size(order)).weights,
         TableKind::ShapeAtNodes(derivative) => {
-            let (nodes, _) = gauss_legendre(quadrature_size(order));
+            let nodes = gauss_legendre(quadrature_size(order)).nodes;
             shapes_at(&modes, derivative, &nodes).concat()
         }
     }
 }
 
-/// Rows: nodes; columns: modes.
+/// RowNodes: nodes; columns: modes.
 fn shapes_at(modes: &[Mode], derivative: u8, nodes: &[f64]) -> Vec<Vec<f64>> {
     nodes
         .iter()
@@ -221,7 +221,8 @@ fn pair_moments(modes: &[Mode], moment: u32, left: u8, right: u8) -> Vec<f64> {
 
 /// Nodes and weights times s^k.
 fn rule(order: usize, moment: u32) -> (Vec<f64>, Vec<f64>) {
-    let (nodes, mut weights) = gauss_legendre(quadrature_size(order) + moment as usize);
+    let QuadratureRule { nodes, mut weights } =
+        gauss_legendre(quadrature_size(order) + moment as usize);
     for (weight, s) in weights.iter_mut().zip(&nodes) {
         *weight *= (0..moment).fold(1.0, |product, _| product * s);
     }

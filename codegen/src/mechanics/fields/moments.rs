@@ -5,12 +5,12 @@ use model_spec::model::Function;
 
 use crate::mechanics::fields::domain::Domain;
 use crate::mechanics::fields::modes::is_orthogonal;
-use crate::mechanics::fields::term::Term;
-use crate::symbolic::graph::{Graph, Id, Operation, Space};
+use crate::mechanics::fields::term::IntegrandTerm;
+use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use crate::symbolic::tables::TableKind;
 
 /// phi_r^(a) at s, a vector over the modes: tables at the ends, formulas elsewhere.
-pub(crate) fn shapes_at(graph: &mut Graph, domain: &Domain, s: Id, derivative: u8) -> Id {
+pub(crate) fn shapes_at(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8) -> NodeId {
     match graph.as_constant(s) {
         Some(0.0) => return domain.table(graph, TableKind::ShapeAtStart(derivative)),
         Some(1.0) => return domain.table(graph, TableKind::ShapeAtEnd(derivative)),
@@ -53,7 +53,7 @@ pub(crate) fn shapes_at(graph: &mut Graph, domain: &Domain, s: Id, derivative: u
 
 /// The integral over s of s^power weight atom_1 atom_2; a vector over the modes where a
 /// bare shape is left.
-pub(crate) fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &Term) -> Id {
+pub(crate) fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &IntegrandTerm) -> NodeId {
     if let Some(weight) = term.weight {
         return weighted_integral(graph, domain, term, weight);
     }
@@ -127,24 +127,29 @@ pub(crate) fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &Term) 
     }
 }
 
-fn weighted_integral(graph: &mut Graph, domain: &Domain, term: &Term, weight: Id) -> Id {
+fn weighted_integral(
+    graph: &mut Graph,
+    domain: &Domain,
+    term: &IntegrandTerm,
+    weight: NodeId,
+) -> NodeId {
     let s = domain.table(graph, TableKind::NodePosition);
     let quadrature = domain.table(graph, TableKind::NodeWeight);
     let weight = graph.product(&[(quadrature, 1), (s, term.power as i32), (weight, 1)]);
     let modes = Space::Modes(domain.field);
     let nodes = Space::Nodes(domain.field);
-    let amplitudes: Vec<Option<Id>> = term
+    let amplitudes: Vec<Option<NodeId>> = term
         .atoms
         .iter()
         .map(|atom| atom.amplitudes(graph, domain.field))
         .collect();
-    let shapes: Vec<Id> = term
+    let shapes: Vec<NodeId> = term
         .atoms
         .iter()
         .map(|atom| domain.table(graph, TableKind::ShapeAtNodes(atom.derivative())))
         .collect();
     match (amplitudes.as_slice(), shapes.as_slice()) {
-        (&[Some(u), Some(v)], &[left, right]) if graph.dependence(weight).is_prepared() => {
+        (&[Some(u), Some(v)], &[left, right]) if graph.dependence(weight).is_parameter_only() => {
             let gram = graph.intern(Operation::Gram {
                 left,
                 weight,

@@ -3,8 +3,17 @@
 
 use elementary::Function;
 
-/// Nodes and weights of the n-point rule on [0, 1], nodes ascending.
-pub fn gauss_legendre(n: usize) -> (Vec<f64>, Vec<f64>) {
+/// A rule of quadrature on [0, 1]: the integral is nearly the sum of weights times values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QuadratureRule {
+    /// Where the function is evaluated, ascending.
+    pub nodes: Vec<f64>,
+    /// What each value counts, in the order of the nodes.
+    pub weights: Vec<f64>,
+}
+
+/// The n-point rule of Gauss and Legendre, exact for polynomials up to degree 2 n - 1.
+pub fn gauss_legendre(n: usize) -> QuadratureRule {
     let mut nodes = vec![0.0; n];
     let mut weights = vec![0.0; n];
     for k in 0..n.div_ceil(2) {
@@ -25,7 +34,7 @@ pub fn gauss_legendre(n: usize) -> (Vec<f64>, Vec<f64>) {
         weights[k] = weight;
         weights[n - 1 - k] = weight;
     }
-    (nodes, weights)
+    QuadratureRule { nodes, weights }
 }
 
 /// P_n(x) and its derivative.
@@ -45,11 +54,11 @@ fn legendre(n: usize, x: f64) -> (f64, f64) {
 mod tests {
     use approx::assert_abs_diff_eq;
 
-    use super::gauss_legendre;
+    use super::{QuadratureRule, gauss_legendre};
 
     #[test]
     fn integrates_polynomials_up_to_twice_the_number_of_nodes() {
-        let (nodes, weights) = gauss_legendre(12);
+        let QuadratureRule { nodes, weights } = gauss_legendre(12);
         for degree in 0..24 {
             let integral: f64 = nodes
                 .iter()
@@ -64,8 +73,8 @@ mod tests {
 
     #[test]
     fn weights_of_a_large_rule_sum_to_one() {
-        let (_, weights) = gauss_legendre(288);
-        let total: f64 = weights.iter().sum();
+        let rule = gauss_legendre(288);
+        let total: f64 = rule.weights.iter().sum();
         // 288 weights, each rounded: a hundred units in the last place of 1.
         assert_abs_diff_eq!(total, 1.0, epsilon = 1e-13);
     }

@@ -1,6 +1,6 @@
 //! A term of an integrand: powers of the position, a weight, and field atoms.
 
-use crate::symbolic::graph::{Graph, Id, Operation};
+use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 /// A field, its rate or a mode shape, with the number of derivatives by the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -30,7 +30,7 @@ impl Atom {
     }
 
     /// The vector over the modes that multiplies the shapes; `None` for a bare shape.
-    pub(crate) fn amplitudes(self, graph: &mut Graph, field: usize) -> Option<Id> {
+    pub(crate) fn amplitudes(self, graph: &mut Graph, field: usize) -> Option<NodeId> {
         match self {
             Self::Coordinates(_) => Some(graph.intern(Operation::ModeCoordinates(field))),
             Self::Rates(_) => Some(graph.intern(Operation::ModeRates(field))),
@@ -41,9 +41,9 @@ impl Atom {
 
 /// scalar s^power weight atom_1 atom_2; the derivatives in the atoms are by s.
 #[derive(Clone, Debug)]
-pub(crate) struct Term {
-    pub(crate) scalar: Id,
+pub(crate) struct IntegrandTerm {
+    pub(crate) scalar: NodeId,
     pub(crate) power: u32,
-    pub(crate) weight: Option<Id>,
+    pub(crate) weight: Option<NodeId>,
     pub(crate) atoms: Vec<Atom>,
 }

@@ -51,7 +51,7 @@ pub(super) fn lack(matrix: &[f64], size: usize) -> Option<Lack> {
 
 /// The Cholesky factor of a matrix with a unit diagonal, the largest rest eliminated first.
 struct Factor {
-    /// Rows of the factor, as long as elements are eliminated.
+    /// RowNodes of the factor, as long as elements are eliminated.
     rows: Vec<Vec<f64>>,
     /// What is left of the diagonal.
     rest: Vec<f64>,

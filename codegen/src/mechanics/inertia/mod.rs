@@ -44,7 +44,7 @@ impl Equations {
             .join(Dependence::TIME);
         let entries = self.mass.scalars.iter().chain(&self.mass.coupling);
         let mut nodes = entries.flatten().copied();
-        let mut blocks = self.modal_blocks.iter().map(|(_, block, _)| *block);
+        let mut blocks = self.modal_blocks.iter().map(|block| block.matrix);
         let moves = |node| self.graph.dependence(node).has(moving);
         nodes.any(moves) || blocks.any(moves)
     }

@@ -7,14 +7,14 @@ use std::collections::HashMap;
 
 use super::matrix_derivatives::holds_matrix_of_parameters;
 use crate::symbolic::differentiate::{choice, partial_derivatives};
-use crate::symbolic::graph::{Dependence, Graph, Id, Operation, Shape, Space};
+use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape, Space};
 
 /// The gradient of the sum of weight times node, a vector's elements summed, by every leaf
 /// that is no parameter. Matrices that move are not followed; the caller sees to it that
 /// there are none.
-pub fn gradient(graph: &mut Graph, weighted: &[(Id, Id)]) -> HashMap<Id, Id> {
+pub fn gradient(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> HashMap<NodeId, NodeId> {
     accumulate(graph, weighted, |graph, id| {
-        !graph.dependence(id).is_prepared()
+        !graph.dependence(id).is_parameter_only()
     })
 }
 
@@ -22,15 +22,15 @@ pub fn gradient(graph: &mut Graph, weighted: &[(Id, Id)]) -> HashMap<Id, Id> {
 /// are derived from others left out; nothing where a matrix depends on parameters.
 pub fn gradient_by_parameters(
     graph: &mut Graph,
-    weighted: &[(Id, Id)],
-    derived: &[Option<Id>],
-) -> Option<Vec<Id>> {
-    let mut roots: Vec<Id> = weighted.iter().map(|(_, node)| *node).collect();
+    weighted: &[(NodeId, NodeId)],
+    derived: &[Option<NodeId>],
+) -> Option<Vec<NodeId>> {
+    let mut roots: Vec<NodeId> = weighted.iter().map(|(_, node)| *node).collect();
     roots.extend(derived.iter().flatten());
     if holds_matrix_of_parameters(graph, &roots) {
         return None;
     }
-    let mut parts: Vec<Vec<(f64, Id)>> = vec![Vec::new(); derived.len()];
+    let mut parts: Vec<Vec<(f64, NodeId)>> = vec![Vec::new(); derived.len()];
     hand_to_parameters(graph, weighted, &mut parts);
     for index in outermost_first(graph, derived) {
         let received = std::mem::take(&mut parts[index]);
@@ -44,9 +44,13 @@ pub fn gradient_by_parameters(
 }
 
 /// Adds what each parameter's own leaf receives to its parts.
-fn hand_to_parameters(graph: &mut Graph, weighted: &[(Id, Id)], parts: &mut [Vec<(f64, Id)>]) {
+fn hand_to_parameters(
+    graph: &mut Graph,
+    weighted: &[(NodeId, NodeId)],
+    parts: &mut [Vec<(f64, NodeId)>],
+) {
     let received = accumulate(graph, weighted, depends_on_parameters);
-    let mut received: Vec<(Id, Id)> = received.into_iter().collect();
+    let mut received: Vec<(NodeId, NodeId)> = received.into_iter().collect();
     received.sort();
     for (leaf, adjoint) in received {
         if let Operation::Parameter(index) = *graph.operation(leaf) {
@@ -55,12 +59,12 @@ fn hand_to_parameters(graph: &mut Graph, weighted: &[(Id, Id)], parts: &mut [Vec
     }
 }
 
-fn depends_on_parameters(graph: &Graph, id: Id) -> bool {
+fn depends_on_parameters(graph: &Graph, id: NodeId) -> bool {
     graph.dependence(id).has(Dependence::PARAMETER)
 }
 
 /// The derived parameters, each before those that its expression reads.
-fn outermost_first(graph: &Graph, derived: &[Option<Id>]) -> Vec<usize> {
+fn outermost_first(graph: &Graph, derived: &[Option<NodeId>]) -> Vec<usize> {
     let mut order = Vec::new();
     let mut known = vec![false; derived.len()];
     for index in 0..derived.len() {
@@ -72,7 +76,7 @@ fn outermost_first(graph: &Graph, derived: &[Option<Id>]) -> Vec<usize> {
 
 fn after_what_is_read(
     graph: &Graph,
-    derived: &[Option<Id>],
+    derived: &[Option<NodeId>],
     index: usize,
     known: &mut [bool],
     order: &mut Vec<usize>,
@@ -93,10 +97,10 @@ fn after_what_is_read(
 /// names.
 fn accumulate(
     graph: &mut Graph,
-    weighted: &[(Id, Id)],
-    follows: fn(&Graph, Id) -> bool,
-) -> HashMap<Id, Id> {
-    let roots: Vec<Id> = weighted.iter().map(|(_, node)| *node).collect();
+    weighted: &[(NodeId, NodeId)],
+    follows: fn(&Graph, NodeId) -> bool,
+) -> HashMap<NodeId, NodeId> {
+    let roots: Vec<NodeId> = weighted.iter().map(|(_, node)| *node).collect();
     let mut adjoints = Adjoints {
         received: HashMap::new(),
         follows,
@@ -125,14 +129,14 @@ fn accumulate(
 /// What decides whether a branch is taken: a > b, or that this does not hold.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Condition {
-    a: Id,
-    b: Id,
+    a: NodeId,
+    b: NodeId,
     holds: bool,
 }
 
 impl Condition {
     /// `value` where the branch is taken, 0 elsewhere.
-    fn chosen(self, graph: &mut Graph, value: Id) -> Id {
+    fn chosen(self, graph: &mut Graph, value: NodeId) -> NodeId {
         let zero = graph.zero();
         let (then, otherwise) = if self.holds {
             (value, zero)
@@ -155,18 +159,18 @@ impl Condition {
 #[derive(Clone)]
 struct Part {
     conditions: Vec<Condition>,
-    value: Id,
+    value: NodeId,
 }
 
 impl Part {
-    fn of(value: Id) -> Self {
+    fn of(value: NodeId) -> Self {
         Self {
             conditions: Vec::new(),
             value,
         }
     }
 
-    fn with(&self, value: Id) -> Self {
+    fn with(&self, value: NodeId) -> Self {
         Self {
             conditions: self.conditions.clone(),
             value,
@@ -179,7 +183,7 @@ impl Part {
         part
     }
 
-    fn chosen(self, graph: &mut Graph) -> Id {
+    fn chosen(self, graph: &mut Graph) -> NodeId {
         self.chosen_to(graph, 0).value
     }
 
@@ -206,18 +210,18 @@ impl Part {
 
 /// What each node has received so far.
 struct Adjoints {
-    received: HashMap<Id, Vec<Part>>,
+    received: HashMap<NodeId, Vec<Part>>,
     /// Which nodes count.
-    follows: fn(&Graph, Id) -> bool,
+    follows: fn(&Graph, NodeId) -> bool,
 }
 
 impl Adjoints {
-    fn add(&mut self, id: Id, part: Part) {
+    fn add(&mut self, id: NodeId, part: Part) {
         self.received.entry(id).or_default().push(part);
     }
 
     /// The sum of what a node has received, under the conditions that all of it has.
-    fn total(&mut self, graph: &mut Graph, id: Id) -> Part {
+    fn total(&mut self, graph: &mut Graph, id: NodeId) -> Part {
         let parts = self.received.remove(&id).unwrap_or_default();
         let mut common = parts.first().map_or(Vec::new(), |p| p.conditions.clone());
         for part in &parts {
@@ -235,7 +239,7 @@ impl Adjoints {
     }
 
     /// Adds a part that is a vector over `space`, or stands for each of its elements.
-    fn add_over(&mut self, graph: &mut Graph, space: Space, operand: Id, part: Part) {
+    fn add_over(&mut self, graph: &mut Graph, space: Space, operand: NodeId, part: Part) {
         let part = match graph.shape(operand) {
             Shape::Scalar => {
                 let part = part.chosen_by_element(graph);
@@ -248,7 +252,7 @@ impl Adjoints {
     }
 
     /// What the operands of `id` receive from its adjoint.
-    fn hand_down(&mut self, graph: &mut Graph, id: Id, adjoint: &Part) {
+    fn hand_down(&mut self, graph: &mut Graph, id: NodeId, adjoint: &Part) {
         match graph.operation(id).clone() {
             Operation::Total(a) => self.add(a, adjoint.clone()),
             Operation::Apply {
@@ -274,8 +278,8 @@ impl Adjoints {
         }
     }
 
-    fn hand_down_element_wise(&mut self, graph: &mut Graph, id: Id, adjoint: &Part) {
-        let parts: Vec<(Id, Part)> = if let Some([a, b, then, otherwise]) = choice(graph, id) {
+    fn hand_down_element_wise(&mut self, graph: &mut Graph, id: NodeId, adjoint: &Part) {
+        let parts: Vec<(NodeId, Part)> = if let Some([a, b, then, otherwise]) = choice(graph, id) {
             let branch = |holds| adjoint.under(Condition { a, b, holds });
             vec![(then, branch(true)), (otherwise, branch(false))]
         } else {

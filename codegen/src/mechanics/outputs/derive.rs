@@ -7,32 +7,32 @@ use super::jacobian::{
     JacobianRows, by_parameters, by_variables, observable_rows, one_row, rate_rows,
 };
 use super::matrix_derivatives::holds_moving_matrix;
-use super::output::Request;
+use super::output::Output;
 use super::regimes::switches;
-use super::types::{Jacobian, Products, Requested};
+use super::types::{Jacobian, Outputs, Products};
 use crate::mechanics::equations::Equations;
-use crate::mechanics::rows::Rows;
+use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::along_motion;
 use crate::symbolic::differentiate::Direction;
-use crate::symbolic::graph::{Argument, Graph, Id, Operation, Space, Variable};
+use crate::symbolic::graph::{Argument, Graph, NodeId, Operation, Space, Variable};
 use crate::symbolic::matrix::StructuredMatrix;
 
-/// Derives what is requested.
+/// Derives these outputs.
 ///
 /// # Errors
 /// If the modal mass matrix is dense and moves with the state: products and Jacobians are not
 /// derived then.
-pub fn requested(
+pub fn derive_outputs(
     equations: &mut Equations,
-    requests: &[Request],
-) -> Result<Requested<Id, Rows>, MovingMatrix> {
-    let mut result = Requested {
-        requests: requests.to_vec(),
-        ..Requested::default()
+    outputs: &[Output],
+) -> Result<Outputs<NodeId, RowNodes>, MovingMatrix> {
+    let mut result = Outputs {
+        kinds: outputs.to_vec(),
+        ..Outputs::default()
     };
-    let has = |request| requests.contains(&request);
+    let has = |output| outputs.contains(&output);
     let differentiated =
-        has(Request::Jacobians) || has(Request::Products) || has(Request::Linearisation);
+        has(Output::Jacobians) || has(Output::Products) || has(Output::Linearisation);
     if differentiated {
         let mut roots = equations.accelerations.rows.nodes();
         roots.extend(&equations.observables);
@@ -41,18 +41,18 @@ pub fn requested(
             return Err(MovingMatrix);
         }
     }
-    if has(Request::BiasForces) || has(Request::InverseDynamics) {
+    if has(Output::BiasForces) || has(Output::InverseDynamics) {
         let bias = bias_forces(equations);
         result.inverse_dynamics =
-            has(Request::InverseDynamics).then(|| inverse_dynamics(equations, &bias));
-        result.bias_forces = has(Request::BiasForces).then_some(bias);
+            has(Output::InverseDynamics).then(|| inverse_dynamics(equations, &bias));
+        result.bias_forces = has(Output::BiasForces).then_some(bias);
     }
-    result.guard_rates = has(Request::GuardRates).then(|| guard_rates(equations));
-    if has(Request::Jacobians) || has(Request::Linearisation) {
+    result.guard_rates = has(Output::GuardRates).then(|| guard_rates(equations));
+    if has(Output::Jacobians) || has(Output::Linearisation) {
         result.jacobians = jacobians(equations);
     }
-    result.products = has(Request::Products).then(|| products(equations));
-    result.regimes = has(Request::Regimes).then(|| switches(equations));
+    result.products = has(Output::Products).then(|| products(equations));
+    result.regimes = has(Output::Regimes).then(|| switches(equations));
     Ok(result)
 }
 
@@ -68,30 +68,30 @@ impl std::fmt::Display for MovingMatrix {
 
 impl std::error::Error for MovingMatrix {}
 
-fn bias_forces(equations: &mut Equations) -> Rows {
+fn bias_forces(equations: &mut Equations) -> RowNodes {
     let graph = &mut equations.graph;
-    let pairs = |terms: &[Id], forces: &[Id], graph: &mut Graph| -> Vec<Id> {
+    let pairs = |terms: &[NodeId], forces: &[NodeId], graph: &mut Graph| -> Vec<NodeId> {
         let rows = terms.iter().zip(forces);
         rows.map(|(c, f)| graph.combine(&[(1.0, *c), (-1.0, *f)]))
             .collect()
     };
     let (terms, forces) = (&equations.velocity_terms, &equations.forces);
-    Rows {
+    RowNodes {
         scalars: pairs(&terms.scalars, &forces.scalars, graph),
         modal: pairs(&terms.modal, &forces.modal, graph),
     }
 }
 
 /// The rows of M a + bias, with a from the argument.
-fn inverse_dynamics(equations: &mut Equations, bias: &Rows) -> Rows {
+fn inverse_dynamics(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
     let (graph, mass) = (&mut equations.graph, &equations.mass);
     let argument = |graph: &mut Graph, variable| {
         graph.intern(Operation::Argument(Argument::Accelerations, variable))
     };
-    let scalars: Vec<Id> = (0..bias.scalars.len())
+    let scalars: Vec<NodeId> = (0..bias.scalars.len())
         .map(|index| argument(graph, Variable::Coordinate(index)))
         .collect();
-    let modal: Vec<Id> = (0..bias.modal.len())
+    let modal: Vec<NodeId> = (0..bias.modal.len())
         .map(|field| argument(graph, Variable::ModeCoordinates(field)))
         .collect();
     let mut rows = bias.clone();
@@ -120,7 +120,7 @@ fn inverse_dynamics(equations: &mut Equations, bias: &Rows) -> Rows {
 }
 
 /// The parts of matrix times vector.
-fn times(graph: &mut Graph, matrix: &StructuredMatrix, vector: Id) -> Vec<Id> {
+fn times(graph: &mut Graph, matrix: &StructuredMatrix, vector: NodeId) -> Vec<NodeId> {
     let mut parts = Vec::new();
     if let Some(diagonal) = matrix.diagonal {
         parts.push(graph.multiply(diagonal, vector));
@@ -139,9 +139,9 @@ fn times(graph: &mut Graph, matrix: &StructuredMatrix, vector: Id) -> Vec<Id> {
 }
 
 /// The rates of the guards along the motion, the inputs held.
-fn guard_rates(equations: &mut Equations) -> Vec<Id> {
+fn guard_rates(equations: &mut Equations) -> Vec<NodeId> {
     let rows = equations.accelerations.rows.clone();
-    let tangent = move |graph: &mut Graph, leaf: Id| match *graph.operation(leaf) {
+    let tangent = move |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
         Operation::Rate(index) => rows.scalars[index],
         Operation::ModeRates(field) => rows.modal[field],
         _ => along_motion(graph, leaf),
@@ -154,15 +154,15 @@ fn guard_rates(equations: &mut Equations) -> Vec<Id> {
         .collect()
 }
 
-fn products(equations: &mut Equations) -> Products<Id, Rows> {
+fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
     let rows = equations.accelerations.rows.clone();
-    let tangent = |graph: &mut Graph, leaf: Id| match variable_of(graph, leaf) {
+    let tangent = |graph: &mut Graph, leaf: NodeId| match variable_of(graph, leaf) {
         Some(variable) => graph.intern(Operation::Argument(Argument::Direction, variable)),
         None => graph.zero(),
     };
     let graph = &mut equations.graph;
     let mut direction = Direction::new(&tangent);
-    let forward = Rows {
+    let forward = RowNodes {
         scalars: derivatives(graph, &mut direction, &rows.scalars),
         modal: derivatives(graph, &mut direction, &rows.modal),
     };
@@ -174,7 +174,7 @@ fn products(equations: &mut Equations) -> Products<Id, Rows> {
         weighted.push((weight(graph, Variable::ModeRates(field)), *row));
     }
     let gradient = adjoint::gradient(graph, &weighted);
-    let mut reverse: Vec<(Variable, Id)> = gradient
+    let mut reverse: Vec<(Variable, NodeId)> = gradient
         .into_iter()
         .filter_map(|(leaf, node)| Some((variable_of(graph, leaf)?, node)))
         .collect();
@@ -190,9 +190,9 @@ fn products(equations: &mut Equations) -> Products<Id, Rows> {
 /// one parameter after the other where matrices hold them.
 fn weighted_by_parameters(
     equations: &mut Equations,
-    rows: &Rows,
-    weighted: &[(Id, Id)],
-) -> Jacobian<Id> {
+    rows: &RowNodes,
+    weighted: &[(NodeId, NodeId)],
+) -> Jacobian<NodeId> {
     const NAME: &str = "weighted_rates_by_parameters";
     let graph = &mut equations.graph;
     match adjoint::gradient_by_parameters(graph, weighted, &equations.derived_parameters) {
@@ -205,7 +205,7 @@ fn weighted_by_parameters(
 }
 
 /// The sum of weights times accelerations, the rows of the rates that hold parameters.
-fn weighted_sum(graph: &mut Graph, rows: &Rows) -> Id {
+fn weighted_sum(graph: &mut Graph, rows: &RowNodes) -> NodeId {
     let mut terms = Vec::new();
     for (index, row) in rows.scalars.iter().enumerate() {
         let weight = weight(graph, Variable::Rate(index));
@@ -219,18 +219,18 @@ fn weighted_sum(graph: &mut Graph, rows: &Rows) -> Id {
     graph.combine(&terms)
 }
 
-fn derivatives(graph: &mut Graph, direction: &mut Direction<'_>, nodes: &[Id]) -> Vec<Id> {
+fn derivatives(graph: &mut Graph, direction: &mut Direction<'_>, nodes: &[NodeId]) -> Vec<NodeId> {
     nodes
         .iter()
         .map(|node| direction.derivative(graph, *node))
         .collect()
 }
 
-fn weight(graph: &mut Graph, variable: Variable) -> Id {
+fn weight(graph: &mut Graph, variable: Variable) -> NodeId {
     graph.intern(Operation::Argument(Argument::Weights, variable))
 }
 
-fn variable_of(graph: &Graph, leaf: Id) -> Option<Variable> {
+fn variable_of(graph: &Graph, leaf: NodeId) -> Option<Variable> {
     Some(match *graph.operation(leaf) {
         Operation::Coordinate(index) => Variable::Coordinate(index),
         Operation::ModeCoordinates(field) => Variable::ModeCoordinates(field),
@@ -241,7 +241,7 @@ fn variable_of(graph: &Graph, leaf: Id) -> Option<Variable> {
     })
 }
 
-fn jacobians(equations: &mut Equations) -> Vec<Jacobian<Id>> {
+fn jacobians(equations: &mut Equations) -> Vec<Jacobian<NodeId>> {
     let (rates, observables) = (rate_rows(equations), observable_rows(equations));
     vec![
         by_variables(equations, &rates, "rates_by_state", false),

@@ -1,12 +1,12 @@
 //! Jacobians as blocks of structural nonzeros: each row, or the rows of a field's modes, by
-//! each variable, or by the modes of a field. Rows are differentiated as they stand in the
+//! each variable, or by the modes of a field. RowNodes are differentiated as they stand in the
 //! graph, with the factorisation that they share, so that a bottleneck such as the one sum
 //! over all modes is differentiated once.
 
-use super::types::{Entry, Jacobian};
+use super::types::{Jacobian, JacobianBlock};
 use crate::mechanics::equations::Equations;
 use crate::symbolic::differentiate::{Direction, ModalDerivative};
-use crate::symbolic::graph::{Graph, Id, Operation, Space, Variable};
+use crate::symbolic::graph::{Graph, NodeId, Operation, Space, Variable};
 use crate::symbolic::matrix::StructuredMatrix;
 
 /// The rows of a Jacobian: nodes, and the diagonal block of ones if there is one.
@@ -14,23 +14,23 @@ pub(crate) struct JacobianRows {
     count: usize,
     /// Ones from the first row on at the columns from here on.
     identity: Option<usize>,
-    rows: Vec<Row>,
+    rows: Vec<EquationRow>,
 }
 
 /// One row, or one for each mode of a field.
 #[derive(Clone, Copy)]
-struct Row {
+struct EquationRow {
     first: usize,
     count: usize,
-    node: Id,
+    node: NodeId,
     /// The field whose modes the rows are.
     field: Option<usize>,
 }
 
 impl JacobianRows {
     /// One row.
-    pub(crate) fn single(node: Id) -> Self {
-        let row = Row {
+    pub(crate) fn single(node: NodeId) -> Self {
+        let row = EquationRow {
             first: 0,
             count: 1,
             node,
@@ -48,11 +48,11 @@ impl JacobianRows {
 pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
     let degrees = degrees_of_freedom(equations);
     let accelerations = &equations.accelerations.rows;
-    let mut rows: Vec<Row> = accelerations
+    let mut rows: Vec<EquationRow> = accelerations
         .scalars
         .iter()
         .enumerate()
-        .map(|(index, node)| Row {
+        .map(|(index, node)| EquationRow {
             first: degrees + index,
             count: 1,
             node: *node,
@@ -60,7 +60,7 @@ pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
         })
         .collect();
     for (field, node) in accelerations.modal.iter().enumerate() {
-        rows.push(Row {
+        rows.push(EquationRow {
             first: degrees + mode_offset(equations, field),
             count: equations.graph.orders()[field],
             node: *node,
@@ -78,10 +78,10 @@ pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
 pub(crate) fn observable_rows(equations: &mut Equations) -> JacobianRows {
     let energy = equations.graph.add(equations.kinetic, equations.potential);
     let nodes = equations.observables.iter().copied();
-    let rows: Vec<Row> = nodes
+    let rows: Vec<EquationRow> = nodes
         .chain([energy, equations.power])
         .enumerate()
-        .map(|(first, node)| Row {
+        .map(|(first, node)| EquationRow {
             first,
             count: 1,
             node,
@@ -101,7 +101,7 @@ pub(crate) fn by_variables(
     rows: &JacobianRows,
     name: &'static str,
     inputs: bool,
-) -> Jacobian<Id> {
+) -> Jacobian<NodeId> {
     let variables = if inputs {
         (0..equations.inputs).map(Variable::Input).collect()
     } else {
@@ -120,7 +120,7 @@ pub(crate) fn by_parameters(
     equations: &mut Equations,
     rows: &JacobianRows,
     name: &'static str,
-) -> Jacobian<Id> {
+) -> Jacobian<NodeId> {
     let independent: Vec<usize> = (0..equations.parameter_names.len())
         .filter(|index| equations.derived_parameters[*index].is_none())
         .collect();
@@ -132,12 +132,12 @@ pub(crate) fn by_parameters(
 }
 
 /// A Jacobian of one row.
-pub(crate) fn one_row(graph: &Graph, name: &'static str, row: &[Id]) -> Jacobian<Id> {
+pub(crate) fn one_row(graph: &Graph, name: &'static str, row: &[NodeId]) -> Jacobian<NodeId> {
     let nonzeros = row
         .iter()
         .enumerate()
         .filter(|(_, id)| !graph.is_zero(**id));
-    let entries = nonzeros.map(|(column, value)| Entry {
+    let entries = nonzeros.map(|(column, value)| JacobianBlock {
         row: 0,
         rows: 1,
         column,
@@ -176,14 +176,14 @@ fn state_variables(equations: &Equations) -> Vec<Variable> {
 struct Blocks<'a> {
     graph: &'a mut Graph,
     rows: &'a JacobianRows,
-    entries: Vec<Entry<Id>>,
+    entries: Vec<JacobianBlock<NodeId>>,
 }
 
 impl<'a> Blocks<'a> {
     fn new(graph: &'a mut Graph, rows: &'a JacobianRows, without_identity: bool) -> Self {
         let mut entries = Vec::new();
         if let (Some(column), false) = (rows.identity, without_identity) {
-            entries.push(Entry {
+            entries.push(JacobianBlock {
                 row: 0,
                 rows: column,
                 column,
@@ -199,7 +199,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    fn jacobian(mut self, name: &'static str, columns: usize) -> Jacobian<Id> {
+    fn jacobian(mut self, name: &'static str, columns: usize) -> Jacobian<NodeId> {
         self.entries
             .retain(|entry| entry.rows > 0 && entry.columns > 0);
         self.entries.sort_by_key(|entry| (entry.row, entry.column));
@@ -227,7 +227,7 @@ impl<'a> Blocks<'a> {
         1
     }
 
-    fn by_parameter(&mut self, derived: &[Option<Id>], parameter: usize, column: usize) {
+    fn by_parameter(&mut self, derived: &[Option<NodeId>], parameter: usize, column: usize) {
         let mut direction = Direction::default();
         let leaf = self.graph.intern(Operation::Parameter(parameter));
         direction.seed(leaf, self.graph.one());
@@ -249,7 +249,7 @@ impl<'a> Blocks<'a> {
     fn by_modes(
         &mut self,
         derivative: &mut ModalDerivative,
-        row: Row,
+        row: EquationRow,
         column: usize,
         columns: usize,
     ) {
@@ -276,11 +276,17 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    fn push(&mut self, row: Row, (column, columns): (usize, usize), diagonal: bool, value: Id) {
+    fn push(
+        &mut self,
+        row: EquationRow,
+        (column, columns): (usize, usize),
+        diagonal: bool,
+        value: NodeId,
+    ) {
         if self.graph.is_zero(value) {
             return;
         }
-        self.entries.push(Entry {
+        self.entries.push(JacobianBlock {
             row: row.first,
             rows: row.count,
             column,
@@ -295,7 +301,7 @@ impl<'a> Blocks<'a> {
 /// expression reads first.
 fn seed_derived(
     graph: &mut Graph,
-    derived: &[Option<Id>],
+    derived: &[Option<NodeId>],
     index: usize,
     direction: &mut Direction<'_>,
     seeded: &mut [bool],

@@ -4,17 +4,17 @@
 //! d(M^-1 b) = M^-1 (db - dM M^-1 b).
 
 use crate::symbolic::differentiate::Direction;
-use crate::symbolic::graph::{Assembly, Dependence, Graph, Id, Operation};
+use crate::symbolic::graph::{Assembly, Dependence, Graph, NodeId, Operation};
 
 impl Direction<'_> {
     /// d(matrix vector) along the direction.
     pub(crate) fn applied(
         &mut self,
         graph: &mut Graph,
-        matrix: Id,
+        matrix: NodeId,
         transposed: bool,
-        vector: Id,
-    ) -> Id {
+        vector: NodeId,
+    ) -> NodeId {
         let inner = self.derivative(graph, vector);
         let by_vector = graph.apply(matrix, transposed, inner);
         let by_matrix = self.moved_matrix_applied(graph, matrix, transposed, vector);
@@ -22,7 +22,13 @@ impl Direction<'_> {
     }
 
     /// d(L^-T L^-1 right) along the direction, `solution` being the node itself.
-    pub(crate) fn solved(&mut self, graph: &mut Graph, factor: Id, right: Id, solution: Id) -> Id {
+    pub(crate) fn solved(
+        &mut self,
+        graph: &mut Graph,
+        factor: NodeId,
+        right: NodeId,
+        solution: NodeId,
+    ) -> NodeId {
         let inner = self.derivative(graph, right);
         let moved = match *graph.operation(factor) {
             Operation::Cholesky(matrix) => {
@@ -38,10 +44,10 @@ impl Direction<'_> {
     fn moved_matrix_applied(
         &mut self,
         graph: &mut Graph,
-        matrix: Id,
+        matrix: NodeId,
         transposed: bool,
-        vector: Id,
-    ) -> Id {
+        vector: NodeId,
+    ) -> NodeId {
         match graph.operation(matrix).clone() {
             Operation::Gram {
                 left,
@@ -68,7 +74,7 @@ impl Direction<'_> {
 
     /// The same of an assembled matrix, part by part. It is never transposed: a factor is that
     /// of a symmetric one.
-    fn moved_assembly(&mut self, graph: &mut Graph, assembly: &Assembly, vector: Id) -> Id {
+    fn moved_assembly(&mut self, graph: &mut Graph, assembly: &Assembly, vector: NodeId) -> NodeId {
         let mut terms = Vec::new();
         if let Some(diagonal) = assembly.diagonal {
             let moved = self.derivative(graph, diagonal);
@@ -101,10 +107,10 @@ impl Direction<'_> {
     pub(crate) fn gram_diagonal(
         &mut self,
         graph: &mut Graph,
-        left: Id,
-        weight: Id,
-        right: Id,
-    ) -> Id {
+        left: NodeId,
+        weight: NodeId,
+        right: NodeId,
+    ) -> NodeId {
         let moved = self.derivative(graph, weight);
         if graph.is_zero(moved) {
             return moved;
@@ -119,20 +125,20 @@ impl Direction<'_> {
 
 /// Whether `roots` hold a matrix that moves with the state: those are differentiated by
 /// parameters alone.
-pub(crate) fn holds_moving_matrix(graph: &Graph, roots: &[Id]) -> bool {
+pub(crate) fn holds_moving_matrix(graph: &Graph, roots: &[NodeId]) -> bool {
     holds_matrix(graph, roots, |graph, id| {
-        !graph.dependence(id).is_prepared()
+        !graph.dependence(id).is_parameter_only()
     })
 }
 
 /// Whether something in `roots` is a matrix operation on what depends on parameters.
-pub(crate) fn holds_matrix_of_parameters(graph: &Graph, roots: &[Id]) -> bool {
+pub(crate) fn holds_matrix_of_parameters(graph: &Graph, roots: &[NodeId]) -> bool {
     holds_matrix(graph, roots, |graph, id| {
         graph.dependence(id).has(Dependence::PARAMETER)
     })
 }
 
-fn holds_matrix(graph: &Graph, roots: &[Id], counts: fn(&Graph, Id) -> bool) -> bool {
+fn holds_matrix(graph: &Graph, roots: &[NodeId], counts: fn(&Graph, NodeId) -> bool) -> bool {
     graph.reachable(roots).into_iter().any(|id| {
         matches!(
             graph.operation(id),

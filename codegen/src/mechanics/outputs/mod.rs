@@ -13,7 +13,7 @@ mod output;
 mod regimes;
 mod types;
 
-pub use derive::requested;
-pub use output::{Request, UnknownRequest};
+pub use derive::derive_outputs;
+pub use output::{Output, UnknownOutput};
 pub use regimes::{Decided, SURFACES_OF_A_REGIME, Switch};
-pub use types::{Entry, Jacobian, Products, Requested};
+pub use types::{BlockPlace, Jacobian, JacobianBlock, Outputs, Products};

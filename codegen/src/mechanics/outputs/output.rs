@@ -1,9 +1,9 @@
 //! What can be asked for beside rates, observables, energy, power, guards and mass matrix,
-//! which are always there. How it is derived is in `requested`.
+//! which are always there. How it is derived is in `derive`.
 
-/// Functions that are derived and emitted on request.
+/// An output on request: a function that is derived and emitted where it is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Request {
+pub enum Output {
     /// c - f of M q'' + c = f.
     BiasForces,
     /// M a + c - f for any accelerations a: the forces that are missing for them.
@@ -23,8 +23,8 @@ pub enum Request {
     Lanes,
 }
 
-impl Request {
-    /// Every request.
+impl Output {
+    /// Every output.
     pub const ALL: [Self; 8] = [
         Self::BiasForces,
         Self::InverseDynamics,
@@ -56,28 +56,28 @@ impl Request {
     }
 }
 
-/// A name that is no request.
+/// A name that is no output.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnknownRequest {
+pub struct UnknownOutput {
     /// The name.
     pub name: String,
 }
 
-impl std::fmt::Display for UnknownRequest {
+impl std::fmt::Display for UnknownOutput {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let names = Request::names();
+        let names = Output::names();
         write!(f, "`{}` is not known; known are {names}", self.name)
     }
 }
 
-impl std::error::Error for UnknownRequest {}
+impl std::error::Error for UnknownOutput {}
 
-impl std::str::FromStr for Request {
-    type Err = UnknownRequest;
+impl std::str::FromStr for Output {
+    type Err = UnknownOutput;
 
-    fn from_str(name: &str) -> Result<Self, UnknownRequest> {
-        let known = Self::ALL.into_iter().find(|request| request.name() == name);
-        known.ok_or_else(|| UnknownRequest {
+    fn from_str(name: &str) -> Result<Self, UnknownOutput> {
+        let known = Self::ALL.into_iter().find(|output| output.name() == name);
+        known.ok_or_else(|| UnknownOutput {
             name: name.to_owned(),
         })
     }

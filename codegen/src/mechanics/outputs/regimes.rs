@@ -4,7 +4,7 @@
 
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::{Surfaces, surfaces};
-use crate::symbolic::graph::{Graph, Id, Operation, Shape};
+use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
 /// How many surfaces the number of a regime has room for, a bit each.
 pub const SURFACES_OF_A_REGIME: usize = u32::BITS as usize;
@@ -45,17 +45,17 @@ pub enum Decided {
 
 /// The piecewise functions of the accelerations that surfaces decide. What switches mode by
 /// mode, or by surfaces that the number of a regime has no room for, is not among them.
-pub(crate) fn switches(equations: &mut Equations) -> Vec<Switch<Id>> {
+pub(crate) fn switches(equations: &mut Equations) -> Vec<Switch<NodeId>> {
     let roots = equations.accelerations.rows.nodes();
     let places = places(equations);
     let graph = &mut equations.graph;
-    let place = |surface: Id| {
+    let place = |surface: NodeId| {
         let mut known = places.iter();
         known.find_map(|(value, place)| (*value == surface).then_some(*place))
     };
     let mut found = Vec::new();
     for id in graph.reachable(&roots) {
-        if graph.dependence(id).is_prepared() || graph.shape(id) != Shape::Scalar {
+        if graph.dependence(id).is_parameter_only() || graph.shape(id) != Shape::Scalar {
             continue;
         }
         if let Some(decided) = decided(graph, id, &place) {
@@ -66,7 +66,7 @@ pub(crate) fn switches(equations: &mut Equations) -> Vec<Switch<Id>> {
 }
 
 /// The surfaces that are single numbers, with their places.
-fn places(equations: &Equations) -> Vec<(Id, usize)> {
+fn places(equations: &Equations) -> Vec<(NodeId, usize)> {
     let graph = &equations.graph;
     let mut places = Vec::new();
     let mut next = 0;
@@ -83,7 +83,11 @@ fn places(equations: &Equations) -> Vec<(Id, usize)> {
     places
 }
 
-fn decided(graph: &mut Graph, id: Id, place: &dyn Fn(Id) -> Option<usize>) -> Option<Decided> {
+fn decided(
+    graph: &mut Graph,
+    id: NodeId,
+    place: &dyn Fn(NodeId) -> Option<usize>,
+) -> Option<Decided> {
     match graph.operation(id).clone() {
         Operation::Call(function, arguments) => match surfaces(graph, function, &arguments) {
             Surfaces::Between { above, beyond } => Some(Decided::Between {

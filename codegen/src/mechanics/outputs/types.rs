@@ -1,15 +1,15 @@
 //! What is derived on request, of nodes in the equations and of values in the program: the same
 //! structure for both.
 
-use super::output::Request;
+use super::output::Output;
 use super::regimes::Switch;
 use crate::symbolic::graph::Variable;
 
-/// What was requested, of nodes `N` and rows `R` of them.
+/// The outputs on request, of nodes `N` and rows `R` of them.
 #[derive(Clone, Debug)]
-pub struct Requested<N, R> {
+pub struct Outputs<N, R> {
     /// What was asked for.
-    pub requests: Vec<Request>,
+    pub kinds: Vec<Output>,
     /// c - f
     pub bias_forces: Option<R>,
     /// M a + c - f, the accelerations a being an argument.
@@ -24,10 +24,10 @@ pub struct Requested<N, R> {
     pub regimes: Option<Vec<Switch<N>>>,
 }
 
-impl<N, R> Default for Requested<N, R> {
+impl<N, R> Default for Outputs<N, R> {
     fn default() -> Self {
         Self {
-            requests: Vec::new(),
+            kinds: Vec::new(),
             bias_forces: None,
             inverse_dynamics: None,
             guard_rates: None,
@@ -61,12 +61,12 @@ pub struct Jacobian<N> {
     /// How many columns.
     pub columns: usize,
     /// Its blocks, by rows, then by columns; blocks of the same rows stand together.
-    pub entries: Vec<Entry<N>>,
+    pub entries: Vec<JacobianBlock<N>>,
 }
 
 /// A block of structural nonzeros.
 #[derive(Clone, Copy, Debug)]
-pub struct Entry<N> {
+pub struct JacobianBlock<N> {
     /// First row.
     pub row: usize,
     /// How many rows.
@@ -81,11 +81,21 @@ pub struct Entry<N> {
     pub value: N,
 }
 
-impl<N> Entry<N> {
+impl<N> JacobianBlock<N> {
     /// How many nonzeros it has in each of its rows.
     pub fn width(&self) -> usize {
         if self.diagonal { 1 } else { self.columns }
     }
+}
+
+/// Where the nonzeros of a block stand among those of the whole Jacobian, row by row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BlockPlace {
+    /// The place of its first nonzero.
+    pub start: usize,
+    /// How many nonzeros there are in each of its rows, with those of the other blocks of
+    /// these rows: the distance from one row to the next.
+    pub width: usize,
 }
 
 impl<N> Jacobian<N> {
@@ -94,16 +104,18 @@ impl<N> Jacobian<N> {
         self.entries.iter().map(|e| e.rows * e.width()).sum()
     }
 
-    /// Where the nonzeros of each entry begin, and how many there are in each of its rows
-    /// with those of the other entries of these rows.
-    pub fn places(&self) -> Vec<(usize, usize)> {
+    /// Where the nonzeros of each block stand among those of the whole Jacobian.
+    pub fn places(&self) -> Vec<BlockPlace> {
         let mut places = Vec::with_capacity(self.entries.len());
         let mut start = 0;
         for group in self.entries.chunk_by(|a, b| a.row == b.row) {
-            let width: usize = group.iter().map(Entry::width).sum();
+            let width: usize = group.iter().map(JacobianBlock::width).sum();
             let mut offset = 0;
             for entry in group {
-                places.push((start + offset, width));
+                places.push(BlockPlace {
+                    start: start + offset,
+                    width,
+                });
                 offset += entry.width();
             }
             start += group[0].rows * width;

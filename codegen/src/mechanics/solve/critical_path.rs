@@ -1,79 +1,78 @@
-//! What waits for an elementary function, moved to the end of an acceleration: in
-//! c (a + k sin(x)) with prepared c and k the result waits for three operations after the
-//! sine, in c a + (c k) sin(x) for two, and the rest is done by then. No operation is added.
-//! Neither is one
-//! by opening c (a + k b) to c a + (c k) b.
+//! The critical path of an acceleration, shortened: an elementary function takes as long as a
+//! dozen additions in a row, so what needs it comes last. In c (a + k sin(x)) with c and k of
+//! parameters alone three operations follow the sine, in c a + (c k) sin(x) two, and all else is
+//! done by then. No operation is added; neither is one by opening c (a + k b) to c a + (c k) b.
 
 use std::collections::HashMap;
 
-use crate::mechanics::rows::Rows;
-use crate::symbolic::graph::{Graph, Id, Operation, Shape};
+use crate::mechanics::rows::RowNodes;
+use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
-/// The rows with the late terms of each coordinate's pulled out of its products.
-pub(super) fn late_terms_last(graph: &mut Graph, rows: &Rows) -> Rows {
+/// The rows with the terms on the critical path of each coordinate's pulled out of its products.
+pub(super) fn shorten_critical_path(graph: &mut Graph, rows: &RowNodes) -> RowNodes {
     let uses = graph.uses(&rows.nodes());
     let scalars = rows
         .scalars
         .iter()
         .map(|&row| {
-            if uses.get(&row).is_some_and(|uses| *uses > 0) || graph.waits(row) == 0 {
+            if uses.get(&row).is_some_and(|uses| *uses > 0) || graph.critical_path(row) == 0 {
                 return row;
             }
             let one = graph.one();
             let mut parts = Vec::new();
             pull_out(graph, &uses, (1.0, one), row, &mut parts);
-            let waits = graph.waits(row);
-            let terms = terms_by_scale(graph, &uses, waits, parts);
+            let critical_path = graph.critical_path(row);
+            let terms = terms_by_scale(graph, &uses, critical_path, parts);
             graph.combine(&terms)
         })
         .collect();
-    Rows {
+    RowNodes {
         scalars,
         modal: rows.modal.clone(),
     }
 }
 
-/// factor scale node, the scale being prepared.
-struct Part {
+/// factor scale node, the scale being of parameters alone.
+struct ScaledTerm {
     factor: f64,
-    scale: Id,
-    node: Id,
+    scale: NodeId,
+    node: NodeId,
 }
 
-/// Opens the sums of a product with the scale, down to what waits no less than all of it.
+/// Opens the sums of a product with the scale, down to what has the critical path of all of it.
 fn pull_out(
     graph: &mut Graph,
-    uses: &HashMap<Id, usize>,
-    (factor, scale): (f64, Id),
-    node: Id,
-    parts: &mut Vec<Part>,
+    uses: &HashMap<NodeId, usize>,
+    (factor, scale): (f64, NodeId),
+    node: NodeId,
+    parts: &mut Vec<ScaledTerm>,
 ) {
-    let waits = graph.waits(node);
+    let critical_path = graph.critical_path(node);
     let shared = uses.get(&node).is_some_and(|uses| *uses > 1);
     match graph.operation(node).clone() {
-        Operation::Sum(terms) if waits > 0 && !shared => {
+        Operation::Sum(terms) if critical_path > 0 && !shared => {
             for (c, term) in &terms {
                 pull_out(graph, uses, (factor * c.value(), scale), *term, parts);
             }
         }
-        Operation::Product(factors) if waits > 0 && !shared => {
-            let (prepared, moving): (Vec<_>, Vec<_>) = factors
+        Operation::Product(factors) if critical_path > 0 && !shared => {
+            let (parameter_only, moving): (Vec<_>, Vec<_>) = factors
                 .iter()
-                .partition(|(id, _)| graph.dependence(*id).is_prepared());
+                .partition(|(id, _)| graph.dependence(*id).is_parameter_only());
             match moving.as_slice() {
                 [(sum, 1)] if graph.shape(*sum) == Shape::Scalar => {
-                    let prepared = graph.product(&prepared);
-                    let scale = graph.multiply(scale, prepared);
+                    let parameter_only = graph.product(&parameter_only);
+                    let scale = graph.multiply(scale, parameter_only);
                     pull_out(graph, uses, (factor, scale), *sum, parts);
                 }
-                _ => parts.push(Part {
+                _ => parts.push(ScaledTerm {
                     factor,
                     scale,
                     node,
                 }),
             }
         }
-        _ => parts.push(Part {
+        _ => parts.push(ScaledTerm {
             factor,
             scale,
             node,
@@ -81,18 +80,18 @@ fn pull_out(
     }
 }
 
-/// The parts as terms of a sum: late ones and those that take their scale for nothing each by
+/// The parts as terms of a sum: those on the critical path and those that take their scale for nothing each by
 /// itself, the others collected by their scale.
 fn terms_by_scale(
     graph: &mut Graph,
-    uses: &HashMap<Id, usize>,
-    waits: u32,
-    parts: Vec<Part>,
-) -> Vec<(f64, Id)> {
+    uses: &HashMap<NodeId, usize>,
+    critical_path: u32,
+    parts: Vec<ScaledTerm>,
+) -> Vec<(f64, NodeId)> {
     let mut terms = Vec::new();
-    let mut early: Vec<(Id, Vec<(f64, Id)>)> = Vec::new();
+    let mut early: Vec<(NodeId, Vec<(f64, NodeId)>)> = Vec::new();
     for part in parts {
-        if graph.waits(part.node) == waits {
+        if graph.critical_path(part.node) == critical_path {
             terms.push((part.factor, graph.multiply(part.scale, part.node)));
             continue;
         }
@@ -117,7 +116,11 @@ fn terms_by_scale(
 }
 
 /// The terms, sums that nothing else needs replaced by theirs if all of these take a scale.
-fn opened(graph: &Graph, uses: &HashMap<Id, usize>, terms: Vec<(f64, Id)>) -> Vec<(f64, Id)> {
+fn opened(
+    graph: &Graph,
+    uses: &HashMap<NodeId, usize>,
+    terms: Vec<(f64, NodeId)>,
+) -> Vec<(f64, NodeId)> {
     let mut all = Vec::new();
     for (factor, node) in terms {
         let shared = uses.get(&node).is_some_and(|uses| *uses > 1);
@@ -133,23 +136,23 @@ fn opened(graph: &Graph, uses: &HashMap<Id, usize>, terms: Vec<(f64, Id)>) -> Ve
     all
 }
 
-/// Whether a term can be scaled for nothing: it is prepared, or has a prepared factor and is not
+/// Whether a term can be scaled for nothing: it is of parameters alone, or has such a factor and is not
 /// needed as it is. So scaled it may be what another row has.
-fn takes_a_scale(graph: &Graph, uses: &HashMap<Id, usize>, node: Id) -> bool {
-    let prepared = |id: Id| graph.dependence(id).is_prepared();
+fn takes_a_scale(graph: &Graph, uses: &HashMap<NodeId, usize>, node: NodeId) -> bool {
+    let parameter_only = |id: NodeId| graph.dependence(id).is_parameter_only();
     let shared = uses.get(&node).is_some_and(|uses| *uses > 1);
     let has_a_factor = match graph.operation(node) {
-        Operation::Product(factors) => factors.iter().any(|(factor, _)| prepared(*factor)),
+        Operation::Product(factors) => factors.iter().any(|(factor, _)| parameter_only(*factor)),
         _ => false,
     };
-    prepared(node) || (has_a_factor && !shared)
+    parameter_only(node) || (has_a_factor && !shared)
 }
 
 /// The scaled sum of terms as one term, with the sign in front if all of them are negative.
-fn scaled_sum(graph: &mut Graph, scale: Id, terms: &[(f64, Id)]) -> (f64, Id) {
+fn scaled_sum(graph: &mut Graph, scale: NodeId, terms: &[(f64, NodeId)]) -> (f64, NodeId) {
     let negative = terms.iter().all(|(c, _)| *c < 0.0);
     let sign = if negative { -1.0 } else { 1.0 };
-    let terms: Vec<(f64, Id)> = terms.iter().map(|(c, id)| (sign * c, *id)).collect();
+    let terms: Vec<(f64, NodeId)> = terms.iter().map(|(c, id)| (sign * c, *id)).collect();
     let sum = graph.combine(&terms);
     (sign, graph.multiply(scale, sum))
 }

@@ -1,18 +1,18 @@
 //! What the elimination of modes and that of coordinates share: reciprocals of pivots, and inner
 //! products over the modes of a field.
 
-use crate::symbolic::graph::{Graph, Id, Operation, Space};
+use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 
 /// The reciprocal of a pivot. One of parameters alone that is a plain product cancels
 /// against the row it divides (it is checked where the coefficients are prepared); any
 /// other is checked on the spot.
-pub(super) fn pivot_reciprocal(graph: &mut Graph, pivot: Id) -> Id {
+pub(super) fn pivot_reciprocal(graph: &mut Graph, pivot: NodeId) -> NodeId {
     let plain = match graph.operation(pivot) {
         Operation::Parameter(_) | Operation::Product(_) => true,
         Operation::Sum(terms) => terms.len() == 1,
         _ => false,
     };
-    if plain && graph.dependence(pivot).is_prepared() {
+    if plain && graph.dependence(pivot).is_parameter_only() {
         graph.integer_power(pivot, -1)
     } else {
         graph.intern(Operation::PivotReciprocal(pivot))
@@ -20,7 +20,7 @@ pub(super) fn pivot_reciprocal(graph: &mut Graph, pivot: Id) -> Id {
 }
 
 /// a . b over the modes of a field.
-pub(super) fn inner_product(graph: &mut Graph, field: usize, a: Id, b: Id) -> Id {
+pub(super) fn inner_product(graph: &mut Graph, field: usize, a: NodeId, b: NodeId) -> NodeId {
     if graph.is_zero(a) || graph.is_zero(b) {
         return graph.zero();
     }
@@ -28,7 +28,7 @@ pub(super) fn inner_product(graph: &mut Graph, field: usize, a: Id, b: Id) -> Id
     match graph.operation(b).clone() {
         // A sum's terms have prepared factors of their own: keep them apart.
         Operation::Sum(terms) if terms.len() > 1 => {
-            let terms: Vec<(f64, Id)> = terms
+            let terms: Vec<(f64, NodeId)> = terms
                 .iter()
                 .map(|&(c, term)| {
                     let product = graph.multiply(a, term);

@@ -22,8 +22,8 @@ mod separation;
 mod small;
 
 use crate::mechanics::mass_matrix::MassMatrix;
-use crate::mechanics::rows::Rows;
-use crate::symbolic::graph::{Graph, Id};
+use crate::mechanics::rows::RowNodes;
+use crate::symbolic::graph::{Graph, NodeId};
 use crate::symbolic::operation_count::count_operations;
 use modal::{ModalBlock, ModalInverse};
 use small::SmallSystem;
@@ -32,11 +32,11 @@ use small::SmallSystem;
 #[derive(Clone, Debug)]
 pub struct Accelerations {
     /// The accelerations.
-    pub rows: Rows,
+    pub rows: RowNodes,
     /// All pivots of the factorisation, which must be positive: those of the coordinates in
     /// the order of their elimination, then those of the interfaces, vectors over the
     /// modes, and Cholesky factors (positive if they hold no NaN).
-    pub pivots: Vec<Id>,
+    pub pivots: Vec<NodeId>,
     /// What was chosen.
     pub report: SolveReport,
 }
@@ -58,7 +58,7 @@ pub struct SolveReport {
 }
 
 /// Solves M a = f.
-pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &Rows) -> Accelerations {
+pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &RowNodes) -> Accelerations {
     let modal = ModalBlock::new(graph, mass, right);
     let system = SmallSystem::new(graph, mass, right, &modal);
     let coordinates = right.scalars.len();
@@ -79,7 +79,7 @@ pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &Rows) -> Acceleration
         }
     }
     let (operations, order, rows, mut pivots) = best;
-    let rows = critical_path::late_terms_last(graph, &rows);
+    let rows = critical_path::shorten_critical_path(graph, &rows);
     pivots.extend(modal.inverses.iter().flatten().map(ModalInverse::pivot));
     Accelerations {
         rows,

@@ -2,17 +2,20 @@
 //! through which outer products couple the modes.
 
 use super::elimination::{inner_product, pivot_reciprocal};
-use super::separation::{Part, spread};
+use super::separation::{SeparatedTerm, separate};
 use crate::mechanics::mass_matrix::MassMatrix;
-use crate::mechanics::rows::Rows;
-use crate::symbolic::graph::{Graph, Id, Operation, Space};
+use crate::mechanics::rows::RowNodes;
+use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 
 /// How the modes of one field are solved for.
 pub(super) enum ModalInverse {
     /// Division by a diagonal.
-    Diagonal { diagonal: Id, reciprocal: Id },
+    Diagonal {
+        diagonal: NodeId,
+        reciprocal: NodeId,
+    },
     /// Cholesky factor of a dense block.
-    Dense { factor: Id },
+    Dense { factor: NodeId },
 }
 
 impl ModalInverse {
@@ -35,12 +38,12 @@ impl ModalInverse {
 
     /// A constant diagonal is divided into every term, where it cancels against the
     /// stiffness of the same mode.
-    pub(super) fn apply(&self, graph: &mut Graph, vector: Id) -> Id {
+    pub(super) fn apply(&self, graph: &mut Graph, vector: NodeId) -> NodeId {
         match *self {
             Self::Dense { factor } => graph.cholesky_solve(factor, vector),
             Self::Diagonal { reciprocal, .. } => match graph.operation(vector).clone() {
-                Operation::Sum(terms) if graph.dependence(reciprocal).is_prepared() => {
-                    let divided: Vec<(f64, Id)> = terms
+                Operation::Sum(terms) if graph.dependence(reciprocal).is_parameter_only() => {
+                    let divided: Vec<(f64, NodeId)> = terms
                         .iter()
                         .map(|&(c, term)| (c.value(), graph.multiply(term, reciprocal)))
                         .collect();
@@ -51,7 +54,7 @@ impl ModalInverse {
         }
     }
 
-    pub(super) fn pivot(&self) -> Id {
+    pub(super) fn pivot(&self) -> NodeId {
         match *self {
             Self::Diagonal { diagonal, .. } => diagonal,
             Self::Dense { factor } => factor,
@@ -66,11 +69,11 @@ impl ModalInverse {
 /// A vector over one field's modes through which outer products act.
 pub(super) struct Interface {
     pub(super) field: usize,
-    pub(super) shape: Id,
+    pub(super) shape: NodeId,
     /// D^-1 shape
-    pub(super) solved: Id,
+    pub(super) solved: NodeId,
     /// shape^T D^-1 shape, before the interfaces are made orthogonal
-    pub(super) square: Id,
+    pub(super) square: NodeId,
 }
 
 /// Of a combination of other interfaces rounding leaves about 1e-32 of the square.
@@ -80,21 +83,21 @@ const LEAST_SHARE: f64 = 1e-20;
 pub(super) struct ModalBlock {
     pub(super) inverses: Vec<Option<ModalInverse>>,
     pub(super) interfaces: Vec<Interface>,
-    pub(super) weights: Vec<Vec<Id>>,
+    pub(super) weights: Vec<Vec<NodeId>>,
     /// C: coupling of each coordinate through the interfaces.
-    pub(super) coupling: Vec<Vec<Id>>,
+    pub(super) coupling: Vec<Vec<NodeId>>,
     /// Coupling of each coordinate with each field past the interfaces.
-    pub(super) direct_coupling: Vec<Vec<Id>>,
+    pub(super) direct_coupling: Vec<Vec<NodeId>>,
     /// b: the part of the modes' forces that acts through the interfaces.
-    pub(super) forces: Vec<Id>,
+    pub(super) forces: Vec<NodeId>,
     /// The modes' forces past the interfaces, per field.
-    pub(super) direct_forces: Vec<Id>,
+    pub(super) direct_forces: Vec<NodeId>,
     /// Whether a field acts on coordinates through its interfaces alone.
     pub(super) through_interfaces: Vec<bool>,
 }
 
 impl ModalBlock {
-    pub(super) fn new(graph: &mut Graph, mass: &MassMatrix, right: &Rows) -> Self {
+    pub(super) fn new(graph: &mut Graph, mass: &MassMatrix, right: &RowNodes) -> Self {
         let fields = mass.modal.len();
         let inverses = (0..fields)
             .map(|field| {
@@ -142,20 +145,21 @@ impl ModalBlock {
     fn couple_through_interfaces(&mut self, graph: &mut Graph, field: usize) {
         if !matches!(
             self.inverses[field],
-            Some(ModalInverse::Diagonal { reciprocal, .. }) if graph.dependence(reciprocal).is_prepared()
+            Some(ModalInverse::Diagonal { reciprocal, .. }) if graph.dependence(reciprocal).is_parameter_only()
         ) {
             return;
         }
-        let rows: Vec<Id> = self.direct_coupling.iter().map(|row| row[field]).collect();
-        let turning = |graph: &Graph, id: &Id| !graph.dependence(*id).is_prepared();
-        let interfaces: Vec<Id> = self.interfaces.iter().map(|i| i.shape).collect();
+        let rows: Vec<NodeId> = self.direct_coupling.iter().map(|row| row[field]).collect();
+        let turning = |graph: &Graph, id: &NodeId| !graph.dependence(*id).is_parameter_only();
+        let interfaces: Vec<NodeId> = self.interfaces.iter().map(|i| i.shape).collect();
         if !rows.iter().any(|row| turning(graph, row))
             || interfaces.iter().any(|shape| turning(graph, shape))
         {
             return;
         }
-        let spreads: Vec<Vec<Part>> = rows.iter().map(|row| spread(graph, *row)).collect();
-        if spreads
+        let separated: Vec<Vec<SeparatedTerm>> =
+            rows.iter().map(|row| separate(graph, *row)).collect();
+        if separated
             .iter()
             .flatten()
             .any(|part| turning(graph, &part.vector))
@@ -163,7 +167,7 @@ impl ModalBlock {
             return;
         }
         self.through_interfaces[field] = true;
-        for (row, parts) in spreads.into_iter().enumerate() {
+        for (row, parts) in separated.into_iter().enumerate() {
             self.direct_coupling[row][field] = graph.zero();
             for part in parts {
                 if let Some(place) = self.interface(graph, field, part.vector) {
@@ -172,7 +176,7 @@ impl ModalBlock {
             }
         }
         let mut direct = Vec::new();
-        for part in spread(graph, self.direct_forces[field]) {
+        for part in separate(graph, self.direct_forces[field]) {
             let place = self
                 .interfaces
                 .iter()
@@ -187,7 +191,8 @@ impl ModalBlock {
 
     fn weights_are_diagonal(&self, graph: &Graph) -> bool {
         let diagonal = self.weights.iter().enumerate().all(|(row, weights)| {
-            let beside = |(column, weight): (usize, &Id)| row == column || graph.is_zero(*weight);
+            let beside =
+                |(column, weight): (usize, &NodeId)| row == column || graph.is_zero(*weight);
             weights.iter().enumerate().all(beside)
         });
         diagonal && !self.through_interfaces.contains(&true)
@@ -206,7 +211,7 @@ impl ModalBlock {
             .filter(|place| self.interfaces[*place].field == field)
             .collect();
         for (count, &place) in places.iter().enumerate() {
-            let shares: Vec<(usize, Id)> = places[..count]
+            let shares: Vec<(usize, NodeId)> = places[..count]
                 .iter()
                 .map(|&earlier| (earlier, self.share(graph, place, earlier)))
                 .collect();
@@ -223,7 +228,7 @@ impl ModalBlock {
 
     /// mu: how much of the orthogonal interface `earlier` is in the interface `place`; 0 if
     /// `earlier` was a combination of others, which leaves nothing but rounding of it.
-    fn share(&self, graph: &mut Graph, place: usize, earlier: usize) -> Id {
+    fn share(&self, graph: &mut Graph, place: usize, earlier: usize) -> NodeId {
         let (own, other) = (&self.interfaces[place], &self.interfaces[earlier]);
         let product = inner_product(graph, own.field, own.shape, other.solved);
         let square = inner_product(graph, own.field, other.shape, other.solved);
@@ -234,7 +239,7 @@ impl ModalBlock {
     }
 
     /// The weights after phi_place = psi + share psi_earlier.
-    fn move_weight(&mut self, graph: &mut Graph, place: usize, earlier: usize, share: Id) {
+    fn move_weight(&mut self, graph: &mut Graph, place: usize, earlier: usize, share: NodeId) {
         for column in 0..self.interfaces.len() {
             let moved = graph.multiply(share, self.weights[place][column]);
             self.weights[earlier][column] = graph.add(self.weights[earlier][column], moved);
@@ -249,9 +254,9 @@ impl ModalBlock {
         }
     }
 
-    /// Spreads u v^T over interfaces: scalar factors go into the weights.
-    fn add_outer(&mut self, graph: &mut Graph, u: (usize, Id), v: (usize, Id)) {
-        let (rows, columns) = (spread(graph, u.1), spread(graph, v.1));
+    /// Separates u v^T into interfaces: scalar factors go into the weights.
+    fn add_outer(&mut self, graph: &mut Graph, u: (usize, NodeId), v: (usize, NodeId)) {
+        let (rows, columns) = (separate(graph, u.1), separate(graph, v.1));
         for u_part in &rows {
             for v_part in &columns {
                 let row = self.interface(graph, u.0, u_part.vector);
@@ -265,7 +270,7 @@ impl ModalBlock {
         }
     }
 
-    fn interface(&mut self, graph: &mut Graph, field: usize, shape: Id) -> Option<usize> {
+    fn interface(&mut self, graph: &mut Graph, field: usize, shape: NodeId) -> Option<usize> {
         let known = self
             .interfaces
             .iter()
@@ -290,7 +295,7 @@ impl ModalBlock {
         Some(self.interfaces.len() - 1)
     }
 
-    pub(super) fn solve_field(&self, graph: &mut Graph, field: usize, vector: Id) -> Id {
+    pub(super) fn solve_field(&self, graph: &mut Graph, field: usize, vector: NodeId) -> NodeId {
         match &self.inverses[field] {
             Some(inverse) if !graph.is_zero(vector) => inverse.apply(graph, vector),
             _ => graph.zero(),

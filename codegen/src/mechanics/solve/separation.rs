@@ -1,23 +1,25 @@
-//! Vectors over the modes as scalars times vectors that hold no scalar factor. What turns
-//! with the state then stands in the scalars, and the vectors depend on parameters alone.
+//! Separation of state-dependent coupling: vectors over the modes as scalars times vectors that
+//! hold no scalar factor. What depends on the state then stands in the scalars, and the vectors
+//! depend on parameters alone.
 
 use std::collections::BTreeMap;
 
-use crate::symbolic::graph::{Graph, Id, Operation, Shape};
+use crate::symbolic::graph::{Graph, NodeId, Operation, Shape};
 
 /// A scalar times a vector without scalar factors (1 for equal entries).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
-    pub(super) scalar: Id,
-    pub(super) vector: Id,
+pub(super) struct SeparatedTerm {
+    pub(super) scalar: NodeId,
+    pub(super) vector: NodeId,
 }
 
 /// A vector as a sum of parts, each vector once, in the order of the graph. Sums are opened
 /// from the outermost to the innermost, so that a shared one is opened once.
-pub(super) fn spread(graph: &mut Graph, vector: Id) -> Vec<Part> {
+pub(super) fn separate(graph: &mut Graph, vector: NodeId) -> Vec<SeparatedTerm> {
     let one = graph.one();
-    let mut waiting: BTreeMap<Id, Vec<(f64, Id)>> = BTreeMap::from([(vector, vec![(1.0, one)])]);
-    let mut found: BTreeMap<Id, Vec<(f64, Id)>> = BTreeMap::new();
+    let mut waiting: BTreeMap<NodeId, Vec<(f64, NodeId)>> =
+        BTreeMap::from([(vector, vec![(1.0, one)])]);
+    let mut found: BTreeMap<NodeId, Vec<(f64, NodeId)>> = BTreeMap::new();
     while let Some((node, weights)) = waiting.pop_last() {
         let weight = graph.combine(&weights);
         if graph.shape(node) == Shape::Scalar {
@@ -51,11 +53,11 @@ pub(super) fn spread(graph: &mut Graph, vector: Id) -> Vec<Part> {
             _ => found.entry(node).or_default().push((1.0, weight)),
         }
     }
-    let collected = found.into_iter().map(|(vector, weights)| Part {
+    let collected = found.into_iter().map(|(vector, weights)| SeparatedTerm {
         scalar: graph.combine(&weights),
         vector,
     });
-    let parts: Vec<Part> = collected.collect();
+    let parts: Vec<SeparatedTerm> = collected.collect();
     parts
         .into_iter()
         .filter(|part| !graph.is_zero(part.scalar))
@@ -63,7 +65,7 @@ pub(super) fn spread(graph: &mut Graph, vector: Id) -> Vec<Part> {
 }
 
 /// The terms of a sum among the factors, which is taken out of them; none if there is none.
-fn sum_among(graph: &Graph, factors: &mut Vec<(Id, i32)>) -> Vec<(f64, Id)> {
+fn sum_among(graph: &Graph, factors: &mut Vec<(NodeId, i32)>) -> Vec<(f64, NodeId)> {
     let place = factors.iter().position(|(factor, exponent)| {
         *exponent == 1 && matches!(graph.operation(*factor), Operation::Sum(_))
     });

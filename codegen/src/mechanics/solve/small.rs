@@ -4,38 +4,38 @@
 use super::elimination::{inner_product, pivot_reciprocal};
 use super::modal::ModalBlock;
 use crate::mechanics::mass_matrix::MassMatrix;
-use crate::mechanics::rows::Rows;
-use crate::symbolic::graph::{Graph, Id, Space};
+use crate::mechanics::rows::RowNodes;
+use crate::symbolic::graph::{Graph, NodeId, Space};
 
 /// The system left when the modes are eliminated: interface forces, then coordinates.
 pub(super) struct SmallSystem {
     pub(super) interfaces: usize,
-    pub(super) matrix: Vec<Vec<Id>>,
-    pub(super) right: Vec<Id>,
+    pub(super) matrix: Vec<Vec<NodeId>>,
+    pub(super) right: Vec<NodeId>,
     /// D^-1 f_q per field
-    pub(super) free_modes: Vec<Id>,
+    pub(super) free_modes: Vec<NodeId>,
     /// D^-1 h per coordinate and field
-    pub(super) solved_coupling: Vec<Vec<Id>>,
+    pub(super) solved_coupling: Vec<Vec<NodeId>>,
 }
 
 /// What the interfaces do when the modes alone move them.
 struct Response {
     /// K = Phi^T D^-1 Phi
-    compliance: Vec<Vec<Id>>,
+    compliance: Vec<Vec<NodeId>>,
     /// Phi^T D^-1 H^T, interfaces x coordinates
-    coupling: Vec<Vec<Id>>,
+    coupling: Vec<Vec<NodeId>>,
     /// Phi^T D^-1 f_q
-    free: Vec<Id>,
+    free: Vec<NodeId>,
 }
 
 impl SmallSystem {
     pub(super) fn new(
         graph: &mut Graph,
         mass: &MassMatrix,
-        right: &Rows,
+        right: &RowNodes,
         modal: &ModalBlock,
     ) -> Self {
-        let mut solved = |vectors: &[Id]| -> Vec<Id> {
+        let mut solved = |vectors: &[NodeId]| -> Vec<NodeId> {
             let fields = vectors.iter().enumerate();
             fields
                 .map(|(field, vector)| modal.solve_field(graph, field, *vector))
@@ -106,7 +106,7 @@ impl SmallSystem {
         response: &Response,
     ) {
         let weights = &modal.weights[place];
-        let mut row: Vec<Id> = (0..self.interfaces)
+        let mut row: Vec<NodeId> = (0..self.interfaces)
             .map(|column| {
                 let one = if column == place {
                     graph.one()
@@ -136,13 +136,13 @@ impl SmallSystem {
         graph: &mut Graph,
         mass: &MassMatrix,
         row: usize,
-        force: Id,
+        force: NodeId,
         modal: &ModalBlock,
         response: &Response,
     ) {
         let direct = &modal.direct_coupling[row];
         let through = &modal.coupling[row];
-        let mut entries: Vec<Id> = (0..self.interfaces)
+        let mut entries: Vec<NodeId> = (0..self.interfaces)
             .map(|column| {
                 let own = graph.negate(response.coupling[column][row]);
                 let compliance = response.compliance.iter().map(|row| row[column]);
@@ -180,7 +180,11 @@ impl SmallSystem {
 
     /// Elimination without pivoting, interfaces first, then coordinates in this order.
     /// Returns the unknowns in their own order, and the pivots.
-    pub(super) fn eliminate(&self, graph: &mut Graph, coordinates: &[usize]) -> (Vec<Id>, Vec<Id>) {
+    pub(super) fn eliminate(
+        &self,
+        graph: &mut Graph,
+        coordinates: &[usize],
+    ) -> (Vec<NodeId>, Vec<NodeId>) {
         let order: Vec<usize> = (0..self.interfaces)
             .chain(coordinates.iter().map(|index| self.interfaces + index))
             .collect();
@@ -232,8 +236,8 @@ impl SmallSystem {
         &self,
         graph: &mut Graph,
         modal: &ModalBlock,
-        unknowns: &[Id],
-    ) -> Rows {
+        unknowns: &[NodeId],
+    ) -> RowNodes {
         let (forces, coordinates) = unknowns.split_at(modal.interfaces.len());
         let by_field = (0..modal.inverses.len())
             .map(|field| {
@@ -252,7 +256,7 @@ impl SmallSystem {
                 graph.combine_flat(&terms)
             })
             .collect();
-        Rows {
+        RowNodes {
             scalars: coordinates.to_vec(),
             modal: by_field,
         }
@@ -262,13 +266,13 @@ impl SmallSystem {
 /// start + sign sum of a_k b_k
 fn plus_products(
     graph: &mut Graph,
-    start: Id,
+    start: NodeId,
     sign: f64,
-    a: &[Id],
-    b: impl Iterator<Item = Id>,
-) -> Id {
+    a: &[NodeId],
+    b: impl Iterator<Item = NodeId>,
+) -> NodeId {
     let products = a.iter().zip(b).map(|(a, b)| (sign, graph.multiply(*a, b)));
-    let mut terms: Vec<(f64, Id)> = products.collect();
+    let mut terms: Vec<(f64, NodeId)> = products.collect();
     terms.push((1.0, start));
     graph.combine(&terms)
 }

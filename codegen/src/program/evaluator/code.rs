@@ -16,7 +16,7 @@ pub enum Stage {
     Mass,
     /// Velocity terms and generalised forces.
     Forces,
-    /// c - f, if it was requested; so for those that follow.
+    /// c - f, if it is among the outputs; so for those that follow.
     BiasForces,
     /// M a + c - f.
     InverseDynamics,
@@ -73,25 +73,25 @@ impl Stage {
             | Self::Jacobians
             | Self::ForwardProduct
             | Self::ReverseProduct
-            | Self::ParameterProduct => self.requested_roots(program),
+            | Self::ParameterProduct => self.output_roots(program),
         }
     }
 }
 
 impl Stage {
-    fn requested_roots(self, program: &Program) -> Vec<ValueId> {
-        let requested = &program.requested;
-        let products = requested.products.iter();
+    fn output_roots(self, program: &Program) -> Vec<ValueId> {
+        let outputs = &program.outputs;
+        let products = outputs.products.iter();
         match self {
             Self::BiasForces => {
-                let rows = requested.bias_forces.iter();
+                let rows = outputs.bias_forces.iter();
                 rows.flat_map(RowValues::all).collect()
             }
             Self::InverseDynamics => {
-                let rows = requested.inverse_dynamics.iter();
+                let rows = outputs.inverse_dynamics.iter();
                 rows.flat_map(RowValues::all).collect()
             }
-            Self::GuardRates => requested.guard_rates.iter().flatten().copied().collect(),
+            Self::GuardRates => outputs.guard_rates.iter().flatten().copied().collect(),
             Self::ForwardProduct => products.flat_map(|p| p.forward.all()).collect(),
             Self::ReverseProduct => products
                 .flat_map(|p| p.reverse.iter().map(|(_, id)| *id))
@@ -100,7 +100,7 @@ impl Stage {
                 .flat_map(|p| p.by_parameters.entries.iter().map(|entry| entry.value))
                 .collect(),
             _ => {
-                let jacobians = requested.jacobians.iter();
+                let jacobians = outputs.jacobians.iter();
                 jacobians
                     .flat_map(|jacobian| jacobian.entries.iter().map(|entry| entry.value))
                     .collect()

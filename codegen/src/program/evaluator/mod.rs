@@ -38,7 +38,7 @@ impl Evaluator {
     pub fn new(program: Program) -> Self {
         let prepare = program
             .ids()
-            .filter(|id| program.value(*id).prepared)
+            .filter(|id| program.value(*id).parameter_only)
             .collect();
         let parameters = program
             .ids()

@@ -1,13 +1,14 @@
-//! What was requested of a program, computed by its evaluator. Each function says whether the
+//! The outputs on request of a program, computed by its evaluator. Each function says whether the
 //! program has it.
 
 use super::{Evaluator, Point, Stage};
-use crate::program::{Argument, Entry, Extent, Jacobian, Op, RowValues, ValueId, Variable};
+use crate::program::BlockPlace;
+use crate::program::{Argument, Extent, Jacobian, JacobianBlock, Op, RowValues, ValueId, Variable};
 
 impl Evaluator {
     /// c - f; a number per degree of freedom.
     pub fn bias_forces(&mut self, point: Point<'_>, out: &mut [f64]) -> bool {
-        let Some(rows) = self.program.requested.bias_forces.clone() else {
+        let Some(rows) = self.program.outputs.bias_forces.clone() else {
             return false;
         };
         self.compute(Stage::BiasForces, &point);
@@ -22,7 +23,7 @@ impl Evaluator {
         accelerations: &[f64],
         out: &mut [f64],
     ) -> bool {
-        let Some(rows) = self.program.requested.inverse_dynamics.clone() else {
+        let Some(rows) = self.program.outputs.inverse_dynamics.clone() else {
             return false;
         };
         self.set_argument(Argument::Accelerations, accelerations, &[]);
@@ -33,7 +34,7 @@ impl Evaluator {
 
     /// The rates of the guards; as many numbers as [`Evaluator::guard_count`].
     pub fn guard_rates(&mut self, point: Point<'_>, out: &mut [f64]) -> bool {
-        let Some(rates) = self.program.requested.guard_rates.clone() else {
+        let Some(rates) = self.program.outputs.guard_rates.clone() else {
             return false;
         };
         self.compute(Stage::GuardRates, &point);
@@ -50,7 +51,7 @@ impl Evaluator {
 
     /// The structural nonzeros of a Jacobian of the program, by its place among them.
     pub fn jacobian(&mut self, place: usize, point: Point<'_>, out: &mut [f64]) -> bool {
-        let Some(jacobian) = self.program.requested.jacobians.get(place).cloned() else {
+        let Some(jacobian) = self.program.outputs.jacobians.get(place).cloned() else {
             return false;
         };
         self.compute(Stage::Jacobians, &point);
@@ -66,7 +67,7 @@ impl Evaluator {
         (state, inputs): (&[f64], &[f64]),
         out: &mut [f64],
     ) -> bool {
-        let Some(products) = self.program.requested.products.clone() else {
+        let Some(products) = self.program.outputs.products.clone() else {
             return false;
         };
         self.set_argument(Argument::Direction, state, inputs);
@@ -86,7 +87,7 @@ impl Evaluator {
         weights: &[f64],
         (state, inputs): (&mut [f64], &mut [f64]),
     ) -> bool {
-        let Some(products) = self.program.requested.products.clone() else {
+        let Some(products) = self.program.outputs.products.clone() else {
             return false;
         };
         self.set_argument(Argument::Weights, weights, &[]);
@@ -117,7 +118,7 @@ impl Evaluator {
         weights: &[f64],
         out: &mut [f64],
     ) -> bool {
-        let Some(products) = self.program.requested.products.clone() else {
+        let Some(products) = self.program.outputs.products.clone() else {
             return false;
         };
         self.set_argument(Argument::Weights, weights, &[]);
@@ -161,7 +162,7 @@ impl Evaluator {
     }
 
     fn copy_entries(&self, jacobian: &Jacobian<ValueId>, out: &mut [f64]) {
-        for (entry, (start, width)) in jacobian.entries.iter().zip(jacobian.places()) {
+        for (entry, BlockPlace { start, width }) in jacobian.entries.iter().zip(jacobian.places()) {
             for row in 0..entry.rows {
                 for column in 0..entry.width() {
                     out[start + width * row + column] = self.nonzero(entry, row, column);
@@ -170,7 +171,7 @@ impl Evaluator {
         }
     }
 
-    fn nonzero(&self, entry: &Entry<ValueId>, row: usize, column: usize) -> f64 {
+    fn nonzero(&self, entry: &JacobianBlock<ValueId>, row: usize, column: usize) -> f64 {
         match self.program.value(entry.value).extent {
             Extent::Matrix(_, columns) => self.slice(entry.value)[row * columns + column],
             _ if entry.columns > 1 && !entry.diagonal => self.element(entry.value, column),

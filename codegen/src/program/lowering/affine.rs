@@ -7,7 +7,7 @@ use super::values::Lowering;
 use crate::mechanics::affine::{AffineEquations, AffineRow};
 use crate::program::affine::{AffineLayout, AffineProgram, AffineRowValues};
 use crate::program::{
-    MassBlocks, Program, ProgramField, ProgramParameter, Quantity, Requested, RowValues, ValueId,
+    MassBlocks, Outputs, Program, ProgramField, ProgramParameter, Quantity, RowValues, ValueId,
 };
 
 /// The program of the coefficients of `equations`, which belong to `model`.
@@ -39,7 +39,7 @@ pub fn lower_affine(
     let pivots = equations
         .pivots
         .iter()
-        .filter(|id| equations.graph.dependence(**id).is_prepared())
+        .filter(|id| equations.graph.dependence(**id).is_parameter_only())
         .map(|id| lowering.value(*id))
         .collect();
     let mut parameters = program_parameters(model, parameter_values);
@@ -79,7 +79,7 @@ pub fn lower_affine(
             guards: Vec::new(),
             pivots,
             coefficient_values: Vec::new(),
-            requested: Requested::default(),
+            outputs: Outputs::default(),
         },
     }
 }
@@ -109,7 +109,7 @@ fn side(guard: usize) -> ProgramParameter {
 }
 
 fn values(lowering: &mut Lowering<'_>, row: &AffineRow) -> AffineRowValues {
-    let mut all = |nodes: &[crate::symbolic::graph::Id]| -> Vec<ValueId> {
+    let mut all = |nodes: &[crate::symbolic::graph::NodeId]| -> Vec<ValueId> {
         nodes.iter().map(|id| lowering.value(*id)).collect()
     };
     AffineRowValues {

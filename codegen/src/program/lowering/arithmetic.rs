@@ -4,26 +4,30 @@ use model_spec::model::Function;
 
 use super::values::Lowering;
 use crate::program::{Extent, Op, ValueId};
-use crate::symbolic::graph::{Bits, Id, Operation, Shape};
+use crate::symbolic::graph::{Bits, NodeId, Operation, Shape};
 
 impl Lowering<'_> {
     /// Prepared terms first, as one value; then the others, those last that wait longest for
     /// elementary functions, so that all else is summed in the meantime. Among equals
     /// positive terms come before negative ones so that no negation is needed.
-    pub(super) fn sum(&mut self, terms: &[(Bits, Id)]) -> ValueId {
+    pub(super) fn sum(&mut self, terms: &[(Bits, NodeId)]) -> ValueId {
         let graph = self.graph;
-        let (prepared, mut live): (Vec<_>, Vec<_>) = terms
+        let (parameter_only, mut live): (Vec<_>, Vec<_>) = terms
             .iter()
             .map(|(factor, id)| (factor.value(), *id))
-            .partition(|(_, id)| graph.dependence(*id).is_prepared());
-        live.sort_by_key(|(_, id)| graph.waits(*id));
-        let mut parts: Vec<(bool, ValueId)> =
-            prepared.iter().map(|(c, id)| self.term(*c, *id)).collect();
+            .partition(|(_, id)| graph.dependence(*id).is_parameter_only());
+        live.sort_by_key(|(_, id)| graph.critical_path(*id));
+        let mut parts: Vec<(bool, ValueId)> = parameter_only
+            .iter()
+            .map(|(c, id)| self.term(*c, *id))
+            .collect();
         if !live.is_empty() && parts.len() > 1 {
             parts = vec![(false, self.add_all(&parts))];
         }
-        for equals in live.chunk_by(|(_, a), (_, b)| graph.waits(*a) == graph.waits(*b)) {
-            if graph.waits(equals[0].1) > 0 {
+        for equals in
+            live.chunk_by(|(_, a), (_, b)| graph.critical_path(*a) == graph.critical_path(*b))
+        {
+            if graph.critical_path(equals[0].1) > 0 {
                 parts = self.joined(parts);
             }
             parts.extend(equals.iter().map(|(c, id)| self.term(*c, *id)));
@@ -64,8 +68,8 @@ impl Lowering<'_> {
     fn negated(&mut self, value: ValueId) -> ValueId {
         let extent = self.values[value.0].extent;
         if let Op::Multiply(factor, moving) = self.values[value.0].op
-            && self.values[factor.0].prepared
-            && !self.values[moving.0].prepared
+            && self.values[factor.0].parameter_only
+            && !self.values[moving.0].parameter_only
         {
             let extent = self.values[factor.0].extent;
             let factor = self.emit(Op::Negate(factor), extent);
@@ -75,7 +79,7 @@ impl Lowering<'_> {
     }
 
     /// |c| times a node, and whether c is negative.
-    pub(super) fn term(&mut self, factor: f64, id: Id) -> (bool, ValueId) {
+    pub(super) fn term(&mut self, factor: f64, id: NodeId) -> (bool, ValueId) {
         let graph = self.graph;
         let (negative, magnitude) = (factor < 0.0, factor.abs());
         let factors = match graph.operation(id) {
@@ -85,13 +89,13 @@ impl Lowering<'_> {
             }
             _ => vec![(id, 1)],
         };
-        let (prepared, live): (Vec<_>, Vec<_>) = factors
+        let (parameter_only, live): (Vec<_>, Vec<_>) = factors
             .into_iter()
-            .partition(|(id, _)| graph.dependence(*id).is_prepared());
-        if let Some(total) = self.scaled_total(magnitude, &prepared, &live) {
+            .partition(|(id, _)| graph.dependence(*id).is_parameter_only());
+        if let Some(total) = self.scaled_total(magnitude, &parameter_only, &live) {
             return (negative, total);
         }
-        let coefficient = self.powers(magnitude, &prepared);
+        let coefficient = self.powers(magnitude, &parameter_only);
         let moving = (!live.is_empty())
             .then(|| self.where_in_contact(&live))
             .flatten();
@@ -108,8 +112,8 @@ impl Lowering<'_> {
     fn scaled_total(
         &mut self,
         number: f64,
-        prepared: &[(Id, i32)],
-        live: &[(Id, i32)],
+        parameter_only: &[(NodeId, i32)],
+        live: &[(NodeId, i32)],
     ) -> Option<ValueId> {
         let graph = self.graph;
         let &[(total, 1)] = live else {
@@ -124,11 +128,11 @@ impl Lowering<'_> {
         let once = self.uses.get(&total) == Some(&1);
         let (constant, moving): (Vec<_>, Vec<_>) = factors
             .iter()
-            .partition(|(id, _)| graph.dependence(*id).is_prepared());
-        if !once || constant.is_empty() || (prepared.is_empty() && number == 1.0) {
+            .partition(|(id, _)| graph.dependence(*id).is_parameter_only());
+        if !once || constant.is_empty() || (parameter_only.is_empty() && number == 1.0) {
             return None;
         }
-        let coefficient = self.powers(number, &[prepared, constant.as_slice()].concat())?;
+        let coefficient = self.powers(number, &[parameter_only, constant.as_slice()].concat())?;
         let moving = self.where_in_contact(&moving)?;
         let summand = self.binary(Op::Multiply, coefficient, moving);
         Some(self.emit(Op::Total(summand), Extent::Scalar))
@@ -136,9 +140,9 @@ impl Lowering<'_> {
 
     /// A product of powers; a contact among others chooses between them and 0, which waits
     /// for no multiplication.
-    fn where_in_contact(&mut self, factors: &[(Id, i32)]) -> Option<ValueId> {
+    fn where_in_contact(&mut self, factors: &[(NodeId, i32)]) -> Option<ValueId> {
         let graph = self.graph;
-        let contact = |(id, _): &(Id, i32)| {
+        let contact = |(id, _): &(NodeId, i32)| {
             matches!(graph.operation(*id), Operation::Call(Function::Contact, _))
         };
         let Some(place) = factors.iter().position(contact) else {
@@ -164,7 +168,7 @@ impl Lowering<'_> {
     }
 
     /// A number times a product of powers, scalars before vectors; `None` for a bare 1.
-    fn powers(&mut self, number: f64, factors: &[(Id, i32)]) -> Option<ValueId> {
+    fn powers(&mut self, number: f64, factors: &[(NodeId, i32)]) -> Option<ValueId> {
         let graph = self.graph;
         let mut ordered = factors.to_vec();
         ordered.sort_by_key(|(id, _)| graph.shape(*id) != Shape::Scalar);

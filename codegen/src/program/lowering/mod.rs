@@ -13,26 +13,26 @@ mod values;
 use model_spec::model::Model;
 
 use crate::mechanics::equations::Equations;
-use crate::mechanics::outputs::Requested;
-use crate::mechanics::rows::Rows;
+use crate::mechanics::outputs::Outputs;
+use crate::mechanics::rows::RowNodes;
 use crate::program::{Extent, Op, Program, ProgramField, ProgramGuard, ValueId};
 use crate::symbolic::formula::abridged;
-use crate::symbolic::graph::Id;
+use crate::symbolic::graph::NodeId;
 pub use affine::lower_affine;
 use quantities::{program_observables, program_parameters, quantity};
 use values::Lowering;
 
 /// The program of one variant.
 pub fn lower(model: &Model, equations: &Equations, parameter_values: &[f64]) -> Program {
-    lower_requested(model, equations, parameter_values, &Requested::default())
+    lower_with_outputs(model, equations, parameter_values, &Outputs::default())
 }
 
-/// The program of one variant with what was requested, which leaves the rest as it is.
-pub fn lower_requested(
+/// The program of one variant with its outputs on request, which leave the rest as it is.
+pub fn lower_with_outputs(
     model: &Model,
     equations: &Equations,
     parameter_values: &[f64],
-    requested: &Requested<Id, Rows>,
+    outputs: &Outputs<NodeId, RowNodes>,
 ) -> Program {
     let mut lowering = Lowering::new(
         &equations.graph,
@@ -67,7 +67,7 @@ pub fn lower_requested(
         .accelerations
         .pivots
         .iter()
-        .filter(|id| equations.graph.dependence(**id).is_prepared())
+        .filter(|id| equations.graph.dependence(**id).is_parameter_only())
         .map(|id| lowering.value(*id))
         .collect();
     let coefficient_values = equations
@@ -75,7 +75,7 @@ pub fn lower_requested(
         .iter()
         .map(|coefficient| lowering.value(coefficient.value))
         .collect();
-    let requested = lowering.requested(requested);
+    let outputs = lowering.outputs(outputs);
     Program {
         name: model.name.clone(),
         title: model.title.clone(),
@@ -112,6 +112,6 @@ pub fn lower_requested(
         guards,
         pivots,
         coefficient_values,
-        requested,
+        outputs,
     }
 }

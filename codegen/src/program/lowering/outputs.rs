@@ -1,34 +1,34 @@
-//! The values of what was requested, node by node as it is structured.
+//! The values of the outputs on request, node by node as it is structured.
 
 use super::values::Lowering;
 use crate::mechanics::outputs::Switch;
-use crate::mechanics::outputs::{Entry, Jacobian, Products, Requested};
-use crate::mechanics::rows::Rows;
+use crate::mechanics::outputs::{Jacobian, JacobianBlock, Outputs, Products};
+use crate::mechanics::rows::RowNodes;
 use crate::program::{RowValues, ValueId};
-use crate::symbolic::graph::Id;
+use crate::symbolic::graph::NodeId;
 
 impl Lowering<'_> {
-    pub(super) fn requested(
+    pub(super) fn outputs(
         &mut self,
-        requested: &Requested<Id, Rows>,
-    ) -> Requested<ValueId, RowValues> {
-        Requested {
-            requests: requested.requests.clone(),
-            bias_forces: requested.bias_forces.as_ref().map(|rows| self.rows(rows)),
-            inverse_dynamics: requested
+        outputs: &Outputs<NodeId, RowNodes>,
+    ) -> Outputs<ValueId, RowValues> {
+        Outputs {
+            kinds: outputs.kinds.clone(),
+            bias_forces: outputs.bias_forces.as_ref().map(|rows| self.rows(rows)),
+            inverse_dynamics: outputs
                 .inverse_dynamics
                 .as_ref()
                 .map(|rows| self.rows(rows)),
-            guard_rates: requested
+            guard_rates: outputs
                 .guard_rates
                 .as_ref()
                 .map(|rates| rates.iter().map(|id| self.value(*id)).collect()),
-            jacobians: requested
+            jacobians: outputs
                 .jacobians
                 .iter()
                 .map(|jacobian| self.jacobian(jacobian))
                 .collect(),
-            products: requested.products.as_ref().map(|products| Products {
+            products: outputs.products.as_ref().map(|products| Products {
                 forward: self.rows(&products.forward),
                 reverse: products
                     .reverse
@@ -37,7 +37,7 @@ impl Lowering<'_> {
                     .collect(),
                 by_parameters: self.jacobian(&products.by_parameters),
             }),
-            regimes: requested.regimes.as_ref().map(|switches| {
+            regimes: outputs.regimes.as_ref().map(|switches| {
                 let switches = switches.iter();
                 switches
                     .map(|switch| Switch {
@@ -49,14 +49,14 @@ impl Lowering<'_> {
         }
     }
 
-    fn jacobian(&mut self, jacobian: &Jacobian<Id>) -> Jacobian<ValueId> {
+    fn jacobian(&mut self, jacobian: &Jacobian<NodeId>) -> Jacobian<ValueId> {
         let entries = jacobian.entries.iter();
         Jacobian {
             name: jacobian.name,
             rows: jacobian.rows,
             columns: jacobian.columns,
             entries: entries
-                .map(|entry| Entry {
+                .map(|entry| JacobianBlock {
                     row: entry.row,
                     rows: entry.rows,
                     column: entry.column,

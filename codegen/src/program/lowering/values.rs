@@ -4,11 +4,11 @@ use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 
 use crate::mechanics::equations::Equations;
-use crate::mechanics::rows::Rows;
+use crate::mechanics::rows::RowNodes;
 use crate::program::{
     Extent, MassBlocks, Op, ProgramTable, RowValues, ScaledValue, Value, ValueId,
 };
-use crate::symbolic::graph::{Assembly, Graph, Id, Operation, Shape};
+use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, Shape};
 
 /// An operation and its extent, to be found again: numbers are compared by their bits.
 struct Computation {
@@ -49,23 +49,23 @@ impl Hash for Computation {
 /// Values in the making.
 pub(super) struct Lowering<'g> {
     pub(super) graph: &'g Graph,
-    derived: &'g [Option<Id>],
+    derived: &'g [Option<NodeId>],
     /// Place among the independent parameters, for each parameter.
     independent: Vec<usize>,
     parameter_names: Vec<String>,
     pub(super) values: Vec<Value>,
     known: HashMap<Computation, ValueId>,
-    lowered: HashMap<Id, ValueId>,
+    lowered: HashMap<NodeId, ValueId>,
     pub(super) tables: Vec<ProgramTable>,
     table_places: HashMap<usize, usize>,
     /// How often the accelerations read each node, while these are lowered.
-    pub(super) uses: HashMap<Id, usize>,
+    pub(super) uses: HashMap<NodeId, usize>,
 }
 
 impl<'g> Lowering<'g> {
     /// A lowering of nodes of `graph`, whose parameters have these names and, if they are
     /// derived from others, these expressions.
-    pub(super) fn new(graph: &'g Graph, derived: &'g [Option<Id>], names: &[String]) -> Self {
+    pub(super) fn new(graph: &'g Graph, derived: &'g [Option<NodeId>], names: &[String]) -> Self {
         let mut next = 0;
         let independent = derived
             .iter()
@@ -89,7 +89,7 @@ impl<'g> Lowering<'g> {
         }
     }
 
-    pub(super) fn rows(&mut self, rows: &Rows) -> RowValues {
+    pub(super) fn rows(&mut self, rows: &RowNodes) -> RowValues {
         RowValues {
             scalars: rows.scalars.iter().map(|id| self.value(*id)).collect(),
             modal: rows.modal.iter().map(|id| self.value(*id)).collect(),
@@ -98,7 +98,7 @@ impl<'g> Lowering<'g> {
 
     pub(super) fn mass(&mut self, equations: &Equations) -> MassBlocks {
         let mass = &equations.mass;
-        let block = |rows: &Vec<Id>, lowering: &mut Self| {
+        let block = |rows: &Vec<NodeId>, lowering: &mut Self| {
             rows.iter()
                 .map(|id| lowering.value(*id))
                 .collect::<Vec<_>>()
@@ -137,7 +137,7 @@ impl<'g> Lowering<'g> {
             return known;
         }
         let op = key.op.clone();
-        let prepared = match op {
+        let parameter_only = match op {
             Op::Constant(_) | Op::Table(_) | Op::Parameter(_) => true,
             Op::Coordinate(_)
             | Op::Rate(_)
@@ -146,13 +146,16 @@ impl<'g> Lowering<'g> {
             | Op::Input(_)
             | Op::Time
             | Op::Argument(..) => false,
-            _ => op.operands().iter().all(|id| self.values[id.0].prepared),
+            _ => op
+                .operands()
+                .iter()
+                .all(|id| self.values[id.0].parameter_only),
         };
         let id = ValueId(self.values.len());
         self.values.push(Value {
             op,
             extent,
-            prepared,
+            parameter_only,
             name: None,
         });
         self.known.insert(key, id);
@@ -181,7 +184,7 @@ impl<'g> Lowering<'g> {
     }
 
     /// The value of a node.
-    pub(super) fn value(&mut self, id: Id) -> ValueId {
+    pub(super) fn value(&mut self, id: NodeId) -> ValueId {
         if let Some(&known) = self.lowered.get(&id) {
             return known;
         }
@@ -195,7 +198,7 @@ impl<'g> Lowering<'g> {
         value
     }
 
-    fn lower_node(&mut self, id: Id) -> ValueId {
+    fn lower_node(&mut self, id: NodeId) -> ValueId {
         let graph = self.graph;
         let op = match graph.operation(id) {
             Operation::Constant(bits) => return self.constant(bits.value()),

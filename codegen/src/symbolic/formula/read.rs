@@ -7,7 +7,7 @@ use model_spec::model::Model;
 use super::shared::{Shared, is_leaf, own_length};
 use super::symbol::{Index, Symbol};
 use super::tree::{Choice, Formula, MatrixPart, Term};
-use crate::symbolic::graph::{Argument, Assembly, Bits, Graph, Id, Operation, Shape, Variable};
+use crate::symbolic::graph::{Argument, Assembly, Bits, Graph, NodeId, Operation, Shape, Variable};
 
 /// Up to this many characters a formula that stands by itself is written out.
 const ABRIDGED: u64 = 2000;
@@ -20,17 +20,17 @@ pub struct Reader<'a> {
     graph: &'a Graph,
     model: &'a Model,
     shared: &'a Shared,
-    omitted: HashSet<Id>,
+    omitted: HashSet<NodeId>,
 }
 
 /// The formula of a node, with nothing but named nodes by their names. Of large models it can
 /// be exponentially longer than the graph.
-pub fn written_out(graph: &Graph, model: &Model, id: Id) -> Formula {
+pub fn written_out(graph: &Graph, model: &Model, id: NodeId) -> Formula {
     Reader::new(graph, model, &Shared::default()).formula(id)
 }
 
 /// The formula of a node for a message or a comment: parts of a very long one are left out.
-pub fn abridged(graph: &Graph, model: &Model, id: Id) -> Formula {
+pub fn abridged(graph: &Graph, model: &Model, id: NodeId) -> Formula {
     let shared = Shared::default();
     let mut reader = Reader::new(graph, model, &shared);
     let mut lengths = HashMap::new();
@@ -57,7 +57,7 @@ impl<'a> Reader<'a> {
 
     /// The formula of a node, also if the specification names it; the name of its line if it
     /// has one.
-    pub fn formula(&self, id: Id) -> Formula {
+    pub fn formula(&self, id: NodeId) -> Formula {
         match self.shared.name(id) {
             Some(name) => Formula::Symbol(self.indexed(Symbol::plain(name), id)),
             None => self.operation(id),
@@ -65,7 +65,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The node by its name, or its formula.
-    pub fn expression(&self, id: Id) -> Formula {
+    pub fn expression(&self, id: NodeId) -> Formula {
         match self.graph.name(id) {
             Some(name) => Formula::Symbol(self.indexed(self.symbol(name), id)),
             None => self.formula(id),
@@ -101,7 +101,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Marks operands as left out so that the formula of a node keeps to a length.
-    fn omit(&mut self, id: Id, longest: u64, lengths: &HashMap<Id, u64>) {
+    fn omit(&mut self, id: NodeId, longest: u64, lengths: &HashMap<NodeId, u64>) {
         if lengths.get(&id).is_none_or(|length| *length <= longest) {
             return;
         }
@@ -117,7 +117,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn indexed(&self, symbol: Symbol, id: Id) -> Symbol {
+    fn indexed(&self, symbol: Symbol, id: NodeId) -> Symbol {
         match self.graph.shape(id) {
             Shape::Scalar => symbol,
             Shape::Vector(_) => symbol.with_indices(&[Index::I]),
@@ -125,22 +125,22 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn node(&self, id: Id) -> Formula {
+    fn node(&self, id: NodeId) -> Formula {
         if self.omitted.contains(&id) {
             return Formula::Omitted;
         }
         self.expression(id)
     }
 
-    fn nodes(&self, ids: &[Id]) -> Vec<Formula> {
+    fn nodes(&self, ids: &[NodeId]) -> Vec<Formula> {
         ids.iter().map(|id| self.node(*id)).collect()
     }
 
-    fn boxed(&self, id: Id) -> Box<Formula> {
+    fn boxed(&self, id: NodeId) -> Box<Formula> {
         Box::new(self.node(id))
     }
 
-    fn operation(&self, id: Id) -> Formula {
+    fn operation(&self, id: NodeId) -> Formula {
         match self.graph.operation(id) {
             Operation::Constant(bits) => Formula::Number(bits.value()),
             Operation::Parameter(index) => Formula::named(&self.model.parameters[*index].name),
@@ -198,8 +198,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn sum(&self, terms: &[(Bits, Id)]) -> Formula {
-        let term = |(factor, id): &(Bits, Id)| match self.graph.as_constant(*id) {
+    fn sum(&self, terms: &[(Bits, NodeId)]) -> Formula {
+        let term = |(factor, id): &(Bits, NodeId)| match self.graph.as_constant(*id) {
             Some(constant) => Term {
                 factor: factor.value() * constant,
                 of: None,
@@ -212,7 +212,7 @@ impl<'a> Reader<'a> {
         Formula::Sum(terms.iter().map(term).collect())
     }
 
-    fn product(&self, factors: &[(Id, i32)]) -> Formula {
+    fn product(&self, factors: &[(NodeId, i32)]) -> Formula {
         let (mut above, mut below) = (Vec::new(), Vec::new());
         for &(id, exponent) in factors {
             let (id, exponent) = match self.graph.operation(id) {
@@ -255,7 +255,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn transposed(&self, matrix: Id, transposed: bool) -> Formula {
+    fn transposed(&self, matrix: NodeId, transposed: bool) -> Formula {
         if transposed {
             Formula::Transposed(self.boxed(matrix))
         } else {

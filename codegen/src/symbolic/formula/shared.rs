@@ -7,7 +7,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 
 use model_spec::model::Model;
 
-use crate::symbolic::graph::{Graph, Id, Operation};
+use crate::symbolic::graph::{Graph, NodeId, Operation};
 
 /// Up to this many characters in all formulas nothing is cut.
 const WRITTEN_OUT: u64 = 16_000;
@@ -28,14 +28,14 @@ const STEMS: [&str; 4] = ["s", "z", "y", "h"];
 #[derive(Clone, Debug, Default)]
 pub struct Shared {
     /// In the order of the graph: a line needs none but those before it.
-    nodes: Vec<Id>,
-    names: HashMap<Id, String>,
+    nodes: Vec<NodeId>,
+    names: HashMap<NodeId, String>,
 }
 
 impl Shared {
     /// Chooses among what the formulas of `roots` share. A root that the graph names is
     /// written out where it stands, and by its name everywhere else.
-    pub fn among(graph: &Graph, model: &Model, roots: &[Id]) -> Self {
+    pub fn among(graph: &Graph, model: &Model, roots: &[NodeId]) -> Self {
         let uses = uses(graph, roots);
         let lengths = Lengths { graph, uses: &uses };
         let mut nodes = Vec::new();
@@ -58,12 +58,12 @@ impl Shared {
     }
 
     /// The nodes in an order in which each needs none but those before it.
-    pub fn nodes(&self) -> &[Id] {
+    pub fn nodes(&self) -> &[NodeId] {
         &self.nodes
     }
 
     /// The name of a node that has a line.
-    pub fn name(&self, id: Id) -> Option<&str> {
+    pub fn name(&self, id: NodeId) -> Option<&str> {
         self.names.get(&id).map(String::as_str)
     }
 }
@@ -71,14 +71,14 @@ impl Shared {
 /// How long nodes are, written out.
 struct Lengths<'a> {
     graph: &'a Graph,
-    uses: &'a HashMap<Id, usize>,
+    uses: &'a HashMap<NodeId, usize>,
 }
 
 impl Lengths<'_> {
     /// The length of all formulas if shared nodes longer than this have lines of their own,
     /// and these nodes.
-    fn total(&self, roots: &[Id], longest: u64) -> (u64, Vec<Id>) {
-        let mut ids: Vec<Id> = self.uses.keys().copied().collect();
+    fn total(&self, roots: &[NodeId], longest: u64) -> (u64, Vec<NodeId>) {
+        let mut ids: Vec<NodeId> = self.uses.keys().copied().collect();
         ids.sort_unstable();
         let mut written = HashMap::with_capacity(ids.len());
         let mut chosen = Vec::new();
@@ -106,10 +106,10 @@ impl Lengths<'_> {
 }
 
 /// How often each node without a name is written, if what is shared were written once.
-fn uses(graph: &Graph, roots: &[Id]) -> HashMap<Id, usize> {
-    let mut uses: HashMap<Id, usize> = HashMap::new();
-    let mut waiting: BTreeSet<Id> = roots.iter().copied().collect();
-    let is_written = |id: Id| graph.name(id).is_none() && !is_leaf(graph, id);
+fn uses(graph: &Graph, roots: &[NodeId]) -> HashMap<NodeId, usize> {
+    let mut uses: HashMap<NodeId, usize> = HashMap::new();
+    let mut waiting: BTreeSet<NodeId> = roots.iter().copied().collect();
+    let is_written = |id: NodeId| graph.name(id).is_none() && !is_leaf(graph, id);
     for &root in roots {
         if is_written(root) {
             *uses.entry(root).or_insert(0) += 1;
@@ -127,19 +127,19 @@ fn uses(graph: &Graph, roots: &[Id]) -> HashMap<Id, usize> {
     uses
 }
 
-pub(super) fn is_leaf(graph: &Graph, id: Id) -> bool {
+pub(super) fn is_leaf(graph: &Graph, id: NodeId) -> bool {
     graph.operands(graph.operation(id)).is_empty()
 }
 
 /// How many characters a node takes, about; `written` holds those of its operands that have
 /// no name.
-pub(super) fn own_length(graph: &Graph, id: Id, written: &HashMap<Id, u64>) -> u64 {
-    let part = |id: &Id| match (written.get(id), graph.name(*id)) {
+pub(super) fn own_length(graph: &Graph, id: NodeId, written: &HashMap<NodeId, u64>) -> u64 {
+    let part = |id: &NodeId| match (written.get(id), graph.name(*id)) {
         (Some(known), _) => *known,
         (None, Some(name)) => name.len() as u64,
         (None, None) => leaf_length(graph, *id),
     };
-    let parts = |ids: &mut dyn Iterator<Item = &Id>, around: u64| {
+    let parts = |ids: &mut dyn Iterator<Item = &NodeId>, around: u64| {
         ids.fold(around, |sum, id| sum.saturating_add(part(id)))
     };
     match graph.operation(id) {
@@ -159,7 +159,7 @@ pub(super) fn own_length(graph: &Graph, id: Id, written: &HashMap<Id, u64>) -> u
     }
 }
 
-fn leaf_length(graph: &Graph, id: Id) -> u64 {
+fn leaf_length(graph: &Graph, id: NodeId) -> u64 {
     match graph.operation(id) {
         Operation::Constant(_) => 2,
         Operation::Table(_) => 14,

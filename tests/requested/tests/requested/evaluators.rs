@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::program::evaluator::Evaluator;
 use codegen::variant::Variant;
 
@@ -38,7 +38,7 @@ fn derive((path, order): Specification) -> [Evaluator; 2] {
         panic!("{} is no specification", path.display());
     };
     let orders = checked.model.orders(Some(order)).expect("an order");
-    let Ok(variant) = Variant::derive_with(&checked.model, &orders, &Request::ALL) else {
+    let Ok(variant) = Variant::derive_with(&checked.model, &orders, &Output::ALL) else {
         panic!("{} cannot be derived", path.display());
     };
     let interpreted = Evaluator::new(variant.program.clone());

@@ -1,6 +1,6 @@
 //! Requests that a model refuses: what is said, and what it still answers.
 
-use codegen::mechanics::outputs::Request;
+use codegen::mechanics::outputs::Output;
 use codegen::variant::Variant;
 
 /// A beam whose inertia grows where it bends: its modal mass matrix is dense and moves.
@@ -33,11 +33,7 @@ bending = "1/2*integral(B*diff(w, x, 2)^2, w)"
 #[test]
 fn a_dense_mass_matrix_that_moves_has_no_derivatives() {
     let model = crate::support::model(SWELLING);
-    for request in [
-        Request::Jacobians,
-        Request::Products,
-        Request::Linearisation,
-    ] {
+    for request in [Output::Jacobians, Output::Products, Output::Linearisation] {
         let Err(found) = Variant::derive_with(&model, &[2], &[request]) else {
             panic!("{request:?} was derived");
         };
@@ -53,11 +49,11 @@ fn a_dense_mass_matrix_that_moves_has_no_derivatives() {
 fn what_needs_no_derivative_of_it_is_derived() {
     let model = crate::support::model(SWELLING);
     for request in [
-        Request::BiasForces,
-        Request::InverseDynamics,
-        Request::GuardRates,
-        Request::Regimes,
-        Request::Lanes,
+        Output::BiasForces,
+        Output::InverseDynamics,
+        Output::GuardRates,
+        Output::Regimes,
+        Output::Lanes,
     ] {
         assert!(
             Variant::derive_with(&model, &[2], &[request]).is_ok(),
