@@ -5,6 +5,7 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
+use discover::error::DiscoverError;
 use eomgen_compiled_model::Error;
 use eomgen_records::Refusal;
 use model_spec::diagnostic::Diagnostics;
@@ -54,6 +55,14 @@ impl Problem {
         match refusal {
             Refusal::Description(found) => Self::Specification(found),
             Refusal::Record(message) => Self::Input(message),
+        }
+    }
+
+    /// What stopped a comparison or a search.
+    pub fn discovery(error: DiscoverError) -> Self {
+        match error {
+            DiscoverError::Records(refusal) => Self::records(*refusal),
+            other => Self::Input(other.to_string()),
         }
     }
 

@@ -6,9 +6,9 @@
 //! [`search`] (which effects are accepted); [`empirical`] (what is left and has no name);
 //! [`report`] (for programs and for people). [`thresholds`] holds what decides.
 
-mod beside;
 pub mod catalogue;
 pub mod empirical;
+pub mod error;
 pub mod fit;
 pub mod model;
 pub mod report;

@@ -12,7 +12,7 @@ pub const DELAY_PRIOR: f64 = 0.5;
 /// Standard deviation of a window's initial state around where the window before ended, in
 /// ranges of the state's own motion: next to nothing is known, yet a state that the window
 /// does not show stays where it may be.
-pub const START_PRIOR: f64 = 0.02;
+pub const INITIAL_STATE_PRIOR: f64 = 0.02;
 
 /// So many times less is known of the initial state of a coordinate that a candidate adds: what
 /// it does goes with the candidate's parameter, which is not known yet.
@@ -49,12 +49,12 @@ pub const SIZE: f64 = 1.0;
 pub const AT_FLOOR: f64 = 1.1;
 
 /// Candidates whose responses agree by more than this are both fitted.
-pub const ALIKE: f64 = 0.95;
+pub const INDISTINGUISHABLE: f64 = 0.95;
 
 /// And they are one class if the held-out gaps that they leave differ by less than
 /// `STANDARD_ERRORS`, or by less than this part, and the training gaps by less than this part or
 /// `INFORMATION`: what is so small may come from how they were fitted.
-pub const TOLD_APART: f64 = 0.01;
+pub const DISTINGUISHED: f64 = 0.01;
 
 /// Candidates whose responses agree by more than this are two names of one thing: they are one
 /// class unless what they leave differs by `HELD_OUT`, because windows with impacts may end in
@@ -63,7 +63,7 @@ pub const SAME: f64 = 1.0 - 1e-6;
 
 /// A response of which less than this part is its own cannot be told from the nuisances, unless
 /// that part explains `ENOUGH`.
-pub const OWN_PART: f64 = 0.01;
+pub const UNEXPLAINED_FRACTION: f64 = 0.01;
 
 /// The most effects that are added.
 pub const MOST_EFFECTS: usize = 4;
@@ -89,7 +89,7 @@ pub const PROMISE: f64 = 0.02;
 pub const PROMISE_FAR: f64 = 0.005;
 
 /// Much more than noise are so many noises.
-pub const FAR: f64 = 3.0;
+pub const MUCH_IS_LEFT: f64 = 3.0;
 
 /// Where more than `CLOSE` floors are left, a candidate that, begun, leaves no less than this part
 /// of the squares is not fitted in earnest: of a hundred such that were, none was believed.
@@ -110,7 +110,7 @@ pub const ENOUGH: f64 = 0.5;
 
 /// The most candidates, or pairs of them, that are fitted to the beginnings of the windows in
 /// one round.
-pub const MOST_SKETCHES: usize = 8;
+pub const MOST_PRELIMINARY_FITS: usize = 8;
 
 /// Candidates are fitted in earnest only if, fitted to the beginnings of the windows, they
 /// leave less than this times the squares of the best one.
@@ -167,3 +167,250 @@ pub const TERM_TAKES: f64 = 0.25;
 /// The most equations of motion in which an expression is sought, of those in which a force
 /// explains nearly as much: what hangs together stiffly cannot be told apart anyway.
 pub const UNNAMED_EQUATIONS: usize = 3;
+
+// Models and their records.
+
+/// The cut-off of the zero-phase smoothing, in parts of the sampling frequency. A record is sampled for
+/// what it is to show; what moves faster than a fiftieth of that is noise or quantisation to an initial value.
+pub const SMOOTHING_CUT_OFF: f64 = 0.02;
+
+/// Samples from which the first value and the first slope of a column are read: a dozen average the noise, and a
+/// parabola still follows the motion over so few.
+pub const FIRST_SAMPLES: usize = 12;
+
+/// Samples at the beginning of a record over which columns are compared with the model as it is: later
+/// what the model lacks has led it away.
+pub const CHECKED_SAMPLES: usize = 1000;
+
+/// A channel that moves by fewer standard deviations of its noise, a straight line taken out, shows nothing.
+pub const CHECKED_MOTION: f64 = 20.0;
+
+/// Columns whose correlation is above this are one quantity.
+pub const FOLLOWS: f64 = 0.98;
+
+/// A channel whose correlation with the model is below this does not follow it: what a model lacks leaves most
+/// of the motion.
+pub const ASTRAY: f64 = 0.5;
+
+/// A factor between columns is a given one if it agrees to this part of it: a hundredth for what parameters
+/// may be off, and as much again for what is lacking.
+pub const AGREES: f64 = 0.02;
+
+/// A factor between a column and the model is one, or minus one, to this: what the model lacks may change its size so far.
+pub const NEAR_ONE: f64 = 0.2;
+
+// Fits.
+
+/// The parts of a window over which initial states are fitted, one after the other: a short motion is nearly
+/// linear in its initial state. Chosen on the development seeds of the blind suite.
+pub const HORIZONS: [f64; 4] = [0.08, 0.25, 0.5, 1.0];
+
+/// Others, for another try: where impacts fold the outputs, one sequence may end in the wrong fold and another in
+/// the right one.
+pub const OTHER_HORIZONS: [f64; 5] = [0.05, 0.12, 0.3, 0.7, 1.0];
+
+/// Parts of a record that are followed side by side from another estimate's initial states: one per core of a
+/// small machine, and not more on a larger one, so that results do not depend on the machine.
+pub const CHAINS: usize = 2;
+
+/// A step of the continuation that lowers the cost by less than this part is the last: each follows all windows
+/// anew.
+pub const CONTINUATION_DECREASE: f64 = 0.02;
+
+/// The most steps by secants, where tangents lead nowhere. Chosen on the development seeds of the blind suite.
+pub const SECANT_STEPS: usize = 6;
+
+/// A secant changes an unknown by this part of its scale at first.
+pub const FIRST_SECANT: f64 = 0.1;
+
+/// Then by what moves the outputs by this part of the residuals: far above the small folds of impacts, and no
+/// farther than the estimate is off.
+pub const SECANT_MOVES: f64 = 0.3;
+
+/// Within this factor a secant is as large as wanted.
+pub const SECANT_NEAR: f64 = 3.0;
+
+/// A Gauss-Newton step that lowers the cost by less than this part is the last: what is gained is far below what a
+/// threshold asks of an effect.
+pub const LEAST_DECREASE: f64 = 1e-3;
+
+/// Parts of a step of the unknowns that are tried, one after the other.
+pub const STEP_PARTS: [f64; 3] = [1.0, 0.3, 0.05];
+
+/// Damping of a step of the unknowns where no part of it helps, in norms of its columns.
+pub const STEP_DAMPING: [f64; 4] = [0.0, 0.03, 1.0, 30.0];
+
+/// Damping of an initial state's step, in weights of its prior: where a state's impacts fold the outputs, only
+/// shorter steps along what is well determined help.
+pub const INITIAL_STATE_DAMPING: [f64; 5] = [0.0, 1e2, 1e4, 1e6, 1e9];
+
+/// The most steps of an initial state over one part of a window.
+pub const INNER_STEPS: usize = 6;
+
+/// The most Gauss-Newton steps over whole windows between two followings of them. Chosen on the development seeds
+/// of the blind suite.
+pub const FULL_STEPS: usize = 4;
+
+/// The most further steps over beginnings of windows before whole ones are looked at.
+pub const FURTHER_STEPS: usize = 12;
+
+/// What leaves more standard deviations than this over whole windows is not worth following anew.
+pub const HOPELESS: f64 = 8.0;
+
+/// Windows are followed anew so often at most.
+pub const REFRESHES: usize = 2;
+
+/// And only while that lowers the cost by this part.
+pub const REFRESH_DECREASE: f64 = 0.005;
+
+/// The most windows over which candidates are linearised, spread evenly over the records: screening a hundred
+/// candidates costs less than one full fit then.
+pub const MOST_WINDOWS: usize = 40;
+
+/// Windows that are enough to compare a few equations of motion.
+pub const FEW_WINDOWS: usize = 20;
+
+/// Blocks of time into which a set of windows is parted to judge what differs by chance: enough for a standard
+/// error, and each longer than residuals are correlated.
+pub const BLOCKS: usize = 40;
+
+/// The most steps of the continuation while unknowns are far away.
+pub const CONTINUATION_STEPS: usize = 5;
+
+/// Steps of a preliminary fit where initial states are read from the record.
+pub const PRELIMINARY_STEPS: usize = 3;
+
+/// A difference quotient moves the outputs by this part of what the residual is: far above rounding, and over the
+/// small folds that impacts leave in the outputs.
+pub const QUOTIENT: f64 = 0.3;
+
+/// A difference quotient is not taken over more than this part of a state's own range.
+pub const LARGEST_QUOTIENT: f64 = 0.03;
+
+/// The part of each window, from its beginning, to which preliminary fits are made: a motion is nearly linear there in
+/// whatever changes it. Chosen on the development seeds of the blind suite.
+pub const FIRST_PART: f64 = 0.25;
+
+/// So many of `HORIZONS` lead up to it.
+pub const FIRST_HORIZONS: usize = 2;
+
+/// A step of an initial state that lowers its window's cost by less than this part is the last.
+pub const INNER_DECREASE: f64 = 1e-2;
+
+/// An autocorrelation below this is none: white noise of a few hundred samples shows as much by chance.
+pub const CORRELATED: f64 = 0.05;
+
+/// A parameter's difference quotient is taken over this part of its scale.
+pub const PARAMETER_QUOTIENT: f64 = 0.01;
+
+/// A sensor's, whose outputs are linear in it, over this part.
+pub const SENSOR_QUOTIENT: f64 = 0.1;
+
+// The catalogue.
+
+/// The largest file of a user's effects that is read, in bytes: a thousand effects.
+pub const LARGEST_EFFECTS_FILE: u64 = 1 << 20;
+
+/// Shaft orders, per turn, at which effects that repeat with an angle are tried, beside numbers of teeth: those of
+/// unbalance, joints, small pinions and the poles of motors.
+pub const SHAFT_ORDERS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, 24];
+
+// Screening.
+
+/// A candidate is linearised at a size that changes accelerations by this part of their own size, in any
+/// direction: small beside them, large beside rounding.
+pub const SMALL_CHANGE: f64 = 1e-4;
+
+/// A change is small and above rounding within these factors of that.
+pub const SMALL_NEAR: (f64, f64) = (1e-3, 10.0);
+
+/// Every so many samples of a window such a size is looked for.
+pub const SAMPLED: usize = 5;
+
+/// A candidate's response by simulation is taken at the size that moves the outputs by this part of the residuals.
+pub const RESPONSE_MOVES: f64 = 0.3;
+
+/// Parts of the size that screening promises among which a fit begins with the best: a straight line leads far
+/// beyond where impacts fold the outputs, and not far enough where an effect that grows does less and less.
+pub const INITIAL_PARTS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
+
+/// How many times its usual size a shape is where a fit is begun anew from another: as far from it to either side.
+pub const OTHER_SHAPES: [f64; 2] = [0.4, 2.5];
+
+/// Attempts to find the size at which a candidate is linearised or simulated.
+pub const SIZE_ATTEMPTS: usize = 8;
+
+/// Each attempt changes the size by this factor at most.
+pub const SIZE_FACTOR: f64 = 1e6;
+
+/// Within these factors of `RESPONSE_MOVES` a response is as large as wanted.
+pub const RESPONSE_NEAR: (f64, f64) = (0.2, 5.0);
+
+// The residual force.
+
+/// Shaft orders, per turn, over which a residual force is looked at.
+pub const FORCE_ORDERS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 36];
+
+/// The most frequencies over which a residual force is looked at: a picture shows no more.
+pub const MOST_FREQUENCIES: usize = 12;
+
+/// Bends of a force over a whole turn.
+pub const TURN_BENDS: usize = 12;
+
+/// Between both sides of a turning point lies this part of the largest rate.
+pub const TURNING: f64 = 1e-3;
+
+/// A force is taken that moves the outputs by this part of the residuals.
+pub const FORCE_MOVES: f64 = 0.3;
+
+/// A first one changes accelerations by this part of their own.
+pub const FIRST_FORCE: f64 = 1e-4;
+
+/// It need not be nearer to what is wanted than by this factor.
+pub const FORCE_NEAR: f64 = 10.0;
+
+/// Rounds in which the usual size of a force that differs from window to window is found: it changes by
+/// less than a part in a hundred by then.
+pub const VARIANCE_ROUNDS: usize = 12;
+
+/// A point of a profile is drawn if its standard deviation is below this part of the largest force.
+pub const DRAWN: f64 = 0.5;
+
+/// And a profile if so many of its points are.
+pub const DRAWN_POINTS: usize = 2;
+
+/// Bends of a force over the rate, on either side of rest.
+pub const RATE_BENDS: usize = 5;
+
+/// Bends of a force over the place.
+pub const PLACE_BENDS: usize = 9;
+
+/// Bends of a force over the time of a window.
+pub const TIME_BENDS: usize = 8;
+
+/// So many of the frequencies are the lowest whole numbers of periods per window.
+pub const FIRST_FREQUENCIES: usize = 4;
+
+/// Higher ones follow by this ratio.
+pub const FREQUENCY_RATIO: f64 = 1.6;
+
+/// A period lasts so many samples at least: less is not resolved.
+pub const PERIOD_SAMPLES: f64 = 4.0;
+
+// Expressions without a name.
+
+/// The highest degree of a product: with more, expressions differ in little but their ends.
+pub const MOST_DEGREE: u32 = 3;
+
+/// A step over the rate is made within this part of the largest rate: as steep as friction near rest is seldom seen
+/// to be otherwise, and no jump, so that it can be multiplied.
+pub const STEEP: f64 = 0.03;
+
+// The report.
+
+/// Where nothing was found, a parameter or a sensor is written back if its estimate moved by this part of its
+/// standard deviation. With an effect all are: they were estimated together.
+pub const WRITTEN_FROM: f64 = 0.5;
+
+/// A ratio between the residuals of slow and of fast motion below this is not worth a word.
+pub const WORTH_SAYING: f64 = 1.5;

@@ -5,10 +5,11 @@ use eomgen_records::read_dataset;
 use std::fs;
 use std::path::Path;
 
-use discover::model::problem::Setting;
-use discover::residual_force::wording::said;
-use discover::residual_force::{Kind, Profile, ResidualForce, Simple, residual_force};
-use discover::search::found::null_fit;
+use discover::fit::null_model::null_fit;
+use discover::model::problem::EstimationProblem;
+use discover::residual_force::residual_force;
+use discover::residual_force::types::{Kind, Profile, ResidualForce, Simple};
+use discover::residual_force::wording::described;
 use model_spec::source::Source;
 
 const SPECIFICATION: &str = r#"
@@ -133,9 +134,9 @@ fn found_in(folder: &Path, specification: &str) -> ResidualForce {
     let model = model_spec::check(Source::new("two_carriages.toml", specification));
     let model = model.expect("a sound specification").model;
     let dataset = read_dataset(&folder.join("dataset.toml"), &model).expect("a sound dataset");
-    let setting = Setting::new(&dataset, None, "two_carriages.toml", specification);
-    let fit = null_fit(&setting, specification).expect("a fit");
-    residual_force(&setting, &fit, None).expect("neighbouring motions")
+    let problem = EstimationProblem::new(&dataset, None, "two_carriages.toml", specification);
+    let fit = null_fit(&problem, specification).expect("a fit");
+    residual_force(&problem, &fit, None).expect("neighbouring motions")
 }
 
 /// Whether a profile is a function within four of its standard deviations, and by a tenth of the
@@ -157,7 +158,7 @@ fn is(profile: &Profile, of: impl Fn(usize, f64) -> f64, largest: f64) -> usize 
 fn dry_friction_is_seen_on_its_carriage_with_its_size() {
     let friction = |rate: f64, _: f64| -2.0 * (rate / 1e-4).tanh();
     let force = found(&friction);
-    println!("{}", said(&force));
+    println!("{}", described(&force));
     assert_eq!(force.equations[force.best].name, "q");
     let Some(Kind::Rate(parts)) = &force.kind else {
         panic!("{:?}", force.kind);
@@ -167,7 +168,11 @@ fn dry_friction_is_seen_on_its_carriage_with_its_size() {
         .find(|part| part.0 == Simple::Sign)
         .expect("a sign");
     assert!((size + 2.0).abs() < 4.0 * sd && *sd < 0.2, "{size} +- {sd}");
-    assert!(said(&force).contains("a force on q: "), "{}", said(&force));
+    assert!(
+        described(&force).contains("a force on q: "),
+        "{}",
+        described(&force)
+    );
     let bends = force.rate.over.len() / 2;
     let side = |number: usize, _: f64| if number < bends { 2.0 } else { -2.0 };
     assert!(is(&force.rate, side, 2.0) >= bends);
@@ -202,7 +207,7 @@ fn a_model_that_is_not_linear_shows_the_same() {
 #[test]
 fn a_spring_is_seen_on_its_carriage_with_its_stiffness() {
     let force = found(&|_, place| -40.0 * place);
-    println!("{}", said(&force));
+    println!("{}", described(&force));
     assert_eq!(force.equations[force.best].name, "q");
     let Some(Kind::Place(parts)) = &force.kind else {
         panic!("{:?}", force.kind);
@@ -227,6 +232,9 @@ fn a_spring_is_seen_on_its_carriage_with_its_stiffness() {
 #[test]
 fn nothing_stands_out_where_nothing_is_hidden() {
     let force = found(&|_, _| 0.0);
-    assert_eq!(force.kind, None, "{}", said(&force));
-    assert_eq!(said(&force), "No force on a single equation stands out.");
+    assert_eq!(force.kind, None, "{}", described(&force));
+    assert_eq!(
+        described(&force),
+        "No force on a single equation stands out."
+    );
 }

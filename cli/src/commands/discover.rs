@@ -6,16 +6,17 @@ use std::path::Path;
 use std::time::Instant;
 
 use discover::catalogue::{self, user_effects};
-use discover::fit::full::Fit;
-use discover::fit::noise_floor::{Floor, floor};
+use discover::empirical::unnamed;
+use discover::fit::fitted::Fit;
+use discover::fit::noise_floor::{NoiseFloor, floor};
+use discover::fit::null_model::null_fit;
 use discover::model::channel_checks;
-use discover::model::problem::Setting;
+use discover::model::problem::EstimationProblem;
 use discover::report::resimulation::rerun;
 use discover::report::{discovery as document, location, page, write_back};
 use discover::residual_force::residual_force;
-use discover::residual_force::wording::said_after;
-use discover::search::fitted::at_floor;
-use discover::search::found::{null_fit, search};
+use discover::residual_force::wording::described_after;
+use discover::search::search;
 use eomgen_records::dataset::Dataset;
 use eomgen_records::read_dataset;
 use model_spec::source::Source;
@@ -41,15 +42,16 @@ pub fn discover(options: &arguments::Discover) -> Outcome {
 pub fn compared(options: &arguments::Compare) -> Outcome<Value> {
     let begin = Instant::now();
     let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
-    let setting = Setting::new(&dataset, order, &options.spec.display().to_string(), &text);
-    let (fit, floor) = null(&setting, &text, options.seed)?;
-    let done = at_floor(&fit, floor.pooled);
-    let force = residual_force(&setting, &fit, None);
-    let place = location::located(&setting, &fit, force.as_ref());
-    let mut result = document::compared(&setting, &fit, &floor, done, &place);
+    let problem =
+        EstimationProblem::new(&dataset, order, &options.spec.display().to_string(), &text);
+    let (fit, floor) = null(&problem, &text, options.seed)?;
+    let done = fit.is_at_floor(floor.rms);
+    let force = residual_force(&problem, &fit, None);
+    let place = location::located(&problem, &fit, force.as_ref());
+    let mut result = document::compared(&problem, &fit, &floor, done, &place);
     result["seconds"] = json!(begin.elapsed().as_secs_f64());
     let forces = force.as_ref().map(|force| (force, None));
-    let page = page::page(&setting, (&fit, None), forces, &result, (&text, &text));
+    let page = page::page(&problem, (&fit, None), forces, &result, (&text, &text));
     write_json(&options.out.join("comparison.json"), &result)?;
     write_file(&options.out.join("report.html"), page.as_bytes())?;
     Ok(result)
@@ -62,34 +64,35 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
         inputs(&options.spec, &options.dataset, options.order.as_deref())?;
     let effects = catalogue::effects(options.effects.as_deref()).map_err(Problem::Specification)?;
     let path = options.spec.display().to_string();
-    let homeless = user_effects::placed(&effects, &path, &text).map_err(Problem::input)?;
+    let homeless = user_effects::placed(&effects, &path, &text).map_err(Problem::discovery)?;
     for note in &homeless {
         warn(&format!("note: {note}"));
     }
     dataset.notes.extend(homeless);
-    let setting = Setting::new(&dataset, order, &path, &text);
-    let (fit, floor_before) = null(&setting, &text, options.seed)?;
-    let force = residual_force(&setting, &fit, None);
-    let mut place = location::located(&setting, &fit, force.as_ref());
-    let found =
-        search(&setting, fit, &effects, floor_before.pooled, &warn).map_err(Problem::input)?;
+    let problem = EstimationProblem::new(&dataset, order, &path, &text);
+    let (fit, floor_before) = null(&problem, &text, options.seed)?;
+    let force = residual_force(&problem, &fit, None);
+    let mut place = location::located(&problem, &fit, force.as_ref());
+    let mut found =
+        search(&problem, fit, &effects, floor_before.rms, &warn).map_err(Problem::discovery)?;
+    unnamed(&problem, &mut found, floor_before.rms, &warn);
     let floor = match found.accepted.is_empty() {
         true => floor_before,
-        false => floor(&setting, found.best(), options.seed),
+        false => floor(&problem, found.best(), options.seed),
     };
-    let done = at_floor(found.best(), floor.pooled);
+    let done = found.best().is_at_floor(floor.rms);
     let left = force.as_ref().zip(found.last.as_ref());
-    let left =
-        left.and_then(|(force, last)| residual_force(&setting, last, Some(force.looked_at())));
+    let left = left
+        .and_then(|(force, last)| residual_force(&problem, last, Some(force.profiled_equation())));
     if let Some(left) = &left {
-        place += &format!(" {}", said_after(left));
+        place += &format!(" {}", described_after(left));
     }
-    let extended = write_back::extended(&setting, &text, found.best(), &found.accepted)
-        .map_err(Problem::input)?;
-    let mut result = document::discovered(&setting, &found, &floor, done, &place);
-    let mut validation = validated(&setting.path, &extended, order)?;
+    let extended = write_back::extended(&problem, &text, found.best(), &found.accepted)
+        .map_err(Problem::discovery)?;
+    let mut result = document::discovered(&problem, &found, &floor, done, &place);
+    let mut validation = validated(&problem.path, &extended, order)?;
     if !validation.is_null() {
-        let left = rerun(&setting, found.best(), &extended).map_err(Problem::input)?;
+        let left = rerun(&problem, found.best(), &extended).map_err(Problem::discovery)?;
         validation["train_in_noises"] = json!(left.train);
         validation["test_in_noises"] = json!(left.test);
     }
@@ -100,7 +103,7 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
     result["validation"] = validation;
     result["seconds"] = json!(begin.elapsed().as_secs_f64());
     let page = page::page(
-        &setting,
+        &problem,
         (&found.null, found.last.as_ref()),
         force.as_ref().map(|force| (force, left.as_ref())),
         &result,
@@ -153,14 +156,14 @@ fn inputs(
 }
 
 /// The null model's fit and the floor there.
-fn null(setting: &Setting<'_>, text: &str, seed: u64) -> Outcome<(Fit, Floor)> {
-    let notes = channel_checks::check(setting, text);
+fn null(problem: &EstimationProblem<'_>, text: &str, seed: u64) -> Outcome<(Fit, NoiseFloor)> {
+    let notes = channel_checks::check(problem, text);
     for note in notes.map_err(Problem::records)? {
         warn(&format!("note: {note}"));
     }
     warn("fitting the model as it is");
-    let fit = null_fit(setting, text).map_err(Problem::input)?;
-    let floor = floor(setting, &fit, seed);
+    let fit = null_fit(problem, text).map_err(Problem::discovery)?;
+    let floor = floor(problem, &fit, seed);
     Ok((fit, floor))
 }
 

@@ -7,16 +7,18 @@ use model_spec::edit::{self, Edit, EditError, NewParameter, NewValue, SetParamet
 use model_spec::model::{Model, Parameter, ParameterValue};
 use model_spec::source::Source;
 
+use crate::catalogue::effect::{Change, Effect, SiteKind};
 use crate::catalogue::sites::Site;
-use crate::catalogue::template::{edits, filled, free_name, terms};
-use crate::catalogue::{Change, Effect, SiteKind};
+use crate::catalogue::template::{edits, free_name, instantiated, terms};
+use crate::error::DiscoverError;
+use crate::model::plant::is_linear;
+use crate::model::problem::EstimationProblem;
+use crate::model::texts::Texts;
 use crate::model::unknowns::{What, sign_bounds};
+use crate::thresholds;
 
 /// The effect of a parameter that is off.
-pub const PARAMETER_SHIFT: &str = "parameter_shift";
-
-/// Shaft orders at which effects that repeat with an angle are tried, beside numbers of teeth.
-const ORDERS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, 24];
+pub const PARAMETER_OFFSET: &str = "parameter_shift";
 
 /// An effect at a place.
 #[derive(Clone, Debug)]
@@ -56,13 +58,13 @@ pub struct CandidateParameter {
     /// The size it must have for the effect to be itself, if it does not scale the effect.
     pub shape: Option<f64>,
     /// What a parameter that the model has already is shifted from.
-    pub shifts: Option<Shifts>,
+    pub offset: Option<ParameterOffset>,
     pub(crate) doc: String,
 }
 
 /// What is known of a parameter of the model that may be off.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shifts {
+pub struct ParameterOffset {
     /// Its value in the specification, SI.
     pub from: f64,
     /// Its smallest and largest admissible value, SI.
@@ -74,16 +76,25 @@ pub struct Shifts {
 impl CandidateParameter {
     /// Its value where the effect is absent; 0 for what the model does not have yet.
     pub fn base(&self) -> f64 {
-        self.shifts.as_ref().map_or(0.0, |shifts| shifts.from)
+        self.offset.as_ref().map_or(0.0, |offset| offset.from)
+    }
+
+    /// The value of a parameter where its effect is absent, or nearly.
+    pub fn absent(&self) -> f64 {
+        match (self.inverse, self.shape) {
+            (_, Some(shape)) => shape,
+            (true, None) => 1e12,
+            (false, None) => self.base(),
+        }
     }
 
     /// The number of its units that one SI unit is.
     pub fn per_si(&self) -> f64 {
-        self.shifts.as_ref().map_or(1.0, |shifts| shifts.per_si)
+        self.offset.as_ref().map_or(1.0, |offset| offset.per_si)
     }
 
     fn edit(&self, value: f64, source: &str) -> Edit {
-        match &self.shifts {
+        match &self.offset {
             Some(_) => Edit::SetParameter(SetParameter {
                 name: self.name.clone(),
                 value: value * self.per_si(),
@@ -130,6 +141,29 @@ impl Candidate {
         edits.extend(self.changes.iter().cloned());
         edit::apply(&Source::new(name, text), &edits)
     }
+
+    /// A specification's text and its linear part's with this effect at these values.
+    ///
+    /// # Errors
+    /// A place of the edits that the text lacks, in words.
+    pub fn added(
+        &self,
+        problem: &EstimationProblem<'_>,
+        texts: &Texts,
+        values: &[f64],
+    ) -> Result<Texts, DiscoverError> {
+        let written = |text: &str| self.written(text, &problem.path, values, "");
+        let extended = written(&texts.whole)?;
+        // What is linear between switches itself belongs to the linear part.
+        let linear = match written(&texts.linear) {
+            Ok(extended) if is_linear(&extended, &problem.path, problem.order) => extended,
+            _ => texts.linear.clone(),
+        };
+        Ok(Texts {
+            whole: extended,
+            linear,
+        })
+    }
 }
 
 /// All candidates for a model. `rates`: the usual rate of an axis by its name, where it is
@@ -172,7 +206,7 @@ fn fits(wanted: SiteKind, there: SiteKind) -> bool {
 
 /// The usual shaft orders and the model's own numbers of teeth: whole numbers without a unit.
 fn orders(model: &Model) -> Vec<u32> {
-    let mut orders = ORDERS.to_vec();
+    let mut orders = thresholds::SHAFT_ORDERS.to_vec();
     for parameter in &model.parameters {
         if let ParameterValue::Number(value) = parameter.value
             && parameter.unit.text == "1"
@@ -194,46 +228,46 @@ fn candidate(
     order: Option<(&Site, u32)>,
     rates: &BTreeMap<String, f64>,
 ) -> Option<Candidate> {
-    let mut words: BTreeMap<String, String> = site
-        .words
+    let mut arguments: BTreeMap<String, String> = site
+        .arguments
         .iter()
         .map(|(key, word)| ((*key).to_owned(), word.clone()))
         .collect();
     if let Some((angle, order)) = order {
-        words.insert("n".to_owned(), order.to_string());
-        words.insert("angle".to_owned(), angle.words["on"].clone());
+        arguments.insert("n".to_owned(), order.to_string());
+        arguments.insert("angle".to_owned(), angle.arguments["on"].clone());
     }
     let mut taken = names(model);
     let mut parameters = Vec::new();
     for parameter in &effect.parameters {
         let name = free_name(&parameter.name, &site.name, &mut taken);
-        words.insert(parameter.name.clone(), name.clone());
+        arguments.insert(parameter.name.clone(), name.clone());
         let rate = rates.get(&site.name).copied().unwrap_or(1.0);
         parameters.push(CandidateParameter {
             name,
-            unit: plain_unit(&filled(&parameter.unit, &words)?),
+            unit: plain_unit(&instantiated(&parameter.unit, &arguments)?),
             positive: parameter.positive,
             inverse: parameter.inverse,
             shape: parameter.share.map(|share| share * rate),
-            shifts: None,
+            offset: None,
             doc: parameter.doc.clone(),
         });
     }
     for change in &effect.edits {
         if let Change::Coordinate { name, .. } | Change::Definition { name, .. } = change {
             let free = free_name(name, &site.name, &mut taken);
-            words.insert(name.clone(), free);
+            arguments.insert(name.clone(), free);
         }
     }
     let mut changes = Vec::new();
     let mut term = String::new();
     for change in &effect.edits {
-        changes.extend(edits(model, change, site, &words)?);
+        changes.extend(edits(model, change, site, &arguments)?);
         if let Change::Term { value, .. }
         | Change::Definition { value, .. }
         | Change::Force { value, .. } = change
         {
-            term = filled(value, &words)?;
+            term = instantiated(value, &arguments)?;
         }
     }
     Some(Candidate {
@@ -268,7 +302,7 @@ pub fn released(effect: &str, on: &str, says: &str, experiment: &str, what: &Wha
 
 /// A parameter of the model that may be off though nobody said so; none where it is 0 or no
 /// number.
-pub fn shift(parameter: &Parameter) -> Option<Candidate> {
+pub fn offset_of(parameter: &Parameter) -> Option<Candidate> {
     let ParameterValue::Number(from) = parameter.value else {
         return None;
     };
@@ -282,7 +316,7 @@ pub fn shift(parameter: &Parameter) -> Option<Candidate> {
         positive: false,
         inverse: false,
         shape: None,
-        shifts: Some(Shifts {
+        offset: Some(ParameterOffset {
             from,
             bounds: sign_bounds(parameter, from),
             per_si: parameter.unit.from_si(1.0),
@@ -294,7 +328,7 @@ pub fn shift(parameter: &Parameter) -> Option<Candidate> {
         released: None,
         term: format!("{} shifted", parameter.name),
         ..released(
-            PARAMETER_SHIFT,
+            PARAMETER_OFFSET,
             &parameter.name,
             "a parameter is not what the specification says",
             "measure it by itself",

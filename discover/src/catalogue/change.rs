@@ -4,9 +4,9 @@ use model_spec::diagnostic::{Diagnostic, Diagnostics};
 use model_spec::edit::Section;
 use model_spec::table::Entry;
 
-use super::blanks::{Blanks, expression};
-use super::file::{new_name, some, text};
-use super::{Change, SiteKind, Within};
+use super::effect::{Change, SiteKind, Within};
+use super::fields::{new_name, some, text};
+use super::placeholders::{Placeholders, expression};
 
 /// What an edit adds.
 #[derive(Clone, Copy)]
@@ -60,7 +60,7 @@ const KEYS: [&str; 10] = [
 pub(super) fn change(
     entry: &Entry<'_>,
     site: SiteKind,
-    blanks: &mut Blanks,
+    placeholders: &mut Placeholders,
     found: &mut Diagnostics,
 ) -> Option<Change> {
     let entries = found.keep(entry.table("{ add = \"force\", ... }"))?;
@@ -68,7 +68,7 @@ pub(super) fn change(
     match (of("add"), of("substitute")) {
         (Some(add), None) => {
             let what = found.keep(add.word(&ADDED))?;
-            addition(entry, what, blanks, found)
+            addition(entry, what, placeholders, found)
         }
         (None, Some(substitute)) => {
             let within = found.keep(substitute.word(&REPLACED))?;
@@ -80,7 +80,7 @@ pub(super) fn change(
                 let expected = kind.map_or("", |(word, _)| word);
                 found.push(wrong.at(substitute.span(), format!("expected site = \"{expected}\"")));
             }
-            substitution(entry, within, blanks, found)
+            substitution(entry, within, placeholders, found)
         }
         _ => {
             entry.record(&KEYS, "{ add = \"force\", ... }", found);
@@ -96,7 +96,7 @@ pub(super) fn change(
 fn addition(
     entry: &Entry<'_>,
     what: Added,
-    blanks: &mut Blanks,
+    placeholders: &mut Placeholders,
     found: &mut Diagnostics,
 ) -> Option<Change> {
     let known: &[&str] = match what {
@@ -109,21 +109,21 @@ fn addition(
     Some(match what {
         Added::Term(section) => Change::Term {
             section,
-            value: expression(&record, "value", blanks, found)?,
+            value: expression(&record, "value", placeholders, found)?,
             name: name?,
         },
         Added::Definition => Change::Definition {
-            value: expression(&record, "value", blanks, found)?,
+            value: expression(&record, "value", placeholders, found)?,
             name: name?,
         },
         Added::Force => Change::Force {
-            on: expression(&record, "on", blanks, found)?,
-            value: expression(&record, "value", blanks, found)?,
+            on: expression(&record, "on", placeholders, found)?,
+            value: expression(&record, "value", placeholders, found)?,
             name: name?,
         },
         Added::Coordinate => {
             let unit = text(&record, "unit", "\"rad\"", found)?;
-            blanks.note(&unit, found);
+            placeholders.note(&unit, found);
             Change::Coordinate {
                 unit: unit.text,
                 doc: text(&record, "doc", "\"what it is\"", found)?.text,
@@ -136,7 +136,7 @@ fn addition(
 fn substitution(
     entry: &Entry<'_>,
     within: Replaced,
-    blanks: &mut Blanks,
+    placeholders: &mut Placeholders,
     found: &mut Diagnostics,
 ) -> Option<Change> {
     let known: &[&str] = match within {
@@ -144,8 +144,8 @@ fn substitution(
         Replaced::Site(_) | Replaced::Measured => &["substitute", "find", "replace"],
     };
     let record = entry.record(known, "{ substitute = \"mesh\", ... }", found)?;
-    let find = expression(&record, "find", blanks, found);
-    let replace = expression(&record, "replace", blanks, found);
+    let find = expression(&record, "find", placeholders, found);
+    let replace = expression(&record, "replace", placeholders, found);
     let within = match within {
         Replaced::Site(_) => Within::Site,
         Replaced::Measured => Within::Measured,
@@ -153,7 +153,7 @@ fn substitution(
             let mut terms = Vec::new();
             for term in some(&record, "terms", "[\"{term}\"]", found)? {
                 let term = found.keep(term.written())?;
-                blanks.note(&term, found);
+                placeholders.note(&term, found);
                 terms.push(term.text);
             }
             Within::Kinetic(terms)

@@ -7,9 +7,10 @@ use model_spec::span::Span;
 use model_spec::table::{Entry, Name, Record, Written};
 use model_spec::toml_file;
 
-use super::blanks::Blanks;
 use super::change::change;
-use super::{Effect, EffectParameter, SiteKind};
+use super::effect::{Effect, EffectParameter, SiteKind};
+use super::fields::{new_name, some, text};
+use super::placeholders::Placeholders;
 
 /// Reads a file of effects.
 ///
@@ -57,7 +58,7 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     let own: Vec<Written> = (parameters.iter().chain(&edits))
         .filter_map(|entry| named(entry))
         .collect();
-    let of_site = site.blanks().iter().map(|blank| (*blank).to_owned());
+    let of_site = site.placeholders().iter().map(|blank| (*blank).to_owned());
     let of_site: Vec<String> = of_site.collect();
     for name in own.iter().filter(|own| of_site.contains(&own.text)) {
         let wrong = format!("{} has a meaning at such a site", quoted(&name.text));
@@ -68,7 +69,7 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
         (true, _) => &["n"],
         (false, _) => &[],
     };
-    let mut blanks = Blanks {
+    let mut placeholders = Placeholders {
         known: of_site
             .into_iter()
             .chain(repeating.iter().map(|blank| (*blank).to_owned()))
@@ -78,14 +79,14 @@ fn effect(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<Effect> {
     };
     let mut listed = Vec::new();
     for entry in &parameters {
-        listed.extend(parameter(entry, &mut blanks, found));
+        listed.extend(parameter(entry, &mut placeholders, found));
     }
     let mut changes = Vec::new();
     for entry in &edits {
-        changes.extend(change(entry, site, &mut blanks, found));
+        changes.extend(change(entry, site, &mut placeholders, found));
     }
     for parameter in parameters.iter().filter_map(named) {
-        if !blanks.used.contains(&parameter.text) {
+        if !placeholders.used.contains(&parameter.text) {
             found.push(
                 Diagnostic::error(format!("{} is used nowhere", quoted(&parameter.text)))
                     .at(parameter.span, "no edit holds it")
@@ -115,60 +116,9 @@ fn named(entry: &Entry<'_>) -> Option<Written> {
     }
 }
 
-/// The elements of a list, at least one.
-pub(super) fn some<'d>(
-    record: &Record<'d>,
-    key: &str,
-    example: &str,
-    found: &mut Diagnostics,
-) -> Option<Vec<Entry<'d>>> {
-    let entry = record.require(key, &format!("write {key} = {example}"), found)?;
-    let list = found.keep(entry.list(example))?;
-    if list.is_empty() {
-        found.push(
-            Diagnostic::error(format!("`{key}` is empty"))
-                .at(entry.span(), "an effect needs one or more")
-                .help(format!("write {key} = {example}")),
-        );
-    }
-    Some(list)
-}
-
-/// The text of a key that is needed, and says something.
-pub(super) fn text(
-    record: &Record<'_>,
-    key: &str,
-    example: &str,
-    found: &mut Diagnostics,
-) -> Option<Written> {
-    let entry = record.require(key, &format!("write {key} = {example}"), found)?;
-    let written = found.keep(entry.written())?;
-    if written.text.trim().is_empty() {
-        found
-            .push(Diagnostic::error(format!("`{key}` is empty")).at(written.span, "expected text"));
-    }
-    Some(written)
-}
-
-/// The name of something that is added to a specification.
-pub(super) fn new_name(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
-    let written = text(record, "name", "\"T_c\"", found)?;
-    let letter = |c: char| c.is_ascii_alphabetic();
-    let rest = |c: char| c.is_ascii_alphanumeric() || c == '_';
-    if !(written.text.starts_with(letter) && written.text.chars().all(rest)) {
-        found.push(
-            Diagnostic::error(format!("{} is no name", quoted(&written.text))).at(
-                written.span,
-                "expected a letter, then letters, digits and underscores",
-            ),
-        );
-    }
-    Some(written.text)
-}
-
 fn parameter(
     entry: &Entry<'_>,
-    blanks: &mut Blanks,
+    placeholders: &mut Placeholders,
     found: &mut Diagnostics,
 ) -> Option<EffectParameter> {
     let known = ["name", "unit", "sign", "doc", "inverse", "scale", "share"];
@@ -176,7 +126,7 @@ fn parameter(
     let name = new_name(&record, found);
     let unit = text(&record, "unit", "\"{force}\"", found);
     if let Some(unit) = &unit {
-        blanks.note(unit, found);
+        placeholders.note(unit, found);
     }
     let doc = text(&record, "doc", "\"dry friction\"", found);
     let sign = record.require(

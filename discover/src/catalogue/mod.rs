@@ -1,11 +1,16 @@
-//! Effects as data: what a model may lack, each a list of edits with blanks. Where they go is
-//! found in [`crate::catalogue::sites`], what they do is decided by nobody but the specification. How a file
-//! of effects is read is in `file`.
+//! What a model may lack: the effects that come with the program and a user's ([`effect`]), the
+//! places of a model where they may sit ([`sites`]), and both together as [`candidate`]s (the edits
+//! of an effect at a place: [`template`]; its parameters as unknowns: [`candidate_unknown`]). What
+//! effects do is decided by nobody but the specification. How a file of effects is read is in
+//! `file` with `change`, `blanks` and `fields`.
 
-mod blanks;
 pub mod candidate;
+pub mod candidate_unknown;
 mod change;
+pub mod effect;
+mod fields;
 mod file;
+mod placeholders;
 pub mod sites;
 pub mod template;
 pub mod user_effects;
@@ -13,158 +18,14 @@ pub mod user_effects;
 use std::path::Path;
 
 use model_spec::diagnostic::Diagnostics;
-use model_spec::edit::Section;
 use model_spec::source::Source;
 use model_spec::toml_file;
 
+use crate::catalogue::effect::Effect;
+use crate::thresholds;
+
 /// The catalogue that comes with the program.
 const BUILT_IN: &str = include_str!("catalogue.toml");
-
-/// The largest file of a user's effects read, in bytes.
-const LARGEST: u64 = 1 << 20;
-
-/// An effect.
-#[derive(Clone, Debug)]
-pub struct Effect {
-    /// Its name in results.
-    pub name: String,
-    /// The kind of place it may have.
-    pub site: SiteKind,
-    /// What it is, as the end of a sentence.
-    pub says: String,
-    /// What would show it best.
-    pub experiment: String,
-    /// Whether it repeats with an angle, so that it is tried at several shaft orders.
-    pub orders: bool,
-    /// Its parameters, at least one.
-    pub parameters: Vec<EffectParameter>,
-    /// What it changes, at least one thing.
-    pub edits: Vec<Change>,
-    /// Whether it is from a user's file.
-    pub is_own: bool,
-}
-
-/// The kinds of places.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SiteKind {
-    /// Anything that moves and can be held: an angle or a position.
-    Axis,
-    /// An angle.
-    Angle,
-    /// A pair of teeth with play.
-    Mesh,
-    /// A flexible body.
-    Arm,
-    /// A linear spring.
-    Spring,
-}
-
-impl SiteKind {
-    /// The kinds by their words in a file.
-    pub const WORDS: [(&'static str, Self); 5] = [
-        ("axis", Self::Axis),
-        ("angle", Self::Angle),
-        ("mesh", Self::Mesh),
-        ("arm", Self::Arm),
-        ("spring", Self::Spring),
-    ];
-
-    /// The blanks that a site of this kind fills; `{root}` and `{stiffness}` where it has them.
-    pub fn blanks(self) -> &'static [&'static str] {
-        match self {
-            Self::Axis | Self::Angle => &["on", "unit", "force"],
-            Self::Mesh => &["on", "p", "k", "b"],
-            Self::Arm => &[
-                "term",
-                "velocity",
-                "field",
-                "x",
-                "end",
-                "lever",
-                "root",
-                "stiffness",
-            ],
-            Self::Spring => &["on", "p", "k"],
-        }
-    }
-}
-
-/// A parameter of an effect.
-#[derive(Clone, Debug)]
-pub struct EffectParameter {
-    /// Its name, with more behind it where that is taken.
-    pub name: String,
-    /// Its unit, with blanks.
-    pub unit: String,
-    /// Whether it must not be negative.
-    pub positive: bool,
-    /// What it is.
-    pub doc: String,
-    /// The effect is absent where it is infinite, not where it is 0.
-    pub inverse: bool,
-    /// The part of the site's usual rate that it is as large as, where it shapes the effect without
-    /// scaling it.
-    pub share: Option<f64>,
-}
-
-/// One change of the specification.
-#[derive(Clone, Debug)]
-pub enum Change {
-    /// A term of an energy or of the dissipation.
-    Term {
-        /// Which of them.
-        section: Section,
-        /// Its name.
-        name: String,
-        /// Its expression.
-        value: String,
-    },
-    /// A definition, to be used by other changes.
-    Definition {
-        /// Its name, which is a blank of the effect.
-        name: String,
-        /// Its expression.
-        value: String,
-    },
-    /// A force.
-    Force {
-        /// Its name.
-        name: String,
-        /// What it works on.
-        on: String,
-        /// Its expression.
-        value: String,
-    },
-    /// A coordinate.
-    Coordinate {
-        /// Its name, which is a blank of the effect.
-        name: String,
-        /// Its unit.
-        unit: String,
-        /// What it is.
-        doc: String,
-    },
-    /// Something replaced.
-    Substitution {
-        /// Where.
-        within: Within,
-        /// What.
-        find: String,
-        /// By what.
-        replace: String,
-    },
-}
-
-/// Where something is replaced.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Within {
-    /// These terms of the kinetic energy.
-    Kinetic(Vec<String>),
-    /// All terms of a pair of teeth, or of the kinetic energy of a body and of what it carries.
-    Site,
-    /// All definitions and observables.
-    Measured,
-}
 
 /// The effects that come with the program, then those of a user's file; one of the same name
 /// replaces the built-in.
@@ -174,7 +35,7 @@ pub enum Within {
 pub fn effects(own: Option<&Path>) -> Result<Vec<Effect>, Diagnostics> {
     let mut effects = file::read(&Source::new("catalogue.toml", BUILT_IN))?;
     if let Some(path) = own {
-        let mut found = file::read(&toml_file::source(path, LARGEST)?)?;
+        let mut found = file::read(&toml_file::source(path, thresholds::LARGEST_EFFECTS_FILE)?)?;
         effects.retain(|known| found.iter().all(|own| own.name != known.name));
         found.iter_mut().for_each(|own| own.is_own = true);
         effects.extend(found);

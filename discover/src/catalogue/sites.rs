@@ -7,7 +7,7 @@ use model_spec::ast::BinaryOperator;
 use model_spec::edit::Section;
 use model_spec::model::{Expr, ExprKind, Function, Model, Term};
 
-use crate::catalogue::SiteKind;
+use crate::catalogue::effect::SiteKind;
 
 /// A place for effects.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub struct Site {
     /// Its name in results.
     pub name: String,
     /// What fills the blanks.
-    pub words: BTreeMap<&'static str, String>,
+    pub arguments: BTreeMap<&'static str, String>,
     /// The terms that make up a mesh, or those of the kinetic energy that move with a body.
     pub terms: Vec<(Section, Vec<String>)>,
 }
@@ -101,11 +101,11 @@ fn axis(name: &str, on: &str, unit: &str) -> Option<Site> {
         "m" => (SiteKind::Axis, "N"),
         _ => return None,
     };
-    let words = [("on", on), ("unit", unit), ("force", force)];
+    let arguments = [("on", on), ("unit", unit), ("force", force)];
     Some(Site {
         kind,
         name: name.to_owned(),
-        words: words.map(|(key, word)| (key, word.to_owned())).into(),
+        arguments: arguments.map(|(key, word)| (key, word.to_owned())).into(),
         terms: Vec::new(),
     })
 }
@@ -202,12 +202,12 @@ fn mesh(model: &Model, coordinate: usize) -> Option<Site> {
         }
     }
     let name = model.coordinates[coordinate].name.clone();
-    let mut words: BTreeMap<&'static str, String> =
+    let mut arguments: BTreeMap<&'static str, String> =
         [("p", name.clone()), ("k", stiffness?), ("on", name.clone())].into();
-    words.extend(half_play(model, coordinate).map(|play| ("b", play)));
+    arguments.extend(half_play(model, coordinate).map(|play| ("b", play)));
     Some(Site {
         kind: SiteKind::Mesh,
-        words,
+        arguments,
         name,
         terms,
     })
@@ -253,7 +253,7 @@ fn spring(model: &Model, term: &Term) -> Option<Site> {
         return None;
     };
     let deflection = text(model, base);
-    let words = [
+    let arguments = [
         ("on", deflection.clone()),
         ("p", deflection),
         ("k", model.parameters[*stiffness].name.clone()),
@@ -261,7 +261,7 @@ fn spring(model: &Model, term: &Term) -> Option<Site> {
     Some(Site {
         kind: SiteKind::Spring,
         name: term.name.clone(),
-        words: words.into(),
+        arguments: arguments.into(),
         terms: Vec::new(),
     })
 }
@@ -293,7 +293,7 @@ fn arms(model: &Model) -> Vec<Site> {
             .iter()
             .find_map(|term| factor_of_square(&term.value, &bent));
         let declared = &model.fields[field];
-        let mut words: BTreeMap<&'static str, String> = [
+        let mut arguments: BTreeMap<&'static str, String> = [
             ("term", term.name.clone()),
             ("velocity", text(model, velocity)),
             ("field", declared.name.clone()),
@@ -302,8 +302,8 @@ fn arms(model: &Model) -> Vec<Site> {
             ("lever", lever(model, &declared.from, &declared.to)),
         ]
         .into();
-        words.extend(root.map(|root| ("root", root)));
-        words.extend(stiffness.map(|factor| ("stiffness", text(model, factor))));
+        arguments.extend(root.map(|root| ("root", root)));
+        arguments.extend(stiffness.map(|factor| ("stiffness", text(model, factor))));
         let moving = model
             .kinetic
             .iter()
@@ -312,7 +312,7 @@ fn arms(model: &Model) -> Vec<Site> {
         Some(Site {
             kind: SiteKind::Arm,
             name: term.name.clone(),
-            words,
+            arguments,
             terms: vec![(Section::Kinetic, moving)],
         })
     };

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use model_spec::edit::{Edit, NewCoordinate, NewForce, NewTerm, Section, Substitution};
 use model_spec::model::{Expr, Model};
 
+use crate::catalogue::effect::{Change, Within};
 use crate::catalogue::sites::Site;
-use crate::catalogue::{Change, Within};
 
 /// The edits that a change of the catalogue comes to at a site, its blanks filled with these words;
 /// none if a word is missing, or what is replaced is not there.
@@ -14,10 +14,10 @@ pub(crate) fn edits(
     model: &Model,
     change: &Change,
     site: &Site,
-    words: &BTreeMap<String, String>,
+    arguments: &BTreeMap<String, String>,
 ) -> Option<Vec<Edit>> {
-    let fill = |text: &String| filled(text, words);
-    let new = |name: &String| words.get(name).unwrap_or(name).clone();
+    let fill = |text: &String| instantiated(text, arguments);
+    let new = |name: &String| arguments.get(name).unwrap_or(name).clone();
     let free = |name: &String| free_name(name, &site.name, &mut terms(model));
     let term = |section: Section, name: String, value: &String| {
         Some(Edit::AddTerm(NewTerm {
@@ -52,7 +52,15 @@ pub(crate) fn edits(
             within,
             find,
             replace,
-        } => return substitutions(model, within, site, (fill(find)?, fill(replace)?), words),
+        } => {
+            return substitutions(
+                model,
+                within,
+                site,
+                (fill(find)?, fill(replace)?),
+                arguments,
+            );
+        }
     }])
 }
 
@@ -62,11 +70,14 @@ fn substitutions(
     within: &Within,
     site: &Site,
     (find, replace): (String, String),
-    words: &BTreeMap<String, String>,
+    arguments: &BTreeMap<String, String>,
 ) -> Option<Vec<Edit>> {
     let places: Vec<(Section, Vec<String>)> = match within {
         Within::Kinetic(terms) => {
-            let terms: Option<Vec<String>> = terms.iter().map(|term| filled(term, words)).collect();
+            let terms: Option<Vec<String>> = terms
+                .iter()
+                .map(|term| instantiated(term, arguments))
+                .collect();
             vec![(Section::Kinetic, terms?)]
         }
         Within::Site => holding(model, site, &find),
@@ -136,8 +147,8 @@ fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)
         model.source.text.get(span.start..span.end)
     };
     let holds = |section: Section, term: &str| {
-        let words = text(section, term).unwrap_or_default();
-        words
+        let arguments = text(section, term).unwrap_or_default();
+        arguments
             .split(|c: char| !c.is_alphanumeric() && c != '_')
             .any(|word| word == name)
     };
@@ -155,13 +166,13 @@ fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)
 }
 
 /// A text with its blanks filled; none if a word is missing.
-pub(crate) fn filled(text: &str, words: &BTreeMap<String, String>) -> Option<String> {
+pub(crate) fn instantiated(text: &str, arguments: &BTreeMap<String, String>) -> Option<String> {
     let mut out = String::new();
     let mut rest = text;
     while let Some((before, after)) = rest.split_once('{') {
         let (key, behind) = after.split_once('}')?;
         out.push_str(before);
-        out.push_str(words.get(key)?);
+        out.push_str(arguments.get(key)?);
         rest = behind;
     }
     out.push_str(rest);

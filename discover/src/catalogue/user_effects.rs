@@ -5,17 +5,17 @@ use std::collections::BTreeMap;
 
 use model_spec::source::Source;
 
-use crate::catalogue::Effect;
-use crate::catalogue::candidate::candidates;
+use crate::catalogue::candidate::{CandidateParameter, candidates};
+use crate::catalogue::effect::Effect;
 use crate::catalogue::sites::sites;
-use crate::search::response::absent;
+use crate::error::DiscoverError;
 
 /// Writes each of the user's effects into a specification wherever it has a place; returns those that
 /// have none.
 ///
 /// # Errors
 /// What is wrong with a specification that an effect leaves.
-pub fn placed(effects: &[Effect], path: &str, text: &str) -> Result<Vec<String>, String> {
+pub fn placed(effects: &[Effect], path: &str, text: &str) -> Result<Vec<String>, DiscoverError> {
     let Ok(checked) = model_spec::check(Source::new(path, text)) else {
         // What is wrong with the specification itself is said where it is read.
         return Ok(Vec::new());
@@ -28,13 +28,16 @@ pub fn placed(effects: &[Effect], path: &str, text: &str) -> Result<Vec<String>,
         // Orders are but numbers in it.
         found.dedup_by(|a, b| a.on == b.on);
         for candidate in &found {
-            let values: Vec<f64> = candidate.parameters.iter().map(absent).collect();
+            let values: Vec<f64> = candidate
+                .parameters
+                .iter()
+                .map(CandidateParameter::absent)
+                .collect();
             let written = candidate.written(text, path, &values, "");
-            written.map_err(|error| {
-                format!(
-                    "the effect `{}` on `{}` does not leave a specification: {error}",
-                    effect.name, candidate.on
-                )
+            written.map_err(|error| DiscoverError::Effect {
+                effect: effect.name.clone(),
+                on: candidate.on.clone(),
+                error: Box::new(error),
             })?;
         }
         if found.is_empty() {

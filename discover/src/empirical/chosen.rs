@@ -5,14 +5,14 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::empirical::expressions::{Scales, Term, terms};
-use crate::fit::full::Fit;
+use crate::fit::fitted::Fit;
+use crate::fit::linearised::LinearisedFit;
 use crate::fit::residuals::correlation;
-use crate::model::problem::Setting;
+use crate::model::problem::EstimationProblem;
 use crate::residual_force::basis_functions::Range;
-use crate::residual_force::equations::{Equation, Equations, Standing};
-use crate::residual_force::force_response::{Columns, pushed, stood};
+use crate::residual_force::equations::{Equation, Equations, OperatingPoint};
+use crate::residual_force::force_response::{ForceColumns, force_responses, operating_points};
 use crate::residual_force::regression::{Regression, Sizes};
-use crate::search::response::At;
 use crate::thresholds;
 
 /// A sum of terms in an equation.
@@ -37,50 +37,50 @@ struct Set {
 
 /// The best expression in one of some equations, by their places in the list; none where no set
 /// of terms stands out, or neighbouring motions cannot be followed.
-pub fn chosen(setting: &Setting<'_>, fit: &Fit, among: &[usize]) -> Option<Expression> {
-    let equations = Equations::of(setting, fit)?;
-    let at = At::of(setting, fit, 1.0);
-    let standings = stood((&at, setting, fit), &equations);
-    let inputs = largest_inputs(setting);
+pub fn chosen(problem: &EstimationProblem<'_>, fit: &Fit, among: &[usize]) -> Option<Expression> {
+    let equations = Equations::of(problem, fit)?;
+    let at = LinearisedFit::of(problem, fit, 1.0);
+    let operating_points = operating_points((&at, problem, fit), &equations);
+    let inputs = largest_inputs(problem);
     let of = |equation: &usize| {
-        let own = standings.iter().flatten().map(|all| all[*equation]);
-        let range = Range::of(&own.collect::<Vec<Standing>>());
+        let own = operating_points.iter().flatten().map(|all| all[*equation]);
+        let range = Range::of(&own.collect::<Vec<OperatingPoint>>());
         let scales = Scales {
             rate: rounded(range.rate),
             place: rounded(range.place.0.abs().max(range.place.1.abs())),
             inputs: inputs.clone(),
         };
-        in_equation((&at, setting, fit), &equations, (*equation, &range), scales)
+        in_equation((&at, problem, fit), &equations, (*equation, &range), scales)
     };
     let found = among.iter().filter_map(of);
     found.max_by(|a, b| a.part.total_cmp(&b.part))
 }
 
 fn in_equation(
-    of: (&At, &Setting<'_>, &Fit),
+    of: (&LinearisedFit, &EstimationProblem<'_>, &Fit),
     equations: &Equations,
     (equation, range): (usize, &Range),
     scales: Scales,
 ) -> Option<Expression> {
     let own = &equations.list[equation];
     let terms = terms(&scales, own.unit == "rad", range.width());
-    let weights = |standings: &[Standing], inputs: &[f64], out: &mut [f64]| {
+    let weights = |operating_points: &[OperatingPoint], inputs: &[f64], out: &mut [f64]| {
         for (slot, term) in out.iter_mut().zip(&terms) {
-            *slot = term.at(&standings[equation], inputs, &scales);
+            *slot = term.at(&operating_points[equation], inputs, &scales);
         }
     };
-    let columns = Columns {
+    let columns = ForceColumns {
         equations: vec![equation; terms.len()],
         weights: &weights,
     };
-    let blocks = pushed(of, equations, &columns)?;
+    let blocks = force_responses(of, equations, &columns)?;
     let regression = Regression::new(of.0, of.2, &blocks)?;
     let best = best(&regression, (of.0, of.1), &blocks)?;
     Some(Expression {
         equation: own.clone(),
         terms: best.places.iter().map(|p| terms[*p].clone()).collect(),
         sizes: best.sizes.values.iter().copied().collect(),
-        part: best.sizes.gain / regression.squares,
+        part: best.sizes.decrease / regression.squares,
         scales,
     })
 }
@@ -88,7 +88,7 @@ fn in_equation(
 /// The best set of one term, or of more where that takes much of what fewer leave.
 fn best(
     regression: &Regression,
-    (at, setting): (&At, &Setting<'_>),
+    (at, problem): (&LinearisedFit, &EstimationProblem<'_>),
     blocks: &[DMatrix<f64>],
 ) -> Option<Set> {
     let count = blocks.iter().map(DMatrix::ncols).max()?;
@@ -96,7 +96,8 @@ fn best(
     for size in 1..=thresholds::UNNAMED_TERMS {
         let sets = subsets(count, size).into_iter();
         let sizes = sets.map(|places| (regression.shared(&places), places));
-        let Some((sizes, places)) = sizes.max_by(|a, b| a.0.gain.total_cmp(&b.0.gain)) else {
+        let Some((sizes, places)) = sizes.max_by(|a, b| a.0.decrease.total_cmp(&b.0.decrease))
+        else {
             break;
         };
         let mut values = DVector::zeros(count);
@@ -104,11 +105,11 @@ fn best(
             values[*place] = *value;
         }
         let left = regression.left((at, blocks), &|_| values.clone(), true);
-        let over = correlation(&left, setting.noise.len());
-        let gain_before = known.as_ref().map_or(0.0, |set| set.sizes.gain);
-        let squares = regression.squares - sizes.gain;
+        let over = correlation(&left, problem.noise.len());
+        let gain_before = known.as_ref().map_or(0.0, |set| set.sizes.decrease);
+        let squares = regression.squares - sizes.decrease;
         let level = (squares / regression.numbers).max(1.0);
-        let taken = sizes.gain - gain_before;
+        let taken = sizes.decrease - gain_before;
         let is_enough = taken > 2.0 * thresholds::INFORMATION * level * over
             && taken > thresholds::TERM_TAKES * (regression.squares - gain_before);
         if is_enough {
@@ -132,8 +133,8 @@ fn subsets(count: usize, size: usize) -> Vec<Vec<usize>> {
 }
 
 /// The largest value of each input in the training records.
-fn largest_inputs(setting: &Setting<'_>) -> Vec<f64> {
-    let records = &setting.dataset.train;
+fn largest_inputs(problem: &EstimationProblem<'_>) -> Vec<f64> {
+    let records = &problem.dataset.train;
     let count = records.iter().map(|r| r.input_columns.len()).max();
     let largest = |input: usize| {
         let columns = records.iter().filter_map(|r| r.input_columns.get(input));

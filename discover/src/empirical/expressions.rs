@@ -5,14 +5,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::residual_force::equations::Standing;
-
-/// A step over the rate is made within this part of the largest rate: as steep as friction near
-/// rest is seldom seen to be otherwise, and no jump, so that it can be multiplied.
-const STEEP: f64 = 0.03;
-
-/// The highest degree of a product: with more, expressions differ in little but their ends.
-const DEGREE: u32 = 3;
+use crate::residual_force::equations::OperatingPoint;
+use crate::thresholds::{self, STEEP};
 
 /// What a factor is a function of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,11 +108,11 @@ impl Function {
 
 impl Term {
     /// Its value where a motion stands.
-    pub fn at(&self, standing: &Standing, inputs: &[f64], scales: &Scales) -> f64 {
+    pub fn at(&self, operating_point: &OperatingPoint, inputs: &[f64], scales: &Scales) -> f64 {
         let factor = |(of, function): &(Of, Function)| {
             let (value, scale) = match of {
-                Of::Rate => (standing.rate, scales.rate),
-                Of::Place => (standing.place, scales.place),
+                Of::Rate => (operating_point.rate, scales.rate),
+                Of::Place => (operating_point.place, scales.place),
                 Of::Input(input) => (inputs[*input], scales.inputs[*input]),
             };
             function.at(value / scale, value)
@@ -127,14 +121,14 @@ impl Term {
     }
 
     /// As a specification writes it, times a parameter.
-    pub fn text(&self, parameter: &str, words: &Words) -> String {
+    pub fn text(&self, parameter: &str, arguments: &Words) -> String {
         let mut text = parameter.to_owned();
         for (of, function) in &self.factors {
             let factor = match of {
-                Of::Rate => function.text(&format!("dot({})", words.on), &words.scales[0]),
-                Of::Place => function.text(&words.on, &words.scales[1]),
+                Of::Rate => function.text(&format!("dot({})", arguments.on), &arguments.scales[0]),
+                Of::Place => function.text(&arguments.on, &arguments.scales[1]),
                 Of::Input(input) => {
-                    let (quantity, scale) = &words.inputs[*input];
+                    let (quantity, scale) = &arguments.inputs[*input];
                     function.text(quantity, scale)
                 }
             };
@@ -189,18 +183,18 @@ pub fn terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
     let products = driven.chain(both).map(|factors| Term {
         factors: factors.to_vec(),
     });
-    found.extend(products.filter(|term| term.degree() <= DEGREE));
+    found.extend(products.filter(|term| term.degree() <= thresholds::MOST_DEGREE));
     found
 }
 
 #[cfg(test)]
 mod tests {
     use super::{Function, Of, Scales, Term, Words, terms};
-    use crate::residual_force::equations::Standing;
+    use crate::residual_force::equations::OperatingPoint;
 
     #[test]
     fn a_term_is_what_it_writes() {
-        let words = Words {
+        let arguments = Words {
             on: "theta".to_owned(),
             scales: ["w_0", "theta_0"].map(str::to_owned),
             inputs: vec![("u".to_owned(), "u_0".to_owned())],
@@ -208,7 +202,7 @@ mod tests {
         let term = |factors: &[(Of, Function)]| Term {
             factors: factors.to_vec(),
         };
-        let standing = Standing {
+        let operating_point = OperatingPoint {
             place: 0.5,
             rate: -2.0,
             time: 0.0,
@@ -220,19 +214,22 @@ mod tests {
         };
         let product = term(&[(Of::Rate, Function::Signed), (Of::Place, Function::Sine(2))]);
         assert_eq!(
-            product.text("e_1", &words),
+            product.text("e_1", &arguments),
             "e_1*(dot(theta)/w_0)*abs(dot(theta)/w_0)*sin(2*theta)"
         );
-        let value = product.at(&standing, &[3.0], &scales);
+        let value = product.at(&operating_point, &[3.0], &scales);
         assert!((value + 0.25 * 1.0_f64.sin()).abs() < 1e-15);
         let driven = term(&[
             (Of::Input(0), Function::Power(1)),
             (Of::Place, Function::Power(2)),
         ]);
-        assert_eq!(driven.text("e_2", &words), "e_2*(u/u_0)*(theta/theta_0)^2");
-        assert!((driven.at(&standing, &[3.0], &scales) - 0.3 * 0.25).abs() < 1e-15);
+        assert_eq!(
+            driven.text("e_2", &arguments),
+            "e_2*(u/u_0)*(theta/theta_0)^2"
+        );
+        assert!((driven.at(&operating_point, &[3.0], &scales) - 0.3 * 0.25).abs() < 1e-15);
         assert!(driven.scales(Of::Input(0)) && !product.scales(Of::Place));
-        assert_eq!(term(&[]).text("e_3", &words), "e_3");
+        assert_eq!(term(&[]).text("e_3", &arguments), "e_3");
     }
 
     #[test]

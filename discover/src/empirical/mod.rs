@@ -9,47 +9,86 @@ pub mod expressions;
 use model_spec::edit::{Edit, NewForce, NewParameter, NewValue};
 use model_spec::model::Model;
 
-use crate::catalogue::candidate::{Candidate, CandidateParameter, names};
+use crate::catalogue::candidate::{Candidate, CandidateParameter, PARAMETER_OFFSET, names};
+use crate::catalogue::candidate_unknown::CandidateUnknown;
 use crate::catalogue::template::free_name;
 use crate::empirical::chosen::{Expression, chosen};
 use crate::empirical::expressions::{Of, Words};
-use crate::fit::full::Fit;
-use crate::model::problem::Setting;
-use crate::residual_force::{Ranked, residual_force};
-use crate::search::acceptance::{Evidence, Own, judge};
+use crate::error::DiscoverError;
+use crate::fit::fitted::Fit;
+use crate::fit::{full, preliminary};
+use crate::model::problem::EstimationProblem;
+use crate::residual_force::residual_force;
+use crate::residual_force::types::RankedEquation;
+use crate::search::acceptance::{EffectUnknown, TestStatistics, acceptance_test};
 use crate::search::found::{Accepted, Found, Rejected};
-use crate::search::response::trial;
+use crate::search::rejection::Rejection;
 use crate::thresholds;
 
 /// The name of what has none.
 pub const EMPIRICAL: &str = "empirical";
 
-/// Adds an expression to what was found, if a real gap is left and one closes it. `floor`: what a
-/// right model would leave, in noises; `said` is told what is done.
-pub fn add_empirical(setting: &Setting<'_>, found: &mut Found, floor: f64, said: &dyn Fn(&str)) {
-    let before = found.best();
-    let is_wide = |left: f64| left > thresholds::UNNAMED_FROM * floor;
-    if !(is_wide(before.train.pooled) && is_wide(before.test.pooled)) {
+/// Adds an expression without a name where nothing is named: what something named leaves may be
+/// its own misfit. A number that is off, and leaves much, stands in for something that varies: an
+/// expression that leaves clearly less takes its place.
+pub fn unnamed(
+    problem: &EstimationProblem<'_>,
+    found: &mut Found,
+    floor: f64,
+    progress: &(dyn Fn(&str) + Sync),
+) {
+    let is_shift = |effect: &Accepted| {
+        effect.candidate.released.is_some() || effect.candidate.effect == PARAMETER_OFFSET
+    };
+    let leaves_little = found.best().leaves_less(thresholds::UNNAMED_FROM * floor);
+    if !found.accepted.iter().all(is_shift) || (leaves_little && found.last.is_some()) {
         return;
     }
-    said("nothing in the catalogue explains what is left; looking for an expression");
-    let Some(expression) = sought(setting, before) else {
-        said("  no force of few terms in one equation stands out");
+    let (offset, with_shifts) = (std::mem::take(&mut found.accepted), found.last.take());
+    add_empirical(problem, found, floor, progress);
+    if let Some(with_shifts) = with_shifts {
+        let is_better =
+            (found.last.as_ref()).is_some_and(|last| last.leaves_clearly_less(&with_shifts));
+        if !is_better {
+            (found.accepted, found.last) = (offset, Some(with_shifts));
+        }
+    }
+}
+
+/// Adds an expression to what was found, if a real gap is left and one closes it. `floor`: what a
+/// right model would leave, in noises; `said` is told what is done.
+fn add_empirical(
+    problem: &EstimationProblem<'_>,
+    found: &mut Found,
+    floor: f64,
+    progress: &dyn Fn(&str),
+) {
+    let before = found.best();
+    let is_wide = |left: f64| left > thresholds::UNNAMED_FROM * floor;
+    if !(is_wide(before.train.rms) && is_wide(before.test.rms)) {
+        return;
+    }
+    progress("nothing in the catalogue explains what is left; looking for an expression");
+    let Some(expression) = sought(problem, before) else {
+        progress("  no force of few terms in one equation stands out");
         return;
     };
-    let (candidate, fit) = match simplest(setting, before, expression) {
+    let (candidate, fit) = match simplest(problem, before, expression) {
         Ok(found) => found,
         Err(error) => {
-            said(&format!("  {error}"));
+            progress(&format!("  {error}"));
             return;
         }
     };
     let label = candidate.label();
     let unknowns: Vec<usize> = (before.unknowns.len()..fit.unknowns.len()).collect();
     let verdict = believed((before, &fit), &unknowns, floor);
-    let outcome = verdict.as_ref().err().map_or("believed", String::as_str);
-    let (train, test) = (fit.train.pooled, fit.test.pooled);
-    said(&format!(
+    let outcome = verdict
+        .as_ref()
+        .err()
+        .map_or_else(|| "believed".to_owned(), Rejection::to_string);
+    let (train, test) = (fit.train.rms, fit.test.rms);
+    progress(&format!(
         "  {label}, {}: {train:.2} noises are left in training, {test:.2} in test; {outcome}",
         candidate.term
     ));
@@ -60,7 +99,7 @@ pub fn add_empirical(setting: &Setting<'_>, found: &mut Found, floor: f64, said:
                 unknowns,
                 equivalent: Vec::new(),
                 evidence,
-                test_gap: (before.test.pooled, test),
+                test_gap: (before.test.rms, test),
             });
             found.last = Some(fit);
         }
@@ -73,18 +112,18 @@ pub fn add_empirical(setting: &Setting<'_>, found: &mut Found, floor: f64, said:
 }
 
 /// The best expression in the equations where the residual force may sit.
-fn sought(setting: &Setting<'_>, fit: &Fit) -> Option<Expression> {
-    let force = residual_force(setting, fit, None)?;
+fn sought(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Expression> {
+    let force = residual_force(problem, fit, None)?;
     force.kind.as_ref()?;
-    let explains = |ranked: &Ranked| ranked.by_state.max(ranked.by_time);
+    let explains = |ranked: &RankedEquation| ranked.by_state.max(ranked.by_time);
     let most = force.ranked.iter().map(explains).fold(0.0, f64::max);
-    let mut as_well: Vec<&Ranked> = (force.ranked.iter())
+    let mut as_well: Vec<&RankedEquation> = (force.ranked.iter())
         .filter(|ranked| explains(ranked) >= thresholds::AS_WELL * most)
         .collect();
     as_well.sort_by(|a, b| explains(b).total_cmp(&explains(a)));
     let best = as_well.iter().take(thresholds::UNNAMED_EQUATIONS);
     let among: Vec<usize> = best.map(|ranked| ranked.equation).collect();
-    chosen(setting, fit, &among)
+    chosen(problem, fit, &among)
 }
 
 /// An expression as an effect that can be written into a specification: a parameter with the
@@ -114,7 +153,7 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
             _ => "m/s",
         },
     );
-    let words = Words {
+    let arguments = Words {
         on: equation.on.clone(),
         scales: [
             scale(Of::Rate, ("e_rate", scales.rate, per_second), "rate"),
@@ -143,12 +182,12 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
             positive: false,
             inverse: false,
             shape: None,
-            shifts: None,
+            offset: None,
             doc: "size of a term of an empirical force".to_owned(),
         })
         .collect();
     let terms = expression.terms.iter().zip(&parameters);
-    let terms = terms.map(|(term, parameter)| term.text(&parameter.name, &words));
+    let terms = terms.map(|(term, parameter)| term.text(&parameter.name, &arguments));
     let value = terms.collect::<Vec<String>>().join(" + ");
     changes.push(Edit::AddForce(NewForce {
         name: name(EMPIRICAL),
@@ -174,13 +213,13 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
 /// An expression fitted, without the terms that are not needed: some stand for what parameters
 /// and sensors do once they are free again.
 fn simplest(
-    setting: &Setting<'_>,
+    problem: &EstimationProblem<'_>,
     before: &Fit,
     mut expression: Expression,
-) -> Result<(Candidate, Fit), String> {
+) -> Result<(Candidate, Fit), DiscoverError> {
     loop {
         let candidate = written(before.plant.model(), &expression);
-        let fit = fitted(setting, before, &candidate, &expression)?;
+        let fit = fitted(problem, before, &candidate, &expression)?;
         let known = before.unknowns.len();
         let own = &fit.train.estimate.theta[known..];
         let sizes = own.iter().zip(&fit.sd[known..]);
@@ -200,29 +239,35 @@ fn simplest(
 /// The fit with an expression: begun close to the one without, and anew from the beginnings of
 /// the windows; the better of both.
 fn fitted(
-    setting: &Setting<'_>,
+    problem: &EstimationProblem<'_>,
     fit: &Fit,
     candidate: &Candidate,
     expression: &Expression,
-) -> Result<Fit, String> {
+) -> Result<Fit, DiscoverError> {
     let sizes = &expression.sizes;
     let mut unknowns = fit.unknowns.clone();
-    let mut theta = fit.anew();
+    let mut theta = fit.restarted();
     for (parameter, size) in candidate.parameters.iter().zip(sizes) {
-        let mut unknown = trial(parameter).unknown;
+        let mut unknown = CandidateUnknown::of(parameter).unknown;
         unknown.scale = size.abs();
         unknowns.push(unknown);
         theta.push(*size);
     }
-    let texts = setting.with((&fit.text, &fit.linear), candidate, sizes)?;
+    let texts = candidate.added(problem, &fit.texts, sizes)?;
     let near = || {
         let left = (fit, fit.train.estimate.cost);
-        let sketch = setting.expected(texts.clone(), unknowns.clone(), theta.clone(), left)?;
-        setting.complete(sketch)
+        let preliminary = preliminary::expected(
+            problem,
+            texts.clone(),
+            unknowns.clone(),
+            theta.clone(),
+            left,
+        )?;
+        full::complete(problem, preliminary)
     };
-    let anew = || setting.fit(texts.clone(), unknowns.clone(), &theta);
-    match rayon::join(near, anew) {
-        (Ok(near), Ok(anew)) if anew.train.pooled < near.train.pooled => Ok(anew),
+    let restarted = || full::fit(problem, texts.clone(), unknowns.clone(), &theta);
+    match rayon::join(near, restarted) {
+        (Ok(near), Ok(restarted)) if restarted.train.rms < near.train.rms => Ok(restarted),
         (Ok(fit), _) | (Err(_), Ok(fit)) => Ok(fit),
         (Err(error), Err(_)) => Err(error),
     }
@@ -234,9 +279,9 @@ fn believed(
     (before, after): (&Fit, &Fit),
     unknowns: &[usize],
     floor: f64,
-) -> Result<Evidence, String> {
-    let own: Vec<Own> = (unknowns.iter().enumerate())
-        .map(|(effect, place)| Own {
+) -> Result<TestStatistics, Rejection> {
+    let own: Vec<EffectUnknown> = (unknowns.iter().enumerate())
+        .map(|(effect, place)| EffectUnknown {
             place: *place,
             effect,
             base: 0.0,
@@ -244,24 +289,19 @@ fn believed(
             prior: None,
         })
         .collect();
-    let evidence = judge(before, after, &own)?;
+    let evidence = acceptance_test(before, after, &own)?;
     let asked = thresholds::INFORMATION * (1 + own.len()) as f64;
     if evidence.information < asked {
-        return Err(format!(
-            "too little evidence in the training records: a gain of {:.1}, {asked} are asked for",
-            evidence.information
-        ));
+        return Err(Rejection::Information {
+            found: evidence.information,
+            asked,
+        });
     }
     let closes = |before: f64, after: f64| (before - after) / (before - floor);
-    let train = closes(before.train.pooled, after.train.pooled);
-    let test = closes(before.test.pooled, after.test.pooled);
+    let train = closes(before.train.rms, after.train.rms);
+    let test = closes(before.test.rms, after.test.rms);
     if train.min(test) < thresholds::UNNAMED_CLOSES {
-        return Err(format!(
-            "it closes {:.0} % of the gap in training and {:.0} % in test, {:.0} % are asked for",
-            100.0 * train,
-            100.0 * test,
-            100.0 * thresholds::UNNAMED_CLOSES
-        ));
+        return Err(Rejection::Closes { train, test });
     }
     Ok(evidence)
 }

@@ -1,4 +1,4 @@
-//! Linear least squares with bounds, by active sets: small, dense and deterministic.
+//! WindowDerivatives least squares with bounds, by active sets: small, dense and deterministic.
 
 use nalgebra::{DMatrix, DVector};
 

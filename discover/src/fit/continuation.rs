@@ -5,42 +5,32 @@
 use nalgebra::DVector;
 
 use crate::fit::gauss_newton::{
-    Estimate, PARTS, StartPrior, change_of_unknowns, eliminated, evaluated, level, moved_unknowns,
+    Estimate, change_of_unknowns, evaluated, level, moved_unknowns, reduced_blocks,
 };
-use crate::fit::sensitivity::Linear;
+use crate::fit::prior::InitialStatePrior;
+use crate::fit::sensitivity::{WindowDerivatives, linearised};
 use crate::fit::shooting::{Residual, Shooting};
 use crate::thresholds;
 
-/// A step that lowers the cost by less than this part is the last: it costs much.
-const WORTH_A_STEP: f64 = 0.02;
-
-/// Where tangents lead nowhere, the most steps by secants.
-const SECANT_STEPS: usize = 6;
-
-/// A secant's change of an unknown is this part of its scale at first, and then what moves the
-/// outputs by this part of what is left, within a factor.
-const SECANT: f64 = 0.1;
-const MOVED: f64 = 0.3;
-const NEAR_MOVED: f64 = 3.0;
-
 /// How initial states are found at given unknowns, from those at others if they are known:
 /// what is known before, and the states.
-pub type Follow<'f> = dyn Fn(&[f64], Option<&[Vec<f64>]>) -> (StartPrior, Vec<Vec<f64>>) + 'f;
+pub type Follow<'f> =
+    dyn Fn(&[f64], Option<&[Vec<f64>]>) -> (InitialStatePrior, Vec<Vec<f64>>) + 'f;
 
 /// Where an approach ended.
 #[derive(Default)]
-pub struct Approached {
+pub struct Continued {
     /// What is known of the windows' initial states.
-    pub prior: StartPrior,
+    pub prior: InitialStatePrior,
     /// The estimate.
     pub estimate: Estimate,
     /// Whether further steps would help little.
-    pub is_there: bool,
+    pub is_converged: bool,
 }
 
 /// Which derivatives by the unknowns a step goes by.
 #[derive(Clone, Copy, PartialEq)]
-enum By {
+enum Derivatives {
     /// Those of the motion. Impacts make them grow without bound, and right for next to nothing.
     Tangents,
     /// Differences of motions that are followed anew, for what has no prior.
@@ -48,7 +38,7 @@ enum By {
 }
 
 /// Windows and how they are followed.
-struct Way<'a> {
+struct Continuation<'a> {
     shooting: &'a Shooting<'a>,
     follow: &'a Follow<'a>,
     /// By how much each unknown is changed for a secant.
@@ -56,54 +46,60 @@ struct Way<'a> {
 }
 
 /// Approaches the best unknowns from the best of some, by so many steps.
-pub fn approach(
+pub fn continuation(
     shooting: &Shooting<'_>,
-    begins: &[Vec<f64>],
+    guesses: &[Vec<f64>],
     follow: &Follow<'_>,
     steps: usize,
-) -> Approached {
-    let mut way = Way::new(shooting, follow);
-    let tried = begins.iter().map(|theta| way.at(theta.clone(), None));
+) -> Continued {
+    let mut path = Continuation::new(shooting, follow);
+    let tried = guesses.iter().map(|theta| path.at(theta.clone(), None));
     let best = tried.min_by(|a, b| a.estimate.cost.total_cmp(&b.estimate.cost));
     let mut present = best.unwrap_or_default();
-    way.go(&mut present, steps, By::Tangents);
+    path.go(&mut present, steps, Derivatives::Tangents);
     present
 }
 
 /// Goes on where tangents lead nowhere though much more than noise is left.
-pub fn approach_by_secants(shooting: &Shooting<'_>, present: &mut Approached, follow: &Follow<'_>) {
-    Way::new(shooting, follow).go(present, SECANT_STEPS, By::Secants);
+pub fn continuation_by_secants(
+    shooting: &Shooting<'_>,
+    present: &mut Continued,
+    follow: &Follow<'_>,
+) {
+    Continuation::new(shooting, follow).go(present, thresholds::SECANT_STEPS, Derivatives::Secants);
 }
 
 /// Derivatives at an estimate with secants in the place of tangents for what has no prior.
 pub fn secants(
     shooting: &Shooting<'_>,
     estimate: &Estimate,
-    mut tangents: Vec<Option<Linear>>,
+    mut tangents: Vec<Option<WindowDerivatives>>,
     follow: &Follow<'_>,
-) -> Vec<Option<Linear>> {
-    Way::new(shooting, follow).take_secants(estimate, &mut tangents);
+) -> Vec<Option<WindowDerivatives>> {
+    Continuation::new(shooting, follow).take_secants(estimate, &mut tangents);
     tangents
 }
 
-impl<'a> Way<'a> {
+impl<'a> Continuation<'a> {
     fn new(shooting: &'a Shooting<'a>, follow: &'a Follow<'a>) -> Self {
         let sizes = shooting.unknowns.iter();
         Self {
             shooting,
             follow,
-            sizes: sizes.map(|unknown| SECANT * unknown.scale).collect(),
+            sizes: sizes
+                .map(|unknown| thresholds::FIRST_SECANT * unknown.scale)
+                .collect(),
         }
     }
 
     /// The estimate at these unknowns.
-    fn at(&self, theta: Vec<f64>, before: Option<&[Vec<f64>]>) -> Approached {
-        let (prior, starts) = (self.follow)(&theta, before);
-        let estimate = evaluated(self.shooting, &prior, theta, starts);
-        Approached {
+    fn at(&self, theta: Vec<f64>, before: Option<&[Vec<f64>]>) -> Continued {
+        let (prior, initial_states) = (self.follow)(&theta, before);
+        let estimate = evaluated(self.shooting, &prior, theta, initial_states);
+        Continued {
             prior,
             estimate,
-            is_there: false,
+            is_converged: false,
         }
     }
 
@@ -114,48 +110,58 @@ impl<'a> Way<'a> {
     }
 
     /// So many steps at most, while they are worth it.
-    fn go(&mut self, present: &mut Approached, steps: usize, by: By) {
+    fn go(&mut self, present: &mut Continued, steps: usize, derivatives: Derivatives) {
         for _ in 0..steps {
-            if by == By::Secants && self.left(&present.estimate) < thresholds::AT_FLOOR {
+            if derivatives == Derivatives::Secants
+                && self.left(&present.estimate) < thresholds::AT_FLOOR
+            {
                 return;
             }
             let before = present.estimate.cost;
-            let Some(next) = self.step(present, by) else {
-                present.is_there = true;
+            let Some(next) = self.step(present, derivatives) else {
+                present.is_converged = true;
                 return;
             };
             *present = next;
-            present.is_there = before - present.estimate.cost < WORTH_A_STEP * before;
-            if present.is_there {
+            present.is_converged =
+                before - present.estimate.cost < thresholds::CONTINUATION_DECREASE * before;
+            if present.is_converged {
                 return;
             }
         }
     }
 
     /// The next estimate, if there is one that is better.
-    fn step(&mut self, present: &Approached, by: By) -> Option<Approached> {
-        let Approached {
+    fn step(&mut self, present: &Continued, derivatives: Derivatives) -> Option<Continued> {
+        let Continued {
             prior, estimate, ..
         } = present;
         let level = level(self.shooting, estimate);
-        let mut linear = self
-            .shooting
-            .linear(&estimate.theta, &estimate.starts, level);
-        if by == By::Secants && !self.take_secants(estimate, &mut linear) {
+        let mut linear = linearised(
+            self.shooting,
+            &estimate.theta,
+            &estimate.initial_states,
+            level,
+        );
+        if derivatives == Derivatives::Secants && !self.take_secants(estimate, &mut linear) {
             return None;
         }
-        let windows = eliminated(prior, estimate, &linear);
+        let windows = reduced_blocks(prior, estimate, &linear);
         let change = change_of_unknowns(self.shooting, estimate, &windows, 0.0);
-        PARTS.iter().find_map(|part| {
+        thresholds::STEP_PARTS.iter().find_map(|part| {
             let theta = moved_unknowns(self.shooting, estimate, &change, *part);
-            let next = self.at(theta, Some(&estimate.starts));
+            let next = self.at(theta, Some(&estimate.initial_states));
             (next.estimate.cost < estimate.cost).then_some(next)
         })
     }
 
     /// Puts secants in the place of tangents; false if there is nothing to be changed.
-    fn take_secants(&mut self, estimate: &Estimate, linear: &mut [Option<Linear>]) -> bool {
-        let wanted = MOVED * self.left(estimate);
+    fn take_secants(
+        &mut self,
+        estimate: &Estimate,
+        linear: &mut [Option<WindowDerivatives>],
+    ) -> bool {
+        let wanted = thresholds::SECANT_MOVES * self.left(estimate);
         let mut taken = false;
         for (place, unknown) in self.shooting.unknowns.iter().enumerate() {
             if unknown.prior.is_some() || unknown.bounds.0 == unknown.bounds.1 {
@@ -163,7 +169,10 @@ impl<'a> Way<'a> {
             }
             let mut secant = self.secant(estimate, linear, (place, self.sizes[place]));
             let moved = secant.moved();
-            if moved > 0.0 && !(wanted / NEAR_MOVED..wanted * NEAR_MOVED).contains(&moved) {
+            if moved > 0.0
+                && !(wanted / thresholds::SECANT_NEAR..wanted * thresholds::SECANT_NEAR)
+                    .contains(&moved)
+            {
                 self.sizes[place] = secant.size * wanted / moved;
                 secant = self.secant(estimate, linear, (place, self.sizes[place]));
             }
@@ -182,7 +191,7 @@ impl<'a> Way<'a> {
     fn secant(
         &self,
         estimate: &Estimate,
-        linear: &[Option<Linear>],
+        linear: &[Option<WindowDerivatives>],
         (place, size): (usize, f64),
     ) -> Secant {
         let unknown = &self.shooting.unknowns[place];
@@ -191,9 +200,9 @@ impl<'a> Way<'a> {
         let ends = [value + size, value - size].map(|end| unknown.admissible(end));
         theta[place] = ends.into_iter().find(|end| *end != value).unwrap_or(value);
         let size = theta[place] - value;
-        let (_, starts) = (self.follow)(&theta, Some(&estimate.starts));
-        let residuals = self.shooting.residuals(&theta, &starts);
-        let of = |(residual, linear): (Option<Residual>, &Option<Linear>)| {
+        let (_, initial_states) = (self.follow)(&theta, Some(&estimate.initial_states));
+        let residuals = self.shooting.residuals(&theta, &initial_states);
+        let of = |(residual, linear): (Option<Residual>, &Option<WindowDerivatives>)| {
             let (residual, linear) = (residual?, linear.as_ref()?);
             let change = DVector::from_vec(residual.values) - &linear.residual;
             (size != 0.0 && change.iter().all(|c| c.is_finite())).then_some(change)

@@ -6,34 +6,11 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::bounded_least_squares::least_squares;
-use crate::fit::sensitivity::{Crew, Linear};
+use crate::fit::prior::InitialStatePrior;
+use crate::fit::sensitivity::{SensitivityEvaluator, WindowDerivatives, linearised};
 use crate::fit::shooting::{Residual, Shooting};
-use crate::fit::variable_projection::{Reduced, reduced, stacked};
-
-/// A step that lowers the sum of squares by less than this part is the last.
-const SETTLED: f64 = 1e-3;
-
-/// Parts of a step that are tried.
-pub(crate) const PARTS: [f64; 3] = [1.0, 0.3, 0.05];
-
-/// How the damping of a step grows where it does not help, and shrinks where it does.
-const DAMPING: [f64; 4] = [0.0, 0.03, 1.0, 30.0];
-
-/// Damping of an initial state's step, in weights of its prior: where a state's impacts fold
-/// the outputs, only shorter steps along what is well determined help.
-const START_DAMPING: [f64; 5] = [0.0, 1e2, 1e4, 1e6, 1e9];
-
-/// The most steps over one part of a window.
-const SETTLING_STEPS: usize = 6;
-
-/// What is known before of each window's initial state: mean and standard deviation.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct StartPrior {
-    /// One state per window.
-    pub mean: Vec<Vec<f64>>,
-    /// One standard deviation per state.
-    pub sd: Vec<f64>,
-}
+use crate::fit::variable_projection::{ReducedBlock, reduced_block, triangular_factor};
+use crate::thresholds;
 
 /// An estimate.
 #[derive(Clone, Debug, Default)]
@@ -41,7 +18,7 @@ pub struct Estimate {
     /// The unknowns.
     pub theta: Vec<f64>,
     /// The initial state of each window.
-    pub starts: Vec<Vec<f64>>,
+    pub initial_states: Vec<Vec<f64>>,
     /// The sum of squares of the residuals of each window, in noises; not finite where there
     /// is no motion.
     pub squares: Vec<f64>,
@@ -50,22 +27,22 @@ pub struct Estimate {
 }
 
 /// Estimates the unknowns and the windows' initial states from given ones.
-pub fn estimate(
+pub fn damped_gauss_newton(
     shooting: &Shooting<'_>,
-    prior: &StartPrior,
+    prior: &InitialStatePrior,
     theta: &[f64],
-    starts: &[Vec<f64>],
+    initial_states: &[Vec<f64>],
     steps: usize,
 ) -> Estimate {
-    let mut present = evaluated(shooting, prior, theta.to_vec(), starts.to_vec());
+    let mut present = evaluated(shooting, prior, theta.to_vec(), initial_states.to_vec());
     for _ in 0..steps {
         let level = level(shooting, &present);
-        let linear = shooting.linear(&present.theta, &present.starts, level);
+        let linear = linearised(shooting, &present.theta, &present.initial_states, level);
         let Some(next) = step(shooting, prior, &present, &linear) else {
             break;
         };
         let gain = present.cost - next.cost;
-        let settled = gain < SETTLED * present.cost;
+        let settled = gain < thresholds::LEAST_DECREASE * present.cost;
         present = next;
         if settled {
             break;
@@ -87,13 +64,13 @@ pub fn level(shooting: &Shooting<'_>, estimate: &Estimate) -> f64 {
 /// The cost at these unknowns and initial states.
 pub fn evaluated(
     shooting: &Shooting<'_>,
-    prior: &StartPrior,
+    prior: &InitialStatePrior,
     theta: Vec<f64>,
-    starts: Vec<Vec<f64>>,
+    initial_states: Vec<Vec<f64>>,
 ) -> Estimate {
-    let residuals = shooting.residuals(&theta, &starts);
+    let residuals = shooting.residuals(&theta, &initial_states);
     let squares: Vec<f64> = residuals.iter().map(square).collect();
-    totalled(shooting, prior, theta, starts, squares)
+    totalled(shooting, prior, theta, initial_states, squares)
 }
 
 fn square(residual: &Option<Residual>) -> f64 {
@@ -109,31 +86,22 @@ fn prior_of_unknowns(shooting: &Shooting<'_>, theta: &[f64]) -> f64 {
     shooting.prior_weight * terms.sum::<f64>()
 }
 
-/// What a window's prior adds to the cost.
-pub fn prior_of_start(prior: &StartPrior, place: usize, start: &[f64]) -> f64 {
-    let Some(mean) = prior.mean.get(place) else {
-        return 0.0;
-    };
-    let terms = start.iter().zip(mean).zip(&prior.sd);
-    terms.map(|((x, m), sd)| ((x - m) / sd).powi(2)).sum()
-}
-
 fn totalled(
     shooting: &Shooting<'_>,
-    prior: &StartPrior,
+    prior: &InitialStatePrior,
     theta: Vec<f64>,
-    starts: Vec<Vec<f64>>,
+    initial_states: Vec<Vec<f64>>,
     squares: Vec<f64>,
 ) -> Estimate {
-    let of_starts = starts
+    let of_starts = initial_states
         .iter()
         .enumerate()
-        .map(|(p, s)| prior_of_start(prior, p, s));
+        .map(|(p, s)| prior.cost(p, s));
     let cost =
         squares.iter().sum::<f64>() + of_starts.sum::<f64>() + prior_of_unknowns(shooting, &theta);
     Estimate {
         theta,
-        starts,
+        initial_states,
         squares,
         cost,
     }
@@ -157,19 +125,19 @@ pub(crate) fn moved_unknowns(
 }
 
 /// The windows' derivatives once their initial states are free.
-pub(crate) fn eliminated(
-    prior: &StartPrior,
+pub(crate) fn reduced_blocks(
+    prior: &InitialStatePrior,
     present: &Estimate,
-    linear: &[Option<Linear>],
-) -> Vec<Option<Reduced>> {
+    linear: &[Option<WindowDerivatives>],
+) -> Vec<Option<ReducedBlock>> {
     let windows = linear.iter().enumerate();
     windows
         .map(|(place, linear)| {
-            Some(reduced(
+            Some(reduced_block(
                 linear.as_ref()?,
                 prior,
                 place,
-                &present.starts[place],
+                &present.initial_states[place],
             ))
         })
         .collect()
@@ -178,14 +146,14 @@ pub(crate) fn eliminated(
 /// The next estimate, if there is one that is better.
 fn step(
     shooting: &Shooting<'_>,
-    prior: &StartPrior,
+    prior: &InitialStatePrior,
     present: &Estimate,
-    linear: &[Option<Linear>],
+    linear: &[Option<WindowDerivatives>],
 ) -> Option<Estimate> {
-    let windows = eliminated(prior, present, linear);
-    for damping in DAMPING {
+    let windows = reduced_blocks(prior, present, linear);
+    for damping in thresholds::STEP_DAMPING {
         let change = change_of_unknowns(shooting, present, &windows, damping);
-        for part in PARTS {
+        for part in thresholds::STEP_PARTS {
             let theta = moved_unknowns(shooting, present, &change, part);
             let next = followed(shooting, prior, present, &windows, theta);
             if next.cost < present.cost {
@@ -203,13 +171,13 @@ fn step(
 pub(crate) fn change_of_unknowns(
     shooting: &Shooting<'_>,
     present: &Estimate,
-    windows: &[Option<Reduced>],
+    windows: &[Option<ReducedBlock>],
     damping: f64,
 ) -> DVector<f64> {
     let count = shooting.unknowns.len();
     let mut factor = DMatrix::zeros(count + 1, count + 1);
     for window in windows.iter().flatten() {
-        factor = stacked(&factor, &window.unknowns());
+        factor = triangular_factor(&factor, &window.unknowns());
     }
     let mut rows = DMatrix::zeros(2 * count, count + 1);
     for (place, unknown) in shooting.unknowns.iter().enumerate() {
@@ -220,7 +188,7 @@ pub(crate) fn change_of_unknowns(
         }
         rows[(count + place, place)] = damping * factor.column(place).norm();
     }
-    let factor = stacked(&factor, &rows);
+    let factor = triangular_factor(&factor, &rows);
     let a = factor.columns(0, count).into_owned();
     let b = -factor.column(count).into_owned();
     let bounds: Vec<(f64, f64)> = (shooting.unknowns.iter().zip(&present.theta))
@@ -237,9 +205,9 @@ pub(crate) fn change_of_unknowns(
 /// The estimate at new unknowns: each window's initial state follows as far as it helps.
 fn followed(
     shooting: &Shooting<'_>,
-    prior: &StartPrior,
+    prior: &InitialStatePrior,
     present: &Estimate,
-    windows: &[Option<Reduced>],
+    windows: &[Option<ReducedBlock>],
     theta: Vec<f64>,
 ) -> Estimate {
     let change = DVector::from_iterator(
@@ -247,12 +215,12 @@ fn followed(
         theta.iter().zip(&present.theta).map(|(new, old)| new - old),
     );
     let moved = |damping: f64| -> Vec<Vec<f64>> {
-        let pairs = present.starts.iter().zip(windows);
+        let pairs = present.initial_states.iter().zip(windows);
         pairs
             .map(|(start, window)| {
                 let step = window
                     .as_ref()
-                    .and_then(|w| w.start_step(&change, damping, prior));
+                    .and_then(|w| w.initial_state_step(&change, damping, prior));
                 match step {
                     Some(step) if shooting.ranges.is_some() => {
                         let moved = start.iter().zip(step.iter()).map(|(x, d)| x + d);
@@ -263,12 +231,17 @@ fn followed(
             })
             .collect()
     };
-    let mut best = evaluated(shooting, prior, theta.clone(), moved(START_DAMPING[0]));
+    let mut best = evaluated(
+        shooting,
+        prior,
+        theta.clone(),
+        moved(thresholds::INITIAL_STATE_DAMPING[0]),
+    );
     if shooting.ranges.is_none() {
         return best;
     }
     // Most windows follow the whole step; the others are tried again, all at once.
-    for damping in &START_DAMPING[1..] {
+    for damping in &thresholds::INITIAL_STATE_DAMPING[1..] {
         let stuck: Vec<usize> = (0..best.squares.len())
             .filter(|w| total(&best, prior, *w) > total(present, prior, *w))
             .collect();
@@ -278,28 +251,30 @@ fn followed(
         let tried = moved(*damping);
         let squares = some_squares(shooting, &theta, &tried, &stuck);
         for (window, square) in stuck.iter().zip(squares) {
-            let with_prior = square + prior_of_start(prior, *window, &tried[*window]);
+            let with_prior = square + prior.cost(*window, &tried[*window]);
             if with_prior < total(&best, prior, *window) {
                 best.squares[*window] = square;
-                best.starts[*window].clone_from(&tried[*window]);
+                best.initial_states[*window].clone_from(&tried[*window]);
             }
         }
     }
     let Estimate {
-        starts, squares, ..
+        initial_states,
+        squares,
+        ..
     } = best;
-    totalled(shooting, prior, theta, starts, squares)
+    totalled(shooting, prior, theta, initial_states, squares)
 }
 
-fn total(estimate: &Estimate, prior: &StartPrior, window: usize) -> f64 {
-    estimate.squares[window] + prior_of_start(prior, window, &estimate.starts[window])
+fn total(estimate: &Estimate, prior: &InitialStatePrior, window: usize) -> f64 {
+    estimate.squares[window] + prior.cost(window, &estimate.initial_states[window])
 }
 
 /// The sums of squares of some windows.
 fn some_squares(
     shooting: &Shooting<'_>,
     theta: &[f64],
-    starts: &[Vec<f64>],
+    initial_states: &[Vec<f64>],
     places: &[usize],
 ) -> Vec<f64> {
     use rayon::prelude::*;
@@ -315,7 +290,7 @@ fn some_squares(
             part.iter()
                 .map(|place| {
                     let residual = runner.as_mut().and_then(|runner| {
-                        shooting.residual(runner, &sensors, *place, &starts[*place])
+                        shooting.residual(runner, &sensors, *place, &initial_states[*place])
                     });
                     square(&residual)
                 })
@@ -328,47 +303,47 @@ fn some_squares(
 /// One window's initial state, the unknowns held, by damped steps over a growing part of the
 /// window: a short motion is nearly linear in its initial state, a long one is folded by
 /// impacts.
-pub fn settle(
-    crew: &mut Crew<'_>,
-    prior: &StartPrior,
+pub fn inner_solve(
+    sensitivities: &mut SensitivityEvaluator<'_>,
+    prior: &InitialStatePrior,
     place: usize,
     start: Vec<f64>,
     horizons: &[f64],
 ) -> Option<Vec<f64>> {
     let mut present = start;
     for horizon in horizons {
-        crew.see(*horizon);
-        present = settle_seen(crew, prior, place, present)?;
+        sensitivities.see(*horizon);
+        present = inner_solve_on_part(sensitivities, prior, place, present)?;
     }
     Some(present)
 }
 
-fn settle_seen(
-    crew: &mut Crew<'_>,
-    prior: &StartPrior,
+fn inner_solve_on_part(
+    sensitivities: &mut SensitivityEvaluator<'_>,
+    prior: &InitialStatePrior,
     place: usize,
     start: Vec<f64>,
 ) -> Option<Vec<f64>> {
-    let total = |residual: &Residual, start: &[f64]| {
-        residual.square() + prior_of_start(prior, place, start)
-    };
-    let mut cost = total(&crew.residual(place, &start)?, &start);
+    let total = |residual: &Residual, start: &[f64]| residual.square() + prior.cost(place, start);
+    let mut cost = total(&sensitivities.residual(place, &start)?, &start);
     let mut present = start;
-    for _ in 0..SETTLING_STEPS {
-        let linear = crew.linear(place, &present)?;
-        let window = reduced(&linear, prior, place, &present);
+    for _ in 0..thresholds::INNER_STEPS {
+        let linear = sensitivities.linear(place, &present)?;
+        let window = reduced_block(&linear, prior, place, &present);
         let held = DVector::zeros(linear.by_unknown.ncols());
-        let better = START_DAMPING.iter().find_map(|damping| {
-            let step = window.start_step(&held, *damping, prior)?;
-            let moved = present.iter().zip(step.iter()).map(|(x, d)| x + d);
-            let moved = crew.admissible(moved.collect());
-            let total = total(&crew.residual(place, &moved)?, &moved);
-            (total < cost).then_some((moved, total))
-        });
+        let better = thresholds::INITIAL_STATE_DAMPING
+            .iter()
+            .find_map(|damping| {
+                let step = window.initial_state_step(&held, *damping, prior)?;
+                let moved = present.iter().zip(step.iter()).map(|(x, d)| x + d);
+                let moved = sensitivities.admissible(moved.collect());
+                let total = total(&sensitivities.residual(place, &moved)?, &moved);
+                (total < cost).then_some((moved, total))
+            });
         let Some((moved, total)) = better else {
             break;
         };
-        let settled = cost - total < 1e-2 * total;
+        let settled = cost - total < thresholds::INNER_DECREASE * total;
         (present, cost) = (moved, total);
         if settled {
             break;

@@ -6,11 +6,16 @@
 
 pub mod bounded_least_squares;
 pub mod continuation;
+pub mod fitted;
 pub mod full;
 pub mod gauss_newton;
 pub mod initial_states;
+pub mod linearised;
 pub mod noise_floor;
+pub mod null_model;
 pub mod preliminary;
+pub mod prior;
+pub mod residual_spectrum;
 pub mod residuals;
 pub mod sensitivity;
 pub mod shooting;

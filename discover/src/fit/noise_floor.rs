@@ -3,71 +3,80 @@
 //! that noise, what a motion's own sensitivity makes of it, and what finding initial states
 //! costs are all in it.
 
-use crate::fit::full::Fit;
-use crate::fit::gauss_newton::{self, StartPrior};
-use crate::model::problem::Setting;
+use crate::fit::fitted::Fit;
+use crate::fit::gauss_newton::evaluated;
+use crate::fit::initial_states;
+use crate::fit::prior::InitialStatePrior;
+use crate::fit::residuals::Residuals;
+use crate::fit::shooting::Shooting;
+use crate::model::problem::EstimationProblem;
 use eomgen_records::record::Record;
 use eomgen_records::windows::Windows;
 
 /// What a right model would leave.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Floor {
+pub struct NoiseFloor {
     /// The root mean square of each channel, SI.
     pub channels: Vec<f64>,
     /// The root mean square of all, in noises.
-    pub pooled: f64,
+    pub rms: f64,
 }
 
 /// The floor at a fit; `seed` draws the noise.
-pub fn floor(setting: &Setting<'_>, fit: &Fit, seed: u64) -> Floor {
-    let noise_alone = Floor {
-        channels: setting.noise.clone(),
-        pooled: 1.0,
+pub fn floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> NoiseFloor {
+    let noise_alone = NoiseFloor {
+        channels: problem.noise.clone(),
+        rms: 1.0,
     };
-    let Some(records) = twins(setting, fit, seed) else {
+    let Some(records) = replicas(problem, fit, seed) else {
         return noise_alone;
     };
-    let windows = Windows::cut(&records, setting.dataset.window);
-    let shooting = setting.shooting(&fit.plant, &windows, &fit.unknowns, &fit.ranges);
+    let windows = Windows::cut(&records, problem.dataset.window);
+    let shooting = Shooting::new(problem, &fit.plant, &windows, &fit.unknowns, &fit.ranges);
     let theta = fit.train.estimate.theta.clone();
-    let Ok(starts) = setting.all_starts(&shooting, &theta, &fit.ranges) else {
+    let Ok(initial_states) = initial_states::best(problem, &shooting, &theta, &fit.ranges) else {
         return noise_alone;
     };
-    let estimate = gauss_newton::evaluated(&shooting, &StartPrior::default(), theta, starts);
-    let rest = setting.rest(&shooting, estimate).whole();
-    if !rest.pooled.is_finite() {
+    let estimate = evaluated(
+        &shooting,
+        &InitialStatePrior::default(),
+        theta,
+        initial_states,
+    );
+    let residuals = Residuals::of(&shooting, estimate).whole();
+    if !residuals.rms.is_finite() {
         return noise_alone;
     }
-    Floor {
-        channels: rest.channels,
-        pooled: rest.pooled.max(f64::MIN_POSITIVE),
+    NoiseFloor {
+        channels: residuals.channels,
+        rms: residuals.rms.max(f64::MIN_POSITIVE),
     }
 }
 
 /// The training records as the fitted model would have made them.
-fn twins(setting: &Setting<'_>, fit: &Fit, seed: u64) -> Option<Vec<Record>> {
-    let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Vec<Record>> {
+    let shooting = fit.shooting(problem);
     let theta = &fit.train.estimate.theta;
     let sensors = shooting.sensors(theta);
     let mut runner = fit.plant.at(&shooting.values(theta)).ok()?;
     let mut draw = Normal(seed ^ 0x9e37_79b9_7f4a_7c15);
-    let mut twins = Vec::new();
-    for record in &setting.dataset.train {
-        let first = setting.first_state(&fit.plant, record);
+    let mut replicas = Vec::new();
+    for record in &problem.dataset.train {
+        let first = problem.first_state(&fit.plant, record);
         let outputs = runner.outputs(&first, &record.times, &record.inputs).ok()?;
         let seen = shooting.seen(&record.times, &sensors, &outputs.values);
-        let count = setting.noise.len();
-        let mut twin = record.clone();
-        for (channel, column) in twin.channels.iter_mut().enumerate() {
+        let count = problem.noise.len();
+        let mut replica = record.clone();
+        for (channel, column) in replica.channels.iter_mut().enumerate() {
             for (sample, value) in column.iter_mut().enumerate() {
                 if value.is_finite() {
-                    *value = seen[sample * count + channel] + setting.noise[channel] * draw.next();
+                    *value = seen[sample * count + channel] + problem.noise[channel] * draw.next();
                 }
             }
         }
-        twins.push(twin);
+        replicas.push(replica);
     }
-    Some(twins)
+    Some(replicas)
 }
 
 /// Normal numbers from a seed: sums of twelve uniform ones (splitmix64), less six. Their

@@ -3,14 +3,11 @@
 
 use crate::fit::gauss_newton::Estimate;
 use crate::fit::shooting::Shooting;
-use crate::model::problem::Setting;
-
-/// Into so many blocks a set of windows is parted to judge what differs by chance.
-const BLOCKS: usize = 40;
+use crate::thresholds;
 
 /// What is left on one set of records.
 #[derive(Clone, Debug, Default)]
-pub struct Rest {
+pub struct Residuals {
     /// Initial states, unknowns and sums of squares.
     pub estimate: Estimate,
     /// Residuals of each window, in noises.
@@ -20,34 +17,34 @@ pub struct Rest {
     /// The root mean square of each channel, SI.
     pub channels: Vec<f64>,
     /// The same in noises.
-    pub in_noises: Vec<f64>,
+    pub normalised_rms: Vec<f64>,
     /// The root mean square of all, in noises.
-    pub pooled: f64,
+    pub rms: f64,
     /// How many samples a residual is correlated over.
     pub correlation: f64,
     /// The windows in which the motion cannot be followed; the others alone are in all this.
-    pub lost: Vec<usize>,
+    pub unfollowed: Vec<usize>,
 }
 
-impl Rest {
+impl Residuals {
     /// The same, infinite where the motion cannot be followed in some window: what is left there is
     /// not known, and the other windows do not stand for it.
     pub fn whole(mut self) -> Self {
-        if !self.lost.is_empty() {
-            self.pooled = f64::INFINITY;
+        if !self.unfollowed.is_empty() {
+            self.rms = f64::INFINITY;
             self.channels.fill(f64::INFINITY);
-            self.in_noises.fill(f64::INFINITY);
+            self.normalised_rms.fill(f64::INFINITY);
         }
         self
     }
 }
 
-impl Setting<'_> {
+impl Residuals {
     /// What an estimate leaves.
-    pub fn rest(&self, shooting: &Shooting<'_>, estimate: Estimate) -> Rest {
+    pub fn of(shooting: &Shooting<'_>, estimate: Estimate) -> Self {
         let channels = shooting.channels();
-        let residuals = shooting.residuals(&estimate.theta, &estimate.starts);
-        let lost: Vec<usize> = (0..residuals.len())
+        let residuals = shooting.residuals(&estimate.theta, &estimate.initial_states);
+        let unfollowed: Vec<usize> = (0..residuals.len())
             .filter(|window| residuals[*window].is_none())
             .collect();
         let residuals: Vec<Vec<f64>> = residuals
@@ -65,27 +62,27 @@ impl Setting<'_> {
         }
         let mean_square = |(sum, count): (f64, f64)| if count > 0.0 { sum / count } else { 0.0 };
         let squares: Vec<f64> = sums.iter().map(|sum| mean_square(*sum)).collect();
-        let pooled = (squares.iter().sum::<f64>() / channels.max(1) as f64).sqrt();
-        Rest {
+        let rms = (squares.iter().sum::<f64>() / channels.max(1) as f64).sqrt();
+        Self {
             blocks: blocks(&residuals),
             channels: squares
                 .iter()
-                .zip(&self.noise)
+                .zip(shooting.noise)
                 .map(|(s, noise)| s.sqrt() * noise)
                 .collect(),
-            in_noises: squares.iter().map(|s| s.sqrt()).collect(),
-            pooled,
+            normalised_rms: squares.iter().map(|s| s.sqrt()).collect(),
+            rms,
             correlation: correlation(&residuals, channels),
             residuals,
             estimate,
-            lost,
+            unfollowed,
         }
     }
 }
 
 /// Sums of squares of blocks of time: windows parted, or put together, into about so many.
 fn blocks(residuals: &[Vec<f64>]) -> Vec<f64> {
-    let parts = BLOCKS.div_ceil(residuals.len().max(1));
+    let parts = thresholds::BLOCKS.div_ceil(residuals.len().max(1));
     let of_window = |residual: &Vec<f64>| {
         let size = residual.len().div_ceil(parts).max(1);
         let sums = residual
@@ -119,7 +116,7 @@ pub(crate) fn correlation(residuals: &[Vec<f64>], channels: usize) -> f64 {
         for lag in 1..longest / 2 {
             let part = at(lag) / whole;
             // What white noise shows by chance is none.
-            if part.is_nan() || part < 0.05 {
+            if part.is_nan() || part < thresholds::CORRELATED {
                 break;
             }
             time += 2.0 * part;

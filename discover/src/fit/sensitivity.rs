@@ -7,18 +7,12 @@ use nalgebra::{DMatrix, DVector};
 use crate::fit::shooting::{Residual, Sensors, Shooting, samples_in};
 use crate::model::runner::{Runner, Shown};
 use crate::model::unknowns::{Unknown, What};
+use crate::thresholds;
 use eomgen_records::windows::Window;
 use sim::exponential::Drives;
 
-/// A difference quotient moves the outputs by this part of what the residual is: far above
-/// rounding, and over the small folds that impacts leave in the outputs.
-const QUOTIENT: f64 = 0.3;
-
-/// A difference quotient is not taken over more than this part of a state's own range.
-const LARGEST_QUOTIENT: f64 = 0.03;
-
 /// A window's residuals and derivatives.
-pub struct Linear {
+pub struct WindowDerivatives {
     /// Simulated minus measured, in noises: row by row, a number per channel; 0 where nothing
     /// was measured.
     pub residual: DVector<f64>,
@@ -31,7 +25,7 @@ pub struct Linear {
 }
 
 /// The plant at the unknowns and at neighbouring values of each parameter.
-pub struct Crew<'a> {
+pub struct SensitivityEvaluator<'a> {
     shooting: Shooting<'a>,
     base: Runner<'a>,
     /// The base's equations.
@@ -50,7 +44,7 @@ enum Neighbour<'a> {
     Drives(Box<Evaluator>, Option<Shown>),
 }
 
-impl<'a> Crew<'a> {
+impl<'a> SensitivityEvaluator<'a> {
     /// A state moved to where the model lives.
     pub fn admissible(&self, state: Vec<f64>) -> Vec<f64> {
         self.shooting.plant.admissible(state)
@@ -125,7 +119,7 @@ impl<'a> Crew<'a> {
     }
 
     /// A window's residuals and derivatives.
-    pub fn linear(&mut self, place: usize, start: &[f64]) -> Option<Linear> {
+    pub fn linear(&mut self, place: usize, start: &[f64]) -> Option<WindowDerivatives> {
         let found = match self.base.is_marched() {
             true => self.by_march(place, start)?,
             false => self.by_quotients(place, start)?,
@@ -138,7 +132,7 @@ impl<'a> Crew<'a> {
     }
 
     /// The same with neighbouring motions that come along.
-    fn by_march(&mut self, place: usize, start: &[f64]) -> Option<Linear> {
+    fn by_march(&mut self, place: usize, start: &[f64]) -> Option<WindowDerivatives> {
         let shooting = self.shooting;
         let window = &shooting.windows.list[place];
         let inputs = shooting.windows.inputs(window);
@@ -189,7 +183,7 @@ impl<'a> Crew<'a> {
                 column += own.column(0);
             }
         }
-        Some(Linear {
+        Some(WindowDerivatives {
             residual,
             by_state,
             by_unknown,
@@ -199,7 +193,7 @@ impl<'a> Crew<'a> {
 
     /// What drives do to a window's residuals, a column for each; none if neighbouring motions
     /// do not come along.
-    pub(crate) fn driven(
+    pub(crate) fn drive_response(
         &mut self,
         place: usize,
         start: &[f64],
@@ -216,13 +210,13 @@ impl<'a> Crew<'a> {
     }
 
     /// The same by difference quotients.
-    fn by_quotients(&mut self, place: usize, start: &[f64]) -> Option<Linear> {
+    fn by_quotients(&mut self, place: usize, start: &[f64]) -> Option<WindowDerivatives> {
         let shooting = self.shooting;
         let window = &shooting.windows.list[place];
         let inputs = shooting.windows.inputs(window);
         let times = &window.times[..samples_in(window, shooting.part)];
         let steps: Vec<f64> = (shooting.ranges.unwrap_or_default().iter())
-            .map(|range| LARGEST_QUOTIENT * range)
+            .map(|range| thresholds::LARGEST_QUOTIENT * range)
             .collect();
         let tangents = match shooting.ranges {
             Some(_) => self.base.tangents(start, times, inputs, &steps),
@@ -260,7 +254,7 @@ impl<'a> Crew<'a> {
                 by_unknown[(row, column)] = (after - before) / step;
             }
         }
-        Some(Linear {
+        Some(WindowDerivatives {
             residual,
             by_state,
             by_unknown,
@@ -313,7 +307,7 @@ impl<'a> Crew<'a> {
         let mut matrix = DMatrix::zeros(residual.len(), start.len());
         let mut moved = start.to_vec();
         for state in 0..start.len() {
-            let largest = LARGEST_QUOTIENT * ranges[state];
+            let largest = thresholds::LARGEST_QUOTIENT * ranges[state];
             let mut step = largest;
             // The step that moves the outputs as wanted is found by trying: what a state does
             // to them differs by orders of magnitude.
@@ -327,7 +321,7 @@ impl<'a> Crew<'a> {
                     *slot = difference / step;
                     furthest = furthest.max(difference.abs());
                 }
-                let wanted = QUOTIENT * self.level * 4.0;
+                let wanted = thresholds::QUOTIENT * self.level * 4.0;
                 if furthest <= 4.0 * wanted {
                     break;
                 }
@@ -337,6 +331,26 @@ impl<'a> Crew<'a> {
         }
         Some(matrix)
     }
+}
+
+/// Residuals and derivatives of every window. `level`: the size of the residuals, in
+/// noises, over which quotients are taken.
+pub fn linearised(
+    shooting: &Shooting<'_>,
+    theta: &[f64],
+    initial_states: &[Vec<f64>],
+    level: f64,
+) -> Vec<Option<WindowDerivatives>> {
+    shooting.by_threads(|places| {
+        let mut sensitivities = SensitivityEvaluator::new(shooting, theta, level);
+        places
+            .map(|place| {
+                sensitivities
+                    .as_mut()?
+                    .linear(place, &initial_states[place])
+            })
+            .collect()
+    })
 }
 
 /// Differences between the accelerations of a model and of others, per size, as drives of
@@ -384,7 +398,7 @@ impl Drives for Differences<'_> {
 
 /// The step of a parameter's difference quotient; away from a bound that is near.
 fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
-    let step = 0.01 * unknown.scale;
+    let step = thresholds::PARAMETER_QUOTIENT * unknown.scale;
     if value + step > unknown.bounds.1 {
         -step
     } else {
@@ -394,7 +408,7 @@ fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
 
 /// The sensors with one unknown moved, and the step.
 fn moved_sensors(sensors: &Sensors, unknown: &Unknown) -> (Sensors, f64) {
-    let step = 0.1 * unknown.scale;
+    let step = thresholds::SENSOR_QUOTIENT * unknown.scale;
     let mut moved = sensors.clone();
     match unknown.what {
         What::Gain(place) => moved.gain[place] += step,

@@ -4,8 +4,8 @@
 
 use rayon::prelude::*;
 
-use crate::fit::sensitivity::{Crew, Linear};
 use crate::model::plant::Plant;
+use crate::model::problem::EstimationProblem;
 use crate::model::runner::Runner;
 use crate::model::unknowns::{Unknown, What};
 use eomgen_records::windows::{Window, Windows, judged};
@@ -59,6 +59,25 @@ impl Residual {
 }
 
 impl<'a> Shooting<'a> {
+    /// Windows to be explained by a plant.
+    pub fn new(
+        problem: &'a EstimationProblem<'a>,
+        plant: &'a Plant,
+        windows: &'a Windows<'a>,
+        unknowns: &'a [Unknown],
+        ranges: &'a [f64],
+    ) -> Self {
+        Self {
+            plant,
+            windows,
+            noise: &problem.noise,
+            unknowns,
+            ranges: problem.estimates_initial_states().then_some(ranges),
+            part: 1.0,
+            prior_weight: 1.0,
+        }
+    }
+
     /// How many channels there are.
     pub fn channels(&self) -> usize {
         self.noise.len()
@@ -106,14 +125,14 @@ impl<'a> Shooting<'a> {
 
     /// The residuals of every window from these initial states; none where a motion cannot be
     /// followed.
-    pub fn residuals(&self, theta: &[f64], starts: &[Vec<f64>]) -> Vec<Option<Residual>> {
+    pub fn residuals(&self, theta: &[f64], initial_states: &[Vec<f64>]) -> Vec<Option<Residual>> {
         let (values, sensors) = (self.values(theta), self.sensors(theta));
         self.by_threads(|places| {
             let Ok(mut runner) = self.plant.at(&values) else {
                 return places.map(|_| None).collect();
             };
             places
-                .map(|place| self.residual(&mut runner, &sensors, place, &starts[place]))
+                .map(|place| self.residual(&mut runner, &sensors, place, &initial_states[place]))
                 .collect()
         })
     }
@@ -184,17 +203,6 @@ impl<'a> Shooting<'a> {
                 }
             })
             .collect()
-    }
-
-    /// Residuals and derivatives of every window. `level`: the size of the residuals, in
-    /// noises, over which quotients are taken.
-    pub fn linear(&self, theta: &[f64], starts: &[Vec<f64>], level: f64) -> Vec<Option<Linear>> {
-        self.by_threads(|places| {
-            let mut crew = Crew::new(self, theta, level);
-            places
-                .map(|place| crew.as_mut()?.linear(place, &starts[place]))
-                .collect()
-        })
     }
 
     /// Shares the windows out to the threads, neighbours together, and puts the answers in

@@ -3,18 +3,23 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::fit::gauss_newton::StartPrior;
-use crate::fit::sensitivity::Linear;
+use crate::fit::prior::InitialStatePrior;
+use crate::fit::sensitivity::WindowDerivatives;
 
 /// A window with its initial state eliminated.
-pub struct Reduced {
+pub struct ReducedBlock {
     /// R of the QR factorisation of [by state | by unknowns | residual], priors included.
     pub factor: DMatrix<f64>,
     states: usize,
 }
 
 /// Eliminates a window's initial state.
-pub fn reduced(linear: &Linear, prior: &StartPrior, place: usize, start: &[f64]) -> Reduced {
+pub fn reduced_block(
+    linear: &WindowDerivatives,
+    prior: &InitialStatePrior,
+    place: usize,
+    start: &[f64],
+) -> ReducedBlock {
     let states = linear.by_state.ncols();
     let unknowns = linear.by_unknown.ncols();
     let rows = linear.residual.len();
@@ -38,13 +43,13 @@ pub fn reduced(linear: &Linear, prior: &StartPrior, place: usize, start: &[f64])
                 (start[state] - mean[state]) / prior.sd[state];
         }
     }
-    Reduced {
+    ReducedBlock {
         factor: matrix.qr().r(),
         states,
     }
 }
 
-impl Reduced {
+impl ReducedBlock {
     /// What the unknowns and the residual look like once the initial state is free.
     pub fn unknowns(&self) -> DMatrix<f64> {
         let rest = self.factor.ncols() - self.states;
@@ -55,11 +60,11 @@ impl Reduced {
 
     /// The initial state's step for a step of the unknowns, damped in every state by so many
     /// of its prior's weights.
-    pub fn start_step(
+    pub fn initial_state_step(
         &self,
         unknowns: &DVector<f64>,
         damping: f64,
-        prior: &StartPrior,
+        prior: &InitialStatePrior,
     ) -> Option<DVector<f64>> {
         let (n, p) = (self.states, unknowns.len());
         let mut rows = DMatrix::zeros(2 * n.max(1), n + 1);
@@ -79,7 +84,7 @@ impl Reduced {
 
 /// A window's derivatives with the means to take its initial state out of any column.
 #[derive(Clone)]
-pub struct Eliminator {
+pub struct StateProjection {
     /// The residual.
     pub residual: DVector<f64>,
     /// By the unknowns.
@@ -90,9 +95,14 @@ pub struct Eliminator {
     prior_residual: DVector<f64>,
 }
 
-impl Eliminator {
+impl StateProjection {
     /// Takes a window's derivatives.
-    pub fn new(linear: &Linear, prior: &StartPrior, place: usize, start: &[f64]) -> Self {
+    pub fn new(
+        linear: &WindowDerivatives,
+        prior: &InitialStatePrior,
+        place: usize,
+        start: &[f64],
+    ) -> Self {
         let (rows, states) = linear.by_state.shape();
         let mut by_state = DMatrix::zeros(rows + states, states);
         by_state
@@ -145,10 +155,20 @@ impl Eliminator {
 }
 
 /// The triangular factor of two blocks of rows.
-pub fn stacked(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+pub fn triangular_factor(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
     let columns = a.ncols();
     let mut both = DMatrix::zeros((a.nrows() + b.nrows()).max(columns), columns);
     both.view_mut((0, 0), a.shape()).copy_from(a);
     both.view_mut((a.nrows(), 0), b.shape()).copy_from(b);
     both.qr().r()
+}
+
+/// Adds a prior, or takes it away where its weight is negative, to the products of a nuisance
+/// with itself and with the residual, which stands last.
+pub(crate) fn add_prior(products: &mut DMatrix<f64>, place: usize, (weight, off): (f64, f64)) {
+    let last = products.ncols() - 1;
+    products[(place, place)] += weight;
+    products[(place, last)] += weight * off;
+    products[(last, place)] += weight * off;
+    products[(last, last)] += weight * off * off;
 }

@@ -3,25 +3,9 @@
 //! factor between two units, or that follows another channel instead, has a wrong label. A
 //! model that lacks something makes none of these.
 
-use crate::model::problem::Setting;
+use crate::model::problem::EstimationProblem;
+use crate::thresholds;
 use eomgen_records::Refusal;
-
-/// The beginning of a record that is looked at, in samples.
-const SAMPLES: usize = 1000;
-
-/// A channel that moves by fewer noises, lines taken out, shows nothing.
-const MOVES: f64 = 20.0;
-
-/// Columns that follow each other this well are one quantity.
-const FOLLOWS: f64 = 0.98;
-
-/// A channel that follows the model less than this does not follow it: what a model lacks
-/// leaves most of the motion.
-const ASTRAY: f64 = 0.5;
-
-/// A factor is a given one if it agrees to this part of it. A hundredth for what parameters
-/// may be off, and as much again for what is lacking.
-const AGREES: f64 = 0.02;
 
 /// Factors between units that are often taken for each other.
 const FACTORS: [(f64, &str); 6] = [
@@ -37,21 +21,21 @@ const FACTORS: [(f64, &str); 6] = [
 ///
 /// # Errors
 /// A column with a wrong label.
-pub fn check(setting: &Setting<'_>, text: &str) -> Result<Vec<String>, Refusal> {
+pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
-    let record = &setting.dataset.train[0];
-    let Ok(plant) = setting.plant(text, None) else {
+    let record = &problem.dataset.train[0];
+    let Ok(plant) = problem.plant(text, None) else {
         return Ok(notes);
     };
-    let first = setting.first_state(&plant, record);
-    let samples = record.times.len().min(SAMPLES);
+    let first = problem.first_state(&plant, record);
+    let samples = record.times.len().min(thresholds::CHECKED_SAMPLES);
     let times = &record.times[..samples];
     let run = plant
         .at(&plant.values)
         .and_then(|mut runner| runner.outputs(&first, times, &record.inputs));
     // A model that cannot be run so far is judged by its fit.
     let Ok(run) = run else { return Ok(notes) };
-    let channels = &setting.dataset.channels;
+    let channels = &problem.dataset.channels;
     let count = channels.len();
     let expected: Vec<Vec<f64>> = (0..count)
         .map(|channel| {
@@ -68,27 +52,30 @@ pub fn check(setting: &Setting<'_>, text: &str) -> Result<Vec<String>, Refusal> 
                 format!("channel `{}`: {message}", channel.name),
             ))
         };
-        if own.correlation < -FOLLOWS && (own.factor + 1.0).abs() < 0.2 {
+        if own.correlation < -thresholds::FOLLOWS && (own.factor + 1.0).abs() < thresholds::NEAR_ONE
+        {
             return refuse(
                 "its column follows the model with the other sign; turn the column's sign, or \
                  the observable's"
                     .to_owned(),
             );
         }
-        let is = |factor: f64| (own.factor / factor - 1.0).abs() < AGREES;
-        if own.correlation > FOLLOWS {
+        let is = |factor: f64| (own.factor / factor - 1.0).abs() < thresholds::AGREES;
+        if own.correlation > thresholds::FOLLOWS {
             if let Some((_, words)) = FACTORS.iter().find(|(factor, _)| is(*factor)) {
                 return refuse(format!(
                     "its column is {words} what the model expects; is its unit right?"
                 ));
             }
-            if (own.factor - 1.0).abs() < 0.2 {
+            if (own.factor - 1.0).abs() < thresholds::NEAR_ONE {
                 continue;
             }
         }
         for (other, instead) in channels.iter().enumerate() {
             let alike = Likeness::of(times, &expected[other], measured, channel.noise);
-            if other != place && alike.correlation > FOLLOWS && (alike.factor - 1.0).abs() < AGREES
+            if other != place
+                && alike.correlation > thresholds::FOLLOWS
+                && (alike.factor - 1.0).abs() < thresholds::AGREES
             {
                 return refuse(format!(
                     "its column is what the model expects of `{}`; are columns exchanged?",
@@ -96,7 +83,7 @@ pub fn check(setting: &Setting<'_>, text: &str) -> Result<Vec<String>, Refusal> 
                 ));
             }
         }
-        if own.correlation.abs() < ASTRAY && own.shows {
+        if own.correlation.abs() < thresholds::ASTRAY && own.shows {
             notes.push(format!(
                 "{}: `{}` does not follow the model (correlation {:.2}): are its column, and those of the inputs, the right ones?",
                 record.name, channel.name, own.correlation
@@ -134,7 +121,7 @@ impl Likeness {
         let (a, b) = (of(expected), of(measured));
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
         let (aa, ab, bb) = (dot(&a, &a), dot(&a, &b), dot(&b, &b));
-        let shows = (bb / known.len() as f64).sqrt() > MOVES * noise;
+        let shows = (bb / known.len() as f64).sqrt() > thresholds::CHECKED_MOTION * noise;
         if !(shows && aa > 0.0 && ab.is_finite()) {
             return none;
         }

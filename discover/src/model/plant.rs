@@ -6,7 +6,7 @@ use codegen::program::evaluator::Evaluator;
 use eomgen_compiled_model::{CompiledModel, Error, Orders};
 use model_spec::model::{Model, ParameterValue};
 
-use crate::beside::Beside;
+use crate::model::beside::Beside;
 use crate::model::runner::{Runner, Shown};
 use eomgen_records::dataset::{Channel, Quantity};
 use eomgen_records::record::Record;

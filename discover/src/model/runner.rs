@@ -11,7 +11,7 @@ use sim::inputs::HeldInputs;
 use sim::ode::{Settings, simulate};
 use sim::piecewise_linear::Propagator;
 
-use crate::beside::Beside;
+use crate::model::beside::Beside;
 use crate::model::plant::{Output, Plant};
 use sim::exponential::{Company, Drives, Force, March, Tangents};
 use sim::ode::runge_kutta::RungeKutta;

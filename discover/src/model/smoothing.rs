@@ -3,15 +3,16 @@
 
 use std::f64::consts::PI;
 
-/// The cut-off, as a part of the sampling frequency. A record is sampled for what it is to
-/// show; what moves faster than a fiftieth of that is noise or quantisation to a start value.
-const CUT_OFF: f64 = 0.02;
+use crate::thresholds;
 
 /// A column smoothed by a second-order Butterworth filter, forwards and backwards; missing
 /// samples are bridged by lines first.
 pub fn smoothed(times: &[f64], column: &[f64]) -> Vec<f64> {
     let mut values = bridged(times, column);
-    let padding = values.len().saturating_sub(1).min((3.0 / CUT_OFF) as usize);
+    let padding = values
+        .len()
+        .saturating_sub(1)
+        .min((3.0 / thresholds::SMOOTHING_CUT_OFF) as usize);
     let mut padded = reflected(&values, padding);
     low_pass(&mut padded);
     padded.reverse();
@@ -65,7 +66,7 @@ fn reflected(values: &[f64], padding: usize) -> Vec<f64> {
 
 /// A second-order Butterworth low-pass by the bilinear transform, begun in equilibrium.
 fn low_pass(values: &mut [f64]) {
-    let c = 1.0 / (PI * CUT_OFF).tan();
+    let c = 1.0 / (PI * thresholds::SMOOTHING_CUT_OFF).tan();
     let a0 = 1.0 + 2f64.sqrt() * c + c * c;
     let (b0, a1, a2) = (
         1.0 / a0,

@@ -4,17 +4,17 @@ use eomgen_records::dataset::Channel;
 use serde_json::{Map, Value, json};
 
 use crate::empirical::EMPIRICAL;
-use crate::fit::full::Fit;
-use crate::fit::noise_floor::Floor;
-use crate::model::problem::Setting;
+use crate::fit::fitted::Fit;
+use crate::fit::noise_floor::NoiseFloor;
+use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::What;
 use crate::search::found::{Accepted, Found, Rejected};
 
 /// The verdict of a comparison.
 pub fn compared(
-    setting: &Setting<'_>,
+    problem: &EstimationProblem<'_>,
     fit: &Fit,
-    floor: &Floor,
+    floor: &NoiseFloor,
     at_floor: bool,
     place: &str,
 ) -> Value {
@@ -23,7 +23,7 @@ pub fn compared(
     } else {
         "gap_found"
     };
-    let gap = by_channel(setting, |channel, entry| {
+    let gap = by_channel(problem, |channel, entry| {
         json!({
             "unit": entry.unit,
             "floor": floor.channels[channel],
@@ -36,17 +36,17 @@ pub fn compared(
         "verdict": verdict,
         "gap": gap,
         "refitted": refitted(fit, &[]),
-        "sensors": sensors(setting, fit),
+        "sensors": sensors(problem, fit),
         "where": place,
-        "notes": setting.dataset.notes,
+        "notes": problem.dataset.notes,
     })
 }
 
 /// The result of a search.
 pub fn discovered(
-    setting: &Setting<'_>,
+    problem: &EstimationProblem<'_>,
     found: &Found,
-    floor: &Floor,
+    floor: &NoiseFloor,
     at_floor: bool,
     place: &str,
 ) -> Value {
@@ -56,7 +56,7 @@ pub fn discovered(
         (true, true) => "no_significant_gap",
         (true, false) => "unexplained",
     };
-    let gap = by_channel(setting, |channel, entry| {
+    let gap = by_channel(problem, |channel, entry| {
         json!({
             "unit": entry.unit,
             "floor": floor.channels[channel],
@@ -72,7 +72,7 @@ pub fn discovered(
     });
     let effects = order
         .iter()
-        .map(|effect| effect_entry(setting, after, effect));
+        .map(|effect| effect_entry(problem, after, effect));
     let (not_testable, rejected): (Vec<&Rejected>, Vec<&Rejected>) = found
         .rejected
         .iter()
@@ -89,21 +89,21 @@ pub fn discovered(
             "experiment": r.candidate.experiment,
         })).collect::<Vec<_>>(),
         "refitted": refitted(after, &found.accepted),
-        "sensors": sensors(setting, after),
+        "sensors": sensors(problem, after),
         "gap": gap,
         "closure": {
-            "train": closure(before.train.pooled, after.train.pooled, floor.pooled),
-            "test": closure(before.test.pooled, after.test.pooled, floor.pooled),
+            "train": closure(before.train.rms, after.train.rms, floor.rms),
+            "test": closure(before.test.rms, after.test.rms, floor.rms),
         },
         "ladder": ladder(found),
         "where": place,
-        "notes": setting.dataset.notes,
+        "notes": problem.dataset.notes,
     })
 }
 
 /// The test gap step by step, in noises: of the model as it is, and after each round.
 fn ladder(found: &Found) -> Value {
-    let mut steps = vec![json!({"added": [], "test_in_noises": found.null.test.pooled})];
+    let mut steps = vec![json!({"added": [], "test_in_noises": found.null.test.rms})];
     for round in found.accepted.chunk_by(|a, b| a.test_gap == b.test_gap) {
         let labels = round.iter().map(|effect| effect.candidate.label());
         steps.push(json!({
@@ -130,7 +130,7 @@ fn closure(before: f64, after: f64, floor: f64) -> Value {
     json!((before - after) / (before - floor))
 }
 
-fn effect_entry(setting: &Setting<'_>, fit: &Fit, effect: &Accepted) -> Value {
+fn effect_entry(problem: &EstimationProblem<'_>, fit: &Fit, effect: &Accepted) -> Value {
     let mut term = effect.candidate.term.clone();
     let mut parameters: Map<String, Value> = effect
         .candidate
@@ -159,7 +159,7 @@ fn effect_entry(setting: &Setting<'_>, fit: &Fit, effect: &Accepted) -> Value {
         .collect();
     if effect.candidate.released.is_some()
         && let Some(place) = effect.unknowns.first()
-        && let Some((name, per_si, unit)) = named(setting, fit, &fit.unknowns[*place].what)
+        && let Some((name, per_si, unit)) = named(problem, fit, &fit.unknowns[*place].what)
     {
         let value = per_si * fit.train.estimate.theta[*place];
         term = format!("{name} = {value}");
@@ -201,11 +201,11 @@ fn effect_entry(setting: &Setting<'_>, fit: &Fit, effect: &Accepted) -> Value {
 
 /// What an unknown of the null model is called, the number of its units that one SI unit is, and
 /// the unit.
-fn named(setting: &Setting<'_>, fit: &Fit, what: &What) -> Option<(String, f64, String)> {
+fn named(problem: &EstimationProblem<'_>, fit: &Fit, what: &What) -> Option<(String, f64, String)> {
     match what {
         What::Gain(_) => Some(("gain".to_owned(), 1.0, "1".to_owned())),
         What::Bias(at) => {
-            let unit = setting.dataset.channels[*at].unit.clone();
+            let unit = problem.dataset.channels[*at].unit.clone();
             Some(("bias".to_owned(), 1.0, unit))
         }
         What::Delay(_) => Some(("delay".to_owned(), 1.0, "s".to_owned())),
@@ -251,10 +251,10 @@ fn refitted(fit: &Fit, accepted: &[Accepted]) -> Value {
     Value::Object(found)
 }
 
-fn sensors(setting: &Setting<'_>, fit: &Fit) -> Value {
-    let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+fn sensors(problem: &EstimationProblem<'_>, fit: &Fit) -> Value {
+    let shooting = fit.shooting(problem);
     let sensors = shooting.sensors(&fit.train.estimate.theta);
-    by_channel(setting, |channel, _| {
+    by_channel(problem, |channel, _| {
         json!({
             "bias": sensors.bias[channel],
             "gain": sensors.gain[channel],
@@ -264,8 +264,8 @@ fn sensors(setting: &Setting<'_>, fit: &Fit) -> Value {
 }
 
 /// An entry for each channel, under its name.
-fn by_channel(setting: &Setting<'_>, of: impl Fn(usize, &Channel) -> Value) -> Value {
-    let channels = setting.dataset.channels.iter().enumerate();
+fn by_channel(problem: &EstimationProblem<'_>, of: impl Fn(usize, &Channel) -> Value) -> Value {
+    let channels = problem.dataset.channels.iter().enumerate();
     let entries = channels.map(|(place, channel)| (channel.name.clone(), of(place, channel)));
     Value::Object(entries.collect())
 }

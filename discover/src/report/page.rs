@@ -5,21 +5,21 @@
 use eomgen_plot::{FrequencyAxis, Panel, Series, Spectrum, TimeHistory, spectrum, time_history};
 use serde_json::Value;
 
-use crate::fit::full::Fit;
-use crate::model::problem::Setting;
-use crate::residual_force::ResidualForce;
+use crate::fit::fitted::Fit;
+use crate::model::problem::EstimationProblem;
 use crate::residual_force::figures::figures as figures_of_force;
+use crate::residual_force::types::ResidualForce;
 
 /// The page for a result. What is after is left out where nothing was changed; `forces`: the
 /// residual force, where it could be estimated.
 pub fn page(
-    setting: &Setting<'_>,
+    problem: &EstimationProblem<'_>,
     (before, after): (&Fit, Option<&Fit>),
     forces: Option<(&ResidualForce, Option<&ResidualForce>)>,
     document: &Value,
     texts: (&str, &str),
 ) -> String {
-    let title = match setting.dataset.title.as_str() {
+    let title = match problem.dataset.title.as_str() {
         "" => "Model and measurement",
         title => title,
     };
@@ -44,9 +44,9 @@ pub fn page(
         let steps = ladder_table(document) + &validation_line(document);
         body += &section("Step by step", &steps);
     }
-    body += &section("The test record", &figures(setting, before, after));
+    body += &section("The test record", &figures(problem, before, after));
     if let Some((force, left)) = forces {
-        let heading = format!("The residual force on {}", force.looked_at());
+        let heading = format!("The residual force on {}", force.profiled_equation());
         body += &section(&heading, &force_section(force, left));
     }
     body += &section(
@@ -271,9 +271,9 @@ fn difference(before: &str, after: &str) -> String {
 }
 
 /// Residuals over time and their spectra, before and after.
-fn figures(setting: &Setting<'_>, before: &Fit, after: Option<&Fit>) -> String {
-    let count = setting.noise.len();
-    let times: Vec<f64> = setting
+fn figures(problem: &EstimationProblem<'_>, before: &Fit, after: Option<&Fit>) -> String {
+    let count = problem.noise.len();
+    let times: Vec<f64> = problem
         .test
         .list
         .iter()
@@ -281,7 +281,7 @@ fn figures(setting: &Setting<'_>, before: &Fit, after: Option<&Fit>) -> String {
         .flat_map(|w| w.times.iter().copied())
         .collect();
     let column = |fit: &Fit, channel: usize| -> Vec<f64> {
-        let windows = setting
+        let windows = problem
             .test
             .list
             .iter()
@@ -293,7 +293,7 @@ fn figures(setting: &Setting<'_>, before: &Fit, after: Option<&Fit>) -> String {
                 .iter()
                 .skip(channel)
                 .step_by(count)
-                .map(|r| r * setting.noise[channel]);
+                .map(|r| r * problem.noise[channel]);
             let begin = values.len();
             values.extend(own);
             values.resize(begin + window.times.len(), f64::NAN);
@@ -309,7 +309,7 @@ fn figures(setting: &Setting<'_>, before: &Fit, after: Option<&Fit>) -> String {
                 .collect()
         })
         .collect();
-    let named: Vec<(String, String)> = setting
+    let named: Vec<(String, String)> = problem
         .dataset
         .channels
         .iter()

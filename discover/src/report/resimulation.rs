@@ -1,11 +1,14 @@
 //! The specification that was written, run on the records: what is handed on is the text, not the
 //! fit from which it was written.
 
-use crate::fit::full::Fit;
-use crate::fit::gauss_newton::{Estimate, StartPrior, evaluated};
-use crate::model::problem::Setting;
+use crate::error::DiscoverError;
+use crate::fit::fitted::Fit;
+use crate::fit::gauss_newton::{Estimate, evaluated};
+use crate::fit::prior::InitialStatePrior;
+use crate::fit::residuals::Residuals;
+use crate::fit::shooting::Shooting;
+use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, What};
-use crate::search::response::mapped;
 use eomgen_records::windows::Windows;
 
 /// What a specification leaves, root mean squares over all channels, in noises.
@@ -22,23 +25,34 @@ pub struct Rerun {
 ///
 /// # Errors
 /// What is wrong with the text.
-pub fn rerun(setting: &Setting<'_>, fit: &Fit, text: &str) -> Result<Rerun, String> {
-    let plant = setting.plant(text, Some(&fit.linear))?;
+pub fn rerun(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    text: &str,
+) -> Result<Rerun, DiscoverError> {
+    let plant = problem.plant(text, Some(&fit.texts.linear))?;
     let all = fit.unknowns.iter().zip(&fit.train.estimate.theta);
     let (sensors, theta): (Vec<Unknown>, Vec<f64>) = all
         .filter(|(unknown, _)| !matches!(unknown.what, What::Parameter(_) | What::Inverse(_)))
         .map(|(unknown, value)| (unknown.clone(), *value))
         .unzip();
-    let ranges = mapped(fit, &plant, &fit.ranges);
+    let ranges = fit.mapped(&plant, &fit.ranges);
     let left = |windows: &Windows<'_>, estimate: &Estimate| {
-        let shooting = setting.shooting(&plant, windows, &sensors, &ranges);
-        let starts = estimate.starts.iter();
-        let starts = starts.map(|start| mapped(fit, &plant, start)).collect();
-        let estimate = evaluated(&shooting, &StartPrior::default(), theta.clone(), starts);
-        setting.rest(&shooting, estimate).whole().pooled
+        let shooting = Shooting::new(problem, &plant, windows, &sensors, &ranges);
+        let initial_states = estimate.initial_states.iter();
+        let initial_states = initial_states
+            .map(|start| fit.mapped(&plant, start))
+            .collect();
+        let estimate = evaluated(
+            &shooting,
+            &InitialStatePrior::default(),
+            theta.clone(),
+            initial_states,
+        );
+        Residuals::of(&shooting, estimate).whole().rms
     };
     Ok(Rerun {
-        train: left(&setting.train, &fit.train.estimate),
-        test: left(&setting.test, &fit.test.estimate),
+        train: left(&problem.train, &fit.train.estimate),
+        test: left(&problem.test, &fit.test.estimate),
     })
 }

@@ -4,26 +4,24 @@
 use model_spec::edit::{self, Edit, SetParameter, SetSensor};
 use model_spec::source::Source;
 
-use crate::fit::full::Fit;
-use crate::model::problem::Setting;
+use crate::error::DiscoverError;
+use crate::fit::fitted::Fit;
+use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::What;
 use crate::search::found::Accepted;
-
-/// Where nothing was found, a parameter or a sensor is set if its estimate moved by this part of its
-/// uncertainty. With an effect all are set: they were estimated together.
-const MOVED: f64 = 0.5;
+use crate::thresholds;
 
 /// The text with effects and numbers of a fit.
 ///
 /// # Errors
 /// An edit that cannot be made, in words.
 pub fn extended(
-    setting: &Setting<'_>,
+    problem: &EstimationProblem<'_>,
     text: &str,
     fit: &Fit,
     accepted: &[Accepted],
-) -> Result<String, String> {
-    let source = provenance(setting);
+) -> Result<String, DiscoverError> {
+    let source = provenance(problem);
     let theta = &fit.train.estimate.theta;
     let mut text = text.to_owned();
     let written = || {
@@ -35,8 +33,8 @@ pub fn extended(
         let values = fit.stated(&effect.unknowns);
         let written = effect
             .candidate
-            .written(&text, &setting.path, &values, &source);
-        text = written.map_err(|error| error.to_string())?;
+            .written(&text, &problem.path, &values, &source);
+        text = written?;
     }
     let added: Vec<usize> = written()
         .flat_map(|effect| effect.unknowns.clone())
@@ -60,15 +58,17 @@ pub fn extended(
             }));
         }
     }
-    edits.extend(sensors(setting, fit, !accepted.is_empty()));
-    edit::apply(&Source::new(setting.path.as_str(), text.as_str()), &edits)
-        .map_err(|error| error.to_string())
+    edits.extend(sensors(problem, fit, !accepted.is_empty()));
+    Ok(edit::apply(
+        &Source::new(problem.path.as_str(), text.as_str()),
+        &edits,
+    )?)
 }
 
 /// Where numbers come from.
-fn provenance(setting: &Setting<'_>) -> String {
-    let title = &setting.dataset.title;
-    let files = setting
+fn provenance(problem: &EstimationProblem<'_>) -> String {
+    let title = &problem.dataset.title;
+    let files = problem
         .dataset
         .train
         .iter()
@@ -85,13 +85,17 @@ fn provenance(setting: &Setting<'_>) -> String {
 /// Whether an unknown's estimate differs from where it began, at all or by more than its uncertainty
 /// makes of it.
 fn has_moved(fit: &Fit, place: usize, at_all: bool) -> bool {
-    let least = if at_all { 0.0 } else { MOVED * fit.sd[place] };
+    let least = if at_all {
+        0.0
+    } else {
+        thresholds::WRITTEN_FROM * fit.sd[place]
+    };
     (fit.train.estimate.theta[place] - fit.unknowns[place].start).abs() > least
 }
 
 /// The sensors that differ from true ones, at all or by more than their uncertainty.
-fn sensors(setting: &Setting<'_>, fit: &Fit, at_all: bool) -> Vec<Edit> {
-    let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+fn sensors(problem: &EstimationProblem<'_>, fit: &Fit, at_all: bool) -> Vec<Edit> {
+    let shooting = fit.shooting(problem);
     let sensors = shooting.sensors(&fit.train.estimate.theta);
     let moved = |channel: usize| {
         fit.unknowns.iter().enumerate().any(|(place, unknown)| {
@@ -99,7 +103,7 @@ fn sensors(setting: &Setting<'_>, fit: &Fit, at_all: bool) -> Vec<Edit> {
             own && has_moved(fit, place, at_all)
         })
     };
-    let channels = setting.dataset.channels.iter().enumerate();
+    let channels = problem.dataset.channels.iter().enumerate();
     channels
         .filter(|(place, _)| moved(*place))
         .map(|(place, channel)| {

@@ -5,16 +5,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::residual_force::equations::Standing;
-
-/// Bends of a force over the rate on either side, over a place and over the time of a window.
-const BENDS: (usize, usize, usize) = (5, 9, 8);
-
-/// Bends of a force over a whole turn.
-const BENDS_OF_A_TURN: usize = 12;
-
-/// Between both sides of a turning point lies this part of the largest rate.
-const TURNING: f64 = 1e-3;
+use crate::residual_force::equations::OperatingPoint;
+use crate::thresholds;
 
 /// What a force is a function of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,9 +49,9 @@ pub struct Range {
 
 impl Range {
     /// The range of some places; one in a hundred lies outside at either end.
-    pub fn of(standings: &[Standing]) -> Self {
-        let sorted = |of: &dyn Fn(&Standing) -> f64| {
-            let mut values: Vec<f64> = standings.iter().map(of).collect();
+    pub fn of(operating_points: &[OperatingPoint]) -> Self {
+        let sorted = |of: &dyn Fn(&OperatingPoint) -> f64| {
+            let mut values: Vec<f64> = operating_points.iter().map(of).collect();
             values.sort_by(f64::total_cmp);
             values
         };
@@ -91,8 +83,8 @@ impl Family {
     /// Over the rate.
     pub fn over_rate(equation: usize, range: &Range) -> Self {
         // Closer near rest, where friction bends most.
-        let last = (BENDS.0 - 1) as f64;
-        let side: Vec<f64> = (0..BENDS.0)
+        let last = (thresholds::RATE_BENDS - 1) as f64;
+        let side: Vec<f64> = (0..thresholds::RATE_BENDS)
             .map(|k| range.rate * (k as f64 / last).powi(2))
             .collect();
         let bends = side.iter().rev().map(|b| -b).chain(side.iter().copied());
@@ -106,28 +98,30 @@ impl Family {
     /// Over the place, or over a turn where that is gone through.
     pub fn over_place(equation: usize, range: &Range, is_angle: bool) -> Self {
         if is_angle && range.width() > TAU {
-            let bend = |k: usize| TAU * k as f64 / BENDS_OF_A_TURN as f64;
+            let bend = |k: usize| TAU * k as f64 / thresholds::TURN_BENDS as f64;
             return Self {
                 equation,
                 over: Over::Turn,
-                bends: (0..BENDS_OF_A_TURN).map(bend).collect(),
+                bends: (0..thresholds::TURN_BENDS).map(bend).collect(),
             };
         }
-        let bend = |k: usize| range.place.0 + range.width() * k as f64 / (BENDS.1 - 1) as f64;
+        let bend = |k: usize| {
+            range.place.0 + range.width() * k as f64 / (thresholds::PLACE_BENDS - 1) as f64
+        };
         Self {
             equation,
             over: Over::Place,
-            bends: (0..BENDS.1).map(bend).collect(),
+            bends: (0..thresholds::PLACE_BENDS).map(bend).collect(),
         }
     }
 
     /// Over the time of a window of this length, s.
     pub fn over_time(equation: usize, length: f64) -> Self {
-        let bend = |k: usize| length * k as f64 / (BENDS.2 - 1) as f64;
+        let bend = |k: usize| length * k as f64 / (thresholds::TIME_BENDS - 1) as f64;
         Self {
             equation,
             over: Over::Time,
-            bends: (0..BENDS.2).map(bend).collect(),
+            bends: (0..thresholds::TIME_BENDS).map(bend).collect(),
         }
     }
 
@@ -149,25 +143,25 @@ impl Family {
     }
 
     /// The shapes where a motion stands.
-    pub fn at(&self, standing: &Standing, out: &mut [f64]) {
+    pub fn at(&self, operating_point: &OperatingPoint, out: &mut [f64]) {
         out.fill(0.0);
         let mut wave = |phase: f64| {
             let (sine, cosine) = phase.sin_cos();
             out.copy_from_slice(&[cosine, sine]);
         };
         match self.over {
-            Over::Order(order) => wave(f64::from(order) * standing.place),
-            Over::Frequency(frequency) => wave(TAU * frequency * standing.time),
-            Over::Place => bent(&self.bends, standing.place, out),
-            Over::Time => bent(&self.bends, standing.time, out),
-            Over::Turn => turned(&self.bends, standing.place, out),
+            Over::Order(order) => wave(f64::from(order) * operating_point.place),
+            Over::Frequency(frequency) => wave(TAU * frequency * operating_point.time),
+            Over::Place => bent(&self.bends, operating_point.place, out),
+            Over::Time => bent(&self.bends, operating_point.time, out),
+            Over::Turn => turned(&self.bends, operating_point.place, out),
             Over::Rate => {
                 let half = self.bends.len() / 2;
                 let (negative, positive) = out.split_at_mut(half);
-                bent(&self.bends[..half], standing.rate.min(0.0), negative);
-                bent(&self.bends[half..], standing.rate.max(0.0), positive);
-                let width = 2.0 * TURNING * self.bends[2 * half - 1];
-                let forwards = (0.5 + standing.rate / width).clamp(0.0, 1.0);
+                bent(&self.bends[..half], operating_point.rate.min(0.0), negative);
+                bent(&self.bends[half..], operating_point.rate.max(0.0), positive);
+                let width = 2.0 * thresholds::TURNING * self.bends[2 * half - 1];
+                let forwards = (0.5 + operating_point.rate / width).clamp(0.0, 1.0);
                 negative.iter_mut().for_each(|w| *w *= 1.0 - forwards);
                 positive.iter_mut().for_each(|w| *w *= forwards);
             }
@@ -202,7 +196,7 @@ fn turned(bends: &[f64], at: f64, out: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::{Family, Over, Range};
-    use crate::residual_force::equations::Standing;
+    use crate::residual_force::equations::OperatingPoint;
 
     const RANGE: Range = Range {
         place: (-1.0, 3.0),
@@ -210,9 +204,9 @@ mod tests {
         usual: (1.0, 1.0),
     };
 
-    fn sum(family: &Family, of: &dyn Fn(f64) -> f64, standing: Standing) -> f64 {
+    fn sum(family: &Family, of: &dyn Fn(f64) -> f64, operating_point: OperatingPoint) -> f64 {
         let mut weights = vec![0.0; family.count()];
-        family.at(&standing, &mut weights);
+        family.at(&operating_point, &mut weights);
         let pairs = weights.iter().zip(&family.bends);
         pairs.map(|(weight, bend)| weight * of(*bend)).sum()
     }
@@ -222,17 +216,21 @@ mod tests {
         let line = |x: f64| 0.3 - 0.7 * x;
         for step in 0..40 {
             let at = -1.0 + 0.1 * f64::from(step);
-            let standing = Standing {
+            let operating_point = OperatingPoint {
                 place: at,
                 rate: 0.9 * at - 0.95,
                 time: 0.2 * (at + 1.0),
             };
             let place = Family::over_place(0, &RANGE, false);
-            assert!((sum(&place, &line, standing) - line(at)).abs() < 1e-12);
+            assert!((sum(&place, &line, operating_point) - line(at)).abs() < 1e-12);
             let rate = Family::over_rate(0, &RANGE);
-            assert!((sum(&rate, &line, standing) - line(standing.rate)).abs() < 1e-12);
+            assert!(
+                (sum(&rate, &line, operating_point) - line(operating_point.rate)).abs() < 1e-12
+            );
             let time = Family::over_time(0, 0.8);
-            assert!((sum(&time, &line, standing) - line(standing.time)).abs() < 1e-12);
+            assert!(
+                (sum(&time, &line, operating_point) - line(operating_point.time)).abs() < 1e-12
+            );
         }
     }
 
@@ -241,11 +239,11 @@ mod tests {
         let rate = Family::over_rate(0, &RANGE);
         let mut weights = vec![0.0; rate.count()];
         for (at, forwards) in [(-0.5, 0.0), (0.5, 1.0), (0.0, 0.5)] {
-            let standing = Standing {
+            let operating_point = OperatingPoint {
                 rate: at,
-                ..Standing::default()
+                ..OperatingPoint::default()
             };
-            rate.at(&standing, &mut weights);
+            rate.at(&operating_point, &mut weights);
             let found: f64 = weights[rate.count() / 2..].iter().sum();
             assert_eq!(found, forwards);
         }
@@ -264,11 +262,11 @@ mod tests {
             .iter_mut()
             .zip([-0.1, 4.0 * std::f64::consts::PI - 0.1])
         {
-            let standing = Standing {
+            let operating_point = OperatingPoint {
                 place: at,
-                ..Standing::default()
+                ..OperatingPoint::default()
             };
-            turn.at(&standing, weights);
+            turn.at(&operating_point, weights);
         }
         let pairs = weights[0].iter().zip(&weights[1]);
         for (a, b) in pairs {

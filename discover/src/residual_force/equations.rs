@@ -7,11 +7,12 @@ use model_spec::edit::{self, Edit, NewForce, NewParameter, NewTerm, NewValue, Se
 use model_spec::model::{Expr, ExprKind, Model};
 use model_spec::source::Source;
 
-use crate::catalogue::SiteKind;
+use crate::catalogue::effect::SiteKind;
 use crate::catalogue::sites::sites;
-use crate::fit::full::Fit;
+use crate::fit::fitted::Fit;
+use crate::fit::shooting::Shooting;
 use crate::model::plant::Plant;
-use crate::model::problem::Setting;
+use crate::model::problem::EstimationProblem;
 
 /// An equation of motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +41,7 @@ impl Equation {
 
 /// Where a motion stands in an equation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Standing {
+pub struct OperatingPoint {
     /// What a force works on, m or rad.
     pub place: f64,
     /// Its rate, m/s or rad/s.
@@ -62,7 +63,7 @@ pub struct Equations {
 }
 
 /// The equations of a model, ready to be asked along a motion.
-pub struct Asked {
+pub struct EquationEvaluator {
     free: Evaluator,
     forced: Vec<Evaluator>,
     shown: Vec<(usize, usize)>,
@@ -72,7 +73,7 @@ pub struct Asked {
 
 impl Equations {
     /// The equations of a fitted model; none if a force cannot be written into it.
-    pub fn of(setting: &Setting<'_>, fit: &Fit) -> Option<Self> {
+    pub fn of(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Self> {
         let list = equations(fit.plant.model());
         let names = |word: &str, number: usize| format!("{word}_of_equation_{number}");
         let mut edits = Vec::new();
@@ -106,9 +107,9 @@ impl Equations {
                 }));
             }
         }
-        let source = Source::new(setting.path.as_str(), fit.text.as_str());
+        let source = Source::new(problem.path.as_str(), fit.texts.whole.as_str());
         let text = edit::apply(&source, &edits).ok()?;
-        let plant = Plant::equations(&text, &setting.path, setting.order, &[]).ok()?;
+        let plant = Plant::equations(&text, &problem.path, problem.order, &[]).ok()?;
         if plant.states != fit.plant.states {
             return None;
         }
@@ -126,7 +127,7 @@ impl Equations {
             ))
         });
         let shown = shown.collect::<Option<Vec<(usize, usize)>>>()?;
-        let whole = setting.shooting(&plant, &setting.train, &fit.unknowns, &fit.ranges);
+        let whole = Shooting::new(problem, &plant, &problem.train, &fit.unknowns, &fit.ranges);
         let values = whole.values(&fit.train.estimate.theta);
         Some(Self {
             list,
@@ -138,14 +139,14 @@ impl Equations {
     }
 
     /// Ready to be asked.
-    pub fn asked(&self) -> Asked {
+    pub fn evaluator(&self) -> EquationEvaluator {
         let forced = self.forces.iter().map(|place| {
             let mut values = self.values.clone();
             values[*place] = 1.0;
             self.plant.evaluator(&values).0
         });
         let states = self.plant.state_count();
-        Asked {
+        EquationEvaluator {
             free: self.plant.evaluator(&self.values).0,
             forced: forced.collect(),
             shown: self.shown.clone(),
@@ -155,15 +156,15 @@ impl Equations {
     }
 }
 
-impl Asked {
+impl EquationEvaluator {
     /// Where each equation stands; time is left at 0.
-    pub fn standings(&mut self, point: Point<'_>, out: &mut Vec<Standing>) {
+    pub fn operating_points(&mut self, point: Point<'_>, out: &mut Vec<OperatingPoint>) {
         self.free.observables(point, &mut self.observables);
         out.clear();
-        out.extend(self.shown.iter().map(|(place, rate)| Standing {
+        out.extend(self.shown.iter().map(|(place, rate)| OperatingPoint {
             place: self.observables[*place],
             rate: self.observables[*rate],
-            ..Standing::default()
+            ..OperatingPoint::default()
         }));
     }
 
@@ -198,9 +199,9 @@ fn equations(model: &Model) -> Vec<Equation> {
         let is_mesh = site.kind == SiteKind::Mesh;
         let unit = match site.kind {
             SiteKind::Mesh => Some("m"),
-            _ => site.words.get("unit").and_then(|text| unit(text)),
+            _ => site.arguments.get("unit").and_then(|text| unit(text)),
         };
-        if let (Some(unit), Some(on)) = (unit, site.words.get("on")) {
+        if let (Some(unit), Some(on)) = (unit, site.arguments.get("on")) {
             found.push(Equation {
                 name: site.name.clone(),
                 on: on.clone(),

@@ -3,27 +3,27 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::fit::full::Fit;
+use crate::fit::fitted::Fit;
+use crate::fit::linearised::LinearisedFit;
 use crate::fit::residuals::correlation;
-use crate::model::problem::Setting;
+use crate::model::problem::EstimationProblem;
 use crate::residual_force::basis_functions::{Family, Over};
-use crate::residual_force::equations::{Equations, Standing};
-use crate::residual_force::force_response::{Columns, pushed};
+use crate::residual_force::equations::{Equations, OperatingPoint};
+use crate::residual_force::force_response::{ForceColumns, force_responses};
 use crate::residual_force::regression::{Regression, Sizes};
-use crate::search::response::At;
 use crate::thresholds;
 
-/// Columns of families with where each family's stand.
-pub(crate) struct Looked {
+/// ForceColumns of families with where each family's stand.
+pub(crate) struct FamilyRegression {
     pub families: Vec<Family>,
     pub firsts: Vec<usize>,
     pub regression: Regression,
     pub blocks: Vec<DMatrix<f64>>,
 }
 
-impl Looked {
+impl FamilyRegression {
     pub fn at(
-        of: (&At, &Setting<'_>, &Fit),
+        of: (&LinearisedFit, &EstimationProblem<'_>, &Fit),
         equations: &Equations,
         families: Vec<Family>,
     ) -> Option<Self> {
@@ -35,17 +35,17 @@ impl Looked {
             count += family.count();
             own.extend(vec![family.equation; family.count()]);
         }
-        let weights = |standings: &[Standing], _: &[f64], out: &mut [f64]| {
+        let weights = |operating_points: &[OperatingPoint], _: &[f64], out: &mut [f64]| {
             for (family, first) in families.iter().zip(&firsts) {
                 let slots = &mut out[*first..first + family.count()];
-                family.at(&standings[family.equation], slots);
+                family.at(&operating_points[family.equation], slots);
             }
         };
-        let columns = Columns {
+        let columns = ForceColumns {
             equations: own,
             weights: &weights,
         };
-        let blocks = pushed(of, equations, &columns)?;
+        let blocks = force_responses(of, equations, &columns)?;
         let regression = Regression::new(of.0, of.2, &blocks)?;
         Some(Self {
             families,
@@ -68,14 +68,14 @@ impl Looked {
     /// The part of the squares that a family explains, beyond what as many numbers do by chance.
     pub fn part(&self, family: usize) -> f64 {
         let found = self.shared(family);
-        let chance = noise(self, found.gain) * found.values.len() as f64;
-        (found.gain - chance) / self.regression.squares
+        let chance = noise(self, found.decrease) * found.values.len() as f64;
+        (found.decrease - chance) / self.regression.squares
     }
 
     /// Over how many samples what a family leaves is correlated.
     pub fn correlation(
         &self,
-        (at, setting): (&At, &Setting<'_>),
+        (at, problem): (&LinearisedFit, &EstimationProblem<'_>),
         family: usize,
         level: f64,
     ) -> f64 {
@@ -102,14 +102,14 @@ impl Looked {
                 self.regression.left(of, &|_| whole(Some(&found)), true)
             }
         };
-        correlation(&left, setting.noise.len())
+        correlation(&left, problem.noise.len())
     }
 
     /// What the variance of an uncorrelated unit residual is multiplied with: by the size of
     /// what a family leaves, the samples over which that is correlated and what a straight line
     /// does not see.
-    pub fn inflation(&self, of: (&At, &Setting<'_>), family: usize) -> f64 {
-        let left = noise(self, self.shared(family).gain);
+    pub fn inflation(&self, of: (&LinearisedFit, &EstimationProblem<'_>), family: usize) -> f64 {
+        let left = noise(self, self.shared(family).decrease);
         left * self.correlation(of, family, 1.0) * thresholds::WIDER * thresholds::WIDER
     }
 
@@ -119,6 +119,6 @@ impl Looked {
 }
 
 /// The mean square that is left once so much is explained.
-pub(crate) fn noise(looked: &Looked, gain: f64) -> f64 {
-    ((looked.regression.squares - gain) / looked.regression.numbers).max(1.0)
+pub(crate) fn noise(regressed: &FamilyRegression, decrease: f64) -> f64 {
+    ((regressed.regression.squares - decrease) / regressed.regression.numbers).max(1.0)
 }

@@ -4,11 +4,8 @@
 use eomgen_plot::{Axes, Frame, Panel, Plate, Series, plate};
 
 use crate::residual_force::equations::Equation;
-use crate::residual_force::{Profile, ResidualForce};
+use crate::residual_force::types::{Profile, ResidualForce};
 use crate::thresholds;
-
-/// What is not known to this many times the largest force is not drawn.
-const KNOWN: f64 = 0.5;
 
 /// Half the width of the tick that marks a point, and what is left free at both ends, in parts of
 /// the range.
@@ -17,9 +14,6 @@ const MARGIN: f64 = 0.02;
 
 /// Ticks keep from each other by twice this part of the range.
 const APART: f64 = 0.003;
-
-/// Points that are known, at least, of the force before.
-const ENOUGH: usize = 2;
 
 /// What a profile is drawn over, how bars are set, and which of a force's it is.
 struct View {
@@ -52,7 +46,7 @@ pub fn figures(before: &ResidualForce, after: Option<&ResidualForce>) -> String 
             let profile = (view.of)(before);
             let most = most(profile);
             let known = profile.sd.iter().filter(|sd| is_known(**sd, most));
-            let is_drawn = known.count() >= ENOUGH;
+            let is_drawn = known.count() >= thresholds::DRAWN_POINTS;
             let is_told = !view.by_window || profile.part > thresholds::STANDS_OUT;
             is_drawn && is_told && (view.axes != Axes::Time || is_resolved(before))
         })
@@ -148,7 +142,7 @@ fn most(profile: &Profile) -> f64 {
         .fold(0.0, f64::max);
     let finite = profile.sd.iter().filter(|sd| **sd > 0.0);
     match largest > 0.0 {
-        true => KNOWN * largest,
+        true => thresholds::DRAWN * largest,
         false => 3.0 * finite.copied().fold(f64::INFINITY, f64::min),
     }
 }
@@ -203,7 +197,7 @@ fn points(profile: &Profile, is_line: bool, most: f64) -> Points {
 #[cfg(test)]
 mod tests {
     use super::points;
-    use crate::residual_force::Profile;
+    use crate::residual_force::types::Profile;
 
     /// A plot takes no abscissa that is smaller than the one before.
     #[test]

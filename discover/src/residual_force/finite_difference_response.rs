@@ -6,17 +6,9 @@ use nalgebra::DMatrix;
 
 use crate::fit::shooting::{Sensors, Shooting, samples_in};
 use crate::model::plant::Output;
+use crate::thresholds;
 use sim::exponential::Drives;
 use sim::ode::runge_kutta::RungeKutta;
-
-/// A force is taken that moves the outputs by this part of the misfit.
-const PART: f64 = 0.3;
-
-/// A first one changes accelerations by this part of their own.
-const FIRST: f64 = 1e-4;
-
-/// It need not be nearer to that than by this factor.
-const NEAR: f64 = 10.0;
 
 /// Whether each of a step's four slopes is at its beginning, its middle or its end.
 const POINTS: [usize; 4] = [0, 1, 1, 2];
@@ -68,14 +60,14 @@ impl<'s> Stepped<'s> {
         let own = self.motion(start, None, Some(&mut steps))?;
         let windows = self.shooting.windows;
         let inputs = windows.inputs(&windows.list[self.place]);
-        let mut pushes = vec![Vec::with_capacity(3 * steps.len() * half); count];
+        let mut accelerations = vec![Vec::with_capacity(3 * steps.len() * half); count];
         let mut all = vec![0.0; count * half];
         let (mut rates, mut square) = (vec![0.0; start.len()], 0.0);
         for step in &steps {
             for (t, state) in &step.points {
                 let inputs = inputs.at(step.middle);
                 drives.at(*t, state, inputs, &mut all);
-                for (push, now) in pushes.iter_mut().zip(all.chunks_exact(half)) {
+                for (push, now) in accelerations.iter_mut().zip(all.chunks_exact(half)) {
                     push.extend_from_slice(now);
                 }
                 let t = *t;
@@ -84,8 +76,8 @@ impl<'s> Stepped<'s> {
             }
         }
         let mut matrix = DMatrix::zeros(own.len(), count);
-        let mut part = FIRST;
-        for (column, push) in pushes.iter().enumerate() {
+        let mut part = thresholds::FIRST_FORCE;
+        for (column, push) in accelerations.iter().enumerate() {
             let size: f64 = push.iter().map(|a| a * a).sum();
             if size == 0.0 {
                 continue;
@@ -94,8 +86,11 @@ impl<'s> Stepped<'s> {
             let seen = self.change(start, (&own, push), part * usual)?;
             let moved = (seen.iter().map(|c| c * c).sum::<f64>() / seen.len() as f64).sqrt();
             // What the first moves tells how large the others may be.
-            let wanted = PART * level / (moved * usual);
-            if wanted.is_finite() && (wanted > NEAR * part || part > NEAR * wanted) {
+            let wanted = thresholds::FORCE_MOVES * level / (moved * usual);
+            if wanted.is_finite()
+                && (wanted > thresholds::FORCE_NEAR * part
+                    || part > thresholds::FORCE_NEAR * wanted)
+            {
                 part = wanted;
                 let seen = self.change(start, (&own, push), part * usual)?;
                 matrix.column_mut(column).copy_from_slice(&seen);
@@ -161,8 +156,8 @@ impl<'s> Stepped<'s> {
                     self.evaluator.rates(at, rates);
                     if let Some((size, push)) = push {
                         let first = (3 * number + point) * half;
-                        let pushed = rates[half..].iter_mut().zip(&push[first..]);
-                        pushed.for_each(|(k, a)| *k += size * a);
+                        let force_responses = rates[half..].iter_mut().zip(&push[first..]);
+                        force_responses.for_each(|(k, a)| *k += size * a);
                     }
                     if visited.is_some() {
                         points[point] = (t, state.to_vec());

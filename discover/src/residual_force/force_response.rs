@@ -7,21 +7,21 @@ use codegen::program::evaluator::Point;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use crate::fit::full::Fit;
-use crate::fit::sensitivity::Crew;
+use crate::fit::fitted::Fit;
+use crate::fit::linearised::LinearisedFit;
+use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::{Shooting, samples_in};
-use crate::model::problem::Setting;
-use crate::residual_force::equations::{Asked, Equations, Standing};
+use crate::model::problem::EstimationProblem;
+use crate::residual_force::equations::{EquationEvaluator, Equations, OperatingPoint};
 use crate::residual_force::finite_difference_response::Stepped;
-use crate::search::response::At;
 use sim::exponential::Drives;
 
 /// Weights of shapes in the equations: where each equation stands, and a weight per column.
-pub type Weights<'w> = dyn Fn(&[Standing], &[f64], &mut [f64]) + Sync + 'w;
+pub type Weights<'w> = dyn Fn(&[OperatingPoint], &[f64], &mut [f64]) + Sync + 'w;
 
-/// Columns: the equation that each works in, and how their weights are found from where the
+/// ForceColumns: the equation that each works in, and how their weights are found from where the
 /// equations stand and from the inputs.
-pub struct Columns<'w> {
+pub struct ForceColumns<'w> {
     /// The equation of each.
     pub equations: Vec<usize>,
     /// Fills a weight per column.
@@ -29,37 +29,38 @@ pub struct Columns<'w> {
 }
 
 /// Forces of these shapes as drives of neighbouring motions.
-struct Pushes<'c> {
-    asked: Asked,
-    columns: &'c Columns<'c>,
+struct ForceDrives<'c> {
+    evaluator: EquationEvaluator,
+    columns: &'c ForceColumns<'c>,
     begin: f64,
-    standings: Vec<Standing>,
+    operating_points: Vec<OperatingPoint>,
     accelerations: Vec<f64>,
     weights: Vec<f64>,
 }
 
-impl<'c> Pushes<'c> {
-    fn new(equations: &Equations, columns: &'c Columns<'c>, begin: f64) -> Self {
+impl<'c> ForceDrives<'c> {
+    fn new(equations: &Equations, columns: &'c ForceColumns<'c>, begin: f64) -> Self {
         Self {
-            asked: equations.asked(),
+            evaluator: equations.evaluator(),
             weights: vec![0.0; columns.equations.len()],
             columns,
             begin,
-            standings: Vec::new(),
+            operating_points: Vec::new(),
             accelerations: Vec::new(),
         }
     }
 }
 
-impl Drives for Pushes<'_> {
+impl Drives for ForceDrives<'_> {
     fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
         let point = Point { t, state, inputs };
-        self.asked.standings(point, &mut self.standings);
-        self.asked.accelerations(point, &mut self.accelerations);
-        for standing in &mut self.standings {
-            standing.time = t - self.begin;
+        self.evaluator
+            .operating_points(point, &mut self.operating_points);
+        self.evaluator.accelerations(point, &mut self.accelerations);
+        for operating_point in &mut self.operating_points {
+            operating_point.time = t - self.begin;
         }
-        (self.columns.weights)(&self.standings, inputs, &mut self.weights);
+        (self.columns.weights)(&self.operating_points, inputs, &mut self.weights);
         let half = state.len() / 2;
         let slots = out.chunks_exact_mut(half.max(1));
         for (slots, (equation, weight)) in
@@ -74,12 +75,12 @@ impl Drives for Pushes<'_> {
 
 /// For each window that is looked at a column per shape, in noises per unit of force; no columns
 /// where the fit has no motion. None if neighbouring motions cannot be followed at all.
-pub fn pushed(
-    (at, setting, fit): (&At, &Setting<'_>, &Fit),
+pub fn force_responses(
+    (at, problem, fit): (&LinearisedFit, &EstimationProblem<'_>, &Fit),
     equations: &Equations,
-    columns: &Columns<'_>,
+    columns: &ForceColumns<'_>,
 ) -> Option<Vec<DMatrix<f64>>> {
-    let whole = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+    let whole = fit.shooting(problem);
     let shooting = Shooting {
         part: at.part,
         ..whole
@@ -98,18 +99,22 @@ pub fn pushed(
         .collect::<Vec<_>>()
         .par_chunks(size.max(1))
         .map(|part| {
-            let mut crew = Crew::frozen(&shooting, theta, 1.0);
-            let mut pushes = Pushes::new(equations, columns, 0.0);
+            let mut sensitivities = SensitivityEvaluator::frozen(&shooting, theta, 1.0);
+            let mut drives = ForceDrives::new(equations, columns, 0.0);
             let mut one = |window: usize| {
                 at.base[window].as_ref()?;
                 let place = at.places[window];
-                let start = &at.estimate.starts[place];
-                pushes.begin = setting.train.list[place].times[0];
+                let start = &at.estimate.initial_states[place];
+                drives.begin = problem.train.list[place].times[0];
                 match is_marched {
-                    true => crew.as_mut()?.driven(place, start, (count, &mut pushes)),
+                    true => {
+                        sensitivities
+                            .as_mut()?
+                            .drive_response(place, start, (count, &mut drives))
+                    }
                     false => Stepped::new(&shooting, theta, place)?.columns(
                         start,
-                        (count, &mut pushes),
+                        (count, &mut drives),
                         at.level,
                     ),
                 }
@@ -124,33 +129,33 @@ pub fn pushed(
 }
 
 /// Where the equations stand along the windows' motions, at every sample.
-pub fn stood(
-    (at, setting, fit): (&At, &Setting<'_>, &Fit),
+pub fn operating_points(
+    (at, problem, fit): (&LinearisedFit, &EstimationProblem<'_>, &Fit),
     equations: &Equations,
-) -> Vec<Vec<Vec<Standing>>> {
-    let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+) -> Vec<Vec<Vec<OperatingPoint>>> {
+    let shooting = fit.shooting(problem);
     let Ok(mut runner) = fit.plant.at(&shooting.values(&at.estimate.theta)) else {
         return Vec::new();
     };
-    let mut asked = equations.asked();
+    let mut evaluator = equations.evaluator();
     let windows = at.places.iter().map(|place| {
-        let window = &setting.train.list[*place];
+        let window = &problem.train.list[*place];
         let times = &window.times[..samples_in(window, at.part)];
-        let inputs = setting.train.inputs(window);
-        let states = runner.states(&at.estimate.starts[*place], times, inputs);
+        let inputs = problem.train.inputs(window);
+        let states = runner.states(&at.estimate.initial_states[*place], times, inputs);
         let samples = times.iter().zip(states.unwrap_or_default());
         let samples = samples.map(|(t, state)| {
-            let mut standings = Vec::new();
+            let mut operating_points = Vec::new();
             let point = Point {
                 t: *t,
                 state: &state,
                 inputs: inputs.at(*t),
             };
-            asked.standings(point, &mut standings);
-            for standing in &mut standings {
-                standing.time = t - times[0];
+            evaluator.operating_points(point, &mut operating_points);
+            for operating_point in &mut operating_points {
+                operating_point.time = t - times[0];
             }
-            standings
+            operating_points
         });
         samples.collect()
     });

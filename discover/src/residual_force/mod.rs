@@ -14,137 +14,42 @@ pub mod force_response;
 pub mod profiles;
 pub mod ranking;
 pub mod regression;
+pub mod types;
 pub mod wording;
 
 use std::f64::consts::TAU;
 
-use crate::fit::full::Fit;
-use crate::model::problem::Setting;
-use crate::report::location::peak_frequency;
+use crate::fit::fitted::Fit;
+use crate::fit::linearised::LinearisedFit;
+use crate::fit::residual_spectrum::peak_frequency;
+use crate::model::problem::EstimationProblem;
 use crate::residual_force::basis_functions::{Family, Over, Range};
-use crate::residual_force::equations::{Equation, Equations, Standing};
-use crate::residual_force::family_regression::Looked;
-use crate::residual_force::force_response::stood;
+use crate::residual_force::equations::{Equation, Equations, OperatingPoint};
+use crate::residual_force::family_regression::FamilyRegression;
+use crate::residual_force::force_response::operating_points;
 use crate::residual_force::profiles::Blocks;
-use crate::residual_force::ranking::{Judged, simple};
-use crate::search::response::At;
+use crate::residual_force::ranking::{Ranking, simple};
+use crate::residual_force::types::{Kind, ResidualForce};
 use crate::thresholds;
-
-/// Shaft orders that are looked at.
-const ORDERS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 36];
-
-/// The lowest frequencies that are looked at, in periods per window; higher ones follow by this
-/// ratio, up to so many periods of samples.
-const FREQUENCIES: (usize, f64, f64) = (4, 1.6, 4.0);
-
-/// The most of them.
-const MOST_FREQUENCIES: usize = 12;
-
-/// Numbers with one standard deviation each, over something.
-#[derive(Clone, Debug, Default)]
-pub struct Profile {
-    /// Over which, in SI, ascending.
-    pub over: Vec<f64>,
-    /// The force there, N or N m.
-    pub values: Vec<f64>,
-    /// One standard deviation.
-    pub sd: Vec<f64>,
-    /// The part of the squares that it explains; of several waves that which explains most.
-    pub part: f64,
-    /// The place of the wave that does.
-    pub peak: Option<usize>,
-}
-
-/// How well a force in an equation does.
-#[derive(Clone, Debug)]
-pub struct Ranked {
-    /// The equation's place in the list.
-    pub equation: usize,
-    /// The part of the squares that a force over its rate explains, or over its place.
-    pub by_state: f64,
-    /// The same of a force over time that differs from window to window.
-    pub by_time: f64,
-}
-
-/// What a force is a function of, as far as can be told.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Kind {
-    /// Its rate: so much of simple functions of it.
-    Rate(Vec<(Simple, f64, f64)>),
-    /// Its place.
-    Place(Vec<(Simple, f64, f64)>),
-    /// Neither.
-    Time,
-}
-
-/// Simple functions of a rate or a place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Simple {
-    /// The same everywhere.
-    Constant,
-    /// The sign.
-    Sign,
-    /// In proportion.
-    Linear,
-    /// In proportion to the size.
-    Size,
-    /// With the square and the sign.
-    Square,
-}
-
-/// The residual force of a fit.
-pub struct ResidualForce {
-    /// All equations.
-    pub equations: Vec<Equation>,
-    /// Those in which a force explains something, the best first.
-    pub ranked: Vec<Ranked>,
-    /// The best.
-    pub best: usize,
-    /// The one whose profiles these are.
-    pub equation: usize,
-    /// What the force in the best is a function of; none if nothing stands out.
-    pub kind: Option<Kind>,
-    /// How much of the squares it explains.
-    pub part: f64,
-    /// Over the rate.
-    pub rate: Profile,
-    /// Over the place, or within a turn.
-    pub place: Profile,
-    /// Over the time of the first record, s.
-    pub time: Profile,
-    /// The size over the shaft order; none for what does not turn.
-    pub order: Profile,
-    /// The size over the frequency, Hz.
-    pub frequency: Profile,
-    /// What opposes or drives the rate, over the largest rate of each window.
-    pub amplitude: Profile,
-}
-
-impl ResidualForce {
-    /// The name of the equation whose profiles these are.
-    pub fn looked_at(&self) -> &str {
-        &self.equations[self.equation].name
-    }
-}
 
 /// The residual force of a fit, in an equation by its name or in the one where it explains most;
 /// none where neighbouring motions cannot be followed.
 pub fn residual_force(
-    setting: &Setting<'_>,
+    problem: &EstimationProblem<'_>,
     fit: &Fit,
     wanted: Option<&str>,
 ) -> Option<ResidualForce> {
-    let equations = Equations::of(setting, fit)?;
-    let at = At::of(setting, fit, 1.0);
-    let of = (&at, setting, fit);
-    let standings = stood(of, &equations);
+    let equations = Equations::of(problem, fit)?;
+    let at = LinearisedFit::of(problem, fit, 1.0);
+    let of = (&at, problem, fit);
+    let operating_points = operating_points(of, &equations);
     let ranges: Vec<Range> = (0..equations.list.len())
         .map(|equation| {
-            let own = standings.iter().flatten().map(|all| all[equation]);
-            Range::of(&own.collect::<Vec<Standing>>())
+            let own = operating_points.iter().flatten().map(|all| all[equation]);
+            Range::of(&own.collect::<Vec<OperatingPoint>>())
         })
         .collect();
-    let length = standings
+    let length = operating_points
         .iter()
         .flatten()
         .flatten()
@@ -162,7 +67,7 @@ pub fn residual_force(
     let all: Vec<usize> = (0..equations.list.len()).filter(moves).collect();
     let wave = |equation: usize| {
         let own = &equations.list[equation];
-        waves((equation, own), &ranges[equation], (setting, fit, length))
+        waves((equation, own), &ranges[equation], (problem, fit, length))
     };
     let named = |name: &str| all.iter().position(|e| equations.list[*e].name == name);
     let mut families: Vec<Family> = all.iter().flat_map(|e| general(*e)).collect();
@@ -170,38 +75,38 @@ pub fn residual_force(
         families.extend(wave(only));
     }
     let few = at.thinned();
-    let looked = Looked::at((&few, setting, fit), &equations, families)?;
-    let judged = Judged::of(&looked, all.len(), (&few, setting))?;
-    let number = wanted.and_then(named).unwrap_or(judged.best);
+    let regressed = FamilyRegression::at((&few, problem, fit), &equations, families)?;
+    let ranking = Ranking::of(&regressed, all.len(), (&few, problem))?;
+    let number = wanted.and_then(named).unwrap_or(ranking.best);
     let equation = all[number];
     let close = match all.len() {
         1 => None,
         _ => {
             let own = general(equation).into_iter().chain(wave(equation));
-            Some(Looked::at(of, &equations, own.collect())?)
+            Some(FamilyRegression::at(of, &equations, own.collect())?)
         }
     };
     let (close, seen) = match &close {
         Some(close) => (close, &at),
-        None => (&looked, &few),
+        None => (&regressed, &few),
     };
     let blocks = Blocks {
         at: seen,
-        setting,
-        standings: &standings,
+        problem,
+        operating_points: &operating_points,
         equation,
     };
     let mut found = blocks.profiles(close, &ranges[equation], fit);
-    found.ranked = judged.ranked(&all);
+    found.ranked = ranking.ranked(&all);
     found.equations.clone_from(&equations.list);
-    found.best = all[judged.best];
-    if judged.stands_out {
-        found.part = judged.part;
-        found.kind = Some(match judged.is_state {
+    found.best = all[ranking.best];
+    if ranking.stands_out {
+        found.part = ranking.part;
+        found.kind = Some(match ranking.is_state {
             false => Kind::Time,
-            true => simple(&looked, judged.family, (&few, setting)),
+            true => simple(&regressed, ranking.family, (&few, problem)),
         });
-    } else if found.frequency.part > thresholds::STANDS_OUT && number == judged.best {
+    } else if found.frequency.part > thresholds::STANDS_OUT && number == ranking.best {
         // A line may stand between the bends over time.
         found.part = found.frequency.part;
         found.kind = Some(Kind::Time);
@@ -214,27 +119,26 @@ pub fn residual_force(
 fn waves(
     (equation, of): (usize, &Equation),
     range: &Range,
-    (setting, fit, length): (&Setting<'_>, &Fit, f64),
+    (problem, fit, length): (&EstimationProblem<'_>, &Fit, f64),
 ) -> Vec<Family> {
     let mut found = Vec::new();
     if of.unit == "rad" && range.width() > TAU / 4.0 {
         let turns = |order: &u32| f64::from(*order) * range.width() > TAU;
-        let orders = ORDERS.into_iter().filter(turns);
+        let orders = thresholds::FORCE_ORDERS.into_iter().filter(turns);
         found.extend(orders.map(|order| Family::wave(equation, Over::Order(order))));
     }
-    let step = eomgen_records::samples::typical_step(&setting.dataset.train[0].times);
-    let (lowest, ratio, samples) = FREQUENCIES;
-    let mut frequencies: Vec<f64> = peak_frequency(setting, fit).into_iter().collect();
+    let step = eomgen_records::samples::typical_step(&problem.dataset.train[0].times);
+    let mut frequencies: Vec<f64> = peak_frequency(problem, fit).into_iter().collect();
     let mut periods = 1.0;
-    for number in 1..=MOST_FREQUENCIES {
-        if periods * samples * step > length {
+    for number in 1..=thresholds::MOST_FREQUENCIES {
+        if periods * thresholds::PERIOD_SAMPLES * step > length {
             break;
         }
         frequencies.push(periods / length);
-        periods = if number < lowest {
+        periods = if number < thresholds::FIRST_FREQUENCIES {
             periods + 1.0
         } else {
-            periods * ratio
+            periods * thresholds::FREQUENCY_RATIO
         };
     }
     frequencies.sort_by(f64::total_cmp);

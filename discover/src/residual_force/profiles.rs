@@ -3,59 +3,67 @@
 
 use nalgebra::DVector;
 
-use crate::fit::full::Fit;
-use crate::model::problem::Setting;
+use crate::fit::fitted::Fit;
+use crate::fit::linearised::LinearisedFit;
+use crate::model::problem::EstimationProblem;
 use crate::residual_force::basis_functions::{Family, Over, Range};
-use crate::residual_force::equations::Standing;
-use crate::residual_force::family_regression::{Looked, noise};
+use crate::residual_force::equations::OperatingPoint;
+use crate::residual_force::family_regression::{FamilyRegression, noise};
 use crate::residual_force::regression::{Each, Sizes};
-use crate::residual_force::{Profile, ResidualForce};
-use crate::search::response::At;
+use crate::residual_force::types::{Profile, ResidualForce};
 use crate::thresholds;
 
 /// What profiles are read from.
 pub(crate) struct Blocks<'b> {
-    pub at: &'b At,
-    pub setting: &'b Setting<'b>,
-    pub standings: &'b [Vec<Vec<Standing>>],
+    pub at: &'b LinearisedFit,
+    pub problem: &'b EstimationProblem<'b>,
+    pub operating_points: &'b [Vec<Vec<OperatingPoint>>],
     pub equation: usize,
 }
 
 impl Blocks<'_> {
     /// All profiles of one equation.
-    pub fn profiles(&self, looked: &Looked, range: &Range, fit: &Fit) -> ResidualForce {
-        let gain = [0, 1].map(|family| looked.shared(family).gain);
-        let inflation = looked.inflation((self.at, self.setting), usize::from(gain[1] > gain[0]));
+    pub fn profiles(
+        &self,
+        regressed: &FamilyRegression,
+        range: &Range,
+        fit: &Fit,
+    ) -> ResidualForce {
+        let decrease = [0, 1].map(|family| regressed.shared(family).decrease);
+        let inflation = regressed.inflation(
+            (self.at, self.problem),
+            usize::from(decrease[1] > decrease[0]),
+        );
         let over = |family: usize| {
-            let found = looked.shared(family);
+            let found = regressed.shared(family);
             Profile {
-                over: looked.families[family].bends.clone(),
+                over: regressed.families[family].bends.clone(),
                 sd: deviations(&found, inflation),
                 values: found.values.iter().copied().collect(),
-                part: looked.part(family),
+                part: regressed.part(family),
                 peak: None,
             }
         };
-        let level = noise(looked, gain[0].max(gain[1]));
+        let level = noise(regressed, decrease[0].max(decrease[1]));
         let mut order = Profile::default();
-        for (place, family) in looked.families.iter().enumerate() {
+        for (place, family) in regressed.families.iter().enumerate() {
             let Over::Order(number) = family.over else {
                 continue;
             };
-            let found = looked.shared(place);
+            let found = regressed.shared(place);
             let sd = deviations(&found, inflation);
             order.over.push(f64::from(number));
             order.values.push(found.values.norm());
             order
                 .sd
                 .push((0.5 * (sd[0] * sd[0] + sd[1] * sd[1])).sqrt());
-            let part = looked.part(place);
+            let part = regressed.part(place);
             if part > order.part {
                 order.part = part;
                 order.peak = Some(order.over.len() - 1);
             }
         }
-        let frequency = self.over_frequency(looked, level);
+        let frequency = self.over_frequency(regressed, level);
         ResidualForce {
             equations: Vec::new(),
             ranked: Vec::new(),
@@ -65,27 +73,27 @@ impl Blocks<'_> {
             part: 0.0,
             rate: over(0),
             place: over(1),
-            time: self.over_time(looked, level),
+            time: self.over_time(regressed, level),
             order,
             frequency,
-            amplitude: self.by_amplitude(looked, range, (level, fit)),
+            amplitude: self.by_amplitude(regressed, range, (level, fit)),
         }
     }
 
     /// The force over the time of the first record.
-    fn over_time(&self, looked: &Looked, level: f64) -> Profile {
+    fn over_time(&self, regressed: &FamilyRegression, level: f64) -> Profile {
         let mut profile = Profile::default();
-        let Some(family) = looked.find(|over| over == Over::Time) else {
+        let Some(family) = regressed.find(|over| over == Over::Time) else {
             return profile;
         };
-        let found = looked.regression.each(looked.range(family), level);
+        let found = regressed.regression.each(regressed.range(family), level);
         profile.part = found.part;
         for (place, sizes) in self.at.places.iter().zip(&found.windows) {
-            let window = &self.setting.train.list[*place];
+            let window = &self.problem.train.list[*place];
             let (Some(sizes), 0) = (sizes, window.record) else {
                 continue;
             };
-            let bends = &looked.families[family].bends;
+            let bends = &regressed.families[family].bends;
             profile
                 .over
                 .extend(bends.iter().map(|bend| window.times[0] + bend));
@@ -102,27 +110,27 @@ impl Blocks<'_> {
     /// The usual size over the frequency, of waves that differ from window to window, all at once:
     /// alone, a fast one would have to do what a slow one does. Which explains most is looked at
     /// one by one.
-    fn over_frequency(&self, looked: &Looked, level: f64) -> Profile {
+    fn over_frequency(&self, regressed: &FamilyRegression, level: f64) -> Profile {
         let mut profile = Profile::default();
         let frequency = |family: &Family| match family.over {
             Over::Frequency(frequency) => Some(frequency),
             _ => None,
         };
-        let all = looked.families.iter().enumerate();
+        let all = regressed.families.iter().enumerate();
         let places: Vec<(usize, f64)> = all.filter_map(|(k, f)| Some((k, frequency(f)?))).collect();
         let (Some(first), Some(last)) = (places.first(), places.last()) else {
             return profile;
         };
-        let whole = looked.range(first.0).start..looked.range(last.0).end;
-        let found = looked.regression.each(whole.clone(), level);
+        let whole = regressed.range(first.0).start..regressed.range(last.0).end;
+        let found = regressed.regression.each(whole.clone(), level);
         for (family, frequency) in places {
-            let range = looked.range(family);
+            let range = regressed.range(family);
             let own = range.start - whole.start..range.end - whole.start;
             let (size, sd) = usual(&found, own, level);
             profile.over.push(frequency);
             profile.values.push(size);
             profile.sd.push(sd);
-            let part = looked.regression.each(range, level).part;
+            let part = regressed.regression.each(range, level).part;
             if part > profile.part {
                 profile.part = part;
                 profile.peak = Some(profile.over.len() - 1);
@@ -133,22 +141,30 @@ impl Blocks<'_> {
 
     /// What of the force goes with the rate in each window, at its root mean square there, over
     /// the largest rate.
-    fn by_amplitude(&self, looked: &Looked, range: &Range, (level, fit): (f64, &Fit)) -> Profile {
+    fn by_amplitude(
+        &self,
+        regressed: &FamilyRegression,
+        range: &Range,
+        (level, fit): (f64, &Fit),
+    ) -> Profile {
         let mut profile = Profile::default();
-        let Some(family) = looked.find(|over| over == Over::Rate) else {
+        let Some(family) = regressed.find(|over| over == Over::Rate) else {
             return profile;
         };
-        let bends = DVector::from_column_slice(&looked.families[family].bends);
-        let sizes = looked.regression.in_windows(looked.range(family), &bends);
+        let bends = DVector::from_column_slice(&regressed.families[family].bends);
+        let sizes = regressed
+            .regression
+            .in_windows(regressed.range(family), &bends);
         let correlation = fit.train.correlation;
         let mut points: Vec<(f64, f64, f64)> = Vec::new();
-        for (standings, size) in self.standings.iter().zip(sizes) {
+        for (operating_points, size) in self.operating_points.iter().zip(sizes) {
             let Some((size, variance)) = size else {
                 continue;
             };
-            let rates = standings.iter().map(|all| all[self.equation].rate);
+            let rates = operating_points.iter().map(|all| all[self.equation].rate);
             let largest = rates.clone().map(f64::abs).fold(0.0, f64::max);
-            let square: f64 = rates.map(|r| r * r).sum::<f64>() / standings.len().max(1) as f64;
+            let square: f64 =
+                rates.map(|r| r * r).sum::<f64>() / operating_points.len().max(1) as f64;
             let usual = square.sqrt();
             let sd = (level * correlation * variance).sqrt() * usual;
             points.push((largest.min(2.0 * range.rate), size * usual, sd));

@@ -3,15 +3,15 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::model::problem::Setting;
+use crate::fit::linearised::LinearisedFit;
+use crate::model::problem::EstimationProblem;
 use crate::residual_force::basis_functions::Over;
-use crate::residual_force::family_regression::{Looked, noise};
-use crate::residual_force::{Kind, Ranked, Simple};
-use crate::search::response::At;
+use crate::residual_force::family_regression::{FamilyRegression, noise};
+use crate::residual_force::types::{Kind, RankedEquation, Simple};
 use crate::thresholds;
 
 /// How the equations compare.
-pub(crate) struct Judged {
+pub(crate) struct Ranking {
     /// For each the parts of the squares by rate or place and by time.
     pub parts: Vec<(f64, f64)>,
     pub best: usize,
@@ -22,21 +22,25 @@ pub(crate) struct Judged {
     pub stands_out: bool,
 }
 
-impl Judged {
+impl Ranking {
     /// Three families for each of so many equations: over rate, place and time.
-    pub fn of(looked: &Looked, count: usize, of: (&At, &Setting<'_>)) -> Option<Self> {
-        let regression = &looked.regression;
+    pub fn of(
+        regressed: &FamilyRegression,
+        count: usize,
+        of: (&LinearisedFit, &EstimationProblem<'_>),
+    ) -> Option<Self> {
+        let regression = &regressed.regression;
         let states: Vec<(f64, usize)> = (0..count)
             .map(|number| {
-                let part = |family: usize| (looked.part(family), family);
+                let part = |family: usize| (regressed.part(family), family);
                 let (rate, place) = (part(3 * number), part(3 * number + 1));
                 if rate.0 >= place.0 { rate } else { place }
             })
             .collect();
         let by_state = (0..count).max_by(|a, b| states[*a].0.total_cmp(&states[*b].0))?;
-        let level = noise(looked, looked.shared(states[by_state].1).gain);
+        let level = noise(regressed, regressed.shared(states[by_state].1).decrease);
         let times: Vec<f64> = (0..count)
-            .map(|number| regression.each(looked.range(3 * number + 2), level).part)
+            .map(|number| regression.each(regressed.range(3 * number + 2), level).part)
             .collect();
         let by_time = (0..count).max_by(|a, b| times[*a].total_cmp(&times[*b]))?;
         let is_state = states[by_state].0 > thresholds::STATE_EXPLAINS * times[by_time];
@@ -50,7 +54,7 @@ impl Judged {
             true => (by_state, states[by_state].0, states[by_state].1),
             false => (by_time, times[by_time], 3 * by_time + 2),
         };
-        let correlation = looked.correlation(of, family, level);
+        let correlation = regressed.correlation(of, family, level);
         let left = (1.0 - part).max(0.0) * regression.squares / regression.numbers;
         let whitened = part * regression.squares / (2.0 * left.max(1.0) * correlation);
         let parts = states.iter().zip(&times);
@@ -64,15 +68,15 @@ impl Judged {
         })
     }
 
-    pub fn ranked(&self, all: &[usize]) -> Vec<Ranked> {
-        let mut ranked: Vec<Ranked> = (all.iter().zip(&self.parts))
-            .map(|(equation, (by_state, by_time))| Ranked {
+    pub fn ranked(&self, all: &[usize]) -> Vec<RankedEquation> {
+        let mut ranked: Vec<RankedEquation> = (all.iter().zip(&self.parts))
+            .map(|(equation, (by_state, by_time))| RankedEquation {
                 equation: *equation,
                 by_state: *by_state,
                 by_time: *by_time,
             })
             .collect();
-        let order = |of: &Ranked| {
+        let order = |of: &RankedEquation| {
             if self.is_state {
                 of.by_state
             } else {
@@ -86,9 +90,13 @@ impl Judged {
 
 /// The simple functions, one or two, that a force over rate or place consists of nearly; nothing
 /// if it takes more.
-pub(crate) fn simple(looked: &Looked, family: usize, of: (&At, &Setting<'_>)) -> Kind {
-    let over = looked.families[family].over;
-    let bends = &looked.families[family].bends;
+pub(crate) fn simple(
+    regressed: &FamilyRegression,
+    family: usize,
+    of: (&LinearisedFit, &EstimationProblem<'_>),
+) -> Kind {
+    let over = regressed.families[family].over;
+    let bends = &regressed.families[family].bends;
     let half = bends.len() / 2;
     let is_rate = over == Over::Rate;
     let side = |place: usize| match is_rate {
@@ -123,21 +131,21 @@ pub(crate) fn simple(looked: &Looked, family: usize, of: (&At, &Setting<'_>)) ->
         others.map(move |b| vec![*a, *b])
     });
     let sets: Vec<Vec<Simple>> = single.chain(pairs).collect();
-    let whole = looked.shared(family).gain;
+    let whole = regressed.shared(family).decrease;
     let fitted = |set: &Vec<Simple>| {
         let columns: Vec<DVector<f64>> = set.iter().map(|s| column(*s)).collect();
-        let sizes = looked
+        let sizes = regressed
             .regression
-            .sums(looked.range(family), &DMatrix::from_columns(&columns));
+            .sums(regressed.range(family), &DMatrix::from_columns(&columns));
         (set.clone(), sizes)
     };
     let enough = |count: usize| {
         let of = sets.iter().filter(|set| set.len() == count).map(fitted);
-        let best = of.max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
-        best.filter(|(_, sizes)| sizes.gain > thresholds::IS_SIMPLE * whole)
+        let best = of.max_by(|a, b| a.1.decrease.total_cmp(&b.1.decrease));
+        best.filter(|(_, sizes)| sizes.decrease > thresholds::IS_SIMPLE * whole)
     };
-    let inflation = looked.inflation(of, family);
-    let said = enough(1)
+    let inflation = regressed.inflation(of, family);
+    let described = enough(1)
         .or_else(|| enough(2))
         .map_or_else(Vec::new, |(set, sizes)| {
             let sizes = (0..set.len()).map(|k| {
@@ -148,7 +156,7 @@ pub(crate) fn simple(looked: &Looked, family: usize, of: (&At, &Setting<'_>)) ->
             sizes.collect()
         });
     match is_rate {
-        true => Kind::Rate(said),
-        false => Kind::Place(said),
+        true => Kind::Rate(described),
+        false => Kind::Place(described),
     }
 }

@@ -5,14 +5,11 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use crate::fit::full::Fit;
-use crate::fit::variable_projection::Eliminator;
-use crate::search::response::At;
-use crate::search::screening::add_prior;
+use crate::fit::fitted::Fit;
+use crate::fit::linearised::LinearisedFit;
+use crate::fit::variable_projection::StateProjection;
+use crate::fit::variable_projection::add_prior;
 use crate::thresholds;
-
-/// Rounds in which the size of a force that differs from window to window is found.
-const ROUNDS: usize = 12;
 
 /// Nuisances that initial states do as well are told apart by one of these parts of their
 /// squares.
@@ -45,7 +42,7 @@ pub struct Sizes {
     /// residual that is left.
     pub covariance: DMatrix<f64>,
     /// How much they lower the sum of squares.
-    pub gain: f64,
+    pub decrease: f64,
 }
 
 /// Sizes that differ from window to window.
@@ -58,7 +55,7 @@ pub struct Each {
 
 impl Regression {
     /// Takes columns for each window that is looked at.
-    pub fn new(at: &At, fit: &Fit, columns: &[DMatrix<f64>]) -> Option<Self> {
+    pub fn new(at: &LinearisedFit, fit: &Fit, columns: &[DMatrix<f64>]) -> Option<Self> {
         let count = columns.iter().map(DMatrix::ncols).max()?;
         let theta = &at.estimate.theta;
         // One that a bound holds is free as well: a force may be what drove it there.
@@ -150,7 +147,7 @@ impl Regression {
         let numbers = (there().count() * count).max(1) as f64;
         let trace: f64 = there().map(|(gram, _)| gram.trace()).sum();
         let mut ridge = 1e-3 * trace / numbers;
-        for _ in 0..ROUNDS {
+        for _ in 0..thresholds::VARIANCE_ROUNDS {
             let all = there().map(|(gram, right)| {
                 let found = sizes(gram, right, ridge);
                 found.values.norm_squared() + noise * found.covariance.trace()
@@ -161,20 +158,20 @@ impl Regression {
             }
             ridge = noise / square;
         }
-        let (mut gain, mut freedom) = (0.0, 0.0);
+        let (mut decrease, mut freedom) = (0.0, 0.0);
         let windows: Vec<Option<Sizes>> = (systems.iter())
             .map(|system| {
                 let (gram, right) = system.as_ref()?;
                 let found = sizes(gram, right, ridge);
                 let doubled = 2.0 * found.values.dot(right);
-                gain += doubled - found.values.dot(&(gram * &found.values));
+                decrease += doubled - found.values.dot(&(gram * &found.values));
                 freedom += (gram * &found.covariance).trace();
                 Some(found)
             })
             .collect();
         Each {
             windows,
-            part: (gain - noise * freedom) / self.held,
+            part: (decrease - noise * freedom) / self.held,
         }
     }
 
@@ -198,7 +195,7 @@ impl Regression {
     /// they are the same for all windows, and nuisances give way to them.
     pub fn left(
         &self,
-        (at, columns): (&At, &[DMatrix<f64>]),
+        (at, columns): (&LinearisedFit, &[DMatrix<f64>]),
         values: &dyn Fn(usize) -> DVector<f64>,
         shared: bool,
     ) -> Vec<Vec<f64>> {
@@ -208,7 +205,7 @@ impl Regression {
             -factor.solve(&(cross.columns(0, count) * values(0) + cross.column(count)))
         });
         let windows = at.base.iter().zip(columns).enumerate();
-        let one = |(window, (base, block)): (usize, (&Option<Eliminator>, &DMatrix<f64>))| {
+        let one = |(window, (base, block)): (usize, (&Option<StateProjection>, &DMatrix<f64>))| {
             let (Some(base), true) = (base, block.ncols() == count) else {
                 return Vec::new();
             };
@@ -252,12 +249,12 @@ fn sizes(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Sizes {
         return Sizes {
             values: DVector::zeros(count),
             covariance: DMatrix::zeros(count, count),
-            gain: 0.0,
+            decrease: 0.0,
         };
     };
     let mut values = factor.solve(&scaled);
     let mut covariance = factor.inverse();
-    let gain = values.dot(&scaled);
+    let decrease = values.dot(&scaled);
     for r in 0..count {
         values[r] /= scale[r];
         for c in 0..count {
@@ -268,6 +265,6 @@ fn sizes(gram: &DMatrix<f64>, right: &DVector<f64>, ridge: f64) -> Sizes {
     Sizes {
         values,
         covariance,
-        gain,
+        decrease,
     }
 }

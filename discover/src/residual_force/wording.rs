@@ -2,11 +2,11 @@
 //! squares it explains. No more is said than its numbers support.
 
 use crate::residual_force::equations::Equation;
-use crate::residual_force::{Kind, Profile, ResidualForce, Simple};
+use crate::residual_force::types::{Kind, Profile, ResidualForce, Simple};
 use crate::thresholds;
 
 /// One sentence or two on the residual force of the model as it is.
-pub fn said(force: &ResidualForce) -> String {
+pub fn described(force: &ResidualForce) -> String {
     let Some(kind) = &force.kind else {
         return "No force on a single equation stands out.".to_owned();
     };
@@ -17,7 +17,7 @@ pub fn said(force: &ResidualForce) -> String {
         shape(force, kind),
         100.0 * force.part
     );
-    let own = |ranked: &crate::residual_force::Ranked| match kind {
+    let own = |ranked: &crate::residual_force::types::RankedEquation| match kind {
         Kind::Time => ranked.by_time,
         Kind::Rate(_) | Kind::Place(_) => ranked.by_state,
     };
@@ -33,10 +33,10 @@ pub fn said(force: &ResidualForce) -> String {
 }
 
 /// What is said of the residual force once something was found.
-pub fn said_after(force: &ResidualForce) -> String {
+pub fn described_after(force: &ResidualForce) -> String {
     match &force.kind {
         None => "Once what was found is in the model, no force stands out.".to_owned(),
-        Some(_) => said(force).replacen(
+        Some(_) => described(force).replacen(
             "The residual is best explained",
             "What is left once what was found is in the model is best explained",
             1,

@@ -1,12 +1,13 @@
 //! The decision: whether a fit with an effect more is better than one without by so much that
 //! the effect is believed. Every limit stands in [`crate::thresholds`].
 
-use crate::fit::full::Fit;
+use crate::fit::fitted::Fit;
+use crate::search::rejection::Rejection;
 use crate::thresholds;
 
 /// What speaks for an effect.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Evidence {
+pub struct TestStatistics {
     /// The part by which the test records' gap falls.
     pub held_out: f64,
     /// How much the test records' squares fall, in standard errors over blocks of time.
@@ -21,7 +22,7 @@ pub struct Evidence {
 
 /// An unknown of an effect.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Own {
+pub struct EffectUnknown {
     /// Its place among the unknowns of the fit.
     pub place: usize,
     /// Which of the effects that are judged together it belongs to, from 0.
@@ -37,70 +38,55 @@ pub struct Own {
 /// Judges a fit with effects whose unknowns these are.
 ///
 /// # Errors
-/// Why they are not believed, in words.
-pub fn judge(before: &Fit, after: &Fit, own: &[Own]) -> Result<Evidence, String> {
-    let evidence = explains(before, after, own)?;
-    if evidence.t < thresholds::SIGNIFICANCE {
-        return Err(format!(
-            "its size is {:.1} standard deviations, {} are asked for",
-            evidence.t,
-            thresholds::SIGNIFICANCE
-        ));
+/// Why they are not accepted.
+pub fn acceptance_test(
+    before: &Fit,
+    after: &Fit,
+    own: &[EffectUnknown],
+) -> Result<TestStatistics, Rejection> {
+    let statistics = explains(before, after, own)?;
+    if statistics.t < thresholds::SIGNIFICANCE {
+        return Err(Rejection::Significance(statistics.t));
     }
     // The null model does what is within a prior itself: what is beyond may be small beside it.
     let has_prior = own.iter().all(|own| own.prior.is_some());
-    if !has_prior && evidence.size < thresholds::SIZE {
-        return Err(format!(
-            "what it does is {:.2} of the noise, {} are asked for",
-            evidence.size,
-            thresholds::SIZE
-        ));
+    if !has_prior && statistics.size < thresholds::SIZE {
+        return Err(Rejection::Size(statistics.size));
     }
-    Ok(evidence)
+    Ok(statistics)
 }
 
 /// Judges whether the records are explained better, however uncertain the sizes are: something
 /// declared that does the same makes them so.
 ///
 /// # Errors
-/// Why they are not, in words.
-pub fn explains(before: &Fit, after: &Fit, own: &[Own]) -> Result<Evidence, String> {
-    let evidence = evidence(before, after, own);
-    if let Some(reason) = at_bound(after, own) {
-        return Err(reason);
+/// Why they are not.
+pub fn explains(
+    before: &Fit,
+    after: &Fit,
+    own: &[EffectUnknown],
+) -> Result<TestStatistics, Rejection> {
+    let statistics = test_statistics(before, after, own);
+    if let Some(rejection) = at_bound(after, own).or_else(|| within_prior(after, own)) {
+        return Err(rejection);
     }
-    if let Some((name, off)) = within_prior(after, own) {
-        return Err(format!(
-            "{name} is {off:.1} standard deviations of its prior off, {} are asked for",
-            thresholds::SHIFTED
-        ));
+    if statistics.held_out < thresholds::HELD_OUT {
+        return Err(Rejection::HeldOut(statistics.held_out));
     }
-    if evidence.held_out < thresholds::HELD_OUT {
-        return Err(format!(
-            "the test records are no better for it: the gap falls by {:.1} %, {:.0} % are asked for",
-            100.0 * evidence.held_out,
-            100.0 * thresholds::HELD_OUT
-        ));
+    if statistics.held_out_errors < thresholds::STANDARD_ERRORS {
+        return Err(Rejection::StandardErrors(statistics.held_out_errors));
     }
-    if evidence.held_out_errors < thresholds::STANDARD_ERRORS {
-        return Err(format!(
-            "the test records may be better by chance: {:.1} standard errors, {} are asked for",
-            evidence.held_out_errors,
-            thresholds::STANDARD_ERRORS
-        ));
+    if statistics.information < thresholds::INFORMATION {
+        return Err(Rejection::Information {
+            found: statistics.information,
+            asked: thresholds::INFORMATION,
+        });
     }
-    if evidence.information < thresholds::INFORMATION {
-        return Err(format!(
-            "too little evidence in the training records: a gain of {:.1}, {} are asked for",
-            evidence.information,
-            thresholds::INFORMATION
-        ));
-    }
-    Ok(evidence)
+    Ok(statistics)
 }
 
 /// What speaks for effects whose unknowns these are.
-pub fn evidence(before: &Fit, after: &Fit, own: &[Own]) -> Evidence {
+pub fn test_statistics(before: &Fit, after: &Fit, own: &[EffectUnknown]) -> TestStatistics {
     let (old, new) = (&before.test, &after.test);
     let falls: Vec<f64> = (old.blocks.iter().zip(&new.blocks))
         .map(|(a, b)| a.sqrt() - b.sqrt())
@@ -109,9 +95,9 @@ pub fn evidence(before: &Fit, after: &Fit, own: &[Own]) -> Evidence {
     let mean = falls.iter().sum::<f64>() / count;
     let variance = falls.iter().map(|f| (f - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
     let fall = before.train.blocks.iter().sum::<f64>() - after.train.blocks.iter().sum::<f64>();
-    let whitening = (after.train.pooled * after.train.pooled).max(1.0) * after.train.correlation;
-    Evidence {
-        held_out: 1.0 - new.pooled / old.pooled,
+    let whitening = (after.train.rms * after.train.rms).max(1.0) * after.train.correlation;
+    TestStatistics {
+        held_out: 1.0 - new.rms / old.rms,
         held_out_errors: mean / (variance / count).sqrt(),
         information: fall / (2.0 * whitening),
         t: significance(after, own),
@@ -123,14 +109,15 @@ pub fn evidence(before: &Fit, after: &Fit, own: &[Own]) -> Evidence {
 /// the root mean square that is left the part that goes.
 fn size(before: &Fit, after: &Fit) -> f64 {
     let channels = |of: fn(&Fit) -> &Vec<f64>| of(before).iter().zip(of(after));
-    let both = channels(|fit| &fit.train.in_noises).chain(channels(|fit| &fit.test.in_noises));
+    let both =
+        channels(|fit| &fit.train.normalised_rms).chain(channels(|fit| &fit.test.normalised_rms));
     let sizes = both.map(|(old, new)| (old * old - new * new).max(0.0).sqrt());
     sizes.fold(0.0, f64::max)
 }
 
 /// The size of an effect in standard deviations; of several the smallest. The two parts of a
 /// wave count together.
-fn significance(fit: &Fit, own: &[Own]) -> f64 {
+fn significance(fit: &Fit, own: &[EffectUnknown]) -> f64 {
     let effects = own.iter().map(|own| own.effect + 1).max().unwrap_or(0);
     let of = |effect: usize| {
         let scaling = own
@@ -143,31 +130,31 @@ fn significance(fit: &Fit, own: &[Own]) -> f64 {
     (0..effects).map(of).fold(f64::INFINITY, f64::min)
 }
 
-/// What is said of a parameter that a bound holds.
-fn at_bound(fit: &Fit, own: &[Own]) -> Option<String> {
+/// A parameter that a bound holds.
+fn at_bound(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
     let held = own.iter().find(|own| !own.is_shape && is_held(fit, own))?;
-    let name = &fit.unknowns[held.place].label;
+    let name = fit.unknowns[held.place].label.clone();
     Some(match held.prior {
-        Some(_) => format!("{name} runs to the end of what is admitted"),
-        None => format!("{name} has the wrong sign: held to it, the effect vanishes"),
+        Some(_) => Rejection::AtLimit(name),
+        None => Rejection::WrongSign(name),
     })
 }
 
 /// Whether an unknown is held by one of its bounds.
-pub fn is_held(fit: &Fit, own: &Own) -> bool {
+pub fn is_held(fit: &Fit, own: &EffectUnknown) -> bool {
     let unknown = &fit.unknowns[own.place];
     let value = fit.train.estimate.theta[own.place];
     value <= unknown.bounds.0 || value >= unknown.bounds.1
 }
 
 /// An unknown that gave up its prior and is within it still, and how far it is off.
-fn within_prior(fit: &Fit, own: &[Own]) -> Option<(String, f64)> {
+fn within_prior(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
     own.iter().find_map(|own| {
         let prior = own.prior?;
         let off = (fit.train.estimate.theta[own.place] - own.base).abs() / prior;
         // Beyond its prior for certain, not by what the record leaves open.
         let sure = off - thresholds::STANDARD_ERRORS * fit.sd[own.place] / prior;
         let is_off = sure > thresholds::SHIFTED;
-        (!is_off).then(|| (fit.unknowns[own.place].label.clone(), off))
+        (!is_off).then(|| Rejection::WithinPrior(fit.unknowns[own.place].label.clone(), off))
     })
 }

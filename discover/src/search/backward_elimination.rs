@@ -1,25 +1,31 @@
 //! What was believed, one effect less: a later effect may do what an earlier one was taken for.
 
-use crate::fit::full::Fit;
-use crate::model::problem::Setting;
+use crate::error::DiscoverError;
+use crate::fit::fitted::Fit;
+use crate::fit::{full, preliminary};
+use crate::model::problem::EstimationProblem;
 use crate::search::found::{Accepted, Found};
 use crate::thresholds;
 
 /// Takes away effects without which the records are explained as well, the least needed first.
 /// `said` is told which.
-pub fn thin(setting: &Setting<'_>, found: &mut Found, said: &dyn Fn(&str)) {
+pub fn eliminate_backwards(
+    problem: &EstimationProblem<'_>,
+    found: &mut Found,
+    progress: &dyn Fn(&str),
+) {
     while found.accepted.len() > 1 {
         let best = found.best();
         let fits = (0..found.accepted.len()).filter_map(|place| {
-            let fit = without(setting, found, place).ok()?;
+            let fit = without(problem, found, place).ok()?;
             is_as_good(best, &fit).then_some((place, fit))
         });
-        let least = fits.min_by(|a, b| a.1.train.pooled.total_cmp(&b.1.train.pooled));
+        let least = fits.min_by(|a, b| a.1.train.rms.total_cmp(&b.1.train.rms));
         let Some((place, fit)) = least else {
             return;
         };
         let label = found.accepted[place].candidate.label();
-        said(&format!("  {label} is needed no more"));
+        progress(&format!("  {label} is needed no more"));
         renumber(&mut found.accepted, place);
         found.last = Some(fit);
     }
@@ -28,20 +34,24 @@ pub fn thin(setting: &Setting<'_>, found: &mut Found, said: &dyn Fn(&str)) {
 /// Whether a fit with less leaves no more than one with more, but for what is asked of an effect.
 fn is_as_good(with: &Fit, without: &Fit) -> bool {
     let worse = |with: f64, without: f64| with < (1.0 - thresholds::HELD_OUT) * without;
-    !worse(with.train.pooled, without.train.pooled) && !worse(with.test.pooled, without.test.pooled)
+    !worse(with.train.rms, without.train.rms) && !worse(with.test.rms, without.test.rms)
 }
 
 /// The fit with all effects but one, begun where the fit with it ended.
-fn without(setting: &Setting<'_>, found: &Found, place: usize) -> Result<Fit, String> {
+fn without(
+    problem: &EstimationProblem<'_>,
+    found: &Found,
+    place: usize,
+) -> Result<Fit, DiscoverError> {
     let fit = found.best();
     let gone = &found.accepted[place];
-    let mut texts = (found.null.text.clone(), found.null.linear.clone());
+    let mut texts = found.null.texts.clone();
     for (other, effect) in found.accepted.iter().enumerate() {
         if other == place || effect.candidate.released.is_some() {
             continue;
         }
         let values = fit.stated(&effect.unknowns);
-        texts = setting.with((&texts.0, &texts.1), &effect.candidate, &values)?;
+        texts = effect.candidate.added(problem, &texts, &values)?;
     }
     let mut unknowns = fit.unknowns.clone();
     let mut theta = fit.train.estimate.theta.clone();
@@ -57,8 +67,8 @@ fn without(setting: &Setting<'_>, found: &Found, place: usize) -> Result<Fit, St
         theta = kept.iter().map(|at| theta[*at]).collect();
     }
     let left = fit.train.estimate.cost;
-    let sketch = setting.expected(texts, unknowns, theta, (fit, left))?;
-    setting.complete(sketch)
+    let preliminary = preliminary::expected(problem, texts, unknowns, theta, (fit, left))?;
+    full::complete(problem, preliminary)
 }
 
 /// Takes an effect off the list; the unknowns of those behind it move up.

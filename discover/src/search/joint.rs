@@ -1,51 +1,52 @@
 //! Two effects of which neither is believed alone, and which no pair promised: the best single one,
 //! and what is believed beside it.
 
-use crate::search::acceptance::{Own, is_held, judge};
-use crate::search::fitted::{Task, Trial};
-use crate::search::round::{Look, View};
-use crate::search::selected::{Named, Searched, leaves_clearly_less, named};
+use crate::search::acceptance::{EffectUnknown, acceptance_test, is_held};
+use crate::search::context::Context;
+use crate::search::excitation_window::ExcitationWindow;
+use crate::search::fitted::FittedHypothesis;
+use crate::search::round::Round;
+use crate::search::selected::{Selected, selected};
+use crate::search::tested::TestedPool;
 
-impl Look<'_> {
-    /// What is believed together of what was looked at, if it explains most of what is left.
-    pub(crate) fn together(&self, searched: &[Searched]) -> Option<Named> {
-        let all = searched.iter().flat_map(|(candidates, screen, trials)| {
-            let with = move |trial| (candidates, screen, trial);
-            trials.iter().map(with)
-        });
-        let promising = all.filter(|(_, _, trial)| self.is_promising(trial));
-        let (candidates, screen, first) =
-            promising.min_by(|a, b| a.2.fit.left().total_cmp(&b.2.fit.left()))?;
-        let candidate = candidates[screen.responses[first.responses[0]].candidate].clone();
-        (self.task.said)(&format!("looking at what is beside {}", candidate.label()));
-        let beside = Look {
-            task: Task {
-                fit: &first.fit,
-                ..self.task
-            },
-            is_first: false,
-            effects: self.effects,
-        };
-        let (candidates, screen, mut trials) = beside.looked(View::Whole)?;
-        trials.retain(|trial| trial.explains);
-        let mut found = named(beside.task, (candidates, screen, trials))?;
-        let second = found.trial.own.into_iter().map(|own| Own {
-            effect: own.effect + 1,
-            ..own
-        });
-        found.trial.own = first.own.iter().cloned().chain(second).collect();
-        found.trial.verdict = judge(self.task.fit, &found.trial.fit, &found.trial.own);
-        let is_believed = found.trial.verdict.is_ok() && self.task.explains_most(&found.trial.fit);
-        found.candidates.insert(0, candidate);
-        found.equivalent.insert(0, Vec::new());
-        is_believed.then_some(found)
-    }
+/// What is believed together of what was looked at, if it explains most of what is left.
+pub fn joint_acceptance(round: &Round<'_>, tested: &[TestedPool]) -> Option<Selected> {
+    let all = tested.iter().flat_map(|tested| {
+        let with = move |trial| (tested, trial);
+        tested.trials.iter().map(with)
+    });
+    let promising = all.filter(|(_, trial)| is_promising(round, trial));
+    let (tested, first) = promising.min_by(|a, b| a.1.fit.rms().total_cmp(&b.1.fit.rms()))?;
+    let response = &tested.screening.responses[first.responses[0]];
+    let candidate = tested.candidates[response.candidate].clone();
+    (round.context.progress)(&format!("looking at what is beside {}", candidate.label()));
+    let beside = Round {
+        context: Context {
+            fit: &first.fit,
+            ..round.context
+        },
+        is_first: false,
+        effects: round.effects,
+    };
+    let mut tested = beside.tested_in(ExcitationWindow::Whole)?;
+    tested.trials.retain(|trial| trial.explains);
+    let mut found = selected(beside.context, tested)?;
+    let second = found.trial.own.into_iter().map(|own| EffectUnknown {
+        effect: own.effect + 1,
+        ..own
+    });
+    found.trial.own = first.own.iter().cloned().chain(second).collect();
+    found.trial.verdict = acceptance_test(round.context.fit, &found.trial.fit, &found.trial.own);
+    let is_believed = found.trial.verdict.is_ok() && round.context.explains_most(&found.trial.fit);
+    found.candidates.insert(0, candidate);
+    found.equivalent.insert(0, Vec::new());
+    is_believed.then_some(found)
+}
 
-    /// Whether a single effect leaves clearly less though it is not believed, and was not held.
-    fn is_promising(&self, trial: &Trial) -> bool {
-        let is_free = |own: &Own| own.prior.is_none() && !is_held(&trial.fit, own);
-        trial.responses.len() == 1
-            && trial.own.iter().all(is_free)
-            && leaves_clearly_less(&trial.fit, self.task.fit)
-    }
+/// Whether a single effect leaves clearly less though it is not believed, and was not held.
+fn is_promising(round: &Round<'_>, trial: &FittedHypothesis) -> bool {
+    let is_free = |own: &EffectUnknown| own.prior.is_none() && !is_held(&trial.fit, own);
+    trial.responses.len() == 1
+        && trial.own.iter().all(is_free)
+        && trial.fit.leaves_clearly_less(round.context.fit)
 }

@@ -1,18 +1,174 @@
-//! The search for what a model lacks.
+//! The search: screen, fit the most promising in full, accept or reject, and again, until the
+//! floor is reached or nothing more is accepted.
+//!
+//! The files, in the order in which they read each other: [`response`] by
+//! [`mod@variational_response`] or [`mod@perturbed_response`] ([`mod@responses`] chooses),
+//! [`screening`], [`acceptance`]; [`context`], [`pool`], [`hypothesis`], [`fitted`];
+//! `shape_restarts`, `singles`, `pairs`; [`tested`], [`parameter_offsets`], [`selected`],
+//! `alternatives`; `excitation_window`, `dropped_priors`, [`round`], `joint`, `answer`; [`found`],
+//! [`backward_elimination`].
 
 pub mod acceptance;
 mod alternatives;
+mod answer;
 pub mod backward_elimination;
+pub mod context;
+mod dropped_priors;
+mod excitation_window;
 pub mod fitted;
 pub mod found;
-mod hypothesis;
+pub mod hypothesis;
 mod joint;
 mod pairs;
 pub mod parameter_offsets;
 pub mod perturbed_response;
+pub mod pool;
+pub mod rejection;
 pub mod response;
+pub mod responses;
 mod round;
 pub mod screening;
 pub mod selected;
 mod shape_restarts;
+mod singles;
+pub mod tested;
 pub mod variational_response;
+
+use crate::catalogue::candidate::Candidate;
+use crate::catalogue::effect::Effect;
+use crate::error::DiscoverError;
+use crate::fit::fitted::Fit;
+use crate::model::problem::EstimationProblem;
+use crate::search::acceptance::test_statistics;
+use crate::search::answer::answer;
+use crate::search::backward_elimination::eliminate_backwards;
+use crate::search::context::Context;
+use crate::search::found::{Accepted, Found, Rejected};
+use crate::search::round::Round;
+use crate::search::selected::Selected;
+use crate::search::tested::TestedPool;
+use crate::thresholds;
+
+/// Searches for what a model lacks. `floor`: the gap that a right model would leave, in noises.
+/// `said` is told what is being done.
+///
+/// # Errors
+/// Why no motion can be followed.
+pub fn search(
+    problem: &EstimationProblem<'_>,
+    null: Fit,
+    effects: &[Effect],
+    floor: f64,
+    progress: &(dyn Fn(&str) + Sync),
+) -> Result<Found, DiscoverError> {
+    let mut found = Found {
+        null,
+        last: None,
+        accepted: Vec::new(),
+        rejected: Vec::new(),
+    };
+    while found.accepted.len() < thresholds::MOST_EFFECTS {
+        let fit = found.last.as_ref().unwrap_or(&found.null);
+        if fit.is_at_floor(floor) {
+            break;
+        }
+        let round = Round {
+            context: Context {
+                problem,
+                fit,
+                floor,
+                progress,
+            },
+            is_first: found.accepted.is_empty(),
+            effects,
+        };
+        let tested = round.round();
+        for tested in &tested {
+            note_rejected(&mut found.rejected, tested);
+        }
+        let Some(selected) = answer(&round, tested) else {
+            break;
+        };
+        accept(&mut found, selected);
+        eliminate_backwards(problem, &mut found, progress);
+    }
+    Ok(found)
+}
+
+fn note_rejected(rejected: &mut Vec<Rejected>, tested: &TestedPool) {
+    let TestedPool {
+        candidates,
+        screening,
+        trials,
+    } = tested;
+    let mut note = |candidate: &Candidate, reason: String, not_testable: bool| {
+        rejected.retain(|known: &Rejected| known.candidate.label() != candidate.label());
+        rejected.push(Rejected {
+            candidate: candidate.clone(),
+            reason,
+            not_testable,
+        });
+    };
+    for (candidate, reason) in &screening.not_excited {
+        note(&candidates[*candidate], reason.clone(), true);
+    }
+    for (place, response) in screening.responses.iter().enumerate() {
+        let candidate = &candidates[response.candidate];
+        let perturbed_responses = trials.iter().find(|trial| trial.responses == [place]);
+        match perturbed_responses.map(|trial| &trial.verdict) {
+            Some(Err(reason)) => note(candidate, reason.to_string(), false),
+            Some(Ok(_)) => {}
+            None if response.unexplained_fraction <= thresholds::UNEXPLAINED_FRACTION => note(
+                candidate,
+                format!(
+                    "{:.1} % of what it does can be done by initial states, refitted parameters and sensors as well",
+                    100.0 * (1.0 - response.unexplained_fraction)
+                ),
+                true,
+            ),
+            None => note(
+                candidate,
+                "others explain the difference better".to_owned(),
+                false,
+            ),
+        }
+    }
+}
+
+/// Takes what is named over, with the candidates that cannot be told from it.
+fn accept(found: &mut Found, selected: Selected) {
+    let (before, best) = (found.best(), selected.trial);
+    let gap = (before.test.rms, best.fit.test.rms);
+    let evidence = best
+        .verdict
+        .unwrap_or_else(|_| test_statistics(before, &best.fit, &best.own));
+    let accepted = selected.candidates.into_iter().enumerate();
+    let accepted = accepted.map(|(number, candidate)| {
+        let own = best.own.iter().filter(|own| own.effect == number);
+        Accepted {
+            candidate,
+            unknowns: own.map(|own| own.place).collect(),
+            equivalent: selected.equivalent[number].clone(),
+            evidence: evidence.clone(),
+            test_gap: match selected.half {
+                Some((first, between)) if first == number => (gap.0, between),
+                Some((_, between)) => (between, gap.1),
+                None => gap,
+            },
+        }
+    });
+    let mut accepted: Vec<Accepted> = accepted.collect();
+    if selected.half.is_some_and(|(first, _)| first != 0) {
+        accepted.reverse();
+    }
+    found.accepted.extend(accepted);
+    let is_accepted = |known: &Candidate| {
+        let same =
+            |of: &Accepted| (&of.candidate.effect, &of.candidate.on) == (&known.effect, &known.on);
+        found.accepted.iter().any(same)
+    };
+    found
+        .rejected
+        .retain(|known| !is_accepted(&known.candidate));
+    found.last = Some(best.fit);
+}

@@ -2,12 +2,14 @@
 //! else is believed, and beside what is believed where they look like it.
 
 use crate::catalogue::candidate::{self, Candidate};
-use crate::fit::full::Fit;
-use crate::model::problem::FIRST_PART;
+use crate::fit::fitted::Fit;
 use crate::model::unknowns::{Unknown, What};
-use crate::search::fitted::Task;
-use crate::search::screening::screen;
-use crate::search::selected::Searched;
+use crate::search::context::Context;
+use crate::search::pool::Pool;
+use crate::search::screening::screening;
+use crate::search::singles::alike;
+use crate::search::tested::TestedPool;
+use crate::thresholds;
 
 /// The parameters of a model that no unknown moves.
 pub fn shifts(fit: &Fit) -> Vec<Candidate> {
@@ -20,30 +22,41 @@ pub fn shifts(fit: &Fit) -> Vec<Candidate> {
     };
     let parameters = fit.plant.model().parameters.iter();
     let free = parameters.filter(|parameter| !is_known(&parameter.name));
-    free.filter_map(candidate::shift).collect()
+    free.filter_map(candidate::offset_of).collect()
 }
 
 /// Parameters that look like what was named, fitted in its place: those that explain the records, and
 /// the response of what was named, beside which they were screened. None where nothing looks like
 /// it, and where what was named is such a parameter: it had all others beside it. The task's fit is
 /// what was fitted before anything was named.
-pub fn beside(task: Task<'_>, named: &Candidate) -> Option<(Searched, usize)> {
-    let shifts = shifts(task.fit);
-    let is_named = |shift: &Candidate| (&shift.effect, &shift.on) == (&named.effect, &named.on);
+pub fn beside(context: Context<'_>, selected: &Candidate) -> Option<(TestedPool, usize)> {
+    let shifts = shifts(context.fit);
+    let is_named =
+        |shift: &Candidate| (&shift.effect, &shift.on) == (&selected.effect, &selected.on);
     if shifts.is_empty() || shifts.iter().any(is_named) {
         return None;
     }
-    (task.said)(&format!(
+    (context.progress)(&format!(
         "screening {} parameters of the model beside {}",
         shifts.len(),
-        named.label()
+        selected.label()
     ));
-    let is_whole = task.is_whole();
-    let part = if is_whole { 1.0 } else { FIRST_PART.0 };
-    let candidates: Vec<Candidate> = std::iter::once(named.clone()).chain(shifts).collect();
-    let screen = screen(task.setting, task.fit, &candidates, part);
-    let own = screen.responses.iter().position(|r| r.candidate == 0)?;
-    let mut trials = task.round(&candidates, &screen, is_whole).alike(own);
+    let is_whole = context.is_whole();
+    let part = if is_whole {
+        1.0
+    } else {
+        thresholds::FIRST_PART
+    };
+    let candidates: Vec<Candidate> = std::iter::once(selected.clone()).chain(shifts).collect();
+    let screening = screening(context.problem, context.fit, &candidates, part);
+    let own = screening.responses.iter().position(|r| r.candidate == 0)?;
+    let pool = Pool::new(context, &candidates, &screening, is_whole);
+    let mut trials = alike(&pool, own);
     trials.retain(|trial| trial.explains);
-    Some(((candidates, screen, trials), own))
+    let tested = TestedPool {
+        candidates,
+        screening,
+        trials,
+    };
+    Some((tested, own))
 }

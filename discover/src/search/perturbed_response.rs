@@ -4,38 +4,39 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use crate::catalogue::candidate::Candidate;
-use crate::fit::full::Fit;
+use crate::catalogue::candidate::{Candidate, CandidateParameter};
+use crate::catalogue::candidate_unknown::CandidateUnknown;
+use crate::error::DiscoverError;
+use crate::fit::fitted::Fit;
 use crate::fit::gauss_newton::Estimate;
-use crate::fit::sensitivity::Crew;
+use crate::fit::linearised::LinearisedFit;
+use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::Shooting;
-use crate::fit::variable_projection::Eliminator;
-use crate::model::problem::Setting;
+use crate::fit::variable_projection::StateProjection;
+use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::Unknown;
-use crate::search::response::{At, Columns, TRIAL, Trial, absent, mapped, silent, trial};
-
-/// Attempts to find a size, each at most so many powers of ten further.
-const ATTEMPTS: (usize, f64) = (8, 1e6);
+use crate::search::response::Columns;
+use crate::thresholds;
 
 /// The responses of all candidates. Those of one effect at one place that differ in the order
 /// alone are of one size: it is searched for once.
-pub fn tried(
-    at: &At,
-    setting: &Setting<'_>,
+pub fn perturbed_responses(
+    at: &LinearisedFit,
+    problem: &EstimationProblem<'_>,
     fit: &Fit,
     candidates: &[Candidate],
-) -> Vec<Result<Columns, String>> {
+) -> Vec<Result<Columns, DiscoverError>> {
     let alike = |a: &Candidate, b: &Candidate| {
         let angle = |c: &Candidate| c.order.as_ref().map(|(angle, _)| angle.clone());
         a.effect == b.effect && a.on == b.on && angle(a) == angle(b)
     };
     let groups: Vec<&[Candidate]> = candidates.chunk_by(alike).collect();
-    let found: Vec<Vec<Result<Columns, String>>> = groups
+    let found: Vec<Vec<Result<Columns, DiscoverError>>> = groups
         .par_iter()
         .map(|group| {
             let mut sizes: Vec<f64> = Vec::new();
             let of_group = group.iter().map(|candidate| {
-                let found = response(at, setting, fit, candidate, &sizes);
+                let found = response(at, problem, fit, candidate, &sizes);
                 if let Ok((trials, _)) = &found {
                     sizes = trials.iter().map(|trial| trial.unknown.scale).collect();
                 }
@@ -49,23 +50,31 @@ pub fn tried(
 
 /// What a candidate does in each window, a column per parameter that scales it.
 fn response(
-    at: &At,
-    setting: &Setting<'_>,
+    at: &LinearisedFit,
+    problem: &EstimationProblem<'_>,
     fit: &Fit,
     candidate: &Candidate,
     sizes: &[f64],
-) -> Result<Columns, String> {
-    let At {
+) -> Result<Columns, DiscoverError> {
+    let LinearisedFit {
         places,
         base,
         level,
         estimate,
         part,
     } = at;
-    let start: Vec<f64> = candidate.parameters.iter().map(absent).collect();
-    let (text, linear) = setting.with((&fit.text, &fit.linear), candidate, &start)?;
-    let plant = setting.plant(&text, Some(&linear))?;
-    let mut trials: Vec<Trial> = candidate.parameters.iter().map(trial).collect();
+    let start: Vec<f64> = candidate
+        .parameters
+        .iter()
+        .map(CandidateParameter::absent)
+        .collect();
+    let texts = candidate.added(problem, &fit.texts, &start)?;
+    let plant = problem.plant(&texts.whole, Some(&texts.linear))?;
+    let mut trials: Vec<CandidateUnknown> = candidate
+        .parameters
+        .iter()
+        .map(CandidateUnknown::of)
+        .collect();
     for (trial, size) in trials.iter_mut().zip(sizes) {
         trial.unknown.scale = *size;
     }
@@ -75,8 +84,8 @@ fn response(
         .cloned()
         .chain(trials.iter().map(|t| t.unknown.clone()))
         .collect();
-    let ranges = mapped(fit, &plant, &fit.ranges);
-    let whole = setting.shooting(&plant, &setting.train, &extended, &ranges);
+    let ranges = fit.mapped(&plant, &fit.ranges);
+    let whole = Shooting::new(problem, &plant, &problem.train, &extended, &ranges);
     let shooting = Shooting {
         part: *part,
         ..whole
@@ -107,11 +116,11 @@ fn response(
             Some((square / numbers).sqrt())
         });
         let Some(size) = size else {
-            return Err(silent());
+            return Err(DiscoverError::NotExcited);
         };
         let pairs = places.iter().copied().zip(base.iter());
         let changes = changes(&shooting, (fit, estimate), &theta(size), pairs)
-            .ok_or("the motion with it cannot be followed")?;
+            .ok_or(DiscoverError::CandidateUnfollowed)?;
         for (window, change) in columns.iter_mut().zip(changes) {
             window.push(change / size);
         }
@@ -129,17 +138,17 @@ fn changes<'b>(
     shooting: &Shooting<'_>,
     (fit, estimate): (&Fit, &Estimate),
     theta: &[f64],
-    windows: impl Iterator<Item = (usize, &'b Option<Eliminator>)>,
+    windows: impl Iterator<Item = (usize, &'b Option<StateProjection>)>,
 ) -> Option<Vec<DVector<f64>>> {
-    let mut crew = Crew::frozen(shooting, theta, 1.0)?;
+    let mut sensitivities = SensitivityEvaluator::frozen(shooting, theta, 1.0)?;
     let mut changes = Vec::new();
     for (place, base) in windows {
         let Some(base) = base else {
             changes.push(DVector::zeros(0));
             continue;
         };
-        let start = mapped(fit, shooting.plant, &estimate.starts[place]);
-        let residual = crew.residual(place, &start)?;
+        let start = fit.mapped(shooting.plant, &estimate.initial_states[place]);
+        let residual = sensitivities.residual(place, &start)?;
         changes.push(DVector::from_vec(residual.values) - &base.residual);
     }
     Some(changes)
@@ -147,16 +156,19 @@ fn changes<'b>(
 
 /// The size of a parameter that moves the outputs as wanted; none if none does.
 fn trial_size(start: f64, level: f64, moved: impl Fn(f64) -> Option<f64>) -> Option<f64> {
-    let wanted = TRIAL * level;
+    let wanted = thresholds::RESPONSE_MOVES * level;
+    let near = thresholds::RESPONSE_NEAR;
     let mut size = start;
-    for _ in 0..ATTEMPTS.0 {
+    for _ in 0..thresholds::SIZE_ATTEMPTS {
         let factor = match moved(size) {
-            Some(change) if change > 0.2 * wanted && change < 5.0 * wanted => return Some(size),
+            Some(change) if change > near.0 * wanted && change < near.1 * wanted => {
+                return Some(size);
+            }
             Some(change) if change.is_finite() && change > 0.0 => wanted / change,
-            Some(_) => ATTEMPTS.1,
+            Some(_) => thresholds::SIZE_FACTOR,
             None => 1e-3,
         };
-        size *= factor.clamp(1.0 / ATTEMPTS.1, ATTEMPTS.1);
+        size *= factor.clamp(1.0 / thresholds::SIZE_FACTOR, thresholds::SIZE_FACTOR);
     }
     None
 }

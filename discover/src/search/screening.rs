@@ -8,34 +8,37 @@ use std::borrow::Cow;
 use nalgebra::{DMatrix, DVector};
 
 use crate::catalogue::candidate::Candidate;
+use crate::catalogue::candidate_unknown::CandidateUnknown;
 use crate::fit::bounded_least_squares::least_squares;
-use crate::fit::full::Fit;
-use crate::model::problem::Setting;
-use crate::search::response::{At, Base, Trial, responses};
+use crate::fit::fitted::Fit;
+use crate::fit::linearised::{Base, LinearisedFit};
+use crate::fit::variable_projection::add_prior;
+use crate::model::problem::EstimationProblem;
+use crate::search::responses::responses;
 use crate::thresholds;
 
 /// A screened candidate.
 #[derive(Clone, Debug)]
-pub struct Response {
+pub struct ScreenedResponse {
     /// The candidate's place in the list.
     pub candidate: usize,
     /// Its unknowns.
-    pub trials: Vec<Trial>,
+    pub trials: Vec<CandidateUnknown>,
     /// Where its columns stand.
     columns: std::ops::Range<usize>,
     /// The nuisance that gives up its prior, if that is the effect.
     pub released: Option<usize>,
     /// The part of what it does that initial states and nuisances cannot do as well.
-    pub visible: f64,
+    pub unexplained_fraction: f64,
     /// How much it lowers the sum of squares alone, in noises squared.
-    pub gain: f64,
+    pub decrease: f64,
     /// The size at which it does.
     pub values: Vec<f64>,
 }
 
 /// All responses.
 #[derive(Clone)]
-pub struct Screen {
+pub struct Screening {
     /// Products of all columns: nuisances, candidates, the residual last.
     products: DMatrix<f64>,
     nuisances: usize,
@@ -45,34 +48,39 @@ pub struct Screen {
     /// The bounds of each nuisance once it is released.
     limits: Vec<(f64, f64)>,
     /// The candidates that do something, in their order.
-    pub responses: Vec<Response>,
+    pub responses: Vec<ScreenedResponse>,
     /// The candidates that do nothing that could be seen, with why.
-    pub silent: Vec<(usize, String)>,
+    pub not_excited: Vec<(usize, String)>,
     /// How many numbers were looked at.
     pub numbers: f64,
 }
 
 /// Screens candidates at a fit, over a part of each window.
-pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate], part: f64) -> Screen {
-    let at = At::of(setting, fit, part);
+pub fn screening(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    candidates: &[Candidate],
+    part: f64,
+) -> Screening {
+    let at = LinearisedFit::of(problem, fit, part);
     let (base, places, estimate) = (&at.base, &at.places, &at.estimate);
     let own: Vec<Candidate> = (candidates.iter().filter(|c| c.released.is_none()))
         .cloned()
         .collect();
-    let mut found = responses(&at, setting, fit, &own).into_iter();
+    let mut found = responses(&at, problem, fit, &own).into_iter();
     let nuisances = fit.unknowns.len();
     let mut responses = Vec::new();
-    let mut silent = Vec::new();
+    let mut not_excited = Vec::new();
     let mut blocks = Vec::new();
     let mut columns = nuisances;
     for (candidate, of) in candidates.iter().enumerate() {
-        let mut response = Response {
+        let mut response = ScreenedResponse {
             candidate,
             trials: Vec::new(),
             columns: columns..columns,
             released: None,
-            visible: 0.0,
-            gain: 0.0,
+            unexplained_fraction: 0.0,
+            decrease: 0.0,
             values: Vec::new(),
         };
         if let Some(what) = &of.released {
@@ -89,7 +97,7 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate], part: 
                 responses.push(response);
                 blocks.push(block);
             }
-            Some(Err(reason)) => silent.push((candidate, reason)),
+            Some(Err(reason)) => not_excited.push((candidate, reason.to_string())),
             None => {}
         }
     }
@@ -112,28 +120,18 @@ pub fn screen(setting: &Setting<'_>, fit: &Fit, candidates: &[Candidate], part: 
             (low - trial.base, high - trial.base)
         }));
     }
-    let mut screen = Screen {
+    let mut screening = Screening {
         products,
         nuisances,
         priors,
         bounds,
         limits,
         responses,
-        silent,
+        not_excited,
         numbers: base.iter().flatten().map(|b| b.residual.len() as f64).sum(),
     };
-    screen.judge();
-    screen
-}
-
-/// Adds a prior, or takes it away where its weight is negative, to the products of a nuisance
-/// with itself and with the residual, which stands last.
-pub(crate) fn add_prior(products: &mut DMatrix<f64>, place: usize, (weight, off): (f64, f64)) {
-    let last = products.ncols() - 1;
-    products[(place, place)] += weight;
-    products[(place, last)] += weight * off;
-    products[(last, place)] += weight * off;
-    products[(last, last)] += weight * off * off;
+    screening.acceptance_test();
+    screening
 }
 
 /// Products of all columns with the initial states eliminated.
@@ -165,17 +163,17 @@ fn products(
     products
 }
 
-impl Screen {
+impl Screening {
     /// How well each candidate does alone.
-    fn judge(&mut self) {
+    fn acceptance_test(&mut self) {
         let alone = self.left(&[]).0;
         for place in 0..self.responses.len() {
             let (left, values) = self.left(&[place]);
-            let visible = self.visible(place);
+            let unexplained_fraction = self.unexplained_fraction(place);
             let response = &mut self.responses[place];
-            response.gain = alone - left;
+            response.decrease = alone - left;
             response.values = values;
-            response.visible = visible;
+            response.unexplained_fraction = unexplained_fraction;
         }
     }
 
@@ -255,7 +253,7 @@ impl Screen {
             nuisances: self.nuisances,
             priors: self.priors.clone(),
             responses: self.responses.clone(),
-            silent: Vec::new(),
+            not_excited: Vec::new(),
             numbers: self.numbers,
         })
     }
@@ -267,7 +265,7 @@ impl Screen {
     }
 
     /// The part of a response's square that the nuisances cannot do as well.
-    fn visible(&self, place: usize) -> f64 {
+    fn unexplained_fraction(&self, place: usize) -> f64 {
         let (products, released) = self.released(&[place]);
         let direction = self.direction(&products, place);
         let own = product(&products, &direction, &direction);
@@ -398,28 +396,30 @@ fn system(products: &DMatrix<f64>, places: &[usize]) -> (DMatrix<f64>, DVector<f
 mod tests {
     use nalgebra::DMatrix;
 
-    use super::{Response, Screen};
+    use super::{ScreenedResponse, Screening};
 
     /// Responses with these columns, the last of which is the residual, and their best sizes.
-    fn screen(columns: &DMatrix<f64>, of: &[(std::ops::Range<usize>, &[f64])]) -> Screen {
+    fn screening(columns: &DMatrix<f64>, of: &[(std::ops::Range<usize>, &[f64])]) -> Screening {
         let response =
-            |(candidate, (columns, values)): (usize, &(std::ops::Range<usize>, &[f64]))| Response {
-                candidate,
-                trials: Vec::new(),
-                columns: columns.clone(),
-                released: None,
-                visible: 1.0,
-                gain: 0.0,
-                values: values.to_vec(),
+            |(candidate, (columns, values)): (usize, &(std::ops::Range<usize>, &[f64]))| {
+                ScreenedResponse {
+                    candidate,
+                    trials: Vec::new(),
+                    columns: columns.clone(),
+                    released: None,
+                    unexplained_fraction: 1.0,
+                    decrease: 0.0,
+                    values: values.to_vec(),
+                }
             };
-        Screen {
+        Screening {
             products: columns.transpose() * columns,
             nuisances: 0,
             priors: Vec::new(),
             bounds: Vec::new(),
             limits: Vec::new(),
             responses: of.iter().enumerate().map(response).collect(),
-            silent: Vec::new(),
+            not_excited: Vec::new(),
             numbers: columns.nrows() as f64,
         }
     }
@@ -438,10 +438,10 @@ mod tests {
         );
         let of: [(std::ops::Range<usize>, &[f64]); 3] =
             [(0..2, &[1.0, 0.0]), (2..3, &[0.2]), (3..4, &[1.0])];
-        let screen = screen(&columns, &of);
-        assert!((screen.similarity(0, 1) - 1.0).abs() < 1e-6);
-        assert!((screen.similarity(1, 0) - 1.0).abs() < 1e-6);
-        assert!(screen.similarity(0, 2) < 1e-6 && screen.similarity(1, 2) < 1e-6);
+        let screening = screening(&columns, &of);
+        assert!((screening.similarity(0, 1) - 1.0).abs() < 1e-6);
+        assert!((screening.similarity(1, 0) - 1.0).abs() < 1e-6);
+        assert!(screening.similarity(0, 2) < 1e-6 && screening.similarity(1, 2) < 1e-6);
     }
 
     #[test]
@@ -449,6 +449,6 @@ mod tests {
         let columns = DMatrix::from_row_slice(2, 3, &[1.0, 3.0, 1.0, 0.0, 4.0, 1.0]);
         let of: [(std::ops::Range<usize>, &[f64]); 2] = [(0..1, &[-2.0]), (1..2, &[5.0])];
         // The cosine of the angle in a triangle of sides 3, 4 and 5.
-        assert!((screen(&columns, &of).similarity(0, 1) - 0.6).abs() < 1e-6);
+        assert!((screening(&columns, &of).similarity(0, 1) - 0.6).abs() < 1e-6);
     }
 }

@@ -6,26 +6,17 @@ use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use crate::catalogue::candidate::Candidate;
-use crate::fit::full::Fit;
-use crate::fit::sensitivity::{Crew, Differences};
+use crate::catalogue::candidate::{Candidate, CandidateParameter};
+use crate::catalogue::candidate_unknown::CandidateUnknown;
+use crate::error::DiscoverError;
+use crate::fit::fitted::Fit;
+use crate::fit::linearised::LinearisedFit;
+use crate::fit::sensitivity::{Differences, SensitivityEvaluator};
 use crate::fit::shooting::Shooting;
 use crate::model::plant::Plant;
-use crate::model::problem::Setting;
-use crate::search::response::{At, Columns, TRIAL, Trial, absent, silent, trial};
-
-/// A candidate is taken at a size that changes accelerations by this part of their own size,
-/// in any direction: small beside them, large beside rounding.
-const SMALL: f64 = 1e-4;
-
-/// A change is small and above rounding within these factors of that.
-const NEAR: (f64, f64) = (1e-3, 10.0);
-
-/// Attempts to find that size, each at most so many powers of ten further.
-const ATTEMPTS: (usize, f64) = (8, 1e6);
-
-/// Every so many samples of a window a size is tried.
-const TRIED: usize = 5;
+use crate::model::problem::EstimationProblem;
+use crate::search::response::Columns;
+use crate::thresholds;
 
 /// Where sizes are tried: a motion's points with their accelerations.
 struct Points {
@@ -40,7 +31,7 @@ struct Points {
 /// A candidate's model with sizes at which it differs a little.
 struct Ready {
     candidate: usize,
-    trials: Vec<Trial>,
+    trials: Vec<CandidateUnknown>,
     plant: Plant,
     /// For each parameter that scales it the values there, and the size.
     moved: Vec<(Vec<f64>, f64)>,
@@ -48,19 +39,19 @@ struct Ready {
 
 /// For each candidate what it does, or why that cannot be seen; none where its own motion must
 /// tell.
-pub fn driven(
-    at: &At,
-    setting: &Setting<'_>,
+pub fn variational_responses(
+    at: &LinearisedFit,
+    problem: &EstimationProblem<'_>,
     fit: &Fit,
     candidates: &[Candidate],
-) -> Vec<Option<Result<Columns, String>>> {
-    let mut found: Vec<Option<Result<Columns, String>>> = vec![None; candidates.len()];
-    let Some(points) = points(at, setting, fit) else {
+) -> Vec<Option<Result<Columns, DiscoverError>>> {
+    let mut found: Vec<Option<Result<Columns, DiscoverError>>> = vec![None; candidates.len()];
+    let Some(points) = points(at, problem, fit) else {
         return found;
     };
-    let ready: Vec<Option<Result<Ready, String>>> = (0..candidates.len())
+    let ready: Vec<Option<Result<Ready, DiscoverError>>> = (0..candidates.len())
         .into_par_iter()
-        .map(|place| ready(setting, fit, (place, &candidates[place]), &points))
+        .map(|place| ready(problem, fit, (place, &candidates[place]), &points))
         .collect();
     let mut all = Vec::new();
     for (place, ready) in ready.into_iter().enumerate() {
@@ -70,7 +61,7 @@ pub fn driven(
             None => {}
         }
     }
-    let windows = marched(at, setting, fit, &all);
+    let windows = marched(at, problem, fit, &all);
     let mut first = 0;
     for mut of in all {
         let columns = first..first + of.moved.len();
@@ -88,24 +79,28 @@ pub fn driven(
 }
 
 /// A candidate's columns with the sizes that would move the outputs by a part of the misfit.
-fn sized(trials: &mut [Trial], blocks: Vec<DMatrix<f64>>, level: f64) -> Result<Columns, String> {
+fn sized(
+    trials: &mut [CandidateUnknown],
+    blocks: Vec<DMatrix<f64>>,
+    level: f64,
+) -> Result<Columns, DiscoverError> {
     let scaling = trials.iter_mut().filter(|trial| !trial.is_shape);
     for (column, trial) in scaling.enumerate() {
         let numbers: usize = blocks.iter().map(DMatrix::nrows).sum();
         let square: f64 = blocks.iter().map(|b| b.column(column).norm_squared()).sum();
         let size = (square / numbers.max(1) as f64).sqrt();
         if size == 0.0 || !size.is_finite() {
-            return Err(silent());
+            return Err(DiscoverError::NotExcited);
         }
-        trial.unknown.scale = TRIAL * level / size;
+        trial.unknown.scale = thresholds::RESPONSE_MOVES * level / size;
     }
     Ok((trials.to_vec(), blocks))
 }
 
 /// Points of the fitted motion; none if neighbouring motions do not come with it.
-fn points(at: &At, setting: &Setting<'_>, fit: &Fit) -> Option<Points> {
-    let shooting = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
-    let At {
+fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Points> {
+    let shooting = fit.shooting(problem);
+    let LinearisedFit {
         estimate, places, ..
     } = at;
     let values = shooting.values(&estimate.theta);
@@ -122,12 +117,13 @@ fn points(at: &At, setting: &Setting<'_>, fit: &Fit) -> Option<Points> {
         squares: vec![0.0; n / 2],
     };
     for place in [0, places.len() / 2, places.len() - 1].map(|k| places[k]) {
-        let window = &setting.train.list[place];
-        let inputs = setting.train.inputs(window);
-        let Ok(states) = runner.states(&estimate.starts[place], &window.times, inputs) else {
+        let window = &problem.train.list[place];
+        let inputs = problem.train.inputs(window);
+        let Ok(states) = runner.states(&estimate.initial_states[place], &window.times, inputs)
+        else {
             continue;
         };
-        let samples = window.times.iter().zip(states).step_by(TRIED);
+        let samples = window.times.iter().zip(states).step_by(thresholds::SAMPLED);
         for (t, state) in samples {
             let rates = runner.rates(*t, &state, inputs.at(*t));
             for (sum, rate) in points.squares.iter_mut().zip(&rates[n / 2..]) {
@@ -144,27 +140,35 @@ fn points(at: &At, setting: &Setting<'_>, fit: &Fit) -> Option<Points> {
 
 /// A candidate with its sizes, if it has the fit's states and shows the same of them.
 fn ready(
-    setting: &Setting<'_>,
+    problem: &EstimationProblem<'_>,
     fit: &Fit,
     (place, candidate): (usize, &Candidate),
     points: &Points,
-) -> Option<Result<Ready, String>> {
-    let start: Vec<f64> = candidate.parameters.iter().map(absent).collect();
-    let text = match candidate.written(&fit.text, &setting.path, &start, "") {
+) -> Option<Result<Ready, DiscoverError>> {
+    let start: Vec<f64> = candidate
+        .parameters
+        .iter()
+        .map(CandidateParameter::absent)
+        .collect();
+    let text = match candidate.written(&fit.texts.whole, &problem.path, &start, "") {
         Ok(text) => text,
-        Err(error) => return Some(Err(error.to_string())),
+        Err(error) => return Some(Err(error.into())),
     };
-    let channels = &setting.dataset.channels;
-    let plant = match Plant::equations(&text, &setting.path, setting.order, channels) {
+    let channels = &problem.dataset.channels;
+    let plant = match Plant::equations(&text, &problem.path, problem.order, channels) {
         Ok(plant) => plant,
-        Err(error) => return Some(Err(error)),
+        Err(error) => return Some(Err(DiscoverError::Specification(error))),
     };
     if plant.states != fit.plant.states || candidate.parameters.iter().any(|p| p.inverse) {
         return None;
     }
-    let shooting = setting.shooting(&plant, &setting.train, &fit.unknowns, &fit.ranges);
+    let shooting = Shooting::new(problem, &plant, &problem.train, &fit.unknowns, &fit.ranges);
     let values = shooting.values(&fit.train.estimate.theta);
-    let trials: Vec<Trial> = candidate.parameters.iter().map(trial).collect();
+    let trials: Vec<CandidateUnknown> = candidate
+        .parameters
+        .iter()
+        .map(CandidateUnknown::of)
+        .collect();
     let mut moved = Vec::new();
     for (parameter, trial) in candidate.parameters.iter().zip(&trials) {
         if trial.is_shape {
@@ -176,12 +180,12 @@ fn ready(
             values
         };
         let Some(size) = small(&plant, &at, points) else {
-            return Some(Err(silent()));
+            return Some(Err(DiscoverError::NotExcited));
         };
         moved.push((at(size), size));
     }
     let (_, shown) = plant.evaluator(&values);
-    let own = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+    let own = fit.shooting(problem);
     let (_, of_fit) = fit.plant.evaluator(&own.values(&fit.train.estimate.theta));
     if shown != of_fit {
         return None;
@@ -197,19 +201,21 @@ fn ready(
 /// The size of a parameter that changes accelerations by a small part; none if none does.
 fn small(plant: &Plant, at: &dyn Fn(f64) -> Vec<f64>, points: &Points) -> Option<f64> {
     let mut size = 1.0;
-    for _ in 0..ATTEMPTS.0 {
+    for _ in 0..thresholds::SIZE_ATTEMPTS {
         let (mut evaluator, _) = plant.evaluator(&at(size));
         let change = change(&mut evaluator, points);
         let factor = if change == 0.0 {
-            ATTEMPTS.1
+            thresholds::SIZE_FACTOR
         } else if !change.is_finite() {
             1e-3
-        } else if change > NEAR.0 * SMALL && change < NEAR.1 * SMALL {
+        } else if change > thresholds::SMALL_NEAR.0 * thresholds::SMALL_CHANGE
+            && change < thresholds::SMALL_NEAR.1 * thresholds::SMALL_CHANGE
+        {
             return Some(size);
         } else {
-            SMALL / change
+            thresholds::SMALL_CHANGE / change
         };
-        size *= factor.clamp(1.0 / ATTEMPTS.1, ATTEMPTS.1);
+        size *= factor.clamp(1.0 / thresholds::SIZE_FACTOR, thresholds::SIZE_FACTOR);
     }
     None
 }
@@ -240,13 +246,18 @@ fn change(evaluator: &mut Evaluator, points: &Points) -> f64 {
 }
 
 /// For each window a column per parameter; no columns where the fit has no motion.
-fn marched(at: &At, setting: &Setting<'_>, fit: &Fit, ready: &[Ready]) -> Vec<DMatrix<f64>> {
-    let whole = setting.shooting(&fit.plant, &setting.train, &fit.unknowns, &fit.ranges);
+fn marched(
+    at: &LinearisedFit,
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    ready: &[Ready],
+) -> Vec<DMatrix<f64>> {
+    let whole = fit.shooting(problem);
     let shooting = Shooting {
         part: at.part,
         ..whole
     };
-    let At {
+    let LinearisedFit {
         estimate,
         places,
         base,
@@ -261,7 +272,9 @@ fn marched(at: &At, setting: &Setting<'_>, fit: &Fit, ready: &[Ready]) -> Vec<DM
         .par_chunks(size)
         .map(|part| {
             let none = || DMatrix::zeros(0, 0);
-            let Some(mut crew) = Crew::frozen(&shooting, &estimate.theta, 1.0) else {
+            let Some(mut sensitivities) =
+                SensitivityEvaluator::frozen(&shooting, &estimate.theta, 1.0)
+            else {
                 return part.iter().map(|_| none()).collect();
             };
             let mut evaluators: Vec<(Evaluator, f64)> = ready
@@ -282,8 +295,8 @@ fn marched(at: &At, setting: &Setting<'_>, fit: &Fit, ready: &[Ready]) -> Vec<DM
                     let moved = evaluators.iter_mut().map(|(e, size)| (e, *size)).collect();
                     let mut drives = Differences::new(&mut own, moved);
                     let count = drives.count();
-                    let start = &estimate.starts[place];
-                    let columns = crew.driven(place, start, (count, &mut drives));
+                    let start = &estimate.initial_states[place];
+                    let columns = sensitivities.drive_response(place, start, (count, &mut drives));
                     columns.unwrap_or_else(none)
                 })
                 .collect()

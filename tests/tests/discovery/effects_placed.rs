@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use codegen::variant::Variant;
 use discover::catalogue::candidate::{Candidate, candidates};
+use discover::catalogue::effect::{Effect, SiteKind};
+use discover::catalogue::effects;
 use discover::catalogue::sites::sites;
-use discover::catalogue::{Effect, SiteKind, effects};
 use eomgen_tests::models::shipped;
 use model_spec::source::Source;
 

@@ -5,17 +5,17 @@ use model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
 use model_spec::suggest::did_you_mean;
 use model_spec::table::{Record, Written};
 
-use super::file::text;
+use super::fields::text;
 
 /// What the texts of an effect may hold.
-pub(super) struct Blanks {
+pub(super) struct Placeholders {
     /// What may stand in braces.
     pub(super) known: Vec<String>,
     /// What does.
     pub(super) used: Vec<String>,
 }
 
-impl Blanks {
+impl Placeholders {
     /// Notes the blanks of a text.
     pub(super) fn note(&mut self, written: &Written, found: &mut Diagnostics) {
         let mut begin = 0;
@@ -50,11 +50,11 @@ impl Blanks {
 pub(super) fn expression(
     record: &Record<'_>,
     key: &str,
-    blanks: &mut Blanks,
+    placeholders: &mut Placeholders,
     found: &mut Diagnostics,
 ) -> Option<String> {
     let written = text(record, key, "\"-{T_c}*sign(dot({on}))\"", found)?;
-    blanks.note(&written, found);
+    placeholders.note(&written, found);
     // Parentheses for braces keep every letter at its place.
     let mut plain = written.clone();
     plain.text = plain.text.replace('{', "(").replace('}', ")");

@@ -1,0 +1,146 @@
+//! Effects as data: each a list of edits with blanks.
+
+use model_spec::edit::Section;
+
+/// An effect.
+#[derive(Clone, Debug)]
+pub struct Effect {
+    /// Its name in results.
+    pub name: String,
+    /// The kind of place it may have.
+    pub site: SiteKind,
+    /// What it is, as the end of a sentence.
+    pub says: String,
+    /// What would show it best.
+    pub experiment: String,
+    /// Whether it repeats with an angle, so that it is tried at several shaft orders.
+    pub orders: bool,
+    /// Its parameters, at least one.
+    pub parameters: Vec<EffectParameter>,
+    /// What it changes, at least one thing.
+    pub edits: Vec<Change>,
+    /// Whether it is from a user's file.
+    pub is_own: bool,
+}
+
+/// The kinds of places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SiteKind {
+    /// Anything that moves and can be held: an angle or a position.
+    Axis,
+    /// An angle.
+    Angle,
+    /// A pair of teeth with play.
+    Mesh,
+    /// A flexible body.
+    Arm,
+    /// A linear spring.
+    Spring,
+}
+
+impl SiteKind {
+    /// The kinds by their words in a file.
+    pub const WORDS: [(&'static str, Self); 5] = [
+        ("axis", Self::Axis),
+        ("angle", Self::Angle),
+        ("mesh", Self::Mesh),
+        ("arm", Self::Arm),
+        ("spring", Self::Spring),
+    ];
+
+    /// The blanks that a site of this kind fills; `{root}` and `{stiffness}` where it has them.
+    pub fn placeholders(self) -> &'static [&'static str] {
+        match self {
+            Self::Axis | Self::Angle => &["on", "unit", "force"],
+            Self::Mesh => &["on", "p", "k", "b"],
+            Self::Arm => &[
+                "term",
+                "velocity",
+                "field",
+                "x",
+                "end",
+                "lever",
+                "root",
+                "stiffness",
+            ],
+            Self::Spring => &["on", "p", "k"],
+        }
+    }
+}
+
+/// A parameter of an effect.
+#[derive(Clone, Debug)]
+pub struct EffectParameter {
+    /// Its name, with more behind it where that is taken.
+    pub name: String,
+    /// Its unit, with blanks.
+    pub unit: String,
+    /// Whether it must not be negative.
+    pub positive: bool,
+    /// What it is.
+    pub doc: String,
+    /// The effect is absent where it is infinite, not where it is 0.
+    pub inverse: bool,
+    /// The part of the site's usual rate that it is as large as, where it shapes the effect without
+    /// scaling it.
+    pub share: Option<f64>,
+}
+
+/// One change of the specification.
+#[derive(Clone, Debug)]
+pub enum Change {
+    /// A term of an energy or of the dissipation.
+    Term {
+        /// Which of them.
+        section: Section,
+        /// Its name.
+        name: String,
+        /// Its expression.
+        value: String,
+    },
+    /// A definition, to be used by other changes.
+    Definition {
+        /// Its name, which is a blank of the effect.
+        name: String,
+        /// Its expression.
+        value: String,
+    },
+    /// A force.
+    Force {
+        /// Its name.
+        name: String,
+        /// What it works on.
+        on: String,
+        /// Its expression.
+        value: String,
+    },
+    /// A coordinate.
+    Coordinate {
+        /// Its name, which is a blank of the effect.
+        name: String,
+        /// Its unit.
+        unit: String,
+        /// What it is.
+        doc: String,
+    },
+    /// Something replaced.
+    Substitution {
+        /// Where.
+        within: Within,
+        /// What.
+        find: String,
+        /// By what.
+        replace: String,
+    },
+}
+
+/// Where something is replaced.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Within {
+    /// These terms of the kinetic energy.
+    Kinetic(Vec<String>),
+    /// All terms of a pair of teeth, or of the kinetic energy of a body and of what it carries.
+    Site,
+    /// All definitions and observables.
+    Measured,
+}

@@ -1,0 +1,55 @@
+//! Keys of a table in a file of effects that hold text, a list or a new name.
+
+use model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use model_spec::table::{Entry, Record, Written};
+
+/// The elements of a list, at least one.
+pub(super) fn some<'d>(
+    record: &Record<'d>,
+    key: &str,
+    example: &str,
+    found: &mut Diagnostics,
+) -> Option<Vec<Entry<'d>>> {
+    let entry = record.require(key, &format!("write {key} = {example}"), found)?;
+    let list = found.keep(entry.list(example))?;
+    if list.is_empty() {
+        found.push(
+            Diagnostic::error(format!("`{key}` is empty"))
+                .at(entry.span(), "an effect needs one or more")
+                .help(format!("write {key} = {example}")),
+        );
+    }
+    Some(list)
+}
+
+/// The text of a key that is needed, and says something.
+pub(super) fn text(
+    record: &Record<'_>,
+    key: &str,
+    example: &str,
+    found: &mut Diagnostics,
+) -> Option<Written> {
+    let entry = record.require(key, &format!("write {key} = {example}"), found)?;
+    let written = found.keep(entry.written())?;
+    if written.text.trim().is_empty() {
+        found
+            .push(Diagnostic::error(format!("`{key}` is empty")).at(written.span, "expected text"));
+    }
+    Some(written)
+}
+
+/// The name of something that is added to a specification.
+pub(super) fn new_name(record: &Record<'_>, found: &mut Diagnostics) -> Option<String> {
+    let written = text(record, "name", "\"T_c\"", found)?;
+    let letter = |c: char| c.is_ascii_alphabetic();
+    let rest = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    if !(written.text.starts_with(letter) && written.text.chars().all(rest)) {
+        found.push(
+            Diagnostic::error(format!("{} is no name", quoted(&written.text))).at(
+                written.span,
+                "expected a letter, then letters, digits and underscores",
+            ),
+        );
+    }
+    Some(written.text)
+}

@@ -1,0 +1,105 @@
+//! Why nothing could be compared or searched.
+
+use std::fmt;
+
+use eomgen_records::Refusal;
+use eomgen_records::windows::Windows;
+use model_spec::edit::EditError;
+
+/// What can go wrong on the way from a specification and records to a result.
+#[derive(Clone, Debug)]
+pub enum DiscoverError {
+    /// A specification that does not check or cannot be derived: what is wrong with it, with its
+    /// places.
+    Specification(String),
+    /// An edit that a specification does not admit.
+    Edit(Box<EditError>),
+    /// A user's effect that does not leave a specification.
+    Effect {
+        /// The effect.
+        effect: String,
+        /// The place it was written to.
+        on: String,
+        /// What was wrong.
+        error: Box<EditError>,
+    },
+    /// Records, or their labels, that are refused.
+    Records(Box<Refusal>),
+    /// Initial states are to be read from the record, and no channel shows this state.
+    StateNotMeasured(String),
+    /// No motion can be followed: where, and what is expected.
+    Unfollowed(Unfollowed),
+    /// No motion of a candidate's own model can be followed.
+    CandidateUnfollowed,
+    /// A candidate that changes no output.
+    NotExcited,
+}
+
+/// The windows through which a model's motion cannot be followed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unfollowed {
+    /// How many there are.
+    pub count: usize,
+    /// Of how many.
+    pub of: usize,
+    /// When the first begins, s.
+    pub first: f64,
+    /// The record in which that is.
+    pub record: String,
+}
+
+impl Unfollowed {
+    /// Some windows of a set, by their places; none if there are none.
+    pub fn of(windows: &Windows<'_>, places: &[usize]) -> Option<Self> {
+        let window = &windows.list[*places.first()?];
+        Some(Self {
+            count: places.len(),
+            of: windows.list.len(),
+            first: window.times[0],
+            record: windows.records[window.record].name.clone(),
+        })
+    }
+}
+
+impl fmt::Display for DiscoverError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Specification(message) => f.write_str(message),
+            Self::Edit(error) => error.fmt(f),
+            Self::Effect { effect, on, error } => write!(
+                f,
+                "the effect `{effect}` on `{on}` does not leave a specification: {error}"
+            ),
+            Self::Records(refusal) => refusal.fmt(f),
+            Self::StateNotMeasured(state) => write!(
+                f,
+                "windows.start = \"smoothed\" needs a channel for every coordinate, and none shows \
+                 `{state}`; expected start = \"fitted\""
+            ),
+            Self::Unfollowed(windows) => write!(
+                f,
+                "the model's motion cannot be followed in {} of {} windows, first at t = {:.6} s of \
+                 {}: nothing can be compared there; expected a model that runs through its records",
+                windows.count, windows.of, windows.first, windows.record
+            ),
+            Self::CandidateUnfollowed => f.write_str("the motion with it cannot be followed"),
+            Self::NotExcited => {
+                f.write_str("nothing in the record would show it: it does not change the outputs")
+            }
+        }
+    }
+}
+
+impl std::error::Error for DiscoverError {}
+
+impl From<EditError> for DiscoverError {
+    fn from(error: EditError) -> Self {
+        Self::Edit(Box::new(error))
+    }
+}
+
+impl From<Refusal> for DiscoverError {
+    fn from(refusal: Refusal) -> Self {
+        Self::Records(Box::new(refusal))
+    }
+}

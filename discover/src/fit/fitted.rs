@@ -1,0 +1,95 @@
+//! A fitted specification: what was estimated, how well it is known, and what it leaves. How it
+//! is found is in [`crate::fit::full`].
+
+use crate::fit::prior::InitialStatePrior;
+use crate::fit::residuals::Residuals;
+use crate::fit::shooting::Shooting;
+use crate::model::plant::Plant;
+use crate::model::problem::EstimationProblem;
+use crate::model::texts::Texts;
+use crate::model::unknowns::Unknown;
+use crate::thresholds;
+
+/// A fitted specification.
+pub struct Fit {
+    /// Its texts.
+    pub texts: Texts,
+    /// Its model, ready to run.
+    pub plant: Plant,
+    /// What was estimated.
+    pub unknowns: Vec<Unknown>,
+    /// One standard deviation of each, with correlated residuals allowed for.
+    pub sd: Vec<f64>,
+    /// The range of each state.
+    pub ranges: Vec<f64>,
+    /// What was known of the training windows' initial states.
+    pub prior: InitialStatePrior,
+    /// How much priors count.
+    pub prior_weight: f64,
+    /// What is left on the training records.
+    pub train: Residuals,
+    /// What is left on the test records.
+    pub test: Residuals,
+}
+
+impl Fit {
+    /// What is left on all records, in noises.
+    pub fn rms(&self) -> f64 {
+        (0.5 * (self.train.rms.powi(2) + self.test.rms.powi(2))).sqrt()
+    }
+
+    /// Unknowns to begin with where something is added: parameters and sensors that took up what
+    /// it does begin anew.
+    pub fn restarted(&self) -> Vec<f64> {
+        let known = self.unknowns.iter().zip(&self.train.estimate.theta);
+        known
+            .map(|(unknown, value)| unknown.prior.map_or(*value, |(mean, _)| mean))
+            .collect()
+    }
+
+    /// The values of some unknowns as a specification states them, SI.
+    pub fn stated(&self, places: &[usize]) -> Vec<f64> {
+        let theta = &self.train.estimate.theta;
+        let of = |place: &usize| self.unknowns[*place].what.stated(theta[*place]);
+        places.iter().map(of).collect()
+    }
+
+    /// The training windows to be explained by the fit's own model.
+    pub fn shooting<'a>(&'a self, problem: &'a EstimationProblem<'a>) -> Shooting<'a> {
+        Shooting::new(
+            problem,
+            &self.plant,
+            &problem.train,
+            &self.unknowns,
+            &self.ranges,
+        )
+    }
+
+    /// A state of the fit's plant as one of another plant: what that has beside is 0.
+    pub fn mapped(&self, plant: &Plant, state: &[f64]) -> Vec<f64> {
+        if state.is_empty() {
+            return Vec::new();
+        }
+        let value = |name: &String| {
+            let place = self.plant.states.iter().position(|known| known == name);
+            place.map_or(0.0, |place| state[place])
+        };
+        plant.states.iter().map(value).collect()
+    }
+
+    /// Whether it leaves no more than a right model would.
+    pub fn is_at_floor(&self, floor: f64) -> bool {
+        self.leaves_less(thresholds::AT_FLOOR * floor)
+    }
+
+    /// Whether it leaves less than so many noises, on both sets of records.
+    pub fn leaves_less(&self, noises: f64) -> bool {
+        self.train.rms.max(self.test.rms) < noises
+    }
+
+    /// Whether it leaves less than another by what is asked of an effect, on both sets of records.
+    pub fn leaves_clearly_less(&self, other: &Self) -> bool {
+        let better = 1.0 - thresholds::HELD_OUT;
+        self.train.rms < better * other.train.rms && self.test.rms < better * other.test.rms
+    }
+}

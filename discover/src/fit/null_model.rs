@@ -1,0 +1,60 @@
+//! The null model: the specification with its declared unknowns alone, fitted.
+
+use crate::error::{DiscoverError, Unfollowed};
+use crate::fit::fitted::Fit;
+use crate::fit::full;
+use crate::fit::preliminary;
+use crate::model::problem::EstimationProblem;
+use crate::model::texts::Texts;
+use crate::model::unknowns::{Unknown, What, of_null_model};
+
+/// Fits the model with its declared unknowns alone.
+///
+/// # Errors
+/// Why no motion can be followed, or where it cannot.
+pub fn null_fit(problem: &EstimationProblem<'_>, text: &str) -> Result<Fit, DiscoverError> {
+    let plant = problem.plant(text, None)?;
+    let values: Vec<(String, f64)> = plant
+        .parameters
+        .iter()
+        .cloned()
+        .zip(plant.values.iter().copied())
+        .collect();
+    let unknowns = of_null_model(problem.dataset, plant.model(), &values);
+    let theta: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
+    let texts = || Texts::of(text);
+    // Sensors that are free from the first step on find what is off by much, and now and then
+    // stand in for what parameters have not done yet: those that wait do not.
+    let held = |unknown: &Unknown| match unknown.what {
+        What::Parameter(_) | What::Inverse(_) => unknown.clone(),
+        What::Gain(_) | What::Bias(_) | What::Delay(_) => Unknown {
+            bounds: (unknown.start, unknown.start),
+            ..unknown.clone()
+        },
+    };
+    let waiting = || -> Result<Fit, DiscoverError> {
+        let held = unknowns.iter().map(held).collect();
+        let fit = full::fit(problem, texts(), held, &theta)?;
+        let theta = fit.train.estimate.theta.clone();
+        let left = fit.train.estimate.cost;
+        full::complete(
+            problem,
+            preliminary::expected(problem, texts(), unknowns.clone(), theta, (&fit, left))?,
+        )
+    };
+    let (free, waiting) = rayon::join(
+        || full::fit(problem, texts(), unknowns.clone(), &theta),
+        waiting,
+    );
+    let fit = match (free, waiting) {
+        (Ok(free), Ok(waiting)) if waiting.train.rms < free.train.rms => waiting,
+        (Ok(fit), _) | (Err(_), Ok(fit)) => fit,
+        (Err(error), Err(_)) => return Err(error),
+    };
+    let lost = Unfollowed::of(&problem.train, &fit.train.unfollowed)
+        .or_else(|| Unfollowed::of(&problem.test, &fit.test.unfollowed));
+    match lost {
+        Some(windows) => Err(DiscoverError::Unfollowed(windows)),
+        None => Ok(fit),
+    }
+}

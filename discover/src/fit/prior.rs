@@ -1,0 +1,21 @@
+//! What is known of the windows' initial states before their samples are looked at.
+
+/// What is known before of each window's initial state: mean and standard deviation.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InitialStatePrior {
+    /// One state per window.
+    pub mean: Vec<Vec<f64>>,
+    /// One standard deviation per state.
+    pub sd: Vec<f64>,
+}
+
+impl InitialStatePrior {
+    /// What it adds to the cost of a window that begins so.
+    pub fn cost(&self, place: usize, start: &[f64]) -> f64 {
+        let Some(mean) = self.mean.get(place) else {
+            return 0.0;
+        };
+        let terms = start.iter().zip(mean).zip(&self.sd);
+        terms.map(|((x, m), sd)| ((x - m) / sd).powi(2)).sum()
+    }
+}

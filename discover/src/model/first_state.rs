@@ -1,0 +1,106 @@
+//! Where a record begins and how far its states go, as far as records and model tell without a fit.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::model::plant::Plant;
+use crate::thresholds;
+use eomgen_records::dataset::{Channel, Initial, Quantity};
+use eomgen_records::record::Record;
+
+/// The first state of a record, as far as it is known.
+pub fn first_state(
+    plant: &Plant,
+    record: &Record,
+    channels: &[Channel],
+    initial: &Initial,
+) -> Vec<f64> {
+    let mut state = plant.initial();
+    match initial {
+        Initial::Rest => {}
+        Initial::Given(values) => {
+            for (name, value) in values {
+                if let Some(place) = plant.states.iter().position(|state| state == name) {
+                    state[place] = *value;
+                }
+            }
+        }
+        Initial::Estimate => {
+            let half = plant.state_count() / 2;
+            for (channel, column) in channels.iter().zip(&record.channels) {
+                let (value, slope) = begin(&record.times, column);
+                match channel.quantity {
+                    Quantity::Coordinate(place) => {
+                        state[place] = value;
+                        state[half + place] = slope;
+                    }
+                    Quantity::Rate(place) => state[half + place] = value,
+                    Quantity::Observable(_) => {}
+                }
+            }
+            // Noise may put what is measured beyond where the model lives.
+            state = plant.admissible(state);
+        }
+    }
+    state
+}
+
+/// The parabola through a column's first samples at the first time: value and slope. A line
+/// would show the slope in their middle, and what is late by that looks like a late sensor.
+fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
+    let points: Vec<(f64, f64)> = (times.iter().zip(column))
+        .filter(|(_, value)| value.is_finite())
+        .take(thresholds::FIRST_SAMPLES)
+        .map(|(t, value)| (t - times[0], *value))
+        .collect();
+    let Some(span) = points.last().map(|(t, _)| *t).filter(|span| *span > 0.0) else {
+        return (0.0, 0.0);
+    };
+    let powers = DMatrix::from_fn(points.len(), 3, |row, power| {
+        (points[row].0 / span).powi(power as i32)
+    });
+    let values = DVector::from_fn(points.len(), |row, _| points[row].1);
+    match powers.svd(true, true).solve(&values, 1e-12) {
+        Ok(fitted) => (fitted[0], fitted[1] / span),
+        Err(_) => (0.0, 0.0),
+    }
+}
+
+/// How far each state ranges in the motion that the records' inputs cause, SI: the root mean
+/// square around its mean. `values`: the plant's parameters, on which that may depend much.
+pub fn ranges(plant: &Plant, values: &[f64], records: &[Record], initial: &[f64]) -> Vec<f64> {
+    let states = plant.state_count();
+    let mut sums = vec![(0.0, 0.0); states];
+    let mut count = 0.0;
+    if let Ok(mut runner) = plant.at(values) {
+        for record in records {
+            // Every tenth sample shows how far a state goes.
+            let times: Vec<f64> = record.times.iter().step_by(10).copied().collect();
+            let Ok(motion) = runner.states(initial, &times, &record.inputs) else {
+                continue;
+            };
+            for state in &motion {
+                count += 1.0;
+                for (sum, value) in sums.iter_mut().zip(state) {
+                    sum.0 += value;
+                    sum.1 += value * value;
+                }
+            }
+        }
+    }
+    let range = |(sum, squares): (f64, f64)| {
+        let mean: f64 = sum / count;
+        (squares / count - mean * mean).max(0.0).sqrt()
+    };
+    let found: Vec<f64> = sums.into_iter().map(range).collect();
+    let largest = found
+        .iter()
+        .copied()
+        .filter(|r| r.is_finite())
+        .fold(0.0, f64::max);
+    // A state that nothing moves may still not be known exactly.
+    let least = if largest > 0.0 { 1e-9 * largest } else { 1.0 };
+    found
+        .into_iter()
+        .map(|r| if r.is_finite() { r.max(least) } else { 1.0 })
+        .collect()
+}

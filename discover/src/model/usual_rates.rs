@@ -1,0 +1,33 @@
+//! How fast what is measured moves.
+
+use std::collections::BTreeMap;
+
+use model_spec::model::Model;
+
+use crate::model::smoothing::{sloped, smoothed};
+use eomgen_records::dataset::{Dataset, Quantity};
+
+/// The usual rate of every observable and coordinate that is measured, by its name in the model: the
+/// root mean square of its slope, or of the rate itself where that is measured.
+pub fn usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
+    let record = &dataset.train[0];
+    let mut rates = BTreeMap::new();
+    let channels = dataset.channels.iter().zip(&record.channels);
+    for (channel, column) in channels {
+        let smooth = smoothed(&record.times, column);
+        let (name, slopes) = match channel.quantity {
+            Quantity::Rate(place) => (&model.coordinates[place].name, smooth),
+            Quantity::Observable(place) => (
+                &model.observables[place].name,
+                sloped(&record.times, &smooth),
+            ),
+            Quantity::Coordinate(place) => (
+                &model.coordinates[place].name,
+                sloped(&record.times, &smooth),
+            ),
+        };
+        let square = slopes.iter().map(|s| s * s).sum::<f64>() / slopes.len() as f64;
+        rates.insert(name.clone(), square.sqrt());
+    }
+    rates
+}

@@ -1,0 +1,45 @@
+//! What a round answers: of the hypotheses that were tested the one that is named.
+
+use crate::search::alternatives::test_alternatives;
+use crate::search::joint::joint_acceptance;
+use crate::search::pool::Pool;
+use crate::search::round::Round;
+use crate::search::selected::{Selected, best_of, selected};
+use crate::search::tested::TestedPool;
+
+/// What is named of all that was looked at; none if nothing is believed, alone or together.
+pub fn answer(round: &Round<'_>, mut tested: Vec<TestedPool>) -> Option<Selected> {
+    let least = |tested: &TestedPool| {
+        let accepted = tested.trials.iter().filter(|trial| trial.verdict.is_ok());
+        let left = accepted.map(|trial| trial.fit.rms());
+        left.fold(f64::INFINITY, f64::min)
+    };
+    let best = (0..tested.len())
+        .filter(|place| least(&tested[*place]).is_finite())
+        .min_by(|a, b| least(&tested[*a]).total_cmp(&least(&tested[*b])));
+    let Some(best) = best else {
+        return round
+            .is_first
+            .then(|| joint_acceptance(round, &tested))
+            .flatten();
+    };
+    let TestedPool {
+        candidates,
+        screening,
+        mut trials,
+    } = tested.swap_remove(best);
+    trials.retain(|trial| trial.explains);
+    if let Some(answer) = best_of(&trials) {
+        let pool = Pool::new(round.context, &candidates, &screening, true);
+        test_alternatives(&pool, &mut trials, answer, round.effects);
+    }
+    trials.retain(|trial| trial.explains);
+    selected(
+        round.context,
+        TestedPool {
+            candidates,
+            screening,
+            trials,
+        },
+    )
+}

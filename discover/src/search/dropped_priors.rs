@@ -1,0 +1,44 @@
+//! Declared parameters and sensors that may be off by more than their priors allow, as candidates.
+
+use crate::catalogue::candidate::{self, Candidate};
+use crate::fit::fitted::Fit;
+use crate::model::problem::EstimationProblem;
+use crate::model::unknowns::{Unknown, What};
+
+/// Declared parameters and sensors that may be off by more than their priors allow.
+pub fn released(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Candidate> {
+    let unknowns = fit
+        .unknowns
+        .iter()
+        .filter(|unknown| unknown.prior.is_some());
+    let candidate = |unknown: &Unknown| {
+        let (effect, on, says, experiment) = match &unknown.what {
+            What::Parameter(name) | What::Inverse(name) => (
+                candidate::PARAMETER_OFFSET,
+                name.clone(),
+                "a parameter is off by more than was declared",
+                "measure it by itself",
+            ),
+            What::Gain(place) => (
+                "sensor_gain",
+                problem.dataset.channels[*place].name.clone(),
+                "a sensor shows too much or too little",
+                "calibrate it over its range",
+            ),
+            What::Bias(place) => (
+                "sensor_bias",
+                problem.dataset.channels[*place].name.clone(),
+                "a sensor is off by a constant",
+                "read it where its quantity is known",
+            ),
+            What::Delay(place) => (
+                "sensor_delay",
+                problem.dataset.channels[*place].name.clone(),
+                "a sensor is late",
+                "excite it with a step that is recorded itself",
+            ),
+        };
+        candidate::released(effect, &on, says, experiment, &unknown.what)
+    };
+    unknowns.map(candidate).collect()
+}

@@ -1,0 +1,34 @@
+//! What candidates do to the windows' outputs, to first order: by neighbouring motions that
+//! they drive, where the fitted model is marched and the candidate adds no state; otherwise by
+//! motions of the candidate's own model.
+
+use crate::catalogue::candidate::Candidate;
+use crate::error::DiscoverError;
+use crate::fit::fitted::Fit;
+use crate::fit::linearised::LinearisedFit;
+use crate::model::problem::EstimationProblem;
+use crate::search::perturbed_response::perturbed_responses;
+use crate::search::response::Columns;
+use crate::search::variational_response::variational_responses;
+
+/// The responses of all candidates.
+pub fn responses(
+    at: &LinearisedFit,
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    candidates: &[Candidate],
+) -> Vec<Result<Columns, DiscoverError>> {
+    let mut found = variational_responses(at, problem, fit, candidates);
+    let rest: Vec<usize> = (0..candidates.len())
+        .filter(|place| found[*place].is_none())
+        .collect();
+    let others: Vec<Candidate> = rest
+        .iter()
+        .map(|place| candidates[*place].clone())
+        .collect();
+    let perturbed_responses = perturbed_responses(at, problem, fit, &others);
+    for (place, response) in rest.into_iter().zip(perturbed_responses) {
+        found[place] = Some(response);
+    }
+    found.into_iter().flatten().collect()
+}
