@@ -15,3 +15,6 @@ pub mod report;
 pub mod residual_force;
 pub mod search;
 pub mod thresholds;
+
+pub use report::result::{Comparison, Discovery};
+pub use report::run::{Specification, compare, discover};

@@ -15,7 +15,7 @@ use crate::error::DiscoverError;
 ///
 /// # Errors
 /// What is wrong with a specification that an effect leaves.
-pub fn placed(effects: &[Effect], path: &str, text: &str) -> Result<Vec<String>, DiscoverError> {
+pub fn check(effects: &[Effect], path: &str, text: &str) -> Result<Vec<String>, DiscoverError> {
     let Ok(checked) = model_spec::check(Source::new(path, text)) else {
         // What is wrong with the specification itself is said where it is read.
         return Ok(Vec::new());

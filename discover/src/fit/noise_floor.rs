@@ -23,7 +23,7 @@ pub struct NoiseFloor {
 }
 
 /// The floor at a fit; `seed` draws the noise.
-pub fn floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> NoiseFloor {
+pub fn noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> NoiseFloor {
     let noise_alone = NoiseFloor {
         channels: problem.noise.clone(),
         rms: 1.0,

@@ -1,117 +1,82 @@
-//! What was found as JSON documents: `comparison.json` and `discovery.json`.
+//! Results put together from fits and from what the search found.
+
+use std::collections::BTreeMap;
 
 use eomgen_records::dataset::Channel;
-use serde_json::{Map, Value, json};
 
 use crate::empirical::EMPIRICAL;
 use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::NoiseFloor;
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::What;
+use crate::report::result::{
+    ChannelGap, EffectAt, Estimated, FoundEffect, OnRecords, RejectedEffect, Sensor, ShaftOrder,
+    Status, Step,
+};
 use crate::search::found::{Accepted, Found, Rejected};
 
-/// The verdict of a comparison.
-pub fn compared(
+/// The gap of each channel, before and after.
+pub(crate) fn gap(
     problem: &EstimationProblem<'_>,
-    fit: &Fit,
+    before: &Fit,
+    after: Option<&Fit>,
     floor: &NoiseFloor,
-    at_floor: bool,
-    place: &str,
-) -> Value {
-    let verdict = if at_floor {
-        "no_significant_gap"
-    } else {
-        "gap_found"
+) -> BTreeMap<String, ChannelGap> {
+    let of = |fit: &Fit, channel: usize| OnRecords {
+        train: fit.train.channels[channel],
+        test: fit.test.channels[channel],
     };
-    let gap = by_channel(problem, |channel, entry| {
-        json!({
-            "unit": entry.unit,
-            "floor": floor.channels[channel],
-            "train": fit.train.channels[channel],
-            "test": fit.test.channels[channel],
-        })
-    });
-    json!({
-        "schema": 1,
-        "verdict": verdict,
-        "gap": gap,
-        "refitted": refitted(fit, &[]),
-        "sensors": sensors(problem, fit),
-        "where": place,
-        "notes": problem.dataset.notes,
+    by_channel(problem, |channel, entry| ChannelGap {
+        unit: entry.unit.clone(),
+        floor: floor.channels[channel],
+        before: of(before, channel),
+        after: after.map(|after| of(after, channel)),
     })
 }
 
-/// The result of a search.
-pub fn discovered(
-    problem: &EstimationProblem<'_>,
-    found: &Found,
-    floor: &NoiseFloor,
-    at_floor: bool,
-    place: &str,
-) -> Value {
-    let (before, after) = (&found.null, found.best());
-    let verdict = match (found.accepted.is_empty(), at_floor) {
-        (false, _) => "effects_found",
-        (true, true) => "no_significant_gap",
-        (true, false) => "unexplained",
-    };
-    let gap = by_channel(problem, |channel, entry| {
-        json!({
-            "unit": entry.unit,
-            "floor": floor.channels[channel],
-            "before": {"train": before.train.channels[channel], "test": before.test.channels[channel]},
-            "after": {"train": after.train.channels[channel], "test": after.test.channels[channel]},
-        })
-    });
+/// The effects that were accepted, by decreasing gap closed.
+pub(crate) fn effects(problem: &EstimationProblem<'_>, found: &Found) -> Vec<FoundEffect> {
     let mut order: Vec<&Accepted> = found.accepted.iter().collect();
     order.sort_by(|a, b| {
         // Squares add up: what one effect closes of them hardly depends on what came before.
         let closed = |effect: &Accepted| effect.test_gap.0.powi(2) - effect.test_gap.1.powi(2);
         closed(b).total_cmp(&closed(a))
     });
-    let effects = order
-        .iter()
-        .map(|effect| effect_entry(problem, after, effect));
-    let (not_testable, rejected): (Vec<&Rejected>, Vec<&Rejected>) = found
-        .rejected
-        .iter()
-        .partition(|rejected| rejected.not_testable);
-    json!({
-        "schema": 1,
-        "verdict": verdict,
-        "effects": effects.collect::<Vec<_>>(),
-        "rejected": rejected.iter().map(|r| json!({
-            "effect": r.candidate.effect, "on": r.candidate.on, "reason": reason(r),
-        })).collect::<Vec<_>>(),
-        "not_testable": not_testable.iter().map(|r| json!({
-            "effect": r.candidate.effect, "on": r.candidate.on, "reason": reason(r),
-            "experiment": r.candidate.experiment,
-        })).collect::<Vec<_>>(),
-        "refitted": refitted(after, &found.accepted),
-        "sensors": sensors(problem, after),
-        "gap": gap,
-        "closure": {
-            "train": closure(before.train.rms, after.train.rms, floor.rms),
-            "test": closure(before.test.rms, after.test.rms, floor.rms),
-        },
-        "ladder": ladder(found),
-        "where": place,
-        "notes": problem.dataset.notes,
-    })
+    let effects = order.into_iter();
+    effects
+        .map(|effect| found_effect(problem, found.best(), effect))
+        .collect()
 }
 
-/// The test gap step by step, in noises: of the model as it is, and after each round.
-fn ladder(found: &Found) -> Value {
-    let mut steps = vec![json!({"added": [], "test_in_noises": found.null.test.rms})];
+/// The effects that were not, testable or not.
+pub(crate) fn rejected(found: &Found, not_testable: bool) -> Vec<RejectedEffect> {
+    let such = found.rejected.iter();
+    let such = such.filter(|rejected| rejected.not_testable == not_testable);
+    such.map(|of| RejectedEffect {
+        at: EffectAt {
+            effect: of.candidate.effect.clone(),
+            on: of.candidate.on.clone(),
+        },
+        reason: reason(of),
+        experiment: of.candidate.experiment.clone(),
+    })
+    .collect()
+}
+
+/// The test gap step by step: of the model as it is, and after each round.
+pub(crate) fn steps(found: &Found) -> Vec<Step> {
+    let mut steps = vec![Step {
+        added: Vec::new(),
+        test_rms: found.null.test.rms,
+    }];
     for round in found.accepted.chunk_by(|a, b| a.test_gap == b.test_gap) {
         let labels = round.iter().map(|effect| effect.candidate.label());
-        steps.push(json!({
-            "added": labels.collect::<Vec<_>>(),
-            "test_in_noises": round[0].test_gap.1,
-        }));
+        steps.push(Step {
+            added: labels.collect(),
+            test_rms: round[0].test_gap.1,
+        });
     }
-    Value::Array(steps)
+    steps
 }
 
 /// Why a candidate was rejected; with the order where it has one.
@@ -122,81 +87,73 @@ fn reason(rejected: &Rejected) -> String {
     }
 }
 
-/// The part of the gap that was closed; none where there was none.
-fn closure(before: f64, after: f64, floor: f64) -> Value {
-    if before < 2.0 * floor {
-        return Value::Null;
+/// The part of the gap that was closed; none where there was hardly one.
+pub(crate) fn closure(before: &Fit, after: &Fit, floor: &NoiseFloor) -> OnRecords<Option<f64>> {
+    let closed = |before: f64, after: f64| {
+        let part = (before - after) / (before - floor.rms);
+        (before >= 2.0 * floor.rms || before.is_nan()).then_some(part)
+    };
+    OnRecords {
+        train: closed(before.train.rms, after.train.rms),
+        test: closed(before.test.rms, after.test.rms),
     }
-    json!((before - after) / (before - floor))
 }
 
-fn effect_entry(problem: &EstimationProblem<'_>, fit: &Fit, effect: &Accepted) -> Value {
-    let mut term = effect.candidate.term.clone();
-    let mut parameters: Map<String, Value> = effect
-        .candidate
-        .parameters
-        .iter()
-        .zip(effect.unknowns.iter().copied())
+fn found_effect(problem: &EstimationProblem<'_>, fit: &Fit, effect: &Accepted) -> FoundEffect {
+    let candidate = &effect.candidate;
+    let theta = &fit.train.estimate.theta;
+    let mut term = candidate.term.clone();
+    let own = candidate.parameters.iter().zip(&effect.unknowns);
+    let mut parameters: BTreeMap<String, Estimated> = own
         .map(|(parameter, place)| {
-            let (value, sd) = match fit.unknowns[place].what {
+            let (value, sd) = match fit.unknowns[*place].what {
                 What::Inverse(_) => {
-                    let inverse = fit.train.estimate.theta[place];
-                    (1.0 / inverse, fit.sd[place] / (inverse * inverse))
+                    let inverse = theta[*place];
+                    (1.0 / inverse, fit.sd[*place] / (inverse * inverse))
                 }
                 _ => {
                     let per_si = parameter.per_si();
-                    (
-                        per_si * fit.train.estimate.theta[place],
-                        per_si * fit.sd[place],
-                    )
+                    (per_si * theta[*place], per_si * fit.sd[*place])
                 }
             };
-            (
-                parameter.name.clone(),
-                json!({"value": value, "sd": sd, "unit": parameter.unit}),
-            )
+            let unit = parameter.unit.clone();
+            (parameter.name.clone(), Estimated { value, sd, unit })
         })
         .collect();
-    if effect.candidate.released.is_some()
+    if candidate.released.is_some()
         && let Some(place) = effect.unknowns.first()
         && let Some((name, per_si, unit)) = named(problem, fit, &fit.unknowns[*place].what)
     {
-        let value = per_si * fit.train.estimate.theta[*place];
-        term = format!("{name} = {value}");
+        let value = per_si * theta[*place];
         let sd = per_si * fit.sd[*place];
-        parameters.insert(name, json!({"value": value, "sd": sd, "unit": unit}));
+        term = format!("{name} = {value}");
+        parameters.insert(name, Estimated { value, sd, unit });
     }
-    let equivalent: Vec<Value> = effect
-        .equivalent
-        .iter()
-        .map(|other| json!({"effect": other.effect, "on": other.on}))
-        .collect();
-    let status = match (effect.candidate.effect.as_str(), equivalent.is_empty()) {
-        (EMPIRICAL, _) => "empirical",
-        (_, true) => "named",
-        (_, false) => "class",
-    };
-    let mut entry = json!({
-        "effect": effect.candidate.effect,
-        "on": effect.candidate.on,
-        "status": status,
-        "equivalent": equivalent,
-        "parameters": parameters,
-        "term": term,
-        "evidence": {
-            "held_out_gap_falls_by": effect.evidence.held_out,
-            "standard_errors": effect.evidence.held_out_errors,
-            "information": effect.evidence.information,
-            "t": effect.evidence.t,
-        },
+    let equivalent = effect.equivalent.iter().map(|other| EffectAt {
+        effect: other.effect.clone(),
+        on: other.on.clone(),
     });
-    if let Some((angle, order)) = &effect.candidate.order {
-        entry["order"] = json!({"per_turn_of": angle, "order": order});
+    let has_equivalent = !effect.equivalent.is_empty();
+    FoundEffect {
+        at: EffectAt {
+            effect: candidate.effect.clone(),
+            on: candidate.on.clone(),
+        },
+        status: match (candidate.effect.as_str(), has_equivalent) {
+            (EMPIRICAL, _) => Status::Empirical,
+            (_, false) => Status::Named,
+            (_, true) => Status::Class,
+        },
+        equivalent: equivalent.collect(),
+        parameters,
+        term,
+        statistics: effect.evidence.clone(),
+        order: candidate
+            .order
+            .clone()
+            .map(|(angle, order)| ShaftOrder { angle, order }),
+        experiment: has_equivalent.then(|| candidate.experiment.clone()),
     }
-    if !effect.equivalent.is_empty() {
-        entry["experiment"] = json!(effect.candidate.experiment);
-    }
-    entry
 }
 
 /// What an unknown of the null model is called, the number of its units that one SI unit is, and
@@ -219,53 +176,49 @@ fn named(problem: &EstimationProblem<'_>, fit: &Fit, what: &What) -> Option<(Str
     }
 }
 
-/// Parameters of the null model.
-fn refitted(fit: &Fit, accepted: &[Accepted]) -> Value {
-    let mut found = Map::new();
+/// Parameters of the null model, by their names.
+pub(crate) fn refitted(fit: &Fit, accepted: &[Accepted]) -> BTreeMap<String, Estimated> {
+    let mut found = BTreeMap::new();
     for (place, unknown) in fit.unknowns.iter().enumerate() {
         let What::Parameter(name) = &unknown.what else {
             continue;
         };
-        if accepted
-            .iter()
-            .any(|effect| effect.candidate.released.is_none() && effect.unknowns.contains(&place))
-        {
+        let is_own = |effect: &Accepted| {
+            effect.candidate.released.is_none() && effect.unknowns.contains(&place)
+        };
+        if accepted.iter().any(is_own) {
             continue;
         }
-        if let Some(parameter) = fit
-            .plant
-            .model()
-            .parameters
-            .iter()
-            .find(|p| p.name == *name)
-        {
-            let of = |si: f64| parameter.unit.from_si(si);
-            let entry = json!({
-                "value": of(fit.train.estimate.theta[place]),
-                "sd": of(fit.sd[place]),
-                "unit": parameter.unit.text,
-            });
+        let mut parameters = fit.plant.model().parameters.iter();
+        if let Some(parameter) = parameters.find(|p| p.name == *name) {
+            let entry = Estimated {
+                value: parameter.unit.from_si(fit.train.estimate.theta[place]),
+                sd: parameter.unit.from_si(fit.sd[place]),
+                unit: parameter.unit.text.clone(),
+            };
             found.insert(name.clone(), entry);
         }
     }
-    Value::Object(found)
+    found
 }
 
-fn sensors(problem: &EstimationProblem<'_>, fit: &Fit) -> Value {
+/// The sensor of each channel.
+pub(crate) fn sensors(problem: &EstimationProblem<'_>, fit: &Fit) -> BTreeMap<String, Sensor> {
     let shooting = fit.shooting(problem);
     let sensors = shooting.sensors(&fit.train.estimate.theta);
-    by_channel(problem, |channel, _| {
-        json!({
-            "bias": sensors.bias[channel],
-            "gain": sensors.gain[channel],
-            "delay": sensors.delay[channel],
-        })
+    by_channel(problem, |channel, _| Sensor {
+        bias: sensors.bias[channel],
+        gain: sensors.gain[channel],
+        delay: sensors.delay[channel],
     })
 }
 
 /// An entry for each channel, under its name.
-fn by_channel(problem: &EstimationProblem<'_>, of: impl Fn(usize, &Channel) -> Value) -> Value {
+fn by_channel<T>(
+    problem: &EstimationProblem<'_>,
+    of: impl Fn(usize, &Channel) -> T,
+) -> BTreeMap<String, T> {
     let channels = problem.dataset.channels.iter().enumerate();
     let entries = channels.map(|(place, channel)| (channel.name.clone(), of(place, channel)));
-    Value::Object(entries.collect())
+    entries.collect()
 }

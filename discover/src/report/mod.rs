@@ -1,9 +1,15 @@
-//! What was found, for people and for programs: the result as documents ([`discovery`]), where
-//! model and records disagree ([`location`]), the specification with what was found
-//! ([`write_back`]) run again ([`mod@resimulation`]), and the [`page`].
+//! From records to a result: the whole way ([`run`]), the typed [`result`] put together in
+//! `discovery`, where model and records disagree ([`location`]), the specification with what was
+//! found ([`write_back`]) run again ([`mod@resimulation`]); documents (`json`) and the page (`page`)
+//! with its `pictures`.
 
-pub mod discovery;
+mod discovery;
+mod escaped;
+mod json;
 pub mod location;
-pub mod page;
+mod page;
+mod pictures;
 pub mod resimulation;
+pub mod result;
+pub mod run;
 pub mod write_back;

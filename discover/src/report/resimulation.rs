@@ -13,7 +13,7 @@ use eomgen_records::windows::Windows;
 
 /// What a specification leaves, root mean squares over all channels, in noises.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rerun {
+pub struct Resimulation {
     /// Of the training records.
     pub train: f64,
     /// Of the test records.
@@ -25,11 +25,11 @@ pub struct Rerun {
 ///
 /// # Errors
 /// What is wrong with the text.
-pub fn rerun(
+pub fn resimulated(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     text: &str,
-) -> Result<Rerun, DiscoverError> {
+) -> Result<Resimulation, DiscoverError> {
     let plant = problem.plant(text, Some(&fit.texts.linear))?;
     let all = fit.unknowns.iter().zip(&fit.train.estimate.theta);
     let (sensors, theta): (Vec<Unknown>, Vec<f64>) = all
@@ -51,7 +51,7 @@ pub fn rerun(
         );
         Residuals::of(&shooting, estimate).whole().rms
     };
-    Ok(Rerun {
+    Ok(Resimulation {
         train: left(&problem.train, &fit.train.estimate),
         test: left(&problem.test, &fit.test.estimate),
     })

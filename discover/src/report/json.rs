@@ -1,0 +1,155 @@
+//! Results as JSON documents: `comparison.json` and `discovery.json`.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Map, Value, json};
+
+use crate::report::result::{
+    ChannelGap, Compared, Comparison, Discovery, EffectAt, Estimated, FoundEffect, OnRecords,
+    RejectedEffect, Sensor,
+};
+
+/// The version of both documents.
+const SCHEMA: u32 = 1;
+
+impl Comparison {
+    /// Its verdict's word in documents.
+    pub fn verdict(&self) -> &'static str {
+        match self.has_gap {
+            true => "gap_found",
+            false => "no_significant_gap",
+        }
+    }
+
+    /// The document.
+    pub fn to_json(&self) -> Value {
+        let gap = |gap: &ChannelGap| {
+            json!({
+                "unit": gap.unit,
+                "floor": gap.floor,
+                "train": gap.before.train,
+                "test": gap.before.test,
+            })
+        };
+        let mut document = common(&self.compared, gap);
+        document["verdict"] = json!(self.verdict());
+        document
+    }
+}
+
+impl Discovery {
+    /// The document.
+    pub fn to_json(&self) -> Value {
+        let gap = |gap: &ChannelGap| {
+            json!({
+                "unit": gap.unit,
+                "floor": gap.floor,
+                "before": on_records(gap.before),
+                "after": gap.after.map(on_records),
+            })
+        };
+        let mut document = common(&self.compared, gap);
+        let effects: Vec<Value> = self.effects.iter().map(effect).collect();
+        let rejected = self.rejected.iter().map(|r| rejected(r, false));
+        let not_testable = self.not_testable.iter().map(|r| self::rejected(r, true));
+        document["verdict"] = json!(self.verdict.word());
+        document["effects"] = json!(effects);
+        document["rejected"] = Value::Array(rejected.collect());
+        document["not_testable"] = Value::Array(not_testable.collect());
+        document["closure"] = json!({"train": self.closure.train, "test": self.closure.test});
+        document["ladder"] = self.ladder();
+        document["validation"] = self.validation();
+        document
+    }
+
+    /// The test gap step by step, in standard deviations of the noise.
+    fn ladder(&self) -> Value {
+        let step = |step: &crate::report::result::Step| json!({"added": step.added, "test_in_noises": step.test_rms});
+        let mut steps: Vec<Value> = self.steps.iter().map(step).collect();
+        if let Some(last) = steps.last_mut() {
+            last["validated"] = json!(self.validation.as_ref().map(|found| found.passed));
+        }
+        Value::Array(steps)
+    }
+
+    fn validation(&self) -> Value {
+        let found = |found: &crate::report::result::Validation| {
+            json!({
+                "passed": found.passed,
+                "checks": found.checks,
+                "failed": found.failed,
+                "train_in_noises": self.resimulation.train,
+                "test_in_noises": self.resimulation.test,
+            })
+        };
+        self.validation.as_ref().map_or(Value::Null, found)
+    }
+}
+
+/// What both documents hold.
+fn common(compared: &Compared, gap: impl Fn(&ChannelGap) -> Value) -> Value {
+    let gaps = compared
+        .gap
+        .iter()
+        .map(|(name, of)| (name.clone(), gap(of)));
+    json!({
+        "schema": SCHEMA,
+        "gap": gaps.collect::<Map<String, Value>>(),
+        "refitted": estimates(&compared.refitted),
+        "sensors": sensors(&compared.sensors),
+        "where": compared.location,
+        "notes": compared.notes,
+    })
+}
+
+fn on_records(both: OnRecords<f64>) -> Value {
+    json!({"train": both.train, "test": both.test})
+}
+
+/// Estimates, by their names.
+pub(crate) fn estimates(of: &BTreeMap<String, Estimated>) -> Value {
+    let entry = |of: &Estimated| json!({"value": of.value, "sd": of.sd, "unit": of.unit});
+    let entries = of.iter().map(|(name, of)| (name.clone(), entry(of)));
+    Value::Object(entries.collect())
+}
+
+/// Sensors, by the names of their channels.
+pub(crate) fn sensors(of: &BTreeMap<String, Sensor>) -> Value {
+    let entry = |of: &Sensor| json!({"bias": of.bias, "gain": of.gain, "delay": of.delay});
+    let entries = of.iter().map(|(name, of)| (name.clone(), entry(of)));
+    Value::Object(entries.collect())
+}
+
+fn at(of: &EffectAt) -> Value {
+    json!({"effect": of.effect, "on": of.on})
+}
+
+fn rejected(of: &RejectedEffect, has_experiment: bool) -> Value {
+    let mut entry = at(&of.at);
+    entry["reason"] = json!(of.reason);
+    if has_experiment {
+        entry["experiment"] = json!(of.experiment);
+    }
+    entry
+}
+
+fn effect(of: &FoundEffect) -> Value {
+    let mut entry = at(&of.at);
+    entry["status"] = json!(of.status.word());
+    entry["equivalent"] = of.equivalent.iter().map(at).collect();
+    entry["parameters"] = estimates(&of.parameters);
+    entry["term"] = json!(of.term);
+    entry["evidence"] = json!({
+        "held_out_gap_falls_by": of.statistics.held_out,
+        "standard_errors": of.statistics.held_out_errors,
+        "information": of.statistics.information,
+        "t": of.statistics.t,
+    });
+    if let Some(order) = &of.order {
+        entry["order"] = json!({"per_turn_of": order.angle, "order": order.order});
+    }
+    if let Some(experiment) = &of.experiment {
+        entry["experiment"] = json!(experiment);
+    }
+    entry
+}

@@ -1,0 +1,164 @@
+//! Pictures for a page: residuals of the test record, and the residual force.
+
+use eomgen_plot::{FrequencyAxis, Panel, Series, Spectrum, TimeHistory, spectrum, time_history};
+
+use crate::fit::fitted::Fit;
+use crate::model::problem::EstimationProblem;
+use crate::report::escaped::escaped;
+use crate::residual_force::figures::figures as figures_of_force;
+use crate::residual_force::types::ResidualForce;
+
+/// How the equations compare, and what the force in one of them is like.
+pub(crate) fn force_section(force: &ResidualForce, left: Option<&ResidualForce>) -> String {
+    let mut rows = String::new();
+    let percent = |part: f64| format!("{:.0} %", 100.0 * part.max(0.0));
+    for ranked in &force.ranked {
+        rows += &format!(
+            "<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+            escaped(&force.equations[ranked.equation].name),
+            percent(ranked.by_state),
+            percent(ranked.by_time)
+        );
+    }
+    let told = "A force that was put into this equation, its bars one standard deviation to either side. What records do not show is left out.";
+    format!(
+        "<table><tr><th>a force on</th><th>explains of the squares over rate or place</th><th>if free in every window</th></tr>\n{rows}</table>\n<p class=\"note\">{told}</p>\n{}",
+        figures_of_force(force, left)
+    )
+}
+
+/// Residuals over time and their spectra, before and after.
+pub(crate) fn figures(
+    problem: &EstimationProblem<'_>,
+    before: &Fit,
+    after: Option<&Fit>,
+) -> String {
+    let count = problem.noise.len();
+    let times: Vec<f64> = problem
+        .test
+        .list
+        .iter()
+        .filter(|w| w.record == 0)
+        .flat_map(|w| w.times.iter().copied())
+        .collect();
+    let column = |fit: &Fit, channel: usize| -> Vec<f64> {
+        let windows = problem
+            .test
+            .list
+            .iter()
+            .zip(&fit.test.residuals)
+            .filter(|(w, _)| w.record == 0);
+        let mut values = Vec::new();
+        for (window, residual) in windows {
+            let own = residual
+                .iter()
+                .skip(channel)
+                .step_by(count)
+                .map(|r| r * problem.noise[channel]);
+            let begin = values.len();
+            values.extend(own);
+            values.resize(begin + window.times.len(), f64::NAN);
+        }
+        values
+    };
+    let mut fits = vec![("before", before)];
+    fits.extend(after.map(|after| ("after", after)));
+    let columns: Vec<Vec<(&str, Vec<f64>)>> = (0..count)
+        .map(|channel| {
+            fits.iter()
+                .map(|(name, fit)| (*name, column(fit, channel)))
+                .collect()
+        })
+        .collect();
+    let named: Vec<(String, String)> = problem
+        .dataset
+        .channels
+        .iter()
+        .map(|c| (c.name.clone(), c.unit.clone()))
+        .collect();
+    let history = TimeHistory {
+        title: "Differences on the test record".to_owned(),
+        panels: named
+            .iter()
+            .zip(&columns)
+            .map(|((name, unit), series)| Panel {
+                title: format!("{name}: simulated minus measured"),
+                quantity: name.clone(),
+                unit: unit.clone(),
+                series: series
+                    .iter()
+                    .map(|(label, values)| Series {
+                        label: (*label).to_owned(),
+                        abscissa: &times,
+                        values,
+                    })
+                    .collect(),
+                references: Vec::new(),
+            })
+            .collect(),
+    };
+    let mut out = time_history(&history).unwrap_or_default();
+    let step = eomgen_records::samples::typical_step(&times);
+    let spectra: Vec<Vec<(&str, Density)>> = columns
+        .iter()
+        .map(|series| {
+            series
+                .iter()
+                .map(|(label, values)| (*label, density(values, step)))
+                .collect()
+        })
+        .collect();
+    let plot = Spectrum {
+        title: "Spectra of the differences".to_owned(),
+        frequency: FrequencyAxis::Logarithmic,
+        panels: named
+            .iter()
+            .zip(&spectra)
+            .map(|((name, unit), series)| Panel {
+                title: format!("{name}: spectrum of the difference"),
+                quantity: name.clone(),
+                unit: format!("({unit})^2/Hz"),
+                series: series
+                    .iter()
+                    .map(|(label, (f, d))| Series {
+                        label: (*label).to_owned(),
+                        abscissa: f,
+                        values: d,
+                    })
+                    .collect(),
+                references: Vec::new(),
+            })
+            .collect(),
+    };
+    out += &spectrum(&plot).unwrap_or_default();
+    out
+}
+
+/// Frequencies in Hz, and the density at each.
+type Density = (Vec<f64>, Vec<f64>);
+
+/// The power spectral density of a residual, missing samples as 0; frequencies in Hz.
+fn density(values: &[f64], step: f64) -> Density {
+    let mut signal: Vec<f64> = values
+        .iter()
+        .map(|v| if v.is_finite() { *v } else { 0.0 })
+        .collect();
+    let length = signal.len();
+    if length < 2 {
+        return (Vec::new(), Vec::new());
+    }
+    let transform = realfft::RealFftPlanner::<f64>::new().plan_fft_forward(length);
+    let mut spectrum = transform.make_output_vec();
+    if transform.process(&mut signal, &mut spectrum).is_err() {
+        return (Vec::new(), Vec::new());
+    }
+    let rate = 1.0 / (length as f64 * step);
+    (1..spectrum.len())
+        .map(|k| {
+            (
+                k as f64 * rate,
+                2.0 * step / length as f64 * spectrum[k].norm_sqr(),
+            )
+        })
+        .unzip()
+}

@@ -1,0 +1,229 @@
+//! The results of a comparison and of a search. They are serialised in `json`, and shown in
+//! [`crate::report::page`].
+
+use std::collections::BTreeMap;
+
+use crate::report::resimulation::Resimulation;
+use crate::search::acceptance::TestStatistics;
+
+/// A root mean square of each set of records.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnRecords<T> {
+    /// Of the records that were fitted to.
+    pub train: T,
+    /// Of the records held out.
+    pub test: T,
+}
+
+/// An estimate, in its unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimated {
+    /// The value.
+    pub value: f64,
+    /// One standard deviation.
+    pub sd: f64,
+    /// The unit of both.
+    pub unit: String,
+}
+
+/// The root mean squares of a channel's residuals, in its SI unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ChannelGap {
+    /// The unit.
+    pub unit: String,
+    /// What a right model would leave.
+    pub floor: f64,
+    /// What the model leaves as it is.
+    pub before: OnRecords<f64>,
+    /// What it leaves with what was found; none in a comparison.
+    pub after: Option<OnRecords<f64>>,
+}
+
+/// How a sensor differs from a true one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensor {
+    /// In the channel's SI unit.
+    pub bias: f64,
+    /// Without unit.
+    pub gain: f64,
+    /// In s.
+    pub delay: f64,
+}
+
+/// What both a comparison and a search tell.
+#[derive(Clone, Debug)]
+pub struct Compared {
+    /// The dataset's title; empty where it has none.
+    pub title: String,
+    /// The gap of each channel, by its name.
+    pub gap: BTreeMap<String, ChannelGap>,
+    /// Parameters of the null model, by their names.
+    pub refitted: BTreeMap<String, Estimated>,
+    /// The sensor of each channel, by its name.
+    pub sensors: BTreeMap<String, Sensor>,
+    /// Where model and records disagree, in sentences.
+    pub location: String,
+    /// What is worth a remark.
+    pub notes: Vec<String>,
+    /// Pictures for the page.
+    pub(crate) pictures: Pictures,
+}
+
+/// Pictures, as parts of a page.
+#[derive(Clone, Debug)]
+pub(crate) struct Pictures {
+    /// Residuals over time, and their spectra.
+    pub residuals: String,
+    /// The equation whose residual force is shown, and that force.
+    pub force: Option<(String, String)>,
+}
+
+/// What a comparison came to.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Whether more is left than a right model would leave.
+    pub has_gap: bool,
+    /// What there is to tell.
+    pub compared: Compared,
+}
+
+/// What a search came to.
+#[derive(Clone, Debug)]
+pub struct Discovery {
+    /// In a word.
+    pub verdict: Verdict,
+    /// What was accepted, by decreasing gap closed.
+    pub effects: Vec<FoundEffect>,
+    /// What was tested and not accepted.
+    pub rejected: Vec<RejectedEffect>,
+    /// What these records could not have shown.
+    pub not_testable: Vec<RejectedEffect>,
+    /// The part of the gap that was closed; none where there was hardly one.
+    pub closure: OnRecords<Option<f64>>,
+    /// The test gap step by step.
+    pub steps: Vec<Step>,
+    /// What there is to tell besides.
+    pub compared: Compared,
+    /// The specification as it was.
+    pub original: String,
+    /// The specification with what was found.
+    pub extended: String,
+    /// What that leaves when it is run on the records.
+    pub resimulation: Resimulation,
+    /// Whether its equations are right, where that was asked.
+    pub validation: Option<Validation>,
+}
+
+/// The verdict of a search.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Effects were accepted.
+    EffectsFound,
+    /// No more is left than a right model would leave.
+    NoSignificantGap,
+    /// More is left, and nothing was accepted.
+    Unexplained,
+}
+
+impl Verdict {
+    /// Its word in documents.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::EffectsFound => "effects_found",
+            Self::NoSignificantGap => "no_significant_gap",
+            Self::Unexplained => "unexplained",
+        }
+    }
+}
+
+/// An effect at a place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EffectAt {
+    /// The effect.
+    pub effect: String,
+    /// The place.
+    pub on: String,
+}
+
+/// How sure an effect's name is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// It is this effect.
+    Named,
+    /// It is this one or another of its equivalence class.
+    Class,
+    /// It is an expression outside the catalogue.
+    Empirical,
+}
+
+impl Status {
+    /// Its word in documents.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Named => "named",
+            Self::Class => "class",
+            Self::Empirical => "empirical",
+        }
+    }
+}
+
+/// The angle with which an effect repeats, and how many times per turn.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShaftOrder {
+    /// The angle.
+    pub angle: String,
+    /// The order.
+    pub order: u32,
+}
+
+/// An effect that was accepted.
+#[derive(Clone, Debug)]
+pub struct FoundEffect {
+    /// What and where.
+    pub at: EffectAt,
+    /// How sure its name is.
+    pub status: Status,
+    /// What the records do not tell from it.
+    pub equivalent: Vec<EffectAt>,
+    /// Its parameters, by their names.
+    pub parameters: BTreeMap<String, Estimated>,
+    /// The line that says most of the change of the specification.
+    pub term: String,
+    /// What spoke for it.
+    pub statistics: TestStatistics,
+    /// With what it repeats.
+    pub order: Option<ShaftOrder>,
+    /// What would separate it from its equivalents, where it has some.
+    pub experiment: Option<String>,
+}
+
+/// An effect that was not accepted.
+#[derive(Clone, Debug)]
+pub struct RejectedEffect {
+    /// What and where.
+    pub at: EffectAt,
+    /// Why.
+    pub reason: String,
+    /// What would show it.
+    pub experiment: String,
+}
+
+/// A step of the search.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// What was added; nothing in the first.
+    pub added: Vec<String>,
+    /// The root mean square of the test records' residuals, in standard deviations of the noise.
+    pub test_rms: f64,
+}
+
+/// What the checks of the extended specification's equations say.
+#[derive(Clone, Debug)]
+pub struct Validation {
+    /// Whether all passed.
+    pub passed: bool,
+    /// The checks that were made.
+    pub checks: Vec<String>,
+    /// Those of them that failed.
+    pub failed: Vec<String>,
+}

@@ -1,0 +1,170 @@
+//! The whole way from a specification and records to a result.
+
+use eomgen_records::dataset::Dataset;
+
+use crate::catalogue::effect::Effect;
+use crate::catalogue::user_effects;
+use crate::empirical::unnamed;
+use crate::error::DiscoverError;
+use crate::fit::fitted::Fit;
+use crate::fit::noise_floor::{NoiseFloor, noise_floor};
+use crate::fit::null_model::null_fit;
+use crate::model::channel_checks;
+use crate::model::problem::EstimationProblem;
+use crate::report::discovery::{closure, effects, gap, refitted, rejected, sensors, steps};
+use crate::report::location::located;
+use crate::report::pictures::{figures, force_section};
+use crate::report::resimulation::resimulated;
+use crate::report::result::{Compared, Comparison, Discovery, Pictures, Verdict};
+use crate::report::write_back::extended;
+use crate::residual_force::residual_force;
+use crate::residual_force::types::ResidualForce;
+use crate::residual_force::wording::described_after;
+use crate::search::search;
+
+/// Is told, line by line, what is being done.
+pub type Progress<'p> = dyn Fn(&str) + Sync + 'p;
+
+/// A specification to be compared with records.
+#[derive(Clone, Copy, Debug)]
+pub struct Specification<'s> {
+    /// Its path, for messages.
+    pub path: &'s str,
+    /// Its text.
+    pub text: &'s str,
+    /// The order of its fields, if not their own.
+    pub order: Option<usize>,
+}
+
+/// A fit, the floor there, and the residual force.
+struct Null {
+    fit: Fit,
+    floor: NoiseFloor,
+    force: Option<ResidualForce>,
+}
+
+/// Compares a specification with records. `seed` draws the noise of the bootstrap from which the
+/// noise floor is known.
+///
+/// # Errors
+/// Records whose labels are wrong, or a model that does not run through them.
+pub fn compare(
+    specification: Specification<'_>,
+    dataset: &Dataset,
+    seed: u64,
+    progress: &Progress<'_>,
+) -> Result<Comparison, DiscoverError> {
+    let Specification { path, text, order } = specification;
+    let problem = EstimationProblem::new(dataset, order, path, text);
+    let Null { fit, floor, force } = null(&problem, text, seed, progress)?;
+    let pictures = Pictures {
+        residuals: figures(&problem, &fit, None),
+        force: force.as_ref().map(|force| {
+            let equation = force.profiled_equation().to_owned();
+            (equation, force_section(force, None))
+        }),
+    };
+    Ok(Comparison {
+        has_gap: !fit.is_at_floor(floor.rms),
+        compared: Compared {
+            title: dataset.title.clone(),
+            gap: gap(&problem, &fit, None, &floor),
+            refitted: refitted(&fit, &[]),
+            sensors: sensors(&problem, &fit),
+            location: located(&problem, &fit, force.as_ref()),
+            notes: dataset.notes.clone(),
+            pictures,
+        },
+    })
+}
+
+/// Finds what a specification lacks of what records show, among effects of a catalogue and, where
+/// none of them explains what is left, as an expression without a name.
+///
+/// # Errors
+/// Records whose labels are wrong, a model that does not run through them, or an effect that does
+/// not leave a specification.
+pub fn discover(
+    specification: Specification<'_>,
+    mut dataset: Dataset,
+    catalogue: &[Effect],
+    seed: u64,
+    progress: &Progress<'_>,
+) -> Result<Discovery, DiscoverError> {
+    let Specification { path, text, order } = specification;
+    let without_site = user_effects::check(catalogue, path, text)?;
+    for note in &without_site {
+        progress(&format!("note: {note}"));
+    }
+    dataset.notes.extend(without_site);
+    let problem = EstimationProblem::new(&dataset, order, path, text);
+    let Null {
+        fit,
+        floor: before,
+        force,
+    } = null(&problem, text, seed, progress)?;
+    let mut location = located(&problem, &fit, force.as_ref());
+    let mut found = search(&problem, fit, catalogue, before.rms, progress)?;
+    unnamed(&problem, &mut found, before.rms, progress);
+    let floor = match found.accepted.is_empty() {
+        true => before,
+        false => noise_floor(&problem, found.best(), seed),
+    };
+    let (null, best) = (&found.null, found.best());
+    let after = force.as_ref().zip(found.last.as_ref());
+    let after = after
+        .and_then(|(force, last)| residual_force(&problem, last, Some(force.profiled_equation())));
+    if let Some(after) = &after {
+        location += &format!(" {}", described_after(after));
+    }
+    let extended = extended(&problem, text, best, &found.accepted)?;
+    let pictures = Pictures {
+        residuals: figures(&problem, null, found.last.as_ref()),
+        force: force.as_ref().map(|force| {
+            let equation = force.profiled_equation().to_owned();
+            (equation, force_section(force, after.as_ref()))
+        }),
+    };
+    Ok(Discovery {
+        verdict: match (found.accepted.is_empty(), best.is_at_floor(floor.rms)) {
+            (false, _) => Verdict::EffectsFound,
+            (true, true) => Verdict::NoSignificantGap,
+            (true, false) => Verdict::Unexplained,
+        },
+        effects: effects(&problem, &found),
+        rejected: rejected(&found, false),
+        not_testable: rejected(&found, true),
+        closure: closure(null, best, &floor),
+        steps: steps(&found),
+        resimulation: resimulated(&problem, best, &extended)?,
+        validation: None,
+        original: text.to_owned(),
+        extended,
+        compared: Compared {
+            title: problem.dataset.title.clone(),
+            gap: gap(&problem, null, Some(best), &floor),
+            refitted: refitted(best, &found.accepted),
+            sensors: sensors(&problem, best),
+            location,
+            notes: problem.dataset.notes.clone(),
+            pictures,
+        },
+    })
+}
+
+/// The null model's fit, the floor and the residual force there.
+fn null(
+    problem: &EstimationProblem<'_>,
+    text: &str,
+    seed: u64,
+    progress: &Progress<'_>,
+) -> Result<Null, DiscoverError> {
+    for note in channel_checks::check(problem, text)? {
+        progress(&format!("note: {note}"));
+    }
+    progress("fitting the model as it is");
+    let fit = null_fit(problem, text)?;
+    let floor = noise_floor(problem, &fit, seed);
+    let force = residual_force(problem, &fit, None);
+    Ok(Null { fit, floor, force })
+}
