@@ -1,10 +1,43 @@
 //! Compares a model with measurements, finds what it lacks, names it and adds it.
 //!
-//! Data flows one way: [`model`] (a model that can be run and what is unknown of it, `beside`: its
-//! part that is not linear); [`fit`] (estimates and what they leave);
-//! [`catalogue`] (what may be missing, and where); [`residual_force`] (where a force is missing);
-//! [`search`] (which effects are accepted); [`empirical`] (what is left and has no name);
-//! [`report`] (for programs and for people). [`thresholds`] holds what decides.
+//! ```no_run
+//! use std::path::Path;
+//!
+//! use discover::report::result::Verdict;
+//! use discover::{Specification, catalogue};
+//! use eomgen_records::read_dataset;
+//! use model_spec::source::Source;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let text = std::fs::read_to_string("arm.toml")?;
+//! let model = model_spec::check(Source::new("arm.toml", text.as_str()))?.model;
+//! let dataset = read_dataset(Path::new("records/dataset.toml"), &model)?;
+//! let specification = Specification {
+//!     path: "arm.toml",
+//!     text: &text,
+//!     order: None,
+//! };
+//! let effects = catalogue::effects(None)?;
+//! let progress = |line: &str| eprintln!("{line}");
+//! let found = discover::discover(specification, dataset, &effects, 1, &progress)?;
+//! if found.verdict == Verdict::EffectsFound {
+//!     for effect in &found.effects {
+//!         println!("{} on {}: {}", effect.at.effect, effect.at.on, effect.term);
+//!     }
+//!     std::fs::write("extended.toml", &found.extended)?;
+//! }
+//! std::fs::write("discovery.json", found.to_json().to_string())?;
+//! std::fs::write("report.html", found.page())?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Data flows one way: [`model`] (a model that can be run, and what is unknown of it); [`fit`]
+//! (estimates, how well they are known, and what they leave); [`catalogue`] (what a model may
+//! lack, and where); [`mod@residual_force`] (in which equation a force is missing, and what it is
+//! like); [`mod@search`] (which effects are accepted); [`empirical`] (what is left and has no name);
+//! [`report`] (the result, for programs and for people). [`thresholds`] holds what decides,
+//! [`error`] what can go wrong.
 
 pub mod catalogue;
 pub mod empirical;
