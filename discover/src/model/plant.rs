@@ -11,7 +11,7 @@ use crate::model::runner::{Runner, Shown};
 use eomgen_records::dataset::{Channel, Quantity};
 use eomgen_records::record::Record;
 use eomgen_records::samples::typical_step;
-use sim::exponential::March;
+use sim::exponential::ExponentialIntegrator;
 
 /// Switches per simulated second beyond which a trial motion is given up, 1/s.
 pub(crate) const FASTEST_SWITCHING: f64 = 1e5;
@@ -264,7 +264,8 @@ impl Plant {
             }
         };
         let exact = linear.piecewise_linear().map_err(ToString::to_string)?;
-        runner.march = March::new(exact.evaluator(&own), self.sample, self.refinement);
+        runner.march =
+            ExponentialIntegrator::new(exact.evaluator(&own), self.sample, self.refinement);
         match (&runner.march, self.is_linear()) {
             (None, true) => {
                 let exact = exact.at(values).map_err(|error| error.to_string())?;

@@ -13,7 +13,7 @@ use sim::piecewise_linear::Propagator;
 
 use crate::model::beside::Beside;
 use crate::model::plant::{Output, Plant};
-use sim::exponential::{Company, Drives, Force, March, Tangents};
+use sim::exponential::{Drives, ExponentialIntegrator, Force, Options, Tangents};
 use sim::ode::runge_kutta::RungeKutta;
 
 /// Relative error of one step of the general solver: far below any sensor's noise.
@@ -102,7 +102,7 @@ pub struct Runner<'p> {
     evaluator: RefCell<Evaluator>,
     observables: Vec<f64>,
     shown: Option<Shown>,
-    pub(crate) march: Option<March>,
+    pub(crate) march: Option<ExponentialIntegrator>,
     pub(crate) beside: Option<Beside>,
     propagator: Option<Propagator>,
 }
@@ -174,7 +174,7 @@ impl<'p> Runner<'p> {
         let mut tangents = Tangents::new(n, by_state, count, drives);
         let mut found = Linearised::default();
         let free = if by_state { n } else { 0 };
-        let company = Company {
+        let options = Options {
             force: self.beside.as_mut().map(|beside| beside as &mut dyn Force),
             tangents: Some(&mut tangents),
         };
@@ -183,7 +183,7 @@ impl<'p> Runner<'p> {
                 initial,
                 samples,
                 inputs,
-                company,
+                options,
                 &mut |_, state, tangents| {
                     shown.add_to(state, &mut found.outputs.values);
                     found.states.push(state.to_vec());
@@ -219,11 +219,11 @@ impl<'p> Runner<'p> {
         let span = (*begin, *end);
         if let Some(march) = &mut self.march {
             let mut states = Vec::with_capacity(samples.len());
-            let company = Company {
+            let options = Options {
                 force: self.beside.as_mut().map(|beside| beside as &mut dyn Force),
                 tangents: None,
             };
-            march.run(initial, samples, inputs, company, &mut |_, state, _| {
+            march.run(initial, samples, inputs, options, &mut |_, state, _| {
                 states.push(state.to_vec());
             })?;
             return Ok(states);

@@ -23,11 +23,29 @@ pub struct Instance<'m> {
     initial: Vec<f64>,
 }
 
+impl CompiledModel {
+    /// The model at the values that its specification gives.
+    ///
+    /// # Errors
+    /// Values or initial states that are not admissible.
+    pub fn at_declared(&self) -> Result<Instance<'_>, Error> {
+        self.with(&[])
+    }
+
+    /// The model with some independent parameters set, each a number in the unit that the
+    /// specification declares; what depends on them is computed anew.
+    ///
+    /// # Errors
+    /// An unknown name, a value that is not admissible, and a parameter that the specification
+    /// gives by an expression: it is part of the equations, and has to be set in the model before
+    /// that is derived.
+    pub fn with(&self, settings: &[(&str, f64)]) -> Result<Instance<'_>, Error> {
+        Instance::new(self, settings)
+    }
+}
+
 impl<'m> Instance<'m> {
-    pub(crate) fn new(
-        compiled: &'m CompiledModel,
-        settings: &[(&str, f64)],
-    ) -> Result<Self, Error> {
+    fn new(compiled: &'m CompiledModel, settings: &[(&str, f64)]) -> Result<Self, Error> {
         let declared = compiled.model();
         let refused = |error| Error::model(declared, error);
         let independent = compiled.parameter_names();

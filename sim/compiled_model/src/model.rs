@@ -14,7 +14,6 @@ use model_spec::source::Source;
 use sim::piecewise_linear::{ExactError, PiecewiseLinear};
 
 use crate::error::Error;
-use crate::instance::Instance;
 
 /// The modal truncation orders that a model is derived at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -184,24 +183,5 @@ impl CompiledModel {
             .piecewise_linear
             .get_or_init(|| PiecewiseLinear::of(&self.model, &self.orders));
         made.as_ref()
-    }
-
-    /// The model at the values that its specification gives.
-    ///
-    /// # Errors
-    /// Values or initial states that are not admissible.
-    pub fn at_declared(&self) -> Result<Instance<'_>, Error> {
-        self.with(&[])
-    }
-
-    /// The model with some independent parameters set, each a number in the unit that the
-    /// specification declares; what depends on them is computed anew.
-    ///
-    /// # Errors
-    /// An unknown name, a value that is not admissible, and a parameter that the specification
-    /// gives by an expression: it is part of the equations, and has to be set in the model before
-    /// that is derived.
-    pub fn with(&self, settings: &[(&str, f64)]) -> Result<Instance<'_>, Error> {
-        Instance::new(self, settings)
     }
 }

@@ -3,14 +3,12 @@
 
 use std::path::Path;
 
+use crate::header::{MOST_SAMPLES, places, too_many};
 use crate::parquet_file;
 use crate::refusal::Refusal;
 
 /// The largest record read, in bytes.
 const LARGEST_RECORD: u64 = 256 << 20;
-
-/// The most samples of a record: some hundred times as many as are searched in minutes.
-pub const MOST_SAMPLES: usize = 1_000_000;
 
 /// Reads these columns of a file; a missing number, `NaN`, an infinity or an empty cell is
 /// NaN.
@@ -49,31 +47,6 @@ pub fn read(path: &Path, wanted: &[&str]) -> Result<Vec<Vec<f64>>, Refusal> {
     } else {
         read_csv(path, &bytes, wanted)
     }
-}
-
-/// Where the wanted columns stand among those that are there.
-pub fn places(path: &Path, there: &[&str], wanted: &[&str]) -> Result<Vec<usize>, Refusal> {
-    let place = |name: &&str| {
-        let mut found = (there.iter().enumerate()).filter(|(_, header)| header.trim() == *name);
-        match (found.next(), found.next()) {
-            (Some((place, _)), None) => Ok(place),
-            (Some(_), Some(_)) => Err(Refusal::line(
-                path,
-                1,
-                format!("there are two columns `{name}`; give each a name of its own"),
-            )),
-            (None, _) => {
-                let list = there.join(", ");
-                let shown: String = list.chars().take(200).collect();
-                Err(Refusal::line(
-                    path,
-                    1,
-                    format!("there is no column `{name}`; there are {shown}"),
-                ))
-            }
-        }
-    };
-    wanted.iter().map(place).collect()
 }
 
 fn read_csv(path: &Path, bytes: &[u8], wanted: &[&str]) -> Result<Vec<Vec<f64>>, Refusal> {
@@ -128,16 +101,6 @@ fn read_csv(path: &Path, bytes: &[u8], wanted: &[&str]) -> Result<Vec<Vec<f64>>,
         }
     }
     Ok(columns)
-}
-
-/// A record with more samples than are read.
-pub fn too_many(path: &Path) -> Refusal {
-    Refusal::file(
-        path,
-        format!(
-            "has more than {MOST_SAMPLES} samples, the most that are read: cut the record, or sample it less often"
-        ),
-    )
 }
 
 fn number(path: &Path, line: u64, cell: &str, place: usize) -> Result<f64, Refusal> {

@@ -14,6 +14,7 @@ mod coverage;
 pub mod dataset;
 pub mod description;
 mod files;
+mod header;
 pub mod inputs;
 mod parquet_file;
 mod read;

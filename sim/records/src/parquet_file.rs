@@ -9,7 +9,7 @@ use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 
-use crate::columns::{MOST_SAMPLES, places, too_many};
+use crate::header::{MOST_SAMPLES, places, too_many};
 use crate::refusal::Refusal;
 
 /// Reads these columns; a missing number is NaN.

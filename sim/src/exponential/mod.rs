@@ -1,36 +1,43 @@
-//! Marching: the motion of a model that is linear between its switching surfaces, but for
-//! small terms, in steps of one length.
+//! An exponential integrator with location of switches: the motion of a model that is linear
+//! between its switching surfaces, but for small terms, in steps of one length.
 //!
 //! A step takes the linear part exactly, by a matrix made once for each regime; terms that are
 //! not linear are held over it and corrected at its end (the exponential method of Heun, of
 //! second order). Where a surface is crossed within a step, the crossing is found by the cubic
 //! through both ends and the step is made in parts. What a propagator from switch to switch
 //! does to rounding this does to a small part of any sensor's noise, several times faster, and
-//! neighbouring motions come with it. The files: `kernels` (products), `surfaces`, `regime`
-//! (matrices of a step), `crossing` (where a step meets a surface), `parts` (steps through
-//! surfaces), `beyond` (what is not linear), `tangents`, `slopes` (what these feel of that).
+//! neighbouring motions come with it. The files: `types`, `kernels` (products),
+//! `surfaces`, `regime` (matrices of a step), `crossing` (where a step meets a surface), `parts`
+//! (steps through surfaces), `remainder` and `beyond` (what is not linear), `tangents`, `slopes`
+//! and `differences` (what these feel of that). The method: Hochbruck and Ostermann, Exponential
+//! integrators, Acta Numerica 19 (2010).
 
 mod beyond;
 mod crossing;
+mod differences;
 mod kernels;
 mod parts;
 mod regime;
+mod remainder;
 mod slopes;
 mod surfaces;
 mod tangents;
+mod types;
 
 use std::collections::HashMap;
 
 use crate::inputs::HeldInputs;
 use codegen::program::affine::AffineEvaluator;
 
-pub use beyond::Force;
-use beyond::{Apart, Excess};
 use crossing::first_crossing;
 use regime::Regime;
+pub use remainder::Force;
+use remainder::{RegimeDifference, Remainder};
 use slopes::Slopes;
 use surfaces::{Side, Surfaces, dot};
 pub use tangents::{Drives, Free, Tangents};
+use types::Motion;
+pub use types::{ExponentialIntegrator, Options, Show};
 
 /// The fastest mode turns by so many radians in a step: the cubic through a step's ends then
 /// knows where a surface is crossed to a hundredth, and finds it from there.
@@ -47,54 +54,7 @@ const MOST_STEPS: f64 = 256.0;
 /// times of records with rounded or jittering clocks, which err by no more than that.
 const JITTER: f64 = 1e-4;
 
-/// A model at fixed parameters, ready to be marched.
-pub struct March {
-    evaluator: AffineEvaluator,
-    surfaces: Surfaces,
-    regimes: Vec<Regime>,
-    known: HashMap<Vec<Side>, Option<usize>>,
-    states: usize,
-    /// The length of a step, s.
-    step: f64,
-    /// The sides on which the linear part alone would be, those for which that was asked last
-    /// with their regime, and how that differs from the one where the motion is.
-    own: Vec<Side>,
-    last_own: (Vec<Side>, usize),
-    apart: Apart,
-}
-
-/// Where a motion stands.
-struct Motion {
-    t: f64,
-    state: Vec<f64>,
-    sides: Vec<Side>,
-    regime: usize,
-    /// A unit constant and the inputs.
-    given: Vec<f64>,
-    /// What these add to a step.
-    base: Vec<f64>,
-    /// Functions of the surfaces and their rates.
-    watched: Vec<f64>,
-    /// What is not linear there.
-    excess: Excess,
-    /// A step's end, what is not linear there, and half of what that changed.
-    next: Vec<f64>,
-    later: Excess,
-    change: Vec<f64>,
-}
-
-/// Who goes along.
-pub struct Company<'c, 'd> {
-    /// Accelerations beyond the linear ones.
-    pub force: Option<&'c mut dyn Force>,
-    /// Neighbouring motions.
-    pub tangents: Option<&'c mut Tangents<'d>>,
-}
-
-/// Who is shown the samples: each one's place, the state there and the neighbouring motions.
-pub type Show<'s> = dyn FnMut(usize, &[f64], Option<&Tangents<'_>>) + 's;
-
-impl March {
+impl ExponentialIntegrator {
     /// A march of a model at its parameters, for samples so far apart, s, in so many times the
     /// steps that its linear part needs; none if it is not of a kind that can be marched.
     pub fn new(mut evaluator: AffineEvaluator, sample: f64, refinement: f64) -> Option<Self> {
@@ -117,7 +77,7 @@ impl March {
             evaluator,
             own: Vec::new(),
             last_own: (Vec::new(), 0),
-            apart: Apart::default(),
+            apart: RegimeDifference::default(),
         })
     }
 
@@ -131,14 +91,14 @@ impl March {
         initial: &[f64],
         samples: &[f64],
         inputs: &HeldInputs,
-        mut company: Company<'_, '_>,
+        mut options: Options<'_, '_>,
         show: &mut Show<'_>,
     ) -> Result<(), String> {
         let Some(begin) = samples.first() else {
             return Ok(());
         };
-        let mut motion = self.start(*begin, initial, inputs, &mut company)?;
-        show(0, &motion.state, company.tangents.as_deref());
+        let mut motion = self.start(*begin, initial, inputs, &mut options)?;
+        show(0, &motion.state, options.tangents.as_deref());
         for (place, end) in samples.iter().enumerate().skip(1) {
             while motion.t < *end {
                 // Times of samples and of inputs may differ by rounding.
@@ -148,13 +108,13 @@ impl March {
                     .filter(|next| *next < *end - 1e-3 * self.step);
                 let until = change.unwrap_or(*end);
                 let values = inputs.at(0.5 * (motion.t + until));
-                self.interval(&mut motion, until, values, &mut company)?;
+                self.interval(&mut motion, until, values, &mut options)?;
                 motion.t = until;
             }
             if motion.state.iter().any(|x| !x.is_finite()) {
                 return Err("the motion grows beyond all bounds".to_owned());
             }
-            show(place, &motion.state, company.tangents.as_deref());
+            show(place, &motion.state, options.tangents.as_deref());
         }
         Ok(())
     }
@@ -164,7 +124,7 @@ impl March {
         t: f64,
         initial: &[f64],
         inputs: &HeldInputs,
-        company: &mut Company<'_, '_>,
+        options: &mut Options<'_, '_>,
     ) -> Result<Motion, String> {
         let values = inputs.at(t + 1e-3 * self.step);
         let mut given = vec![1.0];
@@ -178,14 +138,14 @@ impl March {
             given,
             base: Vec::new(),
             watched: Vec::new(),
-            excess: Excess::none(self.states / 2, count),
+            remainder: Remainder::none(self.states / 2, count),
             next: Vec::new(),
-            later: Excess::none(self.states / 2, count),
+            later: Remainder::none(self.states / 2, count),
             change: Vec::new(),
         };
         motion.regime = self.regime(&motion.sides)?;
         let functions = &self.regimes[motion.regime].functions;
-        if let Some(force) = &mut company.force {
+        if let Some(force) = &mut options.force {
             let surfaces = (&self.surfaces, &functions[..]);
             let at = (t, initial, &motion.given[..]);
             motion.later.find(&mut **force, surfaces, at);
@@ -197,7 +157,7 @@ impl March {
         let sides = distances.iter().map(|distance| Side::of(*distance));
         motion.sides = sides.collect();
         motion.regime = self.regime(&motion.sides)?;
-        let alone = &mut Company {
+        let alone = &mut Options {
             force: None,
             tangents: None,
         };
@@ -209,12 +169,12 @@ impl March {
                 }
             }
         }
-        if let Some(force) = &mut company.force {
+        if let Some(force) = &mut options.force {
             self.meet(&mut motion, t, &mut **force)?;
         }
-        if let Some(tangents) = &mut company.tangents {
+        if let Some(tangents) = &mut options.tangents {
             tangents.begin(t, &motion.state, values);
-            if company.force.is_some() {
+            if options.force.is_some() {
                 tangents.slopes = Some(Slopes::new(self.states, count));
             }
         }
@@ -246,16 +206,16 @@ impl March {
         motion: &mut Motion,
         until: f64,
         inputs: &[f64],
-        company: &mut Company<'_, '_>,
+        options: &mut Options<'_, '_>,
     ) -> Result<(), String> {
         motion.given.truncate(1);
         motion.given.extend(inputs);
-        if let Some(force) = &mut company.force {
+        if let Some(force) = &mut options.force {
             let t = motion.t;
             self.meet(motion, t, &mut **force)?;
         }
         self.prepare(motion);
-        if let Some(tangents) = &mut company.tangents {
+        if let Some(tangents) = &mut options.tangents {
             tangents.meet(motion.t, &motion.state, inputs);
         }
         let begin = motion.t;
@@ -265,13 +225,13 @@ impl March {
         let count = if whole { rounded.max(1.0) } else { count };
         let length = (until - begin) / count;
         for place in 1..=count as usize {
-            self.release(motion, begin + (place - 1) as f64 * length, company)?;
+            self.release(motion, begin + (place - 1) as f64 * length, options)?;
             let end = begin + place as f64 * length;
-            if !(whole && self.whole_step(motion, end, company)?) {
-                self.parts(motion, length, end, inputs, company)?;
+            if !(whole && self.whole_step(motion, end, options)?) {
+                self.parts(motion, length, end, inputs, options)?;
             }
         }
-        self.bring(motion, until, company)
+        self.bring(motion, until, options)
     }
 
     /// Prepares for steps in the present regime with the present inputs.
@@ -291,12 +251,12 @@ impl March {
         let regime = &self.regimes[motion.regime];
         let half = self.states / 2;
         motion.watched.clear();
-        let rows = regime.functions.iter().zip(&motion.excess.moved);
+        let rows = regime.functions.iter().zip(&motion.remainder.moved);
         motion
             .watched
             .extend(rows.map(|(row, moved)| row.at(&motion.state, &motion.given) + moved));
         for (row, function) in regime.rates.iter().zip(&regime.functions) {
-            let forced = dot(&function.state[half..], &motion.excess.force);
+            let forced = dot(&function.state[half..], &motion.remainder.force);
             motion
                 .watched
                 .push(row.at(&motion.state, &motion.given) + forced);
@@ -308,7 +268,7 @@ impl March {
         &mut self,
         motion: &mut Motion,
         t: f64,
-        company: &mut Company<'_, '_>,
+        options: &mut Options<'_, '_>,
     ) -> Result<(), String> {
         let regime = &self.regimes[motion.regime];
         if regime.held.is_empty() {
@@ -323,8 +283,8 @@ impl March {
             }
         }
         if changed {
-            self.bring(motion, t, company)?;
-            if let Some(tangents) = &mut company.tangents {
+            self.bring(motion, t, options)?;
+            if let Some(tangents) = &mut options.tangents {
                 tangents.forget_slopes();
             }
             motion.regime = self.regime(&motion.sides)?;
@@ -338,20 +298,20 @@ impl March {
         &mut self,
         motion: &mut Motion,
         end: f64,
-        company: &mut Company<'_, '_>,
+        options: &mut Options<'_, '_>,
     ) -> Result<bool, String> {
         let (n, half) = (self.states, self.states / 2);
         let regime = &self.regimes[motion.regime];
         motion.next.clear();
         motion.next.extend_from_slice(&motion.base);
         regime.step.add_product(&motion.state, &mut motion.next);
-        if let Some(force) = &mut company.force {
-            let held = &motion.excess.force;
+        if let Some(force) = &mut options.force {
+            let held = &motion.remainder.force;
             regime.step_force.add_product(held, &mut motion.next);
             let here = (motion.regime, &motion.sides[..]);
             let at = (end, &motion.next[..n], &motion.given[..]);
             self.beyond(here, at, &mut **force, &mut motion.later)?;
-            let pairs = motion.later.force.iter().zip(&motion.excess.force);
+            let pairs = motion.later.force.iter().zip(&motion.remainder.force);
             motion.change.clear();
             motion
                 .change
@@ -366,7 +326,7 @@ impl March {
         let (function, rate) = motion.watched.split_at(surfaces);
         let crossed = (0..surfaces).any(|place| {
             let later = motion.later.moved[place];
-            let slope = (later - motion.excess.moved[place]) / self.step;
+            let slope = (later - motion.remainder.moved[place]) / self.step;
             let ends = (
                 (function[place], rate[place] + slope),
                 (
@@ -383,16 +343,16 @@ impl March {
         motion
             .watched
             .copy_from_slice(&motion.next[n..n + 2 * surfaces]);
-        if company.force.is_some() {
-            std::mem::swap(&mut motion.excess, &mut motion.later);
+        if options.force.is_some() {
+            std::mem::swap(&mut motion.remainder, &mut motion.later);
             for place in 0..surfaces {
                 let row = &regime.functions[place].state[half..];
-                motion.watched[place] += motion.excess.moved[place];
-                motion.watched[surfaces + place] += dot(row, &motion.excess.force);
+                motion.watched[place] += motion.remainder.moved[place];
+                motion.watched[surfaces + place] += dot(row, &motion.remainder.force);
             }
         }
-        if company.tangents.as_deref_mut().is_some_and(Tangents::step) {
-            self.bring(motion, end, company)?;
+        if options.tangents.as_deref_mut().is_some_and(Tangents::step) {
+            self.bring(motion, end, options)?;
         }
         Ok(true)
     }

@@ -4,7 +4,7 @@ use super::beyond::AHEAD;
 use super::crossing::first_crossing;
 use super::surfaces::{Side, dot};
 use super::tangents::series;
-use super::{Company, March, Motion};
+use super::types::{ExponentialIntegrator, Motion, Options};
 
 /// Crossings within a step after which the rest of it is made without looking.
 const MOST_CROSSINGS: usize = 12;
@@ -15,7 +15,7 @@ const ROUNDING: f64 = 1e-16;
 /// Where a function's rate leads back by less than this part of its size, it does not.
 const LEADS_BACK: f64 = 1e-9;
 
-impl March {
+impl ExponentialIntegrator {
     /// Makes a step in parts, from surface to surface.
     pub(super) fn parts(
         &mut self,
@@ -23,27 +23,27 @@ impl March {
         length: f64,
         end: f64,
         inputs: &[f64],
-        company: &mut Company<'_, '_>,
+        options: &mut Options<'_, '_>,
     ) -> Result<(), String> {
         let mut rest = length;
         let surfaces = motion.sides.len();
-        self.bring(motion, end - length, company)?;
+        self.bring(motion, end - length, options)?;
         for _ in 0..MOST_CROSSINGS {
             self.watch(motion);
             let begin = (motion.watched.clone(), motion.state.clone());
-            let excess = motion.excess.clone();
+            let remainder = motion.remainder.clone();
             self.part(motion, rest);
             let before = std::mem::take(&mut motion.watched);
-            if let Some(force) = &mut company.force {
+            if let Some(force) = &mut options.force {
                 let at = (end, &motion.state[..], &motion.given[..]);
                 let functions = &self.regimes[motion.regime].functions;
                 let surfaces = (&self.surfaces, &functions[..]);
-                motion.excess.find(&mut **force, surfaces, at);
+                motion.remainder.find(&mut **force, surfaces, at);
             }
             self.watch(motion);
-            let moved = motion.excess.moved.iter().zip(&excess.moved);
+            let moved = motion.remainder.moved.iter().zip(&remainder.moved);
             let slopes: Vec<f64> = moved.map(|(there, here)| (there - here) / rest).collect();
-            motion.excess = excess;
+            motion.remainder = remainder;
             let first = (0..surfaces)
                 .filter_map(|place| {
                     let slope = slopes[place];
@@ -57,7 +57,7 @@ impl March {
                 })
                 .min_by(|a, b| a.1.total_cmp(&b.1));
             let Some((surface, tau)) = first else {
-                return self.ended(motion, rest, end, inputs, company);
+                return self.ended(motion, rest, end, inputs, options);
             };
             motion.watched = before;
             motion.state.copy_from_slice(&begin.1);
@@ -65,18 +65,18 @@ impl March {
             let tau = self.polished(motion, (surface, slope), tau, rest, &begin.1);
             rest -= tau;
             let t = end - rest;
-            self.accompany(motion, tau, (t, true), inputs, company)?;
-            self.cross(motion, t, (surface, slope), company)?;
+            self.accompany(motion, tau, (t, true), inputs, options)?;
+            self.cross(motion, t, (surface, slope), options)?;
             if rest <= 0.0 {
                 self.prepare(motion);
                 return Ok(());
             }
         }
         self.part(motion, rest);
-        self.ended(motion, rest, end, inputs, company)?;
+        self.ended(motion, rest, end, inputs, options)?;
         // Where surfaces follow each other too fast, signs decide.
         let regime = &self.regimes[motion.regime];
-        let functions = regime.functions.iter().zip(&motion.excess.moved);
+        let functions = regime.functions.iter().zip(&motion.remainder.moved);
         for (side, (function, moved)) in motion.sides.iter_mut().zip(functions) {
             if *side != Side::Held {
                 *side = Side::of(function.at(&motion.state, &motion.given) + moved);
@@ -85,7 +85,7 @@ impl March {
         motion.regime = self.regime(&motion.sides)?;
         let mut rates = vec![0.0; self.regimes[motion.regime].matrix.rows];
         self.rates(motion, &mut rates);
-        self.meet_near(motion, (end, AHEAD), &rates, company)?;
+        self.meet_near(motion, (end, AHEAD), &rates, options)?;
         self.prepare(motion);
         Ok(())
     }
@@ -103,7 +103,7 @@ impl March {
         let regime = &self.regimes[motion.regime];
         let (n, half) = (self.states, self.states / 2);
         regime.rates(&motion.state, &motion.given, out);
-        let sums = out[half..n].iter_mut().zip(&motion.excess.force);
+        let sums = out[half..n].iter_mut().zip(&motion.remainder.force);
         sums.for_each(|(o, f)| *o += f);
     }
 
@@ -119,7 +119,7 @@ impl March {
     ) -> f64 {
         self.part(motion, tau);
         let regime = &self.regimes[motion.regime];
-        let moved = motion.excess.moved[surface] + slope * tau;
+        let moved = motion.remainder.moved[surface] + slope * tau;
         let value = regime.functions[surface].at(&motion.state, &motion.given) + moved;
         let mut rates = vec![0.0; regime.matrix.rows];
         self.rates(motion, &mut rates);
@@ -140,9 +140,9 @@ impl March {
         tau: f64,
         end: f64,
         inputs: &[f64],
-        company: &mut Company<'_, '_>,
+        options: &mut Options<'_, '_>,
     ) -> Result<(), String> {
-        self.accompany(motion, tau, (end, false), inputs, company)?;
+        self.accompany(motion, tau, (end, false), inputs, options)?;
         self.prepare(motion);
         Ok(())
     }
@@ -154,16 +154,16 @@ impl March {
         tau: f64,
         (t, on_surface): (f64, bool),
         inputs: &[f64],
-        company: &mut Company<'_, '_>,
+        options: &mut Options<'_, '_>,
     ) -> Result<(), String> {
-        if company.force.is_some() {
-            self.correct(motion, tau, t, company)?;
+        if options.force.is_some() {
+            self.correct(motion, tau, t, options)?;
         }
-        let Some(tangents) = company.tangents.as_deref_mut() else {
+        let Some(tangents) = options.tangents.as_deref_mut() else {
             return Ok(());
         };
         if let (Some(force), Some(slopes), false) =
-            (&mut company.force, &mut tangents.slopes, on_surface)
+            (&mut options.force, &mut tangents.slopes, on_surface)
         {
             self.differentiate(motion, t, &mut **force, slopes)?;
         }
@@ -178,16 +178,16 @@ impl March {
         motion: &mut Motion,
         tau: f64,
         t: f64,
-        company: &mut Company<'_, '_>,
+        options: &mut Options<'_, '_>,
     ) -> Result<(), String> {
-        let before = motion.excess.force.clone();
+        let before = motion.remainder.force.clone();
         let mut rates = vec![0.0; self.regimes[motion.regime].matrix.rows];
         self.rates(motion, &mut rates);
         // On this side of a surface that was reached.
-        self.meet_near(motion, (t, -AHEAD), &rates, company)?;
+        self.meet_near(motion, (t, -AHEAD), &rates, options)?;
         let half = self.states / 2;
         for (place, before) in before.iter().enumerate() {
-            let change = 0.5 * tau * (motion.excess.force[place] - before);
+            let change = 0.5 * tau * (motion.remainder.force[place] - before);
             motion.state[half + place] += change;
             motion.state[place] += change * tau / 3.0;
         }
@@ -201,12 +201,12 @@ impl March {
         motion: &mut Motion,
         t: f64,
         (surface, slope): (usize, f64),
-        company: &mut Company<'_, '_>,
+        options: &mut Options<'_, '_>,
     ) -> Result<(), String> {
         let before = motion.regime;
         let mut rates = vec![0.0; self.regimes[before].matrix.rows];
         self.rates(motion, &mut rates);
-        self.meet_near(motion, (t, -AHEAD), &rates, company)?;
+        self.meet_near(motion, (t, -AHEAD), &rates, options)?;
         self.rates(motion, &mut rates);
         let (beyond, outward) = match motion.sides[surface] {
             Side::Above => (Side::Below, -1.0),
@@ -215,7 +215,7 @@ impl March {
         let old = motion.sides[surface];
         motion.sides[surface] = beyond;
         motion.regime = self.regime(&motion.sides)?;
-        self.meet_near(motion, (t, AHEAD), &rates, company)?;
+        self.meet_near(motion, (t, AHEAD), &rates, options)?;
         let mut after = rates.clone();
         self.rates(motion, &mut after);
         let function = self.regimes[before].functions[surface].state.clone();
@@ -234,17 +234,17 @@ impl March {
                 Some(held) => motion.regime = held,
                 None => motion.sides[surface] = beyond,
             }
-            self.meet_near(motion, (t, AHEAD), &rates, company)?;
+            self.meet_near(motion, (t, AHEAD), &rates, options)?;
             self.rates(motion, &mut after);
         } else if old == Side::Below && here == 0.0 && there <= 0.0 {
             // It only touches.
             motion.sides[surface] = old;
             motion.regime = before;
-            self.meet_near(motion, (t, -AHEAD), &rates, company)?;
+            self.meet_near(motion, (t, -AHEAD), &rates, options)?;
             return Ok(());
         }
-        if let Some(tangents) = &mut company.tangents {
-            let gradient = match &mut company.force {
+        if let Some(tangents) = &mut options.tangents {
+            let gradient = match &mut options.force {
                 Some(force) => self.gradient(motion, (surface, t), &mut **force, &rates),
                 None => function,
             };

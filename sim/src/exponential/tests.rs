@@ -6,7 +6,7 @@ use crate::piecewise_linear::PiecewiseLinear;
 use model_spec::model::Model;
 use model_spec::source::Source;
 
-use super::{Company, Drives, Free, March, Tangents};
+use super::{Drives, ExponentialIntegrator, Free, Options, Tangents};
 
 fn rig() -> Model {
     let path =
@@ -24,14 +24,19 @@ fn torque(times: &[f64]) -> HeldInputs {
     HeldInputs::new(times.to_vec(), values.collect(), 1).expect("as many values as times")
 }
 
-fn run(march: &mut March, initial: &[f64], times: &[f64], inputs: &HeldInputs) -> Vec<Vec<f64>> {
+fn run(
+    march: &mut ExponentialIntegrator,
+    initial: &[f64],
+    times: &[f64],
+    inputs: &HeldInputs,
+) -> Vec<Vec<f64>> {
     let mut states = Vec::new();
-    let company = Company {
+    let options = Options {
         force: None,
         tangents: None,
     };
     march
-        .run(initial, times, inputs, company, &mut |_, state, _| {
+        .run(initial, times, inputs, options, &mut |_, state, _| {
             states.push(state.to_vec());
         })
         .expect("a motion");
@@ -51,7 +56,8 @@ fn a_march_follows_the_exact_motion_through_its_switches() {
         .simulate(&initial, (0.0, times[199]), &times, &inputs, &mut |_| {})
         .expect("a motion");
     assert!(wanted.switches.len() > 20);
-    let mut march = March::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be marched");
+    let mut march =
+        ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be marched");
     let found = run(&mut march, &initial, &times, &inputs);
     // Deflections of the meshes, the carrier's way and the beam's modes: of micrometres and
     // millimetres; a sensor of the rig resolves 0.7 um.
@@ -90,7 +96,7 @@ push = { on = "y", value = "u" }
         let source = Source::new("preload", text.replace("JUMP", jump).as_str());
         let model = model_spec::check(source).expect("valid").model;
         let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
-        March::new(exact.evaluator(&exact_values(&model)), 1e-3, 1.0).is_some()
+        ExponentialIntegrator::new(exact.evaluator(&exact_values(&model)), 1e-3, 1.0).is_some()
     };
     assert!(marched("sign(y)"));
     assert!(marched("above(dot(y))"));
@@ -122,16 +128,17 @@ fn tangents_are_differences_of_neighbouring_motions() {
     let inputs = torque(&times);
     let mut initial = vec![0.0; 14];
     (initial[0], initial[7]) = (3e-5, 0.01);
-    let mut march = March::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be marched");
+    let mut march =
+        ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be marched");
     let mut free = Free;
     let mut tangents = Tangents::new(14, true, 0, &mut free);
     let mut found = vec![0.0; 14 * 14];
-    let company = Company {
+    let options = Options {
         force: None,
         tangents: Some(&mut tangents),
     };
     march
-        .run(&initial, &times, &inputs, company, &mut |_, _, tangents| {
+        .run(&initial, &times, &inputs, options, &mut |_, _, tangents| {
             let tangents = tangents.expect("tangents");
             for place in 0..14 {
                 let first = place * tangents.stride;
@@ -191,7 +198,8 @@ friction = { on = "x", value = "-T*sign(dot(x))" }
 fn dry_friction_holds_and_lets_go() {
     let model = sliding();
     let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
-    let mut march = March::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0).expect("can be marched");
+    let mut march = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
+        .expect("can be marched");
     // Held for a second, 1 m/s^2 for the next, slowed down by 1.5 m/s^2, held again.
     let inputs = HeldInputs::new(vec![0.0, 1.0, 2.0], vec![2.0, 5.0, 0.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=400).map(|k| f64::from(k) * 0.01).collect();
@@ -216,13 +224,14 @@ impl Drives for Push {
 fn a_driven_tangent_is_the_motion_of_what_drives_it() {
     let model = sliding();
     let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
-    let mut march = March::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0).expect("can be marched");
+    let mut march = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
+        .expect("can be marched");
     let inputs = HeldInputs::new(vec![0.0], vec![5.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=100).map(|k| f64::from(k) * 0.01).collect();
     let mut push = Push;
     let mut tangents = Tangents::new(2, false, 2, &mut push);
     let mut last = Vec::new();
-    let company = Company {
+    let options = Options {
         force: None,
         tangents: Some(&mut tangents),
     };
@@ -231,7 +240,7 @@ fn a_driven_tangent_is_the_motion_of_what_drives_it() {
             &[0.0, 0.1],
             &times,
             &inputs,
-            company,
+            options,
             &mut |_, _, tangents| {
                 let tangents = tangents.expect("tangents");
                 last = tangents.vectors[..2 * tangents.stride].to_vec();

@@ -11,8 +11,8 @@ use super::variant::Variant;
 use model_spec::model::{MAX_ORDER, Model};
 use model_spec::source::sha256;
 
-pub use super::checks::emitted::{Emitted, EmittedFunction};
 pub use super::checks::exact::{Derivative, Sized};
+pub use super::checks::linked::{Emitted, EmittedFunction};
 pub use super::checks::states::Reference;
 
 /// What was written by hand for a model.

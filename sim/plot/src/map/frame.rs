@@ -5,7 +5,7 @@ use super::super::error::{PlotError, is_drawable};
 use super::super::quantity::Quantity;
 use super::raster::{Colour, HEIGHT, Raster, WIDTH};
 use super::typeface::{Align, Direction, Line, TICK_SIZE, Typeface};
-use super::{Coordinate, largest};
+use super::types::{Coordinate, largest};
 
 /// Font sizes, px.
 pub const LABEL_SIZE: f64 = 17.0;

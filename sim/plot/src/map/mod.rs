@@ -11,90 +11,19 @@ mod frame;
 mod raster;
 mod shades;
 mod typeface;
+mod types;
 
 #[cfg(test)]
 mod tests;
 
 use super::axis::{Range, Scale};
-use super::error::{PlotError, is_drawable};
+use super::error::PlotError;
 use frame::{Frame, Side};
-use raster::{Colour, Raster};
+use raster::Raster;
 use shades::Bar;
 use typeface::Typeface;
-
-/// A quantity over two parameters.
-#[derive(Clone, Debug, Default)]
-pub struct Map<'a> {
-    /// Written above the frame, as it stands.
-    pub title: String,
-    /// The parameter of the columns, its values ascending.
-    pub horizontal: Coordinate<'a>,
-    /// The parameter of the rows, its values ascending upwards.
-    pub vertical: Coordinate<'a>,
-    /// The name of the quantity.
-    pub quantity: String,
-    /// Its SI unit as specifications write it; empty for a number.
-    pub unit: String,
-    /// Which colours it has.
-    pub shades: Shades,
-    /// Row by row: the value at column i and row j is `values[j * columns + i]`. One that is
-    /// not finite leaves its cell grey.
-    pub values: &'a [f64],
-}
-
-/// Points in a plane.
-#[derive(Clone, Debug, Default)]
-pub struct Scatter<'a> {
-    /// Written above the frame, as it stands.
-    pub title: String,
-    /// The abscissae, in any order.
-    pub horizontal: Coordinate<'a>,
-    /// As many ordinates. A point that has no place on the axes is left out.
-    pub vertical: Coordinate<'a>,
-}
-
-/// Values along an axis.
-#[derive(Clone, Debug, Default)]
-pub struct Coordinate<'a> {
-    /// The name of the quantity, `b_sp` say.
-    pub name: String,
-    /// Its SI unit as specifications write it; empty for a number.
-    pub unit: String,
-    /// How values are spaced along the axis.
-    pub spacing: Spacing,
-    /// The values, in SI units.
-    pub values: &'a [f64],
-}
-
-/// How values are spaced along an axis.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Spacing {
-    /// Equal differences look equal.
-    #[default]
-    Linear,
-    /// Equal ratios look equal.
-    Logarithmic,
-}
-
-/// Which colours values have.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Shades {
-    /// Dark blue over green to yellow (viridis), from the least value to the greatest.
-    #[default]
-    Sequential,
-    /// Blue below zero, white at zero, red above: for an exponent, say. The two sides have
-    /// the same shades for the same magnitudes unless one reaches more than three times as
-    /// far as the other; then each side has shades of its own, so that both can be read.
-    Signed,
-}
-
-const WHITE: Colour = [255; 3];
-/// Of cells without a value.
-const GREY: Colour = [158; 3];
-/// Of the points of a diagram.
-const INK: Colour = [0, 60, 110];
-/// What one point hides of the paper.
-const OPACITY: f64 = 0.6;
+pub use types::{Coordinate, Map, Scatter, Shades, Spacing};
+use types::{GREY, INK, OPACITY, WHITE, empty};
 
 /// Draws a quantity over two parameters: a PNG, 1000 px wide and 760 px high.
 ///
@@ -202,13 +131,6 @@ fn draw_points(raster: &mut Raster, frame: &Frame, points: &[(f64, f64)]) {
     }
 }
 
-fn empty(name: &str) -> PlotError {
-    PlotError::Empty {
-        panel: 0,
-        series: name.to_owned(),
-    }
-}
-
 fn ends(edges: &[f64], map: &Map<'_>) -> Result<Range, PlotError> {
     match edges {
         [low, .., high] => Ok(Range {
@@ -235,10 +157,4 @@ impl Spacing {
             Self::Logarithmic => Scale::Logarithmic,
         }
     }
-}
-
-/// The greatest magnitude of what can be drawn.
-fn largest(values: &[f64]) -> f64 {
-    let drawable = values.iter().filter(|value| is_drawable(**value));
-    drawable.fold(0.0, |largest: f64, value| largest.max(value.abs()))
 }

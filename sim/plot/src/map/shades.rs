@@ -6,7 +6,7 @@ use super::super::quantity::Quantity;
 use super::frame::{FRAME, Frame, LABEL_SIZE, TICK_LENGTH, outline};
 use super::raster::{Colour, Raster, mixed};
 use super::typeface::{Align, Direction, Line, TICK_SIZE, Typeface};
-use super::{GREY, Map, Shades, WHITE, empty};
+use super::types::{GREY, Map, Shades, WHITE, empty};
 
 /// Viridis by S. van der Walt and N. Smith, at every tenth.
 const VIRIDIS: [Colour; 11] = [

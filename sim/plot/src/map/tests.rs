@@ -1,5 +1,6 @@
 //! Whole pictures: size, colours at known places, and what must not be drawn.
 
+use super::raster::Colour;
 use super::*;
 
 const NAN: f64 = f64::NAN;

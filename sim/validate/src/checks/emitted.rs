@@ -4,13 +4,13 @@
 //! plain numbers is in `kinds`.
 
 use super::super::certificate::{Check, Worst};
-use super::super::compiler::{self, Compiler};
+use super::super::compiler::Compiler;
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
 use super::kinds::{self, OnRequest};
+use super::linked::{Emitted, EmittedFunction, differences, line, run};
 use std::fmt::Write as _;
-use std::path::Path;
 
 /// Name of the check.
 const NAME: &str = "emitted_rust";
@@ -18,76 +18,6 @@ const NAME: &str = "emitted_rust";
 const STATES: usize = 100;
 /// The seed of the states.
 const SEED: u64 = 0x0e31_77ed;
-
-/// Source text of a variant: a crate on its own with `Parameters`, `Coefficients` and
-/// `Inputs`, and functions of `(t, &state, &inputs, &coefficients)`.
-#[derive(Clone, Debug)]
-pub struct Emitted {
-    /// The text of the crate's root.
-    pub source: String,
-    /// The fields of its `Inputs`, in the order of the model.
-    pub input_fields: Vec<String>,
-    /// The functions to compare.
-    pub functions: Vec<EmittedFunction>,
-    /// What was requested besides, by the names of `--with`, of source that computes with
-    /// any number of its trait `Scalar`; none of plain functions of `f64`.
-    pub requests: Option<Vec<String>>,
-}
-
-/// A function of an emitted crate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EmittedFunction {
-    /// `rates`, an array of the state's length.
-    Rates,
-    /// `observables`, an array.
-    Observables,
-    /// `energy`, a number.
-    Energy,
-    /// `power`, a number.
-    Power,
-    /// `guards`, an array.
-    Guards,
-    /// `mass_matrix`, an array of rows.
-    MassMatrix,
-}
-
-impl EmittedFunction {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Rates => "rates",
-            Self::Observables => "observables",
-            Self::Energy => "energy",
-            Self::Power => "power",
-            Self::Guards => "guards",
-            Self::MassMatrix => "mass_matrix",
-        }
-    }
-
-    fn expected(self, variant: &mut dyn Variant, sample: &Sample) -> Result<Vec<f64>, String> {
-        let Sample {
-            time,
-            state,
-            inputs,
-        } = sample;
-        match self {
-            Self::Rates => {
-                let mut rates = vec![f64::NAN; state.len()];
-                variant.rates(*time, state, inputs, &mut rates)?;
-                Ok(rates)
-            }
-            Self::Observables => variant.observables(*time, state, inputs),
-            Self::Energy => Ok(vec![variant.energy(*time, state, inputs)?]),
-            Self::Power => Ok(vec![variant.power(*time, state, inputs)?]),
-            Self::Guards => variant.guards(*time, state, inputs),
-            Self::MassMatrix => {
-                let size = state.len() / 2;
-                let mut mass = vec![f64::NAN; size * size];
-                variant.mass_matrix(*time, state, inputs, &mut mass)?;
-                Ok(mass)
-            }
-        }
-    }
-}
 
 /// Compiles `emitted` and compares it with `variant` and `requested` at random states. The
 /// value of the first check is the number of numbers whose bits differ.
@@ -139,86 +69,6 @@ pub fn skipped(requests: Option<&[String]>, reason: &str) -> Vec<Check> {
     checks
 }
 
-/// Compiles the source to a library in `folder`.
-fn build(compiler: &Compiler, folder: &Path, emitted: &Emitted) -> Result<(), String> {
-    let library = folder.join("model.rs");
-    compiler::write(&library, &emitted.source)?;
-    let kind = ["--crate-type", "rlib", "--crate-name", "model"];
-    let object = folder.join("libmodel.rlib");
-    let output = compiler.compile(&library, &object, &kind)?;
-    succeed("the emitted source", output).map(drop)
-}
-
-/// What the compiled source prints for `samples` by a program that makes these calls.
-pub(super) fn run(
-    compiler: &Compiler,
-    folder: &Path,
-    (emitted, calls): (&Emitted, &str),
-    samples: &[Sample],
-) -> Result<String, String> {
-    build(compiler, folder, emitted)?;
-    let harness = ("harness", &*harness_source(emitted, calls));
-    run_linked(compiler, folder, harness, &table(samples))
-}
-
-/// What a program that calls the library in `folder` prints for `input`.
-pub(super) fn run_linked(
-    compiler: &Compiler,
-    folder: &Path,
-    (name, source): (&str, &str),
-    input: &str,
-) -> Result<String, String> {
-    let (harness, program) = (folder.join(format!("{name}.rs")), folder.join(name));
-    compiler::write(&harness, source)?;
-    let link = format!("model={}", folder.join("libmodel.rlib").display());
-    let linked = compiler.compile(&harness, &program, &["--extern", &link])?;
-    succeed("the harness", linked)?;
-    let output = compiler::execute(&program, input)?;
-    succeed("the compiled model", output)
-}
-
-fn succeed(what: &str, output: compiler::Output) -> Result<String, String> {
-    if output.success {
-        Ok(output.stdout)
-    } else {
-        Err(format!(
-            "{what} failed: {}",
-            compiler::first_line(&output.stderr)
-        ))
-    }
-}
-
-/// One line of bits for each state: time, state, inputs.
-fn table(samples: &[Sample]) -> String {
-    let mut table = String::new();
-    for sample in samples {
-        let numbers = [&[sample.time][..], &sample.state, &sample.inputs].concat();
-        table += &line(&numbers);
-        table.push('\n');
-    }
-    table
-}
-
-pub(super) fn line(numbers: &[f64]) -> String {
-    let words: Vec<String> = numbers
-        .iter()
-        .map(|number| format!("{:016x}", number.to_bits()))
-        .collect();
-    words.join(" ")
-}
-
-/// A program that reads such lines and prints one line for each function and state.
-fn harness_source(emitted: &Emitted, calls: &str) -> String {
-    let mut inputs = String::new();
-    for field in &emitted.input_fields {
-        // Writing to a string cannot fail.
-        let _ = writeln!(inputs, "        inputs.{field} = numbers.next().unwrap();");
-    }
-    HARNESS
-        .replace("        // inputs\n", &inputs)
-        .replace("        // calls\n", calls)
-}
-
 /// The text that calls these functions.
 fn calls(functions: &[EmittedFunction]) -> String {
     let mut calls = String::new();
@@ -232,50 +82,6 @@ fn calls(functions: &[EmittedFunction]) -> String {
     }
     calls
 }
-
-const HARNESS: &str = r#"#![allow(unused_mut, unused_variables)]
-trait Print {
-    fn print(&self);
-}
-
-impl Print for f64 {
-    fn print(&self) {
-        println!("{:016x}", self.to_bits());
-    }
-}
-
-impl<const N: usize> Print for [f64; N] {
-    fn print(&self) {
-        let words: Vec<String> = self.iter().map(|x| format!("{:016x}", x.to_bits())).collect();
-        println!("{}", words.join(" "));
-    }
-}
-
-impl<const N: usize, const M: usize> Print for [[f64; N]; M] {
-    fn print(&self) {
-        let words = self.as_flattened().iter().map(|x| format!("{:016x}", x.to_bits()));
-        println!("{}", words.collect::<Vec<String>>().join(" "));
-    }
-}
-
-fn main() {
-    let coefficients = model::Coefficients::prepare(&model::Parameters::default());
-    for line in std::io::stdin().lines() {
-        let line = line.unwrap();
-        let mut numbers = line
-            .split(' ')
-            .map(|word| f64::from_bits(u64::from_str_radix(word, 16).unwrap()));
-        let t = numbers.next().unwrap();
-        let mut state = [0.0; model::STATES];
-        for entry in &mut state {
-            *entry = numbers.next().unwrap();
-        }
-        let mut inputs = model::Inputs::default();
-        // inputs
-        // calls
-    }
-}
-"#;
 
 /// Counts the numbers of `lines` whose bits are not the variant's.
 fn compare(
@@ -302,29 +108,4 @@ fn compare(
         Some((name, count)) => format!("first in {name} at state {}", count + 1),
     };
     Ok(Worst::of(differing.len() as f64, detail))
-}
-
-/// How many numbers of a line, given by their bits, are not these; 0 is -0.
-pub(super) fn differing_numbers(line: &str, expected: &[f64]) -> usize {
-    let number = |word: &str| u64::from_str_radix(word, 16).ok().map(f64::from_bits);
-    let mut words = line.split(' ').map(number);
-    let differs = |expected: &&f64| words.next().flatten() != Some(**expected);
-    expected.iter().filter(differs).count()
-}
-
-/// How many words of two lines differ; a missing word differs. A NaN is a NaN, whatever
-/// its sign and payload, which no rule of arithmetic gives.
-pub(super) fn differences(found: &str, expected: &str) -> usize {
-    let (found, expected): (Vec<_>, Vec<_>) =
-        (found.split(' ').collect(), expected.split(' ').collect());
-    let same = found
-        .iter()
-        .zip(&expected)
-        .filter(|(left, right)| left == right || (is_nan(left) && is_nan(right)))
-        .count();
-    found.len().max(expected.len()) - same
-}
-
-fn is_nan(word: &str) -> bool {
-    u64::from_str_radix(word, 16).is_ok_and(|bits| f64::from_bits(bits).is_nan())
 }

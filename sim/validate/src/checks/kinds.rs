@@ -9,7 +9,7 @@ use super::super::random::Random;
 use super::super::requested::{JACOBIANS, Requested};
 use super::super::sampler::Sample;
 use super::super::variant::Variant;
-use super::emitted::{Emitted, differences, line, run_linked};
+use super::linked::{Emitted, differences, line, run_linked};
 use std::path::Path;
 
 /// Deviation of single precision that passes, in bounds. Both sides are evaluated in double

@@ -12,6 +12,7 @@ pub mod emitted;
 pub mod exact;
 mod inside;
 mod kinds;
+pub mod linked;
 pub mod nesting;
 pub mod regimes;
 pub mod requested;

@@ -6,8 +6,8 @@ use super::super::compiler::Compiler;
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::Sample;
 use super::super::variant::Variant;
-use super::emitted::{Emitted, differing_numbers, run};
 use super::inside::samples;
+use super::linked::{Emitted, differing_numbers, run};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 

@@ -7,7 +7,7 @@ use crate::studies::case::Record;
 use crate::studies::error::StudyError;
 use crate::studies::report::{Columns, amplitude};
 
-use super::{OMEGA, REFERENCE, Run, STATISTICS, STEP, TRANSIENT};
+use super::run::{OMEGA, REFERENCE, Run, STATISTICS, STEP, TRANSIENT};
 
 /// The differences' largest values are taken over pieces of this many samples: 5 ms.
 const PIECE: usize = 102;

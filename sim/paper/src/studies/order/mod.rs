@@ -9,8 +9,8 @@
 
 mod differences;
 mod plates;
+mod run;
 
-use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
@@ -24,35 +24,10 @@ use super::report::{Study, case, tables};
 use super::responses::{Progress, paper_case};
 use differences::{convergence, numbers, table};
 use plates::{chaotic, fig_4};
-
-/// The orders compared, and the one that stands for all modes.
-const HIGHEST: usize = 16;
-const REFERENCE: usize = 32;
-/// The forcing frequency, which the paper does not give for Fig. 4, and the backlash of the
-/// chaotic case in micrometres.
-const OMEGA: f64 = 10.0 * PI;
-const BACKLASH: u32 = 25;
-/// Time from one sample to the next, s; over a long time, where only amplitudes are wanted.
-const STEP: f64 = 1.0 / 20_480.0;
-const COARSE_STEP: f64 = 1.0 / 4_096.0;
-/// The motion from the start is kept over this time, s.
-const START: f64 = 6.0;
-/// With backlash, differences are averaged over this time from the start, s.
-const SHORT: f64 = 0.02;
-/// Statistics are taken over this time, s, after this transient, s.
-const STATISTICS: f64 = 40.0;
-const TRANSIENT: f64 = 60.0;
-/// The orders whose differences are shown over time, and whose spectra are.
-const SHOWN: [usize; 4] = [1, 4, 5, 16];
-
-/// One order's series at one backlash.
-struct Run {
-    order: usize,
-    /// From the start.
-    start: Record,
-    /// x_sp, f_la and dr over a long time after the transient.
-    statistics: [Amplitude; 3],
-}
+use run::{
+    BACKLASH, COARSE_STEP, HIGHEST, OMEGA, REFERENCE, Run, SHORT, SHOWN, START, STATISTICS, STEP,
+    TRANSIENT,
+};
 
 /// Fig. 4 and convergence.
 ///

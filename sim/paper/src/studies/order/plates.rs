@@ -7,7 +7,7 @@ use crate::studies::report::{Figure, id};
 use eomgen_plot::{Axes, Frame, Panel, Series};
 
 use super::differences::{Convergence, NAMES, at, largest, statistics};
-use super::{BACKLASH, REFERENCE, Run, SHORT, SHOWN, STATISTICS, STEP, TRANSIENT};
+use super::run::{BACKLASH, REFERENCE, Run, SHORT, SHOWN, STATISTICS, STEP, TRANSIENT};
 
 /// dr without backlash with four and with five modes, as the paper's Fig. 4, and how the
 /// series converge.

@@ -1,0 +1,151 @@
+//! How what lies beyond the linear part changes with the state: the part of their forces that
+//! neighbouring motions feel and the linear part's matrix does not hold. By differences, for
+//! the model tells no more of itself than its accelerations.
+
+use super::remainder::{Force, Remainder};
+use super::slopes::Slopes;
+use super::surfaces::Side;
+use super::types::{ExponentialIntegrator, Motion, Options};
+
+/// Derivatives are found anew after each switch and once in so many times: they change with the
+/// place, of which little passes in between.
+const ANEW: usize = 4;
+
+/// A state is changed by this part of what it moves in a step, or of itself, whichever is more.
+const OF_MOVE: f64 = 1e-3;
+const OF_ITSELF: f64 = 1e-8;
+
+/// And by no less, SI: states at rest at 0.
+const LEAST: f64 = 1e-10;
+
+/// Accelerations that change by less than this part of the largest do so by rounding.
+const ROUNDING: f64 = 1e-10;
+
+impl ExponentialIntegrator {
+    /// Lets the neighbours make the steps that they have not made, up to where the motion stands.
+    pub(super) fn bring(
+        &mut self,
+        motion: &Motion,
+        t: f64,
+        options: &mut Options<'_, '_>,
+    ) -> Result<(), String> {
+        let Some(tangents) = options.tangents.as_deref_mut() else {
+            return Ok(());
+        };
+        if tangents.is_behind() {
+            if let (Some(force), Some(slopes)) = (&mut options.force, &mut tangents.slopes) {
+                self.differentiate(motion, t, &mut **force, slopes)?;
+            }
+            let regime = &self.regimes[motion.regime];
+            tangents.catch_up(regime, t, &motion.state, &motion.given[1..]);
+        }
+        Ok(())
+    }
+
+    /// Finds the derivatives where the motion stands; not on a surface, where rounding decides
+    /// on which side the model is.
+    pub(super) fn differentiate(
+        &mut self,
+        motion: &Motion,
+        t: f64,
+        force: &mut dyn Force,
+        slopes: &mut Slopes,
+    ) -> Result<(), String> {
+        let is_due = slopes.asked.is_multiple_of(ANEW);
+        slopes.asked += 1;
+        if !is_due && slopes.is_known[0] {
+            slopes.keep();
+            return Ok(());
+        }
+        let (n, half) = (self.states, self.states / 2);
+        let rows = self.regimes[motion.regime].matrix.rows;
+        slopes.rates.resize(rows, 0.0);
+        self.rates(motion, &mut slopes.rates);
+        let accelerations = slopes.rates[half..n].iter();
+        let largest = accelerations.fold(0.0f64, |most, a| most.max(a.abs()));
+        let (mut base, mut moved) = (
+            std::mem::take(&mut slopes.base),
+            std::mem::take(&mut slopes.moved),
+        );
+        slopes.state.clone_from(&motion.state);
+        let here = (motion.regime, &motion.sides[..]);
+        self.beyond(here, (t, &slopes.state, &motion.given), force, &mut base)?;
+        for place in 0..n {
+            let x = motion.state[place];
+            slopes.state[place] = x + self.difference(x, slopes.rates[place]);
+            let size = slopes.state[place] - x;
+            self.beyond(here, (t, &slopes.state, &motion.given), force, &mut moved)?;
+            slopes.state[place] = x;
+            if self.sides_differ(motion, place, size, (&base, &moved)) {
+                continue;
+            }
+            let mut matters = false;
+            let column = &mut slopes.there[place * half..(place + 1) * half];
+            for (slot, (after, before)) in column.iter_mut().zip(pairs(&moved, &base)) {
+                matters |= (after - before).abs() > ROUNDING * largest;
+                *slot = (after - before) / size;
+            }
+            if matters && !slopes.active.contains(&place) {
+                slopes.active.push(place);
+            }
+        }
+        (slopes.base, slopes.moved) = (base, moved);
+        slopes.is_known[1] = true;
+        Ok(())
+    }
+
+    /// How the function of a surface changes with each state, as the whole model says; rates tell
+    /// how far the states may be moved.
+    pub(super) fn gradient(
+        &self,
+        motion: &Motion,
+        (surface, t): (usize, f64),
+        force: &mut dyn Force,
+        rates: &[f64],
+    ) -> Vec<f64> {
+        let mut gradient = self.regimes[motion.regime].functions[surface].state.clone();
+        let inputs = &motion.given[1..];
+        let guard = self.surfaces.guards[surface][0];
+        let (mut state, mut values) = (motion.state.clone(), Vec::new());
+        if !force.at_guards(t, &state, inputs, &mut values) {
+            return gradient;
+        }
+        let here = values[guard];
+        for (place, slot) in gradient.iter_mut().enumerate() {
+            let x = state[place];
+            state[place] = x + self.difference(x, rates[place]);
+            force.at_guards(t, &state, inputs, &mut values);
+            *slot = (values[guard] - here) / (state[place] - x);
+            state[place] = x;
+        }
+        gradient
+    }
+
+    /// By how much a state with a rate is changed.
+    fn difference(&self, x: f64, rate: f64) -> f64 {
+        let size = (OF_MOVE * (rate * self.step).abs()).max(OF_ITSELF * x.abs());
+        size.max(LEAST)
+    }
+
+    /// Whether a surface lies between a motion's state and the same with one state changed.
+    fn sides_differ(
+        &self,
+        motion: &Motion,
+        place: usize,
+        size: f64,
+        (base, moved): (&Remainder, &Remainder),
+    ) -> bool {
+        let functions = self.regimes[motion.regime].functions.iter();
+        let both = base.moved.iter().zip(&moved.moved);
+        functions.zip(both).any(|(function, (before, after))| {
+            let here = function.at(&motion.state, &motion.given);
+            let there = here + size * function.state[place];
+            Side::of(here + before) != Side::of(there + after)
+        })
+    }
+}
+
+/// The accelerations of both.
+fn pairs<'e>(a: &'e Remainder, b: &'e Remainder) -> impl Iterator<Item = (&'e f64, &'e f64)> {
+    a.force.iter().zip(&b.force)
+}

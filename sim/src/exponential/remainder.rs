@@ -1,0 +1,100 @@
+//! The nonlinear remainder: what of a model is not linear between its surfaces. Accelerations,
+//! and how far the surfaces themselves lie from the linear part's.
+
+use super::regime::Regime;
+use super::surfaces::{Row, Surfaces};
+
+/// Terms beyond the linear ones.
+pub trait Force {
+    /// Writes the accelerations that they add at a state, each part of the model on the sides
+    /// of its own surfaces.
+    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]);
+
+    /// Writes the value of each of the linear part's guards in the whole model; false where
+    /// that is the linear part's anywhere.
+    fn at_guards(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut Vec<f64>) -> bool;
+}
+
+/// What lies beyond the linear part at a state.
+#[derive(Clone, Debug, Default)]
+pub struct Remainder {
+    /// Accelerations, with a regime's own taken away.
+    pub force: Vec<f64>,
+    /// What is added to the function of each surface.
+    pub moved: Vec<f64>,
+    /// Whether anything may be.
+    pub moves: bool,
+    guards: Vec<f64>,
+}
+
+impl Remainder {
+    /// Nothing, so far.
+    pub fn none(accelerations: usize, surfaces: usize) -> Self {
+        Self {
+            force: vec![0.0; accelerations],
+            moved: vec![0.0; surfaces],
+            ..Self::default()
+        }
+    }
+
+    /// Finds it at a state; accelerations relative to the linear part on the sides of its own
+    /// surfaces.
+    pub fn find(
+        &mut self,
+        force: &mut dyn Force,
+        (surfaces, functions): (&Surfaces, &[Row]),
+        (t, state, given): (f64, &[f64], &[f64]),
+    ) {
+        let inputs = &given[1..];
+        force.at(t, state, inputs, &mut self.force);
+        self.moves = force.at_guards(t, state, inputs, &mut self.guards);
+        if self.moves {
+            let surfaces = surfaces.guards.iter().zip(functions);
+            for (slot, (guards, function)) in self.moved.iter_mut().zip(surfaces) {
+                *slot = self.guards[guards[0]] - function.at(state, given);
+            }
+        }
+    }
+}
+
+/// How much the accelerations of one regime are above those of another.
+#[derive(Debug, Default)]
+pub struct RegimeDifference {
+    pub pair: (usize, usize),
+    /// By each state that they differ by, one per acceleration.
+    by_state: Vec<(usize, Vec<f64>)>,
+    /// The same by a unit constant and the inputs.
+    by_given: Vec<(usize, Vec<f64>)>,
+}
+
+impl RegimeDifference {
+    pub fn of(a: &Regime, b: &Regime, states: usize, pair: (usize, usize)) -> Self {
+        let differing = |columns: usize, entry: &dyn Fn(&Regime, usize, usize) -> f64| {
+            let column = |column: usize| -> Vec<f64> {
+                let rows = states / 2..states;
+                rows.map(|row| entry(a, row, column) - entry(b, row, column))
+                    .collect()
+            };
+            let columns = (0..columns).map(|place| (place, column(place)));
+            columns
+                .filter(|(_, column)| column.iter().any(|entry| *entry != 0.0))
+                .collect()
+        };
+        Self {
+            by_state: differing(states, &|regime, row, column| regime.matrix.at(row, column)),
+            by_given: differing(a.given.ncols(), &|regime, row, column| {
+                regime.given[(row, column)]
+            }),
+            pair,
+        }
+    }
+
+    pub fn add(&self, state: &[f64], given: &[f64], out: &mut [f64]) {
+        for (columns, values) in [(&self.by_state, state), (&self.by_given, given)] {
+            for (place, column) in columns {
+                let sums = out.iter_mut().zip(column);
+                sums.for_each(|(slot, entry)| *slot += values[*place] * entry);
+            }
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! The integrator, where a motion stands, and what goes along with it.
+
+use std::collections::HashMap;
+
+use codegen::program::affine::AffineEvaluator;
+
+use super::regime::Regime;
+use super::remainder::{Force, RegimeDifference, Remainder};
+use super::surfaces::{Side, Surfaces};
+use super::tangents::Tangents;
+
+/// A model at fixed parameters, ready to be marched.
+pub struct ExponentialIntegrator {
+    pub(super) evaluator: AffineEvaluator,
+    pub(super) surfaces: Surfaces,
+    pub(super) regimes: Vec<Regime>,
+    pub(super) known: HashMap<Vec<Side>, Option<usize>>,
+    pub(super) states: usize,
+    /// The length of a step, s.
+    pub(super) step: f64,
+    /// The sides on which the linear part alone would be, those for which that was asked last
+    /// with their regime, and how that differs from the one where the motion is.
+    pub(super) own: Vec<Side>,
+    pub(super) last_own: (Vec<Side>, usize),
+    pub(super) apart: RegimeDifference,
+}
+
+/// Where a motion stands.
+pub(super) struct Motion {
+    pub(super) t: f64,
+    pub(super) state: Vec<f64>,
+    pub(super) sides: Vec<Side>,
+    pub(super) regime: usize,
+    /// A unit constant and the inputs.
+    pub(super) given: Vec<f64>,
+    /// What these add to a step.
+    pub(super) base: Vec<f64>,
+    /// Functions of the surfaces and their rates.
+    pub(super) watched: Vec<f64>,
+    /// What is not linear there.
+    pub(super) remainder: Remainder,
+    /// A step's end, what is not linear there, and half of what that changed.
+    pub(super) next: Vec<f64>,
+    pub(super) later: Remainder,
+    pub(super) change: Vec<f64>,
+}
+
+/// Who goes along.
+pub struct Options<'c, 'd> {
+    /// Accelerations beyond the linear ones.
+    pub force: Option<&'c mut dyn Force>,
+    /// Neighbouring motions.
+    pub tangents: Option<&'c mut Tangents<'d>>,
+}
+
+/// Who is shown the samples: each one's place, the state there and the neighbouring motions.
+pub type Show<'s> = dyn FnMut(usize, &[f64], Option<&Tangents<'_>>) + 's;
