@@ -6,8 +6,11 @@
 //! is what can go wrong and with which exit status.
 
 mod arguments;
-mod claims_table;
+mod bench_files;
+mod certification;
+mod checked_in;
 mod commands;
+mod emission;
 mod figures;
 mod model;
 mod motion;
@@ -17,7 +20,12 @@ mod parquet_file;
 mod problem;
 mod progress;
 mod ranges;
+mod samples;
+mod settings;
+mod sweep_files;
+mod sweep_job;
 mod table;
+mod tour;
 
 use std::process::ExitCode;
 

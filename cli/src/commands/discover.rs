@@ -12,8 +12,8 @@ use eomgen_records::read_dataset;
 use model_spec::source::Source;
 use serde_json::{Value, json};
 
-use super::validate;
 use crate::arguments;
+use crate::certification::certify;
 use crate::model::{load, orders};
 use crate::output::write_file;
 use crate::problem::{Outcome, Problem, say, warn};
@@ -81,7 +81,7 @@ fn validated(path: &str, text: &str, order: Option<usize>) -> Outcome<Option<Val
     if orders.iter().any(|other| *other != orders[0]) {
         return Ok(None);
     }
-    let certificate = validate::of(&model, &orders, &[])?;
+    let certificate = certify(&model, &orders, &[])?;
     let names = |wanted: fn(&Check) -> bool| -> Vec<String> {
         let checks = certificate.checks.iter().filter(|check| wanted(check));
         checks.map(|check| check.name.clone()).collect()

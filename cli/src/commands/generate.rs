@@ -3,15 +3,16 @@
 
 use std::path::Path;
 
-use codegen::program::Program;
-use codegen::rust::{Packaging, emit};
+use codegen::rust::Packaging;
 use codegen::variant::Variant;
 use eomgen_validate::certificate::Certificate;
 use serde_json::json;
 
-use super::validate::{document, of_source};
-use super::{generate_all, generate_bench};
 use crate::arguments::{Extra, Generate, Target};
+use crate::bench_files;
+use crate::certification::{certify_source, document};
+use crate::checked_in;
+use crate::emission::source;
 use crate::model::{load, orders};
 use crate::output::write_file;
 use crate::problem::{Outcome, Problem, say, warn};
@@ -20,7 +21,7 @@ use crate::problem::{Outcome, Problem, say, warn};
 pub fn run(options: &Generate) -> Outcome {
     match (&options.spec, &options.out) {
         (Some(spec), Some(out)) => one(options, spec, out),
-        _ => generate_all::run(options.check, options.json),
+        _ => checked_in::run(options.check, options.json),
     }
 }
 
@@ -33,14 +34,14 @@ fn one(options: &Generate, spec: &Path, out: &Path) -> Outcome {
         Variant::derive_with(&model, &orders, &outputs).map_err(Problem::Specification)?;
     let text = source(&variant.program, Packaging::Crate)?;
     let certificate = match options.certify {
-        true => Some(of_source(&model, &orders, &outputs, text.clone())?),
+        true => Some(certify_source(&model, &orders, &outputs, text.clone())?),
         false => None,
     };
     let path = out.join("lib.rs");
     write_file(&path, text.as_bytes())?;
     let mut files = vec![path];
     if options.with.contains(&Extra::Bench) {
-        files.extend(generate_bench::leave(&model, &variant, &outputs, out)?);
+        files.extend(bench_files::leave(&model, &variant, &outputs, out)?);
     }
     if let Some(certificate) = &certificate {
         let path = out.join("certificate.json");
@@ -81,9 +82,4 @@ fn passed(certificate: &Certificate) -> Outcome {
         "error: the certificate has failed checks: {names}; `eomgen validate` shows them"
     ));
     Err(Problem::Failed)
-}
-
-/// The emitted source of a program.
-pub fn source(program: &Program, packaging: Packaging) -> Outcome<String> {
-    emit(program, packaging).map_err(|error| Problem::input(error.to_string()))
 }

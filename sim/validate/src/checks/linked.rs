@@ -41,6 +41,7 @@ pub enum EmittedFunction {
 }
 
 impl EmittedFunction {
+    /// Its name in the emitted source.
     pub fn name(self) -> &'static str {
         match self {
             Self::Rates => "rates",
@@ -52,6 +53,10 @@ impl EmittedFunction {
         }
     }
 
+    /// What the variant itself gives at a state.
+    ///
+    /// # Errors
+    /// What the variant says.
     pub fn expected(self, variant: &mut dyn Variant, sample: &Sample) -> Result<Vec<f64>, String> {
         let Sample {
             time,
@@ -138,6 +143,7 @@ fn table(samples: &[Sample]) -> String {
     table
 }
 
+/// Numbers as the harness reads them: their bits in hexadecimal digits.
 pub fn line(numbers: &[f64]) -> String {
     let words: Vec<String> = numbers
         .iter()

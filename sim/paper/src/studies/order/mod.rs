@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::arm::{Arm, Case};
-use super::case::{Amplitude, Length, Record, measure};
+use super::case::{Amplitude, Length, measure};
 use super::display::{Display, WINDOW, even_times, sampled};
 use super::error::StudyError;
 use super::report::{Study, case, tables};

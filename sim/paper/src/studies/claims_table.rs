@@ -1,9 +1,9 @@
 //! The paper's claims as a Markdown table: what the paper says, what was found at the assumed
 //! values, and in what share of the searched sets each claim holds.
 
-use eomgen_paper::studies::claims::CLAIMS;
-use eomgen_paper::studies::judge::{Holding, Judgement};
-use eomgen_paper::studies::tally::Share;
+use super::claims::CLAIMS;
+use super::judge::{Holding, Judgement};
+use super::tally::Share;
 
 /// The table, with the claims judged at the assumed values and their shares in a search.
 pub fn markdown(assumed: &[Judgement], shares: &[Share]) -> String {

@@ -10,8 +10,8 @@ use model_spec::source::Source;
 use serde_json::Value;
 use sim::inputs::HeldInputs;
 
-use super::discover;
 use crate::arguments::{Compare, Discover};
+use crate::commands::discover;
 use crate::model::derive;
 use crate::motion::{simulate, table};
 use crate::output::write_file;

@@ -7,8 +7,8 @@ use eomgen_validate::of_model::unchecked;
 use model_spec::model::Model;
 use serde_json::{Value, json};
 
-use super::generate::source;
-use super::validate::{document, of_source};
+use crate::certification::{certify_source, document};
+use crate::emission::source;
 use crate::model::{derive, load};
 use crate::output::write_file;
 use crate::problem::{Outcome, Problem, say, warn};
@@ -46,7 +46,7 @@ pub fn run(check: bool, json: bool) -> Outcome {
         } else {
             let _note = Note::new(format!("certifying {}", variant.name));
             let orders = vec![variant.order; model.fields.len()];
-            let text = document(&of_source(&model, &orders, &[], variant.text.clone())?)?;
+            let text = document(&certify_source(&model, &orders, &[], variant.text.clone())?)?;
             if std::fs::read_to_string(&path).unwrap_or_default() != text {
                 different.push(certificate_file(variant));
                 write_file(&path, text.as_bytes())?;

@@ -1,0 +1,91 @@
+//! Certificates of variants: made, written, summarised.
+
+use codegen::mechanics::outputs::Output;
+use codegen::rust::Packaging;
+use codegen::variant::Variant;
+use eomgen_paper::by_hand::by_hand;
+use eomgen_validate::certificate::{Certificate, Check};
+use eomgen_validate::of_model::certificate;
+use model_spec::model::Model;
+
+use crate::emission::source;
+use crate::problem::{Outcome, Problem};
+
+/// A certificate as it is written to a file.
+pub fn document(certificate: &Certificate) -> Outcome<String> {
+    let text = serde_json::to_string_pretty(certificate)
+        .map_err(|error| Problem::input(error.to_string()))?;
+    Ok(text + "\n")
+}
+
+/// The certificate of a model at the given orders, which are one for all fields, as it is
+/// emitted with `outputs`.
+pub fn certify(model: &Model, orders: &[usize], outputs: &[Output]) -> Outcome<Certificate> {
+    one_order(model, orders)?;
+    let variant = Variant::derive_with(model, orders, outputs).map_err(Problem::Specification)?;
+    let emitted = source(&variant.program, Packaging::Crate)?;
+    certify_source(model, orders, outputs, emitted)
+}
+
+/// The certificate of a source that was emitted so.
+pub fn certify_source(
+    model: &Model,
+    orders: &[usize],
+    outputs: &[Output],
+    emitted: String,
+) -> Outcome<Certificate> {
+    let order = one_order(model, orders)?;
+    let refused = |error| Problem::model(&model.source, error);
+    let values = model.parameter_values().map_err(refused)?;
+    let by_hand = by_hand(model, order, &values);
+    certificate(model, order, outputs, emitted, &by_hand).map_err(refused)
+}
+
+/// The order of all fields.
+fn one_order(model: &Model, orders: &[usize]) -> Outcome<usize> {
+    let order = orders.first().copied().unwrap_or(0);
+    if orders.iter().any(|other| *other != order) {
+        return Err(Problem::input(format!(
+            "the fields of {} have the orders {orders:?}; a certificate is for one order: \
+             give --order",
+            model.name
+        )));
+    }
+    Ok(order)
+}
+
+/// One line per check.
+pub fn summary(certificate: &Certificate) -> String {
+    let mut text = format!("{}, order {}\n", certificate.model, certificate.order);
+    let width = certificate
+        .checks
+        .iter()
+        .map(|check| check.name.len())
+        .max()
+        .unwrap_or(0);
+    for check in &certificate.checks {
+        text.push_str(&format!("  {:width$}  {}\n", check.name, verdict(check)));
+    }
+    text.push_str(if certificate.passed {
+        "passed\n"
+    } else {
+        "FAILED\n"
+    });
+    text
+}
+
+fn verdict(check: &Check) -> String {
+    let detail = if check.detail.is_empty() {
+        String::new()
+    } else {
+        format!("  ({})", check.detail)
+    };
+    if check.skipped {
+        return format!("skipped{detail}");
+    }
+    let value = check
+        .value
+        .map_or("not finite".to_owned(), |value| format!("{value:.1e}"));
+    let word = if check.passed { "passed" } else { "FAILED" };
+    format!("{word}   {value} of {:.0e}{detail}", check.tolerance)
+}

@@ -1,0 +1,91 @@
+//! The final files of a sweep: one table and a figure for each measure.
+
+use std::path::PathBuf;
+
+use eomgen_sweep::{Folder, Job, Table, merge};
+use serde_json::{Value, json};
+
+use crate::figures::draw;
+use crate::output::write_file;
+use crate::parquet_file::encode;
+use crate::problem::{Outcome, Problem, warn};
+
+/// The final files of a sweep.
+pub struct Finished {
+    files: Vec<PathBuf>,
+    points: usize,
+    /// Points without a number, by measure.
+    failed: Vec<(String, usize)>,
+}
+
+/// Writes the final files.
+///
+/// # Errors
+/// Missing parts, files that cannot be written.
+pub fn finish(folder: &Folder) -> Outcome<Finished> {
+    let job = folder.job();
+    let table = merge(folder).map_err(|error| Problem::input(error.to_string()))?;
+    let mut finished = Finished {
+        files: Vec::new(),
+        points: job.grid().points(),
+        failed: failures(job, &table),
+    };
+    for (measure, picture) in draw(job, &table) {
+        match picture {
+            Ok(bytes) => {
+                let path = folder.path().join(format!("map_{measure}.png"));
+                write_file(&path, &bytes)?;
+                finished.files.push(path);
+            }
+            // The numbers are good without a picture.
+            Err(error) => warn(&format!("warning: no picture of {measure}: {error}")),
+        }
+    }
+    let bytes = encode(&table.names, &table.columns)
+        .map_err(|error| Problem::input(format!("cannot write Parquet: {error}")))?;
+    let path = folder.path().join("sweep.parquet");
+    write_file(&path, &bytes)?;
+    finished.files.push(path);
+    Ok(finished)
+}
+
+/// How many points each measure has no number for.
+fn failures(job: &Job, table: &Table) -> Vec<(String, usize)> {
+    let measures = job.plan().measures.iter();
+    let count = |name: &str| {
+        let statuses = table.column(&format!("{name}_status")).unwrap_or_default();
+        statuses.iter().filter(|status| **status != 0.0).count()
+    };
+    measures
+        .map(|measure| (measure.name.clone(), count(&measure.name)))
+        .collect()
+}
+
+impl Finished {
+    /// For programs.
+    pub fn json(&self) -> Value {
+        let files = self.files.iter().map(|file| file.display().to_string());
+        let failed = self.failed.iter().cloned();
+        json!({
+            "points": self.points,
+            "failed": failed.collect::<std::collections::BTreeMap<_, _>>(),
+            "files": files.collect::<Vec<_>>(),
+        })
+    }
+
+    /// For people.
+    pub fn text(&self) -> String {
+        let mut text = format!("{} points\n", self.points);
+        for (measure, failed) in &self.failed {
+            if *failed > 0 {
+                text += &format!(
+                    "{measure}: {failed} points without a number; their status says why\n"
+                );
+            }
+        }
+        for file in &self.files {
+            text += &format!("{}\n", file.display());
+        }
+        text
+    }
+}

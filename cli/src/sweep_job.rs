@@ -1,0 +1,111 @@
+//! What a sweep is asked for: its grid, model, measures and job.
+
+use eomgen_compiled_model::{CompiledModel, Orders};
+use eomgen_sweep::job::Plan;
+use eomgen_sweep::parameters::columns;
+use eomgen_sweep::{Axis, Grid, Job, Lyapunov, Measure, Poincare, Span, SweepError};
+use model_spec::model::Model;
+
+use crate::arguments::Sweep;
+use crate::model::{load, orders};
+use crate::problem::{Outcome, Problem};
+use crate::settings::warn_of_inputs;
+
+/// What can be measured.
+const MEASURES: [&str; 2] = ["lyapunov", "poincare"];
+
+/// What the library refuses.
+pub fn refused(error: SweepError) -> Problem {
+    Problem::input(error.to_string())
+}
+
+/// Refuses measures that do not exist.
+pub fn check_measures(names: &[String]) -> Outcome {
+    match names.iter().find(|name| !MEASURES.contains(&name.as_str())) {
+        None => Ok(()),
+        Some(unknown) => Err(Problem::input(format!(
+            "--measure {unknown}: unknown measure; there is {}",
+            MEASURES.join(" and ")
+        ))),
+    }
+}
+
+/// The grid that is asked for.
+pub fn grid(options: &Sweep) -> Outcome<Grid> {
+    let axes = options.vary.iter().map(|text| Axis::parse(text));
+    let axes = axes.collect::<Result<Vec<_>, _>>().map_err(refused)?;
+    Grid::new(axes).map_err(refused)
+}
+
+/// The model derived at the grid's first point, where all varied parameters are numbers.
+pub fn model(options: &Sweep, grid: &Grid, set: &[(&str, f64)]) -> Outcome<CompiledModel> {
+    if let Some((name, _)) = set
+        .iter()
+        .find(|(name, _)| grid.names().any(|varied| varied == *name))
+    {
+        return Err(Problem::input(format!(
+            "`{name}` is both set and varied; give one of --set and --vary"
+        )));
+    }
+    let model = load(&options.spec)?.model;
+    let at = |point: usize| {
+        let settings = [set, &grid.settings(point)].concat();
+        with_parameters(&model, &settings)
+    };
+    // Bounds are intervals: what both ends of the ranges admit, all between admit.
+    at(grid.points() - 1)?;
+    let first = at(0)?;
+    warn_of_inputs(&first);
+    let orders = orders(&first, options.order.as_deref())?;
+    Ok(CompiledModel::derive_unjudged(
+        first,
+        Orders::Each(&orders),
+    )?)
+}
+
+fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Outcome<Model> {
+    model
+        .with_parameters(settings)
+        .map_err(|error| Problem::model(&model.source, error))
+}
+
+/// What is asked for, in the order of the command line.
+pub fn measures<'a>(
+    options: &Sweep,
+    model: &'a CompiledModel,
+    grid: &Grid,
+) -> Outcome<Vec<Box<dyn Measure + 'a>>> {
+    let lines = grid.axes().iter().filter(|axis| axis.count > 1).count();
+    let span = Span {
+        transient: options.transient,
+        periods: options.periods,
+    };
+    let frequency = &options.frequency;
+    let measure = |name: &String| -> Outcome<Box<dyn Measure + 'a>> {
+        Ok(match name.as_str() {
+            "lyapunov" => Box::new(Lyapunov::new(model, frequency, span).map_err(refused)?),
+            _ => Box::new(Poincare::new(model, frequency, span, lines == 1).map_err(refused)?),
+        })
+    };
+    options.measure.iter().map(measure).collect()
+}
+
+/// All of it as data.
+pub fn job(
+    compiled: &CompiledModel,
+    grid: &Grid,
+    set: &[(&str, f64)],
+    measures: &[Box<dyn Measure + '_>],
+) -> Outcome<Job> {
+    let (model, orders) = (compiled.model(), compiled.orders());
+    let plan = Plan::new(
+        &model.source,
+        &model.name,
+        orders,
+        set,
+        columns(model, grid).map_err(refused)?,
+        grid,
+        measures.iter().map(|measure| measure.describe()).collect(),
+    );
+    Job::new(plan).map_err(refused)
+}

@@ -1,0 +1,286 @@
+//! The tour: the whole way once, on the paper's arm and at last a stage that lacks
+//! something, for somebody who sees the program for the first time. Leaves one HTML page and the files it shows.
+
+mod hidden;
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use codegen::program::evaluator::Evaluator;
+use codegen::report::Report;
+use codegen::rust::Packaging;
+use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
+use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
+use eomgen_validate::certificate::Certificate;
+use model_spec::models;
+use model_spec::source::Source;
+
+use crate::certification::certify;
+use crate::emission::source;
+use crate::model::derive;
+use crate::motion::{in_words, simulate, table};
+use crate::output::{file_place, write_file};
+use crate::page;
+use crate::problem::{Outcome, Problem};
+use crate::progress::Note;
+use crate::table::Table;
+use hidden::{Told, told};
+
+/// The paper's arm.
+const SPECIFICATION: &str = models::PLANETARY_ARM.text;
+
+/// Where it stands in the project.
+const SPECIFICATION_PATH: &str = "model-spec/models/planetary_arm.toml";
+
+/// The paper's truncation order.
+const ORDER: usize = 4;
+
+/// Simulated time in s, and the time between samples.
+const UNTIL: f64 = 2.0;
+const SAMPLE: f64 = 0.0005;
+
+/// Relative tolerance, should the arm ever be no longer linear between its switches.
+const TOLERANCE: f64 = 1e-10;
+
+/// Says how long each step took.
+struct Stopwatch {
+    started: Instant,
+    steps: Vec<(&'static str, f64)>,
+}
+
+impl Stopwatch {
+    fn lap(&mut self, step: &'static str) {
+        self.steps
+            .push((step, self.started.elapsed().as_secs_f64()));
+        self.started = Instant::now();
+    }
+}
+
+/// What a tour leaves.
+pub struct Walked {
+    /// Its page.
+    pub page: PathBuf,
+    /// The certificate of the arm.
+    pub certificate: Certificate,
+    /// How often the arm's meshes made or lost contact.
+    pub switches: usize,
+}
+
+/// Walks the whole way and leaves the page, and the files that it shows, in a folder.
+pub fn walk(out: &Path) -> Outcome<Walked> {
+    let path = out.join("index.html");
+    file_place(&path)?;
+    let mut watch = Stopwatch {
+        started: Instant::now(),
+        steps: Vec::new(),
+    };
+    let note = Note::new("reading, deriving and emitting the paper's arm");
+    let checked = model_spec::check(Source::new(SPECIFICATION_PATH, SPECIFICATION))
+        .map_err(Problem::Specification)?;
+    watch.lap("read and check the specification");
+    let compiled = derive(checked.model, &[ORDER])?;
+    watch.lap("derive the equations and lower them to a program");
+    let rust = source(compiled.program(), Packaging::Crate)?;
+    watch.lap("emit Rust");
+    drop(note);
+    let note = Note::new("validating against independent equations");
+    let certificate = certify(compiled.model(), &[ORDER], &[])?;
+    watch.lap("validate, including a compilation of the emitted Rust");
+    drop(note);
+    let run = compiled.at_declared()?;
+    let times: Vec<f64> = (0..=(UNTIL / SAMPLE) as usize)
+        .map(|i| i as f64 * SAMPLE)
+        .collect();
+    let request = Request {
+        initial: run.initial(),
+        times: &times,
+        inputs: &run.no_inputs(),
+        solver: Solver::Auto,
+        tolerance: TOLERANCE,
+    };
+    let motion = simulate(&run, &request)?;
+    let table = table(&run, &motion)?;
+    watch.lap("simulate two seconds");
+    let figure = figure(&run, &table)?;
+    leave(out, &compiled, &rust, &certificate, &table, &figure)?;
+    let note = Note::new("finding a friction that is hidden in a stage");
+    let told = told(out)?;
+    watch.lap("hide a friction in a stage, compare, discover");
+    drop(note);
+    let parts = (&rust[..], &figure[..], &told);
+    let page = page_text(&compiled, parts, &certificate, &motion, &watch)?;
+    write_file(&path, page.as_bytes())?;
+    Ok(Walked {
+        page: path,
+        certificate,
+        switches: motion.trajectory.switches.len(),
+    })
+}
+
+/// The files that the page shows.
+fn leave(
+    out: &Path,
+    compiled: &CompiledModel,
+    rust: &str,
+    certificate: &Certificate,
+    table: &Table,
+    figure: &str,
+) -> Outcome {
+    let json = serde_json::to_string_pretty(certificate)
+        .map_err(|error| Problem::input(error.to_string()))?;
+    write_file(
+        &out.join("planetary_arm.toml"),
+        compiled.model().source.text.as_bytes(),
+    )?;
+    write_file(&out.join("lib.rs"), rust.as_bytes())?;
+    write_file(
+        &out.join("certificate.json"),
+        format!("{json}\n").as_bytes(),
+    )?;
+    let trajectory = out.join("trajectory.csv");
+    write_file(&trajectory, &table.encode(Path::new("trajectory.csv"))?)?;
+    write_file(&out.join("trajectory.svg"), figure.as_bytes())
+}
+
+/// The mesh deflection and the positioning error over time.
+fn figure(run: &Instance<'_>, table: &Table) -> Outcome<String> {
+    let column = |name: &str| {
+        table
+            .column(name)
+            .ok_or_else(|| Problem::input(format!("the trajectory has no column {name}")))
+    };
+    let t = column("t")?;
+    let backlash = run.value("b_sp").unwrap_or(f64::NAN);
+    let panel = |title: &str, name: &str, references: Vec<Reference>| -> Outcome<Panel<'_>> {
+        Ok(Panel {
+            title: title.to_owned(),
+            quantity: name.to_owned(),
+            unit: "m".to_owned(),
+            series: vec![Series {
+                label: name.to_owned(),
+                abscissa: t,
+                values: column(name)?,
+            }],
+            references,
+        })
+    };
+    let limits = [("+b_sp", backlash), ("−b_sp", -backlash)];
+    let references = limits
+        .iter()
+        .map(|(label, value)| Reference {
+            label: (*label).to_owned(),
+            value: *value,
+        })
+        .collect();
+    let history = TimeHistory {
+        title: "Motion of the arm over two seconds from rest".to_owned(),
+        panels: vec![
+            panel(
+                "Relative displacement of sun and planet along the line of action",
+                "x_sp",
+                references,
+            )?,
+            panel(
+                "Positioning error of the arm's end, Eq. (24)",
+                "f_la",
+                Vec::new(),
+            )?,
+        ],
+    };
+    time_history(&history).map_err(|error| Problem::input(error.to_string()))
+}
+
+/// The page. `parts`: the emitted Rust, the figure and what was found.
+fn page_text(
+    compiled: &CompiledModel,
+    (rust, figure, told): (&str, &str, &Told),
+    certificate: &Certificate,
+    motion: &Motion,
+    watch: &Stopwatch,
+) -> Outcome<String> {
+    let evaluator = Evaluator::new(compiled.program().clone());
+    let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
+    let summary = format!(
+        "From rest over {UNTIL} s at order {ORDER} with the paper's values and those assumed where it gives none: \
+         the meshes made or lost contact {} times, {}.",
+        motion.trajectory.switches.len(),
+        in_words(motion)
+    );
+    let checks = certificate
+        .checks
+        .iter()
+        .map(|check| page::CheckRow {
+            name: &check.name,
+            value: check.value,
+            tolerance: check.tolerance,
+            passed: check.passed,
+            skipped: check.skipped,
+            detail: &check.detail,
+        })
+        .collect();
+    let found = told.summary();
+    let tour = page::Tour {
+        title: &compiled.model().title,
+        generated_by: concat!("eomgen ", env!("CARGO_PKG_VERSION")),
+        specification: page::Specification {
+            path: SPECIFICATION_PATH,
+            text: SPECIFICATION,
+            warnings: Vec::new(),
+        },
+        equations: &report,
+        source: page::Source {
+            path: "lib.rs",
+            text: rust,
+        },
+        checks,
+        simulation: page::Simulation {
+            summary: &summary,
+            path: "trajectory.csv",
+            figures: vec![page::Figure {
+                svg: figure,
+                caption: "Above: the tooth flanks touch outside the dashed lines and are free \
+                          between them; each touch rings at the mesh's own frequency. Below: \
+                          what the arm's end is off its place, backlash and bending together.",
+            }],
+        },
+        hidden: told.chapter(&found),
+        durations: watch
+            .steps
+            .iter()
+            .map(|(step, seconds)| page::StepDuration {
+                step,
+                seconds: *seconds,
+            })
+            .collect(),
+        next: next_commands(),
+    };
+    Ok(tour.render())
+}
+
+fn next_commands() -> Vec<page::NextCommand<'static>> {
+    [
+        (
+            "cargo run --release -- derive model-spec/models/double_pendulum.toml",
+            "prints the equations of another machine",
+        ),
+        (
+            "cargo run --release -- generate model-spec/models/planetary_arm.toml --order 16 --out arm16",
+            "emits the arm with sixteen modes",
+        ),
+        (
+            "cargo run --release -- simulate model-spec/models/planetary_arm.toml --until 2 --set b_sp=100e-6 --set b_pr=100e-6 --out wide.csv",
+            "simulates with four times the backlash",
+        ),
+        (
+            "cargo run --release -- validate model-spec/models/hub_beam_tip_mass.toml --order 8",
+            "validates a beam with a tip mass",
+        ),
+        (
+            "cargo run --release -- discover tour/hidden/stage.toml tour/hidden/dataset.toml --out found",
+            "finds once more what the stage lacks; with a specification and records of your own, what your machine lacks",
+        ),
+    ]
+    .into_iter()
+    .map(|(command, does)| page::NextCommand { command, does })
+    .collect()
+}
