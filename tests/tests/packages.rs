@@ -166,5 +166,5 @@ fn the_macro_alone_brings_no_solver() {
     ] {
         assert!(!names.contains(&solver), "{solver}");
     }
-    assert!(names.len() <= 40, "{}: {names:?}", names.len());
+    assert!(names.len() <= 45, "{}: {names:?}", names.len());
 }
