@@ -10,6 +10,7 @@ mod bench_files;
 mod certification;
 mod checked_in;
 mod commands;
+mod discovery;
 mod emission;
 mod figures;
 mod model;

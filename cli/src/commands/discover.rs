@@ -1,22 +1,12 @@
-//! `eomgen compare` and `eomgen discover`: a model and its measurements. What is compared and
-//! what is found is the library's.
+//! `eomgen compare` and `eomgen discover`: a model and its measurements.
 
-use eomgen_validate::certificate::Check;
 use std::path::Path;
-use std::time::Instant;
 
-use discover::report::result::Validation;
-use discover::{Specification, catalogue};
-use eomgen_records::dataset::Dataset;
-use eomgen_records::read_dataset;
-use model_spec::source::Source;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::arguments;
-use crate::certification::certify;
-use crate::model::{load, orders};
-use crate::output::write_file;
-use crate::problem::{Outcome, Problem, say, warn};
+use crate::discovery::{compared, discovered};
+use crate::problem::{Outcome, say};
 
 /// Runs `compare`.
 pub fn compare(options: &arguments::Compare) -> Outcome {
@@ -28,92 +18,7 @@ pub fn discover(options: &arguments::Discover) -> Outcome {
     tell(options.json, &discovered(options)?, &options.out)
 }
 
-/// Compares; the document that is left beside the page.
-pub fn compared(options: &arguments::Compare) -> Outcome<Value> {
-    let begin = Instant::now();
-    let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
-    let path = options.spec.display().to_string();
-    let specification = Specification {
-        path: &path,
-        text: &text,
-        order,
-    };
-    let found = discover::compare(specification, &dataset, options.seed, &warn);
-    let found = found.map_err(Problem::discovery)?;
-    let mut document = found.to_json();
-    document["seconds"] = json!(begin.elapsed().as_secs_f64());
-    write_json(&options.out.join("comparison.json"), &document)?;
-    write_file(&options.out.join("report.html"), found.page().as_bytes())?;
-    Ok(document)
-}
-
-/// Discovers; the document that is left beside the page and the specification.
-pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
-    let begin = Instant::now();
-    let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
-    let effects = catalogue::effects(options.effects.as_deref()).map_err(Problem::Specification)?;
-    let path = options.spec.display().to_string();
-    let specification = Specification {
-        path: &path,
-        text: &text,
-        order,
-    };
-    let found = discover::discover(specification, dataset, &effects, options.seed, &warn);
-    let mut found = found.map_err(Problem::discovery)?;
-    found.validation = validated(&path, &found.extended, order)?;
-    let mut document = found.to_json();
-    document["seconds"] = json!(begin.elapsed().as_secs_f64());
-    let out = &options.out;
-    write_file(&out.join("extended.toml"), found.extended.as_bytes())?;
-    write_file(&out.join("report.html"), found.page().as_bytes())?;
-    write_json(&out.join("discovery.json"), &document)?;
-    Ok(document)
-}
-
-/// What the checks of `validate` say of the specification that was written: its equations are
-/// derived anew and set beside the independent oracle and the emitted source. None where fields
-/// have different orders, for which there are no such checks.
-fn validated(path: &str, text: &str, order: Option<usize>) -> Outcome<Option<Validation>> {
-    let checked = model_spec::check(Source::new(path, text));
-    let model = checked.map_err(Problem::Specification)?.model;
-    let orders = model.orders(order);
-    let orders = orders.map_err(|error| Problem::model(&model.source, error))?;
-    if orders.iter().any(|other| *other != orders[0]) {
-        return Ok(None);
-    }
-    let certificate = certify(&model, &orders, &[])?;
-    let names = |wanted: fn(&Check) -> bool| -> Vec<String> {
-        let checks = certificate.checks.iter().filter(|check| wanted(check));
-        checks.map(|check| check.name.clone()).collect()
-    };
-    Ok(Some(Validation {
-        passed: certificate.passed,
-        checks: names(|check| !check.skipped),
-        failed: names(|check| !check.passed && !check.skipped),
-    }))
-}
-
-/// The specification's text, the order asked for, and the dataset.
-fn inputs(
-    spec: &Path,
-    dataset: &Path,
-    order: Option<&str>,
-) -> Outcome<(String, Option<usize>, Dataset)> {
-    let model = load(spec)?.model;
-    let text = model.source.text.to_string();
-    orders(&model, order)?;
-    let order = order.and_then(|order| order.trim().parse().ok());
-    let dataset = read_dataset(dataset, &model).map_err(Problem::records)?;
-    for note in &dataset.notes {
-        warn(&format!("note: {note}"));
-    }
-    Ok((text, order, dataset))
-}
-
-fn write_json(path: &Path, document: &Value) -> Outcome {
-    write_file(path, format!("{document:#}\n").as_bytes())
-}
-
+/// The verdict, the effects and the gap by channel.
 fn tell(as_json: bool, result: &Value, out: &Path) -> Outcome {
     if as_json {
         return say(&format!("{result:#}\n"));

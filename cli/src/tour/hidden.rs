@@ -11,7 +11,7 @@ use serde_json::Value;
 use sim::inputs::HeldInputs;
 
 use crate::arguments::{Compare, Discover};
-use crate::commands::discover;
+use crate::discovery;
 use crate::model::derive;
 use crate::motion::{simulate, table};
 use crate::output::write_file;
@@ -56,7 +56,7 @@ pub fn told(out: &Path) -> Outcome<Told> {
     let dataset = folder.join("dataset.toml");
     write_file(&dataset, description().as_bytes())?;
     let (compared, found) = (folder.join("compared"), folder.join("found"));
-    let comparison = discover::compared(&Compare {
+    let comparison = discovery::compared(&Compare {
         spec: specification.clone(),
         dataset: dataset.clone(),
         order: None,
@@ -64,7 +64,7 @@ pub fn told(out: &Path) -> Outcome<Told> {
         seed: 1,
         json: false,
     })?;
-    let discovery = discover::discovered(&Discover {
+    let discovery = discovery::discovered(&Discover {
         spec: specification,
         dataset,
         order: None,
