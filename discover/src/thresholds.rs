@@ -3,7 +3,7 @@
 /// Standard deviation of a sensor's gain before it is estimated: a calibrated sensor.
 pub const GAIN_PRIOR: f64 = 0.01;
 
-/// Standard deviation of a sensor's bias, in noises.
+/// Standard deviation of a sensor's bias, in standard deviations.
 pub const BIAS_PRIOR: f64 = 10.0;
 
 /// Standard deviation of a sensor's delay, in samples: held somewhere between two of them.
@@ -27,7 +27,7 @@ pub const SHAPE_RANGE: (f64, f64) = (0.02, 3.0);
 /// better.
 pub const RIDGE: f64 = 1e-11;
 
-/// An effect is believed if the gap on held-out records falls by this part: less matters to
+/// An effect is accepted if the gap on held-out records falls by this part: less matters to
 /// nobody, and luck reaches it.
 pub const HELD_OUT: f64 = 0.05;
 
@@ -42,7 +42,7 @@ pub const INFORMATION: f64 = 10.0;
 pub const SIGNIFICANCE: f64 = 5.0;
 
 /// And if what it does to the channel that shows it best, and nothing else can do, is this many
-/// noises: what is smaller may be anything that repeats by chance.
+/// standard deviations of the noise: what is smaller may be anything that repeats by chance.
 pub const SIZE: f64 = 1.0;
 
 /// Nothing is left to be found where the gap is within this factor of the floor.
@@ -61,21 +61,21 @@ pub const DISTINGUISHED: f64 = 0.01;
 /// different folds.
 pub const SAME: f64 = 1.0 - 1e-6;
 
-/// A response of which less than this part is its own cannot be told from the nuisances, unless
-/// that part explains `ENOUGH`.
+/// A response of which less than this part is its own is indistinguishable from the nuisances,
+/// unless that part explains `ENOUGH`.
 pub const UNEXPLAINED_FRACTION: f64 = 0.01;
 
 /// The most effects that are added.
 pub const MOST_EFFECTS: usize = 4;
 
-/// The most candidates that are fitted in earnest in one round.
+/// The most candidates that are fitted in full in one round.
 pub const MOST_FITS: usize = 4;
 
-/// Motions are looked at in another way too, unless what is believed leaves less than so many
-/// floors: what one view shows may stand in for what another shows better.
+/// Motions are looked at in another way too, unless what is accepted leaves less than so many
+/// floors: what one excitation window shows may stand in for what another shows better.
 pub const CLOSE: f64 = 1.5;
 
-/// Or less than this part of the noises that were left: it is most of the answer, and what is
+/// Or less than this part of the residuals that were there: it is most of the answer, and what is
 /// still to come shows better once it is in.
 pub const MOST_OF: f64 = 0.3;
 
@@ -88,11 +88,11 @@ pub const PROMISE: f64 = 0.02;
 /// a part of what they do: this part is enough there.
 pub const PROMISE_FAR: f64 = 0.005;
 
-/// Much more than noise are so many noises.
+/// Much more than noise are so many standard deviations.
 pub const MUCH_IS_LEFT: f64 = 3.0;
 
 /// Where more than `CLOSE` floors are left, a candidate that, begun, leaves no less than this part
-/// of the squares is not fitted in earnest: of a hundred such that were, none was believed.
+/// of the squares is not fitted in full: of a hundred such that were, none was accepted.
 pub const HELPS: f64 = 0.95;
 
 /// So many candidates are fitted side by side before it is decided whether more are worth it:
@@ -112,7 +112,7 @@ pub const ENOUGH: f64 = 0.5;
 /// one round.
 pub const MOST_PRELIMINARY_FITS: usize = 8;
 
-/// Candidates are fitted in earnest only if, fitted to the beginnings of the windows, they
+/// Candidates are fitted in full only if, fitted to the beginnings of the windows, they
 /// leave less than this times the squares of the best one.
 pub const RIVAL: f64 = 1.5;
 
@@ -154,7 +154,7 @@ pub const STRAIGHT: f64 = 0.05;
 /// on test records: less may be what fits of what has a name did not reach.
 pub const UNNAMED_FROM: f64 = 2.0;
 
-/// It is believed only if it closes this part of the gap to the floor, on both: what is missing
+/// It is accepted only if it closes this part of the gap to the floor, on both: what is missing
 /// and is a function of rates, places and inputs can be closed, what is none cannot.
 pub const UNNAMED_CLOSES: f64 = 0.5;
 
@@ -165,73 +165,78 @@ pub const UNNAMED_TERMS: usize = 3;
 pub const TERM_TAKES: f64 = 0.25;
 
 /// The most equations of motion in which an expression is sought, of those in which a force
-/// explains nearly as much: what hangs together stiffly cannot be told apart anyway.
+/// explains nearly as much: what hangs together stiffly is indistinguishable anyway.
 pub const UNNAMED_EQUATIONS: usize = 3;
 
 // Models and their records.
 
-/// The cut-off of the zero-phase smoothing, in parts of the sampling frequency. A record is sampled for
-/// what it is to show; what moves faster than a fiftieth of that is noise or quantisation to an initial value.
+/// The cut-off of the zero-phase smoothing, in parts of the sampling frequency. A record is sampled
+/// for what it is to show; what moves faster than a fiftieth of that is noise or quantisation to an
+/// initial value.
 pub const SMOOTHING_CUT_OFF: f64 = 0.02;
 
-/// Samples from which the first value and the first slope of a column are read: a dozen average the noise, and a
-/// parabola still follows the motion over so few.
+/// Samples from which the first value and the first slope of a column are read: a dozen average the
+/// noise, and a parabola still follows the motion over so few.
 pub const FIRST_SAMPLES: usize = 12;
 
-/// Samples at the beginning of a record over which columns are compared with the model as it is: later
-/// what the model lacks has led it away.
+/// Samples at the beginning of a record over which columns are compared with the model as it is:
+/// later what the model lacks has led it away.
 pub const CHECKED_SAMPLES: usize = 1000;
 
-/// A channel that moves by fewer standard deviations of its noise, a straight line taken out, shows nothing.
+/// A channel that moves by fewer standard deviations of its noise, a straight line taken out, shows
+/// nothing.
 pub const CHECKED_MOTION: f64 = 20.0;
 
 /// Columns whose correlation is above this are one quantity.
 pub const FOLLOWS: f64 = 0.98;
 
-/// A channel whose correlation with the model is below this does not follow it: what a model lacks leaves most
-/// of the motion.
+/// A channel whose correlation with the model is below this does not follow it: what a model lacks
+/// leaves most of the motion.
 pub const ASTRAY: f64 = 0.5;
 
-/// A factor between columns is a given one if it agrees to this part of it: a hundredth for what parameters
-/// may be off, and as much again for what is lacking.
+/// A factor between columns is a given one if it agrees to this part of it: a hundredth for what
+/// parameters may be off, and as much again for what is lacking.
 pub const AGREES: f64 = 0.02;
 
-/// A factor between a column and the model is one, or minus one, to this: what the model lacks may change its size so far.
+/// A factor between a column and the model is one, or minus one, to this: what the model lacks may
+/// change its size so far.
 pub const NEAR_ONE: f64 = 0.2;
 
 // Fits.
 
-/// The parts of a window over which initial states are fitted, one after the other: a short motion is nearly
-/// linear in its initial state. Chosen on the development seeds of the blind suite.
+/// The parts of a window over which initial states are fitted, one after the other: a short motion
+/// is nearly linear in its initial state. Chosen on the development seeds of the blind suite.
 pub const HORIZONS: [f64; 4] = [0.08, 0.25, 0.5, 1.0];
 
-/// Others, for another try: where impacts fold the outputs, one sequence may end in the wrong fold and another in
-/// the right one.
+/// Others, for another try: where impacts fold the outputs, one sequence may end in the wrong fold
+/// and another in the right one.
 pub const OTHER_HORIZONS: [f64; 5] = [0.05, 0.12, 0.3, 0.7, 1.0];
 
-/// Parts of a record that are followed side by side from another estimate's initial states: one per core of a
-/// small machine, and not more on a larger one, so that results do not depend on the machine.
+/// Parts of a record that are followed side by side from another estimate's initial states: one per
+/// core of a small machine, and not more on a larger one, so that results do not depend on the
+/// machine.
 pub const CHAINS: usize = 2;
 
-/// A step of the continuation that lowers the cost by less than this part is the last: each follows all windows
-/// anew.
+/// A step of the continuation that lowers the cost by less than this part is the last: each follows
+/// all windows anew.
 pub const CONTINUATION_DECREASE: f64 = 0.02;
 
-/// The most steps by secants, where tangents lead nowhere. Chosen on the development seeds of the blind suite.
+/// The most steps by secants, where tangents lead nowhere. Chosen on the development seeds of the
+/// blind suite.
 pub const SECANT_STEPS: usize = 6;
 
 /// A secant changes an unknown by this part of its scale at first.
 pub const FIRST_SECANT: f64 = 0.1;
 
-/// Then by what moves the outputs by this part of the residuals: far above the small folds of impacts, and no
-/// farther than the estimate is off.
+/// Then by what moves the outputs by this part of the residuals: far above the small folds of
+/// impacts, and no farther than the estimate is off.
 pub const SECANT_MOVES: f64 = 0.3;
 
 /// Within this factor a secant is as large as wanted.
 pub const SECANT_NEAR: f64 = 3.0;
 
-/// A Gauss-Newton step that lowers the cost by less than this part is the last: what is gained is far below what a
-/// threshold asks of an effect.
+/// A Gauss-Newton step that lowers the cost by less than this part is the last: what is gained is
+/// far below what a threshold asks of an effect.
 pub const LEAST_DECREASE: f64 = 1e-3;
 
 /// Parts of a step of the unknowns that are tried, one after the other.
@@ -240,15 +245,15 @@ pub const STEP_PARTS: [f64; 3] = [1.0, 0.3, 0.05];
 /// Damping of a step of the unknowns where no part of it helps, in norms of its columns.
 pub const STEP_DAMPING: [f64; 4] = [0.0, 0.03, 1.0, 30.0];
 
-/// Damping of an initial state's step, in weights of its prior: where a state's impacts fold the outputs, only
-/// shorter steps along what is well determined help.
+/// Damping of an initial state's step, in weights of its prior: where a state's impacts fold the
+/// outputs, only shorter steps along what is well determined help.
 pub const INITIAL_STATE_DAMPING: [f64; 5] = [0.0, 1e2, 1e4, 1e6, 1e9];
 
 /// The most steps of an initial state over one part of a window.
 pub const INNER_STEPS: usize = 6;
 
-/// The most Gauss-Newton steps over whole windows between two followings of them. Chosen on the development seeds
-/// of the blind suite.
+/// The most Gauss-Newton steps over whole windows between two followings of them. Chosen on the
+/// development seeds of the blind suite.
 pub const FULL_STEPS: usize = 4;
 
 /// The most further steps over beginnings of windows before whole ones are looked at.
@@ -263,15 +268,15 @@ pub const REFRESHES: usize = 2;
 /// And only while that lowers the cost by this part.
 pub const REFRESH_DECREASE: f64 = 0.005;
 
-/// The most windows over which candidates are linearised, spread evenly over the records: screening a hundred
-/// candidates costs less than one full fit then.
+/// The most windows over which candidates are linearised, spread evenly over the records: screening
+/// a hundred candidates costs less than one full fit then.
 pub const MOST_WINDOWS: usize = 40;
 
 /// Windows that are enough to compare a few equations of motion.
 pub const FEW_WINDOWS: usize = 20;
 
-/// Blocks of time into which a set of windows is parted to judge what differs by chance: enough for a standard
-/// error, and each longer than residuals are correlated.
+/// Blocks of time into which a set of windows is parted to judge what differs by chance: enough for
+/// a standard error, and each longer than residuals are correlated.
 pub const BLOCKS: usize = 40;
 
 /// The most steps of the continuation while unknowns are far away.
@@ -280,15 +285,15 @@ pub const CONTINUATION_STEPS: usize = 5;
 /// Steps of a preliminary fit where initial states are read from the record.
 pub const PRELIMINARY_STEPS: usize = 3;
 
-/// A difference quotient moves the outputs by this part of what the residual is: far above rounding, and over the
-/// small folds that impacts leave in the outputs.
+/// A difference quotient moves the outputs by this part of what the residual is: far above
+/// rounding, and over the small folds that impacts leave in the outputs.
 pub const QUOTIENT: f64 = 0.3;
 
 /// A difference quotient is not taken over more than this part of a state's own range.
 pub const LARGEST_QUOTIENT: f64 = 0.03;
 
-/// The part of each window, from its beginning, to which preliminary fits are made: a motion is nearly linear there in
-/// whatever changes it. Chosen on the development seeds of the blind suite.
+/// The part of each window, from its beginning, to which preliminary fits are made: a motion is
+/// nearly linear there in whatever changes it. Chosen on the development seeds of the blind suite.
 pub const FIRST_PART: f64 = 0.25;
 
 /// So many of `HORIZONS` lead up to it.
@@ -297,7 +302,8 @@ pub const FIRST_HORIZONS: usize = 2;
 /// A step of an initial state that lowers its window's cost by less than this part is the last.
 pub const INNER_DECREASE: f64 = 1e-2;
 
-/// An autocorrelation below this is none: white noise of a few hundred samples shows as much by chance.
+/// An autocorrelation below this is none: white noise of a few hundred samples shows as much by
+/// chance.
 pub const CORRELATED: f64 = 0.05;
 
 /// A parameter's difference quotient is taken over this part of its scale.
@@ -311,14 +317,14 @@ pub const SENSOR_QUOTIENT: f64 = 0.1;
 /// The largest file of a user's effects that is read, in bytes: a thousand effects.
 pub const LARGEST_EFFECTS_FILE: u64 = 1 << 20;
 
-/// Shaft orders, per turn, at which effects that repeat with an angle are tried, beside numbers of teeth: those of
-/// unbalance, joints, small pinions and the poles of motors.
+/// Shaft orders, per turn, at which effects that repeat with an angle are tried, beside numbers of
+/// teeth: those of unbalance, joints, small pinions and the poles of motors.
 pub const SHAFT_ORDERS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, 24];
 
 // Screening.
 
-/// A candidate is linearised at a size that changes accelerations by this part of their own size, in any
-/// direction: small beside them, large beside rounding.
+/// A candidate is linearised at a size that changes accelerations by this part of their own size,
+/// in any direction: small beside them, large beside rounding.
 pub const SMALL_CHANGE: f64 = 1e-4;
 
 /// A change is small and above rounding within these factors of that.
@@ -327,14 +333,17 @@ pub const SMALL_NEAR: (f64, f64) = (1e-3, 10.0);
 /// Every so many samples of a window such a size is looked for.
 pub const SAMPLED: usize = 5;
 
-/// A candidate's response by simulation is taken at the size that moves the outputs by this part of the residuals.
+/// A candidate's response by simulation is taken at the size that moves the outputs by this part of
+/// the residuals.
 pub const RESPONSE_MOVES: f64 = 0.3;
 
-/// Parts of the size that screening promises among which a fit begins with the best: a straight line leads far
-/// beyond where impacts fold the outputs, and not far enough where an effect that grows does less and less.
+/// Parts of the size that screening promises among which a fit begins with the best: a straight
+/// line leads far beyond where impacts fold the outputs, and not far enough where an effect that
+/// grows does less and less.
 pub const INITIAL_PARTS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
 
-/// How many times its usual size a shape is where a fit is begun anew from another: as far from it to either side.
+/// How many times its usual size a shape is where a fit is begun anew from another: as far from it
+/// to either side.
 pub const OTHER_SHAPES: [f64; 2] = [0.4, 2.5];
 
 /// Attempts to find the size at which a candidate is linearised or simulated.
@@ -369,8 +378,8 @@ pub const FIRST_FORCE: f64 = 1e-4;
 /// It need not be nearer to what is wanted than by this factor.
 pub const FORCE_NEAR: f64 = 10.0;
 
-/// Rounds in which the usual size of a force that differs from window to window is found: it changes by
-/// less than a part in a hundred by then.
+/// Rounds in which the usual size of a force that differs from window to window is found: it
+/// changes by less than a part in a hundred by then.
 pub const VARIANCE_ROUNDS: usize = 12;
 
 /// A point of a profile is drawn if its standard deviation is below this part of the largest force.
@@ -402,14 +411,14 @@ pub const PERIOD_SAMPLES: f64 = 4.0;
 /// The highest degree of a product: with more, expressions differ in little but their ends.
 pub const MOST_DEGREE: u32 = 3;
 
-/// A step over the rate is made within this part of the largest rate: as steep as friction near rest is seldom seen
-/// to be otherwise, and no jump, so that it can be multiplied.
+/// A step over the rate is made within this part of the largest rate: as steep as friction near
+/// rest is seldom seen to be otherwise, and no jump, so that it can be multiplied.
 pub const STEEP: f64 = 0.03;
 
 // The report.
 
-/// Where nothing was found, a parameter or a sensor is written back if its estimate moved by this part of its
-/// standard deviation. With an effect all are: they were estimated together.
+/// Where nothing was found, a parameter or a sensor is written back if its estimate moved by this
+/// part of its standard deviation. With an effect all are: they were estimated together.
 pub const WRITTEN_FROM: f64 = 0.5;
 
 /// A ratio between the residuals of slow and of fast motion below this is not worth a word.

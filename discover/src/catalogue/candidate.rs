@@ -1,4 +1,4 @@
-//! Candidates: an effect of the catalogue at a place of a model, with its blanks filled. A
+//! Candidates: an effect of the catalogue at a place of a model, with its placeholders filled. A
 //! candidate can write itself into a specification.
 
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! Effects as data: each a list of edits with blanks.
+//! Effects as data: each a list of edits with placeholders.
 
 use model_spec::edit::Section;
 
@@ -48,7 +48,8 @@ impl SiteKind {
         ("spring", Self::Spring),
     ];
 
-    /// The blanks that a site of this kind fills; `{root}` and `{stiffness}` where it has them.
+    /// The placeholders that a site of this kind fills; `{root}` and `{stiffness}` where it has
+    /// them.
     pub fn placeholders(self) -> &'static [&'static str] {
         match self {
             Self::Axis | Self::Angle => &["on", "unit", "force"],
@@ -73,7 +74,7 @@ impl SiteKind {
 pub struct EffectParameter {
     /// Its name, with more behind it where that is taken.
     pub name: String,
-    /// Its unit, with blanks.
+    /// Its unit, with placeholders.
     pub unit: String,
     /// Whether it must not be negative.
     pub positive: bool,
@@ -100,7 +101,7 @@ pub enum Change {
     },
     /// A definition, to be used by other changes.
     Definition {
-        /// Its name, which is a blank of the effect.
+        /// Its name, which is a placeholder of the effect.
         name: String,
         /// Its expression.
         value: String,
@@ -116,7 +117,7 @@ pub enum Change {
     },
     /// A coordinate.
     Coordinate {
-        /// Its name, which is a blank of the effect.
+        /// Its name, which is a placeholder of the effect.
         name: String,
         /// Its unit.
         unit: String,

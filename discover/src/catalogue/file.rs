@@ -1,4 +1,4 @@
-//! A file of effects: what its entries say, with every word, key and blank known. What an
+//! A file of effects: what its entries say, with every word, key and placeholder known. What an
 //! effect does in a specification is checked where it is placed.
 
 use model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};

@@ -2,7 +2,7 @@
 //! places of a model where they may sit ([`sites`]), and both together as [`candidate`]s (the edits
 //! of an effect at a place: [`template`]; its parameters as unknowns: [`candidate_unknown`]). What
 //! effects do is decided by nobody but the specification. How a file of effects is read is in
-//! `file` with `change`, `blanks` and `fields`.
+//! `file` with `change`, `placeholders` and `fields`.
 
 pub mod candidate;
 pub mod candidate_unknown;

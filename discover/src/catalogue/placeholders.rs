@@ -16,7 +16,7 @@ pub(super) struct Placeholders {
 }
 
 impl Placeholders {
-    /// Notes the blanks of a text.
+    /// Notes the placeholders of a text.
     pub(super) fn note(&mut self, written: &Written, found: &mut Diagnostics) {
         let mut begin = 0;
         while let Some(open) = written.text[begin..].find(['{', '}']) {
@@ -46,7 +46,7 @@ impl Placeholders {
     }
 }
 
-/// An expression with blanks.
+/// An expression with placeholders.
 pub(super) fn expression(
     record: &Record<'_>,
     key: &str,

@@ -1,5 +1,5 @@
-//! Where effects may sit in a model: axes, angles, meshes with play, flexible bodies and springs, with
-//! the words that fill the blanks of an effect there.
+//! Where effects may sit in a model: axes, angles, meshes with play, flexible bodies and springs,
+//! with the arguments that fill the placeholders of an effect there.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ pub struct Site {
     pub kind: SiteKind,
     /// Its name in results.
     pub name: String,
-    /// What fills the blanks.
+    /// What fills the placeholders.
     pub arguments: BTreeMap<&'static str, String>,
     /// The terms that make up a mesh, or those of the kinetic energy that move with a body.
     pub terms: Vec<(Section, Vec<String>)>,

@@ -1,4 +1,4 @@
-//! A change of the catalogue at a place of a model: its blanks filled, as edits of a specification.
+//! A change of the catalogue instantiated at a place of a model, as edits of a specification.
 
 use std::collections::BTreeMap;
 
@@ -8,8 +8,8 @@ use model_spec::model::{Expr, Model};
 use crate::catalogue::effect::{Change, Within};
 use crate::catalogue::sites::Site;
 
-/// The edits that a change of the catalogue comes to at a site, its blanks filled with these words;
-/// none if a word is missing, or what is replaced is not there.
+/// The edits that a change of the catalogue comes to with these arguments;
+/// none if an argument is missing, or what is replaced is not there.
 pub(crate) fn edits(
     model: &Model,
     change: &Change,
@@ -165,7 +165,7 @@ fn holding(model: &Model, site: &Site, name: &str) -> Vec<(Section, Vec<String>)
         .collect()
 }
 
-/// A text with its blanks filled; none if a word is missing.
+/// A text with its placeholders filled; none if an argument is missing.
 pub(crate) fn instantiated(text: &str, arguments: &BTreeMap<String, String>) -> Option<String> {
     let mut out = String::new();
     let mut rest = text;

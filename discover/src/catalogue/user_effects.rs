@@ -10,8 +10,8 @@ use crate::catalogue::effect::Effect;
 use crate::catalogue::sites::sites;
 use crate::error::DiscoverError;
 
-/// Writes each of the user's effects into a specification wherever it has a place; returns those that
-/// have none.
+/// Writes each of the user's effects into a specification wherever it has a place; returns those
+/// that have none.
 ///
 /// # Errors
 /// What is wrong with a specification that an effect leaves.

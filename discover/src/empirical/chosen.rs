@@ -1,6 +1,6 @@
 //! Which few terms of an unnamed expression explain the residual best: all sets of one, two and
-//! three of them, to first order along the fitted motion. Whether they are believed is decided
-//! where they are fitted in earnest.
+//! three of them, to first order along the fitted motion. Whether they are accepted is decided
+//! where they are fitted in full.
 
 use nalgebra::{DMatrix, DVector};
 

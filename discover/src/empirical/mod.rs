@@ -56,7 +56,7 @@ pub fn unnamed(
 }
 
 /// Adds an expression to what was found, if a real gap is left and one closes it. `floor`: what a
-/// right model would leave, in noises; `said` is told what is done.
+/// right model would leave, in standard deviations; `progress` is told what is done.
 fn add_empirical(
     problem: &EstimationProblem<'_>,
     found: &mut Found,
@@ -273,7 +273,7 @@ fn fitted(
     }
 }
 
-/// Whether an expression is believed: by all that is asked of an effect, each of its terms by
+/// Whether an expression is accepted: by all that is asked of an effect, each of its terms by
 /// itself, and by how much of the gap it closes.
 fn believed(
     (before, after): (&Fit, &Fit),

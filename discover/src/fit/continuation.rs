@@ -17,7 +17,7 @@ use crate::thresholds;
 pub type Follow<'f> =
     dyn Fn(&[f64], Option<&[Vec<f64>]>) -> (InitialStatePrior, Vec<Vec<f64>>) + 'f;
 
-/// Where an approach ended.
+/// Where a continuation ended.
 #[derive(Default)]
 pub struct Continued {
     /// What is known of the windows' initial states.
@@ -103,7 +103,7 @@ impl<'a> Continuation<'a> {
         }
     }
 
-    /// How many noises are left.
+    /// How many standard deviations the residuals are.
     fn left(&self, present: &Estimate) -> f64 {
         let count = self.shooting.part * self.shooting.windows.numbers();
         (present.squares.iter().sum::<f64>() / count).sqrt()
@@ -216,12 +216,13 @@ impl<'a> Continuation<'a> {
 struct Secant {
     /// The change.
     size: f64,
-    /// Each window's residuals after less those before, in noises; none where either is missing.
+    /// Each window's residuals after less those before, in standard deviations; none where either
+    /// is missing.
     changes: Vec<Option<DVector<f64>>>,
 }
 
 impl Secant {
-    /// The root mean square of all, in noises.
+    /// The root mean square of all, in standard deviations.
     fn moved(&self) -> f64 {
         let all = || self.changes.iter().flatten();
         let count: usize = all().map(DVector::len).sum();

@@ -26,14 +26,14 @@ pub struct Fit {
     pub prior: InitialStatePrior,
     /// How much priors count.
     pub prior_weight: f64,
-    /// What is left on the training records.
+    /// Its residuals on the training records.
     pub train: Residuals,
-    /// What is left on the test records.
+    /// Its residuals on the test records.
     pub test: Residuals,
 }
 
 impl Fit {
-    /// What is left on all records, in noises.
+    /// The root mean square of its residuals on all records, in standard deviations.
     pub fn rms(&self) -> f64 {
         (0.5 * (self.train.rms.powi(2) + self.test.rms.powi(2))).sqrt()
     }
@@ -82,7 +82,7 @@ impl Fit {
         self.leaves_less(thresholds::AT_FLOOR * floor)
     }
 
-    /// Whether it leaves less than so many noises, on both sets of records.
+    /// Whether it leaves less than so many standard deviations, on both sets of records.
     pub fn leaves_less(&self, noises: f64) -> bool {
         self.train.rms.max(self.test.rms) < noises
     }

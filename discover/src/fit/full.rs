@@ -1,5 +1,5 @@
 //! A specification fitted to the records in full: from a preliminary fit to unknowns with their
-//! uncertainty and to what is left on the records it was fitted to and on the others.
+//! uncertainty and to its residuals on the records it was fitted to and on the others.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -31,7 +31,7 @@ struct Begin {
     is_far: bool,
 }
 
-/// Fits a specification: its unknowns from `theta`, then what is left.
+/// Fits a specification: its unknowns from `theta`, then its residuals.
 ///
 /// # Errors
 /// What is wrong with the text, or why no motion can be followed.
@@ -47,7 +47,7 @@ pub fn fit(
     )
 }
 
-/// Fits everything to the whole windows, from a sketch.
+/// Fits everything to the whole windows, from a preliminary fit.
 ///
 /// # Errors
 /// As for [`fit`].
@@ -117,7 +117,7 @@ pub fn complete(
     })
 }
 
-/// What a sketch comes to over whole windows, before they are fitted together.
+/// What a preliminary fit comes to over whole windows, before they are fitted together.
 fn near(
     problem: &EstimationProblem<'_>,
     all: &Shooting<'_>,
@@ -178,8 +178,8 @@ fn settled(
         ),
     };
     let mut residuals = Residuals::of(all, free);
-    // What is left where records are believed as if noise were all that they hold says how
-    // far they may be believed against the priors.
+    // What is left where records are trusted as if noise were all that they hold says how
+    // far they may be trusted against the priors.
     all.prior_weight = (residuals.rms * residuals.rms).max(1.0) * residuals.correlation;
     for _ in 0..thresholds::REFRESHES {
         let Estimate {
@@ -203,8 +203,8 @@ fn settled(
     (prior, residuals)
 }
 
-/// Unknowns from a sketch of the beginnings of windows, as far as these lead: longer windows are
-/// folded until it is near.
+/// Unknowns from a preliminary fit of the beginnings of windows, as far as these lead: longer
+/// windows are folded until it is near.
 fn continued_unknowns(
     problem: &EstimationProblem<'_>,
     all: &Shooting<'_>,

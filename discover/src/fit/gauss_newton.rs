@@ -1,5 +1,6 @@
-//! Estimation by separable Gauss-Newton steps: each window's initial state is eliminated from
-//! its own residuals by a QR factorisation, what is left depends on the unknowns alone. Steps
+//! Estimation by separable Gauss-Newton steps on multiple shooting (Bock 1983): each window's
+//! initial state is projected out of its own residuals (variable projection: Golub and Pereyra
+//! 1973) by a QR factorisation, and the rest depends on the unknowns alone. Steps
 //! are shortened until they help; every window may decide for itself how far its initial
 //! state follows, because impacts fold the outputs.
 
@@ -19,8 +20,8 @@ pub struct Estimate {
     pub theta: Vec<f64>,
     /// The initial state of each window.
     pub initial_states: Vec<Vec<f64>>,
-    /// The sum of squares of the residuals of each window, in noises; not finite where there
-    /// is no motion.
+    /// The sum of squares of the residuals of each window, in standard deviations; not finite where
+    /// there is no motion.
     pub squares: Vec<f64>,
     /// The sum of all, with what the priors add.
     pub cost: f64,
@@ -51,7 +52,7 @@ pub fn damped_gauss_newton(
     present
 }
 
-/// The size of the residuals, in noises, at least one.
+/// The size of the residuals, in standard deviations, at least one.
 pub fn level(shooting: &Shooting<'_>, estimate: &Estimate) -> f64 {
     let finite = estimate.squares.iter().filter(|s| s.is_finite());
     let (sum, count) = finite.fold((0.0, 0), |(sum, n), s| (sum + s, n + 1));

@@ -25,7 +25,7 @@ pub struct LinearisedFit {
     pub estimate: Estimate,
     /// Residuals and derivatives.
     pub base: Base,
-    /// The size of the residuals, in noises.
+    /// The size of the residuals, in standard deviations.
     pub level: f64,
 }
 

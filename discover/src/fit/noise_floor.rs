@@ -1,7 +1,7 @@
-//! The floor: what would be left if the model were right. A twin of the records, simulated by
-//! the fitted model with the sensors' noise, goes the same way as the records themselves, so
-//! that noise, what a motion's own sensitivity makes of it, and what finding initial states
-//! costs are all in it.
+//! The noise floor: what residuals a right model would leave. A replica of the records (a
+//! parametric bootstrap: Efron 1979), simulated by the fitted model with the sensors' noise, goes
+//! the same way as the records themselves, so that noise, what a motion's own sensitivity makes of
+//! it, and what finding initial states costs are all in it.
 
 use crate::fit::fitted::Fit;
 use crate::fit::gauss_newton::evaluated;
@@ -18,7 +18,7 @@ use eomgen_records::windows::Windows;
 pub struct NoiseFloor {
     /// The root mean square of each channel, SI.
     pub channels: Vec<f64>,
-    /// The root mean square of all, in noises.
+    /// The root mean square of all, in standard deviations.
     pub rms: f64,
 }
 

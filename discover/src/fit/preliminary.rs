@@ -16,7 +16,7 @@ use crate::thresholds;
 
 /// A specification fitted to the beginnings of the windows.
 pub struct PreliminaryFit {
-    /// The sum of squares that is left there, in noises, with what priors add.
+    /// The cost there, in standard deviations, with what priors add.
     pub cost: f64,
     /// What is known of the initial states of whole windows, where they begin there already.
     pub(crate) whole: Option<InitialStatePrior>,
@@ -88,7 +88,7 @@ pub fn preliminary(
 }
 
 /// The model's unknowns as they are expected, with whole windows begun where those of a fit
-/// begin: close to a fit a straight line says enough. `left`: what it promises to leave.
+/// begin: close to a fit a straight line says enough. `cost`: what it promises to leave.
 ///
 /// # Errors
 /// As for [`crate::fit::full::fit`].

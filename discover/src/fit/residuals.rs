@@ -5,20 +5,20 @@ use crate::fit::gauss_newton::Estimate;
 use crate::fit::shooting::Shooting;
 use crate::thresholds;
 
-/// What is left on one set of records.
+/// The residuals of one set of records.
 #[derive(Clone, Debug, Default)]
 pub struct Residuals {
     /// Initial states, unknowns and sums of squares.
     pub estimate: Estimate,
-    /// Residuals of each window, in noises.
+    /// Residuals of each window, in standard deviations.
     pub residuals: Vec<Vec<f64>>,
     /// For each block of time the sum of squares.
     pub blocks: Vec<f64>,
     /// The root mean square of each channel, SI.
     pub channels: Vec<f64>,
-    /// The same in noises.
+    /// The same in standard deviations.
     pub normalised_rms: Vec<f64>,
-    /// The root mean square of all, in noises.
+    /// The root mean square of all, in standard deviations.
     pub rms: f64,
     /// How many samples a residual is correlated over.
     pub correlation: f64,

@@ -1,5 +1,6 @@
-//! How windows' outputs depend on their initial states and on the unknowns: by neighbouring
-//! motions that come along where the plant is marched, otherwise by difference quotients.
+//! How windows' outputs depend on their initial states and on the unknowns: by neighbouring motions
+//! that come along where the plant is run by the exponential integrator, otherwise by difference
+//! quotients.
 
 use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::{DMatrix, DVector};
@@ -13,8 +14,8 @@ use sim::exponential::Drives;
 
 /// A window's residuals and derivatives.
 pub struct WindowDerivatives {
-    /// Simulated minus measured, in noises: row by row, a number per channel; 0 where nothing
-    /// was measured.
+    /// Simulated minus measured, in standard deviations: row by row, a number per channel; 0 where
+    /// nothing was measured.
     pub residual: DVector<f64>,
     /// By the initial state.
     pub by_state: DMatrix<f64>,
@@ -40,7 +41,7 @@ pub struct SensitivityEvaluator<'a> {
 enum Neighbour<'a> {
     /// One that runs itself.
     Runs(Box<Runner<'a>>),
-    /// One whose accelerations, and what it shows, tell how a marched motion differs.
+    /// One whose accelerations, and what it shows, tell how an integrated motion differs.
     Drives(Box<Evaluator>, Option<Shown>),
 }
 
@@ -50,7 +51,7 @@ impl<'a> SensitivityEvaluator<'a> {
         self.shooting.plant.admissible(state)
     }
 
-    /// The crew at these unknowns, if there is a motion.
+    /// The evaluator at these unknowns, if there is a motion.
     pub fn new(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
         let values = shooting.values(theta);
         let base = shooting.plant.at(&values).ok()?;
@@ -83,7 +84,7 @@ impl<'a> SensitivityEvaluator<'a> {
         })
     }
 
-    /// The crew at these unknowns, which are not differentiated by.
+    /// The evaluator at these unknowns, which are not differentiated by.
     pub fn frozen(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
         let values = shooting.values(theta);
         Some(Self {
@@ -263,7 +264,7 @@ impl<'a> SensitivityEvaluator<'a> {
     }
 
     /// Derivatives of the quantities, for each sample a row per column, as the sensors show
-    /// them, in noises.
+    /// them, in standard deviations.
     fn columns(
         &self,
         window: &Window,
@@ -334,7 +335,7 @@ impl<'a> SensitivityEvaluator<'a> {
 }
 
 /// Residuals and derivatives of every window. `level`: the size of the residuals, in
-/// noises, over which quotients are taken.
+/// standard deviations, over which quotients are taken.
 pub fn linearised(
     shooting: &Shooting<'_>,
     theta: &[f64],

@@ -1,6 +1,7 @@
-//! Multiple shooting: what the windows' outputs are at a state for each and at the unknowns,
-//! and how far they are from what was measured, in standard deviations of the sensors' noise.
-//! How they depend on both is found in [`crate::fit::sensitivity`]; what to make of it is decided elsewhere.
+//! Multiple shooting (Bock 1983): what the windows' outputs are at a state for each and at the
+//! unknowns, and how far they are from what was measured, in standard deviations of the sensors'
+//! noise. How they depend on both is found in [`crate::fit::sensitivity`]; what to make of it is
+//! decided elsewhere.
 
 use rayon::prelude::*;
 
@@ -44,8 +45,8 @@ pub struct Shooting<'a> {
 
 /// A window's residuals.
 pub struct Residual {
-    /// Simulated minus measured, in noises: row by row, a number per channel; 0 where nothing
-    /// was measured.
+    /// Simulated minus measured, in standard deviations: row by row, a number per channel; 0 where
+    /// nothing was measured.
     pub values: Vec<f64>,
     /// The state at the window's end.
     pub last: Vec<f64>,
@@ -178,12 +179,12 @@ impl<'a> Shooting<'a> {
         seen
     }
 
-    /// Differences from what was measured, in noises.
+    /// Differences from what was measured, in standard deviations.
     pub(crate) fn normalised(&self, window: &Window, seen: &[f64]) -> Vec<f64> {
         self.differences(window, seen, |seen, measured| seen - measured)
     }
 
-    /// A function of what is seen and measured, in noises; 0 where nothing counts.
+    /// A function of what is seen and measured, in standard deviations; 0 where nothing counts.
     pub(crate) fn differences(
         &self,
         window: &Window,

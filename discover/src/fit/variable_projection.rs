@@ -1,4 +1,5 @@
-//! A window's derivatives with its initial state taken out, by a QR factorisation: what is left
+//! A window's derivatives with its initial state projected out, by a QR factorisation (variable
+//! projection: Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973): what remains
 //! depends on the unknowns alone.
 
 use nalgebra::{DMatrix, DVector};

@@ -30,7 +30,7 @@ pub struct EstimationProblem<'d> {
 }
 
 impl<'d> EstimationProblem<'d> {
-    /// The setting of a dataset and of a specification's text.
+    /// The problem of a dataset and of a specification's text.
     pub fn new(dataset: &'d Dataset, order: Option<usize>, path: &str, text: &str) -> Self {
         let states = || {
             let model = model_spec::check(Source::new(path, text)).ok()?.model;

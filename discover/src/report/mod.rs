@@ -1,7 +1,7 @@
 //! From records to a result: the whole way ([`run`]), the typed [`result`] put together in
 //! `discovery`, where model and records disagree ([`location`]), the specification with what was
-//! found ([`write_back`]) run again ([`mod@resimulation`]); documents (`json`) and the page (`page`)
-//! with its `pictures`.
+//! found ([`write_back`]) run again ([`mod@resimulation`]); documents (`json`) and the page
+//! (`page`) with its `pictures`.
 
 mod discovery;
 mod escaped;

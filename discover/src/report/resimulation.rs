@@ -11,7 +11,7 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, What};
 use eomgen_records::windows::Windows;
 
-/// What a specification leaves, root mean squares over all channels, in noises.
+/// What a specification leaves, root mean squares over all channels, in standard deviations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resimulation {
     /// Of the training records.

@@ -183,7 +183,7 @@ pub struct FoundEffect {
     pub at: EffectAt,
     /// How sure its name is.
     pub status: Status,
-    /// What the records do not tell from it.
+    /// What the records do not distinguish from it.
     pub equivalent: Vec<EffectAt>,
     /// Its parameters, by their names.
     pub parameters: BTreeMap<String, Estimated>,

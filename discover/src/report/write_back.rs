@@ -82,8 +82,8 @@ fn provenance(problem: &EstimationProblem<'_>) -> String {
     }
 }
 
-/// Whether an unknown's estimate differs from where it began, at all or by more than its uncertainty
-/// makes of it.
+/// Whether an unknown's estimate differs from where it began, at all or by more than its
+/// uncertainty makes of it.
 fn has_moved(fit: &Fit, place: usize, at_all: bool) -> bool {
     let least = if at_all {
         0.0

@@ -118,7 +118,7 @@ impl FamilyRegression {
     }
 }
 
-/// The mean square that is left once so much is explained.
+/// The mean square of the residuals once so much is explained.
 pub(crate) fn noise(regressed: &FamilyRegression, decrease: f64) -> f64 {
     ((regressed.regression.squares - decrease) / regressed.regression.numbers).max(1.0)
 }

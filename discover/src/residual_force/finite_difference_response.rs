@@ -47,8 +47,9 @@ impl<'s> Stepped<'s> {
         })
     }
 
-    /// What each of some drives does to the outputs, in noises per unit of the drive. The drives
-    /// are those along the motion without them. `level`: the size of the residuals, in noises.
+    /// What each of some drives does to the outputs, in standard deviations per unit of the drive.
+    /// The drives are those along the motion without them. `level`: the size of the residuals, in
+    /// standard deviations.
     pub fn columns(
         &mut self,
         start: &[f64],
@@ -102,7 +103,7 @@ impl<'s> Stepped<'s> {
         is_finite.then_some(matrix)
     }
 
-    /// How far a push of this size moves the outputs, in noises per unit.
+    /// How far a push of this size moves the outputs, in standard deviations per unit.
     fn change(
         &mut self,
         start: &[f64],

@@ -1,7 +1,7 @@
 //! What forces of given shapes do to the windows' outputs, to first order: neighbouring motions
-//! that they drive. Where the model is marched these come along with the march; otherwise a
-//! motion with a small force is integrated beside the one without. What is made of them is
-//! decided elsewhere.
+//! that they drive. Where the model is run by the exponential integrator these come along;
+//! otherwise a motion with a small force is integrated beside the one without. What is made of them
+//! is decided elsewhere.
 
 use codegen::program::evaluator::Point;
 use nalgebra::DMatrix;
@@ -73,8 +73,8 @@ impl Drives for ForceDrives<'_> {
     }
 }
 
-/// For each window that is looked at a column per shape, in noises per unit of force; no columns
-/// where the fit has no motion. None if neighbouring motions cannot be followed at all.
+/// For each window that is looked at a column per shape, in standard deviations per unit of force;
+/// no columns where the fit has no motion. None if neighbouring motions cannot be followed at all.
 pub fn force_responses(
     (at, problem, fit): (&LinearisedFit, &EstimationProblem<'_>, &Fit),
     equations: &Equations,

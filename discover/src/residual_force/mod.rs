@@ -1,9 +1,10 @@
 //! The residual force: which equation of motion a missing force acts in, and what it looks like
 //! over time, rate, angle, shaft order, frequency and amplitude. It says where to look; which
-//! effects are believed is decided without it. The files: `equations` in which a force may act,
-//! `shapes` that it may have, `pushed` (what these do to the outputs; `stepped`, where nothing is
-//! marched) and `regression` (how much of each there is), `looked` (families of shapes),
-//! `ranked` (equations compared), `profiles` (one of them in detail), `said` (words) and `figures`.
+//! effects are accepted is decided without it. The files: `equations` in which a force may act,
+//! `basis_functions` that it may be a sum of, `force_response` (what these do to the outputs;
+//! `finite_difference_response`, where no neighbouring motions come along) and `regression` (how
+//! much of each there is), `family_regression` (families of them), `ranking` (equations compared),
+//! `profiles` (one of them in detail), `wording` and `figures`; `types` is what is told.
 
 pub mod basis_functions;
 pub mod equations;

@@ -44,7 +44,7 @@ impl Ranking {
             .collect();
         let by_time = (0..count).max_by(|a, b| times[*a].total_cmp(&times[*b]))?;
         let is_state = states[by_state].0 > thresholds::STATE_EXPLAINS * times[by_time];
-        // What explains as much over rate or place is told apart by what it explains over time.
+        // What explains as much over rate or place is distinguished by what it explains over time.
         let most = states[by_state].0;
         let as_well = |a: &usize| states[*a].0 >= most.min(thresholds::AS_WELL * most);
         let by_state = (0..count)

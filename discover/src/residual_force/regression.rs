@@ -11,7 +11,7 @@ use crate::fit::variable_projection::StateProjection;
 use crate::fit::variable_projection::add_prior;
 use crate::thresholds;
 
-/// Nuisances that initial states do as well are told apart by one of these parts of their
+/// Nuisances that initial states do as well are distinguished by one of these parts of their
 /// squares.
 const RIDGES: [f64; 3] = [thresholds::RIDGE, 1e-8, 1e-5];
 
@@ -21,13 +21,13 @@ pub struct Regression {
     gram: DMatrix<f64>,
     /// Their products with the residual, negative.
     right: DVector<f64>,
-    /// The sum of squares that initial states and nuisances leave, in noises.
+    /// The sum of squares that initial states and nuisances leave, in standard deviations.
     pub squares: f64,
     /// How many numbers were looked at.
     pub numbers: f64,
     /// The nuisances' products: with themselves, factored, and with columns and residual.
     nuisances: Option<(Cholesky<f64, Dyn>, DMatrix<f64>)>,
-    /// The sum of squares that initial states leave, nuisances held, in noises.
+    /// The sum of squares that initial states leave, nuisances held, in standard deviations.
     held: f64,
     /// For each window products of the columns, the residual last, nuisances held.
     windows: Vec<DMatrix<f64>>,
@@ -191,8 +191,8 @@ impl Regression {
         self.windows.iter().map(one).collect()
     }
 
-    /// For each window the residual that sizes of all columns leave, in noises. `shared`: whether
-    /// they are the same for all windows, and nuisances give way to them.
+    /// For each window the residual that sizes of all columns leave, in standard deviations.
+    /// `shared`: whether they are the same for all windows, and nuisances give way to them.
     pub fn left(
         &self,
         (at, columns): (&LinearisedFit, &[DMatrix<f64>]),

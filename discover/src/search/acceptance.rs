@@ -1,5 +1,5 @@
 //! The decision: whether a fit with an effect more is better than one without by so much that
-//! the effect is believed. Every limit stands in [`crate::thresholds`].
+//! the effect is accepted. Every limit stands in [`crate::thresholds`].
 
 use crate::fit::fitted::Fit;
 use crate::search::rejection::Rejection;
@@ -16,7 +16,7 @@ pub struct TestStatistics {
     pub information: f64,
     /// How many standard deviations the effect is large; of several the smallest.
     pub t: f64,
-    /// What the effect does to the channel that shows it best, in noises.
+    /// What the effect does to the channel that shows it best, in standard deviations.
     pub size: f64,
 }
 
@@ -105,8 +105,8 @@ pub fn test_statistics(before: &Fit, after: &Fit, own: &[EffectUnknown]) -> Test
     }
 }
 
-/// What the effect does to the channel that shows it best, on the records that do, in noises: of
-/// the root mean square that is left the part that goes.
+/// What the effect does to the channel that shows it best, on the records that do, in standard
+/// deviations: of the root mean square that is left the part that goes.
 fn size(before: &Fit, after: &Fit) -> f64 {
     let channels = |of: fn(&Fit) -> &Vec<f64>| of(before).iter().zip(of(after));
     let both =

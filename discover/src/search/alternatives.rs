@@ -13,8 +13,8 @@ use crate::search::pool::Pool;
 use crate::search::screening::screening;
 use crate::thresholds;
 
-/// Fits what may stand in the place of a trial from where that ended, and takes over what
-/// leaves less than it did before.
+/// Fits what may stand in the place of a fitted hypothesis from where that ended, and takes over
+/// what leaves less than it did before.
 pub fn test_alternatives(
     pool: &Pool<'_>,
     trials: &mut Vec<FittedHypothesis>,
@@ -34,8 +34,8 @@ pub fn test_alternatives(
     }
 }
 
-/// The best of those that may stand in the place of a trial, begun where that ended; none if
-/// it is not one effect with terms of its own.
+/// The best of those that may stand in the place of a fitted hypothesis, begun where that ended;
+/// none if it is not one effect with terms of its own.
 fn alternatives(
     pool: &Pool<'_>,
     trials: &[FittedHypothesis],
@@ -75,8 +75,8 @@ fn alternatives(
     Some(preliminaries.collect())
 }
 
-/// Those of the rivals that there are in a trial's model, as candidates for that: names that
-/// the trial took are not free there, and shapes go with the trial's.
+/// Those of the rivals that there are in a fitted hypothesis' model, as candidates for that: names
+/// that the fitted hypothesis took are not free there, and shapes go with the fitted hypothesis'.
 fn there(
     pool: &Pool<'_>,
     trial: &FittedHypothesis,
@@ -105,8 +105,8 @@ fn there(
     rivals.iter().filter_map(again).unzip()
 }
 
-/// Which candidates promise to leave little without a trial's own terms, what they leave and
-/// their sizes.
+/// Which candidates promise to leave little without a fitted hypothesis' own terms, what they leave
+/// and their sizes.
 fn promised(
     pool: &Pool<'_>,
     trial: &FittedHypothesis,
@@ -132,8 +132,8 @@ fn promised(
     )
 }
 
-/// How a trial's shape ended, in what it began with: a speed that friction falls with is so
-/// many times the usual one wherever the friction sits.
+/// How a fitted hypothesis' shape ended, in what it began with: a speed that friction falls with is
+/// so many times the usual one wherever the friction sits.
 fn shaped(pool: &Pool<'_>, trial: &FittedHypothesis) -> Option<f64> {
     let shape = trial.own.iter().find(|own| own.is_shape)?;
     let began = pool.screening.responses[trial.responses[0]]

@@ -7,7 +7,7 @@ use crate::search::round::Round;
 use crate::search::selected::{Selected, best_of, selected};
 use crate::search::tested::TestedPool;
 
-/// What is named of all that was looked at; none if nothing is believed, alone or together.
+/// What is named of all that was looked at; none if nothing is accepted, alone or together.
 pub fn answer(round: &Round<'_>, mut tested: Vec<TestedPool>) -> Option<Selected> {
     let least = |tested: &TestedPool| {
         let accepted = tested.trials.iter().filter(|trial| trial.verdict.is_ok());

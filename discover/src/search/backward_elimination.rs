@@ -1,4 +1,4 @@
-//! What was believed, one effect less: a later effect may do what an earlier one was taken for.
+//! What was accepted, one effect less: a later effect may do what an earlier one was taken for.
 
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
@@ -8,7 +8,7 @@ use crate::search::found::{Accepted, Found};
 use crate::thresholds;
 
 /// Takes away effects without which the records are explained as well, the least needed first.
-/// `said` is told which.
+/// `progress` is told which.
 pub fn eliminate_backwards(
     problem: &EstimationProblem<'_>,
     found: &mut Found,

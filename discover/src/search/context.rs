@@ -11,7 +11,7 @@ pub struct Context<'r> {
     pub problem: &'r EstimationProblem<'r>,
     /// The fit to be bettered.
     pub fit: &'r Fit,
-    /// What a right model would leave, in noises.
+    /// What a right model would leave, in standard deviations.
     pub floor: f64,
     /// Is told what is done.
     pub progress: &'r (dyn Fn(&str) + Sync),

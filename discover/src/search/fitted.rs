@@ -11,7 +11,7 @@ use crate::search::hypothesis::{self, Hypothesis, own_unknowns};
 use crate::search::pool::Pool;
 use crate::search::rejection::Rejection;
 
-/// A set of candidates fitted in earnest.
+/// A hypothesis fitted in full.
 pub struct FittedHypothesis {
     /// Their places among the screened.
     pub responses: Vec<usize>,
@@ -19,14 +19,14 @@ pub struct FittedHypothesis {
     pub own: Vec<EffectUnknown>,
     /// The fit with them.
     pub fit: Fit,
-    /// Whether they are believed.
+    /// Whether they are accepted.
     pub verdict: Result<TestStatistics, Rejection>,
     /// Whether they explain the records, though their sizes may be uncertain: another name of what
-    /// is believed.
+    /// is accepted.
     pub explains: bool,
 }
 
-/// Sets of candidates begun, side by side; the best first.
+/// Hypotheses begun, side by side; the best first.
 pub fn preliminary_fits(
     pool: &Pool<'_>,
     sets: Vec<Hypothesis>,
@@ -57,7 +57,7 @@ pub fn preliminary_fits(
     found
 }
 
-/// Sketches fitted in earnest, side by side.
+/// Preliminary fits fitted in full, side by side.
 pub fn full_fits(
     pool: &Pool<'_>,
     preliminaries: Vec<(Hypothesis, PreliminaryFit)>,

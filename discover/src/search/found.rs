@@ -4,22 +4,22 @@ use crate::catalogue::candidate::Candidate;
 use crate::fit::fitted::Fit;
 use crate::search::acceptance::TestStatistics;
 
-/// An effect that was believed.
+/// An effect that was accepted.
 #[derive(Clone, Debug)]
 pub struct Accepted {
     /// The effect at its place.
     pub candidate: Candidate,
     /// Which of the unknowns of the last fit are its own.
     pub unknowns: Vec<usize>,
-    /// Those that could not be told from it.
+    /// Those that were indistinguishable from it.
     pub equivalent: Vec<Candidate>,
     /// What spoke for it when it was added.
     pub evidence: TestStatistics,
-    /// The test gap before it was added and after, in noises.
+    /// The test gap before it was added and after, in standard deviations.
     pub test_gap: (f64, f64),
 }
 
-/// A candidate that was not believed, and why.
+/// A candidate that was not accepted, and why.
 #[derive(Clone, Debug)]
 pub struct Rejected {
     /// The effect at its place.
@@ -34,16 +34,16 @@ pub struct Rejected {
 pub struct Found {
     /// The model with its declared unknowns alone.
     pub null: Fit,
-    /// The model with everything that was believed; none if that is nothing.
+    /// The model with everything that was accepted; none if that is nothing.
     pub last: Option<Fit>,
-    /// What was believed, in the order in which it was.
+    /// What was accepted, in the order in which it was.
     pub accepted: Vec<Accepted>,
     /// What was not.
     pub rejected: Vec<Rejected>,
 }
 
 impl Found {
-    /// The fit with everything that was believed.
+    /// The fit with everything that was accepted.
     pub fn best(&self) -> &Fit {
         self.last.as_ref().unwrap_or(&self.null)
     }

@@ -20,7 +20,7 @@ pub struct Hypothesis {
     pub sizes: Vec<f64>,
 }
 
-/// The unknowns of a set's effects in a fit with them.
+/// The unknowns of a hypothesis' effects in a fit with them.
 pub fn own_unknowns(pool: &Pool<'_>, set: &Hypothesis) -> Vec<EffectUnknown> {
     let mut next = pool.context.fit.unknowns.len();
     let mut own = Vec::new();
@@ -51,7 +51,7 @@ pub fn own_unknowns(pool: &Pool<'_>, set: &Hypothesis) -> Vec<EffectUnknown> {
     own
 }
 
-/// A sketch with a set's candidates.
+/// A preliminary fit with a hypothesis' candidates.
 pub fn preliminary(pool: &Pool<'_>, set: &Hypothesis) -> Result<PreliminaryFit, DiscoverError> {
     let (problem, fit) = (pool.context.problem, pool.context.fit);
     let (unknowns, theta) = unknowns_with(pool, set, pool.parts[0]);
@@ -77,7 +77,7 @@ pub fn preliminary(pool: &Pool<'_>, set: &Hypothesis) -> Result<PreliminaryFit, 
     Ok(preliminary)
 }
 
-/// A sketch with a set's candidates, shapes so many times their usual sizes.
+/// A preliminary fit with a hypothesis' candidates, shapes so many times their usual sizes.
 pub fn shaped_as(
     pool: &Pool<'_>,
     set: &Hypothesis,
@@ -91,7 +91,7 @@ pub fn shaped_as(
     preliminary::preliminary(pool.context.problem, texts, unknowns, &[theta])
 }
 
-/// A set of one candidate, begun with the motions of a fit with another. `left`: what that
+/// A hypothesis of one candidate, begun with the motions of a fit with another. `cost`: what that
 /// promises to leave; `shaped`: how many times its usual size a shape is.
 pub fn begun_at(
     pool: &Pool<'_>,
@@ -109,7 +109,7 @@ pub fn begun_at(
     preliminary::expected(pool.context.problem, texts, unknowns, theta, (begin, left))
 }
 
-/// The specification's texts with a set's candidates, at these values of the unknowns.
+/// The specification's texts with a hypothesis' candidates, at these values of the unknowns.
 fn texts(
     pool: &Pool<'_>,
     set: &Hypothesis,
@@ -135,7 +135,7 @@ fn texts(
     Ok(texts)
 }
 
-/// The unknowns with a set's candidates and their values, so much of the promised sizes from
+/// The unknowns with a hypothesis' candidates and their values, so much of the promised sizes from
 /// absent.
 fn unknowns_with(pool: &Pool<'_>, set: &Hypothesis, part: f64) -> (Vec<Unknown>, Vec<f64>) {
     let fit = pool.context.fit;

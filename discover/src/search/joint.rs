@@ -1,5 +1,5 @@
-//! Two effects of which neither is believed alone, and which no pair promised: the best single one,
-//! and what is believed beside it.
+//! Two effects of which neither is accepted alone, and which no pair promised: the best single one,
+//! and what is accepted beside it.
 
 use crate::search::acceptance::{EffectUnknown, acceptance_test, is_held};
 use crate::search::context::Context;
@@ -9,7 +9,7 @@ use crate::search::round::Round;
 use crate::search::selected::{Selected, selected};
 use crate::search::tested::TestedPool;
 
-/// What is believed together of what was looked at, if it explains most of what is left.
+/// What is accepted together of what was looked at, if it explains most of what is left.
 pub fn joint_acceptance(round: &Round<'_>, tested: &[TestedPool]) -> Option<Selected> {
     let all = tested.iter().flat_map(|tested| {
         let with = move |trial| (tested, trial);
@@ -43,7 +43,7 @@ pub fn joint_acceptance(round: &Round<'_>, tested: &[TestedPool]) -> Option<Sele
     is_believed.then_some(found)
 }
 
-/// Whether a single effect leaves clearly less though it is not believed, and was not held.
+/// Whether a single effect leaves clearly less though it is not accepted, and was not held.
 fn is_promising(round: &Round<'_>, trial: &FittedHypothesis) -> bool {
     let is_free = |own: &EffectUnknown| own.prior.is_none() && !is_held(&trial.fit, own);
     trial.responses.len() == 1

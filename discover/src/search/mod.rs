@@ -49,8 +49,8 @@ use crate::search::selected::Selected;
 use crate::search::tested::TestedPool;
 use crate::thresholds;
 
-/// Searches for what a model lacks. `floor`: the gap that a right model would leave, in noises.
-/// `said` is told what is being done.
+/// Searches for what a model lacks. `floor`: the gap that a right model would leave, in standard
+/// deviations. `progress` is told what is being done.
 ///
 /// # Errors
 /// Why no motion can be followed.
@@ -135,7 +135,7 @@ fn note_rejected(rejected: &mut Vec<Rejected>, tested: &TestedPool) {
     }
 }
 
-/// Takes what is named over, with the candidates that cannot be told from it.
+/// Takes what is named over, with the candidates that are indistinguishable from it.
 fn accept(found: &mut Found, selected: Selected) {
     let (before, best) = (found.best(), selected.trial);
     let gap = (before.test.rms, best.fit.test.rms);

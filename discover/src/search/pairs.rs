@@ -39,8 +39,8 @@ pub fn pairs(pool: &Pool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothe
     trials
 }
 
-/// The pairs that promise to leave clearly less than the best single candidate, and for each term of
-/// the model that may go the pair that takes its place best. Of what repeats with an angle the
+/// The pairs that promise to leave clearly less than the best single candidate, and for each term
+/// of the model that may go the pair that takes its place best. Of what repeats with an angle the
 /// best alone are paired, and with something else: of that there is so much that some of it is
 /// lucky.
 fn best_pairs(pool: &Pool<'_>, ranked: &[usize], away: &[usize]) -> Vec<Hypothesis> {
@@ -112,7 +112,7 @@ fn best_pairs(pool: &Pool<'_>, ranked: &[usize], away: &[usize]) -> Vec<Hypothes
 }
 
 /// Pairs that share one half with a pair and whose other half looks like its other, if they
-/// were not fitted yet; the most alike first, at most [`thresholds::FITS_AT_ONCE`].
+/// were not fitted yet; the most similar first, at most [`thresholds::FITS_AT_ONCE`].
 pub fn other_halves(
     pool: &Pool<'_>,
     trials: &[FittedHypothesis],

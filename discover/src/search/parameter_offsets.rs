@@ -1,5 +1,5 @@
 //! Parameters of the model that nobody called uncertain: candidates for being off where nothing
-//! else is believed, and beside what is believed where they look like it.
+//! else is accepted, and beside what is accepted where they look like it.
 
 use crate::catalogue::candidate::{self, Candidate};
 use crate::fit::fitted::Fit;
@@ -25,10 +25,10 @@ pub fn shifts(fit: &Fit) -> Vec<Candidate> {
     free.filter_map(candidate::offset_of).collect()
 }
 
-/// Parameters that look like what was named, fitted in its place: those that explain the records, and
-/// the response of what was named, beside which they were screened. None where nothing looks like
-/// it, and where what was named is such a parameter: it had all others beside it. The task's fit is
-/// what was fitted before anything was named.
+/// Parameters that look like what was named, fitted in its place: those that explain the records,
+/// and the response of what was named, beside which they were screened. None where nothing looks
+/// like it, and where what was named is such a parameter: it had all others beside it. The task's
+/// fit is what was fitted before anything was named.
 pub fn beside(context: Context<'_>, selected: &Candidate) -> Option<(TestedPool, usize)> {
     let shifts = shifts(context.fit);
     let is_named =

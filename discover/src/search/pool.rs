@@ -74,8 +74,8 @@ impl<'r> Pool<'r> {
         labels.collect::<Vec<_>>().join(" and ")
     }
 
-    /// Whether two candidates call a parameter alike: one effect at two places. Of these the next
-    /// round may add the other.
+    /// Whether two candidates give a parameter the same name: one effect at two places. Of these
+    /// the next round may add the other.
     pub fn share_a_name(&self, a: usize, b: usize) -> bool {
         let (a, b) = (self.candidate(a), self.candidate(b));
         let has = |name: &str| b.parameters.iter().any(|other| other.name == name);

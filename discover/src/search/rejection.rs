@@ -11,7 +11,8 @@ pub enum Rejection {
     AtLimit(String),
     /// A parameter that a bound holds, with which the effect vanishes.
     WrongSign(String),
-    /// An unknown that is within its prior still, and how many standard deviations of that it is off.
+    /// An unknown that is within its prior still, and how many standard deviations of that it is
+    /// off.
     WithinPrior(String, f64),
     /// The part by which the gap of the test records falls is too small.
     HeldOut(f64),

@@ -1,6 +1,6 @@
-//! What candidates do to the windows' outputs, to first order: by neighbouring motions that
-//! they drive, where the fitted model is marched and the candidate adds no state; otherwise by
-//! motions of the candidate's own model.
+//! What candidates do to the windows' outputs, to first order: by neighbouring motions that they
+//! drive, where the fitted model is run by the exponential integrator and the candidate adds no
+//! state; otherwise by motions of the candidate's own model.
 
 use crate::catalogue::candidate::Candidate;
 use crate::error::DiscoverError;

@@ -1,5 +1,5 @@
 //! One round of the search: motions looked at in one excitation window after the other until what
-//! is believed leaves little, pairs if that leaves much, and parameters that nobody called
+//! is accepted leaves little, pairs if that leaves much, and parameters that nobody called
 //! uncertain.
 
 use crate::catalogue::candidate::{Candidate, candidates};
@@ -105,18 +105,19 @@ impl Round<'_> {
         }
     }
 
-    /// Whether a trial is believed and leaves little.
+    /// Whether a fitted hypothesis is accepted and leaves little.
     fn is_close(&self, trial: &FittedHypothesis) -> bool {
         trial.verdict.is_ok() && self.context.explains_most(&trial.fit)
     }
 
-    /// Whether a trial is believed and leaves no more than a right model would.
+    /// Whether a fitted hypothesis is accepted and leaves no more than a right model would.
     fn is_enough(&self, trial: &FittedHypothesis) -> bool {
         trial.verdict.is_ok() && trial.fit.is_at_floor(self.context.floor)
     }
 
-    /// Candidates screened in a view and fitted one by one: what repeats with an angle only if the
-    /// others promise little, or come to little. None if the model has no play to be closed.
+    /// Candidates screened in an excitation window and fitted one by one: what repeats with an
+    /// angle only if the others promise little, or come to little. None if the model has no play to
+    /// be closed.
     pub(crate) fn tested_in(&self, window: ExcitationWindow) -> Option<TestedPool> {
         let closed = match window {
             ExcitationWindow::BacklashRemoved => {
@@ -158,7 +159,7 @@ impl Round<'_> {
         })
     }
 
-    /// Fits of candidates in a view.
+    /// Fits of candidates in an excitation window.
     fn begun<'r>(
         &'r self,
         window: ExcitationWindow,
@@ -182,7 +183,7 @@ impl Round<'_> {
         }
     }
 
-    /// Adds pairs, view after view until some are believed.
+    /// Adds pairs, excitation window after excitation window until some are accepted.
     fn add_pairs(&self, seen: &[ExcitationWindow], tested: &mut [TestedPool]) {
         for (window, tested) in seen.iter().zip(tested) {
             let pool = self.begun(*window, &tested.candidates, &tested.screening);
@@ -217,9 +218,9 @@ impl Round<'_> {
         }
     }
 
-    /// The candidates of a view, and those that repeat with an angle, which are many. Teeth that
-    /// move with an angle do so by much more than they deflect, and often than their play: they are
-    /// looked at where all play is closed, and nothing else is there.
+    /// The candidates of an excitation window, and those that repeat with an angle, which are many.
+    /// Teeth that move with an angle do so by much more than they deflect, and often than their
+    /// play: they are looked at where all play is closed, and nothing else is there.
     fn candidates(&self, fit: &Fit, window: ExcitationWindow) -> (Vec<Candidate>, Vec<Candidate>) {
         let (problem, has_play) = (
             self.context.problem,
@@ -250,7 +251,7 @@ impl Round<'_> {
     }
 }
 
-/// What nobody doubts, which stands last, is off only if nothing else that is believed comes near.
+/// What nobody doubts, which stands last, is off only if nothing else that is accepted comes near.
 fn keep_clear(tested: &mut [TestedPool]) {
     let Some((shifts, tested)) = tested.split_last_mut() else {
         return;
@@ -263,7 +264,7 @@ fn keep_clear(tested: &mut [TestedPool]) {
     });
 }
 
-/// Whether any trial is such.
+/// Whether any fitted hypothesis is such.
 fn is_any(tested: &[TestedPool], is: &dyn Fn(&FittedHypothesis) -> bool) -> bool {
     tested.iter().any(|tested| tested.trials.iter().any(is))
 }

@@ -1,7 +1,7 @@
 //! Screening: what each candidate does to the windows' outputs, to first order, with initial
 //! states and nuisances free to take up what they can. From these responses follow how much
-//! of the misfit each candidate, or a set of them, may explain, and which look alike. Whoever
-//! passes is fitted in earnest elsewhere.
+//! of the misfit each candidate, or a set of them, may explain, and which are similar. Whoever
+//! passes is fitted in full elsewhere.
 
 use std::borrow::Cow;
 
@@ -30,7 +30,7 @@ pub struct ScreenedResponse {
     pub released: Option<usize>,
     /// The part of what it does that initial states and nuisances cannot do as well.
     pub unexplained_fraction: f64,
-    /// How much it lowers the sum of squares alone, in noises squared.
+    /// How much it lowers the sum of squares alone, in squared standard deviations.
     pub decrease: f64,
     /// The size at which it does.
     pub values: Vec<f64>,
@@ -45,7 +45,7 @@ pub struct Screening {
     /// What the prior of each nuisance adds to the products: a weight and how far it is off.
     priors: Vec<(f64, f64)>,
     bounds: Vec<(f64, f64)>,
-    /// The bounds of each nuisance once it is released.
+    /// The bounds of each nuisance once its prior is dropped.
     limits: Vec<(f64, f64)>,
     /// The candidates that do something, in their order.
     pub responses: Vec<ScreenedResponse>,
@@ -277,7 +277,7 @@ impl Screening {
         }
     }
 
-    /// Where a response's columns stand, if only as those of a nuisance that it releases.
+    /// Where a response's columns stand, if only as those of a nuisance that it drops the prior of.
     fn columns(&self, place: usize) -> std::ops::Range<usize> {
         let response = &self.responses[place];
         match response.released {
@@ -301,7 +301,8 @@ impl Screening {
         direction
     }
 
-    /// The product of two directions once the nuisances, but those released, are taken out.
+    /// The product of two directions once the nuisances, but those without their priors, are taken
+    /// out.
     fn without_nuisances(
         &self,
         (products, released): (&DMatrix<f64>, &[usize]),
@@ -324,7 +325,7 @@ impl Screening {
         }
     }
 
-    /// How much two responses look alike, 0 to 1, once the nuisances are taken out: how well
+    /// How similar two responses are, 0 to 1, once the nuisances are taken out: how well
     /// either can do what the other does. One of several parameters can do what one of few does
     /// even where its own best size is another.
     pub fn similarity(&self, a: usize, b: usize) -> f64 {

@@ -1,4 +1,4 @@
-//! What is named of a round: the believed trial that leaves least, and whatever the records do
+//! What is named of a round: the accepted hypothesis that leaves least, and whatever the records do
 //! not tell from it.
 
 use std::cmp::Ordering;
@@ -15,21 +15,21 @@ use crate::search::screening::Screening;
 use crate::search::tested::TestedPool;
 use crate::thresholds;
 
-/// The believed trial that is named.
+/// The accepted hypothesis that is named.
 pub struct Selected {
     /// Its candidates, in the order of its responses.
     pub candidates: Vec<Candidate>,
-    /// The trial.
+    /// The fitted hypothesis.
     pub trial: FittedHypothesis,
-    /// What cannot be told from each of them.
+    /// What is indistinguishable from each of them.
     pub equivalent: Vec<Vec<Candidate>>,
-    /// Of a pair the half that was believed alone, by its number, and the test gap that it left.
+    /// Of a pair the half that was accepted alone, by its number, and the test gap that it left.
     pub half: Option<(usize, f64)>,
 }
 
-/// What is named of the trials of a round that explain the records; none if nothing is believed. A parameter that
-/// nobody called uncertain is the less plausible answer: it is named only if it leaves clearly
-/// less than what looks like it.
+/// What is named of the fitted hypotheses of a round that explain the records; none if nothing is
+/// accepted. A parameter that nobody called uncertain is the less plausible answer: it is named
+/// only if it leaves clearly less than what looks like it.
 pub fn selected(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
     let selected = best(with_other_halves(context, tested))?;
     let [candidate] = &selected.candidates[..] else {
@@ -71,8 +71,8 @@ pub fn selected(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
     })
 }
 
-/// The trials of a round with, if a pair is best, further pairs with what looks like one of its
-/// halves.
+/// The fitted hypotheses of a round with, if a pair is best, further pairs with what looks like one
+/// of its halves.
 fn with_other_halves(context: Context<'_>, tested: TestedPool) -> TestedPool {
     let TestedPool {
         candidates,
@@ -92,9 +92,9 @@ fn with_other_halves(context: Context<'_>, tested: TestedPool) -> TestedPool {
     }
 }
 
-/// The believed trial that is best, with what cannot be told from it among the others. Of those
-/// that cannot, the one with fewest unknowns is the answer: what more of them do, these do not
-/// need; and of what was declared, what is least off.
+/// The accepted hypothesis that is best, with what is indistinguishable from it among the others.
+/// Of those that cannot, the one with fewest unknowns is the answer: what more of them do, these do
+/// not need; and of what was declared, what is least off.
 fn best(tested: TestedPool) -> Option<Selected> {
     let TestedPool {
         candidates,
@@ -154,8 +154,8 @@ fn off(trial: &FittedHypothesis) -> Option<f64> {
     all.map(|all| all.into_iter().fold(0.0, f64::max))
 }
 
-/// The believed trial that leaves least; a pair only if it leaves clearly less than the best single
-/// effect.
+/// The accepted hypothesis that leaves least; a pair only if it leaves clearly less than the best
+/// single effect.
 pub fn best_of(trials: &[FittedHypothesis]) -> Option<usize> {
     let left = |place: &usize| trials[*place].fit.rms();
     let least = |count: fn(usize) -> bool| {
@@ -182,8 +182,8 @@ fn is_clearly_better(one: &Fit, other: &Fit) -> bool {
     one.leaves_clearly_less(other) || (is_certain && one.train.rms < other.train.rms)
 }
 
-/// What of a trial the records do not tell from another's, if that is as large and differs in
-/// nothing else: its number, and the other's response.
+/// What of a hypothesis the records do not distinguish from another's, if that is as large and
+/// differs in nothing else: its number, and the other's response.
 fn indistinguishable_half(
     trial: &FittedHypothesis,
     other: &FittedHypothesis,
@@ -205,9 +205,9 @@ fn indistinguishable_half(
         .then_some((half, response))
 }
 
-/// Whether records do not tell what led to a fit from what led to another: the responses are alike,
-/// and so is what the fits leave of the test records; and, but for two names of one thing, the
-/// other explains the training records as well.
+/// Whether records do not distinguish what led to a fit from what led to another: the responses are
+/// similar, and so is what the fits leave of the test records; and, but for two names of one thing,
+/// the other explains the training records as well.
 fn is_indistinguishable(one: &Fit, other: &Fit, similarity: f64) -> bool {
     let told = test_statistics(one, other, &[]);
     let (part, errors) = (told.held_out.abs(), told.held_out_errors);
@@ -221,7 +221,7 @@ fn is_indistinguishable(one: &Fit, other: &Fit, similarity: f64) -> bool {
     similarity > thresholds::INDISTINGUISHABLE && (is_same || (as_good && !is_told))
 }
 
-/// The half of a pair that was believed alone, and the test gap that it left: a step of the way.
+/// The half of a pair that was accepted alone, and the test gap that it left: a step of the way.
 fn half_way(best: &FittedHypothesis, others: &[FittedHypothesis]) -> Option<(usize, f64)> {
     if best.responses.len() < 2 {
         return None;

@@ -1,5 +1,5 @@
-//! Shapes, such as the speed at which friction has fallen, tried at other sizes: a fit that began at
-//! the usual one may end in a minimum of its own.
+//! Shapes, such as the speed at which friction has fallen, tried at other sizes: a fit that began
+//! at the usual one may end in a minimum of its own.
 
 use crate::search::fitted::{FittedHypothesis, full_fits};
 use crate::search::hypothesis::{Hypothesis, shaped_as};
@@ -7,7 +7,7 @@ use crate::search::pool::Pool;
 use crate::thresholds;
 
 /// Fits what has a shape, helps and does not reach the floor from other shapes, and takes over
-/// what is believed, or leaves less.
+/// what is accepted, or leaves less.
 pub fn reshape(pool: &Pool<'_>, trials: &mut [FittedHypothesis]) {
     let is_there = |trial: &FittedHypothesis| {
         trial.verdict.is_ok() && trial.fit.is_at_floor(pool.context.floor)
@@ -39,7 +39,7 @@ pub fn reshape(pool: &Pool<'_>, trials: &mut [FittedHypothesis]) {
     }
 }
 
-/// Whether a trial is believed where another is not, or else leaves less.
+/// Whether a fitted hypothesis is accepted where another is not, or else leaves less.
 fn is_better(one: &FittedHypothesis, other: &FittedHypothesis) -> bool {
     match (one.verdict.is_ok(), other.verdict.is_ok()) {
         (true, false) => true,

@@ -28,7 +28,7 @@ pub fn singles(pool: &Pool<'_>, from: usize) -> Vec<FittedHypothesis> {
     let mut trials: Vec<FittedHypothesis> = Vec::new();
     let (mut fits, mut best) = (0, f64::INFINITY);
     while !preliminaries.is_empty() && fits < thresholds::MOST_FITS {
-        // Once one is believed, only what is nearly as good or looks like it may be another
+        // Once one is accepted, only what is nearly as good or looks like it may be another
         // answer; until then whoever is next.
         let accepted = trials.iter().find(|trial| trial.verdict.is_ok());
         if accepted.is_none() {
