@@ -41,7 +41,7 @@ pub struct Candidate {
     /// The line that says most of the change.
     pub term: String,
     /// The unknown of the null model that gives up its prior, if that is the effect.
-    pub released: Option<What>,
+    pub dropped_prior: Option<What>,
 }
 
 /// A parameter of a candidate.
@@ -280,12 +280,18 @@ fn candidate(
         experiment: effect.experiment.clone(),
         changes,
         term,
-        released: None,
+        dropped_prior: None,
     })
 }
 
 /// An unknown of the null model that gives up its prior.
-pub fn released(effect: &str, on: &str, says: &str, experiment: &str, what: &What) -> Candidate {
+pub fn dropped_prior(
+    effect: &str,
+    on: &str,
+    says: &str,
+    experiment: &str,
+    what: &What,
+) -> Candidate {
     Candidate {
         effect: effect.to_owned(),
         on: on.to_owned(),
@@ -296,7 +302,7 @@ pub fn released(effect: &str, on: &str, says: &str, experiment: &str, what: &Wha
         experiment: experiment.to_owned(),
         changes: Vec::new(),
         term: String::new(),
-        released: Some(what.clone()),
+        dropped_prior: Some(what.clone()),
     }
 }
 
@@ -325,9 +331,9 @@ pub fn offset_of(parameter: &Parameter) -> Option<Candidate> {
     };
     Some(Candidate {
         parameters: vec![shifted],
-        released: None,
+        dropped_prior: None,
         term: format!("{} shifted", parameter.name),
-        ..released(
+        ..dropped_prior(
             PARAMETER_OFFSET,
             &parameter.name,
             "a parameter is not what the specification says",

@@ -104,7 +104,7 @@ fn best(
         for (place, value) in places.iter().zip(sizes.values.iter()) {
             values[*place] = *value;
         }
-        let left = regression.left((at, blocks), &|_| values.clone(), true);
+        let left = regression.remaining((at, blocks), &|_| values.clone(), true);
         let over = correlation(&left, problem.noise.len());
         let gain_before = known.as_ref().map_or(0.0, |set| set.sizes.decrease);
         let squares = regression.squares - sizes.decrease;

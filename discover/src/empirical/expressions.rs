@@ -176,11 +176,11 @@ pub fn terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
     // What an input does may change with the motion; it goes in with its first power.
     let drives = inputs.iter().filter(|factor| factor.1 == Power(1));
     let motion = rates.iter().chain(&places);
-    let driven = drives.flat_map(|drive| motion.clone().map(move |factor| [*drive, *factor]));
+    let with_inputs = drives.flat_map(|drive| motion.clone().map(move |factor| [*drive, *factor]));
     let both = rates
         .iter()
         .flat_map(|rate| places.iter().map(move |place| [*rate, *place]));
-    let products = driven.chain(both).map(|factors| Term {
+    let products = with_inputs.chain(both).map(|factors| Term {
         factors: factors.to_vec(),
     });
     found.extend(products.filter(|term| term.degree() <= thresholds::MOST_DEGREE));
@@ -219,16 +219,16 @@ mod tests {
         );
         let value = product.at(&operating_point, &[3.0], &scales);
         assert!((value + 0.25 * 1.0_f64.sin()).abs() < 1e-15);
-        let driven = term(&[
+        let with_inputs = term(&[
             (Of::Input(0), Function::Power(1)),
             (Of::Place, Function::Power(2)),
         ]);
         assert_eq!(
-            driven.text("e_2", &arguments),
+            with_inputs.text("e_2", &arguments),
             "e_2*(u/u_0)*(theta/theta_0)^2"
         );
-        assert!((driven.at(&operating_point, &[3.0], &scales) - 0.3 * 0.25).abs() < 1e-15);
-        assert!(driven.scales(Of::Input(0)) && !product.scales(Of::Place));
+        assert!((with_inputs.at(&operating_point, &[3.0], &scales) - 0.3 * 0.25).abs() < 1e-15);
+        assert!(with_inputs.scales(Of::Input(0)) && !product.scales(Of::Place));
         assert_eq!(term(&[]).text("e_3", &arguments), "e_3");
     }
 

@@ -38,7 +38,7 @@ pub fn unnamed(
     progress: &(dyn Fn(&str) + Sync),
 ) {
     let is_shift = |effect: &Accepted| {
-        effect.candidate.released.is_some() || effect.candidate.effect == PARAMETER_OFFSET
+        effect.candidate.dropped_prior.is_some() || effect.candidate.effect == PARAMETER_OFFSET
     };
     let leaves_little = found.best().leaves_less(thresholds::UNNAMED_FROM * floor);
     if !found.accepted.iter().all(is_shift) || (leaves_little && found.last.is_some()) {
@@ -82,7 +82,7 @@ fn add_empirical(
     };
     let label = candidate.label();
     let unknowns: Vec<usize> = (before.unknowns.len()..fit.unknowns.len()).collect();
-    let verdict = believed((before, &fit), &unknowns, floor);
+    let verdict = accepted((before, &fit), &unknowns, floor);
     let outcome = verdict
         .as_ref()
         .err()
@@ -93,12 +93,12 @@ fn add_empirical(
         candidate.term
     ));
     match verdict {
-        Ok(evidence) => {
+        Ok(statistics) => {
             found.accepted.push(Accepted {
                 candidate,
                 unknowns,
                 equivalent: Vec::new(),
-                evidence,
+                statistics,
                 test_gap: (before.test.rms, test),
             });
             found.last = Some(fit);
@@ -115,14 +115,14 @@ fn add_empirical(
 fn sought(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Expression> {
     let force = residual_force(problem, fit, None)?;
     force.kind.as_ref()?;
-    let explains = |ranked: &RankedEquation| ranked.by_state.max(ranked.by_time);
-    let most = force.ranked.iter().map(explains).fold(0.0, f64::max);
-    let mut as_well: Vec<&RankedEquation> = (force.ranked.iter())
-        .filter(|ranked| explains(ranked) >= thresholds::AS_WELL * most)
+    let explains = |ranking: &RankedEquation| ranking.by_state.max(ranking.by_time);
+    let most = force.ranking.iter().map(explains).fold(0.0, f64::max);
+    let mut as_well: Vec<&RankedEquation> = (force.ranking.iter())
+        .filter(|ranking| explains(ranking) >= thresholds::AS_WELL * most)
         .collect();
     as_well.sort_by(|a, b| explains(b).total_cmp(&explains(a)));
     let best = as_well.iter().take(thresholds::UNNAMED_EQUATIONS);
-    let among: Vec<usize> = best.map(|ranked| ranked.equation).collect();
+    let among: Vec<usize> = best.map(|ranking| ranking.equation).collect();
     chosen(problem, fit, &among)
 }
 
@@ -206,7 +206,7 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
         experiment: "the same rates, places and inputs in other combinations".to_owned(),
         changes,
         term: value,
-        released: None,
+        dropped_prior: None,
     }
 }
 
@@ -275,7 +275,7 @@ fn fitted(
 
 /// Whether an expression is accepted: by all that is asked of an effect, each of its terms by
 /// itself, and by how much of the gap it closes.
-fn believed(
+fn accepted(
     (before, after): (&Fit, &Fit),
     unknowns: &[usize],
     floor: f64,
@@ -289,11 +289,11 @@ fn believed(
             prior: None,
         })
         .collect();
-    let evidence = acceptance_test(before, after, &own)?;
+    let statistics = acceptance_test(before, after, &own)?;
     let asked = thresholds::INFORMATION * (1 + own.len()) as f64;
-    if evidence.information < asked {
+    if statistics.information < asked {
         return Err(Rejection::Information {
-            found: evidence.information,
+            found: statistics.information,
             asked,
         });
     }
@@ -303,5 +303,5 @@ fn believed(
     if train.min(test) < thresholds::UNNAMED_CLOSES {
         return Err(Rejection::Closes { train, test });
     }
-    Ok(evidence)
+    Ok(statistics)
 }

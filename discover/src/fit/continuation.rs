@@ -53,8 +53,8 @@ pub fn continuation(
     steps: usize,
 ) -> Continued {
     let mut path = Continuation::new(shooting, follow);
-    let tried = guesses.iter().map(|theta| path.at(theta.clone(), None));
-    let best = tried.min_by(|a, b| a.estimate.cost.total_cmp(&b.estimate.cost));
+    let guessed = guesses.iter().map(|theta| path.at(theta.clone(), None));
+    let best = guessed.min_by(|a, b| a.estimate.cost.total_cmp(&b.estimate.cost));
     let mut present = best.unwrap_or_default();
     path.go(&mut present, steps, Derivatives::Tangents);
     present

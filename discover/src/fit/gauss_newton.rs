@@ -249,13 +249,13 @@ fn followed(
         if stuck.is_empty() {
             break;
         }
-        let tried = moved(*damping);
-        let squares = some_squares(shooting, &theta, &tried, &stuck);
+        let damped = moved(*damping);
+        let squares = some_squares(shooting, &theta, &damped, &stuck);
         for (window, square) in stuck.iter().zip(squares) {
-            let with_prior = square + prior.cost(*window, &tried[*window]);
+            let with_prior = square + prior.cost(*window, &damped[*window]);
             if with_prior < total(&best, prior, *window) {
                 best.squares[*window] = square;
-                best.initial_states[*window].clone_from(&tried[*window]);
+                best.initial_states[*window].clone_from(&damped[*window]);
             }
         }
     }

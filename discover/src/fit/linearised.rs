@@ -58,7 +58,7 @@ impl LinearisedFit {
     }
 
     /// Every other window where there are many.
-    pub fn thinned(&self) -> Self {
+    pub fn with_few_windows(&self) -> Self {
         let every = self.places.len().div_ceil(thresholds::FEW_WINDOWS).max(1);
         let places = self.places.iter().step_by(every).copied();
         Self {

@@ -146,38 +146,38 @@ impl<'a> SensitivityEvaluator<'a> {
         let mut drives = Differences::new(&mut self.equations, moved.collect());
         let count = drives.count();
         let by_state = shooting.ranges.is_some();
-        let marched = self
-            .base
-            .linearised(start, times, inputs, by_state, (count, &mut drives))?;
-        let seen = shooting.seen(times, &self.sensors, &marched.outputs.values);
+        let integrated =
+            self.base
+                .linearised(start, times, inputs, by_state, (count, &mut drives))?;
+        let seen = shooting.seen(times, &self.sensors, &integrated.outputs.values);
         let residual = DVector::from_vec(shooting.normalised(window, &seen));
         let states = if by_state { start.len() } else { 0 };
-        let by_state = self.columns(window, times, states, &marched.by_state);
-        let driven = self.columns(window, times, count, &marched.by_drive);
+        let by_state = self.columns(window, times, states, &integrated.by_state);
+        let by_drive = self.columns(window, times, count, &integrated.by_drive);
         let mut by_unknown = DMatrix::zeros(residual.len(), self.neighbours.len());
         let mut drive = 0;
         for (column, neighbour) in self.neighbours.iter().enumerate() {
             let unknown = &shooting.unknowns[column];
             let Some((neighbour, step)) = neighbour else {
                 let (sensors, step) = moved_sensors(&self.sensors, unknown);
-                let moved = shooting.seen(times, &sensors, &marched.outputs.values);
+                let moved = shooting.seen(times, &sensors, &integrated.outputs.values);
                 let moved = shooting.normalised(window, &moved);
                 for (row, (after, before)) in moved.iter().zip(residual.iter()).enumerate() {
                     by_unknown[(row, column)] = (after - before) / step;
                 }
                 continue;
             };
-            by_unknown.set_column(column, &driven.column(drive));
+            by_unknown.set_column(column, &by_drive.column(drive));
             drive += 1;
             let Neighbour::Drives(_, Some(shown)) = neighbour else {
                 continue;
             };
             if Some(shown) != self.base.shown() {
-                let mut moved = Vec::with_capacity(marched.outputs.values.len());
-                for state in &marched.states {
+                let mut moved = Vec::with_capacity(integrated.outputs.values.len());
+                for state in &integrated.states {
                     shown.add_to(state, &mut moved);
                 }
-                let pairs = moved.iter_mut().zip(&marched.outputs.values);
+                let pairs = moved.iter_mut().zip(&integrated.outputs.values);
                 pairs.for_each(|(moved, own)| *moved = (*moved - own) / step);
                 let own = self.columns(window, times, 1, &moved);
                 let mut column = by_unknown.column_mut(column);
@@ -188,7 +188,7 @@ impl<'a> SensitivityEvaluator<'a> {
             residual,
             by_state,
             by_unknown,
-            last: marched.outputs.last,
+            last: integrated.outputs.last,
         })
     }
 

@@ -142,7 +142,7 @@ impl StateProjection {
     }
 
     /// A residual with the initial state free: what it cannot do away with.
-    pub fn left(&self, residual: &DVector<f64>) -> DVector<f64> {
+    pub fn projected(&self, residual: &DVector<f64>) -> DVector<f64> {
         let (rows, states) = (residual.len(), self.by_state.ncols());
         if states == 0 {
             return residual.clone();

@@ -60,7 +60,7 @@ impl Unknown {
     }
 
     /// The same without what was declared of it.
-    pub fn released(&self) -> Self {
+    pub fn without_prior(&self) -> Self {
         Self {
             prior: None,
             bounds: self.limits,

@@ -120,7 +120,7 @@ fn found_effect(problem: &EstimationProblem<'_>, fit: &Fit, effect: &Accepted) -
             (parameter.name.clone(), Estimated { value, sd, unit })
         })
         .collect();
-    if candidate.released.is_some()
+    if candidate.dropped_prior.is_some()
         && let Some(place) = effect.unknowns.first()
         && let Some((name, per_si, unit)) = named(problem, fit, &fit.unknowns[*place].what)
     {
@@ -147,7 +147,7 @@ fn found_effect(problem: &EstimationProblem<'_>, fit: &Fit, effect: &Accepted) -
         equivalent: equivalent.collect(),
         parameters,
         term,
-        statistics: effect.evidence.clone(),
+        statistics: effect.statistics.clone(),
         order: candidate
             .order
             .clone()
@@ -184,7 +184,7 @@ pub(crate) fn refitted(fit: &Fit, accepted: &[Accepted]) -> BTreeMap<String, Est
             continue;
         };
         let is_own = |effect: &Accepted| {
-            effect.candidate.released.is_none() && effect.unknowns.contains(&place)
+            effect.candidate.dropped_prior.is_none() && effect.unknowns.contains(&place)
         };
         if accepted.iter().any(is_own) {
             continue;

@@ -12,12 +12,12 @@ use crate::residual_force::types::ResidualForce;
 pub(crate) fn force_section(force: &ResidualForce, left: Option<&ResidualForce>) -> String {
     let mut rows = String::new();
     let percent = |part: f64| format!("{:.0} %", 100.0 * part.max(0.0));
-    for ranked in &force.ranked {
+    for ranking in &force.ranking {
         rows += &format!(
             "<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-            escaped(&force.equations[ranked.equation].name),
-            percent(ranked.by_state),
-            percent(ranked.by_time)
+            escaped(&force.equations[ranking.equation].name),
+            percent(ranking.by_state),
+            percent(ranking.by_time)
         );
     }
     let told = "A force that was put into this equation, its bars one standard deviation to either side. What records do not show is left out.";

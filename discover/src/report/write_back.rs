@@ -27,7 +27,7 @@ pub fn extended(
     let written = || {
         accepted
             .iter()
-            .filter(|effect| effect.candidate.released.is_none())
+            .filter(|effect| effect.candidate.dropped_prior.is_none())
     };
     for effect in written() {
         let values = fit.stated(&effect.unknowns);

@@ -95,11 +95,12 @@ impl FamilyRegression {
             Over::Time => {
                 let found = self.regression.each(range.clone(), level);
                 let values = |window: usize| whole(found.windows[window].as_ref());
-                self.regression.left(of, &values, false)
+                self.regression.remaining(of, &values, false)
             }
             _ => {
                 let found = self.shared(family);
-                self.regression.left(of, &|_| whole(Some(&found)), true)
+                self.regression
+                    .remaining(of, &|_| whole(Some(&found)), true)
             }
         };
         correlation(&left, problem.noise.len())

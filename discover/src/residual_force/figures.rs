@@ -16,7 +16,7 @@ const MARGIN: f64 = 0.02;
 const APART: f64 = 0.003;
 
 /// What a profile is drawn over, how bars are set, and which of a force's it is.
-struct View {
+struct Picture {
     title: &'static str,
     axes: Axes,
     /// Whether points belong to a line.
@@ -31,29 +31,29 @@ pub fn figures(before: &ResidualForce, after: Option<&ResidualForce>) -> String 
     let equation = &before.equations[before.equation];
     let mut forces = vec![("before", before)];
     forces.extend(after.map(|after| ("after", after)));
-    let views = views(equation);
-    let drawn: Vec<(&View, Vec<(&str, Points)>)> = views
+    let pictures = pictures(equation);
+    let drawn: Vec<(&Picture, Vec<(&str, Points)>)> = pictures
         .iter()
-        .map(|view| {
+        .map(|picture| {
             let of = |(name, force): &(&'static str, &ResidualForce)| {
-                let most = most((view.of)(before));
-                (*name, points((view.of)(force), view.is_line, most))
+                let most = most((picture.of)(before));
+                (*name, points((picture.of)(force), picture.is_line, most))
             };
-            (view, forces.iter().map(of).collect::<Vec<_>>())
+            (picture, forces.iter().map(of).collect::<Vec<_>>())
         })
         // What is left says nothing where nobody knows what was there.
-        .filter(|(view, _)| {
-            let profile = (view.of)(before);
+        .filter(|(picture, _)| {
+            let profile = (picture.of)(before);
             let most = most(profile);
             let known = profile.sd.iter().filter(|sd| is_known(**sd, most));
             let is_drawn = known.count() >= thresholds::DRAWN_POINTS;
-            let is_told = !view.by_window || profile.part > thresholds::STANDS_OUT;
-            is_drawn && is_told && (view.axes != Axes::Time || is_resolved(before))
+            let is_told = !picture.by_window || profile.part > thresholds::STANDS_OUT;
+            is_drawn && is_told && (picture.axes != Axes::Time || is_resolved(before))
         })
         .collect();
-    let frames = drawn.iter().map(|(view, series)| Frame {
+    let frames = drawn.iter().map(|(picture, series)| Frame {
         panel: Panel {
-            title: view.title.to_owned(),
+            title: picture.title.to_owned(),
             quantity: "force".to_owned(),
             unit: equation.force_unit().to_owned(),
             series: series
@@ -67,7 +67,7 @@ pub fn figures(before: &ResidualForce, after: Option<&ResidualForce>) -> String 
                 .collect(),
             references: Vec::new(),
         },
-        axes: view.axes,
+        axes: picture.axes,
         ..Frame::default()
     });
     let figure = Plate {
@@ -78,49 +78,49 @@ pub fn figures(before: &ResidualForce, after: Option<&ResidualForce>) -> String 
     plate(&figure).unwrap_or_default()
 }
 
-fn views(equation: &Equation) -> [View; 6] {
+fn pictures(equation: &Equation) -> [Picture; 6] {
     let over = |symbol, unit| Axes::Quantity { symbol, unit };
     let (place, name) = match equation.unit {
         "rad" => ("angle", "over the angle"),
         _ => ("position", "over the position"),
     };
     [
-        View {
+        Picture {
             title: "over the rate",
             axes: over("rate", equation.rate_unit()),
             is_line: true,
             by_window: false,
             of: |force| &force.rate,
         },
-        View {
+        Picture {
             title: name,
             axes: over(place, equation.unit),
             is_line: true,
             by_window: false,
             of: |force| &force.place,
         },
-        View {
+        Picture {
             title: "over time, first record",
             axes: Axes::Time,
             is_line: true,
             by_window: true,
             of: |force| &force.time,
         },
-        View {
+        Picture {
             title: "along the rate, by a window's largest",
             axes: over("rate", equation.rate_unit()),
             is_line: false,
             by_window: false,
             of: |force| &force.amplitude,
         },
-        View {
+        Picture {
             title: "size over the frequency",
             axes: over("f", "Hz"),
             is_line: true,
             by_window: true,
             of: |force| &force.frequency,
         },
-        View {
+        Picture {
             title: "size over the order, per turn",
             axes: over("order", ""),
             is_line: false,

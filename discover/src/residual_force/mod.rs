@@ -75,7 +75,7 @@ pub fn residual_force(
     if let [only] = all[..] {
         families.extend(wave(only));
     }
-    let few = at.thinned();
+    let few = at.with_few_windows();
     let regressed = FamilyRegression::at((&few, problem, fit), &equations, families)?;
     let ranking = Ranking::of(&regressed, all.len(), (&few, problem))?;
     let number = wanted.and_then(named).unwrap_or(ranking.best);
@@ -98,7 +98,7 @@ pub fn residual_force(
         equation,
     };
     let mut found = blocks.profiles(close, &ranges[equation], fit);
-    found.ranked = ranking.ranked(&all);
+    found.ranking = ranking.ranking(&all);
     found.equations.clone_from(&equations.list);
     found.best = all[ranking.best];
     if ranking.stands_out {

@@ -66,7 +66,7 @@ impl Blocks<'_> {
         let frequency = self.over_frequency(regressed, level);
         ResidualForce {
             equations: Vec::new(),
-            ranked: Vec::new(),
+            ranking: Vec::new(),
             best: self.equation,
             equation: self.equation,
             kind: None,

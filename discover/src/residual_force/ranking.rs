@@ -68,8 +68,8 @@ impl Ranking {
         })
     }
 
-    pub fn ranked(&self, all: &[usize]) -> Vec<RankedEquation> {
-        let mut ranked: Vec<RankedEquation> = (all.iter().zip(&self.parts))
+    pub fn ranking(&self, all: &[usize]) -> Vec<RankedEquation> {
+        let mut ranking: Vec<RankedEquation> = (all.iter().zip(&self.parts))
             .map(|(equation, (by_state, by_time))| RankedEquation {
                 equation: *equation,
                 by_state: *by_state,
@@ -83,8 +83,8 @@ impl Ranking {
                 of.by_time
             }
         };
-        ranked.sort_by(|a, b| order(b).total_cmp(&order(a)));
-        ranked
+        ranking.sort_by(|a, b| order(b).total_cmp(&order(a)));
+        ranking
     }
 }
 

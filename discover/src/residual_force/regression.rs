@@ -193,7 +193,7 @@ impl Regression {
 
     /// For each window the residual that sizes of all columns leave, in standard deviations.
     /// `shared`: whether they are the same for all windows, and nuisances give way to them.
-    pub fn left(
+    pub fn remaining(
         &self,
         (at, columns): (&LinearisedFit, &[DMatrix<f64>]),
         values: &dyn Fn(usize) -> DVector<f64>,
@@ -213,7 +213,7 @@ impl Regression {
             if let Some(nuisances) = &nuisances {
                 residual += &base.by_unknown * nuisances;
             }
-            base.left(&residual).iter().copied().collect()
+            base.projected(&residual).iter().copied().collect()
         };
         windows.map(one).collect()
     }

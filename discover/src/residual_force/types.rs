@@ -59,7 +59,7 @@ pub struct ResidualForce {
     /// All equations.
     pub equations: Vec<Equation>,
     /// Those in which a force explains something, the best first.
-    pub ranked: Vec<RankedEquation>,
+    pub ranking: Vec<RankedEquation>,
     /// The best.
     pub best: usize,
     /// The one whose profiles these are.

@@ -17,11 +17,11 @@ pub fn described(force: &ResidualForce) -> String {
         shape(force, kind),
         100.0 * force.part
     );
-    let own = |ranked: &crate::residual_force::types::RankedEquation| match kind {
-        Kind::Time => ranked.by_time,
-        Kind::Rate(_) | Kind::Place(_) => ranked.by_state,
+    let own = |ranking: &crate::residual_force::types::RankedEquation| match kind {
+        Kind::Time => ranking.by_time,
+        Kind::Rate(_) | Kind::Place(_) => ranking.by_state,
     };
-    let others = force.ranked.iter().filter(|r| r.equation != force.best);
+    let others = force.ranking.iter().filter(|r| r.equation != force.best);
     let as_well = others.filter(|r| own(r) > thresholds::AS_WELL * force.part);
     let names: Vec<&str> = as_well
         .map(|r| force.equations[r.equation].name.as_str())

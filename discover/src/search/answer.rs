@@ -10,8 +10,11 @@ use crate::search::tested::TestedPool;
 /// What is named of all that was looked at; none if nothing is accepted, alone or together.
 pub fn answer(round: &Round<'_>, mut tested: Vec<TestedPool>) -> Option<Selected> {
     let least = |tested: &TestedPool| {
-        let accepted = tested.trials.iter().filter(|trial| trial.verdict.is_ok());
-        let left = accepted.map(|trial| trial.fit.rms());
+        let accepted = tested
+            .fitted_hypotheses
+            .iter()
+            .filter(|fitted| fitted.verdict.is_ok());
+        let left = accepted.map(|fitted| fitted.fit.rms());
         left.fold(f64::INFINITY, f64::min)
     };
     let best = (0..tested.len())
@@ -26,20 +29,20 @@ pub fn answer(round: &Round<'_>, mut tested: Vec<TestedPool>) -> Option<Selected
     let TestedPool {
         candidates,
         screening,
-        mut trials,
+        mut fitted_hypotheses,
     } = tested.swap_remove(best);
-    trials.retain(|trial| trial.explains);
-    if let Some(answer) = best_of(&trials) {
+    fitted_hypotheses.retain(|fitted| fitted.explains);
+    if let Some(answer) = best_of(&fitted_hypotheses) {
         let pool = Pool::new(round.context, &candidates, &screening, true);
-        test_alternatives(&pool, &mut trials, answer, round.effects);
+        test_alternatives(&pool, &mut fitted_hypotheses, answer, round.effects);
     }
-    trials.retain(|trial| trial.explains);
+    fitted_hypotheses.retain(|fitted| fitted.explains);
     selected(
         round.context,
         TestedPool {
             candidates,
             screening,
-            trials,
+            fitted_hypotheses,
         },
     )
 }

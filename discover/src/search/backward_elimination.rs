@@ -47,7 +47,7 @@ fn without(
     let gone = &found.accepted[place];
     let mut texts = found.null.texts.clone();
     for (other, effect) in found.accepted.iter().enumerate() {
-        if other == place || effect.candidate.released.is_some() {
+        if other == place || effect.candidate.dropped_prior.is_some() {
             continue;
         }
         let values = fit.stated(&effect.unknowns);
@@ -55,7 +55,7 @@ fn without(
     }
     let mut unknowns = fit.unknowns.clone();
     let mut theta = fit.train.estimate.theta.clone();
-    if gone.candidate.released.is_some() {
+    if gone.candidate.dropped_prior.is_some() {
         for at in &gone.unknowns {
             unknowns[*at].clone_from(&found.null.unknowns[*at]);
             theta[*at] = found.null.unknowns[*at].start;
@@ -74,7 +74,7 @@ fn without(
 /// Takes an effect off the list; the unknowns of those behind it move up.
 fn renumber(accepted: &mut Vec<Accepted>, place: usize) {
     let gone = accepted.remove(place);
-    if gone.candidate.released.is_some() {
+    if gone.candidate.dropped_prior.is_some() {
         return;
     }
     for effect in accepted {

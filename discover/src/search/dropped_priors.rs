@@ -6,7 +6,7 @@ use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::{Unknown, What};
 
 /// Declared parameters and sensors that may be off by more than their priors allow.
-pub fn released(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Candidate> {
+pub fn dropped_prior(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Candidate> {
     let unknowns = fit
         .unknowns
         .iter()
@@ -38,7 +38,7 @@ pub fn released(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Candidate> {
                 "excite it with a step that is recorded itself",
             ),
         };
-        candidate::released(effect, &on, says, experiment, &unknown.what)
+        candidate::dropped_prior(effect, &on, says, experiment, &unknown.what)
     };
     unknowns.map(candidate).collect()
 }

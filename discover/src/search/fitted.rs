@@ -29,16 +29,16 @@ pub struct FittedHypothesis {
 /// Hypotheses begun, side by side; the best first.
 pub fn preliminary_fits(
     pool: &Pool<'_>,
-    sets: Vec<Hypothesis>,
+    hypotheses: Vec<Hypothesis>,
 ) -> Vec<(Hypothesis, PreliminaryFit)> {
-    let alone = pool.screening.left(&[]).0;
-    let preliminaries: Vec<Result<PreliminaryFit, DiscoverError>> = sets
+    let alone = pool.screening.predicted(&[]).cost;
+    let preliminaries: Vec<Result<PreliminaryFit, DiscoverError>> = hypotheses
         .par_iter()
-        .map(|set| hypothesis::preliminary(pool, set))
+        .map(|hypothesis| hypothesis::preliminary(pool, hypothesis))
         .collect();
     let mut found = Vec::new();
-    for (set, preliminary) in sets.into_iter().zip(preliminaries) {
-        let label = pool.label(&set.responses);
+    for (hypothesis, preliminary) in hypotheses.into_iter().zip(preliminaries) {
+        let label = pool.label(&hypothesis.responses);
         match preliminary {
             Ok(preliminary) => {
                 let part = 100.0 * preliminary.cost / alone;
@@ -48,7 +48,7 @@ pub fn preliminary_fits(
                     "beginnings of windows"
                 };
                 (pool.context.progress)(&format!("  {label}: {part:.1} % left of the {of}"));
-                found.push((set, preliminary));
+                found.push((hypothesis, preliminary));
             }
             Err(error) => (pool.context.progress)(&format!("  {label}: {error}")),
         }
@@ -64,14 +64,19 @@ pub fn full_fits(
 ) -> Vec<FittedHypothesis> {
     let fits: Vec<(Hypothesis, Result<Fit, DiscoverError>)> = preliminaries
         .into_par_iter()
-        .map(|(set, preliminary)| (set, full::complete(pool.context.problem, preliminary)))
+        .map(|(hypothesis, preliminary)| {
+            (
+                hypothesis,
+                full::complete(pool.context.problem, preliminary),
+            )
+        })
         .collect();
-    let mut trials = Vec::new();
-    for (set, new) in fits {
-        let label = pool.label(&set.responses);
+    let mut fitted_hypotheses = Vec::new();
+    for (hypothesis, new) in fits {
+        let label = pool.label(&hypothesis.responses);
         match new {
             Ok(new) => {
-                let own = own_unknowns(pool, &set);
+                let own = own_unknowns(pool, &hypothesis);
                 let verdict = acceptance_test(pool.context.fit, &new, &own);
                 let explains = explains(pool.context.fit, &new, &own).is_ok();
                 let outcome = verdict
@@ -82,8 +87,8 @@ pub fn full_fits(
                 (pool.context.progress)(&format!(
                     "  {label}: {train:.2} noises are left in training, {test:.2} in test; {outcome}"
                 ));
-                trials.push(FittedHypothesis {
-                    responses: set.responses,
+                fitted_hypotheses.push(FittedHypothesis {
+                    responses: hypothesis.responses,
                     own,
                     fit: new,
                     verdict,
@@ -93,5 +98,5 @@ pub fn full_fits(
             Err(error) => (pool.context.progress)(&format!("  {label}: {error}")),
         }
     }
-    trials
+    fitted_hypotheses
 }

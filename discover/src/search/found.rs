@@ -14,7 +14,7 @@ pub struct Accepted {
     /// Those that were indistinguishable from it.
     pub equivalent: Vec<Candidate>,
     /// What spoke for it when it was added.
-    pub evidence: TestStatistics,
+    pub statistics: TestStatistics,
     /// The test gap before it was added and after, in standard deviations.
     pub test_gap: (f64, f64),
 }

@@ -21,12 +21,12 @@ pub struct Hypothesis {
 }
 
 /// The unknowns of a hypothesis' effects in a fit with them.
-pub fn own_unknowns(pool: &Pool<'_>, set: &Hypothesis) -> Vec<EffectUnknown> {
+pub fn own_unknowns(pool: &Pool<'_>, hypothesis: &Hypothesis) -> Vec<EffectUnknown> {
     let mut next = pool.context.fit.unknowns.len();
     let mut own = Vec::new();
-    for (effect, response) in set.responses.iter().enumerate() {
+    for (effect, response) in hypothesis.responses.iter().enumerate() {
         let response = &pool.screening.responses[*response];
-        if let Some(place) = response.released
+        if let Some(place) = response.dropped_prior
             && let Some((mean, sd)) = pool.context.fit.unknowns[place].prior
         {
             own.push(EffectUnknown {
@@ -37,12 +37,12 @@ pub fn own_unknowns(pool: &Pool<'_>, set: &Hypothesis) -> Vec<EffectUnknown> {
                 prior: Some(sd),
             });
         }
-        for trial in &response.trials {
+        for candidate_unknown in &response.candidate_unknowns {
             own.push(EffectUnknown {
                 place: next,
                 effect,
-                base: trial.base,
-                is_shape: trial.is_shape,
+                base: candidate_unknown.base,
+                is_shape: candidate_unknown.is_shape,
                 prior: None,
             });
             next += 1;
@@ -52,42 +52,48 @@ pub fn own_unknowns(pool: &Pool<'_>, set: &Hypothesis) -> Vec<EffectUnknown> {
 }
 
 /// A preliminary fit with a hypothesis' candidates.
-pub fn preliminary(pool: &Pool<'_>, set: &Hypothesis) -> Result<PreliminaryFit, DiscoverError> {
+pub fn preliminary(
+    pool: &Pool<'_>,
+    hypothesis: &Hypothesis,
+) -> Result<PreliminaryFit, DiscoverError> {
     let (problem, fit) = (pool.context.problem, pool.context.fit);
-    let (unknowns, theta) = unknowns_with(pool, set, pool.parts[0]);
-    let texts = texts(pool, set, &unknowns, &theta)?;
+    let (unknowns, theta) = unknowns_with(pool, hypothesis, pool.parts[0]);
+    let texts = texts(pool, hypothesis, &unknowns, &theta)?;
     // What swings in coordinates of its own is far from the fit however little it does.
-    let adds_states = set.responses.iter().any(|response| {
+    let adds_states = hypothesis.responses.iter().any(|response| {
         let parameters = &pool.candidate(*response).parameters;
         parameters.iter().any(|parameter| parameter.inverse)
     });
-    if pool.is_whole && set.deleted.is_none() && !adds_states {
-        let left = pool.screening.left(&set.responses).0;
-        return preliminary::expected(problem, texts, unknowns, theta, (fit, left));
+    if pool.is_whole && hypothesis.deleted.is_none() && !adds_states {
+        let cost = pool.screening.predicted(&hypothesis.responses).cost;
+        return preliminary::expected(problem, texts, unknowns, theta, (fit, cost));
     }
     let others = pool.parts[1..]
         .iter()
-        .map(|part| unknowns_with(pool, set, *part).1);
+        .map(|part| unknowns_with(pool, hypothesis, *part).1);
     let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
     let mut preliminary = preliminary::preliminary(problem, texts, unknowns, &begins)?;
     if pool.is_whole {
         // Beside others that are promised and not begun.
-        preliminary.cost = pool.screening.left(&set.responses).0;
+        preliminary.cost = pool.screening.predicted(&hypothesis.responses).cost;
     }
     Ok(preliminary)
 }
 
 /// A preliminary fit with a hypothesis' candidates, shapes so many times their usual sizes.
-pub fn shaped_as(
+pub fn with_shape(
     pool: &Pool<'_>,
-    set: &Hypothesis,
+    hypothesis: &Hypothesis,
     times: f64,
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let (unknowns, mut theta) = unknowns_with(pool, set, 1.0);
-    for own in own_unknowns(pool, set).iter().filter(|own| own.is_shape) {
+    let (unknowns, mut theta) = unknowns_with(pool, hypothesis, 1.0);
+    for own in own_unknowns(pool, hypothesis)
+        .iter()
+        .filter(|own| own.is_shape)
+    {
         theta[own.place] = unknowns[own.place].admissible(times * theta[own.place]);
     }
-    let texts = texts(pool, set, &unknowns, &theta)?;
+    let texts = texts(pool, hypothesis, &unknowns, &theta)?;
     preliminary::preliminary(pool.context.problem, texts, unknowns, &[theta])
 }
 
@@ -95,36 +101,39 @@ pub fn shaped_as(
 /// promises to leave; `shaped`: how many times its usual size a shape is.
 pub fn begun_at(
     pool: &Pool<'_>,
-    set: &Hypothesis,
-    (begin, left): (&Fit, f64),
-    shaped: f64,
+    hypothesis: &Hypothesis,
+    (begin, cost): (&Fit, f64),
+    shape_ratio: f64,
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let (unknowns, mut theta) = unknowns_with(pool, set, 1.0);
+    let (unknowns, mut theta) = unknowns_with(pool, hypothesis, 1.0);
     let count = pool.context.fit.unknowns.len();
     theta[..count].copy_from_slice(&begin.train.estimate.theta[..count]);
-    for own in own_unknowns(pool, set).iter().filter(|own| own.is_shape) {
-        theta[own.place] = unknowns[own.place].admissible(shaped * theta[own.place]);
+    for own in own_unknowns(pool, hypothesis)
+        .iter()
+        .filter(|own| own.is_shape)
+    {
+        theta[own.place] = unknowns[own.place].admissible(shape_ratio * theta[own.place]);
     }
-    let texts = texts(pool, set, &unknowns, &theta)?;
-    preliminary::expected(pool.context.problem, texts, unknowns, theta, (begin, left))
+    let texts = texts(pool, hypothesis, &unknowns, &theta)?;
+    preliminary::expected(pool.context.problem, texts, unknowns, theta, (begin, cost))
 }
 
 /// The specification's texts with a hypothesis' candidates, at these values of the unknowns.
 fn texts(
     pool: &Pool<'_>,
-    set: &Hypothesis,
+    hypothesis: &Hypothesis,
     unknowns: &[Unknown],
     theta: &[f64],
 ) -> Result<Texts, DiscoverError> {
     let fit = pool.context.fit;
     let mut texts = fit.texts.clone();
     let mut next = fit.unknowns.len();
-    for response in &set.responses {
+    for response in &hypothesis.responses {
         let response = &pool.screening.responses[*response];
-        if response.released.is_some() {
+        if response.dropped_prior.is_some() {
             continue;
         }
-        let own = next..next + response.trials.len();
+        let own = next..next + response.candidate_unknowns.len();
         next = own.end;
         let values: Vec<f64> = own
             .map(|place| unknowns[place].what.stated(theta[place]))
@@ -137,35 +146,39 @@ fn texts(
 
 /// The unknowns with a hypothesis' candidates and their values, so much of the promised sizes from
 /// absent.
-fn unknowns_with(pool: &Pool<'_>, set: &Hypothesis, part: f64) -> (Vec<Unknown>, Vec<f64>) {
+fn unknowns_with(pool: &Pool<'_>, hypothesis: &Hypothesis, part: f64) -> (Vec<Unknown>, Vec<f64>) {
     let fit = pool.context.fit;
     let mut unknowns = fit.unknowns.clone();
     let mut theta = fit.restarted();
-    if let Some(place) = set.deleted {
+    if let Some(place) = hypothesis.deleted {
         unknowns[place].bounds = (0.0, 0.0);
         theta[place] = 0.0;
     }
-    let mut sizes = set.sizes.iter().map(|size| part * size);
-    for response in &set.responses {
+    let mut sizes = hypothesis.sizes.iter().map(|size| part * size);
+    for response in &hypothesis.responses {
         let response = &pool.screening.responses[*response];
-        if let Some(place) = response.released {
+        if let Some(place) = response.dropped_prior {
             let size = sizes.next().unwrap_or(0.0);
-            unknowns[place] = unknowns[place].released();
+            unknowns[place] = unknowns[place].without_prior();
             theta[place] = unknowns[place].admissible(fit.train.estimate.theta[place] + size);
             continue;
         }
-        for trial in &response.trials {
-            let size = match trial.is_shape {
-                true => trial.unknown.start - trial.base,
+        for candidate_unknown in &response.candidate_unknowns {
+            let size = match candidate_unknown.is_shape {
+                true => candidate_unknown.unknown.start - candidate_unknown.base,
                 false => sizes.next().unwrap_or(0.0),
             };
             let size = if size == 0.0 {
-                part * trial.unknown.scale
+                part * candidate_unknown.unknown.scale
             } else {
                 size
             };
-            theta.push(trial.unknown.admissible(trial.base + size));
-            let mut unknown = trial.unknown.clone();
+            theta.push(
+                candidate_unknown
+                    .unknown
+                    .admissible(candidate_unknown.base + size),
+            );
+            let mut unknown = candidate_unknown.unknown.clone();
             unknown.scale = size.abs().max(1e-3 * unknown.scale);
             unknowns.push(unknown);
         }

@@ -12,10 +12,10 @@ use crate::search::tested::TestedPool;
 /// What is accepted together of what was looked at, if it explains most of what is left.
 pub fn joint_acceptance(round: &Round<'_>, tested: &[TestedPool]) -> Option<Selected> {
     let all = tested.iter().flat_map(|tested| {
-        let with = move |trial| (tested, trial);
-        tested.trials.iter().map(with)
+        let with = move |fitted| (tested, fitted);
+        tested.fitted_hypotheses.iter().map(with)
     });
-    let promising = all.filter(|(_, trial)| is_promising(round, trial));
+    let promising = all.filter(|(_, fitted)| is_promising(round, fitted));
     let (tested, first) = promising.min_by(|a, b| a.1.fit.rms().total_cmp(&b.1.fit.rms()))?;
     let response = &tested.screening.responses[first.responses[0]];
     let candidate = tested.candidates[response.candidate].clone();
@@ -29,24 +29,25 @@ pub fn joint_acceptance(round: &Round<'_>, tested: &[TestedPool]) -> Option<Sele
         effects: round.effects,
     };
     let mut tested = beside.tested_in(ExcitationWindow::Whole)?;
-    tested.trials.retain(|trial| trial.explains);
+    tested.fitted_hypotheses.retain(|fitted| fitted.explains);
     let mut found = selected(beside.context, tested)?;
-    let second = found.trial.own.into_iter().map(|own| EffectUnknown {
+    let second = found.fitted.own.into_iter().map(|own| EffectUnknown {
         effect: own.effect + 1,
         ..own
     });
-    found.trial.own = first.own.iter().cloned().chain(second).collect();
-    found.trial.verdict = acceptance_test(round.context.fit, &found.trial.fit, &found.trial.own);
-    let is_believed = found.trial.verdict.is_ok() && round.context.explains_most(&found.trial.fit);
+    found.fitted.own = first.own.iter().cloned().chain(second).collect();
+    found.fitted.verdict = acceptance_test(round.context.fit, &found.fitted.fit, &found.fitted.own);
+    let is_believed =
+        found.fitted.verdict.is_ok() && round.context.explains_most(&found.fitted.fit);
     found.candidates.insert(0, candidate);
     found.equivalent.insert(0, Vec::new());
     is_believed.then_some(found)
 }
 
 /// Whether a single effect leaves clearly less though it is not accepted, and was not held.
-fn is_promising(round: &Round<'_>, trial: &FittedHypothesis) -> bool {
-    let is_free = |own: &EffectUnknown| own.prior.is_none() && !is_held(&trial.fit, own);
-    trial.responses.len() == 1
-        && trial.own.iter().all(is_free)
-        && trial.fit.leaves_clearly_less(round.context.fit)
+fn is_promising(round: &Round<'_>, fitted: &FittedHypothesis) -> bool {
+    let is_free = |own: &EffectUnknown| own.prior.is_none() && !is_held(&fitted.fit, own);
+    fitted.responses.len() == 1
+        && fitted.own.iter().all(is_free)
+        && fitted.fit.leaves_clearly_less(round.context.fit)
 }

@@ -99,7 +99,7 @@ fn note_rejected(rejected: &mut Vec<Rejected>, tested: &TestedPool) {
     let TestedPool {
         candidates,
         screening,
-        trials,
+        fitted_hypotheses,
     } = tested;
     let mut note = |candidate: &Candidate, reason: String, not_testable: bool| {
         rejected.retain(|known: &Rejected| known.candidate.label() != candidate.label());
@@ -114,8 +114,10 @@ fn note_rejected(rejected: &mut Vec<Rejected>, tested: &TestedPool) {
     }
     for (place, response) in screening.responses.iter().enumerate() {
         let candidate = &candidates[response.candidate];
-        let perturbed_responses = trials.iter().find(|trial| trial.responses == [place]);
-        match perturbed_responses.map(|trial| &trial.verdict) {
+        let perturbed_responses = fitted_hypotheses
+            .iter()
+            .find(|fitted| fitted.responses == [place]);
+        match perturbed_responses.map(|fitted| &fitted.verdict) {
             Some(Err(reason)) => note(candidate, reason.to_string(), false),
             Some(Ok(_)) => {}
             None if response.unexplained_fraction <= thresholds::UNEXPLAINED_FRACTION => note(
@@ -137,9 +139,9 @@ fn note_rejected(rejected: &mut Vec<Rejected>, tested: &TestedPool) {
 
 /// Takes what is named over, with the candidates that are indistinguishable from it.
 fn accept(found: &mut Found, selected: Selected) {
-    let (before, best) = (found.best(), selected.trial);
+    let (before, best) = (found.best(), selected.fitted);
     let gap = (before.test.rms, best.fit.test.rms);
-    let evidence = best
+    let statistics = best
         .verdict
         .unwrap_or_else(|_| test_statistics(before, &best.fit, &best.own));
     let accepted = selected.candidates.into_iter().enumerate();
@@ -149,7 +151,7 @@ fn accept(found: &mut Found, selected: Selected) {
             candidate,
             unknowns: own.map(|own| own.place).collect(),
             equivalent: selected.equivalent[number].clone(),
-            evidence: evidence.clone(),
+            statistics: statistics.clone(),
             test_gap: match selected.half {
                 Some((first, between)) if first == number => (gap.0, between),
                 Some((_, between)) => (between, gap.1),

@@ -7,51 +7,51 @@ use crate::search::fitted::{FittedHypothesis, full_fits, preliminary_fits};
 use crate::search::hypothesis::Hypothesis;
 use crate::search::pool::Pool;
 use crate::search::rejection::Rejection;
-use crate::search::screening::Screening;
+use crate::search::screening::{Prediction, Screening};
 use crate::thresholds;
 
 /// Pairs, and pairs in place of a term of the model. `singles`: what was fitted alone.
 pub fn pairs(pool: &Pool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
     // A sensor that runs to the end of what is admitted stands in for something else.
-    let ran_away = |trial: &&FittedHypothesis| {
-        let of = |own: &EffectUnknown| own.prior.is_some() && is_held(&trial.fit, own);
-        trial.own.iter().any(of)
+    let ran_away = |fitted: &&FittedHypothesis| {
+        let of = |own: &EffectUnknown| own.prior.is_some() && is_held(&fitted.fit, own);
+        fitted.own.iter().any(of)
     };
     let away = singles.iter().filter(ran_away);
-    let away: Vec<usize> = away.flat_map(|trial| trial.responses.clone()).collect();
+    let away: Vec<usize> = away.flat_map(|fitted| fitted.responses.clone()).collect();
     let is_there = |response: &usize| !away.contains(response);
-    let ranked: Vec<usize> = pool.ranked().into_iter().filter(is_there).collect();
+    let ranking: Vec<usize> = pool.ranking().into_iter().filter(is_there).collect();
     let mut added = 0;
-    let mut preliminaries = preliminary_fits(pool, best_pairs(pool, &ranked, &away));
-    preliminaries.retain(|(set, _)| {
-        added += usize::from(set.deleted.is_none());
-        set.deleted.is_some() || added <= thresholds::FITS_AT_ONCE
+    let mut preliminaries = preliminary_fits(pool, best_pairs(pool, &ranking, &away));
+    preliminaries.retain(|(hypothesis, _)| {
+        added += usize::from(hypothesis.deleted.is_none());
+        hypothesis.deleted.is_some() || added <= thresholds::FITS_AT_ONCE
     });
-    let mut trials = full_fits(pool, preliminaries);
-    for trial in &mut trials {
-        let mut own = trial.responses.iter();
+    let mut fitted_hypotheses = full_fits(pool, preliminaries);
+    for fitted in &mut fitted_hypotheses {
+        let mut own = fitted.responses.iter();
         let repeats = own.any(|response| pool.candidate(*response).order.is_some());
-        if repeats && trial.verdict.is_ok() && !pool.context.explains_most(&trial.fit) {
-            trial.verdict = Err(Rejection::LeavesMuch);
-            trial.explains = false;
+        if repeats && fitted.verdict.is_ok() && !pool.context.explains_most(&fitted.fit) {
+            fitted.verdict = Err(Rejection::LeavesMuch);
+            fitted.explains = false;
         }
     }
-    trials
+    fitted_hypotheses
 }
 
 /// The pairs that promise to leave clearly less than the best single candidate, and for each term
 /// of the model that may go the pair that takes its place best. Of what repeats with an angle the
 /// best alone are paired, and with something else: of that there is so much that some of it is
 /// lucky.
-fn best_pairs(pool: &Pool<'_>, ranked: &[usize], away: &[usize]) -> Vec<Hypothesis> {
+fn best_pairs(pool: &Pool<'_>, ranking: &[usize], away: &[usize]) -> Vec<Hypothesis> {
     let screening = pool.screening;
-    let best = ranked
+    let best = ranking
         .first()
         .map_or(0.0, |r| screening.responses[*r].decrease);
-    let single = screening.left(&[]).0 - best;
+    let single = screening.predicted(&[]).cost - best;
     // What is nothing alone may be half of a pair: friction of two kinds in place of a third.
     let repeats = |r: &usize| pool.candidate(*r).order.is_some();
-    let repeating: Vec<usize> = (ranked.iter().copied().filter(repeats))
+    let repeating: Vec<usize> = (ranking.iter().copied().filter(repeats))
         .take(thresholds::MOST_FITS)
         .collect();
     let few: Vec<usize> = (0..screening.responses.len())
@@ -70,17 +70,17 @@ fn best_pairs(pool: &Pool<'_>, ranked: &[usize], away: &[usize]) -> Vec<Hypothes
             let others = few[number + 1..].iter();
             for b in others.filter(|b| !never(*a, **b)) {
                 let responses = vec![*a, *b];
-                let (left, sizes) = screening.left(&responses);
+                let Prediction { cost, sizes } = screening.predicted(&responses);
                 // What replaces a term is far from where it was linearised: it is not held
                 // to a promise.
-                let promising = deleted.is_some() || left < thresholds::PAIR_PROMISE * single;
+                let promising = deleted.is_some() || cost < thresholds::PAIR_PROMISE * single;
                 if promising && sizes.iter().all(|v| *v != 0.0) {
-                    let set = Hypothesis {
+                    let hypothesis = Hypothesis {
                         responses,
                         deleted,
                         sizes,
                     };
-                    found.push((left, set));
+                    found.push((cost, hypothesis));
                 }
             }
         }
@@ -92,10 +92,10 @@ fn best_pairs(pool: &Pool<'_>, ranked: &[usize], away: &[usize]) -> Vec<Hypothes
         found
             .into_iter()
             .take(count)
-            .map(|(_, set)| set)
+            .map(|(_, hypothesis)| hypothesis)
             .collect::<Vec<Hypothesis>>()
     };
-    let mut sets = best_of(None, screening);
+    let mut hypotheses = best_of(None, screening);
     for (place, unknown) in pool.context.fit.unknowns.iter().enumerate() {
         let value = pool.context.fit.train.estimate.theta[place];
         let near = unknown
@@ -105,20 +105,20 @@ fn best_pairs(pool: &Pool<'_>, ranked: &[usize], away: &[usize]) -> Vec<Hypothes
             && near
             && let Some(screening) = screening.without(place, value)
         {
-            sets.extend(best_of(Some(place), &screening));
+            hypotheses.extend(best_of(Some(place), &screening));
         }
     }
-    sets
+    hypotheses
 }
 
 /// Pairs that share one half with a pair and whose other half looks like its other, if they
 /// were not fitted yet; the most similar first, at most [`thresholds::FITS_AT_ONCE`].
 pub fn other_halves(
     pool: &Pool<'_>,
-    trials: &[FittedHypothesis],
+    fitted_hypotheses: &[FittedHypothesis],
     pair: usize,
 ) -> Vec<FittedHypothesis> {
-    let [a, b] = trials[pair].responses[..] else {
+    let [a, b] = fitted_hypotheses[pair].responses[..] else {
         return Vec::new();
     };
     let mut found: Vec<(f64, Vec<usize>)> = Vec::new();
@@ -134,23 +134,24 @@ pub fn other_halves(
                 false => 0.0,
             };
             let pair = vec![kept, response];
-            let is_known = |trial: &FittedHypothesis| {
-                trial.responses.len() == 2 && pair.iter().all(|r| trial.responses.contains(r))
+            let is_known = |fitted: &FittedHypothesis| {
+                fitted.responses.len() == 2 && pair.iter().all(|r| fitted.responses.contains(r))
             };
-            if similarity > thresholds::INDISTINGUISHABLE && !trials.iter().any(is_known) {
+            if similarity > thresholds::INDISTINGUISHABLE && !fitted_hypotheses.iter().any(is_known)
+            {
                 found.push((similarity, pair));
             }
         }
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     found.truncate(thresholds::FITS_AT_ONCE);
-    let set = |(_, responses): (f64, Vec<usize>)| Hypothesis {
-        sizes: pool.screening.left(&responses).1,
+    let hypothesis = |(_, responses): (f64, Vec<usize>)| Hypothesis {
+        sizes: pool.screening.predicted(&responses).sizes,
         responses,
         deleted: None,
     };
     full_fits(
         pool,
-        preliminary_fits(pool, found.into_iter().map(set).collect()),
+        preliminary_fits(pool, found.into_iter().map(hypothesis).collect()),
     )
 }

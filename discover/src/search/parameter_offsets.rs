@@ -7,12 +7,12 @@ use crate::model::unknowns::{Unknown, What};
 use crate::search::context::Context;
 use crate::search::pool::Pool;
 use crate::search::screening::screening;
-use crate::search::singles::alike;
+use crate::search::singles::similar;
 use crate::search::tested::TestedPool;
 use crate::thresholds;
 
 /// The parameters of a model that no unknown moves.
-pub fn shifts(fit: &Fit) -> Vec<Candidate> {
+pub fn offsets(fit: &Fit) -> Vec<Candidate> {
     let is_known = |name: &str| {
         let of = |unknown: &Unknown| match &unknown.what {
             What::Parameter(known) | What::Inverse(known) => known == name,
@@ -30,15 +30,15 @@ pub fn shifts(fit: &Fit) -> Vec<Candidate> {
 /// like it, and where what was named is such a parameter: it had all others beside it. The task's
 /// fit is what was fitted before anything was named.
 pub fn beside(context: Context<'_>, selected: &Candidate) -> Option<(TestedPool, usize)> {
-    let shifts = shifts(context.fit);
+    let offsets = offsets(context.fit);
     let is_named =
         |shift: &Candidate| (&shift.effect, &shift.on) == (&selected.effect, &selected.on);
-    if shifts.is_empty() || shifts.iter().any(is_named) {
+    if offsets.is_empty() || offsets.iter().any(is_named) {
         return None;
     }
     (context.progress)(&format!(
         "screening {} parameters of the model beside {}",
-        shifts.len(),
+        offsets.len(),
         selected.label()
     ));
     let is_whole = context.is_whole();
@@ -47,16 +47,16 @@ pub fn beside(context: Context<'_>, selected: &Candidate) -> Option<(TestedPool,
     } else {
         thresholds::FIRST_PART
     };
-    let candidates: Vec<Candidate> = std::iter::once(selected.clone()).chain(shifts).collect();
+    let candidates: Vec<Candidate> = std::iter::once(selected.clone()).chain(offsets).collect();
     let screening = screening(context.problem, context.fit, &candidates, part);
     let own = screening.responses.iter().position(|r| r.candidate == 0)?;
     let pool = Pool::new(context, &candidates, &screening, is_whole);
-    let mut trials = alike(&pool, own);
-    trials.retain(|trial| trial.explains);
+    let mut fitted_hypotheses = similar(&pool, own);
+    fitted_hypotheses.retain(|fitted| fitted.explains);
     let tested = TestedPool {
         candidates,
         screening,
-        trials,
+        fitted_hypotheses,
     };
     Some((tested, own))
 }

@@ -15,7 +15,7 @@ use crate::fit::shooting::Shooting;
 use crate::fit::variable_projection::StateProjection;
 use crate::model::problem::EstimationProblem;
 use crate::model::unknowns::Unknown;
-use crate::search::response::Columns;
+use crate::search::response::CandidateResponse;
 use crate::thresholds;
 
 /// The responses of all candidates. Those of one effect at one place that differ in the order
@@ -25,20 +25,26 @@ pub fn perturbed_responses(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     candidates: &[Candidate],
-) -> Vec<Result<Columns, DiscoverError>> {
-    let alike = |a: &Candidate, b: &Candidate| {
+) -> Vec<Result<CandidateResponse, DiscoverError>> {
+    let similar = |a: &Candidate, b: &Candidate| {
         let angle = |c: &Candidate| c.order.as_ref().map(|(angle, _)| angle.clone());
         a.effect == b.effect && a.on == b.on && angle(a) == angle(b)
     };
-    let groups: Vec<&[Candidate]> = candidates.chunk_by(alike).collect();
-    let found: Vec<Vec<Result<Columns, DiscoverError>>> = groups
+    let groups: Vec<&[Candidate]> = candidates.chunk_by(similar).collect();
+    let found: Vec<Vec<Result<CandidateResponse, DiscoverError>>> = groups
         .par_iter()
         .map(|group| {
             let mut sizes: Vec<f64> = Vec::new();
             let of_group = group.iter().map(|candidate| {
                 let found = response(at, problem, fit, candidate, &sizes);
-                if let Ok((trials, _)) = &found {
-                    sizes = trials.iter().map(|trial| trial.unknown.scale).collect();
+                if let Ok(CandidateResponse {
+                    candidate_unknowns, ..
+                }) = &found
+                {
+                    sizes = candidate_unknowns
+                        .iter()
+                        .map(|candidate_unknown| candidate_unknown.unknown.scale)
+                        .collect();
                 }
                 found
             });
@@ -55,7 +61,7 @@ fn response(
     fit: &Fit,
     candidate: &Candidate,
     sizes: &[f64],
-) -> Result<Columns, DiscoverError> {
+) -> Result<CandidateResponse, DiscoverError> {
     let LinearisedFit {
         places,
         base,
@@ -70,19 +76,19 @@ fn response(
         .collect();
     let texts = candidate.added(problem, &fit.texts, &start)?;
     let plant = problem.plant(&texts.whole, Some(&texts.linear))?;
-    let mut trials: Vec<CandidateUnknown> = candidate
+    let mut candidate_unknowns: Vec<CandidateUnknown> = candidate
         .parameters
         .iter()
         .map(CandidateUnknown::of)
         .collect();
-    for (trial, size) in trials.iter_mut().zip(sizes) {
-        trial.unknown.scale = *size;
+    for (candidate_unknown, size) in candidate_unknowns.iter_mut().zip(sizes) {
+        candidate_unknown.unknown.scale = *size;
     }
     let extended: Vec<Unknown> = fit
         .unknowns
         .iter()
         .cloned()
-        .chain(trials.iter().map(|t| t.unknown.clone()))
+        .chain(candidate_unknowns.iter().map(|t| t.unknown.clone()))
         .collect();
     let ranges = fit.mapped(&plant, &fit.ranges);
     let whole = Shooting::new(problem, &plant, &problem.train, &extended, &ranges);
@@ -92,19 +98,23 @@ fn response(
     };
     let nuisances = fit.unknowns.len();
     let mut columns = vec![Vec::new(); places.len()];
-    for place in 0..trials.len() {
-        if trials[place].is_shape {
+    for place in 0..candidate_unknowns.len() {
+        if candidate_unknowns[place].is_shape {
             continue;
         }
         let theta = |size: f64| {
             let mut theta = estimate.theta.clone();
-            theta.extend(trials.iter().map(|trial| trial.unknown.start));
-            theta[nuisances + place] = trials[place].base + size;
+            theta.extend(
+                candidate_unknowns
+                    .iter()
+                    .map(|candidate_unknown| candidate_unknown.unknown.start),
+            );
+            theta[nuisances + place] = candidate_unknowns[place].base + size;
             theta
         };
         // The size is found on the first, the middle and the last of the windows.
         let few = [0, places.len() / 2, places.len() - 1];
-        let size = trial_size(trials[place].unknown.scale, *level, |size| {
+        let size = trial_size(candidate_unknowns[place].unknown.scale, *level, |size| {
             let changes = changes(
                 &shooting,
                 (fit, estimate),
@@ -124,13 +134,16 @@ fn response(
         for (window, change) in columns.iter_mut().zip(changes) {
             window.push(change / size);
         }
-        trials[place].unknown.scale = size;
+        candidate_unknowns[place].unknown.scale = size;
     }
     let blocks = columns.iter().map(|columns| {
         let rows = columns.first().map_or(0, |c: &DVector<f64>| c.len());
         DMatrix::from_fn(rows, columns.len(), |r, c| columns[c][r])
     });
-    Ok((trials, blocks.collect()))
+    Ok(CandidateResponse {
+        candidate_unknowns,
+        blocks: blocks.collect(),
+    })
 }
 
 /// Changes of the residuals in some windows; none if a motion cannot be followed.

@@ -41,9 +41,9 @@ impl<'r> Pool<'r> {
     }
 
     /// Candidates that promise enough, the best first.
-    pub fn ranked(&self) -> Vec<usize> {
+    pub fn ranking(&self) -> Vec<usize> {
         let screening = self.screening;
-        let alone = screening.left(&[]).0;
+        let alone = screening.predicted(&[]).cost;
         let promise =
             match alone > thresholds::MUCH_IS_LEFT * thresholds::MUCH_IS_LEFT * screening.numbers {
                 true => thresholds::PROMISE_FAR,
@@ -52,15 +52,15 @@ impl<'r> Pool<'r> {
         let enough = |r: &usize| {
             let response = &screening.responses[*r];
             // What a nuisance gains without its prior, the others did not do within theirs.
-            let is_own = response.released.is_some()
+            let is_own = response.dropped_prior.is_some()
                 || response.unexplained_fraction > thresholds::UNEXPLAINED_FRACTION
                 || response.decrease > thresholds::ENOUGH * alone;
             is_own && response.decrease > promise * alone
         };
-        let mut ranked: Vec<usize> = (0..screening.responses.len()).filter(enough).collect();
+        let mut ranking: Vec<usize> = (0..screening.responses.len()).filter(enough).collect();
         let decrease = |r: &usize| screening.responses[*r].decrease;
-        ranked.sort_by(|a, b| decrease(b).total_cmp(&decrease(a)));
-        ranked
+        ranking.sort_by(|a, b| decrease(b).total_cmp(&decrease(a)));
+        ranking
     }
 
     /// The candidate of a response.

@@ -4,5 +4,12 @@ use nalgebra::DMatrix;
 
 use crate::catalogue::candidate_unknown::CandidateUnknown;
 
-/// A candidate's parameters, and for each window a column per parameter that scales it.
-pub type Columns = (Vec<CandidateUnknown>, Vec<DMatrix<f64>>);
+/// What a candidate does.
+#[derive(Clone, Debug)]
+pub struct CandidateResponse {
+    /// Its parameters.
+    pub candidate_unknowns: Vec<CandidateUnknown>,
+    /// For each window a column per parameter that scales it, in standard deviations of the noise
+    /// per SI unit.
+    pub blocks: Vec<DMatrix<f64>>,
+}

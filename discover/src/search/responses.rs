@@ -8,7 +8,7 @@ use crate::fit::fitted::Fit;
 use crate::fit::linearised::LinearisedFit;
 use crate::model::problem::EstimationProblem;
 use crate::search::perturbed_response::perturbed_responses;
-use crate::search::response::Columns;
+use crate::search::response::CandidateResponse;
 use crate::search::variational_response::variational_responses;
 
 /// The responses of all candidates.
@@ -17,7 +17,7 @@ pub fn responses(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     candidates: &[Candidate],
-) -> Vec<Result<Columns, DiscoverError>> {
+) -> Vec<Result<CandidateResponse, DiscoverError>> {
     let mut found = variational_responses(at, problem, fit, candidates);
     let rest: Vec<usize> = (0..candidates.len())
         .filter(|place| found[*place].is_none())

@@ -8,11 +8,11 @@ use crate::catalogue::sites::sites;
 use crate::fit::fitted::Fit;
 use crate::model::usual_rates::usual_rates;
 use crate::search::context::Context;
-use crate::search::dropped_priors::released;
+use crate::search::dropped_priors::dropped_prior;
 use crate::search::excitation_window::{ExcitationWindow, without_play};
 use crate::search::fitted::FittedHypothesis;
 use crate::search::pairs::pairs;
-use crate::search::parameter_offsets::shifts;
+use crate::search::parameter_offsets::offsets;
 use crate::search::pool::Pool;
 use crate::search::screening::{Screening, screening};
 use crate::search::singles::singles;
@@ -39,14 +39,14 @@ impl Round<'_> {
             if *window == ExcitationWindow::BacklashRemoved {
                 // Without play everything but teeth is seen worse: it is for what nothing else
                 // explains.
-                if is_any(&tested, &|trial| trial.verdict.is_ok()) {
+                if is_any(&tested, &|fitted| fitted.verdict.is_ok()) {
                     continue;
                 }
                 // Teeth are fitted slowly: a parameter that explains all saves that.
                 if self.is_first && !self.context.is_near() {
-                    tested.push(self.shifts());
+                    tested.push(self.offsets());
                     has_shifts = true;
-                    if is_any(&tested, &|trial| self.is_enough(trial)) {
+                    if is_any(&tested, &|fitted| self.is_enough(fitted)) {
                         break;
                     }
                 }
@@ -59,22 +59,22 @@ impl Round<'_> {
             seen.push(*window);
             // Near the floor another look is quick, and what is nearly as good may be the answer.
             let is_done = match self.context.is_near() {
-                true => is_any(&tested, &|trial| self.is_enough(trial)),
-                false => is_any(&tested, &|trial| self.is_close(trial)),
+                true => is_any(&tested, &|fitted| self.is_enough(fitted)),
+                false => is_any(&tested, &|fitted| self.is_close(fitted)),
             };
             if is_done {
                 break;
             }
         }
-        if !is_any(&tested, &|trial| self.is_enough(trial)) {
+        if !is_any(&tested, &|fitted| self.is_enough(fitted)) {
             self.add_pairs(&seen, &mut tested);
         }
-        let is_open = match is_any(&tested, &|trial| trial.verdict.is_ok()) {
-            true => self.is_first && !is_any(&tested, &|trial| self.is_close(trial)),
+        let is_open = match is_any(&tested, &|fitted| fitted.verdict.is_ok()) {
+            true => self.is_first && !is_any(&tested, &|fitted| self.is_close(fitted)),
             false => self.is_first || !self.context.is_near(),
         };
         if is_open && !has_shifts {
-            tested.push(self.shifts());
+            tested.push(self.offsets());
             has_shifts = true;
         }
         if has_shifts {
@@ -106,13 +106,13 @@ impl Round<'_> {
     }
 
     /// Whether a fitted hypothesis is accepted and leaves little.
-    fn is_close(&self, trial: &FittedHypothesis) -> bool {
-        trial.verdict.is_ok() && self.context.explains_most(&trial.fit)
+    fn is_close(&self, fitted: &FittedHypothesis) -> bool {
+        fitted.verdict.is_ok() && self.context.explains_most(&fitted.fit)
     }
 
     /// Whether a fitted hypothesis is accepted and leaves no more than a right model would.
-    fn is_enough(&self, trial: &FittedHypothesis) -> bool {
-        trial.verdict.is_ok() && trial.fit.is_at_floor(self.context.floor)
+    fn is_enough(&self, fitted: &FittedHypothesis) -> bool {
+        fitted.verdict.is_ok() && fitted.fit.is_at_floor(self.context.floor)
     }
 
     /// Candidates screened in an excitation window and fitted one by one: what repeats with an
@@ -132,14 +132,15 @@ impl Round<'_> {
         let (mut candidates, repeating) = self.candidates(fit, window);
         (self.context.progress)(&format!("screening {} candidates", candidates.len()));
         let screened = screening(self.context.problem, fit, &candidates, window.part());
-        let (mut from, mut trials) = (0, Vec::new());
+        let (mut from, mut fitted_hypotheses) = (0, Vec::new());
         if repeating.is_empty() || self.promises_enough(&screened) {
-            trials = singles(&self.begun(window, &candidates, &screened), 0);
-            if repeating.is_empty() || trials.iter().any(|trial| self.is_close(trial)) {
+            fitted_hypotheses = singles(&self.pool_in(window, &candidates, &screened), 0);
+            if repeating.is_empty() || fitted_hypotheses.iter().any(|fitted| self.is_close(fitted))
+            {
                 return Some(TestedPool {
                     candidates,
                     screening: screened,
-                    trials,
+                    fitted_hypotheses,
                 });
             }
             from = candidates.len();
@@ -151,16 +152,16 @@ impl Round<'_> {
         // Behind the others, so that what was fitted keeps its place.
         candidates.extend(repeating);
         let screened = screening(self.context.problem, fit, &candidates, window.part());
-        trials.extend(singles(&self.begun(window, &candidates, &screened), from));
+        fitted_hypotheses.extend(singles(&self.pool_in(window, &candidates, &screened), from));
         Some(TestedPool {
             candidates,
             screening: screened,
-            trials,
+            fitted_hypotheses,
         })
     }
 
     /// Fits of candidates in an excitation window.
-    fn begun<'r>(
+    fn pool_in<'r>(
         &'r self,
         window: ExcitationWindow,
         candidates: &'r [Candidate],
@@ -186,35 +187,38 @@ impl Round<'_> {
     /// Adds pairs, excitation window after excitation window until some are accepted.
     fn add_pairs(&self, seen: &[ExcitationWindow], tested: &mut [TestedPool]) {
         for (window, tested) in seen.iter().zip(tested) {
-            let pool = self.begun(*window, &tested.candidates, &tested.screening);
-            let pairs = pairs(&pool, &tested.trials);
-            let trials = &mut tested.trials;
-            trials.extend(pairs);
-            if trials.iter().any(|trial| trial.verdict.is_ok()) {
+            let pool = self.pool_in(*window, &tested.candidates, &tested.screening);
+            let pairs = pairs(&pool, &tested.fitted_hypotheses);
+            let fitted_hypotheses = &mut tested.fitted_hypotheses;
+            fitted_hypotheses.extend(pairs);
+            if fitted_hypotheses
+                .iter()
+                .any(|fitted| fitted.verdict.is_ok())
+            {
                 break;
             }
         }
     }
 
     /// Parameters that nobody called uncertain.
-    fn shifts(&self) -> TestedPool {
-        let shifts = shifts(self.context.fit);
+    fn offsets(&self) -> TestedPool {
+        let offsets = offsets(self.context.fit);
         (self.context.progress)(&format!(
             "screening {} parameters of the model",
-            shifts.len()
+            offsets.len()
         ));
         let window = self.windows()[0];
         let screening = screening(
             self.context.problem,
             self.context.fit,
-            &shifts,
+            &offsets,
             window.part(),
         );
-        let trials = singles(&self.begun(window, &shifts, &screening), 0);
+        let fitted_hypotheses = singles(&self.pool_in(window, &offsets, &screening), 0);
         TestedPool {
-            candidates: shifts,
+            candidates: offsets,
             screening,
-            trials,
+            fitted_hypotheses,
         }
     }
 
@@ -233,7 +237,7 @@ impl Round<'_> {
             &sites(model),
             &usual_rates(problem.dataset, model),
         );
-        all.extend(released(problem, fit));
+        all.extend(dropped_prior(problem, fit));
         all.retain(|c| (c.order.is_none() || c.on_mesh != has_play) && (has_play || c.on_mesh));
         all.into_iter()
             .partition(|c| c.order.is_none() || !has_play)
@@ -247,24 +251,26 @@ impl Round<'_> {
             .map(|r| r.decrease)
             .fold(0.0, f64::max);
         let floor = self.context.floor * self.context.floor * screening.numbers;
-        best > thresholds::ENOUGH * (screening.left(&[]).0 - floor)
+        best > thresholds::ENOUGH * (screening.predicted(&[]).cost - floor)
     }
 }
 
 /// What nobody doubts, which stands last, is off only if nothing else that is accepted comes near.
 fn keep_clear(tested: &mut [TestedPool]) {
-    let Some((shifts, tested)) = tested.split_last_mut() else {
+    let Some((offsets, tested)) = tested.split_last_mut() else {
         return;
     };
-    let others = tested.iter().flat_map(|tested| &tested.trials);
-    let others: Vec<&FittedHypothesis> = others.filter(|trial| trial.verdict.is_ok()).collect();
-    shifts.trials.retain(|trial| {
-        let is_clear = |other: &&FittedHypothesis| trial.fit.leaves_clearly_less(&other.fit);
-        trial.verdict.is_err() || others.iter().all(is_clear)
+    let others = tested.iter().flat_map(|tested| &tested.fitted_hypotheses);
+    let others: Vec<&FittedHypothesis> = others.filter(|fitted| fitted.verdict.is_ok()).collect();
+    offsets.fitted_hypotheses.retain(|fitted| {
+        let is_clear = |other: &&FittedHypothesis| fitted.fit.leaves_clearly_less(&other.fit);
+        fitted.verdict.is_err() || others.iter().all(is_clear)
     });
 }
 
 /// Whether any fitted hypothesis is such.
 fn is_any(tested: &[TestedPool], is: &dyn Fn(&FittedHypothesis) -> bool) -> bool {
-    tested.iter().any(|tested| tested.trials.iter().any(is))
+    tested
+        .iter()
+        .any(|tested| tested.fitted_hypotheses.iter().any(is))
 }

@@ -14,6 +14,7 @@ use crate::fit::fitted::Fit;
 use crate::fit::linearised::{Base, LinearisedFit};
 use crate::fit::variable_projection::add_prior;
 use crate::model::problem::EstimationProblem;
+use crate::search::response::CandidateResponse;
 use crate::search::responses::responses;
 use crate::thresholds;
 
@@ -23,17 +24,26 @@ pub struct ScreenedResponse {
     /// The candidate's place in the list.
     pub candidate: usize,
     /// Its unknowns.
-    pub trials: Vec<CandidateUnknown>,
+    pub candidate_unknowns: Vec<CandidateUnknown>,
     /// Where its columns stand.
     columns: std::ops::Range<usize>,
     /// The nuisance that gives up its prior, if that is the effect.
-    pub released: Option<usize>,
+    pub dropped_prior: Option<usize>,
     /// The part of what it does that initial states and nuisances cannot do as well.
     pub unexplained_fraction: f64,
     /// How much it lowers the sum of squares alone, in squared standard deviations.
     pub decrease: f64,
     /// The size at which it does.
     pub values: Vec<f64>,
+}
+
+/// What a set of responses comes to by a straight line.
+#[derive(Clone, Debug)]
+pub struct Prediction {
+    /// The sum of squares that is left, in squared standard deviations, with what priors add.
+    pub cost: f64,
+    /// How far each parameter is from where its effect is absent, in order, SI.
+    pub sizes: Vec<f64>,
 }
 
 /// All responses.
@@ -64,7 +74,7 @@ pub fn screening(
 ) -> Screening {
     let at = LinearisedFit::of(problem, fit, part);
     let (base, places, estimate) = (&at.base, &at.places, &at.estimate);
-    let own: Vec<Candidate> = (candidates.iter().filter(|c| c.released.is_none()))
+    let own: Vec<Candidate> = (candidates.iter().filter(|c| c.dropped_prior.is_none()))
         .cloned()
         .collect();
     let mut found = responses(&at, problem, fit, &own).into_iter();
@@ -76,24 +86,31 @@ pub fn screening(
     for (candidate, of) in candidates.iter().enumerate() {
         let mut response = ScreenedResponse {
             candidate,
-            trials: Vec::new(),
+            candidate_unknowns: Vec::new(),
             columns: columns..columns,
-            released: None,
+            dropped_prior: None,
             unexplained_fraction: 0.0,
             decrease: 0.0,
             values: Vec::new(),
         };
-        if let Some(what) = &of.released {
-            response.released = (fit.unknowns.iter()).position(|unknown| unknown.what == *what);
+        if let Some(what) = &of.dropped_prior {
+            response.dropped_prior =
+                (fit.unknowns.iter()).position(|unknown| unknown.what == *what);
             responses.push(response);
             continue;
         }
         match found.next() {
-            Some(Ok((trials, block))) => {
-                let scaling = trials.iter().filter(|trial| !trial.is_shape).count();
+            Some(Ok(CandidateResponse {
+                candidate_unknowns,
+                blocks: block,
+            })) => {
+                let scaling = candidate_unknowns
+                    .iter()
+                    .filter(|candidate_unknown| !candidate_unknown.is_shape)
+                    .count();
                 columns += scaling;
                 response.columns.end = columns;
-                response.trials = trials;
+                response.candidate_unknowns = candidate_unknowns;
                 responses.push(response);
                 blocks.push(block);
             }
@@ -114,10 +131,13 @@ pub fn screening(
         priors.push(prior);
     }
     for response in &responses {
-        let scaling = response.trials.iter().filter(|trial| !trial.is_shape);
-        bounds.extend(scaling.map(|trial| {
-            let (low, high) = trial.unknown.bounds;
-            (low - trial.base, high - trial.base)
+        let scaling = response
+            .candidate_unknowns
+            .iter()
+            .filter(|candidate_unknown| !candidate_unknown.is_shape);
+        bounds.extend(scaling.map(|candidate_unknown| {
+            let (low, high) = candidate_unknown.unknown.bounds;
+            (low - candidate_unknown.base, high - candidate_unknown.base)
         }));
     }
     let mut screening = Screening {
@@ -166,12 +186,15 @@ fn products(
 impl Screening {
     /// How well each candidate does alone.
     fn acceptance_test(&mut self) {
-        let alone = self.left(&[]).0;
+        let alone = self.predicted(&[]).cost;
         for place in 0..self.responses.len() {
-            let (left, values) = self.left(&[place]);
+            let Prediction {
+                cost,
+                sizes: values,
+            } = self.predicted(&[place]);
             let unexplained_fraction = self.unexplained_fraction(place);
             let response = &mut self.responses[place];
-            response.decrease = alone - left;
+            response.decrease = alone - cost;
             response.values = values;
             response.unexplained_fraction = unexplained_fraction;
         }
@@ -179,9 +202,9 @@ impl Screening {
 
     /// The products once the nuisances that these responses release have no priors, and those
     /// nuisances.
-    fn released(&self, set: &[usize]) -> (Cow<'_, DMatrix<f64>>, Vec<usize>) {
+    fn dropped_prior(&self, set: &[usize]) -> (Cow<'_, DMatrix<f64>>, Vec<usize>) {
         let places: Vec<usize> = (set.iter())
-            .filter_map(|response| self.responses[*response].released)
+            .filter_map(|response| self.responses[*response].dropped_prior)
             .collect();
         let mut products = Cow::Borrowed(&self.products);
         for place in &places {
@@ -193,18 +216,18 @@ impl Screening {
 
     /// The sum of squares that a set of responses leaves, and their sizes in order: how far
     /// each is from absent.
-    pub fn left(&self, set: &[usize]) -> (f64, Vec<f64>) {
+    pub fn predicted(&self, set: &[usize]) -> Prediction {
         let mut places: Vec<usize> = (0..self.nuisances).collect();
         for response in set {
             places.extend(self.responses[*response].columns.clone());
         }
-        let (products, released) = self.released(set);
+        let (products, dropped_prior) = self.dropped_prior(set);
         let last = products.ncols() - 1;
         let (a, b) = system(&products, &places);
         let bounds: Vec<(f64, f64)> = places
             .iter()
             .map(|place| {
-                let (low, high) = match released.contains(place) {
+                let (low, high) = match dropped_prior.contains(place) {
                     true => self.limits[*place],
                     false => self.bounds[*place],
                 };
@@ -212,11 +235,11 @@ impl Screening {
             })
             .collect();
         let x = least_squares(&a, &b, &bounds);
-        let left = (&a * &x - &b).norm_squared() - b.norm_squared() + products[(last, last)];
+        let cost = (&a * &x - &b).norm_squared() - b.norm_squared() + products[(last, last)];
         let mut added = x.iter().skip(self.nuisances);
         let sizes = set.iter().flat_map(|response| {
             let response = &self.responses[*response];
-            match response.released {
+            match response.dropped_prior {
                 Some(place) => vec![x[place]],
                 None => added
                     .by_ref()
@@ -226,7 +249,7 @@ impl Screening {
             }
         });
         let sizes = sizes.collect();
-        (left, sizes)
+        Prediction { cost, sizes }
     }
 
     /// The same with a parameter of the model set to 0, its term deleted; none where that is
@@ -266,10 +289,10 @@ impl Screening {
 
     /// The part of a response's square that the nuisances cannot do as well.
     fn unexplained_fraction(&self, place: usize) -> f64 {
-        let (products, released) = self.released(&[place]);
+        let (products, dropped_prior) = self.dropped_prior(&[place]);
         let direction = self.direction(&products, place);
         let own = product(&products, &direction, &direction);
-        let rest = self.without_nuisances((&products, &released), &direction, &direction);
+        let rest = self.without_nuisances((&products, &dropped_prior), &direction, &direction);
         if own > 0.0 {
             (rest / own).max(0.0)
         } else {
@@ -280,7 +303,7 @@ impl Screening {
     /// Where a response's columns stand, if only as those of a nuisance that it drops the prior of.
     fn columns(&self, place: usize) -> std::ops::Range<usize> {
         let response = &self.responses[place];
-        match response.released {
+        match response.dropped_prior {
             Some(place) => place..place + 1,
             None => response.columns.clone(),
         }
@@ -305,12 +328,12 @@ impl Screening {
     /// out.
     fn without_nuisances(
         &self,
-        (products, released): (&DMatrix<f64>, &[usize]),
+        (products, dropped_prior): (&DMatrix<f64>, &[usize]),
         a: &DVector<f64>,
         b: &DVector<f64>,
     ) -> f64 {
         let places: Vec<usize> = (0..self.nuisances)
-            .filter(|p| !released.contains(p))
+            .filter(|p| !dropped_prior.contains(p))
             .collect();
         let n = places.len();
         let whole = product(products, a, b);
@@ -329,8 +352,8 @@ impl Screening {
     /// either can do what the other does. One of several parameters can do what one of few does
     /// even where its own best size is another.
     pub fn similarity(&self, a: usize, b: usize) -> f64 {
-        let (products, released) = self.released(&[a, b]);
-        let at = (&*products, &released[..]);
+        let (products, dropped_prior) = self.dropped_prior(&[a, b]);
+        let at = (&*products, &dropped_prior[..]);
         self.done_by(at, a, b).max(self.done_by(at, b, a))
     }
 
@@ -405,9 +428,9 @@ mod tests {
             |(candidate, (columns, values)): (usize, &(std::ops::Range<usize>, &[f64]))| {
                 ScreenedResponse {
                     candidate,
-                    trials: Vec::new(),
+                    candidate_unknowns: Vec::new(),
                     columns: columns.clone(),
-                    released: None,
+                    dropped_prior: None,
                     unexplained_fraction: 1.0,
                     decrease: 0.0,
                     values: values.to_vec(),

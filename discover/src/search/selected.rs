@@ -20,7 +20,7 @@ pub struct Selected {
     /// Its candidates, in the order of its responses.
     pub candidates: Vec<Candidate>,
     /// The fitted hypothesis.
-    pub trial: FittedHypothesis,
+    pub fitted: FittedHypothesis,
     /// What is indistinguishable from each of them.
     pub equivalent: Vec<Vec<Candidate>>,
     /// Of a pair the half that was accepted alone, by its number, and the test gap that it left.
@@ -35,35 +35,35 @@ pub fn selected(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
     let [candidate] = &selected.candidates[..] else {
         return Some(selected);
     };
-    let with = (candidate, &selected.trial.fit);
+    let with = (candidate, &selected.fitted.fit);
     let Some((tested, own)) = parameter_offsets::beside(context, candidate) else {
         return Some(selected);
     };
     let TestedPool {
         candidates,
         screening,
-        trials,
+        fitted_hypotheses,
     } = tested;
-    let (better, others): (Vec<FittedHypothesis>, Vec<FittedHypothesis>) = trials
+    let (better, others): (Vec<FittedHypothesis>, Vec<FittedHypothesis>) = fitted_hypotheses
         .into_iter()
-        .partition(|trial| trial.verdict.is_ok() && is_clearly_better(&trial.fit, with.1));
+        .partition(|fitted| fitted.verdict.is_ok() && is_clearly_better(&fitted.fit, with.1));
     if !better.is_empty() {
         return best(TestedPool {
             candidates,
             screening,
-            trials: better,
+            fitted_hypotheses: better,
         });
     }
     let of =
-        |trial: &FittedHypothesis| &candidates[screening.responses[trial.responses[0]].candidate];
-    let indistinguishable = others.iter().filter(|trial| {
+        |fitted: &FittedHypothesis| &candidates[screening.responses[fitted.responses[0]].candidate];
+    let indistinguishable = others.iter().filter(|fitted| {
         is_indistinguishable(
             with.1,
-            &trial.fit,
-            screening.similarity(own, trial.responses[0]),
+            &fitted.fit,
+            screening.similarity(own, fitted.responses[0]),
         )
     });
-    let undeclared: Vec<Candidate> = indistinguishable.map(|trial| of(trial).clone()).collect();
+    let undeclared: Vec<Candidate> = indistinguishable.map(|fitted| of(fitted).clone()).collect();
     let equivalent = [&selected.equivalent[0][..], &undeclared].concat();
     Some(Selected {
         equivalent: vec![equivalent],
@@ -77,18 +77,18 @@ fn with_other_halves(context: Context<'_>, tested: TestedPool) -> TestedPool {
     let TestedPool {
         candidates,
         screening,
-        mut trials,
+        mut fitted_hypotheses,
     } = tested;
     let pool = Pool::new(context, &candidates, &screening, context.is_whole());
-    if let Some(best) = best_of(&trials) {
-        let mut further = other_halves(&pool, &trials, best);
-        further.retain(|trial| trial.explains);
-        trials.extend(further);
+    if let Some(best) = best_of(&fitted_hypotheses) {
+        let mut further = other_halves(&pool, &fitted_hypotheses, best);
+        further.retain(|fitted| fitted.explains);
+        fitted_hypotheses.extend(further);
     }
     TestedPool {
         candidates,
         screening,
-        trials,
+        fitted_hypotheses,
     }
 }
 
@@ -99,11 +99,11 @@ fn best(tested: TestedPool) -> Option<Selected> {
     let TestedPool {
         candidates,
         screening,
-        mut trials,
+        mut fitted_hypotheses,
     } = tested;
-    let least = best_of(&trials)?;
+    let least = best_of(&fitted_hypotheses)?;
     let is_simpler = |place: &usize| {
-        let (other, least) = (&trials[*place], &trials[least]);
+        let (other, least) = (&fitted_hypotheses[*place], &fitted_hypotheses[least]);
         let is_less_off = match (off(other), off(least)) {
             (Some(other), Some(least)) => other < least,
             _ => false,
@@ -112,24 +112,24 @@ fn best(tested: TestedPool) -> Option<Selected> {
             && other.verdict.is_ok()
             && indistinguishable_half(least, other, &screening).is_some()
     };
-    let simpler = (0..trials.len()).filter(is_simpler);
+    let simpler = (0..fitted_hypotheses.len()).filter(is_simpler);
     let order = |place: &usize| {
         (
-            trials[*place].own.len(),
-            off(&trials[*place]).unwrap_or(0.0),
+            fitted_hypotheses[*place].own.len(),
+            off(&fitted_hypotheses[*place]).unwrap_or(0.0),
         )
     };
     let best = simpler
         .min_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(Ordering::Equal))
         .unwrap_or(least);
-    let trial = trials.remove(best);
+    let fitted = fitted_hypotheses.remove(best);
     let candidate = |response: usize| &candidates[screening.responses[response].candidate];
-    let own: Vec<Candidate> = (trial.responses.iter())
+    let own: Vec<Candidate> = (fitted.responses.iter())
         .map(|response| candidate(*response).clone())
         .collect();
     let mut equivalent = vec![Vec::new(); own.len()];
-    for other in &trials {
-        let Some((half, response)) = indistinguishable_half(&trial, other, &screening) else {
+    for other in &fitted_hypotheses {
+        let Some((half, response)) = indistinguishable_half(&fitted, other, &screening) else {
             continue;
         };
         let (other, own) = (candidate(response), &own[half]);
@@ -139,34 +139,37 @@ fn best(tested: TestedPool) -> Option<Selected> {
     }
     Some(Selected {
         equivalent,
-        half: half_way(&trial, &trials),
+        half: half_way(&fitted, &fitted_hypotheses),
         candidates: own,
-        trial,
+        fitted,
     })
 }
 
 /// How far off what was declared is, in standard deviations of its prior; none if something was
 /// not.
-fn off(trial: &FittedHypothesis) -> Option<f64> {
-    let theta = &trial.fit.train.estimate.theta;
+fn off(fitted: &FittedHypothesis) -> Option<f64> {
+    let theta = &fitted.fit.train.estimate.theta;
     let of = |own: &EffectUnknown| Some((theta[own.place] - own.base).abs() / own.prior?);
-    let all: Option<Vec<f64>> = trial.own.iter().map(of).collect();
+    let all: Option<Vec<f64>> = fitted.own.iter().map(of).collect();
     all.map(|all| all.into_iter().fold(0.0, f64::max))
 }
 
 /// The accepted hypothesis that leaves least; a pair only if it leaves clearly less than the best
 /// single effect.
-pub fn best_of(trials: &[FittedHypothesis]) -> Option<usize> {
-    let left = |place: &usize| trials[*place].fit.rms();
+pub fn best_of(fitted_hypotheses: &[FittedHypothesis]) -> Option<usize> {
+    let left = |place: &usize| fitted_hypotheses[*place].fit.rms();
     let least = |count: fn(usize) -> bool| {
         let is_such =
-            |trial: &FittedHypothesis| trial.verdict.is_ok() && count(trial.responses.len());
-        let places = (0..trials.len()).filter(|place| is_such(&trials[*place]));
+            |fitted: &FittedHypothesis| fitted.verdict.is_ok() && count(fitted.responses.len());
+        let places =
+            (0..fitted_hypotheses.len()).filter(|place| is_such(&fitted_hypotheses[*place]));
         places.min_by(|a, b| left(a).total_cmp(&left(b)))
     };
     match (least(|n| n == 1), least(|n| n > 1)) {
         (Some(single), Some(pair)) => {
-            let is_clear = trials[pair].fit.leaves_clearly_less(&trials[single].fit);
+            let is_clear = fitted_hypotheses[pair]
+                .fit
+                .leaves_clearly_less(&fitted_hypotheses[single].fit);
             Some(if is_clear { pair } else { single })
         }
         (one, two) => one.or(two),
@@ -176,32 +179,32 @@ pub fn best_of(trials: &[FittedHypothesis]) -> Option<usize> {
 /// Whether a fit leaves clearly less than another: on both sets of records, or of the test records
 /// for certain and of the training records no more, where the other's further unknowns help it.
 fn is_clearly_better(one: &Fit, other: &Fit) -> bool {
-    let told = test_statistics(other, one, &[]);
-    let is_certain =
-        told.held_out > thresholds::HELD_OUT && told.held_out_errors > thresholds::STANDARD_ERRORS;
+    let statistics = test_statistics(other, one, &[]);
+    let is_certain = statistics.held_out > thresholds::HELD_OUT
+        && statistics.held_out_errors > thresholds::STANDARD_ERRORS;
     one.leaves_clearly_less(other) || (is_certain && one.train.rms < other.train.rms)
 }
 
 /// What of a hypothesis the records do not distinguish from another's, if that is as large and
 /// differs in nothing else: its number, and the other's response.
 fn indistinguishable_half(
-    trial: &FittedHypothesis,
+    fitted: &FittedHypothesis,
     other: &FittedHypothesis,
     screening: &Screening,
 ) -> Option<(usize, usize)> {
-    if trial.responses.len() != other.responses.len() {
+    if fitted.responses.len() != other.responses.len() {
         return None;
     }
     let differ = |a: &[usize], b: &[usize]| a.iter().position(|response| !b.contains(response));
-    let half = differ(&trial.responses, &other.responses)?;
-    let response = other.responses[differ(&other.responses, &trial.responses)?];
-    let shared = trial
+    let half = differ(&fitted.responses, &other.responses)?;
+    let response = other.responses[differ(&other.responses, &fitted.responses)?];
+    let shared = fitted
         .responses
         .iter()
         .filter(|own| other.responses.contains(own));
-    let is_rest = shared.count() + 1 == trial.responses.len();
-    let similarity = screening.similarity(trial.responses[half], response);
-    (is_rest && is_indistinguishable(&trial.fit, &other.fit, similarity))
+    let is_rest = shared.count() + 1 == fitted.responses.len();
+    let similarity = screening.similarity(fitted.responses[half], response);
+    (is_rest && is_indistinguishable(&fitted.fit, &other.fit, similarity))
         .then_some((half, response))
 }
 
@@ -209,14 +212,14 @@ fn indistinguishable_half(
 /// similar, and so is what the fits leave of the test records; and, but for two names of one thing,
 /// the other explains the training records as well.
 fn is_indistinguishable(one: &Fit, other: &Fit, similarity: f64) -> bool {
-    let told = test_statistics(one, other, &[]);
-    let (part, errors) = (told.held_out.abs(), told.held_out_errors);
+    let statistics = test_statistics(one, other, &[]);
+    let (part, errors) = (statistics.held_out.abs(), statistics.held_out_errors);
     // Fits that leave the same to the last digit have no error to be judged by.
     let as_good = errors.is_nan()
         || errors.abs() < thresholds::STANDARD_ERRORS
         || part < thresholds::DISTINGUISHED;
     let is_told = other.train.rms > (1.0 + thresholds::DISTINGUISHED) * one.train.rms
-        && told.information < -thresholds::INFORMATION;
+        && statistics.information < -thresholds::INFORMATION;
     let is_same = similarity > thresholds::SAME && part < thresholds::HELD_OUT;
     similarity > thresholds::INDISTINGUISHABLE && (is_same || (as_good && !is_told))
 }
@@ -226,13 +229,15 @@ fn half_way(best: &FittedHypothesis, others: &[FittedHypothesis]) -> Option<(usi
     if best.responses.len() < 2 {
         return None;
     }
-    let halves = others.iter().filter_map(|trial| match trial.responses[..] {
-        [response] if trial.verdict.is_ok() => {
-            let half = best.responses.iter().position(|own| *own == response)?;
-            Some((half, trial))
-        }
-        _ => None,
-    });
-    let (half, trial) = halves.min_by(|a, b| a.1.fit.rms().total_cmp(&b.1.fit.rms()))?;
-    Some((half, trial.fit.test.rms))
+    let halves = others
+        .iter()
+        .filter_map(|fitted| match fitted.responses[..] {
+            [response] if fitted.verdict.is_ok() => {
+                let half = best.responses.iter().position(|own| *own == response)?;
+                Some((half, fitted))
+            }
+            _ => None,
+        });
+    let (half, fitted) = halves.min_by(|a, b| a.1.fit.rms().total_cmp(&b.1.fit.rms()))?;
+    Some((half, fitted.fit.test.rms))
 }

@@ -10,70 +10,72 @@ use crate::thresholds;
 
 /// The best candidates alone and those that look like them, of those from this one on.
 pub fn singles(pool: &Pool<'_>, from: usize) -> Vec<FittedHypothesis> {
-    let mut ranked = pool.ranked();
-    ranked.retain(|response| pool.screening.responses[*response].candidate >= from);
-    if let Some(best) = ranked.first() {
-        let (count, best) = (ranked.len(), pool.candidate(*best).label());
+    let mut ranking = pool.ranking();
+    ranking.retain(|response| pool.screening.responses[*response].candidate >= from);
+    if let Some(best) = ranking.first() {
+        let (count, best) = (ranking.len(), pool.candidate(*best).label());
         (pool.context.progress)(&format!("{count} promise enough to be fitted, {best} most"));
     }
-    let mut preliminaries = preliminary_fits(pool, chosen(pool, &ranked));
+    let mut preliminaries = preliminary_fits(pool, chosen(pool, &ranking));
     if !pool
         .context
         .fit
         .leaves_less(thresholds::CLOSE * pool.context.floor)
     {
-        let most = thresholds::HELPS * pool.screening.left(&[]).0;
+        let most = thresholds::HELPS * pool.screening.predicted(&[]).cost;
         preliminaries.retain(|(_, preliminary)| preliminary.cost < most);
     }
-    let mut trials: Vec<FittedHypothesis> = Vec::new();
+    let mut fitted_hypotheses: Vec<FittedHypothesis> = Vec::new();
     let (mut fits, mut best) = (0, f64::INFINITY);
     while !preliminaries.is_empty() && fits < thresholds::MOST_FITS {
         // Once one is accepted, only what is nearly as good or looks like it may be another
         // answer; until then whoever is next.
-        let accepted = trials.iter().find(|trial| trial.verdict.is_ok());
+        let accepted = fitted_hypotheses
+            .iter()
+            .find(|fitted| fitted.verdict.is_ok());
         if accepted.is_none() {
             best = preliminaries[0].1.cost;
         }
         let count = preliminaries.len().min(thresholds::FITS_AT_ONCE);
         let next: Vec<(Hypothesis, PreliminaryFit)> = preliminaries.drain(..count).collect();
-        let is_rival = |(set, preliminary): &(Hypothesis, PreliminaryFit)| {
+        let is_rival = |(hypothesis, preliminary): &(Hypothesis, PreliminaryFit)| {
             let near = preliminary.cost < thresholds::RIVAL * best;
             match accepted {
-                Some(trial) => {
-                    let alike = pool
+                Some(fitted) => {
+                    let similar = pool
                         .screening
-                        .similarity(trial.responses[0], set.responses[0]);
-                    alike > thresholds::INDISTINGUISHABLE
-                        || (near && !trial.fit.is_at_floor(pool.context.floor))
+                        .similarity(fitted.responses[0], hypothesis.responses[0]);
+                    similar > thresholds::INDISTINGUISHABLE
+                        || (near && !fitted.fit.is_at_floor(pool.context.floor))
                 }
                 None => near,
             }
         };
         let wanted: Vec<(Hypothesis, PreliminaryFit)> = next.into_iter().filter(is_rival).collect();
         fits += wanted.len();
-        trials.extend(full_fits(pool, wanted));
+        fitted_hypotheses.extend(full_fits(pool, wanted));
     }
-    reshape(pool, &mut trials);
-    trials
+    reshape(pool, &mut fitted_hypotheses);
+    fitted_hypotheses
 }
 
 /// The candidates that look like one of them, as far as they promise enough, the most alike
 /// first; at most [`thresholds::MOST_FITS`].
-pub fn alike(pool: &Pool<'_>, response: usize) -> Vec<FittedHypothesis> {
-    let similar = |other: &usize| pool.screening.similarity(response, *other);
-    let mut alike = pool.ranked();
-    alike.retain(|other| *other != response && similar(other) > thresholds::INDISTINGUISHABLE);
-    alike.sort_by(|a, b| similar(b).total_cmp(&similar(a)));
-    alike.truncate(thresholds::MOST_FITS);
-    full_fits(pool, preliminary_fits(pool, chosen(pool, &alike)))
+pub fn similar(pool: &Pool<'_>, response: usize) -> Vec<FittedHypothesis> {
+    let similarity = |other: &usize| pool.screening.similarity(response, *other);
+    let mut similar = pool.ranking();
+    similar.retain(|other| *other != response && similarity(other) > thresholds::INDISTINGUISHABLE);
+    similar.sort_by(|a, b| similarity(b).total_cmp(&similarity(a)));
+    similar.truncate(thresholds::MOST_FITS);
+    full_fits(pool, preliminary_fits(pool, chosen(pool, &similar)))
 }
 
 /// Those of the ranked that are begun: of what repeats with an angle, of which there is so
 /// much that some is lucky, half as many, and of the orders of one effect at one place the
 /// two best.
-fn chosen(pool: &Pool<'_>, ranked: &[usize]) -> Vec<Hypothesis> {
+fn chosen(pool: &Pool<'_>, ranking: &[usize]) -> Vec<Hypothesis> {
     let (mut plain, mut repeating) = (Vec::new(), Vec::new());
-    for response in ranked {
+    for response in ranking {
         let of = pool.candidate(*response);
         let is_same = |known: &&usize| {
             let known = pool.candidate(**known);

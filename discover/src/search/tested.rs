@@ -11,5 +11,5 @@ pub struct TestedPool {
     /// What they promise.
     pub screening: Screening,
     /// The fitted hypotheses.
-    pub trials: Vec<FittedHypothesis>,
+    pub fitted_hypotheses: Vec<FittedHypothesis>,
 }

@@ -15,7 +15,7 @@ use crate::fit::sensitivity::{Differences, SensitivityEvaluator};
 use crate::fit::shooting::Shooting;
 use crate::model::plant::Plant;
 use crate::model::problem::EstimationProblem;
-use crate::search::response::Columns;
+use crate::search::response::CandidateResponse;
 use crate::thresholds;
 
 /// Where sizes are tried: a motion's points with their accelerations.
@@ -31,7 +31,7 @@ struct Points {
 /// A candidate's model with sizes at which it differs a little.
 struct Ready {
     candidate: usize,
-    trials: Vec<CandidateUnknown>,
+    candidate_unknowns: Vec<CandidateUnknown>,
     plant: Plant,
     /// For each parameter that scales it the values there, and the size.
     moved: Vec<(Vec<f64>, f64)>,
@@ -44,8 +44,9 @@ pub fn variational_responses(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
     candidates: &[Candidate],
-) -> Vec<Option<Result<Columns, DiscoverError>>> {
-    let mut found: Vec<Option<Result<Columns, DiscoverError>>> = vec![None; candidates.len()];
+) -> Vec<Option<Result<CandidateResponse, DiscoverError>>> {
+    let mut found: Vec<Option<Result<CandidateResponse, DiscoverError>>> =
+        vec![None; candidates.len()];
     let Some(points) = points(at, problem, fit) else {
         return found;
     };
@@ -61,7 +62,7 @@ pub fn variational_responses(
             None => {}
         }
     }
-    let windows = marched(at, problem, fit, &all);
+    let windows = drive_responses(at, problem, fit, &all);
     let mut first = 0;
     for mut of in all {
         let columns = first..first + of.moved.len();
@@ -73,28 +74,33 @@ pub fn variational_responses(
                 _ => window.columns(columns.start, columns.len()).into_owned(),
             })
             .collect();
-        found[of.candidate] = Some(sized(&mut of.trials, blocks, at.level));
+        found[of.candidate] = Some(sized(&mut of.candidate_unknowns, blocks, at.level));
     }
     found
 }
 
 /// A candidate's columns with the sizes that would move the outputs by a part of the misfit.
 fn sized(
-    trials: &mut [CandidateUnknown],
+    candidate_unknowns: &mut [CandidateUnknown],
     blocks: Vec<DMatrix<f64>>,
     level: f64,
-) -> Result<Columns, DiscoverError> {
-    let scaling = trials.iter_mut().filter(|trial| !trial.is_shape);
-    for (column, trial) in scaling.enumerate() {
+) -> Result<CandidateResponse, DiscoverError> {
+    let scaling = candidate_unknowns
+        .iter_mut()
+        .filter(|candidate_unknown| !candidate_unknown.is_shape);
+    for (column, candidate_unknown) in scaling.enumerate() {
         let numbers: usize = blocks.iter().map(DMatrix::nrows).sum();
         let square: f64 = blocks.iter().map(|b| b.column(column).norm_squared()).sum();
         let size = (square / numbers.max(1) as f64).sqrt();
         if size == 0.0 || !size.is_finite() {
             return Err(DiscoverError::NotExcited);
         }
-        trial.unknown.scale = thresholds::RESPONSE_MOVES * level / size;
+        candidate_unknown.unknown.scale = thresholds::RESPONSE_MOVES * level / size;
     }
-    Ok((trials.to_vec(), blocks))
+    Ok(CandidateResponse {
+        candidate_unknowns: candidate_unknowns.to_vec(),
+        blocks,
+    })
 }
 
 /// Points of the fitted motion; none if neighbouring motions do not come with it.
@@ -164,19 +170,19 @@ fn ready(
     }
     let shooting = Shooting::new(problem, &plant, &problem.train, &fit.unknowns, &fit.ranges);
     let values = shooting.values(&fit.train.estimate.theta);
-    let trials: Vec<CandidateUnknown> = candidate
+    let candidate_unknowns: Vec<CandidateUnknown> = candidate
         .parameters
         .iter()
         .map(CandidateUnknown::of)
         .collect();
     let mut moved = Vec::new();
-    for (parameter, trial) in candidate.parameters.iter().zip(&trials) {
-        if trial.is_shape {
+    for (parameter, candidate_unknown) in candidate.parameters.iter().zip(&candidate_unknowns) {
+        if candidate_unknown.is_shape {
             continue;
         }
         let at = |size: f64| {
             let mut values = values.clone();
-            plant.set(&mut values, &parameter.name, trial.base + size);
+            plant.set(&mut values, &parameter.name, candidate_unknown.base + size);
             values
         };
         let Some(size) = small(&plant, &at, points) else {
@@ -192,7 +198,7 @@ fn ready(
     }
     Some(Ok(Ready {
         candidate: place,
-        trials,
+        candidate_unknowns,
         plant,
         moved,
     }))
@@ -246,7 +252,7 @@ fn change(evaluator: &mut Evaluator, points: &Points) -> f64 {
 }
 
 /// For each window a column per parameter; no columns where the fit has no motion.
-fn marched(
+fn drive_responses(
     at: &LinearisedFit,
     problem: &EstimationProblem<'_>,
     fit: &Fit,
