@@ -7,15 +7,14 @@ use nalgebra::DVector;
 use crate::fit::gauss_newton::{
     Estimate, change_of_unknowns, evaluated, level, moved_unknowns, reduced_blocks,
 };
-use crate::fit::prior::InitialStatePrior;
+use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::sensitivity::{WindowDerivatives, linearised};
 use crate::fit::shooting::{Residual, Shooting};
 use crate::thresholds;
 
 /// How initial states are found at given unknowns, from those at others if they are known:
 /// what is known before, and the states.
-pub type Follow<'f> =
-    dyn Fn(&[f64], Option<&[Vec<f64>]>) -> (InitialStatePrior, Vec<Vec<f64>>) + 'f;
+pub type Follow<'f> = dyn Fn(&[f64], Option<&[Vec<f64>]>) -> InitialStates + 'f;
 
 /// Where a continuation ended.
 #[derive(Default)]
@@ -94,7 +93,10 @@ impl<'a> Continuation<'a> {
 
     /// The estimate at these unknowns.
     fn at(&self, theta: Vec<f64>, before: Option<&[Vec<f64>]>) -> Continued {
-        let (prior, initial_states) = (self.follow)(&theta, before);
+        let InitialStates {
+            prior,
+            states: initial_states,
+        } = (self.follow)(&theta, before);
         let estimate = evaluated(self.shooting, &prior, theta, initial_states);
         Continued {
             prior,
@@ -200,7 +202,7 @@ impl<'a> Continuation<'a> {
         let ends = [value + size, value - size].map(|end| unknown.admissible(end));
         theta[place] = ends.into_iter().find(|end| *end != value).unwrap_or(value);
         let size = theta[place] - value;
-        let (_, initial_states) = (self.follow)(&theta, Some(&estimate.initial_states));
+        let initial_states = (self.follow)(&theta, Some(&estimate.initial_states)).states;
         let residuals = self.shooting.residuals(&theta, &initial_states);
         let of = |(residual, linear): (Option<Residual>, &Option<WindowDerivatives>)| {
             let (residual, linear) = (residual?, linear.as_ref()?);

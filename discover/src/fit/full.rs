@@ -9,7 +9,7 @@ use crate::fit::fitted::Fit;
 use crate::fit::gauss_newton::{Estimate, damped_gauss_newton, evaluated, level};
 use crate::fit::initial_states::{self, carried, following};
 use crate::fit::preliminary::{self, PreliminaryFit};
-use crate::fit::prior::InitialStatePrior;
+use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::residuals::Residuals;
 use crate::fit::sensitivity::{WindowDerivatives, linearised};
 use crate::fit::shooting::Shooting;
@@ -246,14 +246,18 @@ fn refreshed(
     let Some(ranges) = shooting.ranges else {
         return (prior, found);
     };
-    let Ok((restarted, initial_states)) = initial_states::at_unknowns(
+    let Ok(InitialStates {
+        prior: restarted,
+        states: initial_states,
+    }) = initial_states::at_unknowns(
         problem,
         shooting,
         &found.theta,
         ranges,
         &thresholds::OTHER_HORIZONS,
         None,
-    ) else {
+    )
+    else {
         return (prior, found);
     };
     let new = evaluated(shooting, &restarted, found.theta.clone(), initial_states);

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::error::DiscoverError;
 use crate::fit::continuation::Follow;
 use crate::fit::gauss_newton::{Estimate, evaluated, inner_solve};
-use crate::fit::prior::InitialStatePrior;
+use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::Shooting;
 use crate::model::plant::Plant;
@@ -24,10 +24,13 @@ pub fn at_unknowns(
     ranges: &[f64],
     horizons: &[f64],
     before: Option<&[Vec<f64>]>,
-) -> Result<(InitialStatePrior, Vec<Vec<f64>>), DiscoverError> {
+) -> Result<InitialStates, DiscoverError> {
     if !problem.estimates_initial_states() {
         let read = read_smoothed(shooting.plant, shooting.windows, &problem.dataset.channels);
-        return Ok((InitialStatePrior::default(), read?));
+        return Ok(InitialStates {
+            prior: InitialStatePrior::default(),
+            states: read?,
+        });
     }
     let records = shooting.windows.records.iter();
     let firsts: Vec<Vec<f64>> = records
@@ -55,8 +58,8 @@ pub fn best(
     let found: Vec<Result<Estimate, DiscoverError>> = ladders
         .par_iter()
         .map(|horizons| {
-            let (_, initial_states) =
-                at_unknowns(problem, shooting, theta, ranges, horizons, None)?;
+            let found = at_unknowns(problem, shooting, theta, ranges, horizons, None)?;
+            let initial_states = found.states;
             let prior = InitialStatePrior::default();
             Ok(evaluated(shooting, &prior, theta.to_vec(), initial_states))
         })
@@ -103,7 +106,7 @@ fn followed(
     ranges: &[f64],
     horizons: &[f64],
     before: Option<&[Vec<f64>]>,
-) -> (InitialStatePrior, Vec<Vec<f64>>) {
+) -> InitialStates {
     let sd = spread(ranges);
     let count = shooting.windows.list.len();
     let chains = before.map_or(1, |_| thresholds::CHAINS).min(count).max(1);
@@ -120,8 +123,11 @@ fn followed(
             chain(shooting, theta, (firsts, &sd), horizons, (windows, known))
         })
         .collect();
-    let (mean, initial_states) = followed.into_iter().flatten().unzip();
-    (InitialStatePrior { mean, sd }, initial_states)
+    let (mean, states) = followed.into_iter().flatten().unzip();
+    InitialStates {
+        prior: InitialStatePrior { mean, sd },
+        states,
+    }
 }
 
 /// Where each window's motion from these initial states leaves the next window that follows

@@ -4,7 +4,7 @@
 use crate::fit::fitted::Fit;
 use crate::fit::gauss_newton::{Estimate, evaluated, level};
 use crate::fit::initial_states::following;
-use crate::fit::prior::InitialStatePrior;
+use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::Shooting;
 use crate::fit::variable_projection::StateProjection;
@@ -85,7 +85,10 @@ fn beginnings(
     let shooting = Shooting { part, ..whole };
     let theta = fit.train.estimate.theta.clone();
     let follow = following(problem, &shooting, &fit.ranges, thresholds::FIRST_HORIZONS);
-    let (prior, initial_states) = follow(&theta, None);
+    let InitialStates {
+        prior,
+        states: initial_states,
+    } = follow(&theta, None);
     let estimate = evaluated(&shooting, &prior, theta, initial_states);
     (prior, estimate)
 }

@@ -6,7 +6,7 @@ use crate::fit::continuation::continuation;
 use crate::fit::fitted::Fit;
 use crate::fit::gauss_newton::damped_gauss_newton;
 use crate::fit::initial_states::{self, following, spread};
-use crate::fit::prior::InitialStatePrior;
+use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::shooting::Shooting;
 use crate::model::plant::Plant;
 use crate::model::problem::EstimationProblem;
@@ -55,7 +55,10 @@ pub fn preliminary(
         (found.estimate, found.is_converged)
     } else {
         let theta = guesses.first().map_or(&[][..], Vec::as_slice);
-        let (prior, initial_states) = initial_states::at_unknowns(
+        let InitialStates {
+            prior,
+            states: initial_states,
+        } = initial_states::at_unknowns(
             problem,
             &shooting,
             theta,

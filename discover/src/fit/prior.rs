@@ -19,3 +19,12 @@ impl InitialStatePrior {
         terms.map(|((x, m), sd)| ((x - m) / sd).powi(2)).sum()
     }
 }
+
+/// Initial states of windows, and what was known of them before.
+#[derive(Clone, Debug, Default)]
+pub struct InitialStates {
+    /// What was known.
+    pub prior: InitialStatePrior,
+    /// One state per window.
+    pub states: Vec<Vec<f64>>,
+}

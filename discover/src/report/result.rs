@@ -1,5 +1,5 @@
 //! The results of a comparison and of a search. They are serialised in `json`, and shown in
-//! [`crate::report::page`].
+//! `page`.
 
 use std::collections::BTreeMap;
 

@@ -5,7 +5,7 @@
 //! [`mod@variational_response`] or [`mod@perturbed_response`] ([`mod@responses`] chooses),
 //! [`screening`], [`acceptance`]; [`context`], [`pool`], [`hypothesis`], [`fitted`];
 //! `shape_restarts`, `singles`, `pairs`; [`tested`], [`parameter_offsets`], [`selected`],
-//! `alternatives`; `excitation_window`, `dropped_priors`, [`round`], `joint`, `answer`; [`found`],
+//! `alternatives`; `excitation_window`, `dropped_priors`, `round`, `joint`, `answer`; [`found`],
 //! [`backward_elimination`].
 
 pub mod acceptance;
