@@ -109,3 +109,27 @@
 /// }
 /// ```
 pub use eomgen_macros::model;
+
+/// Compiled models that are run, with the feature `library`.
+///
+/// ```
+/// use eomgen::library::{CompiledModel, Orders, Solver};
+///
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let model = CompiledModel::load("../model-spec/models/planetary_arm.toml", Orders::All(2))?;
+/// let run = model.with(&[("b_sp", 50e-6)])?;
+/// let times = [0.0, 0.01, 0.02];
+/// let motion = run.simulate(run.initial(), &times, &run.no_inputs(), Solver::Auto)?;
+/// assert_eq!(motion.solver, Solver::Exact);
+/// let shown = run.observables(&motion)?;
+/// assert_eq!(shown.len(), times.len());
+/// # Ok(())
+/// # }
+/// ```
+#[cfg(feature = "library")]
+pub mod library {
+    pub use discover;
+    pub use eomgen_compiled_model::*;
+    pub use eomgen_records as records;
+    pub use sim;
+}
