@@ -273,7 +273,7 @@ impl Crate {
 
 fn crates() -> Vec<(String, Crate)> {
     let mut folders = Vec::new();
-    sources(&project(), &mut folders);
+    sources(project(), &mut folders);
     assert!(folders.len() > 20, "{folders:?}");
     let name = |source: &PathBuf| {
         let inside = source.strip_prefix(project()).unwrap_or(source);

@@ -13,6 +13,7 @@ use crate::description::Description;
 use crate::files::numbered;
 use crate::record::Columns;
 use crate::refusal::Refusal;
+use crate::samples::FEWEST_OF_INPUTS;
 
 /// The inputs of `model` from a record of a dataset, and what is worth a warning.
 ///
@@ -40,6 +41,7 @@ pub fn read_inputs(
         inputs: &inputs,
         channels: &[],
         model,
+        fewest: FEWEST_OF_INPUTS,
     };
     let record = columns.record(record, file)?;
     let mut warnings = notes_of_inputs(&description, model);

@@ -12,6 +12,7 @@ use crate::description::Description;
 use crate::inputs::notes_of_inputs;
 use crate::record::{Columns, Record};
 use crate::refusal::Refusal;
+use crate::samples::FEWEST_SAMPLES;
 
 /// Reads a dataset for a model.
 ///
@@ -43,6 +44,7 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
         inputs: &bound.inputs,
         channels: &bound.channel_units,
         model,
+        fewest: FEWEST_SAMPLES,
     };
     let read = |kind: &str, files: &[Written]| -> Result<Vec<Record>, Refusal> {
         let files = files.iter().enumerate();

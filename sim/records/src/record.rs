@@ -43,6 +43,8 @@ pub(crate) struct Columns<'d> {
     /// The unit of each channel's column.
     pub channels: &'d [Unit],
     pub model: &'d Model,
+    /// The fewest samples of a record.
+    pub fewest: usize,
 }
 
 impl Columns<'_> {
@@ -78,7 +80,7 @@ impl Columns<'_> {
             .map(|fed| fed.as_ref().and_then(|_| columns.next()))
             .map(|column| column.unwrap_or_else(|| vec![0.0; times.len()]))
             .collect();
-        check_times(&place, &times)?;
+        check_times(&place, &times, self.fewest)?;
         for (input, column) in self.model.inputs.iter().zip(&input_columns) {
             check_input(&place, &input.name, column)?;
         }

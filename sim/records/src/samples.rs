@@ -4,17 +4,20 @@ use std::path::Path;
 
 use crate::refusal::Refusal;
 
-/// A record with fewer samples says nothing.
-const FEWEST_SAMPLES: usize = 50;
+/// A record with fewer samples says nothing of a model.
+pub const FEWEST_SAMPLES: usize = 50;
+
+/// Fewer samples of inputs are no motion to be driven through.
+pub const FEWEST_OF_INPUTS: usize = 2;
 
 /// An input is held over what is missing of it; more than this part is refused.
 const MOST_HELD: f64 = 0.1;
 
-/// Times are finite and ascend.
+/// Times are finite and ascend, and are `fewest` or more.
 ///
 /// # Errors
 /// The first line where they do not.
-pub fn check_times(path: &Path, times: &[f64]) -> Result<(), Refusal> {
+pub fn check_times(path: &Path, times: &[f64], fewest: usize) -> Result<(), Refusal> {
     // The first line holds the names.
     let line = |sample: usize| sample as u64 + 2;
     if let Some(sample) = times.iter().position(|t| !t.is_finite()) {
@@ -31,13 +34,10 @@ pub fn check_times(path: &Path, times: &[f64]) -> Result<(), Refusal> {
             "the time does not increase; expected samples in order, each once",
         ));
     }
-    if times.len() < FEWEST_SAMPLES {
+    if times.len() < fewest {
         return Err(Refusal::file(
             path,
-            format!(
-                "holds {} samples; expected {FEWEST_SAMPLES} or more",
-                times.len()
-            ),
+            format!("holds {} samples; expected {fewest} or more", times.len()),
         ));
     }
     Ok(())
