@@ -173,16 +173,29 @@ fn a_record_can_be_cut_short_and_begin_late() {
 #[test]
 fn records_that_are_none_are_refused() {
     for (record, part) in [
-        ("", "no column `time`"),
-        ("time,f\n", "fewer than two samples"),
-        ("time,f\n0,1\n", "fewer than two samples"),
+        ("", "is empty"),
+        ("time,f\n", "holds 0 samples; expected 2 or more"),
+        ("time,f\n0,1\n", "holds 1 samples; expected 2 or more"),
         ("time,g\n0,1\n1,2\n", "no column `f`; there are time, g"),
         ("t,f\n0,1\n1,2\n", "no column `time`"),
-        ("time,f\n0,1\n1,nan\n", "line 3, column 2: \"nan\""),
-        ("time,f\n0,inf\n1,2\n", "line 2, column 2: \"inf\""),
-        ("time,f\n0,1\n1,\n", "line 3, column 2: \"\""),
-        ("time,f\n0,1\none,2\n", "line 3, column 1: \"one\""),
-        ("time,f\n0,1\n1,2,3\n", "line: 3"),
+        (
+            "time,f\n0,1\n1,nan\n",
+            "input `force`: 1 of 2 samples are missing",
+        ),
+        (
+            "time,f\n0,inf\n1,2\n",
+            "input `force`: 1 of 2 samples are missing",
+        ),
+        (
+            "time,f\n0,1\n1,\n",
+            "input `force`: 1 of 2 samples are missing",
+        ),
+        (
+            "time,f\n0,1\none,2\n",
+            "line 3: column 1: \"one\" is no number",
+        ),
+        ("time,f\n0,1\n1,2,3\n", "line 3: has 3 cells"),
+        ("time,f,f\n0,1,1\n1,2,2\n", "two columns `f`"),
         (
             "time,f\n0,1\n2,2\n1,3\n",
             "line 4: the time does not increase",
@@ -195,6 +208,24 @@ fn records_that_are_none_are_refused() {
             "{record:?}: {message}"
         );
     }
+}
+
+#[test]
+#[cfg(unix)]
+fn a_link_that_leads_out_of_the_datasets_folder_is_refused() {
+    let elsewhere = tempfile::tempdir().expect("a folder");
+    let secret = elsewhere.path().join("secret.csv");
+    std::fs::write(&secret, "time,secret\n0,1\n1,2\n").expect("written");
+    let description = DESCRIPTION.replacen("\"train.csv\"", "\"link.csv\"", 1);
+    let dataset = Dataset::new(&description, &record());
+    let link = dataset.folder.path().join("link.csv");
+    std::os::unix::fs::symlink(&secret, link).expect("a link");
+    let message = dataset.refused(&[]);
+    assert!(
+        message.contains("outside the dataset's folder"),
+        "{message}"
+    );
+    assert!(!message.contains("secret"), "{message}");
 }
 
 #[test]
@@ -222,7 +253,7 @@ fn datasets_that_are_none_are_refused() {
             "\"/etc/hostname\"",
             "outside the dataset's folder",
         ),
-        ("\"train.csv\"", "\".\"", "cannot read"),
+        ("\"train.csv\"", "\".\"", "is not a file"),
         ("\"train.csv\"", "7", "dataset.toml:3:10"),
     ] {
         let description = DESCRIPTION.replacen(from, to, 1);
