@@ -1,5 +1,14 @@
 //! What kind of motion a sampled trajectory is: spectra, sections, exponents, tests for chaos.
 //!
+//! ```
+//! use eomgen_analysis::exponent::mean_exponent;
+//!
+//! // Neighbouring motions that part by e^0.2 in every half second.
+//! let exponent = mean_exponent(&[0.2; 40], 0.5)?;
+//! assert!((exponent.value - 0.4).abs() < 1e-12); // 1/s
+//! # Ok::<(), eomgen_analysis::AnalysisError>(())
+//! ```
+//!
 //! Pure functions of slices. Nothing here simulates, knows of a model, draws or writes files.
 //! [`spectrum`] estimates power spectral densities, [`zero_one`] tests a series for chaos,
 //! [`poincare`] describes a stroboscopic section, [`exponent`] averages logarithmic growth,

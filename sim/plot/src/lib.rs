@@ -1,6 +1,29 @@
 //! Figures: time histories and power spectra as self-contained SVG, maps over parameters as
 //! PNG.
 //!
+//! ```
+//! use eomgen_plot::{Panel, Series, TimeHistory, time_history};
+//!
+//! let (t, x) = ([0.0, 0.5, 1.0], [0.0, 2e-3, 1e-3]);
+//! let panel = Panel {
+//!     title: "Deflection of the tip".to_owned(),
+//!     quantity: "w".to_owned(),
+//!     unit: "m".to_owned(),
+//!     series: vec![Series {
+//!         label: "w".to_owned(),
+//!         abscissa: &t,
+//!         values: &x,
+//!     }],
+//!     references: Vec::new(),
+//! };
+//! let figure = TimeHistory {
+//!     title: "A second of motion".to_owned(),
+//!     panels: vec![panel],
+//! };
+//! assert!(time_history(&figure)?.contains("<svg"));
+//! # Ok::<(), eomgen_plot::PlotError>(())
+//! ```
+//!
 //! A figure goes through these files: [`figure`] (what the caller states), `quantity` (SI
 //! prefixes and axis labels), `axis` (positions and ticks), `decimate` (many samples to few
 //! points), `layout` (where everything goes), `panel` (drawing it), `canvas` (SVG elements);
