@@ -2,16 +2,18 @@
 
 use std::fmt;
 
+use eomgen_compiled_model::Error as ModelError;
 use eomgen_records::Refusal;
 use eomgen_records::windows::Windows;
 use model_spec::edit::EditError;
+use sim::ode::SolveError;
+use sim::piecewise_linear::ExactError;
 
 /// What can go wrong on the way from a specification and records to a result.
 #[derive(Clone, Debug)]
 pub enum DiscoverError {
-    /// A specification that does not check or cannot be derived: what is wrong with it, with its
-    /// places.
-    Specification(String),
+    /// A specification that does not check or cannot be derived.
+    Model(Box<ModelError>),
     /// An edit that a specification does not admit.
     Edit(Box<EditError>),
     /// A user's effect that does not leave a specification.
@@ -61,10 +63,42 @@ impl Unfollowed {
     }
 }
 
+/// Why a model's motion cannot be followed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SimulationError {
+    /// At these parameters the mass matrix is not positive definite.
+    MassMatrix,
+    /// The exact propagator does not take the part that is linear between switches.
+    Propagator(ExactError),
+    /// The exponential integrator stopped, and why.
+    Integrator(String),
+    /// The solver with error control stopped.
+    Solver(SolveError),
+    /// The motion grows beyond all bounds.
+    Unbounded,
+}
+
+impl fmt::Display for SimulationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::MassMatrix => f.write_str("the mass matrix is not positive definite"),
+            Self::Propagator(error) => error.fmt(f),
+            Self::Integrator(reason) => f.write_str(reason),
+            Self::Solver(error) => error.fmt(f),
+            Self::Unbounded => f.write_str("the motion grows beyond all bounds"),
+        }
+    }
+}
+
+impl std::error::Error for SimulationError {}
+
 impl fmt::Display for DiscoverError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Specification(message) => f.write_str(message),
+            Self::Model(error) => match &**error {
+                ModelError::Specification(found) => f.write_str(&found.render(false)),
+                other => other.fmt(f),
+            },
             Self::Edit(error) => error.fmt(f),
             Self::Effect { effect, on, error } => write!(
                 f,
@@ -91,6 +125,12 @@ impl fmt::Display for DiscoverError {
 }
 
 impl std::error::Error for DiscoverError {}
+
+impl From<ModelError> for DiscoverError {
+    fn from(error: ModelError) -> Self {
+        Self::Model(Box::new(error))
+    }
+}
 
 impl From<EditError> for DiscoverError {
     fn from(error: EditError) -> Self {

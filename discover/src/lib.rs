@@ -37,12 +37,13 @@
 //! lack, and where); [`mod@residual_force`] (in which equation a force is missing, and what it is
 //! like); [`mod@search`] (which effects are accepted); [`empirical`] (what is left and has no name);
 //! [`report`] (the result, for programs and for people). [`thresholds`] holds what decides,
-//! [`error`] what can go wrong.
+//! [`error`] what can go wrong, [`ids`] the indices of everything that is counted.
 
 pub mod catalogue;
 pub mod empirical;
 pub mod error;
 pub mod fit;
+pub mod ids;
 pub mod model;
 pub mod report;
 pub mod residual_force;

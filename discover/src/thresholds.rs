@@ -202,6 +202,32 @@ pub const AGREES: f64 = 0.02;
 /// change its size so far.
 pub const NEAR_ONE: f64 = 0.2;
 
+/// Quantities that are sums over states to this part of their size are linear: products of doubles
+/// lose six digits less.
+pub const LINEAR: f64 = 1e-9;
+
+/// Switches per simulated second beyond which a trial motion is given up, 1/s: ten times as many as
+/// the stiffest contact of the shipped machines makes.
+pub const FASTEST_SWITCHING: f64 = 1e5;
+
+/// Samples on which the number of steps from sample to sample is tried: some periods of what a record
+/// is sampled for.
+pub const STEP_TEST_SAMPLES: usize = 100;
+
+/// Steps from sample to sample are tried up to two to this power; what needs more is left to a solver
+/// with error control.
+pub const MOST_STEP_DOUBLINGS: u32 = 7;
+
+/// The root mean square error of steps of one length, in standard deviations of the noise, with which
+/// a simulation is compared.
+pub const STEP_ERROR: f64 = 0.2;
+
+/// Relative error of one step of the solver with error control: far below any sensor's noise.
+pub const SOLVER_TOLERANCE: f64 = 1e-7;
+
+/// The most steps of that solver in one window: some seconds.
+pub const MOST_SOLVER_STEPS: u64 = 400_000;
+
 // Fits.
 
 /// The parts of a window over which initial states are fitted, one after the other: a short motion

@@ -11,9 +11,9 @@ use crate::catalogue::effect::{Change, Effect, SiteKind};
 use crate::catalogue::sites::Site;
 use crate::catalogue::template::{edits, free_name, instantiated, terms};
 use crate::error::DiscoverError;
-use crate::model::plant::is_linear;
+use crate::model::estimation_model::is_linear;
 use crate::model::problem::EstimationProblem;
-use crate::model::texts::Texts;
+use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::{What, sign_bounds};
 use crate::thresholds;
 
@@ -149,9 +149,9 @@ impl Candidate {
     pub fn added(
         &self,
         problem: &EstimationProblem<'_>,
-        texts: &Texts,
+        texts: &SpecificationTexts,
         values: &[f64],
-    ) -> Result<Texts, DiscoverError> {
+    ) -> Result<SpecificationTexts, DiscoverError> {
         let written = |text: &str| self.written(text, &problem.path, values, "");
         let extended = written(&texts.whole)?;
         // What is linear between switches itself belongs to the linear part.
@@ -159,7 +159,7 @@ impl Candidate {
             Ok(extended) if is_linear(&extended, &problem.path, problem.order) => extended,
             _ => texts.linear.clone(),
         };
-        Ok(Texts {
+        Ok(SpecificationTexts {
             whole: extended,
             linear,
         })

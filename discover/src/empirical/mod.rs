@@ -218,7 +218,7 @@ fn simplest(
     mut expression: Expression,
 ) -> Result<(Candidate, Fit), DiscoverError> {
     loop {
-        let candidate = written(before.plant.model(), &expression);
+        let candidate = written(before.model.specification(), &expression);
         let fit = fitted(problem, before, &candidate, &expression)?;
         let known = before.unknowns.len();
         let own = &fit.train.estimate.theta[known..];

@@ -4,18 +4,18 @@
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::residuals::Residuals;
 use crate::fit::shooting::Shooting;
-use crate::model::plant::Plant;
+use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
-use crate::model::texts::Texts;
+use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::Unknown;
 use crate::thresholds;
 
 /// A fitted specification.
 pub struct Fit {
     /// Its texts.
-    pub texts: Texts,
+    pub texts: SpecificationTexts,
     /// Its model, ready to run.
-    pub plant: Plant,
+    pub model: EstimationModel,
     /// What was estimated.
     pub unknowns: Vec<Unknown>,
     /// One standard deviation of each, with correlated residuals allowed for.
@@ -58,23 +58,23 @@ impl Fit {
     pub fn shooting<'a>(&'a self, problem: &'a EstimationProblem<'a>) -> Shooting<'a> {
         Shooting::new(
             problem,
-            &self.plant,
+            &self.model,
             &problem.train,
             &self.unknowns,
             &self.ranges,
         )
     }
 
-    /// A state of the fit's plant as one of another plant: what that has beside is 0.
-    pub fn mapped(&self, plant: &Plant, state: &[f64]) -> Vec<f64> {
+    /// A state of the fit's model as one of another model: what that has beside is 0.
+    pub fn mapped(&self, model: &EstimationModel, state: &[f64]) -> Vec<f64> {
         if state.is_empty() {
             return Vec::new();
         }
         let value = |name: &String| {
-            let place = self.plant.states.iter().position(|known| known == name);
+            let place = self.model.states.iter().position(|known| known == name);
             place.map_or(0.0, |place| state[place])
         };
-        plant.states.iter().map(value).collect()
+        model.states.iter().map(value).collect()
     }
 
     /// Whether it leaves no more than a right model would.

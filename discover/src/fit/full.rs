@@ -15,7 +15,7 @@ use crate::fit::sensitivity::{WindowDerivatives, linearised};
 use crate::fit::shooting::Shooting;
 use crate::fit::variable_projection::{reduced_block, triangular_factor};
 use crate::model::problem::EstimationProblem;
-use crate::model::texts::Texts;
+use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::Unknown;
 use crate::thresholds;
 
@@ -37,7 +37,7 @@ struct Begin {
 /// What is wrong with the text, or why no motion can be followed.
 pub fn fit(
     problem: &EstimationProblem<'_>,
-    texts: Texts,
+    texts: SpecificationTexts,
     unknowns: Vec<Unknown>,
     theta: &[f64],
 ) -> Result<Fit, DiscoverError> {
@@ -57,7 +57,7 @@ pub fn complete(
 ) -> Result<Fit, DiscoverError> {
     let mut all = Shooting::new(
         problem,
-        &preliminary.plant,
+        &preliminary.model,
         &problem.train,
         &preliminary.unknowns,
         &preliminary.ranges,
@@ -113,7 +113,7 @@ pub fn complete(
         prior_weight,
         train: train.whole(),
         test: test.whole(),
-        plant: preliminary.plant,
+        model: preliminary.model,
     })
 }
 
@@ -133,7 +133,7 @@ fn near(
         );
         let mut near = continuation(all, &[theta], &follow, thresholds::CONTINUATION_STEPS);
         // What is not linear costs ten times as much.
-        if preliminary.plant.is_linear() {
+        if preliminary.model.is_linear() {
             continuation_by_secants(all, &mut near, &follow);
         }
         return Begin {

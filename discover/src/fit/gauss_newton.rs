@@ -225,7 +225,7 @@ fn followed(
                 match step {
                     Some(step) if shooting.ranges.is_some() => {
                         let moved = start.iter().zip(step.iter()).map(|(x, d)| x + d);
-                        shooting.plant.admissible(moved.collect())
+                        shooting.model.admissible(moved.collect())
                     }
                     _ => start.clone(),
                 }
@@ -287,11 +287,11 @@ fn some_squares(
     let parts: Vec<Vec<f64>> = places
         .par_chunks(size)
         .map(|part| {
-            let mut runner = shooting.plant.at(&values).ok();
+            let mut simulation = shooting.model.simulation(&values).ok();
             part.iter()
                 .map(|place| {
-                    let residual = runner.as_mut().and_then(|runner| {
-                        shooting.residual(runner, &sensors, *place, &initial_states[*place])
+                    let residual = simulation.as_mut().and_then(|simulation| {
+                        shooting.residual(simulation, &sensors, *place, &initial_states[*place])
                     });
                     square(&residual)
                 })

@@ -9,7 +9,7 @@ use crate::fit::gauss_newton::{Estimate, evaluated, inner_solve};
 use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::Shooting;
-use crate::model::plant::Plant;
+use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::model::smoothing::{sloped, smoothed};
 use crate::thresholds;
@@ -26,7 +26,7 @@ pub fn at_unknowns(
     before: Option<&[Vec<f64>]>,
 ) -> Result<InitialStates, DiscoverError> {
     if !problem.estimates_initial_states() {
-        let read = read_smoothed(shooting.plant, shooting.windows, &problem.dataset.channels);
+        let read = read_smoothed(shooting.model, shooting.windows, &problem.dataset.channels);
         return Ok(InitialStates {
             prior: InitialStatePrior::default(),
             states: read?,
@@ -34,7 +34,7 @@ pub fn at_unknowns(
     }
     let records = shooting.windows.records.iter();
     let firsts: Vec<Vec<f64>> = records
-        .map(|r| problem.first_state(shooting.plant, r))
+        .map(|r| problem.first_state(shooting.model, r))
         .collect();
     Ok(followed(shooting, theta, &firsts, ranges, horizons, before))
 }
@@ -161,7 +161,7 @@ fn chain(
     (windows, mut carried): (std::ops::Range<usize>, Option<Vec<f64>>),
 ) -> Vec<(Vec<f64>, Vec<f64>)> {
     let Some(mut sensitivities) = SensitivityEvaluator::frozen(shooting, theta, 1.0) else {
-        let nothing = vec![0.0; shooting.plant.state_count()];
+        let nothing = vec![0.0; shooting.model.state_count()];
         return windows
             .map(|_| (nothing.clone(), nothing.clone()))
             .collect();
@@ -193,18 +193,18 @@ fn chain(
 /// # Errors
 /// The coordinate that no channel shows.
 fn read_smoothed(
-    plant: &Plant,
+    model: &EstimationModel,
     windows: &Windows<'_>,
     channels: &[Channel],
 ) -> Result<Vec<Vec<f64>>, DiscoverError> {
-    let half = plant.state_count() / 2;
+    let half = model.state_count() / 2;
     let mut sources = Vec::with_capacity(half);
     for coordinate in 0..half {
         let shown = (channels.iter())
             .position(|channel| channel.quantity == Quantity::Coordinate(coordinate));
         sources
             .push(shown.ok_or_else(|| {
-                DiscoverError::StateNotMeasured(plant.states[coordinate].clone())
+                DiscoverError::StateNotMeasured(model.states[coordinate].clone())
             })?);
     }
     let mut initial_states = vec![Vec::new(); windows.list.len()];

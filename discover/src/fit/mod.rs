@@ -4,6 +4,7 @@
 //! [`continuation`] from far away), [`initial_states`]; a [`preliminary`] fit and a [`full`] one,
 //! the [`residuals`] that it leaves, and the [`mod@noise_floor`] that a right model would leave.
 
+pub(crate) mod acceleration_differences;
 pub mod bounded_least_squares;
 pub mod continuation;
 pub mod fitted;

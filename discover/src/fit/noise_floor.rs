@@ -32,7 +32,7 @@ pub fn noise_floor(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Noi
         return noise_alone;
     };
     let windows = Windows::cut(&records, problem.dataset.window);
-    let shooting = Shooting::new(problem, &fit.plant, &windows, &fit.unknowns, &fit.ranges);
+    let shooting = Shooting::new(problem, &fit.model, &windows, &fit.unknowns, &fit.ranges);
     let theta = fit.train.estimate.theta.clone();
     let Ok(initial_states) = initial_states::best(problem, &shooting, &theta, &fit.ranges) else {
         return noise_alone;
@@ -58,12 +58,14 @@ fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Vec
     let shooting = fit.shooting(problem);
     let theta = &fit.train.estimate.theta;
     let sensors = shooting.sensors(theta);
-    let mut runner = fit.plant.at(&shooting.values(theta)).ok()?;
+    let mut simulation = fit.model.simulation(&shooting.values(theta)).ok()?;
     let mut draw = Normal(seed ^ 0x9e37_79b9_7f4a_7c15);
     let mut replicas = Vec::new();
     for record in &problem.dataset.train {
-        let first = problem.first_state(&fit.plant, record);
-        let outputs = runner.outputs(&first, &record.times, &record.inputs).ok()?;
+        let first = problem.first_state(&fit.model, record);
+        let outputs = simulation
+            .outputs(&first, &record.times, &record.inputs)
+            .ok()?;
         let seen = shooting.seen(&record.times, &sensors, &outputs.values);
         let count = problem.noise.len();
         let mut replica = record.clone();

@@ -5,7 +5,7 @@ use crate::fit::fitted::Fit;
 use crate::fit::full;
 use crate::fit::preliminary;
 use crate::model::problem::EstimationProblem;
-use crate::model::texts::Texts;
+use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::{Unknown, What, of_null_model};
 
 /// Fits the model with its declared unknowns alone.
@@ -13,16 +13,16 @@ use crate::model::unknowns::{Unknown, What, of_null_model};
 /// # Errors
 /// Why no motion can be followed, or where it cannot.
 pub fn null_fit(problem: &EstimationProblem<'_>, text: &str) -> Result<Fit, DiscoverError> {
-    let plant = problem.plant(text, None)?;
-    let values: Vec<(String, f64)> = plant
+    let model = problem.model(text, None)?;
+    let values: Vec<(String, f64)> = model
         .parameters
         .iter()
         .cloned()
-        .zip(plant.values.iter().copied())
+        .zip(model.values.iter().copied())
         .collect();
-    let unknowns = of_null_model(problem.dataset, plant.model(), &values);
+    let unknowns = of_null_model(problem.dataset, model.specification(), &values);
     let theta: Vec<f64> = unknowns.iter().map(|unknown| unknown.start).collect();
-    let texts = || Texts::of(text);
+    let texts = || SpecificationTexts::of(text);
     // Sensors that are free from the first step on find what is off by much, and now and then
     // stand in for what parameters have not done yet: those that wait do not.
     let held = |unknown: &Unknown| match unknown.what {

@@ -8,9 +8,9 @@ use crate::fit::gauss_newton::damped_gauss_newton;
 use crate::fit::initial_states::{self, following, spread};
 use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::shooting::Shooting;
-use crate::model::plant::Plant;
+use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
-use crate::model::texts::Texts;
+use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::Unknown;
 use crate::thresholds;
 
@@ -22,8 +22,8 @@ pub struct PreliminaryFit {
     pub(crate) whole: Option<InitialStatePrior>,
     /// Whether further steps over beginnings of windows would help little.
     pub(crate) is_converged: bool,
-    pub(crate) texts: Texts,
-    pub(crate) plant: Plant,
+    pub(crate) texts: SpecificationTexts,
+    pub(crate) model: EstimationModel,
     pub(crate) unknowns: Vec<Unknown>,
     pub(crate) ranges: Vec<f64>,
     pub(crate) theta: Vec<f64>,
@@ -38,13 +38,13 @@ pub struct PreliminaryFit {
 /// As for [`crate::fit::full::fit`].
 pub fn preliminary(
     problem: &EstimationProblem<'_>,
-    texts: Texts,
+    texts: SpecificationTexts,
     unknowns: Vec<Unknown>,
     guesses: &[Vec<f64>],
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let plant = problem.plant(&texts.whole, Some(&texts.linear))?;
-    let ranges = problem.ranges(&plant, &plant.values);
-    let shooting = Shooting::new(problem, &plant, &problem.train, &unknowns, &ranges);
+    let model = problem.model(&texts.whole, Some(&texts.linear))?;
+    let ranges = problem.ranges(&model, &model.values);
+    let shooting = Shooting::new(problem, &model, &problem.train, &unknowns, &ranges);
     let (found, is_converged) = if problem.estimates_initial_states() {
         let shooting = Shooting {
             part: thresholds::FIRST_PART,
@@ -76,7 +76,7 @@ pub fn preliminary(
         (found, true)
     };
     // How far states go may depend on what was found: a joint yields so much the more.
-    let ranges = problem.ranges(&plant, &shooting.values(&found.theta));
+    let ranges = problem.ranges(&model, &shooting.values(&found.theta));
     Ok(PreliminaryFit {
         cost: found.cost,
         whole: None,
@@ -84,7 +84,7 @@ pub fn preliminary(
         initial_states: found.initial_states,
         theta: found.theta,
         texts,
-        plant,
+        model,
         unknowns,
         ranges,
     })
@@ -97,18 +97,18 @@ pub fn preliminary(
 /// As for [`crate::fit::full::fit`].
 pub fn expected(
     problem: &EstimationProblem<'_>,
-    texts: Texts,
+    texts: SpecificationTexts,
     unknowns: Vec<Unknown>,
     theta: Vec<f64>,
     (fit, cost): (&Fit, f64),
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let plant = problem.plant(&texts.whole, Some(&texts.linear))?;
-    let bare = Shooting::new(problem, &plant, &problem.train, &unknowns, &[]);
-    let ranges = problem.ranges(&plant, &bare.values(&theta));
+    let model = problem.model(&texts.whole, Some(&texts.linear))?;
+    let bare = Shooting::new(problem, &model, &problem.train, &unknowns, &[]);
+    let ranges = problem.ranges(&model, &bare.values(&theta));
     let mapped = |states: &[Vec<f64>]| -> Vec<Vec<f64>> {
         states
             .iter()
-            .map(|state| fit.mapped(&plant, state))
+            .map(|state| fit.mapped(&model, state))
             .collect()
     };
     let prior = InitialStatePrior {
@@ -125,7 +125,7 @@ pub fn expected(
         initial_states: mapped(&fit.train.estimate.initial_states),
         theta,
         texts,
-        plant,
+        model,
         unknowns,
         ranges,
     })

@@ -1,16 +1,17 @@
 //! How windows' outputs depend on their initial states and on the unknowns: by neighbouring motions
-//! that come along where the plant is run by the exponential integrator, otherwise by difference
+//! that come along where the model is run by the exponential integrator, otherwise by difference
 //! quotients.
 
-use codegen::program::evaluator::{Evaluator, Point};
+use codegen::program::evaluator::Evaluator;
 use nalgebra::{DMatrix, DVector};
 
+use crate::fit::acceleration_differences::{AccelerationDifferences, MovedEvaluator};
 use crate::fit::shooting::{Residual, Sensors, Shooting, samples_in};
-use crate::model::runner::{Runner, Shown};
+use crate::model::linear_outputs::LinearOutputs;
+use crate::model::simulation::{NeighbourDrives, OutputTangents, Simulation};
 use crate::model::unknowns::{Unknown, What};
 use crate::thresholds;
 use eomgen_records::windows::Window;
-use sim::exponential::Drives;
 
 /// A window's residuals and derivatives.
 pub struct WindowDerivatives {
@@ -25,37 +26,46 @@ pub struct WindowDerivatives {
     pub last: Vec<f64>,
 }
 
-/// The plant at the unknowns and at neighbouring values of each parameter.
+/// The model at the unknowns and at neighbouring values of each parameter.
 pub struct SensitivityEvaluator<'a> {
     shooting: Shooting<'a>,
-    base: Runner<'a>,
+    base: Simulation<'a>,
     /// The base's equations.
     equations: Evaluator,
     sensors: Sensors,
-    /// For each unknown that is a parameter the neighbouring plant and the step.
-    neighbours: Vec<Option<(Neighbour<'a>, f64)>>,
+    /// For each unknown that is a parameter the neighbouring model and the step.
+    neighbours: Vec<Option<SteppedNeighbour<'a>>>,
     level: f64,
 }
 
-/// A plant at neighbouring parameters.
+/// A neighbouring model and by how much an unknown differs, SI.
+struct SteppedNeighbour<'a> {
+    neighbour: Neighbour<'a>,
+    step: f64,
+}
+
+/// A model at neighbouring parameters.
 enum Neighbour<'a> {
     /// One that runs itself.
-    Runs(Box<Runner<'a>>),
+    Runs(Box<Simulation<'a>>),
     /// One whose accelerations, and what it shows, tell how an integrated motion differs.
-    Drives(Box<Evaluator>, Option<Shown>),
+    Drives {
+        evaluator: Box<Evaluator>,
+        linear_outputs: Option<LinearOutputs>,
+    },
 }
 
 impl<'a> SensitivityEvaluator<'a> {
     /// A state moved to where the model lives.
     pub fn admissible(&self, state: Vec<f64>) -> Vec<f64> {
-        self.shooting.plant.admissible(state)
+        self.shooting.model.admissible(state)
     }
 
     /// The evaluator at these unknowns, if there is a motion.
     pub fn new(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
         let values = shooting.values(theta);
-        let base = shooting.plant.at(&values).ok()?;
-        let equations = shooting.plant.evaluator(&values).0;
+        let base = shooting.model.simulation(&values).ok()?;
+        let equations = shooting.model.evaluator(&values);
         let mut neighbours = Vec::with_capacity(theta.len());
         for (place, unknown) in shooting.unknowns.iter().enumerate() {
             if !matches!(unknown.what, What::Parameter(_) | What::Inverse(_)) {
@@ -66,13 +76,15 @@ impl<'a> SensitivityEvaluator<'a> {
             let mut moved = theta.to_vec();
             moved[place] += step;
             let values = shooting.values(&moved);
-            let neighbour = if base.is_marched() {
-                let (evaluator, shown) = shooting.plant.evaluator(&values);
-                Neighbour::Drives(Box::new(evaluator), shown)
+            let neighbour = if base.carries_tangents() {
+                Neighbour::Drives {
+                    evaluator: Box::new(shooting.model.evaluator(&values)),
+                    linear_outputs: shooting.model.linear_outputs(&values),
+                }
             } else {
-                Neighbour::Runs(Box::new(shooting.plant.at(&values).ok()?))
+                Neighbour::Runs(Box::new(shooting.model.simulation(&values).ok()?))
             };
-            neighbours.push(Some((neighbour, step)));
+            neighbours.push(Some(SteppedNeighbour { neighbour, step }));
         }
         Some(Self {
             base,
@@ -88,8 +100,8 @@ impl<'a> SensitivityEvaluator<'a> {
     pub fn frozen(shooting: &Shooting<'a>, theta: &[f64], level: f64) -> Option<Self> {
         let values = shooting.values(theta);
         Some(Self {
-            base: shooting.plant.at(&values).ok()?,
-            equations: shooting.plant.evaluator(&values).0,
+            base: shooting.model.simulation(&values).ok()?,
+            equations: shooting.model.evaluator(&values),
             sensors: shooting.sensors(theta),
             neighbours: Vec::new(),
             level,
@@ -121,8 +133,8 @@ impl<'a> SensitivityEvaluator<'a> {
 
     /// A window's residuals and derivatives.
     pub fn linear(&mut self, place: usize, start: &[f64]) -> Option<WindowDerivatives> {
-        let found = match self.base.is_marched() {
-            true => self.by_march(place, start)?,
+        let found = match self.base.carries_tangents() {
+            true => self.by_tangents(place, start)?,
             false => self.by_quotients(place, start)?,
         };
         let finite = found.residual.iter().chain(found.by_unknown.iter());
@@ -133,22 +145,26 @@ impl<'a> SensitivityEvaluator<'a> {
     }
 
     /// The same with neighbouring motions that come along.
-    fn by_march(&mut self, place: usize, start: &[f64]) -> Option<WindowDerivatives> {
+    fn by_tangents(&mut self, place: usize, start: &[f64]) -> Option<WindowDerivatives> {
         let shooting = self.shooting;
         let window = &shooting.windows.list[place];
         let inputs = shooting.windows.inputs(window);
         let times = &window.times[..samples_in(window, shooting.part)];
         let moved = self.neighbours.iter_mut().flatten();
-        let moved = moved.filter_map(|(neighbour, step)| match neighbour {
-            Neighbour::Drives(evaluator, _) => Some((&mut **evaluator, *step)),
+        let moved = moved.filter_map(|of| match &mut of.neighbour {
+            Neighbour::Drives { evaluator, .. } => Some(MovedEvaluator {
+                evaluator,
+                size: of.step,
+            }),
             Neighbour::Runs(_) => None,
         });
-        let mut drives = Differences::new(&mut self.equations, moved.collect());
-        let count = drives.count();
+        let mut differences = AccelerationDifferences::new(&mut self.equations, moved.collect());
+        let driven = differences.drives();
+        let count = driven.count;
         let by_state = shooting.ranges.is_some();
-        let integrated =
-            self.base
-                .linearised(start, times, inputs, by_state, (count, &mut drives))?;
+        let integrated = self
+            .base
+            .linearised(start, times, inputs, by_state, driven)?;
         let seen = shooting.seen(times, &self.sensors, &integrated.outputs.values);
         let residual = DVector::from_vec(shooting.normalised(window, &seen));
         let states = if by_state { start.len() } else { 0 };
@@ -158,7 +174,7 @@ impl<'a> SensitivityEvaluator<'a> {
         let mut drive = 0;
         for (column, neighbour) in self.neighbours.iter().enumerate() {
             let unknown = &shooting.unknowns[column];
-            let Some((neighbour, step)) = neighbour else {
+            let Some(SteppedNeighbour { neighbour, step }) = neighbour else {
                 let (sensors, step) = moved_sensors(&self.sensors, unknown);
                 let moved = shooting.seen(times, &sensors, &integrated.outputs.values);
                 let moved = shooting.normalised(window, &moved);
@@ -169,13 +185,17 @@ impl<'a> SensitivityEvaluator<'a> {
             };
             by_unknown.set_column(column, &by_drive.column(drive));
             drive += 1;
-            let Neighbour::Drives(_, Some(shown)) = neighbour else {
+            let Neighbour::Drives {
+                linear_outputs: Some(shown),
+                ..
+            } = neighbour
+            else {
                 continue;
             };
-            if Some(shown) != self.base.shown() {
+            if Some(shown) != self.base.linear_outputs() {
                 let mut moved = Vec::with_capacity(integrated.outputs.values.len());
                 for state in &integrated.states {
-                    shown.add_to(state, &mut moved);
+                    shown.append(state, &mut moved);
                 }
                 let pairs = moved.iter_mut().zip(&integrated.outputs.values);
                 pairs.for_each(|(moved, own)| *moved = (*moved - own) / step);
@@ -198,15 +218,14 @@ impl<'a> SensitivityEvaluator<'a> {
         &mut self,
         place: usize,
         start: &[f64],
-        (count, drives): (usize, &mut dyn Drives),
+        driven: NeighbourDrives<'_>,
     ) -> Option<DMatrix<f64>> {
         let shooting = self.shooting;
         let window = &shooting.windows.list[place];
         let inputs = shooting.windows.inputs(window);
         let times = &window.times[..samples_in(window, shooting.part)];
-        let found = self
-            .base
-            .linearised(start, times, inputs, false, (count, drives))?;
+        let count = driven.count;
+        let found = self.base.linearised(start, times, inputs, false, driven)?;
         Some(self.columns(window, times, count, &found.by_drive))
     }
 
@@ -224,7 +243,7 @@ impl<'a> SensitivityEvaluator<'a> {
             None => None,
         };
         let (outputs, derivatives) = match tangents {
-            Some((outputs, derivatives)) => (outputs, Some(derivatives)),
+            Some(OutputTangents { outputs, by_state }) => (outputs, Some(by_state)),
             None => (self.base.outputs(start, times, inputs).ok()?, None),
         };
         let seen = shooting.seen(times, &self.sensors, &outputs.values);
@@ -240,11 +259,13 @@ impl<'a> SensitivityEvaluator<'a> {
         for (column, neighbour) in self.neighbours.iter_mut().enumerate() {
             let unknown = &shooting.unknowns[column];
             let (moved, step) = match neighbour {
-                Some((Neighbour::Runs(runner), step)) => {
-                    let moved = runner.outputs(start, times, inputs).ok()?;
+                Some(SteppedNeighbour { neighbour, step }) => {
+                    let Neighbour::Runs(simulation) = neighbour else {
+                        return None;
+                    };
+                    let moved = simulation.outputs(start, times, inputs).ok()?;
                     (shooting.seen(times, &self.sensors, &moved.values), *step)
                 }
-                Some((Neighbour::Drives(..), _)) => return None,
                 None => {
                     let (sensors, step) = moved_sensors(&self.sensors, unknown);
                     (shooting.seen(times, &sensors, &outputs.values), step)
@@ -352,49 +373,6 @@ pub fn linearised(
             })
             .collect()
     })
-}
-
-/// Differences between the accelerations of a model and of others, per size, as drives of
-/// neighbouring motions.
-pub(crate) struct Differences<'c> {
-    base: &'c mut Evaluator,
-    moved: Vec<(&'c mut Evaluator, f64)>,
-    rates: [Vec<f64>; 2],
-}
-
-impl<'c> Differences<'c> {
-    /// Others with the sizes by which they differ.
-    pub fn new(base: &'c mut Evaluator, moved: Vec<(&'c mut Evaluator, f64)>) -> Self {
-        let states = 2 * base.program().degrees_of_freedom();
-        Self {
-            base,
-            moved,
-            rates: [vec![0.0; states], vec![0.0; states]],
-        }
-    }
-
-    /// How many there are.
-    pub fn count(&self) -> usize {
-        self.moved.len()
-    }
-}
-
-impl Drives for Differences<'_> {
-    fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
-        let [base, moved] = &mut self.rates;
-        let half = base.len() / 2;
-        self.base.rates(Point { t, state, inputs }, base);
-        let slots = out.chunks_exact_mut(half.max(1));
-        for ((evaluator, step), slots) in self.moved.iter_mut().zip(slots) {
-            evaluator.rates(Point { t, state, inputs }, moved);
-            for (slot, (a, b)) in slots
-                .iter_mut()
-                .zip(moved[half..].iter().zip(&base[half..]))
-            {
-                *slot = (a - b) / *step;
-            }
-        }
-    }
 }
 
 /// The step of a parameter's difference quotient; away from a bound that is near.

@@ -5,9 +5,9 @@
 
 use rayon::prelude::*;
 
-use crate::model::plant::Plant;
+use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
-use crate::model::runner::Runner;
+use crate::model::simulation::Simulation;
 use crate::model::unknowns::{Unknown, What};
 use eomgen_records::windows::{Window, Windows, judged};
 
@@ -22,11 +22,11 @@ pub struct Sensors {
     pub delay: Vec<f64>,
 }
 
-/// Windows to be explained by a plant.
+/// Windows to be explained by a model.
 #[derive(Clone, Copy)]
 pub struct Shooting<'a> {
-    /// The plant.
-    pub plant: &'a Plant,
+    /// The model.
+    pub model: &'a EstimationModel,
     /// The windows.
     pub windows: &'a Windows<'a>,
     /// The noise of each channel, SI.
@@ -60,16 +60,16 @@ impl Residual {
 }
 
 impl<'a> Shooting<'a> {
-    /// Windows to be explained by a plant.
+    /// Windows to be explained by a model.
     pub fn new(
         problem: &'a EstimationProblem<'a>,
-        plant: &'a Plant,
+        model: &'a EstimationModel,
         windows: &'a Windows<'a>,
         unknowns: &'a [Unknown],
         ranges: &'a [f64],
     ) -> Self {
         Self {
-            plant,
+            model,
             windows,
             noise: &problem.noise,
             unknowns,
@@ -84,13 +84,13 @@ impl<'a> Shooting<'a> {
         self.noise.len()
     }
 
-    /// The plant's parameters at these unknowns.
+    /// The model's parameters at these unknowns.
     pub fn values(&self, theta: &[f64]) -> Vec<f64> {
-        let mut values = self.plant.values.clone();
+        let mut values = self.model.values.clone();
         for (unknown, value) in self.unknowns.iter().zip(theta) {
             match &unknown.what {
-                What::Parameter(name) => self.plant.set(&mut values, name, *value),
-                What::Inverse(name) => self.plant.set(&mut values, name, 1.0 / value),
+                What::Parameter(name) => self.model.set(&mut values, name, *value),
+                What::Inverse(name) => self.model.set(&mut values, name, 1.0 / value),
                 What::Gain(_) | What::Bias(_) | What::Delay(_) => {}
             }
         }
@@ -105,12 +105,12 @@ impl<'a> Shooting<'a> {
             bias: vec![0.0; channels],
             delay: vec![0.0; channels],
         };
-        for sensor in &self.plant.model().sensors {
+        for sensor in &self.model.specification().sensors {
             // What the specification itself says of a sensor holds until it is estimated.
-            if let Some(place) = self.plant.channel(&sensor.channel) {
-                sensors.gain[place] = sensor.gain;
-                sensors.bias[place] = sensor.bias;
-                sensors.delay[place] = sensor.delay;
+            if let Some(channel) = self.model.channel(&sensor.channel) {
+                sensors.gain[channel.index()] = sensor.gain;
+                sensors.bias[channel.index()] = sensor.bias;
+                sensors.delay[channel.index()] = sensor.delay;
             }
         }
         for (unknown, value) in self.unknowns.iter().zip(theta) {
@@ -129,11 +129,13 @@ impl<'a> Shooting<'a> {
     pub fn residuals(&self, theta: &[f64], initial_states: &[Vec<f64>]) -> Vec<Option<Residual>> {
         let (values, sensors) = (self.values(theta), self.sensors(theta));
         self.by_threads(|places| {
-            let Ok(mut runner) = self.plant.at(&values) else {
+            let Ok(mut simulation) = self.model.simulation(&values) else {
                 return places.map(|_| None).collect();
             };
             places
-                .map(|place| self.residual(&mut runner, &sensors, place, &initial_states[place]))
+                .map(|place| {
+                    self.residual(&mut simulation, &sensors, place, &initial_states[place])
+                })
                 .collect()
         })
     }
@@ -141,7 +143,7 @@ impl<'a> Shooting<'a> {
     /// One window's residuals.
     pub fn residual(
         &self,
-        runner: &mut Runner<'_>,
+        simulation: &mut Simulation<'_>,
         sensors: &Sensors,
         place: usize,
         start: &[f64],
@@ -149,7 +151,7 @@ impl<'a> Shooting<'a> {
         let window = &self.windows.list[place];
         let inputs = self.windows.inputs(window);
         let times = &window.times[..samples_in(window, self.part)];
-        let outputs = runner.outputs(start, times, inputs).ok()?;
+        let outputs = simulation.outputs(start, times, inputs).ok()?;
         let seen = self.seen(times, sensors, &outputs.values);
         let values = self.normalised(window, &seen);
         (values.iter().all(|r| r.is_finite())).then_some(Residual {

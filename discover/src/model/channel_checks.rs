@@ -24,15 +24,15 @@ const FACTORS: [(f64, &str); 6] = [
 pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     let record = &problem.dataset.train[0];
-    let Ok(plant) = problem.plant(text, None) else {
+    let Ok(model) = problem.model(text, None) else {
         return Ok(notes);
     };
-    let first = problem.first_state(&plant, record);
+    let first = problem.first_state(&model, record);
     let samples = record.times.len().min(thresholds::CHECKED_SAMPLES);
     let times = &record.times[..samples];
-    let run = plant
-        .at(&plant.values)
-        .and_then(|mut runner| runner.outputs(&first, times, &record.inputs));
+    let run = model
+        .simulation(&model.values)
+        .and_then(|mut simulation| simulation.outputs(&first, times, &record.inputs));
     // A model that cannot be run so far is judged by its fit.
     let Ok(run) = run else { return Ok(notes) };
     let channels = &problem.dataset.channels;

@@ -2,30 +2,30 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::model::plant::Plant;
+use crate::model::estimation_model::EstimationModel;
 use crate::thresholds;
 use eomgen_records::dataset::{Channel, Initial, Quantity};
 use eomgen_records::record::Record;
 
 /// The first state of a record, as far as it is known.
 pub fn first_state(
-    plant: &Plant,
+    model: &EstimationModel,
     record: &Record,
     channels: &[Channel],
     initial: &Initial,
 ) -> Vec<f64> {
-    let mut state = plant.initial();
+    let mut state = model.initial();
     match initial {
         Initial::Rest => {}
         Initial::Given(values) => {
             for (name, value) in values {
-                if let Some(place) = plant.states.iter().position(|state| state == name) {
+                if let Some(place) = model.states.iter().position(|state| state == name) {
                     state[place] = *value;
                 }
             }
         }
         Initial::Estimate => {
-            let half = plant.state_count() / 2;
+            let half = model.state_count() / 2;
             for (channel, column) in channels.iter().zip(&record.channels) {
                 let (value, slope) = begin(&record.times, column);
                 match channel.quantity {
@@ -38,7 +38,7 @@ pub fn first_state(
                 }
             }
             // Noise may put what is measured beyond where the model lives.
-            state = plant.admissible(state);
+            state = model.admissible(state);
         }
     }
     state
@@ -66,16 +66,21 @@ fn begin(times: &[f64], column: &[f64]) -> (f64, f64) {
 }
 
 /// How far each state ranges in the motion that the records' inputs cause, SI: the root mean
-/// square around its mean. `values`: the plant's parameters, on which that may depend much.
-pub fn ranges(plant: &Plant, values: &[f64], records: &[Record], initial: &[f64]) -> Vec<f64> {
-    let states = plant.state_count();
+/// square around its mean. `values`: the model's parameters, on which that may depend much.
+pub fn ranges(
+    model: &EstimationModel,
+    values: &[f64],
+    records: &[Record],
+    initial: &[f64],
+) -> Vec<f64> {
+    let states = model.state_count();
     let mut sums = vec![(0.0, 0.0); states];
     let mut count = 0.0;
-    if let Ok(mut runner) = plant.at(values) {
+    if let Ok(mut simulation) = model.simulation(values) {
         for record in records {
             // Every tenth sample shows how far a state goes.
             let times: Vec<f64> = record.times.iter().step_by(10).copied().collect();
-            let Ok(motion) = runner.states(initial, &times, &record.inputs) else {
+            let Ok(motion) = simulation.states(initial, &times, &record.inputs) else {
                 continue;
             };
             for state in &motion {

@@ -4,8 +4,8 @@
 use model_spec::source::Source;
 
 use crate::error::DiscoverError;
+use crate::model::estimation_model::EstimationModel;
 use crate::model::first_state;
-use crate::model::plant::Plant;
 use crate::thresholds;
 use eomgen_records::dataset::{Dataset, Start};
 use eomgen_records::record::Record;
@@ -57,19 +57,22 @@ impl<'d> EstimationProblem<'d> {
     ///
     /// # Errors
     /// What is wrong with the text.
-    pub fn plant(&self, text: &str, linear: Option<&str>) -> Result<Plant, DiscoverError> {
+    pub fn model(
+        &self,
+        text: &str,
+        linear: Option<&str>,
+    ) -> Result<EstimationModel, DiscoverError> {
         let channels = &self.dataset.channels;
-        let mut plant = Plant::of(text, linear, &self.path, self.order, channels)
-            .map_err(DiscoverError::Specification)?;
+        let mut model = EstimationModel::of(text, linear, &self.path, self.order, channels)?;
         let record = &self.dataset.train[0];
-        let first = self.first_state(&plant, record);
-        plant.choose_steps(record, &first, &self.noise);
-        Ok(plant)
+        let first = self.first_state(&model, record);
+        model.choose_steps(record, &first, &self.noise);
+        Ok(model)
     }
 
     /// The first state of a record, as far as it is known.
-    pub fn first_state(&self, plant: &Plant, record: &Record) -> Vec<f64> {
-        first_state::first_state(plant, record, &self.dataset.channels, &self.dataset.initial)
+    pub fn first_state(&self, model: &EstimationModel, record: &Record) -> Vec<f64> {
+        first_state::first_state(model, record, &self.dataset.channels, &self.dataset.initial)
     }
 
     /// Whether initial states are fitted.
@@ -79,10 +82,10 @@ impl<'d> EstimationProblem<'d> {
 
     /// The range of each state in the training records. That of a coordinate which a candidate
     /// adds, and which nobody has seen move yet, counts several times.
-    pub fn ranges(&self, plant: &Plant, values: &[f64]) -> Vec<f64> {
-        let first = self.first_state(plant, &self.dataset.train[0]);
-        let mut ranges = first_state::ranges(plant, values, &self.dataset.train, &first);
-        for (range, state) in ranges.iter_mut().zip(&plant.states) {
+    pub fn ranges(&self, model: &EstimationModel, values: &[f64]) -> Vec<f64> {
+        let first = self.first_state(model, &self.dataset.train[0]);
+        let mut ranges = first_state::ranges(model, values, &self.dataset.train, &first);
+        for (range, state) in ranges.iter_mut().zip(&model.states) {
             if !self.states.contains(state) {
                 *range *= thresholds::ADDED_STATE;
             }

@@ -167,7 +167,7 @@ fn named(problem: &EstimationProblem<'_>, fit: &Fit, what: &What) -> Option<(Str
         }
         What::Delay(_) => Some(("delay".to_owned(), 1.0, "s".to_owned())),
         What::Parameter(name) => {
-            let mut parameters = fit.plant.model().parameters.iter();
+            let mut parameters = fit.model.specification().parameters.iter();
             let parameter = parameters.find(|p| p.name == *name)?;
             let unit = parameter.unit.text.clone();
             Some((name.clone(), parameter.unit.from_si(1.0), unit))
@@ -189,7 +189,7 @@ pub(crate) fn refitted(fit: &Fit, accepted: &[Accepted]) -> BTreeMap<String, Est
         if accepted.iter().any(is_own) {
             continue;
         }
-        let mut parameters = fit.plant.model().parameters.iter();
+        let mut parameters = fit.model.specification().parameters.iter();
         if let Some(parameter) = parameters.find(|p| p.name == *name) {
             let entry = Estimated {
                 value: parameter.unit.from_si(fit.train.estimate.theta[place]),

@@ -30,18 +30,18 @@ pub fn resimulated(
     fit: &Fit,
     text: &str,
 ) -> Result<Resimulation, DiscoverError> {
-    let plant = problem.plant(text, Some(&fit.texts.linear))?;
+    let model = problem.model(text, Some(&fit.texts.linear))?;
     let all = fit.unknowns.iter().zip(&fit.train.estimate.theta);
     let (sensors, theta): (Vec<Unknown>, Vec<f64>) = all
         .filter(|(unknown, _)| !matches!(unknown.what, What::Parameter(_) | What::Inverse(_)))
         .map(|(unknown, value)| (unknown.clone(), *value))
         .unzip();
-    let ranges = fit.mapped(&plant, &fit.ranges);
+    let ranges = fit.mapped(&model, &fit.ranges);
     let left = |windows: &Windows<'_>, estimate: &Estimate| {
-        let shooting = Shooting::new(problem, &plant, windows, &sensors, &ranges);
+        let shooting = Shooting::new(problem, &model, windows, &sensors, &ranges);
         let initial_states = estimate.initial_states.iter();
         let initial_states = initial_states
-            .map(|start| fit.mapped(&plant, start))
+            .map(|start| fit.mapped(&model, start))
             .collect();
         let estimate = evaluated(
             &shooting,

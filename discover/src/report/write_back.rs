@@ -45,8 +45,8 @@ pub fn extended(
             && has_moved(fit, place, !accepted.is_empty())
             && !added.contains(&place)
             && let Some(parameter) = fit
-                .plant
-                .model()
+                .model
+                .specification()
                 .parameters
                 .iter()
                 .find(|p| p.name == *name)

@@ -11,7 +11,8 @@ use crate::catalogue::effect::SiteKind;
 use crate::catalogue::sites::sites;
 use crate::fit::fitted::Fit;
 use crate::fit::shooting::Shooting;
-use crate::model::plant::Plant;
+use crate::ids::ParameterId;
+use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 
 /// An equation of motion.
@@ -54,10 +55,10 @@ pub struct OperatingPoint {
 pub struct Equations {
     /// One after the other.
     pub list: Vec<Equation>,
-    plant: Plant,
+    model: EstimationModel,
     values: Vec<f64>,
     /// The parameters that are the forces, among the values.
-    forces: Vec<usize>,
+    forces: Vec<ParameterId>,
     /// The observables that are place and rate.
     shown: Vec<(usize, usize)>,
 }
@@ -74,7 +75,7 @@ pub struct EquationEvaluator {
 impl Equations {
     /// The equations of a fitted model; none if a force cannot be written into it.
     pub fn of(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Self> {
-        let list = equations(fit.plant.model());
+        let list = equations(fit.model.specification());
         let names = |word: &str, number: usize| format!("{word}_of_equation_{number}");
         let mut edits = Vec::new();
         for (number, equation) in list.iter().enumerate() {
@@ -109,17 +110,19 @@ impl Equations {
         }
         let source = Source::new(problem.path.as_str(), fit.texts.whole.as_str());
         let text = edit::apply(&source, &edits).ok()?;
-        let plant = Plant::equations(&text, &problem.path, problem.order, &[]).ok()?;
-        if plant.states != fit.plant.states {
+        let model = EstimationModel::equations(&text, &problem.path, problem.order, &[]).ok()?;
+        if model.states != fit.model.states {
             return None;
         }
         let observable = |name: String| {
-            let mut observables = plant.model().observables.iter();
+            let mut observables = model.specification().observables.iter();
             observables.position(|observable| observable.name == name)
         };
         let numbers = 0..list.len();
-        let forces = numbers.clone().map(|n| plant.place(&names("residual", n)));
-        let forces = forces.collect::<Option<Vec<usize>>>()?;
+        let forces = numbers
+            .clone()
+            .map(|n| model.parameter(&names("residual", n)));
+        let forces = forces.collect::<Option<Vec<ParameterId>>>()?;
         let shown = numbers.map(|n| {
             Some((
                 observable(names("place", n))?,
@@ -127,30 +130,30 @@ impl Equations {
             ))
         });
         let shown = shown.collect::<Option<Vec<(usize, usize)>>>()?;
-        let whole = Shooting::new(problem, &plant, &problem.train, &fit.unknowns, &fit.ranges);
+        let whole = Shooting::new(problem, &model, &problem.train, &fit.unknowns, &fit.ranges);
         let values = whole.values(&fit.train.estimate.theta);
         Some(Self {
             list,
             values,
             forces,
             shown,
-            plant,
+            model,
         })
     }
 
     /// Ready to be asked.
     pub fn evaluator(&self) -> EquationEvaluator {
-        let forced = self.forces.iter().map(|place| {
+        let forced = self.forces.iter().map(|force| {
             let mut values = self.values.clone();
-            values[*place] = 1.0;
-            self.plant.evaluator(&values).0
+            values[force.index()] = 1.0;
+            self.model.evaluator(&values)
         });
-        let states = self.plant.state_count();
+        let states = self.model.state_count();
         EquationEvaluator {
-            free: self.plant.evaluator(&self.values).0,
+            free: self.model.evaluator(&self.values),
             forced: forced.collect(),
             shown: self.shown.clone(),
-            observables: vec![0.0; self.plant.observables()],
+            observables: self.model.measured.observables(),
             rates: [vec![0.0; states], vec![0.0; states]],
         }
     }

@@ -5,9 +5,8 @@ use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 
 use crate::fit::shooting::{Sensors, Shooting, samples_in};
-use crate::model::plant::Output;
+use crate::model::simulation::NeighbourDrives;
 use crate::thresholds;
-use sim::exponential::Drives;
 use sim::ode::runge_kutta::RungeKutta;
 
 /// Whether each of a step's four slopes is at its beginning, its middle or its end.
@@ -33,15 +32,15 @@ struct Step {
 impl<'s> Stepped<'s> {
     /// A window at these unknowns; none if a solver decides on its steps.
     pub fn new(shooting: &'s Shooting<'s>, theta: &[f64], place: usize) -> Option<Self> {
-        let plant = shooting.plant;
+        let model = shooting.model;
         Some(Self {
             sensors: Sensors {
                 bias: vec![0.0; shooting.channels()],
                 ..shooting.sensors(theta)
             },
-            evaluator: plant.evaluator(&shooting.values(theta)).0,
-            observables: vec![0.0; plant.observables()],
-            steps: plant.steps?,
+            evaluator: model.evaluator(&shooting.values(theta)),
+            observables: model.measured.observables(),
+            steps: model.steps?,
             place,
             shooting,
         })
@@ -53,10 +52,10 @@ impl<'s> Stepped<'s> {
     pub fn columns(
         &mut self,
         start: &[f64],
-        (count, drives): (usize, &mut dyn Drives),
+        driven: NeighbourDrives<'_>,
         level: f64,
     ) -> Option<DMatrix<f64>> {
-        let half = start.len() / 2;
+        let (half, count, drives) = (start.len() / 2, driven.count, driven.drives);
         let mut steps = Vec::new();
         let own = self.motion(start, None, Some(&mut steps))?;
         let windows = self.shooting.windows;
@@ -177,14 +176,8 @@ impl<'s> Stepped<'s> {
 
     /// Appends the quantities at a state.
     fn show(&mut self, (t, state): (f64, &[f64]), inputs: &[f64], shown: &mut Vec<f64>) {
-        let plant = self.shooting.plant;
-        if !plant.shows_states_only() {
-            let point = Point { t, state, inputs };
-            self.evaluator.observables(point, &mut self.observables);
-        }
-        shown.extend(plant.outputs.iter().map(|output| match *output {
-            Output::State(place) => state[place],
-            Output::Observable(place) => self.observables[place],
-        }));
+        let point = Point { t, state, inputs };
+        let measured = &self.shooting.model.measured;
+        measured.append(&mut self.evaluator, point, &mut self.observables, shown);
     }
 }

@@ -12,6 +12,7 @@ use crate::fit::linearised::LinearisedFit;
 use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::{Shooting, samples_in};
 use crate::model::problem::EstimationProblem;
+use crate::model::simulation::NeighbourDrives;
 use crate::residual_force::equations::{EquationEvaluator, Equations, OperatingPoint};
 use crate::residual_force::finite_difference_response::Stepped;
 use sim::exponential::Drives;
@@ -86,8 +87,12 @@ pub fn force_responses(
         ..whole
     };
     let theta = &at.estimate.theta;
-    let is_marched = fit.plant.at(&shooting.values(theta)).ok()?.is_marched();
-    if !is_marched && fit.plant.steps.is_none() {
+    let carries_tangents = fit
+        .model
+        .simulation(&shooting.values(theta))
+        .ok()?
+        .carries_tangents();
+    if !carries_tangents && fit.model.steps.is_none() {
         return None;
     }
     let count = columns.equations.len();
@@ -100,23 +105,21 @@ pub fn force_responses(
         .par_chunks(size.max(1))
         .map(|part| {
             let mut sensitivities = SensitivityEvaluator::frozen(&shooting, theta, 1.0);
-            let mut drives = ForceDrives::new(equations, columns, 0.0);
+            let mut forces = ForceDrives::new(equations, columns, 0.0);
             let mut one = |window: usize| {
                 at.base[window].as_ref()?;
                 let place = at.places[window];
                 let start = &at.estimate.initial_states[place];
-                drives.begin = problem.train.list[place].times[0];
-                match is_marched {
-                    true => {
-                        sensitivities
-                            .as_mut()?
-                            .drive_response(place, start, (count, &mut drives))
+                forces.begin = problem.train.list[place].times[0];
+                let driven = NeighbourDrives {
+                    count,
+                    drives: &mut forces,
+                };
+                match carries_tangents {
+                    true => sensitivities.as_mut()?.drive_response(place, start, driven),
+                    false => {
+                        Stepped::new(&shooting, theta, place)?.columns(start, driven, at.level)
                     }
-                    false => Stepped::new(&shooting, theta, place)?.columns(
-                        start,
-                        (count, &mut drives),
-                        at.level,
-                    ),
                 }
             };
             let none = || DMatrix::zeros(0, 0);
@@ -134,7 +137,7 @@ pub fn operating_points(
     equations: &Equations,
 ) -> Vec<Vec<Vec<OperatingPoint>>> {
     let shooting = fit.shooting(problem);
-    let Ok(mut runner) = fit.plant.at(&shooting.values(&at.estimate.theta)) else {
+    let Ok(mut simulation) = fit.model.simulation(&shooting.values(&at.estimate.theta)) else {
         return Vec::new();
     };
     let mut evaluator = equations.evaluator();
@@ -142,7 +145,7 @@ pub fn operating_points(
         let window = &problem.train.list[*place];
         let times = &window.times[..samples_in(window, at.part)];
         let inputs = problem.train.inputs(window);
-        let states = runner.states(&at.estimate.initial_states[*place], times, inputs);
+        let states = simulation.states(&at.estimate.initial_states[*place], times, inputs);
         let samples = times.iter().zip(states.unwrap_or_default());
         let samples = samples.map(|(t, state)| {
             let mut operating_points = Vec::new();

@@ -86,7 +86,7 @@ fn in_model(
     if rivals.is_empty() {
         return Default::default();
     }
-    let model = fitted.fit.plant.model();
+    let model = fitted.fit.model.specification();
     let known = candidates(
         model,
         effects,

@@ -7,7 +7,7 @@ use crate::catalogue::sites::plays;
 use crate::fit::fitted::Fit;
 use crate::fit::full;
 use crate::model::problem::EstimationProblem;
-use crate::model::texts::Texts;
+use crate::model::specification_texts::SpecificationTexts;
 use crate::thresholds;
 
 /// How motions are looked at while candidates are screened.
@@ -34,7 +34,7 @@ impl ExcitationWindow {
 
 /// The model with all play closed, fitted; none if there is no play.
 pub fn without_play(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Fit> {
-    let edits: Vec<Edit> = plays(fit.plant.model())
+    let edits: Vec<Edit> = plays(fit.model.specification())
         .into_iter()
         .map(|name| {
             Edit::SetParameter(SetParameter {
@@ -48,7 +48,7 @@ pub fn without_play(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Fit> {
         return None;
     }
     let closed = |text: &str| edit::apply(&Source::new(problem.path.as_str(), text), &edits).ok();
-    let texts = Texts {
+    let texts = SpecificationTexts {
         whole: closed(&fit.texts.whole)?,
         linear: closed(&fit.texts.linear)?,
     };

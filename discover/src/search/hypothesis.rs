@@ -4,7 +4,7 @@
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
 use crate::fit::preliminary::{self, PreliminaryFit};
-use crate::model::texts::Texts;
+use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::Unknown;
 use crate::search::acceptance::EffectUnknown;
 use crate::search::pool::Pool;
@@ -74,7 +74,7 @@ pub fn preliminary(
     let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
     let mut preliminary = preliminary::preliminary(problem, texts, unknowns, &begins)?;
     if pool.is_whole {
-        // Beside others that are promised and not begun.
+        // NonlinearRemainder others that are promised and not begun.
         preliminary.cost = pool.screening.predicted(&hypothesis.responses).cost;
     }
     Ok(preliminary)
@@ -124,7 +124,7 @@ fn texts(
     hypothesis: &Hypothesis,
     unknowns: &[Unknown],
     theta: &[f64],
-) -> Result<Texts, DiscoverError> {
+) -> Result<SpecificationTexts, DiscoverError> {
     let fit = pool.context.fit;
     let mut texts = fit.texts.clone();
     let mut next = fit.unknowns.len();

@@ -20,7 +20,7 @@ pub fn offsets(fit: &Fit) -> Vec<Candidate> {
         };
         fit.unknowns.iter().any(of)
     };
-    let parameters = fit.plant.model().parameters.iter();
+    let parameters = fit.model.specification().parameters.iter();
     let free = parameters.filter(|parameter| !is_known(&parameter.name));
     free.filter_map(candidate::offset_of).collect()
 }

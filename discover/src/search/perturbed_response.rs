@@ -75,7 +75,7 @@ fn response(
         .map(CandidateParameter::absent)
         .collect();
     let texts = candidate.added(problem, &fit.texts, &start)?;
-    let plant = problem.plant(&texts.whole, Some(&texts.linear))?;
+    let model = problem.model(&texts.whole, Some(&texts.linear))?;
     let mut candidate_unknowns: Vec<CandidateUnknown> = candidate
         .parameters
         .iter()
@@ -90,8 +90,8 @@ fn response(
         .cloned()
         .chain(candidate_unknowns.iter().map(|t| t.unknown.clone()))
         .collect();
-    let ranges = fit.mapped(&plant, &fit.ranges);
-    let whole = Shooting::new(problem, &plant, &problem.train, &extended, &ranges);
+    let ranges = fit.mapped(&model, &fit.ranges);
+    let whole = Shooting::new(problem, &model, &problem.train, &extended, &ranges);
     let shooting = Shooting {
         part: *part,
         ..whole
@@ -160,7 +160,7 @@ fn changes<'b>(
             changes.push(DVector::zeros(0));
             continue;
         };
-        let start = fit.mapped(shooting.plant, &estimate.initial_states[place]);
+        let start = fit.mapped(shooting.model, &estimate.initial_states[place]);
         let residual = sensitivities.residual(place, &start)?;
         changes.push(DVector::from_vec(residual.values) - &base.residual);
     }

@@ -29,7 +29,7 @@ pub enum Rejection {
     Significance(f64),
     /// What it does is too small a part of the noise.
     Size(f64),
-    /// Beside another effect it leaves much.
+    /// NonlinearRemainder another effect it leaves much.
     LeavesMuch,
     /// The parts of the gap that it closes on training and on test records are too small.
     Closes {

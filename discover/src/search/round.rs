@@ -230,7 +230,7 @@ impl Round<'_> {
             self.context.problem,
             window != ExcitationWindow::BacklashRemoved,
         );
-        let model = fit.plant.model();
+        let model = fit.model.specification();
         let mut all = candidates(
             model,
             self.effects,

@@ -9,11 +9,12 @@ use rayon::prelude::*;
 use crate::catalogue::candidate::{Candidate, CandidateParameter};
 use crate::catalogue::candidate_unknown::CandidateUnknown;
 use crate::error::DiscoverError;
+use crate::fit::acceleration_differences::{AccelerationDifferences, MovedEvaluator};
 use crate::fit::fitted::Fit;
 use crate::fit::linearised::LinearisedFit;
-use crate::fit::sensitivity::{Differences, SensitivityEvaluator};
+use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::Shooting;
-use crate::model::plant::Plant;
+use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::search::response::CandidateResponse;
 use crate::thresholds;
@@ -32,7 +33,7 @@ struct Points {
 struct Ready {
     candidate: usize,
     candidate_unknowns: Vec<CandidateUnknown>,
-    plant: Plant,
+    model: EstimationModel,
     /// For each parameter that scales it the values there, and the size.
     moved: Vec<(Vec<f64>, f64)>,
 }
@@ -110,11 +111,11 @@ fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
         estimate, places, ..
     } = at;
     let values = shooting.values(&estimate.theta);
-    let mut runner = fit.plant.at(&values).ok()?;
-    if !runner.is_marched() {
+    let mut simulation = fit.model.simulation(&values).ok()?;
+    if !simulation.carries_tangents() {
         return None;
     }
-    let n = fit.plant.state_count();
+    let n = fit.model.state_count();
     let mut points = Points {
         times: Vec::new(),
         states: Vec::new(),
@@ -125,13 +126,13 @@ fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
     for place in [0, places.len() / 2, places.len() - 1].map(|k| places[k]) {
         let window = &problem.train.list[place];
         let inputs = problem.train.inputs(window);
-        let Ok(states) = runner.states(&estimate.initial_states[place], &window.times, inputs)
+        let Ok(states) = simulation.states(&estimate.initial_states[place], &window.times, inputs)
         else {
             continue;
         };
         let samples = window.times.iter().zip(states).step_by(thresholds::SAMPLED);
         for (t, state) in samples {
-            let rates = runner.rates(*t, &state, inputs.at(*t));
+            let rates = simulation.rates(*t, &state, inputs.at(*t));
             for (sum, rate) in points.squares.iter_mut().zip(&rates[n / 2..]) {
                 *sum += rate * rate;
             }
@@ -161,14 +162,14 @@ fn ready(
         Err(error) => return Some(Err(error.into())),
     };
     let channels = &problem.dataset.channels;
-    let plant = match Plant::equations(&text, &problem.path, problem.order, channels) {
-        Ok(plant) => plant,
-        Err(error) => return Some(Err(DiscoverError::Specification(error))),
+    let model = match EstimationModel::equations(&text, &problem.path, problem.order, channels) {
+        Ok(model) => model,
+        Err(error) => return Some(Err(error.into())),
     };
-    if plant.states != fit.plant.states || candidate.parameters.iter().any(|p| p.inverse) {
+    if model.states != fit.model.states || candidate.parameters.iter().any(|p| p.inverse) {
         return None;
     }
-    let shooting = Shooting::new(problem, &plant, &problem.train, &fit.unknowns, &fit.ranges);
+    let shooting = Shooting::new(problem, &model, &problem.train, &fit.unknowns, &fit.ranges);
     let values = shooting.values(&fit.train.estimate.theta);
     let candidate_unknowns: Vec<CandidateUnknown> = candidate
         .parameters
@@ -182,33 +183,31 @@ fn ready(
         }
         let at = |size: f64| {
             let mut values = values.clone();
-            plant.set(&mut values, &parameter.name, candidate_unknown.base + size);
+            model.set(&mut values, &parameter.name, candidate_unknown.base + size);
             values
         };
-        let Some(size) = small(&plant, &at, points) else {
+        let Some(size) = small(&model, &at, points) else {
             return Some(Err(DiscoverError::NotExcited));
         };
         moved.push((at(size), size));
     }
-    let (_, shown) = plant.evaluator(&values);
-    let own = fit.shooting(problem);
-    let (_, of_fit) = fit.plant.evaluator(&own.values(&fit.train.estimate.theta));
-    if shown != of_fit {
+    let own = fit.shooting(problem).values(&fit.train.estimate.theta);
+    if model.linear_outputs(&values) != fit.model.linear_outputs(&own) {
         return None;
     }
     Some(Ok(Ready {
         candidate: place,
         candidate_unknowns,
-        plant,
+        model,
         moved,
     }))
 }
 
 /// The size of a parameter that changes accelerations by a small part; none if none does.
-fn small(plant: &Plant, at: &dyn Fn(f64) -> Vec<f64>, points: &Points) -> Option<f64> {
+fn small(model: &EstimationModel, at: &dyn Fn(f64) -> Vec<f64>, points: &Points) -> Option<f64> {
     let mut size = 1.0;
     for _ in 0..thresholds::SIZE_ATTEMPTS {
-        let (mut evaluator, _) = plant.evaluator(&at(size));
+        let mut evaluator = model.evaluator(&at(size));
         let change = change(&mut evaluator, points);
         let factor = if change == 0.0 {
             thresholds::SIZE_FACTOR
@@ -288,21 +287,25 @@ fn drive_responses(
                 .flat_map(|of| {
                     of.moved
                         .iter()
-                        .map(|(v, size)| (of.plant.evaluator(v).0, *size))
+                        .map(|(values, size)| (of.model.evaluator(values), *size))
                 })
                 .collect();
-            let mut own = fit.plant.evaluator(&shooting.values(&estimate.theta)).0;
+            let mut own = fit.model.evaluator(&shooting.values(&estimate.theta));
             part.iter()
                 .map(|window| {
                     if base[*window].is_none() {
                         return none();
                     }
                     let place = places[*window];
-                    let moved = evaluators.iter_mut().map(|(e, size)| (e, *size)).collect();
-                    let mut drives = Differences::new(&mut own, moved);
-                    let count = drives.count();
+                    let moved = evaluators
+                        .iter_mut()
+                        .map(|(evaluator, size)| MovedEvaluator {
+                            evaluator,
+                            size: *size,
+                        });
+                    let mut differences = AccelerationDifferences::new(&mut own, moved.collect());
                     let start = &estimate.initial_states[place];
-                    let columns = sensitivities.drive_response(place, start, (count, &mut drives));
+                    let columns = sensitivities.drive_response(place, start, differences.drives());
                     columns.unwrap_or_else(none)
                 })
                 .collect()

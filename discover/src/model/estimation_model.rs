@@ -1,32 +1,26 @@
-//! A model as something that can be run: its derived program, its part that is linear between
-//! switches, and the measured quantities among its outputs. It runs in [`crate::model::runner`]; what
-//! is estimated with it is decided elsewhere.
+//! A compiled model and what an estimation adds to it: its part that is linear between switches,
+//! the measured quantities among its outputs, and steps that are short enough beside the sensors'
+//! noise. It runs in [`crate::model::simulation`]; what is estimated with it is decided elsewhere.
 
 use codegen::program::evaluator::Evaluator;
 use eomgen_compiled_model::{CompiledModel, Error, Orders};
-use model_spec::model::{Model, ParameterValue};
+use model_spec::diagnostic::Diagnostics;
+use model_spec::model::{Model, Parameter, ParameterValue};
 
-use crate::model::beside::Beside;
-use crate::model::runner::{Runner, Shown};
-use eomgen_records::dataset::{Channel, Quantity};
+use crate::error::SimulationError;
+use crate::ids::{ChannelId, ParameterId};
+use crate::model::linear_outputs::LinearOutputs;
+use crate::model::measured_outputs::MeasuredOutputs;
+use crate::model::nonlinear_remainder::NonlinearRemainder;
+use crate::model::simulation::Simulation;
+use crate::thresholds;
+use eomgen_records::dataset::Channel;
 use eomgen_records::record::Record;
 use eomgen_records::samples::typical_step;
 use sim::exponential::ExponentialIntegrator;
 
-/// Switches per simulated second beyond which a trial motion is given up, 1/s.
-pub(crate) const FASTEST_SWITCHING: f64 = 1e5;
-
-/// Samples on which the number of marching steps is tried.
-const TRIED_SAMPLES: usize = 100;
-
-/// Marching steps from sample to sample are tried up to two to this power.
-const MOST_DOUBLINGS: u32 = 7;
-
-/// The root mean square error of marching, in noises: what is marched is compared with noise.
-const MARCHING_ERROR: f64 = 0.2;
-
 /// A derived model with its measured outputs.
-pub struct Plant {
+pub struct EstimationModel {
     /// The model.
     compiled: CompiledModel,
     /// The names of the independent parameters, in the order of their values.
@@ -38,7 +32,7 @@ pub struct Plant {
     /// Where each coordinate lives, for those of which the specification says so.
     ranges: Vec<Option<(f64, f64)>>,
     linear: Option<LinearPart>,
-    pub(crate) outputs: Vec<Output>,
+    pub(crate) measured: MeasuredOutputs,
     channels: Vec<String>,
     /// Runge-Kutta steps from sample to sample, where the motion has no linear part; none
     /// where a solver decides.
@@ -53,66 +47,60 @@ pub struct Plant {
 enum LinearPart {
     /// All of it.
     Whole,
-    /// The model of this part and, for each of its parameters, the place among the whole
-    /// model's.
-    Part(Box<CompiledModel>, Vec<usize>),
+    /// A part with fewer terms.
+    Part(Box<LinearTerms>),
 }
 
-/// Where a channel's quantity is found.
-#[derive(Clone, Copy)]
-pub(crate) enum Output {
-    State(usize),
-    Observable(usize),
+/// A model of the terms that are linear between switches.
+struct LinearTerms {
+    compiled: CompiledModel,
+    /// For each of its parameters the one of the whole model.
+    parameters: Vec<ParameterId>,
 }
 
-impl Plant {
+impl EstimationModel {
     /// Derives the model of a specification's text. `linear`: a text of the same model without
     /// terms that are not linear between switches, if there are such terms.
     ///
     /// # Errors
-    /// What is wrong with the text, in words.
+    /// What is wrong with the text.
     pub fn of(
         text: &str,
         linear: Option<&str>,
         name: &str,
         order: Option<usize>,
         channels: &[Channel],
-    ) -> Result<Self, String> {
-        let mut plant = Self::equations(text, name, order, channels)?;
-        plant.linear = match (plant.compiled.piecewise_linear(), linear) {
+    ) -> Result<Self, Error> {
+        let mut model = Self::equations(text, name, order, channels)?;
+        model.linear = match (model.compiled.piecewise_linear(), linear) {
             (Ok(_), _) => Some(LinearPart::Whole),
-            (Err(_), Some(linear)) => linear_part(linear, name, order, &plant),
+            (Err(_), Some(linear)) => linear_part(linear, name, order, &model),
             (Err(_), None) => None,
         };
-        Ok(plant)
+        Ok(model)
     }
 
     /// The same with its equations alone, to be compared with another's.
     ///
     /// # Errors
-    /// As for [`Plant::of`].
+    /// As for [`EstimationModel::of`].
     pub fn equations(
         text: &str,
         name: &str,
         order: Option<usize>,
         channels: &[Channel],
-    ) -> Result<Self, String> {
-        let compiled = compiled(text, name, order).map_err(in_words)?;
-        let ranges = compiled.model().coordinate_ranges();
-        let ranges = ranges.map_err(|error| error.to_string())?;
+    ) -> Result<Self, Error> {
+        let compiled = compiled(text, name, order)?;
+        let ranges = compiled.model().coordinate_ranges().map_err(|error| {
+            Diagnostics::one(compiled.model().source.clone(), error.diagnostic())
+        })?;
         let program = compiled.program();
-        let is_number =
-            |p: &&model_spec::model::Parameter| matches!(p.value, ParameterValue::Number(_));
+        let is_number = |p: &&Parameter| matches!(p.value, ParameterValue::Number(_));
         let independent = compiled.model().parameters.iter().filter(is_number);
         let parameters = independent.map(|p| p.name.clone()).collect();
-        let degrees = program.degrees_of_freedom();
-        let outputs = channels.iter().map(|channel| match channel.quantity {
-            Quantity::Observable(place) => Output::Observable(place),
-            Quantity::Coordinate(place) => Output::State(place),
-            Quantity::Rate(place) => Output::State(degrees + place),
-        });
+        let observables = program.observables.len();
         Ok(Self {
-            outputs: outputs.collect(),
+            measured: MeasuredOutputs::new(channels, program.degrees_of_freedom(), observables),
             channels: channels
                 .iter()
                 .map(|channel| channel.name.clone())
@@ -139,8 +127,8 @@ impl Plant {
         state
     }
 
-    /// The checked model.
-    pub fn model(&self) -> &Model {
+    /// The checked specification.
+    pub fn specification(&self) -> &Model {
         self.compiled.model()
     }
 
@@ -149,37 +137,28 @@ impl Plant {
         self.compiled.orders()
     }
 
-    /// The place of an independent parameter among the values.
-    pub fn place(&self, parameter: &str) -> Option<usize> {
-        self.parameters.iter().position(|name| name == parameter)
+    /// An independent parameter by its name.
+    pub fn parameter(&self, name: &str) -> Option<ParameterId> {
+        let index = self.parameters.iter().position(|known| known == name)?;
+        Some(ParameterId::new(index))
     }
 
     /// Sets an independent parameter among the values, SI.
     pub fn set(&self, values: &mut [f64], parameter: &str, value: f64) {
-        if let Some(place) = self.place(parameter) {
-            values[place] = value;
+        if let Some(parameter) = self.parameter(parameter) {
+            values[parameter.index()] = value;
         }
     }
 
-    /// The place of a measured channel.
-    pub fn channel(&self, name: &str) -> Option<usize> {
-        self.channels.iter().position(|channel| channel == name)
-    }
-
-    pub(crate) fn shows_states_only(&self) -> bool {
-        self.outputs
-            .iter()
-            .all(|output| matches!(output, Output::State(_)))
+    /// A measured channel by its name.
+    pub fn channel(&self, name: &str) -> Option<ChannelId> {
+        let index = self.channels.iter().position(|channel| channel == name)?;
+        Some(ChannelId::new(index))
     }
 
     /// How many states there are.
     pub fn state_count(&self) -> usize {
         self.states.len()
-    }
-
-    /// How many observables the model has.
-    pub(crate) fn observables(&self) -> usize {
-        self.compiled.program().observables.len()
     }
 
     /// A text with no terms but those that are linear between switches is enough for the
@@ -194,7 +173,7 @@ impl Plant {
         given.unwrap_or_else(|_| vec![0.0; self.state_count()])
     }
 
-    /// Decides in how many steps a motion is marched from sample to sample, where that is not
+    /// Decides in how many steps a motion goes from sample to sample, where that is not
     /// known beforehand: as many as change its outputs by less than a part of the noise, tried
     /// on the beginning of a record. Where there are none, a solver with error control goes on
     /// deciding.
@@ -203,42 +182,42 @@ impl Plant {
         if self.is_linear() {
             return;
         }
-        let times = &record.times[..record.times.len().min(TRIED_SAMPLES)];
-        let marched = self.linear.is_some();
-        let run = |plant: &mut Self, doubling: u32| {
-            if marched {
-                plant.refinement = f64::from(1 << doubling);
+        let times = &record.times[..record.times.len().min(thresholds::STEP_TEST_SAMPLES)];
+        let has_linear_part = self.linear.is_some();
+        let run = |model: &mut Self, doubling: u32| {
+            if has_linear_part {
+                model.refinement = f64::from(1 << doubling);
             } else {
-                plant.steps = Some(1 << doubling);
+                model.steps = Some(1 << doubling);
             }
-            let mut runner = plant.at(&plant.values).ok()?;
-            if marched && runner.march.is_none() {
+            let mut simulation = model.simulation(&model.values).ok()?;
+            if has_linear_part && !simulation.is_integrated() {
                 return None;
             }
-            let outputs = runner.outputs(initial, times, &record.inputs).ok()?;
+            let outputs = simulation.outputs(initial, times, &record.inputs).ok()?;
             Some(outputs.values)
         };
         let mut coarse = run(self, 0);
-        for doubling in 1..MOST_DOUBLINGS {
+        for doubling in 1..thresholds::MOST_STEP_DOUBLINGS {
             let fine = run(self, doubling);
             let near = |(coarse, fine): (&Vec<f64>, &Vec<f64>)| {
                 let pairs = coarse.iter().zip(fine).enumerate();
-                let square = |(place, (a, b)): (usize, (&f64, &f64))| {
-                    ((a - b) / noise[place % noise.len()]).powi(2)
+                let square = |(number, (a, b)): (usize, (&f64, &f64))| {
+                    ((a - b) / noise[number % noise.len()]).powi(2)
                 };
                 let sum: f64 = pairs.map(square).sum();
-                sum < MARCHING_ERROR.powi(2) * coarse.len() as f64
+                sum < thresholds::STEP_ERROR.powi(2) * coarse.len() as f64
             };
             if coarse.as_ref().zip(fine.as_ref()).is_some_and(near) {
-                if marched {
-                    // A march gains a factor of four by each doubling: the coarser is enough.
+                if has_linear_part {
+                    // The integrator gains a factor of four by each doubling: the coarser is enough.
                     self.refinement = f64::from(1 << (doubling - 1));
                 }
                 return;
             }
             coarse = fine;
         }
-        if marched {
+        if has_linear_part {
             self.refinement = 1.0;
         }
         self.steps = None;
@@ -247,44 +226,51 @@ impl Plant {
     /// The model at these values of the independent parameters, ready to run.
     ///
     /// # Errors
-    /// Values at which there is no motion, in words.
-    pub fn at(&self, values: &[f64]) -> Result<Runner<'_>, String> {
+    /// Values at which there is no motion.
+    pub fn simulation(&self, values: &[f64]) -> Result<Simulation<'_>, SimulationError> {
         let mut evaluator = self.compiled.evaluator(values);
         if !evaluator.pivots_are_positive() {
-            return Err("the mass matrix is not positive definite".to_owned());
+            return Err(SimulationError::MassMatrix);
         }
-        let shown = Shown::of(self, &mut evaluator);
-        let mut runner = Runner::new(self, evaluator, shown);
+        let linear_outputs = LinearOutputs::of(&self.measured, &mut evaluator);
+        let mut simulation = Simulation::new(&self.measured, evaluator, linear_outputs, self.steps);
         let (linear, own) = match &self.linear {
-            None => return Ok(runner),
+            None => return Ok(simulation),
             Some(LinearPart::Whole) => (&self.compiled, values.to_vec()),
-            Some(LinearPart::Part(part, places)) => {
-                let own = places.iter().map(|place| values[*place]);
-                (&**part, own.collect())
+            Some(LinearPart::Part(part)) => {
+                let own = part.parameters.iter().map(|id| values[id.index()]);
+                (&part.compiled, own.collect())
             }
         };
-        let exact = linear.piecewise_linear().map_err(ToString::to_string)?;
-        runner.march =
+        let exact = linear
+            .piecewise_linear()
+            .map_err(|error| SimulationError::Propagator(error.clone()))?;
+        let integrator =
             ExponentialIntegrator::new(exact.evaluator(&own), self.sample, self.refinement);
-        match (&runner.march, self.is_linear()) {
+        match (integrator, self.is_linear()) {
             (None, true) => {
-                let exact = exact.at(values).map_err(|error| error.to_string())?;
-                runner.propagate(exact, FASTEST_SWITCHING);
+                let exact = exact.at(values).map_err(SimulationError::Propagator)?;
+                simulation.propagate(exact);
             }
-            (Some(_), false) => {
+            (Some(integrator), true) => simulation.integrate(integrator, None),
+            (Some(integrator), false) => {
                 let whole = self.compiled.evaluator(values);
-                runner.beside = Some(Beside::new(whole, linear.evaluator(&own)));
+                let remainder = NonlinearRemainder::new(whole, linear.evaluator(&own));
+                simulation.integrate(integrator, Some(remainder));
             }
-            (Some(_), true) | (None, false) => {}
+            (None, false) => {}
         }
-        Ok(runner)
+        Ok(simulation)
     }
 
     /// The model's equations at these values, to be compared with others.
-    pub(crate) fn evaluator(&self, values: &[f64]) -> (Evaluator, Option<Shown>) {
-        let mut evaluator = self.compiled.evaluator(values);
-        let shown = Shown::of(self, &mut evaluator);
-        (evaluator, shown)
+    pub(crate) fn evaluator(&self, values: &[f64]) -> Evaluator {
+        self.compiled.evaluator(values)
+    }
+
+    /// What of its state the channels measure at these values, where that is linear.
+    pub(crate) fn linear_outputs(&self, values: &[f64]) -> Option<LinearOutputs> {
+        LinearOutputs::of(&self.measured, &mut self.evaluator(values))
     }
 }
 
@@ -294,28 +280,28 @@ pub fn is_linear(text: &str, name: &str, order: Option<usize>) -> bool {
 }
 
 /// The linear part of a model whose text is given, if it has the model's states.
-fn linear_part(text: &str, name: &str, order: Option<usize>, plant: &Plant) -> Option<LinearPart> {
+fn linear_part(
+    text: &str,
+    name: &str,
+    order: Option<usize>,
+    model: &EstimationModel,
+) -> Option<LinearPart> {
     let part = compiled(text, name, order).ok()?;
-    if part.state_names() != plant.states {
+    if part.state_names() != model.states {
         return None;
     }
-    let exact = part.piecewise_linear().ok()?;
-    let places = exact.parameters().iter().map(|own| plant.place(own));
-    let places = places.collect::<Option<Vec<usize>>>()?;
-    Some(LinearPart::Part(Box::new(part), places))
+    let own = part.piecewise_linear().ok()?.parameters();
+    let parameters = own.iter().map(|name| model.parameter(name));
+    let parameters = parameters.collect::<Option<Vec<ParameterId>>>()?;
+    Some(LinearPart::Part(Box::new(LinearTerms {
+        parameters,
+        compiled: part,
+    })))
 }
 
 /// The model of a text.
 fn compiled(text: &str, name: &str, order: Option<usize>) -> Result<CompiledModel, Error> {
     CompiledModel::of_text(name, text, order.map_or(Orders::Declared, Orders::All))
-}
-
-/// What is wrong with a text, for a file or a page.
-fn in_words(error: Error) -> String {
-    match error {
-        Error::Specification(found) => found.render(false),
-        other => other.to_string(),
-    }
 }
 
 #[cfg(test)]
@@ -336,8 +322,8 @@ masses = "1/2*m*(dot(x)^2 + dot(y)^2)"
 
     #[test]
     fn an_initial_state_stays_where_the_model_lives() {
-        let plant = Plant::equations(SPEAKER, "speaker", None, &[]).expect("a plant");
-        let moved = |x: f64| plant.admissible(vec![9.0, x, 9.0, 9.0]);
+        let model = EstimationModel::equations(SPEAKER, "speaker", None, &[]).expect("a model");
+        let moved = |x: f64| model.admissible(vec![9.0, x, 9.0, 9.0]);
         assert_eq!(moved(0.02), [9.0, 0.005, 9.0, 9.0]);
         assert_eq!(moved(-0.02), [9.0, -0.005, 9.0, 9.0]);
         assert_eq!(moved(0.002), [9.0, 0.002, 9.0, 9.0]);

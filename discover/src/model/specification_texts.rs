@@ -2,14 +2,14 @@
 
 /// Two texts of one specification.
 #[derive(Clone, Debug)]
-pub struct Texts {
+pub struct SpecificationTexts {
     /// The whole specification.
     pub whole: String,
     /// The same without terms that are not linear between switches, where there are such.
     pub linear: String,
 }
 
-impl Texts {
+impl SpecificationTexts {
     /// The texts of a specification all of which counts as linear until it is derived.
     pub fn of(text: &str) -> Self {
         Self {

@@ -5,8 +5,8 @@ use codegen::program::evaluator::{Evaluator, Point};
 
 use sim::exponential::Force;
 
-/// A model beside its linear part, at fixed parameters.
-pub(crate) struct Beside {
+/// What a model's rates are beyond those of its linear part, at fixed parameters.
+pub(crate) struct NonlinearRemainder {
     whole: Evaluator,
     linear: Evaluator,
     rates: [Vec<f64>; 2],
@@ -15,12 +15,12 @@ pub(crate) struct Beside {
     values: Vec<f64>,
 }
 
-impl Beside {
+impl NonlinearRemainder {
     /// Both models with the same states.
     pub fn new(whole: Evaluator, linear: Evaluator) -> Self {
         let states = 2 * whole.program().degrees_of_freedom();
         Self {
-            guards: guards_beside(&whole, &linear),
+            guards: corresponding_guards(&whole, &linear),
             values: vec![0.0; whole.guard_count()],
             rates: [vec![0.0; states], vec![0.0; states]],
             whole,
@@ -31,7 +31,7 @@ impl Beside {
 
 /// For each guard of the linear part the whole model's: the one of the same formula, or, of
 /// those that are left, the next. None if all are the same, or what is left is not as many.
-fn guards_beside(whole: &Evaluator, linear: &Evaluator) -> Option<Vec<usize>> {
+fn corresponding_guards(whole: &Evaluator, linear: &Evaluator) -> Option<Vec<usize>> {
     let formulas = |model: &Evaluator| -> Vec<String> {
         let guards = model.program().guards.iter();
         guards.map(|guard| guard.formula.clone()).collect()
@@ -53,7 +53,7 @@ fn guards_beside(whole: &Evaluator, linear: &Evaluator) -> Option<Vec<usize>> {
     places.collect()
 }
 
-impl Force for Beside {
+impl Force for NonlinearRemainder {
     fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
         let [whole, linear] = &mut self.rates;
         self.whole.rates(Point { t, state, inputs }, whole);
@@ -85,7 +85,8 @@ mod tests {
 
     use sim::inputs::HeldInputs;
 
-    use crate::model::plant::Plant;
+    use crate::model::estimation_model::EstimationModel;
+    use crate::model::simulation::NeighbourDrives;
     use eomgen_records::dataset::{Channel, Quantity};
     use eomgen_records::record::Record;
     use sim::exponential::Free;
@@ -103,9 +104,9 @@ mod tests {
         (rig, with)
     }
 
-    /// The rig with such teeth, marched, and its text, a record of its torque, its channels and
+    /// The rig with such teeth, integrated, and its text, a record of its torque, its channels and
     /// a state in the middle of the play, as the teeth see it.
-    fn marched() -> (Plant, String, Record, [Channel; 1], Vec<f64>) {
+    fn integrated() -> (EstimationModel, String, Record, [Channel; 1], Vec<f64>) {
         let (rig, with) = texts();
         let channels = [Channel {
             name: "x_sp".to_owned(),
@@ -125,24 +126,25 @@ mod tests {
             input_columns: vec![torque],
             channels: Vec::new(),
         };
-        let mut marched = Plant::of(&with, Some(&rig), "rig", Some(4), &channels).expect("a model");
-        let mut initial = vec![0.0; marched.state_count()];
+        let mut integrated =
+            EstimationModel::of(&with, Some(&rig), "rig", Some(4), &channels).expect("a model");
+        let mut initial = vec![0.0; integrated.state_count()];
         initial[0] = 60e-6;
-        marched.choose_steps(&record, &initial, &[1e-7]);
-        (marched, with, record, channels, initial)
+        integrated.choose_steps(&record, &initial, &[1e-7]);
+        (integrated, with, record, channels, initial)
     }
 
     #[test]
     fn teeth_touch_where_the_whole_model_says() {
-        let (marched, with, record, channels, initial) = marched();
-        let solved = Plant::equations(&with, "rig", Some(4), &channels).expect("a model");
-        let states = |plant: &Plant| {
-            let mut runner = plant.at(&plant.values).expect("a runner");
-            let found = runner.states(&initial, &record.times, &record.inputs);
-            (runner.is_marched(), found.expect("a motion"))
+        let (integrated, with, record, channels, initial) = integrated();
+        let solved = EstimationModel::equations(&with, "rig", Some(4), &channels).expect("a model");
+        let states = |model: &EstimationModel| {
+            let mut simulation = model.simulation(&model.values).expect("a simulation");
+            let found = simulation.states(&initial, &record.times, &record.inputs);
+            (simulation.carries_tangents(), found.expect("a motion"))
         };
-        let ((is_marched, found), (_, wanted)) = (states(&marched), states(&solved));
-        assert!(is_marched);
+        let ((carries_tangents, found), (_, wanted)) = (states(&integrated), states(&solved));
+        assert!(carries_tangents);
         // The play is 25 um. At an impact a difference in time is one in place.
         let differences = found.iter().zip(&wanted).map(|(a, b)| (a[0] - b[0]).abs());
         let mut differences: Vec<f64> = differences.collect();
@@ -154,12 +156,18 @@ mod tests {
 
     #[test]
     fn neighbours_feel_what_is_beyond_the_linear_part() {
-        let (marched, _, record, _, initial) = marched();
-        let mut runner = marched.at(&marched.values).expect("a runner");
+        let (integrated, _, record, _, initial) = integrated();
+        let mut simulation = integrated
+            .simulation(&integrated.values)
+            .expect("a simulation");
         // The teeth touch once and part before the third sample.
         let times = &record.times[..4];
-        let found = runner
-            .linearised(&initial, times, &record.inputs, true, (0, &mut Free))
+        let free = NeighbourDrives {
+            count: 0,
+            drives: &mut Free,
+        };
+        let found = simulation
+            .linearised(&initial, times, &record.inputs, true, free)
             .expect("tangents");
         let count = initial.len();
         for (place, tangent) in found.by_state[3 * count..].iter().enumerate() {
@@ -167,7 +175,7 @@ mod tests {
             let [more, less] = [size, -size].map(|change| {
                 let mut moved = initial.clone();
                 moved[place] += change;
-                let states = runner.states(&moved, times, &record.inputs);
+                let states = simulation.states(&moved, times, &record.inputs);
                 states.expect("a motion")[3][0]
             });
             let quotient = (more - less) / (2.0 * size);

@@ -1,0 +1,84 @@
+//! Which one of several is meant: an index with a type of its own for every kind of thing, so that
+//! none is taken for another. Lists are indexed by them; only where rows and columns of matrices are
+//! meant is [`index`](ChannelId::index) asked for.
+
+use std::ops::{Index, IndexMut};
+
+/// Defines ids, each of one kind of thing.
+macro_rules! ids {
+    ($($(#[$documentation:meta])* $id:ident;)*) => {$(
+        $(#[$documentation])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $id(usize);
+
+        impl $id {
+            /// The one that stands there, from 0.
+            pub fn new(index: usize) -> Self {
+                Self(index)
+            }
+
+            /// Where it stands, from 0.
+            pub fn index(self) -> usize {
+                self.0
+            }
+
+            /// So many, in order.
+            pub fn first(count: usize) -> impl DoubleEndedIterator<Item = Self> + Clone {
+                (0..count).map(Self)
+            }
+        }
+
+        impl<T> Index<$id> for [T] {
+            type Output = T;
+
+            fn index(&self, id: $id) -> &T {
+                &self[id.0]
+            }
+        }
+
+        impl<T> IndexMut<$id> for [T] {
+            fn index_mut(&mut self, id: $id) -> &mut T {
+                &mut self[id.0]
+            }
+        }
+
+        impl<T> Index<$id> for Vec<T> {
+            type Output = T;
+
+            fn index(&self, id: $id) -> &T {
+                &self[id.0]
+            }
+        }
+
+        impl<T> IndexMut<$id> for Vec<T> {
+            fn index_mut(&mut self, id: $id) -> &mut T {
+                &mut self[id.0]
+            }
+        }
+    )*};
+}
+
+ids! {
+    /// A channel of a dataset.
+    ChannelId;
+    /// A window of training or test records.
+    WindowId;
+    /// An independent parameter of a model, among the values that it is run at.
+    ParameterId;
+    /// An unknown of a fit.
+    UnknownId;
+    /// An equation of motion in which a force may be missing.
+    EquationId;
+    /// A family of basis functions of a regression.
+    FamilyId;
+    /// A basis function of a regression, of whatever family: a column.
+    BasisFunctionId;
+    /// A candidate of a list that was screened.
+    CandidateId;
+    /// The response of a candidate that changes the outputs.
+    ResponseId;
+    /// An effect of those that a hypothesis holds together.
+    EffectId;
+    /// A hypothesis of those that were fitted in full.
+    FittedId;
+}

@@ -1,0 +1,336 @@
+//! A model at fixed parameters as it runs: by the exponential integrator where it has a linear
+//! part, propagated from switch to switch where steps of one length would have to be too short,
+//! otherwise by Runge-Kutta steps or a solver with error control. Measured quantities come along,
+//! and their derivatives where neighbouring motions do.
+
+use std::cell::RefCell;
+
+use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_compiled_model::Driven;
+use sim::inputs::HeldInputs;
+use sim::ode::{Settings, simulate};
+use sim::piecewise_linear::Propagator;
+
+use crate::error::SimulationError;
+use crate::model::linear_outputs::LinearOutputs;
+use crate::model::measured_outputs::MeasuredOutputs;
+use crate::model::nonlinear_remainder::NonlinearRemainder;
+use crate::thresholds;
+use sim::exponential::{Drives, ExponentialIntegrator, Force, Options, Tangents};
+use sim::ode::runge_kutta::RungeKutta;
+
+/// A model at fixed parameters.
+pub struct Simulation<'m> {
+    measured: &'m MeasuredOutputs,
+    evaluator: RefCell<Evaluator>,
+    observables: Vec<f64>,
+    linear_outputs: Option<LinearOutputs>,
+    /// Runge-Kutta steps from sample to sample; none where a solver decides.
+    steps: Option<usize>,
+    integrator: Option<ExponentialIntegrator>,
+    remainder: Option<NonlinearRemainder>,
+    propagator: Option<Propagator>,
+}
+
+/// What drives neighbouring motions: so many differences of the accelerations.
+pub struct NeighbourDrives<'d> {
+    /// How many.
+    pub count: usize,
+    /// What they are along a motion.
+    pub drives: &'d mut dyn Drives,
+}
+
+/// A motion with neighbouring ones.
+#[derive(Clone, Debug, Default)]
+pub struct LinearisedMotion {
+    /// The motion's own outputs.
+    pub outputs: Outputs,
+    /// The states at the samples.
+    pub states: Vec<Vec<f64>>,
+    /// For each sample a row of derivatives per initial state, one number per channel.
+    pub by_state: Vec<f64>,
+    /// The same for each drive.
+    pub by_drive: Vec<f64>,
+}
+
+/// Outputs of a window: a row per sample, a number per channel; and the state at the end.
+#[derive(Clone, Debug, Default)]
+pub struct Outputs {
+    /// Row by row.
+    pub values: Vec<f64>,
+    /// The state at the last sample.
+    pub last: Vec<f64>,
+}
+
+/// Outputs of a window with their derivatives by its initial state.
+#[derive(Clone, Debug, Default)]
+pub struct OutputTangents {
+    /// The motion's own outputs.
+    pub outputs: Outputs,
+    /// For each sample a row of derivatives per initial state, one number per channel.
+    pub by_state: Vec<f64>,
+}
+
+impl<'m> Simulation<'m> {
+    /// A simulation by Runge-Kutta steps, or by a solver where there are none.
+    pub(crate) fn new(
+        measured: &'m MeasuredOutputs,
+        evaluator: Evaluator,
+        linear_outputs: Option<LinearOutputs>,
+        steps: Option<usize>,
+    ) -> Self {
+        Self {
+            measured,
+            evaluator: RefCell::new(evaluator),
+            observables: measured.observables(),
+            linear_outputs,
+            steps,
+            integrator: None,
+            remainder: None,
+            propagator: None,
+        }
+    }
+
+    /// Takes an integrator for the linear part, and what lies beyond that.
+    pub(crate) fn integrate(
+        &mut self,
+        integrator: ExponentialIntegrator,
+        remainder: Option<NonlinearRemainder>,
+    ) {
+        self.integrator = Some(integrator);
+        self.remainder = remainder;
+    }
+
+    /// Takes a propagator for the motion.
+    pub(crate) fn propagate(&mut self, mut propagator: Propagator) {
+        propagator.max_switch_rate = thresholds::FASTEST_SWITCHING;
+        self.propagator = Some(propagator);
+    }
+
+    /// Whether the exponential integrator runs it.
+    pub(crate) fn is_integrated(&self) -> bool {
+        self.integrator.is_some()
+    }
+
+    /// Whether neighbouring motions come along.
+    pub fn carries_tangents(&self) -> bool {
+        self.integrator.is_some() && self.linear_outputs.is_some()
+    }
+
+    /// The measured quantities, where they are linear in the state.
+    pub fn linear_outputs(&self) -> Option<&LinearOutputs> {
+        self.linear_outputs.as_ref()
+    }
+
+    /// The motion from an initial state with neighbouring ones, where these come along: of every
+    /// initial state, if `by_state`, and driven ones.
+    pub fn linearised(
+        &mut self,
+        initial: &[f64],
+        samples: &[f64],
+        inputs: &HeldInputs,
+        by_state: bool,
+        driven: NeighbourDrives<'_>,
+    ) -> Option<LinearisedMotion> {
+        let linear_outputs = self.linear_outputs.as_ref()?;
+        let integrator = self.integrator.as_mut()?;
+        let n = initial.len();
+        let mut tangents = Tangents::new(n, by_state, driven.count, driven.drives);
+        let mut found = LinearisedMotion::default();
+        let free = if by_state { n } else { 0 };
+        let options = Options {
+            force: self.remainder.as_mut().map(|force| force as &mut dyn Force),
+            tangents: Some(&mut tangents),
+        };
+        integrator
+            .run(
+                initial,
+                samples,
+                inputs,
+                options,
+                &mut |_, state, tangents| {
+                    linear_outputs.append(state, &mut found.outputs.values);
+                    found.states.push(state.to_vec());
+                    let Some(tangents) = tangents else { return };
+                    let vectors = tangents.vectors.chunks_exact(tangents.stride);
+                    for (number, vector) in vectors.enumerate() {
+                        let out = match number < free {
+                            true => &mut found.by_state,
+                            false => &mut found.by_drive,
+                        };
+                        linear_outputs.append_derivatives(&vector[..n], out);
+                    }
+                },
+            )
+            .ok()?;
+        found.outputs.last = found.states.last().cloned().unwrap_or_default();
+        Some(found)
+    }
+
+    /// The states at the samples (s, ascending) of a motion that starts at the first of them.
+    ///
+    /// # Errors
+    /// Why the motion cannot be followed.
+    pub fn states(
+        &mut self,
+        initial: &[f64],
+        samples: &[f64],
+        inputs: &HeldInputs,
+    ) -> Result<Vec<Vec<f64>>, SimulationError> {
+        let (Some(begin), Some(end)) = (samples.first(), samples.last()) else {
+            return Ok(Vec::new());
+        };
+        let span = (*begin, *end);
+        if let Some(integrator) = &mut self.integrator {
+            let mut states = Vec::with_capacity(samples.len());
+            let options = Options {
+                force: self.remainder.as_mut().map(|force| force as &mut dyn Force),
+                tangents: None,
+            };
+            let run = integrator.run(initial, samples, inputs, options, &mut |_, state, _| {
+                states.push(state.to_vec());
+            });
+            return run.map(|()| states).map_err(SimulationError::Integrator);
+        }
+        if let Some(propagator) = &mut self.propagator {
+            let trajectory = propagator.simulate(initial, span, samples, inputs, &mut |_| {});
+            if let Ok(trajectory) = trajectory {
+                return Ok(trajectory.states);
+            }
+        }
+        if let Some(steps) = self.steps {
+            let states = self.by_runge_kutta(initial, samples, inputs, steps);
+            return states.ok_or(SimulationError::Unbounded);
+        }
+        let settings = Settings {
+            max_steps: thresholds::MOST_SOLVER_STEPS,
+            max_switch_rate: thresholds::FASTEST_SWITCHING,
+            ..Settings::with_tolerance(thresholds::SOLVER_TOLERANCE)
+        };
+        let driven = Driven::new(&self.evaluator, inputs);
+        simulate(&driven, initial, span, samples, &settings, &mut |_| {})
+            .map(|trajectory| trajectory.states)
+            .map_err(SimulationError::Solver)
+    }
+
+    /// The states at the samples by classical Runge-Kutta steps, so many from sample to
+    /// sample; none if they do not stay finite.
+    fn by_runge_kutta(
+        &mut self,
+        initial: &[f64],
+        samples: &[f64],
+        inputs: &HeldInputs,
+        steps: usize,
+    ) -> Option<Vec<Vec<f64>>> {
+        let mut state = initial.to_vec();
+        let mut states = Vec::with_capacity(samples.len());
+        states.push(state.clone());
+        let mut method = RungeKutta::new(state.len());
+        let evaluator = self.evaluator.get_mut();
+        for pair in samples.windows(2) {
+            let h = (pair[1] - pair[0]) / steps as f64;
+            for step in 0..steps {
+                let begin = pair[0] + step as f64 * h;
+                // Half a step on, so that rounding of a sample's time does not decide.
+                let inputs = inputs.at(begin + 0.5 * h);
+                method.step(&mut state, (begin, h), |_, t, state, rates| {
+                    evaluator.rates(Point { t, state, inputs }, rates);
+                });
+            }
+            if state.iter().any(|x| !x.is_finite()) {
+                return None;
+            }
+            states.push(state.clone());
+        }
+        Some(states)
+    }
+
+    /// The channels' quantities at the samples of a motion that starts at the first of them.
+    ///
+    /// # Errors
+    /// As [`Simulation::states`].
+    pub fn outputs(
+        &mut self,
+        initial: &[f64],
+        samples: &[f64],
+        inputs: &HeldInputs,
+    ) -> Result<Outputs, SimulationError> {
+        let states = self.states(initial, samples, inputs)?;
+        let mut values = Vec::with_capacity(samples.len() * self.measured.count());
+        for (t, state) in samples.iter().zip(&states) {
+            self.measure(*t, state, inputs, &mut values);
+        }
+        Ok(Outputs {
+            values,
+            last: states.into_iter().next_back().unwrap_or_default(),
+        })
+    }
+
+    /// The channels' quantities and their derivatives by each initial state, if the exact
+    /// propagator takes the motion: for each sample a row of derivatives per state, one number
+    /// per channel. `steps`: over how much of each state a nonlinear observable is
+    /// differentiated.
+    pub fn tangents(
+        &mut self,
+        initial: &[f64],
+        samples: &[f64],
+        inputs: &HeldInputs,
+        steps: &[f64],
+    ) -> Option<OutputTangents> {
+        let span = (*samples.first()?, *samples.last()?);
+        let count = initial.len();
+        let unit = |state: usize| {
+            (0..count)
+                .map(|k| f64::from(u8::from(k == state)))
+                .collect()
+        };
+        let directions: Vec<Vec<f64>> = (0..count).map(unit).collect();
+        let propagator = self.propagator.as_mut()?;
+        let found = propagator
+            .neighbours(initial, span, samples, inputs, directions)
+            .ok()?;
+        let channels = self.measured.count();
+        let mut outputs = Outputs::default();
+        let mut derivatives = Vec::with_capacity(samples.len() * count * channels);
+        let mut moved = vec![0.0; count];
+        for ((t, state), tangents) in samples.iter().zip(&found.states).zip(&found.derivatives) {
+            let here = outputs.values.len();
+            self.measure(*t, state, inputs, &mut outputs.values);
+            for (tangent, step) in tangents.iter().zip(steps) {
+                let sums = moved.iter_mut().zip(state).zip(tangent);
+                sums.for_each(|((slot, x), d)| *slot = x + step * d);
+                let there = derivatives.len();
+                self.measure(*t, &moved, inputs, &mut derivatives);
+                for channel in 0..channels {
+                    let difference = derivatives[there + channel] - outputs.values[here + channel];
+                    derivatives[there + channel] = difference / step;
+                }
+            }
+        }
+        outputs.last = found.states.into_iter().next_back().unwrap_or_default();
+        Some(OutputTangents {
+            outputs,
+            by_state: derivatives,
+        })
+    }
+
+    /// Appends the channels' quantities at a state.
+    fn measure(&mut self, t: f64, state: &[f64], inputs: &HeldInputs, values: &mut Vec<f64>) {
+        if let Some(linear_outputs) = &self.linear_outputs {
+            linear_outputs.append(state, values);
+            return;
+        }
+        let inputs = inputs.at(t);
+        let (evaluator, point) = (self.evaluator.get_mut(), Point { t, state, inputs });
+        self.measured
+            .append(evaluator, point, &mut self.observables, values);
+    }
+
+    /// The rates of a state.
+    pub fn rates(&mut self, t: f64, state: &[f64], inputs: &[f64]) -> Vec<f64> {
+        let mut rates = vec![0.0; state.len()];
+        let point = Point { t, state, inputs };
+        self.evaluator.get_mut().rates(point, &mut rates);
+        rates
+    }
+}
