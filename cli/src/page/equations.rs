@@ -3,190 +3,175 @@
 
 use codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
 use codegen::symbolic::formula::{Formula, Symbol};
-
-use super::markup::{escaped, number, table};
+use eomgen_page::{formula, number, table};
+use maud::{Markup, html};
 
 /// At most so many values of a coefficient are shown.
 const SHOWN_VALUES: usize = 8;
 
 /// The content of the step.
-pub(super) fn content(report: &Report) -> String {
-    let mut html = introduction(report);
-    html.push_str(&lines("Definitions", &report.definitions, Formula::mathml));
-    html.push_str(&lines(
-        "Terms of the energies <i>T</i> and <i>V</i>, of the dissipation, and forces",
-        &report.terms,
-        Formula::mathml,
-    ));
-    html.push_str(&energies(report));
-    html.push_str(&lines(
-        "Shared subexpressions, by names of their own",
-        &report.shared,
-        Formula::mathml,
-    ));
-    html.push_str(&mass_matrix(&report.mass_matrix));
-    html.push_str(&lines(
-        "Pivots of its factorisation, which must be positive",
-        &report.pivots,
-        Formula::mathml,
-    ));
-    html.push_str(&lines(
-        "Velocity terms <i>c</i>",
-        &report.velocity_terms,
-        |name| indexed("c", &[name]),
-    ));
-    html.push_str(&lines(
-        "Generalised forces <i>f</i>",
-        &report.forces,
-        |name| indexed("f", &[name]),
-    ));
-    html.push_str(&coefficients(&report.coefficients));
-    html.push_str(&lines(
-        "Accelerations",
-        &report.accelerations,
-        Formula::mathml,
-    ));
-    html.push_str(&guards(&report.guards));
-    html.push_str(&format!("<p>{}</p>\n", sentence(&report.linearity)));
-    html.push_str(&solution(
-        &report.solution,
-        report.orders.iter().any(|order| *order > 0),
-    ));
-    html
+pub(super) fn content(report: &Report) -> Markup {
+    let has_modes = report.orders.iter().any(|order| *order > 0);
+    let terms = html! {
+        "Terms of the energies " i { "T" } " and " i { "V" } ", of the dissipation, and forces"
+    };
+    html! {
+        (introduction(report))
+        (lines(&html! { "Definitions" }, &report.definitions, formula))
+        (lines(&terms, &report.terms, formula))
+        (energies(report))
+        (lines(&html! { "Shared subexpressions, by names of their own" }, &report.shared, formula))
+        (mass_matrix(&report.mass_matrix))
+        (lines(
+            &html! { "Pivots of its factorisation, which must be positive" },
+            &report.pivots,
+            formula,
+        ))
+        (lines(&html! { "Velocity terms " i { "c" } }, &report.velocity_terms, |name| {
+            indexed("c", &[name])
+        }))
+        (lines(&html! { "Generalised forces " i { "f" } }, &report.forces, |name| {
+            indexed("f", &[name])
+        }))
+        (coefficients(&report.coefficients))
+        (lines(&html! { "Accelerations" }, &report.accelerations, formula))
+        (guards(&report.guards))
+        p { (sentence(&report.linearity)) }
+        (solution(&report.solution, has_modes))
+    }
 }
 
-fn introduction(report: &Report) -> String {
-    let orders: Vec<String> = report.orders.iter().map(usize::to_string).collect();
-    let order = match orders.as_slice() {
-        [] => String::new(),
-        [order] => format!(" The flexible body is carried by <i>S</i> = {order} modes."),
-        _ => format!(
-            " The flexible bodies are carried by {} modes.",
-            orders.join(", ")
-        ),
-    };
-    let state: Vec<String> = report
-        .state
-        .iter()
-        .map(|name| Formula::Symbol(Symbol::of_state(name)).mathml())
-        .collect();
-    format!(
-        "<p>Lagrange’s equations of the energies, in the form <b>M</b> <i>q̈</i> + <i>c</i> = <i>f</i>.{order} \
-         Sums run over the modes <i>i</i>; integrals over the mode shapes <i>φ</i> run over \
-         <i>s</i> = <i>x</i>/<i>l</i> from 0 to 1, with primes for derivatives by <i>s</i>.</p>\n\
-         <p>The state: {}.</p>\n",
-        state.join(", ")
-    )
+fn introduction(report: &Report) -> Markup {
+    html! {
+        p {
+            "Lagrange’s equations of the energies, in the form "
+            b { "M" } " " i { "q̈" } " + " i { "c" } " = " i { "f" } "."
+            @match report.orders.as_slice() {
+                [] => {},
+                [order] => {
+                    " The flexible body is carried by " i { "S" } " = " (order) " modes."
+                },
+                orders => {
+                    " The flexible bodies are carried by "
+                    (separated(orders, |order| html! { (order) })) " modes."
+                },
+            }
+            " Sums run over the modes " i { "i" } "; integrals over the mode shapes " i { "φ" }
+            " run over " i { "s" } " = " i { "x" } "/" i { "l" }
+            " from 0 to 1, with primes for derivatives by " i { "s" } "."
+        }
+        p {
+            "The state: "
+            (separated(&report.state, |name| formula(&Formula::Symbol(Symbol::of_state(name)))))
+            "."
+        }
+    }
+}
+
+/// Items with commas between them.
+fn separated<T>(items: &[T], set: impl Fn(&T) -> Markup) -> Markup {
+    html! {
+        @for (place, item) in items.iter().enumerate() {
+            @if place > 0 { ", " }
+            (set(item))
+        }
+    }
 }
 
 /// A letter with names as its indices.
-fn indexed(letter: &str, names: &[&Formula]) -> String {
-    let names: Vec<String> = names.iter().map(|name| name.mathml()).collect();
-    format!("<i>{letter}</i><sub>{}</sub>", names.join(", "))
+fn indexed(letter: &str, names: &[&Formula]) -> Markup {
+    html! { i { (letter) } sub { (separated(names, |name| formula(name))) } }
 }
 
-fn sentence(sentence: &Sentence) -> String {
-    let text = escaped(sentence.text);
-    match &sentence.formula {
-        Some(formula) => format!("{text}: {}.", formula.mathml()),
-        None => format!("{text}."),
+fn sentence(sentence: &Sentence) -> Markup {
+    html! {
+        (sentence.text)
+        @if let Some(of) = &sentence.formula { ": " (formula(of)) }
+        "."
     }
 }
 
-fn heading(text: &str) -> String {
-    format!("<h3>{text}</h3>\n")
+fn row(left: &Markup, right: &Formula) -> Markup {
+    html! { tr { th scope="row" { (left) } td { "= " (formula(right)) } } }
 }
 
-fn row(left: &str, right: &str) -> String {
-    format!("<tr><th scope=\"row\">{left}</th><td>= {right}</td></tr>\n")
+/// Equations under a heading.
+fn equations(heading: &Markup, rows: &Markup) -> Markup {
+    html! {
+        h3 { (heading) }
+        div.wide { table.equations { tbody { (rows) } } }
+    }
 }
 
-fn equations(rows: &str) -> String {
-    format!(
-        "<div class=\"wide\"><table class=\"equations\"><tbody>\n{rows}</tbody></table></div>\n"
-    )
-}
-
-fn lines(title: &str, lines: &[Line], name: impl Fn(&Formula) -> String) -> String {
+fn lines(heading: &Markup, lines: &[Line], name: impl Fn(&Formula) -> Markup) -> Markup {
     if lines.is_empty() {
-        return String::new();
+        return html! {};
     }
-    let rows: String = lines
-        .iter()
-        .map(|line| row(&name(&line.name), &line.formula.mathml()))
-        .collect();
-    heading(title) + &equations(&rows)
+    let rows = html! { @for line in lines { (row(&name(&line.name), &line.formula)) } };
+    equations(heading, &rows)
 }
 
-fn energies(report: &Report) -> String {
-    let rows =
-        row("<i>T</i>", &report.kinetic.mathml()) + &row("<i>V</i>", &report.potential.mathml());
-    heading("Kinetic and potential energy") + &equations(&rows)
+fn energies(report: &Report) -> Markup {
+    let rows = html! {
+        (row(&html! { i { "T" } }, &report.kinetic))
+        (row(&html! { i { "V" } }, &report.potential))
+    };
+    equations(&html! { "Kinetic and potential energy" }, &rows)
 }
 
-fn mass_matrix(entries: &[MassMatrixEntry]) -> String {
-    let rows: String = entries
-        .iter()
-        .map(|entry| {
-            row(
-                &indexed("M", &[&entry.row, &entry.column]),
-                &entry.formula.mathml(),
-            )
-        })
-        .collect();
-    heading("Mass matrix <b>M</b>: symmetric, its nonzero entries") + &equations(&rows)
+fn mass_matrix(entries: &[MassMatrixEntry]) -> Markup {
+    let rows = html! {
+        @for entry in entries {
+            (row(&indexed("M", &[&entry.row, &entry.column]), &entry.formula))
+        }
+    };
+    let heading = html! { "Mass matrix " b { "M" } ": symmetric, its nonzero entries" };
+    equations(&heading, &rows)
 }
 
-fn coefficients(lines: &[CoefficientLine]) -> String {
+fn coefficients(lines: &[CoefficientLine]) -> Markup {
     if lines.is_empty() {
-        return String::new();
+        return html! {};
     }
-    let rows: String = lines
-        .iter()
-        .map(|line| {
-            format!(
-                "<tr><th scope=\"row\" class=\"formula\">{}</th><td class=\"formula\">{}</td><td class=\"values\">{}</td></tr>\n",
-                line.name.mathml(),
-                line.formula.mathml(),
-                values(&line.values)
-            )
-        })
-        .collect();
-    heading("Coefficients")
-        + "<p>By the names the specification gives them; values in SI units at its parameters.</p>\n"
-        + &table(&["coefficient", "formula", "value, or one per mode"], &rows)
+    let rows = html! {
+        @for line in lines {
+            tr {
+                th.formula scope="row" { (formula(&line.name)) }
+                td.formula { (formula(&line.formula)) }
+                td.values { (values(&line.values)) }
+            }
+        }
+    };
+    html! {
+        h3 { "Coefficients" }
+        p { "By the names the specification gives them; values in SI units at its parameters." }
+        (table(&["coefficient", "formula", "value, or one per mode"], &rows))
+    }
 }
 
-fn values(values: &[f64]) -> String {
-    if values.is_empty() {
-        return "varies with time or state".to_owned();
+fn values(values: &[f64]) -> Markup {
+    html! {
+        @if values.is_empty() { "varies with time or state" }
+        @for (place, value) in values.iter().take(SHOWN_VALUES).enumerate() {
+            @if place > 0 { br; }
+            (number(*value, 5))
+        }
+        @if values.len() > SHOWN_VALUES { br; "… (" (values.len()) " values)" }
     }
-    let mut shown: Vec<String> = values
-        .iter()
-        .take(SHOWN_VALUES)
-        .map(|value| number(*value, 5))
-        .collect();
-    if values.len() > SHOWN_VALUES {
-        shown.push(format!("… ({} values)", values.len()));
-    }
-    shown.join("<br>")
 }
 
-fn guards(guards: &[Formula]) -> String {
+fn guards(guards: &[Formula]) -> Markup {
     if guards.is_empty() {
-        return String::new();
+        return html! {};
     }
-    let items: String = guards
-        .iter()
-        .map(|guard| format!("<li>{}</li>", guard.mathml()))
-        .collect();
-    heading("Switching surfaces")
-        + &format!(
-            "<p>The equations switch where one of these changes sign:</p>\n<ul class=\"formulas\">{items}</ul>\n"
-        )
+    html! {
+        h3 { "Switching surfaces" }
+        p { "The equations switch where one of these changes sign:" }
+        ul.formulas { @for guard in guards { li { (formula(guard)) } } }
+    }
 }
 
-fn solution(solution: &Solution, has_modes: bool) -> String {
+fn solution(solution: &Solution, has_modes: bool) -> Markup {
     let modes = match (has_modes, solution.dense_modes) {
         (false, _) => "",
         (true, false) => "the modes first, then ",
@@ -197,13 +182,12 @@ fn solution(solution: &Solution, has_modes: bool) -> String {
         1 => "one interface unknown, then ".to_owned(),
         count => format!("{count} interface unknowns, then "),
     };
-    let order: Vec<String> = solution.order.iter().map(Formula::mathml).collect();
-    format!(
-        "{}<p>Without pivoting, in the order that costs least: {modes}{interfaces}{}. That takes {} operations a \
-         call, against {} in the dearest order.</p>\n",
-        heading("How the accelerations are solved for"),
-        order.join(", "),
-        escaped(&solution.operations.to_string()),
-        escaped(&solution.dearest.to_string())
-    )
+    html! {
+        h3 { "How the accelerations are solved for" }
+        p {
+            "Without pivoting, in the order that costs least: " (modes) (interfaces)
+            (separated(&solution.order, formula)) ". That takes " (solution.operations)
+            " operations a call, against " (solution.dearest) " in the dearest order."
+        }
+    }
 }

@@ -2,19 +2,18 @@
 //! the emitted source, the certificate, a simulation and what is found in records. Only how these are shown; what they
 //! say is handed in.
 //!
-//! The page has no script and refers to nothing outside itself. Every text is escaped, so
-//! that nothing in a specification becomes markup.
+//! The page has no script and refers to nothing outside itself; nothing in a specification
+//! becomes markup.
 
 mod equations;
-mod markup;
 mod steps;
 
 #[cfg(test)]
 mod tests;
 
 use codegen::report::Report;
-
-use markup::escaped;
+use eomgen_page::{Figure, document};
+use maud::{Markup, html};
 
 /// Everything on the page.
 #[derive(Clone, Debug)]
@@ -89,15 +88,6 @@ pub struct Simulation<'a> {
     pub figures: Vec<Figure<'a>>,
 }
 
-/// A figure with its caption.
-#[derive(Clone, Debug)]
-pub struct Figure<'a> {
-    /// An SVG element as `eomgen_plot` draws it. The one text that is not escaped.
-    pub svg: &'a str,
-    /// What to look for.
-    pub caption: &'a str,
-}
-
 /// Something hidden in a machine and found from its records.
 #[derive(Clone, Debug)]
 pub struct Hidden<'a> {
@@ -133,25 +123,35 @@ pub struct NextCommand<'a> {
 struct Step {
     anchor: &'static str,
     heading: &'static str,
-    content: String,
+    content: Markup,
 }
 
 impl Tour<'_> {
     /// The page, a complete HTML document.
     pub fn render(&self) -> String {
         let steps = self.steps();
-        let links: String = steps.iter().map(link).collect();
-        let sections: String = steps.iter().map(section).collect();
-        let (title, generated_by) = (escaped(self.title), escaped(self.generated_by));
-        format!(
-            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <title>{title}</title>\n<style>\n{}</style>\n</head>\n<body>\n<header>\n\
-             <h1>{title}</h1>\n<p class=\"lead\">From a Lagrangian written down once to equations \
-             of motion that run: this page shows what happened on the way, step by step.</p>\n<nav><ol>{links}</ol></nav>\n</header>\n<main>\n{sections}</main>\n\
-             <footer><p>Written by {generated_by}.</p></footer>\n</body>\n</html>\n",
-            include_str!("style.css")
-        )
+        let body = html! {
+            header {
+                h1 { (self.title) }
+                p.lead {
+                    "From a Lagrangian written down once to equations of motion that run: this page "
+                    "shows what happened on the way, step by step."
+                }
+                nav { ol {
+                    @for step in &steps { li { a href={ "#" (step.anchor) } { (step.heading) } } }
+                } }
+            }
+            main.steps {
+                @for step in &steps {
+                    section id=(step.anchor) {
+                        h2 { (step.heading) }
+                        (step.content)
+                    }
+                }
+            }
+            footer { p { "Written by " (self.generated_by) "." } }
+        };
+        document(self.title, &body)
     }
 
     fn steps(&self) -> [Step; 8] {
@@ -195,15 +195,4 @@ impl Tour<'_> {
             step("next", "What next", steps::next(&self.next)),
         ]
     }
-}
-
-fn link(step: &Step) -> String {
-    format!("<li><a href=\"#{}\">{}</a></li>", step.anchor, step.heading)
-}
-
-fn section(step: &Step) -> String {
-    format!(
-        "<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n",
-        step.anchor, step.heading, step.content
-    )
 }

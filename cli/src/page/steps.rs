@@ -1,41 +1,42 @@
 //! The steps around the equations: specification, source, certificate, simulation, what is
 //! found in records, durations and what next.
 
-use super::markup::{escaped, folded, number, table};
+use eomgen_page::{figure, folded, number, table};
+use maud::{Markup, html};
+
 use super::{CheckRow, Hidden, NextCommand, Simulation, Source, Specification, StepDuration};
 
 /// What was checked and what was found.
-pub(super) fn specification(specification: &Specification<'_>) -> String {
+pub(super) fn specification(specification: &Specification<'_>) -> Markup {
     let warnings = &specification.warnings;
     let found = match warnings.len() {
         0 => "no errors and no warnings".to_owned(),
         1 => "no errors and one warning".to_owned(),
         count => format!("no errors and {count} warnings"),
     };
-    let warnings: String = warnings
-        .iter()
-        .map(|warning| format!("<pre class=\"warning\">{}</pre>\n", escaped(warning)))
-        .collect();
-    format!(
-        "<p>The model is one text file, <code>{}</code>. Its grammar, its names and the units of every term were \
-         checked: <strong>{found}</strong>.</p>\n{warnings}{}",
-        escaped(specification.path),
-        folded("Read the specification", specification.text, false)
-    )
+    html! {
+        p {
+            "The model is one text file, " code { (specification.path) } ". Its grammar, its names "
+            "and the units of every term were checked: " strong { (found) } "."
+        }
+        @for warning in warnings { pre.warning { (warning) } }
+        (folded("Read the specification", specification.text, false))
+    }
 }
 
 /// The emitted file, the right-hand side first.
-pub(super) fn source(source: &Source<'_>) -> String {
-    let rates = rates_function(source.text)
-        .map(|rates| folded("The right-hand side: rates", rates, true))
-        .unwrap_or_default();
-    format!(
-        "<p><code>{}</code> holds the model as {} lines of Rust that need no standard library, no allocation and \
-         no other crate, and compile as they are.</p>\n{rates}{}",
-        escaped(source.path),
-        source.text.lines().count(),
-        folded("Read the whole file", source.text, false)
-    )
+pub(super) fn source(source: &Source<'_>) -> Markup {
+    html! {
+        p {
+            code { (source.path) } " holds the model as " (source.text.lines().count())
+            " lines of Rust that need no standard library, no allocation and no other crate, and "
+            "compile as they are."
+        }
+        @if let Some(rates) = rates_function(source.text) {
+            (folded("The right-hand side: rates", rates, true))
+        }
+        (folded("Read the whole file", source.text, false))
+    }
 }
 
 /// The function `rates` with its documentation, from formatted source.
@@ -53,103 +54,87 @@ fn rates_function(text: &str) -> Option<&str> {
 }
 
 /// The certificate as a table with its verdict.
-pub(super) fn certificate(checks: &[CheckRow<'_>]) -> String {
+pub(super) fn certificate(checks: &[CheckRow<'_>]) -> Markup {
     let passed = checks.iter().filter(|check| check.passed).count();
     let skipped = checks.iter().filter(|check| check.skipped).count();
     let failed = checks
         .iter()
         .filter(|check| !check.passed && !check.skipped)
         .count();
-    let verdict = match (failed, passed) {
-        (0, 0) => "<strong class=\"failed\">Nothing was checked.</strong>".to_owned(),
-        (0, _) => "<strong class=\"passed\">The model passes.</strong>".to_owned(),
-        _ => format!("<strong class=\"failed\">The model fails {failed} of its checks.</strong>"),
-    };
-    let rows: String = checks.iter().map(check_row).collect();
-    format!(
-        "<p>{verdict} Checks passed: {passed}; failed: {failed}; not made: {skipped}. A value is the worst \
-         deviation found, relative unless the check says otherwise; the tolerance is what it may be.</p>\n{}",
-        table(&["check", "value", "tolerance", "result"], &rows)
-    )
+    let rows = html! { @for check in checks { (check_row(check)) } };
+    html! {
+        p {
+            @match (failed, passed) {
+                (0, 0) => strong.failed { "Nothing was checked." },
+                (0, _) => strong.passed { "The model passes." },
+                _ => strong.failed { "The model fails " (failed) " of its checks." },
+            }
+            " Checks passed: " (passed) "; failed: " (failed) "; not made: " (skipped)
+            ". A value is the worst deviation found, relative unless the check says otherwise; the "
+            "tolerance is what it may be."
+        }
+        (table(&["check", "value", "tolerance", "result"], &rows))
+    }
 }
 
-fn check_row(check: &CheckRow<'_>) -> String {
+fn check_row(check: &CheckRow<'_>) -> Markup {
     let (class, result) = match (check.passed, check.skipped) {
         (true, _) => ("passed", "✓ passed"),
         (false, true) => ("skipped", "– not made"),
         (false, false) => ("failed", "✗ failed"),
     };
-    let value = check
-        .value
-        .map_or_else(|| "–".to_owned(), |value| number(value, 1));
-    format!(
-        "<tr><th scope=\"row\">{}<br><small>{}</small></th><td class=\"number\">{value}</td>\
-         <td class=\"number\">{}</td><td class=\"{class}\">{result}</td></tr>\n",
-        escaped(check.name),
-        escaped(check.detail),
-        number(check.tolerance, 1)
-    )
+    html! {
+        tr {
+            th scope="row" { (check.name) br; small { (check.detail) } }
+            td.number {
+                @match check.value {
+                    Some(value) => (number(value, 1)),
+                    None => "–",
+                }
+            }
+            td.number { (number(check.tolerance, 1)) }
+            td class=(class) { (result) }
+        }
+    }
 }
 
 /// The figures with their captions.
-pub(super) fn simulation(simulation: &Simulation<'_>) -> String {
-    let figures: String = simulation
-        .figures
-        .iter()
-        .map(|figure| {
-            format!(
-                "<figure>\n{}<figcaption>{}</figcaption>\n</figure>\n",
-                figure.svg,
-                escaped(figure.caption)
-            )
-        })
-        .collect();
-    format!(
-        "<p>{} Every sample is in <code>{}</code>.</p>\n{figures}",
-        escaped(simulation.summary),
-        escaped(simulation.path)
-    )
+pub(super) fn simulation(simulation: &Simulation<'_>) -> Markup {
+    html! {
+        p { (simulation.summary) " Every sample is in " code { (simulation.path) } "." }
+        @for drawn in &simulation.figures { (figure(*drawn)) }
+    }
 }
 
 /// What was found, with the whole pages of the comparison and the search.
-pub(super) fn hidden(hidden: &Hidden<'_>) -> String {
+pub(super) fn hidden(hidden: &Hidden<'_>) -> Markup {
     let [before, after] = hidden.reports;
     let page = |summary: &str, report: &str| {
-        format!(
-            "<details><summary>{summary}</summary>\n<iframe title=\"{summary}\" sandbox srcdoc=\"{}\"></iframe></details>\n",
-            escaped(report)
-        )
+        html! {
+            details {
+                summary { (summary) }
+                iframe title=(summary) sandbox srcdoc=(report) {}
+            }
+        }
     };
-    format!(
-        "<p>{} Records and results are in <code>{}</code>.</p>\n{}{}{}",
-        escaped(hidden.summary),
-        escaped(hidden.path),
-        page("Read the report of the comparison, before", before),
-        page("Read the report of the search, after", after),
-        folded(
-            "Read the specification with what was found",
-            hidden.extended,
-            false
-        )
-    )
+    html! {
+        p { (hidden.summary) " Records and results are in " code { (hidden.path) } "." }
+        (page("Read the report of the comparison, before", before))
+        (page("Read the report of the search, after", after))
+        (folded("Read the specification with what was found", hidden.extended, false))
+    }
 }
 
 /// Durations with their sum.
-pub(super) fn durations(durations: &[StepDuration<'_>]) -> String {
+pub(super) fn durations(durations: &[StepDuration<'_>]) -> Markup {
     let row = |step: &str, seconds: f64| {
-        format!(
-            "<tr><th scope=\"row\">{step}</th><td class=\"number\">{}</td></tr>\n",
-            duration(seconds)
-        )
+        html! { tr { th scope="row" { (step) } td.number { (duration(seconds)) } } }
     };
-    let mut rows: String = durations
-        .iter()
-        .map(|duration| row(&escaped(duration.step), duration.seconds))
-        .collect();
-    rows.push_str(&row(
-        "all together",
-        durations.iter().map(|duration| duration.seconds).sum(),
-    ));
+    let sum = durations.iter().map(|duration| duration.seconds).sum();
+    let rows = html! {
+        @for duration in durations { (row(duration.step, duration.seconds)) }
+        (row("all together", sum))
+    };
     table(&["step", "time"], &rows)
 }
 
@@ -162,18 +147,15 @@ fn duration(seconds: f64) -> String {
 }
 
 /// Commands with what they do.
-pub(super) fn next(commands: &[NextCommand<'_>]) -> String {
-    let items: String = commands
-        .iter()
-        .map(|next| {
-            format!(
-                "<dt>{}</dt>\n<dd><pre><code>{}</code></pre></dd>\n",
-                escaped(next.does),
-                escaped(next.command)
-            )
-        })
-        .collect();
-    format!("<dl>\n{items}</dl>\n")
+pub(super) fn next(commands: &[NextCommand<'_>]) -> Markup {
+    html! {
+        dl {
+            @for next in commands {
+                dt { (next.does) }
+                dd { pre { code { (next.command) } } }
+            }
+        }
+    }
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use codegen::program::evaluator::Evaluator;
 use codegen::report::Report;
 use codegen::rust::Packaging;
 use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
+use eomgen_page::Figure;
 use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
 use eomgen_validate::certificate::Certificate;
 use model_spec::models;
@@ -236,7 +237,7 @@ fn page_text(
         simulation: page::Simulation {
             summary: &summary,
             path: "trajectory.csv",
-            figures: vec![page::Figure {
+            figures: vec![Figure {
                 svg: figure,
                 caption: "Above: the tooth flanks touch outside the dashed lines and are free \
                           between them; each touch rings at the mesh's own frequency. Below: \

@@ -336,38 +336,3 @@ fn latex_sets_accelerations_and_piecewise_functions() {
     let title = report(&model(&title)).latex();
     assert!(title.contains("50 \\% of\\_$\\theta$ U+2665 "), "{title}");
 }
-
-/// MathML has every element closed, and the same names as the plain text.
-#[test]
-fn mathml_is_well_formed_for_every_specification() {
-    for (name, model) in specifications() {
-        for formula in formulas(&report(&model)) {
-            let mathml = formula.mathml();
-            let mut open = Vec::new();
-            for piece in mathml.split('<').skip(1) {
-                let tag = piece.split('>').next().unwrap();
-                match tag.strip_prefix('/') {
-                    Some(closed) => assert_eq!(open.pop(), Some(closed), "{name}: {mathml}"),
-                    None => open.extend(tag.split(' ').next()),
-                }
-            }
-            assert!(open.is_empty(), "{name}: {mathml}");
-        }
-    }
-}
-
-#[test]
-fn mathml_sets_fractions_dots_and_indices() {
-    let report = report(&shipped("planetary_arm"));
-    let acceleration = report.accelerations[0].name.mathml();
-    assert_eq!(
-        acceleration,
-        "<math><msub><mover accent=\"true\"><mi>x</mi><mo>¨</mo></mover><mi>sp</mi></msub></math>"
-    );
-    let inertia = report.mass_matrix[0].formula.mathml();
-    assert_eq!(
-        inertia,
-        "<math><mfrac><mrow><msub><mi>I</mi><mi>s</mi></msub></mrow><mrow><msup><mrow><msub><mi>r</mi><mi>s</mi></msub></mrow>\
-         <mrow><mn>2</mn></mrow></msup></mrow></mfrac></math>"
-    );
-}

@@ -4,7 +4,6 @@
 //! (`page`) with its `pictures`.
 
 mod discovery;
-mod escaped;
 mod json;
 pub mod location;
 mod page;

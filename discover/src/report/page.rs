@@ -1,43 +1,47 @@
 //! A page that an engineer can hand on: what was measured and simulated before and after, what
-//! was found and what was not, and what changed in the specification. It refers to nothing
-//! outside.
+//! was found and what was not, and what changed in the specification.
 
-use crate::report::escaped::escaped;
+use eomgen_page::{document, section, table};
+use maud::{Markup, html};
+
 use crate::report::json::{estimates, sensors};
 use crate::report::result::{
     Compared, Comparison, Discovery, FoundEffect, OnRecords, RejectedEffect, Step,
 };
 
 impl Comparison {
-    /// The page.
+    /// The page, a complete HTML document that refers to nothing outside.
     pub fn page(&self) -> String {
         let compared = &self.compared;
-        let body = opening(compared, self.verdict()) + &closing(compared);
-        whole(compared, &body)
+        whole(
+            compared,
+            &html! {
+                (opening(compared, self.verdict()))
+                (closing(compared))
+            },
+        )
     }
 }
 
 impl Discovery {
-    /// The page.
+    /// The page, a complete HTML document that refers to nothing outside.
     pub fn page(&self) -> String {
         let compared = &self.compared;
-        let mut body = opening(compared, self.verdict.word());
-        body += &section("What was found", &effects_table(&self.effects));
-        let steps = ladder_table(&self.steps) + &validation_line(self);
-        body += &section("Step by step", &steps);
-        body += &closing(compared);
-        body += &section("Rejected", &rejected_table(&self.rejected, false));
-        body += &section(
-            "Not testable with these records",
-            &rejected_table(&self.not_testable, true),
-        );
-        if self.original != self.extended {
-            body += &section(
-                "The specification, changed",
-                &format!("<pre>{}</pre>", difference(&self.original, &self.extended)),
-            );
-        }
-        whole(compared, &body)
+        let untestable = "Not testable with these records";
+        whole(
+            compared,
+            &html! {
+                (opening(compared, self.verdict.word()))
+                (section("What was found", &effects_table(&self.effects)))
+                (section("Step by step", &html! { (step_table(&self.steps)) (validation_line(self)) }))
+                (closing(compared))
+                (section("Rejected", &rejected_table(&self.rejected, false)))
+                (section(untestable, &rejected_table(&self.not_testable, true)))
+                @if self.original != self.extended {
+                    (section("The specification, changed", &difference(&self.original, &self.extended)))
+                }
+            },
+        )
     }
 }
 
@@ -49,50 +53,32 @@ fn title(compared: &Compared) -> &str {
 }
 
 /// A document around a body.
-fn whole(compared: &Compared, body: &str) -> String {
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n{body}</body>\n</html>\n",
-        escaped(title(compared)),
-        STYLE
-    )
+fn whole(compared: &Compared, body: &Markup) -> String {
+    let title = title(compared);
+    document(title, &html! { header { h1 { (title) } } main { (body) } })
 }
 
-/// Title, verdict, where the gap is, notes, and the gap.
-fn opening(compared: &Compared, verdict: &str) -> String {
-    let mut body = format!("<h1>{}</h1>\n", escaped(title(compared)));
-    body += &format!(
-        "<p class=\"lead\">Verdict: <strong>{}</strong></p>\n",
-        escaped(verdict)
-    );
-    body += &format!("<p>{}</p>\n", escaped(&compared.location));
-    for note in &compared.notes {
-        body += &format!("<p class=\"note\">{}</p>\n", escaped(note));
+/// Verdict, where the gap is, notes, and the gap.
+fn opening(compared: &Compared, verdict: &str) -> Markup {
+    html! {
+        p.lead { "Verdict: " strong { (verdict) } }
+        p { (compared.location) }
+        @for note in &compared.notes { p.note { (note) } }
+        (section("The gap", &gap_table(compared)))
     }
-    body + &section("The gap", &gap_table(compared))
 }
 
 /// Pictures, and what was refitted.
-fn closing(compared: &Compared) -> String {
-    let mut body = section("The test record", &compared.pictures.residuals);
-    if let Some((equation, force)) = &compared.pictures.force {
-        body += &section(&format!("The residual force on {equation}"), force);
-    }
+fn closing(compared: &Compared) -> Markup {
     let (refitted, sensors) = (estimates(&compared.refitted), sensors(&compared.sensors));
     let text = format!("{refitted:#}\n{sensors:#}");
-    body + &section("Refitted", &format!("<pre>{}</pre>", escaped(&text)))
-}
-
-const STYLE: &str = "body{margin:0 auto;max-width:62rem;padding:1.5rem;font:1rem/1.5 system-ui,sans-serif;color:#1d2329}\
-.lead{font-size:1.1rem}.note{color:#5b6670}table{border-collapse:collapse;width:100%;font-size:.92rem}\
-th,td{text-align:left;vertical-align:top;padding:.3rem .8rem .3rem 0;border-bottom:1px solid #d9dee3}\
-pre{overflow-x:auto;background:#f5f7f9;border:1px solid #d9dee3;padding:.8rem;font-size:.85rem}\
-.added{color:#00704f}.removed{color:#b03a00}svg{max-width:100%;height:auto}";
-
-fn section(heading: &str, content: &str) -> String {
-    format!(
-        "<section>\n<h2>{}</h2>\n{content}</section>\n",
-        escaped(heading)
-    )
+    html! {
+        (section("The test record", &compared.pictures.residuals))
+        @if let Some((equation, force)) = &compared.pictures.force {
+            (section(&format!("The residual force on {equation}"), force))
+        }
+        (section("Refitted", &html! { pre { (text) } }))
+    }
 }
 
 fn number(value: f64) -> String {
@@ -103,79 +89,76 @@ fn number(value: f64) -> String {
     }
 }
 
-fn gap_table(compared: &Compared) -> String {
-    let mut rows = String::new();
-    for (name, gap) in &compared.gap {
-        let after = |of: fn(OnRecords<f64>) -> f64| {
-            gap.after
-                .map_or_else(String::new, |after| number(of(after)))
-        };
-        let cells = [
-            number(gap.before.train),
-            after(|after| after.train),
-            number(gap.before.test),
-            after(|after| after.test),
-        ];
-        rows += &format!(
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-            escaped(name),
-            escaped(&gap.unit),
-            number(gap.floor),
-            cells.join("</td><td>")
-        );
-    }
-    format!(
-        "<table><tr><th>channel</th><th>unit</th><th>floor</th><th>train before</th><th>train after</th><th>test before</th><th>test after</th></tr>\n{rows}</table>\n"
-    )
+fn gap_table(compared: &Compared) -> Markup {
+    let rows = html! {
+        @for (name, gap) in &compared.gap {
+            @let after = |of: fn(OnRecords<f64>) -> f64| gap.after.map_or_else(String::new, |after| number(of(after)));
+            tr {
+                td { (name) }
+                td { (gap.unit) }
+                td { (number(gap.floor)) }
+                td { (number(gap.before.train)) }
+                td { (after(|after| after.train)) }
+                td { (number(gap.before.test)) }
+                td { (after(|after| after.test)) }
+            }
+        }
+    };
+    let headings = [
+        "channel",
+        "unit",
+        "floor",
+        "train before",
+        "train after",
+        "test before",
+        "test after",
+    ];
+    table(&headings, &rows)
 }
 
-fn effects_table(effects: &[FoundEffect]) -> String {
-    let mut rows = String::new();
-    for effect in effects {
-        let parameters = effect.parameters.iter().map(|(name, of)| {
-            format!(
-                "{} = {} &plusmn; {} {}",
-                escaped(name),
-                number(of.value),
-                number(of.sd),
-                escaped(&of.unit)
-            )
-        });
-        rows += &format!(
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td><code>{}</code></td></tr>\n",
-            escaped(&effect.at.effect),
-            escaped(&effect.at.on),
-            effect.status.word(),
-            parameters.collect::<Vec<String>>().join("<br>"),
-            escaped(&effect.term)
-        );
+fn effects_table(effects: &[FoundEffect]) -> Markup {
+    if effects.is_empty() {
+        return html! { p { "Nothing." } };
     }
-    if rows.is_empty() {
-        return "<p>Nothing.</p>\n".to_owned();
-    }
-    format!(
-        "<table><tr><th>effect</th><th>on</th><th>status</th><th>parameters</th><th>term</th></tr>\n{rows}</table>\n"
-    )
+    let rows = html! {
+        @for effect in effects {
+            tr {
+                td { (effect.at.effect) }
+                td { (effect.at.on) }
+                td { (effect.status.word()) }
+                td {
+                    @for (place, (name, of)) in effect.parameters.iter().enumerate() {
+                        @if place > 0 { br; }
+                        (name) " = " (number(of.value)) " ± " (number(of.sd)) " " (of.unit)
+                    }
+                }
+                td { code { (effect.term) } }
+            }
+        }
+    };
+    table(&["effect", "on", "status", "parameters", "term"], &rows)
 }
 
-/// The test gap after each round.
-fn ladder_table(steps: &[Step]) -> String {
-    let mut rows = String::new();
-    for step in steps {
-        let added = match step.added.is_empty() {
-            true => "the model as it is".to_owned(),
-            false => format!("+ {}", step.added.join(", ")),
-        };
-        let gap = number(step.test_rms);
-        rows += &format!("<tr><td>{}</td><td>{gap}</td></tr>\n", escaped(&added));
-    }
-    format!("<table><tr><th>model</th><th>test gap, in noises</th></tr>\n{rows}</table>\n")
+/// The test gap after each step.
+fn step_table(steps: &[Step]) -> Markup {
+    let rows = html! {
+        @for step in steps {
+            tr {
+                td {
+                    @if step.added.is_empty() { "the model as it is" }
+                    @else { "+ " (step.added.join(", ")) }
+                }
+                td { (number(step.test_rms)) }
+            }
+        }
+    };
+    table(&["model", "test gap, in noises"], &rows)
 }
 
 /// Whether the equations of the specification that was written are right.
-fn validation_line(discovery: &Discovery) -> String {
+fn validation_line(discovery: &Discovery) -> Markup {
     let Some(validation) = &discovery.validation else {
-        return String::new();
+        return html! {};
     };
     let noises = |rms: f64| match rms.is_finite() {
         true => format!("{rms:.2}"),
@@ -193,41 +176,175 @@ fn validation_line(discovery: &Discovery) -> String {
             validation.failed.join(", ")
         ),
     };
-    format!("<p>{}</p>\n", escaped(&text))
+    html! { p { (text) } }
 }
 
-fn rejected_table(list: &[RejectedEffect], has_experiment: bool) -> String {
-    let row = |of: &RejectedEffect| {
-        let experiment = if has_experiment {
-            of.experiment.as_str()
-        } else {
-            ""
-        };
-        format!(
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-            escaped(&of.at.effect),
-            escaped(&of.at.on),
-            escaped(&of.reason),
-            escaped(experiment)
-        )
+fn rejected_table(list: &[RejectedEffect], has_experiment: bool) -> Markup {
+    let rows = html! {
+        @for of in list {
+            tr {
+                td { (of.at.effect) }
+                td { (of.at.on) }
+                td { (of.reason) }
+                td { @if has_experiment { (of.experiment) } }
+            }
+        }
     };
-    let rows: String = list.iter().map(row).collect();
-    format!(
-        "<table><tr><th>effect</th><th>on</th><th>reason</th><th>what would tell</th></tr>\n{rows}</table>\n"
-    )
+    table(&["effect", "on", "reason", "what would tell"], &rows)
 }
 
 /// Lines that were added or changed, with those they replace.
-fn difference(before: &str, after: &str) -> String {
+fn difference(before: &str, after: &str) -> Markup {
     let old: Vec<&str> = before.lines().collect();
     let new: Vec<&str> = after.lines().collect();
-    let removed = old
-        .iter()
-        .filter(|line| !new.contains(line))
-        .map(|line| format!("<span class=\"removed\">- {}</span>\n", escaped(line)));
-    let added = new
-        .iter()
-        .filter(|line| !old.contains(line))
-        .map(|line| format!("<span class=\"added\">+ {}</span>\n", escaped(line)));
-    removed.chain(added).collect()
+    html! {
+        pre {
+            @for line in old.iter().filter(|line| !new.contains(line)) {
+                span.removed { "- " (line) } "\n"
+            }
+            @for line in new.iter().filter(|line| !old.contains(line)) {
+                span.added { "+ " (line) } "\n"
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+    use crate::report::resimulation::Resimulation;
+    use crate::report::result::{
+        ChannelGap, EffectAt, Estimated, Pictures, Sensor, Status, Validation, Verdict,
+    };
+    use crate::search::acceptance::TestStatistics;
+
+    /// A discovery with `text` wherever a dataset, a specification or a file name could put it.
+    fn discovery(text: &str) -> Discovery {
+        let name = || text.to_owned();
+        let at = || EffectAt {
+            effect: name(),
+            on: name(),
+        };
+        let both = OnRecords {
+            train: 2e-6,
+            test: 3e-6,
+        };
+        let estimated = Estimated {
+            value: 1.5,
+            sd: 0.1,
+            unit: name(),
+        };
+        let gap = ChannelGap {
+            unit: name(),
+            floor: 1e-6,
+            before: both,
+            after: Some(both),
+        };
+        let rejected = RejectedEffect {
+            at: at(),
+            reason: name(),
+            experiment: name(),
+        };
+        Discovery {
+            verdict: Verdict::EffectsFound,
+            effects: vec![FoundEffect {
+                at: at(),
+                status: Status::Named,
+                equivalent: vec![at()],
+                parameters: BTreeMap::from([(name(), estimated.clone())]),
+                term: name(),
+                statistics: TestStatistics {
+                    held_out: 0.5,
+                    held_out_errors: 9.0,
+                    information: 40.0,
+                    t: 8.0,
+                    size: 3.0,
+                },
+                order: None,
+                experiment: Some(name()),
+            }],
+            rejected: vec![rejected.clone()],
+            not_testable: vec![rejected],
+            closure: OnRecords {
+                train: Some(0.9),
+                test: None,
+            },
+            steps: vec![Step {
+                added: vec![name()],
+                test_rms: 1.2,
+            }],
+            compared: Compared {
+                title: name(),
+                gap: BTreeMap::from([(name(), gap)]),
+                refitted: BTreeMap::from([(name(), estimated)]),
+                sensors: BTreeMap::from([(
+                    name(),
+                    Sensor {
+                        bias: 0.0,
+                        gain: 1.0,
+                        delay: 0.0,
+                    },
+                )]),
+                location: name(),
+                notes: vec![name()],
+                pictures: Pictures {
+                    residuals: html! {},
+                    force: Some((name(), html! {})),
+                },
+            },
+            original: format!("{text} before"),
+            extended: format!("{text} after"),
+            resimulation: Resimulation {
+                train: 1.0,
+                test: 1.1,
+            },
+            validation: Some(Validation {
+                passed: false,
+                checks: vec![name()],
+                failed: vec![name()],
+            }),
+        }
+    }
+
+    fn comparison(text: &str) -> Comparison {
+        Comparison {
+            has_gap: true,
+            compared: discovery(text).compared,
+        }
+    }
+
+    /// The names of the elements that are opened, in order.
+    fn elements(page: &str) -> Vec<&str> {
+        let opened = page.split('<').skip(1);
+        opened
+            .filter_map(|piece| piece.split(|c: char| !c.is_ascii_alphanumeric()).next())
+            .filter(|name| !name.is_empty())
+            .collect()
+    }
+
+    #[test]
+    fn text_from_outside_stays_text() {
+        let hostile = "</pre></title>\"'><script>alert(\"1\")</script>&<img src=x onerror='a'>";
+        let pages = [
+            (discovery(hostile).page(), discovery("plain").page()),
+            (comparison(hostile).page(), comparison("plain").page()),
+        ];
+        for (page, plain) in pages {
+            for forbidden in ["<script", "<img", "alert(\"1", "&<"] {
+                assert!(!page.contains(forbidden), "{forbidden}");
+            }
+            assert!(page.matches("&lt;script&gt;").count() >= 8, "{page}");
+            assert_eq!(elements(&page), elements(&plain));
+        }
+    }
+
+    #[test]
+    fn nothing_refers_to_the_outside() {
+        let page = discovery("x").page();
+        for forbidden in ["http", "//", "<script", "<link", "src=", "url(", "href"] {
+            assert!(!page.contains(forbidden), "{forbidden}");
+        }
+    }
 }

@@ -1,30 +1,44 @@
 //! Pictures for a page: residuals of the test record, and the residual force.
 
+use eomgen_page::{Figure, figure, table};
 use eomgen_plot::{FrequencyAxis, Panel, Series, Spectrum, TimeHistory, spectrum, time_history};
+use maud::{Markup, html};
 
 use crate::fit::fitted::Fit;
 use crate::model::problem::EstimationProblem;
-use crate::report::escaped::escaped;
 use crate::residual_force::figures::figures as figures_of_force;
 use crate::residual_force::types::ResidualForce;
 
 /// How the equations compare, and what the force in one of them is like.
-pub(crate) fn force_section(force: &ResidualForce, left: Option<&ResidualForce>) -> String {
-    let mut rows = String::new();
+pub(crate) fn force_section(force: &ResidualForce, left: Option<&ResidualForce>) -> Markup {
     let percent = |part: f64| format!("{:.0} %", 100.0 * part.max(0.0));
-    for ranking in &force.ranking {
-        rows += &format!(
-            "<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-            escaped(&force.equations[ranking.equation].name),
-            percent(ranking.by_state),
-            percent(ranking.by_time)
-        );
+    let rows = html! {
+        @for ranking in &force.ranking {
+            tr {
+                td { (force.equations[ranking.equation].name) }
+                td { (percent(ranking.by_state)) }
+                td { (percent(ranking.by_time)) }
+            }
+        }
+    };
+    let headings = [
+        "a force on",
+        "explains of the squares over rate or place",
+        "if free in every window",
+    ];
+    html! {
+        (table(&headings, &rows))
+        p.note {
+            "A force that was put into this equation, its bars one standard deviation to either side. "
+            "What records do not show is left out."
+        }
+        (drawn(&figures_of_force(force, left)))
     }
-    let told = "A force that was put into this equation, its bars one standard deviation to either side. What records do not show is left out.";
-    format!(
-        "<table><tr><th>a force on</th><th>explains of the squares over rate or place</th><th>if free in every window</th></tr>\n{rows}</table>\n<p class=\"note\">{told}</p>\n{}",
-        figures_of_force(force, left)
-    )
+}
+
+/// A figure, if anything was drawn.
+fn drawn(svg: &str) -> Markup {
+    html! { @if !svg.is_empty() { (figure(Figure { svg, caption: "" })) } }
 }
 
 /// Residuals over time and their spectra, before and after.
@@ -32,7 +46,7 @@ pub(crate) fn figures(
     problem: &EstimationProblem<'_>,
     before: &Fit,
     after: Option<&Fit>,
-) -> String {
+) -> Markup {
     let count = problem.noise.len();
     let times: Vec<f64> = problem
         .test
@@ -97,7 +111,7 @@ pub(crate) fn figures(
             })
             .collect(),
     };
-    let mut out = time_history(&history).unwrap_or_default();
+    let over_time = time_history(&history).unwrap_or_default();
     let step = eomgen_records::samples::typical_step(&times);
     let spectra: Vec<Vec<(&str, Density)>> = columns
         .iter()
@@ -130,8 +144,10 @@ pub(crate) fn figures(
             })
             .collect(),
     };
-    out += &spectrum(&plot).unwrap_or_default();
-    out
+    html! {
+        (drawn(&over_time))
+        (drawn(&spectrum(&plot).unwrap_or_default()))
+    }
 }
 
 /// Frequencies in Hz, and the density at each.

@@ -3,6 +3,8 @@
 
 use std::collections::BTreeMap;
 
+use maud::Markup;
+
 use crate::report::resimulation::Resimulation;
 use crate::search::acceptance::TestStatistics;
 
@@ -73,9 +75,9 @@ pub struct Compared {
 #[derive(Clone, Debug)]
 pub(crate) struct Pictures {
     /// Residuals over time, and their spectra.
-    pub residuals: String,
+    pub residuals: Markup,
     /// The equation whose residual force is shown, and that force.
-    pub force: Option<(String, String)>,
+    pub force: Option<(String, Markup)>,
 }
 
 /// What a comparison came to.

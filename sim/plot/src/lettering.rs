@@ -1,6 +1,8 @@
 //! Text in a figure: how wide it is about, what fits, and its SVG with subscripts. The fonts
 //! of the reader are not known here, so widths are estimates on the wide side.
 
+use maud::html;
+
 use super::symbol::Symbol;
 
 /// The width of a character in units of the font size: that of a digit in a wide sans serif.
@@ -53,22 +55,16 @@ pub(super) fn spans(text: &str, size: f64) -> String {
 
 /// Text that XML takes for nothing but text.
 pub(super) fn escaped(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '"' => safe.push_str("&quot;"),
-            '\n' | '\r' | '\t' => safe.push(' '),
+    let shown: String = text
+        .chars()
+        .map(|c| match c {
+            '\n' | '\r' | '\t' => ' ',
             // Not allowed in XML, not even escaped.
-            '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{fffe}' | '\u{ffff}' => {
-                safe.push('\u{fffd}');
-            }
-            c => safe.push(c),
-        }
-    }
-    safe
+            '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{fffe}' | '\u{ffff}' => '\u{fffd}',
+            c => c,
+        })
+        .collect();
+    html! { (shown) }.into_string()
 }
 
 /// A stretch of text on one line.

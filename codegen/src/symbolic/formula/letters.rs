@@ -44,8 +44,8 @@ pub(super) fn command(name: &str) -> Option<&'static str> {
     entry(name).map(|(_, command, _)| *command)
 }
 
-/// The letter of this name.
-pub(super) fn letter(name: &str) -> Option<&'static str> {
+/// The Greek letter of this name: `theta` is θ.
+pub fn letter(name: &str) -> Option<&'static str> {
     entry(name).map(|(_, _, letter)| *letter)
 }
 

@@ -66,7 +66,7 @@ impl Symbol {
 
     /// Head and subscripts of the name: `theta_s` is theta with s. A name that is no such
     /// sequence is a head as it is.
-    pub(super) fn parts(&self) -> (&str, Vec<&str>) {
+    pub fn parts(&self) -> (&str, Vec<&str>) {
         let mut parts = self.name.split('_');
         let head = parts.next().unwrap_or_default();
         let rest: Vec<&str> = parts.collect();

@@ -78,8 +78,8 @@ pub enum MatrixPart {
 }
 
 /// What stands around a formula and decides whether it needs parentheses.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Level {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Level {
     /// A sum needs none.
     Sum,
     /// A factor of a product.
@@ -140,7 +140,7 @@ impl Formula {
 
 impl Formula {
     /// Below which surroundings it needs parentheses where fractions have lines.
-    pub(super) fn set_level(&self) -> Level {
+    pub fn set_level(&self) -> Level {
         match self {
             Self::Sum(_) | Self::Choice(_) => Level::Sum,
             Self::Number(value) if *value < 0.0 => Level::Sum,
@@ -202,7 +202,7 @@ impl Serialize for Formula {
 }
 
 /// A magnitude as a small fraction, where it is one exactly and no whole number.
-pub(super) fn small_fraction(value: f64) -> Option<(f64, u32)> {
+pub fn small_fraction(value: f64) -> Option<(f64, u32)> {
     if value.fract() == 0.0 {
         return None;
     }
@@ -214,7 +214,7 @@ pub(super) fn small_fraction(value: f64) -> Option<(f64, u32)> {
 }
 
 /// The mantissa and the exponent of ten of a number that is written with one.
-pub(super) fn powers_of_ten(value: f64) -> Option<(String, String)> {
+pub fn powers_of_ten(value: f64) -> Option<(String, String)> {
     let magnitude = value.abs();
     if magnitude == 0.0 || (1e-4..1e6).contains(&magnitude) {
         return None;

@@ -1,0 +1,70 @@
+//! The constants of a basis as MathML: values and integrals of mode shapes.
+
+use codegen::symbolic::tables::TableKind;
+use maud::{Markup, html};
+
+use super::{element, fenced, identifier};
+
+/// A constant of a basis.
+pub(super) fn table(kind: TableKind) -> Markup {
+    match kind {
+        TableKind::Wavenumber => wavenumber(),
+        TableKind::Mixing => mixing(),
+        TableKind::GrowingAmplitude => html! {
+            (fenced("(", &html! { mn { "1" } mo { "+" } (mixing()) }, ")"))
+            msup { mi { "e" } mrow { (wavenumber()) } }
+        },
+        TableKind::ShapeAtStart(derivative) => at_position(derivative, &html! { mn { "0" } }),
+        TableKind::ShapeAtEnd(derivative) => at_position(derivative, &html! { mn { "1" } }),
+        TableKind::Moment { power, derivative } => integral(power, &shape("i", derivative)),
+        TableKind::OwnMoment { power, left, right } => {
+            integral(power, &html! { (shape("i", left)) (shape("i", right)) })
+        }
+        TableKind::PairMoment { power, left, right } => {
+            integral(power, &html! { (shape("i", left)) (shape("j", right)) })
+        }
+        TableKind::NodePosition => element(&identifier("s"), "g"),
+        TableKind::NodeWeight => element(&identifier("w"), "g"),
+        TableKind::ShapeAtNodes(derivative) => {
+            at_position(derivative, &element(&identifier("s"), "g"))
+        }
+    }
+}
+
+fn wavenumber() -> Markup {
+    element(&fenced("(", &html! { mi { "β" } mi { "l" } }, ")"), "i")
+}
+
+fn mixing() -> Markup {
+    element(&identifier("ξ"), "i")
+}
+
+/// A mode shape with primes for its derivatives.
+fn shape(index: &str, derivative: u8) -> Markup {
+    let shape = element(&identifier("φ"), index);
+    match derivative {
+        0 => shape,
+        n => html! { msup { (shape) mo { ("′".repeat(usize::from(n))) } } },
+    }
+}
+
+fn at_position(derivative: u8, place: &Markup) -> Markup {
+    html! { (shape("i", derivative)) (fenced("(", place, ")")) }
+}
+
+/// The integral over s from 0 to 1 of a power of s times shapes.
+fn integral(power: u32, shapes: &Markup) -> Markup {
+    html! {
+        mrow {
+            msubsup { mo { "∫" } mn { "0" } mn { "1" } }
+            @match power {
+                0 => {},
+                1 => (identifier("s")),
+                n => msup { mi { "s" } mn { (n) } },
+            }
+            (shapes)
+            mi mathvariant="normal" { "d" }
+            mi { "s" }
+        }
+    }
+}

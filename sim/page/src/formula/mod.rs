@@ -1,0 +1,236 @@
+//! Formulas as MathML, from their trees: the elements of MathML Core, which browsers set by
+//! themselves. Each term of a formula's outermost sum is an element of its own, because
+//! browsers break lines between these and nowhere inside.
+
+mod basis;
+
+use codegen::symbolic::formula::{
+    Choice, Formula, Level, MatrixPart, Symbol, Term, letter, powers_of_ten, small_fraction,
+};
+use maud::{Markup, html};
+use model_spec::model::Function;
+
+/// Between factors, where nothing is seen: the invisible times of Unicode.
+const TIMES: &str = "\u{2062}";
+
+/// A formula as MathML elements, between which a line may be broken.
+pub fn formula(formula: &Formula) -> Markup {
+    match formula {
+        Formula::Sum(terms) => html! {
+            @for (place, of) in terms.iter().enumerate() {
+                @if place > 0 { " " }
+                math { (term(of, place == 0)) }
+            }
+        },
+        other => html! { math { (at(other, Level::Sum)) } },
+    }
+}
+
+/// A number as a MathML element: a mantissa, times a power of ten if there is an exponent.
+pub(crate) fn power_of_ten(mantissa: &str, exponent: Option<&str>) -> Markup {
+    let signed = |number: &str| number.replace('-', "\u{2212}");
+    let mantissa = signed(mantissa);
+    html! {
+        @if exponent.is_none() || mantissa != "1" { mn { (mantissa) } }
+        @if let Some(exponent) = exponent {
+            @if mantissa != "1" { mo { "·" } }
+            msup { mn { "10" } mn { (signed(exponent)) } }
+        }
+    }
+}
+
+fn identifier(name: &str) -> Markup {
+    html! { mi { (name) } }
+}
+
+fn fenced(open: &str, content: &Markup, close: &str) -> Markup {
+    html! { mrow { mo { (open) } (content) mo { (close) } } }
+}
+
+fn times() -> Markup {
+    html! { mo { (TIMES) } }
+}
+
+/// A formula in its surroundings, as one element or a few.
+fn at(formula: &Formula, level: Level) -> Markup {
+    if formula.set_level() < level {
+        return fenced("(", &at(formula, Level::Sum), ")");
+    }
+    match formula {
+        Formula::Number(value) => number(*value),
+        Formula::Symbol(of) => symbol(of),
+        Formula::Table(kind) => basis::table(*kind),
+        Formula::Sum(terms) => {
+            html! { @for (place, of) in terms.iter().enumerate() { (term(of, place == 0)) } }
+        }
+        Formula::Quotient { above, below } => quotient(above, below),
+        Formula::Power(base, exponent) => html! {
+            msup { mrow { (at(base, Level::Base)) } mrow { (at(exponent, Level::Sum)) } }
+        },
+        Formula::Call(function, arguments) => call(*function, arguments),
+        Formula::Operation(name, operands) => html! { (identifier(name)) (list(operands)) },
+        Formula::Choice(choice) => cases(choice),
+        Formula::Total(index, of) => html! {
+            munder { mo { "∑" } (identifier(index.name())) }
+            mrow { (at(of, Level::Product)) }
+        },
+        Formula::Applied(matrix, vector) => {
+            let product = html! {
+                (at(matrix, Level::Product)) (times()) (at(vector, Level::Product))
+            };
+            element(&fenced("(", &product, ")"), "i")
+        }
+        Formula::Transposed(matrix) => html! {
+            msup { mrow { (at(matrix, Level::Base)) } mi mathvariant="normal" { "T" } }
+        },
+        Formula::Matrix(parts) => html! {
+            @for (place, part) in parts.iter().enumerate() {
+                @if place > 0 { mo { "+" } }
+                (matrix_part(part))
+            }
+        },
+        Formula::Omitted => html! { mo { "…" } },
+    }
+}
+
+fn term(term: &Term, is_first: bool) -> Markup {
+    let magnitude = term.factor.abs();
+    html! {
+        @if term.factor < 0.0 { mo { "\u{2212}" } } @else if !is_first { mo { "+" } }
+        @match &term.of {
+            None => (number(magnitude)),
+            Some(of) if term.factor == 1.0 => (at(of, Level::Sum)),
+            Some(of) if magnitude == 1.0 => (at(of, Level::Product)),
+            Some(of) => { (factor(magnitude)) (times()) (at(of, Level::Product)) },
+        }
+    }
+}
+
+/// Factors side by side; a sum over modes that others follow stands in parentheses.
+fn product(factors: &[Formula]) -> Markup {
+    if let [only] = factors {
+        return at(only, Level::Sum);
+    }
+    let last = factors.len().saturating_sub(1);
+    html! {
+        @for (place, factor) in factors.iter().enumerate() {
+            @if place > 0 { (times()) }
+            @match factor {
+                Formula::Total(..) if place < last => (fenced("(", &at(factor, Level::Sum), ")")),
+                _ => (at(factor, Level::Product)),
+            }
+        }
+    }
+}
+
+fn quotient(above: &[Formula], below: &[Formula]) -> Markup {
+    match (above, below) {
+        ([only], []) => at(only, Level::Product),
+        (above, []) => product(above),
+        (above, below) => html! {
+            mfrac {
+                @if above.is_empty() { mn { "1" } } @else { mrow { (product(above)) } }
+                mrow { (product(below)) }
+            }
+        },
+    }
+}
+
+fn call(function: Function, arguments: &[Formula]) -> Markup {
+    let inner = |a: &Formula| at(a, Level::Sum);
+    match (function, arguments) {
+        (Function::Sqrt, [a]) => html! { msqrt { (inner(a)) } },
+        (Function::Abs, [a]) => fenced("|", &inner(a), "|"),
+        (Function::Exp, [a]) => html! { msup { mi { "e" } mrow { (inner(a)) } } },
+        _ => html! { (identifier(function.name())) (list(arguments)) },
+    }
+}
+
+fn list(arguments: &[Formula]) -> Markup {
+    let arguments = html! {
+        @for (place, argument) in arguments.iter().enumerate() {
+            @if place > 0 { mo { "," } }
+            (at(argument, Level::Sum))
+        }
+    };
+    fenced("(", &arguments, ")")
+}
+
+fn cases(choice: &Choice) -> Markup {
+    let inner = |part: &Formula| at(part, Level::Sum);
+    html! {
+        mrow {
+            mo { "{" }
+            mtable {
+                mtr {
+                    mtd { (inner(&choice.then)) }
+                    mtd { (inner(&choice.a)) mo { ">" } (inner(&choice.b)) }
+                }
+                mtr { mtd { (inner(&choice.otherwise)) } mtd { mtext { "else" } } }
+            }
+        }
+    }
+}
+
+fn matrix_part(part: &MatrixPart) -> Markup {
+    let bracketed =
+        |of: &Formula, index: &str| element(&fenced("[", &at(of, Level::Sum), "]"), index);
+    html! {
+        @match part {
+            MatrixPart::Diagonal(diagonal) => {
+                (element(&identifier("δ"), "ij")) (times()) (at(diagonal, Level::Product))
+            },
+            MatrixPart::Outer(u, v) => {
+                (bracketed(u, "i")) (times()) (bracketed(v, "j"))
+            },
+            MatrixPart::Scaled(row, matrix, column) => {
+                (bracketed(row, "i")) (times())
+                (at(matrix, Level::Product)) (times())
+                (bracketed(column, "j"))
+            },
+        }
+    }
+}
+
+/// An element of what is indexed.
+fn element(of: &Markup, index: &str) -> Markup {
+    html! { msub { (of) (identifier(index)) } }
+}
+
+/// A name with its dots above its head and everything else below the line.
+fn symbol(symbol: &Symbol) -> Markup {
+    let (head, mut parts) = symbol.parts();
+    let head = identifier(letter(head).unwrap_or(head));
+    let head = match symbol.dots {
+        0 => head,
+        dots => html! {
+            mover accent="true" { (head) mo { (if dots == 1 { "˙" } else { "¨" }) } }
+        },
+    };
+    let indices: String = symbol.indices.iter().map(|index| index.name()).collect();
+    if !indices.is_empty() {
+        parts.push(&indices);
+    }
+    if parts.is_empty() {
+        return head;
+    }
+    let parts = parts.into_iter().map(|part| letter(part).unwrap_or(part));
+    element(&head, &parts.collect::<Vec<_>>().join(","))
+}
+
+/// A magnitude in front of a product: a small fraction where it is one exactly.
+fn factor(magnitude: f64) -> Markup {
+    match small_fraction(magnitude) {
+        Some((numerator, denominator)) => {
+            html! { mfrac { mn { (numerator.to_string()) } mn { (denominator) } } }
+        }
+        None => number(magnitude),
+    }
+}
+
+fn number(value: f64) -> Markup {
+    match powers_of_ten(value) {
+        Some((mantissa, exponent)) => power_of_ten(&mantissa, Some(&exponent)),
+        None => power_of_ten(&value.to_string(), None),
+    }
+}
