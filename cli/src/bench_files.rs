@@ -7,8 +7,8 @@ use codegen::mechanics::outputs::Output;
 use codegen::variant::Variant;
 use model_spec::model::Model;
 
+use crate::error::{Error, Result};
 use crate::output::write_file;
-use crate::problem::{Outcome, Problem};
 
 /// Leaves the files in `out`, in which the source is `lib.rs`; a `Cargo.toml` that is there
 /// already stays as it is. Gives the files' paths.
@@ -17,10 +17,10 @@ pub fn leave(
     variant: &Variant,
     outputs: &[Output],
     out: &Path,
-) -> Outcome<Vec<PathBuf>> {
+) -> Result<Vec<PathBuf>> {
     let state = model
         .initial_state(variant.equations.graph.orders())
-        .map_err(|error| Problem::model(&model.source, error))?;
+        .map_err(|error| Error::model(&model.source, error))?;
     let bench = out.join("benches").join("rates.rs");
     write_file(&bench, source(&state, outputs).as_bytes())?;
     let manifest = out.join("Cargo.toml");

@@ -9,20 +9,20 @@ use eomgen_validate::of_model::certificate;
 use model_spec::model::Model;
 
 use crate::emission::source;
-use crate::problem::{Outcome, Problem};
+use crate::error::{Error, Result};
 
 /// A certificate as it is written to a file.
-pub fn document(certificate: &Certificate) -> Outcome<String> {
+pub fn document(certificate: &Certificate) -> Result<String> {
     let text = serde_json::to_string_pretty(certificate)
-        .map_err(|error| Problem::input(error.to_string()))?;
+        .map_err(|error| Error::input(error.to_string()))?;
     Ok(text + "\n")
 }
 
 /// The certificate of a model at the given orders, which are one for all fields, as it is
 /// emitted with `outputs`.
-pub fn certify(model: &Model, orders: &[usize], outputs: &[Output]) -> Outcome<Certificate> {
+pub fn certify(model: &Model, orders: &[usize], outputs: &[Output]) -> Result<Certificate> {
     one_order(model, orders)?;
-    let variant = Variant::derive_with(model, orders, outputs).map_err(Problem::Specification)?;
+    let variant = Variant::derive_with(model, orders, outputs).map_err(Error::Specification)?;
     let emitted = source(&variant.program, Packaging::Crate)?;
     certify_source(model, orders, outputs, emitted)
 }
@@ -33,19 +33,19 @@ pub fn certify_source(
     orders: &[usize],
     outputs: &[Output],
     emitted: String,
-) -> Outcome<Certificate> {
+) -> Result<Certificate> {
     let order = one_order(model, orders)?;
-    let refused = |error| Problem::model(&model.source, error);
+    let refused = |error| Error::model(&model.source, error);
     let values = model.parameter_values().map_err(refused)?;
     let by_hand = by_hand(model, order, &values);
     certificate(model, order, outputs, emitted, &by_hand).map_err(refused)
 }
 
 /// The order of all fields.
-fn one_order(model: &Model, orders: &[usize]) -> Outcome<usize> {
+fn one_order(model: &Model, orders: &[usize]) -> Result<usize> {
     let order = orders.first().copied().unwrap_or(0);
     if orders.iter().any(|other| *other != order) {
-        return Err(Problem::input(format!(
+        return Err(Error::input(format!(
             "the fields of {} have the orders {orders:?}; a certificate is for one order: \
              give --order",
             model.name

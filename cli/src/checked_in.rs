@@ -9,9 +9,9 @@ use serde_json::{Value, json};
 
 use crate::certification::{certify_source, document};
 use crate::emission::source;
+use crate::error::{Error, Result, say, warn};
 use crate::model::{derive, load};
 use crate::output::write_file;
-use crate::problem::{Outcome, Problem, say, warn};
 use crate::progress::Note;
 
 /// The specification whose variants are checked in.
@@ -32,7 +32,7 @@ struct CheckedIn {
 }
 
 /// Writes all, or with `check` compares.
-pub fn run(check: bool, json: bool) -> Outcome {
+pub fn run(check: bool, json: bool) -> Result {
     let root = project_root()?;
     let model = load(&root.join(SPECIFICATION))?.model;
     let variants = variants(&model)?;
@@ -59,13 +59,13 @@ pub fn run(check: bool, json: bool) -> Outcome {
             "error: not what the generator emits: {}; run `eomgen generate --all`",
             different.join(", ")
         ));
-        return Err(Problem::Failed);
+        return Err(Error::Failed);
     }
     Ok(())
 }
 
 /// The sources that are not what is emitted; written, unless they are only compared.
-fn different_sources(root: &Path, variants: &[CheckedIn], check: bool) -> Outcome<Vec<String>> {
+fn different_sources(root: &Path, variants: &[CheckedIn], check: bool) -> Result<Vec<String>> {
     let mut different = Vec::new();
     let root_module = [("lib.rs".to_owned(), root_module(variants))];
     let files = variants
@@ -83,7 +83,7 @@ fn different_sources(root: &Path, variants: &[CheckedIn], check: bool) -> Outcom
     Ok(different)
 }
 
-fn say_what_differs(files: usize, different: &[String], check: bool, json: bool) -> Outcome {
+fn say_what_differs(files: usize, different: &[String], check: bool, json: bool) -> Result {
     if json {
         let document = json!({"files": files, "different": different, "written": !check});
         return say(&format!("{document:#}\n"));
@@ -98,13 +98,13 @@ fn certificate_file(variant: &CheckedIn) -> String {
 
 /// Whether a file is the passed certificate of a variant as it is emitted now. Nothing is
 /// checked again: its hashes tie it to specification and source.
-fn is_of(path: &Path, model: &Model, variant: &CheckedIn) -> Outcome<bool> {
+fn is_of(path: &Path, model: &Model, variant: &CheckedIn) -> Result<bool> {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let found: Value = serde_json::from_str(&text).unwrap_or_default();
     let expected = unchecked(model, variant.order, &[], variant.text.clone())
-        .map_err(|error| Problem::model(&model.source, error))?;
+        .map_err(|error| Error::model(&model.source, error))?;
     let expected =
-        serde_json::to_value(expected).map_err(|error| Problem::input(error.to_string()))?;
+        serde_json::to_value(expected).map_err(|error| Error::input(error.to_string()))?;
     let same = |(key, value): (&String, &Value)| {
         ["passed", "checks"].contains(&key.as_str()) || found[key] == *value
     };
@@ -114,7 +114,7 @@ fn is_of(path: &Path, model: &Model, variant: &CheckedIn) -> Outcome<bool> {
     Ok(all && found["passed"] == true)
 }
 
-fn variants(model: &Model) -> Outcome<Vec<CheckedIn>> {
+fn variants(model: &Model) -> Result<Vec<CheckedIn>> {
     let variant = |order: usize| {
         let name = match order {
             0 => format!("{}_rigid", model.name),
@@ -137,15 +137,15 @@ fn root_module(variants: &[CheckedIn]) -> String {
 }
 
 /// The folder of the project, at or above the current one.
-fn project_root() -> Outcome<PathBuf> {
+fn project_root() -> Result<PathBuf> {
     let current = std::env::current_dir()
-        .map_err(|error| Problem::input(format!("no current folder: {error}")))?;
+        .map_err(|error| Error::input(format!("no current folder: {error}")))?;
     current
         .ancestors()
         .find(|folder| folder.join(SPECIFICATION).is_file() && folder.join(FOLDER).is_dir())
         .map(Path::to_path_buf)
         .ok_or_else(|| {
-            Problem::input(format!(
+            Error::input(format!(
                 "--all works inside the project: no folder here or above holds {SPECIFICATION} and {FOLDER}"
             ))
         })

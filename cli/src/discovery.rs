@@ -14,12 +14,12 @@ use serde_json::{Value, json};
 
 use crate::arguments;
 use crate::certification::certify;
+use crate::error::{Error, Result, warn};
 use crate::model::{load, orders};
 use crate::output::write_file;
-use crate::problem::{Outcome, Problem, warn};
 
 /// Compares; the document that is left beside the page.
-pub fn compared(options: &arguments::Compare) -> Outcome<Value> {
+pub fn compared(options: &arguments::Compare) -> Result<Value> {
     let begin = Instant::now();
     let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
     let path = options.spec.display().to_string();
@@ -29,7 +29,7 @@ pub fn compared(options: &arguments::Compare) -> Outcome<Value> {
         order,
     };
     let found = discover::compare(specification, &dataset, options.seed, &warn);
-    let found = found.map_err(Problem::discovery)?;
+    let found = found.map_err(Error::discovery)?;
     let mut document = found.to_json();
     document["seconds"] = json!(begin.elapsed().as_secs_f64());
     write_json(&options.out.join("comparison.json"), &document)?;
@@ -38,10 +38,10 @@ pub fn compared(options: &arguments::Compare) -> Outcome<Value> {
 }
 
 /// Discovers; the document that is left beside the page and the specification.
-pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
+pub fn discovered(options: &arguments::Discover) -> Result<Value> {
     let begin = Instant::now();
     let (text, order, dataset) = inputs(&options.spec, &options.dataset, options.order.as_deref())?;
-    let effects = catalogue::effects(options.effects.as_deref()).map_err(Problem::Specification)?;
+    let effects = catalogue::effects(options.effects.as_deref()).map_err(Error::Specification)?;
     let path = options.spec.display().to_string();
     let specification = Specification {
         path: &path,
@@ -49,7 +49,7 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
         order,
     };
     let found = discover::discover(specification, dataset, &effects, options.seed, &warn);
-    let mut found = found.map_err(Problem::discovery)?;
+    let mut found = found.map_err(Error::discovery)?;
     found.validation = validated(&path, &found.extended, order)?;
     let mut document = found.to_json();
     document["seconds"] = json!(begin.elapsed().as_secs_f64());
@@ -63,11 +63,11 @@ pub fn discovered(options: &arguments::Discover) -> Outcome<Value> {
 /// What the checks of `validate` say of the specification that was written: its equations are
 /// derived anew and set beside the independent oracle and the emitted source. None where fields
 /// have different orders, for which there are no such checks.
-fn validated(path: &str, text: &str, order: Option<usize>) -> Outcome<Option<Validation>> {
+fn validated(path: &str, text: &str, order: Option<usize>) -> Result<Option<Validation>> {
     let checked = model_spec::check(Source::new(path, text));
-    let model = checked.map_err(Problem::Specification)?.model;
+    let model = checked.map_err(Error::Specification)?.model;
     let orders = model.orders(order);
-    let orders = orders.map_err(|error| Problem::model(&model.source, error))?;
+    let orders = orders.map_err(|error| Error::model(&model.source, error))?;
     if orders.iter().any(|other| *other != orders[0]) {
         return Ok(None);
     }
@@ -88,18 +88,18 @@ fn inputs(
     spec: &Path,
     dataset: &Path,
     order: Option<&str>,
-) -> Outcome<(String, Option<usize>, Dataset)> {
+) -> Result<(String, Option<usize>, Dataset)> {
     let model = load(spec)?.model;
     let text = model.source.text.to_string();
     orders(&model, order)?;
     let order = order.and_then(|order| order.trim().parse().ok());
-    let dataset = read_dataset(dataset, &model).map_err(Problem::records)?;
+    let dataset = read_dataset(dataset, &model).map_err(Error::records)?;
     for note in &dataset.notes {
         warn(&format!("note: {note}"));
     }
     Ok((text, order, dataset))
 }
 
-fn write_json(path: &Path, document: &Value) -> Outcome {
+fn write_json(path: &Path, document: &Value) -> Result {
     write_file(path, format!("{document:#}\n").as_bytes())
 }

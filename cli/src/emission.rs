@@ -3,9 +3,9 @@
 use codegen::program::Program;
 use codegen::rust::{Packaging, emit};
 
-use crate::problem::{Outcome, Problem};
+use crate::error::{Error, Result};
 
 /// The emitted source of a program.
-pub fn source(program: &Program, packaging: Packaging) -> Outcome<String> {
-    emit(program, packaging).map_err(|error| Problem::input(error.to_string()))
+pub fn source(program: &Program, packaging: Packaging) -> Result<String> {
+    emit(program, packaging).map_err(|error| Error::input(error.to_string()))
 }

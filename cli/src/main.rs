@@ -2,7 +2,7 @@
 //! libraries.
 //!
 //! `arguments` says what can be typed, `commands` has one file per command, `variant` loads
-//! a specification and derives it, `motion` simulates it, `output` writes files whole or not at all, `problem`
+//! a specification and derives it, `motion` simulates it, `output` writes files whole or not at all, `error`
 //! is what can go wrong and with which exit status.
 
 mod arguments;
@@ -12,13 +12,13 @@ mod checked_in;
 mod commands;
 mod discovery;
 mod emission;
+mod error;
 mod figures;
 mod model;
 mod motion;
 mod output;
 mod page;
 mod parquet_file;
-mod problem;
 mod progress;
 mod ranges;
 mod samples;
@@ -33,11 +33,11 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use arguments::{Arguments, Command};
-use problem::Outcome;
+use error::Result;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    let outcome: Outcome = match arguments.command {
+    let result: Result = match arguments.command {
         Command::Check(options) => commands::check::run(&options),
         Command::Derive(options) => commands::derive::run(&options),
         Command::Generate(options) => commands::generate::run(&options),
@@ -54,8 +54,8 @@ fn main() -> ExitCode {
         Command::Completions(options) => commands::completions::run(&options),
         Command::Man(options) => commands::man::run(&options),
     };
-    match outcome {
+    match result {
         Ok(()) => ExitCode::SUCCESS,
-        Err(problem) => problem.report(),
+        Err(error) => error.report(),
     }
 }

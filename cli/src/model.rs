@@ -7,11 +7,11 @@ use eomgen_compiled_model::{CompiledModel, Orders};
 use model_spec::Checked;
 use model_spec::model::Model;
 
-use crate::problem::{Outcome, Problem, warn};
+use crate::error::{Error, Result, warn};
 
 /// Reads and checks a specification; warnings go to stderr.
-pub fn load(path: &Path) -> Outcome<Checked> {
-    let checked = model_spec::load(path).map_err(Problem::Specification)?;
+pub fn load(path: &Path) -> Result<Checked> {
+    let checked = model_spec::load(path).map_err(Error::Specification)?;
     if !checked.warnings.is_empty() {
         warn(&checked.warnings.render(std::io::stderr().is_terminal()));
     }
@@ -19,11 +19,11 @@ pub fn load(path: &Path) -> Outcome<Checked> {
 }
 
 /// The orders of a model's fields. A text that is no order is refused with what would be.
-pub fn orders(model: &Model, text: Option<&str>) -> Outcome<Vec<usize>> {
+pub fn orders(model: &Model, text: Option<&str>) -> Result<Vec<usize>> {
     let order = match text {
         None => None,
         Some(text) => Some(text.trim().parse::<usize>().map_err(|_| {
-            Problem::input(format!(
+            Error::input(format!(
                 "--order {text}: expected a whole number from 0 to {}",
                 model_spec::model::MAX_ORDER
             ))
@@ -31,16 +31,16 @@ pub fn orders(model: &Model, text: Option<&str>) -> Outcome<Vec<usize>> {
     };
     model
         .orders(order)
-        .map_err(|error| Problem::model(&model.source, error))
+        .map_err(|error| Error::model(&model.source, error))
 }
 
 /// Derives a model at the given orders.
-pub fn derive(model: Model, orders: &[usize]) -> Outcome<CompiledModel> {
+pub fn derive(model: Model, orders: &[usize]) -> Result<CompiledModel> {
     Ok(CompiledModel::derive(model, Orders::Each(orders))?)
 }
 
 /// Loads, checks and derives for readers: also what has no inertia somewhere.
-pub fn load_to_read(path: &Path, order: Option<&str>) -> Outcome<CompiledModel> {
+pub fn load_to_read(path: &Path, order: Option<&str>) -> Result<CompiledModel> {
     let model = load(path)?.model;
     let orders = orders(&model, order)?;
     Ok(CompiledModel::derive_unjudged(

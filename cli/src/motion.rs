@@ -3,21 +3,21 @@
 use codegen::program::evaluator::Point;
 use eomgen_compiled_model::{Choice, Instance, Motion, Request, Solver};
 
-use crate::problem::{Outcome, Problem, warn};
+use crate::error::{Error, Result, warn};
 use crate::progress::Bar;
 use crate::table::Table;
 
 /// The states at all times asked for, with a progress bar for a run that takes long.
-pub fn simulate(instance: &Instance<'_>, request: &Request<'_>) -> Outcome<Motion> {
+pub fn simulate(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> {
     let motion = follow(instance, request)?;
     match motion.stopped {
-        Some(stopped) => Err(Problem::input(stopped.reason)),
+        Some(stopped) => Err(Error::input(stopped.reason)),
         None => Ok(motion),
     }
 }
 
 /// The same, of the times that the solver comes to; an error if that is none.
-pub fn follow(instance: &Instance<'_>, request: &Request<'_>) -> Outcome<Motion> {
+pub fn follow(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> {
     let begin = request.times.first().copied().unwrap_or(0.0);
     let end = request.times.last().copied().unwrap_or(begin);
     let bar = Bar::new("simulating", end - begin, "s");
@@ -47,7 +47,7 @@ pub fn columns(instance: &Instance<'_>) -> Vec<String> {
 }
 
 /// Time, state and observables of every sample.
-pub fn table(instance: &Instance<'_>, motion: &Motion) -> Outcome<Table> {
+pub fn table(instance: &Instance<'_>, motion: &Motion) -> Result<Table> {
     let columns = columns(instance);
     let mut row = Vec::with_capacity(columns.len());
     let mut table = Table::new(columns);

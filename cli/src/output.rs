@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use crate::problem::{Outcome, Problem, say, say_bytes, warn};
+use crate::error::{Error, Result, say, say_bytes, warn};
 
 /// Where a command's one file goes.
 pub enum Destination {
@@ -23,10 +23,10 @@ impl Destination {
     ///
     /// # Errors
     /// A folder, a pipe or a place that cannot be, and stdout where `json` takes it.
-    pub fn of(path: &Path, json: bool) -> Outcome<Self> {
+    pub fn of(path: &Path, json: bool) -> Result<Self> {
         if path == Path::new("-") {
             return if json {
-                Err(Problem::input(
+                Err(Error::input(
                     "--json and --out - both write to stdout: give --out the name of a file",
                 ))
             } else {
@@ -41,20 +41,20 @@ impl Destination {
     }
 
     /// Writes the contents.
-    pub fn write(&self, contents: &[u8]) -> Outcome {
+    pub fn write(&self, contents: &[u8]) -> Result {
         match self {
             Self::Stdout => say_bytes(contents),
             Self::Device(path) => std::fs::OpenOptions::new()
                 .write(true)
                 .open(path)
                 .and_then(|mut device| device.write_all(contents))
-                .map_err(|error| Problem::file("write", path, &error)),
+                .map_err(|error| Error::file("write", path, &error)),
             Self::File(path) => write_file(path, contents),
         }
     }
 
     /// Says what was done: on stderr where the contents are on stdout.
-    pub fn summarise(&self, summary: &str) -> Outcome {
+    pub fn summarise(&self, summary: &str) -> Result {
         match self {
             Self::Stdout => {
                 warn(summary.trim_end());
@@ -78,9 +78,9 @@ fn is_device(_path: &Path) -> bool {
 }
 
 /// Writes a file, or leaves what was there. Folders on the way are made.
-pub fn write_file(path: &Path, contents: &[u8]) -> Outcome {
+pub fn write_file(path: &Path, contents: &[u8]) -> Result {
     let place = file_place(path)?;
-    let failed = |error: &dyn std::fmt::Display| Problem::file("write", path, error);
+    let failed = |error: &dyn std::fmt::Display| Error::file("write", path, error);
     let folder = folder_of(&place);
     std::fs::create_dir_all(folder).map_err(|error| failed(&error))?;
     let mut file = NamedTempFile::new_in(folder).map_err(|error| failed(&error))?;
@@ -92,8 +92,8 @@ pub fn write_file(path: &Path, contents: &[u8]) -> Outcome {
 
 /// Where a file's name leads: to a file, also by a link, or to nothing yet. Moving a file
 /// onto a device or a pipe would put the file in its place.
-pub fn file_place(path: &Path) -> Outcome<PathBuf> {
-    let failed = |error: &dyn std::fmt::Display| Problem::file("write", path, error);
+pub fn file_place(path: &Path) -> Result<PathBuf> {
+    let failed = |error: &dyn std::fmt::Display| Error::file("write", path, error);
     match std::fs::metadata(path) {
         Ok(found) if found.is_file() => std::fs::canonicalize(path).map_err(|error| failed(&error)),
         Ok(_) => Err(failed(

@@ -5,20 +5,20 @@ use model_spec::model::Model;
 use sim::inputs::HeldInputs;
 use sim::ode::Trajectory;
 
-use crate::problem::{Outcome, Problem, warn};
+use crate::error::{Error, Result, warn};
 
 /// Warns of every coordinate and input that leaves its range, with the first time at which a
 /// sample shows it.
-pub fn warn_of_ranges(model: &Model, trajectory: &Trajectory, inputs: &HeldInputs) -> Outcome {
-    let problem = |error| Problem::model(&model.source, error);
-    let coordinates = model.coordinate_ranges().map_err(problem)?;
+pub fn warn_of_ranges(model: &Model, trajectory: &Trajectory, inputs: &HeldInputs) -> Result {
+    let error = |error| Error::model(&model.source, error);
+    let coordinates = model.coordinate_ranges().map_err(error)?;
     for (place, coordinate) in model.coordinates.iter().enumerate() {
         let samples = trajectory.times.iter().zip(&trajectory.states);
         let values = samples.map(|(t, state)| (*t, state[place]));
         let unit = coordinate.unit.to_string();
         say_first(&coordinate.name, &unit, coordinates[place], values);
     }
-    let ranges = model.input_ranges().map_err(problem)?;
+    let ranges = model.input_ranges().map_err(error)?;
     for (place, input) in model.inputs.iter().enumerate() {
         let times = trajectory.times.iter();
         let values = times.map(|t| (*t, inputs.at(*t)[place]));

@@ -5,7 +5,7 @@ use model_spec::model::Model;
 use sim::inputs::HeldInputs;
 
 use crate::arguments::Simulate;
-use crate::problem::{Outcome, Problem, warn};
+use crate::error::{Error, Result, warn};
 use crate::settings::warn_of_inputs;
 
 /// The most numbers written, rows times columns: a few GB of memory.
@@ -15,11 +15,11 @@ const MOST_NUMBERS: f64 = 1e8;
 const DEFAULT_ROWS: f64 = 1000.0;
 
 /// The inputs: a record's, or 0.
-pub fn inputs(options: &Simulate, model: &Model) -> Outcome<HeldInputs> {
+pub fn inputs(options: &Simulate, model: &Model) -> Result<HeldInputs> {
     match &options.record {
         Some(dataset) => {
             let (inputs, warnings) =
-                read_inputs(dataset, &options.record_name, model).map_err(Problem::records)?;
+                read_inputs(dataset, &options.record_name, model).map_err(Error::records)?;
             for warning in warnings {
                 warn(&format!("warning: {warning}"));
             }
@@ -33,7 +33,7 @@ pub fn inputs(options: &Simulate, model: &Model) -> Outcome<HeldInputs> {
 }
 
 /// The times of the samples, s.
-pub fn times(options: &Simulate, inputs: &HeldInputs) -> Outcome<Vec<f64>> {
+pub fn times(options: &Simulate, inputs: &HeldInputs) -> Result<Vec<f64>> {
     let span = span(options, inputs)?;
     match options.sample {
         None if options.record.is_some() => record_times(inputs, span),
@@ -42,7 +42,7 @@ pub fn times(options: &Simulate, inputs: &HeldInputs) -> Outcome<Vec<f64>> {
 }
 
 /// Begin and end of the simulation, in s.
-fn span(options: &Simulate, inputs: &HeldInputs) -> Outcome<(f64, f64)> {
+fn span(options: &Simulate, inputs: &HeldInputs) -> Result<(f64, f64)> {
     let recorded = options.record.as_ref().map(|_| inputs.times());
     let start = recorded
         .and_then(|times| times.first())
@@ -51,17 +51,17 @@ fn span(options: &Simulate, inputs: &HeldInputs) -> Outcome<(f64, f64)> {
     let end = options
         .until
         .or_else(|| recorded.and_then(|times| times.last()).copied());
-    let end = end.ok_or_else(|| Problem::input("--until is missing: the simulated time in s"))?;
+    let end = end.ok_or_else(|| Error::input("--until is missing: the simulated time in s"))?;
     if end.is_finite() && end > start {
         return Ok((start, end));
     }
-    Err(Problem::input(format!(
+    Err(Error::input(format!(
         "--until {end:?}: expected a time in s after {start:?}"
     )))
 }
 
 /// The record's times up to the end.
-fn record_times(inputs: &HeldInputs, (_, end): (f64, f64)) -> Outcome<Vec<f64>> {
+fn record_times(inputs: &HeldInputs, (_, end): (f64, f64)) -> Result<Vec<f64>> {
     let times: Vec<f64> = inputs
         .times()
         .iter()
@@ -70,12 +70,12 @@ fn record_times(inputs: &HeldInputs, (_, end): (f64, f64)) -> Outcome<Vec<f64>> 
         .collect();
     let last = inputs.times().last().copied().unwrap_or(end);
     if end > last {
-        return Err(Problem::input(format!(
+        return Err(Error::input(format!(
             "--until {end:?}: the record ends at {last:?} s; with --sample its last inputs hold on"
         )));
     }
     match times.len() {
-        0 | 1 => Err(Problem::input(format!(
+        0 | 1 => Err(Error::input(format!(
             "--until {end:?}: no second sample of the record by then; give a later time, or --sample"
         ))),
         _ => Ok(times),
@@ -83,11 +83,11 @@ fn record_times(inputs: &HeldInputs, (_, end): (f64, f64)) -> Outcome<Vec<f64>> 
 }
 
 /// Times a step apart, in s; a thousandth of the whole where no step is given.
-fn even_times((start, end): (f64, f64), step: Option<f64>) -> Outcome<Vec<f64>> {
+fn even_times((start, end): (f64, f64), step: Option<f64>) -> Result<Vec<f64>> {
     let whole = end - start;
     let step = step.unwrap_or(whole / DEFAULT_ROWS);
     if !(step > 0.0 && step <= whole) {
-        return Err(Problem::input(format!(
+        return Err(Error::input(format!(
             "--sample {step:?}: expected a time in s above 0 and at most {whole:?}"
         )));
     }
@@ -99,12 +99,12 @@ fn even_times((start, end): (f64, f64), step: Option<f64>) -> Outcome<Vec<f64>> 
 }
 
 /// Refuses what would not fit into memory.
-pub fn check_size(rows: usize, columns: usize) -> Outcome {
+pub fn check_size(rows: usize, columns: usize) -> Result {
     let numbers = rows as f64 * columns as f64;
     if numbers <= MOST_NUMBERS {
         return Ok(());
     }
-    Err(Problem::input(format!(
+    Err(Error::input(format!(
         "too many rows: the limit is {MOST_NUMBERS:e} numbers; give --sample a longer time"
     )))
 }

@@ -2,30 +2,30 @@
 
 use model_spec::model::Model;
 
-use crate::problem::{Outcome, Problem, warn};
+use crate::error::{Error, Result, warn};
 
 /// The model with every `NAME=VALUE`, values in the units that the specification declares.
-pub fn with_settings(model: Model, assignments: &[String]) -> Outcome<Model> {
+pub fn with_settings(model: Model, assignments: &[String]) -> Result<Model> {
     let settings = assignments
         .iter()
         .map(|assignment| setting(assignment))
-        .collect::<Outcome<Vec<_>>>()?;
+        .collect::<Result<Vec<_>>>()?;
     model
         .with_parameters(&settings)
-        .map_err(|error| Problem::model(&model.source, error))
+        .map_err(|error| Error::model(&model.source, error))
 }
 
 /// The parts of `NAME=VALUE`.
-pub fn setting(assignment: &str) -> Outcome<(&str, f64)> {
+pub fn setting(assignment: &str) -> Result<(&str, f64)> {
     let (name, value) = assignment.split_once('=').ok_or_else(|| {
-        Problem::input(format!(
+        Error::input(format!(
             "--set {assignment}: expected NAME=VALUE, such as b_sp=25e-6"
         ))
     })?;
     let number: f64 = value
         .trim()
         .parse()
-        .map_err(|_| Problem::input(format!("--set {assignment}: \"{value}\" is no number")))?;
+        .map_err(|_| Error::input(format!("--set {assignment}: \"{value}\" is no number")))?;
     Ok((name.trim(), number))
 }
 

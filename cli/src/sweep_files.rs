@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use eomgen_sweep::{Folder, Job, Table, merge};
 use serde_json::{Value, json};
 
+use crate::error::{Error, Result, warn};
 use crate::figures::draw;
 use crate::output::write_file;
 use crate::parquet_file::encode;
-use crate::problem::{Outcome, Problem, warn};
 
 /// The final files of a sweep.
 pub struct Finished {
@@ -22,9 +22,9 @@ pub struct Finished {
 ///
 /// # Errors
 /// Missing parts, files that cannot be written.
-pub fn finish(folder: &Folder) -> Outcome<Finished> {
+pub fn finish(folder: &Folder) -> Result<Finished> {
     let job = folder.job();
-    let table = merge(folder).map_err(|error| Problem::input(error.to_string()))?;
+    let table = merge(folder).map_err(|error| Error::input(error.to_string()))?;
     let mut finished = Finished {
         files: Vec::new(),
         points: job.grid().points(),
@@ -42,7 +42,7 @@ pub fn finish(folder: &Folder) -> Outcome<Finished> {
         }
     }
     let bytes = encode(&table.names, &table.columns)
-        .map_err(|error| Problem::input(format!("cannot write Parquet: {error}")))?;
+        .map_err(|error| Error::input(format!("cannot write Parquet: {error}")))?;
     let path = folder.path().join("sweep.parquet");
     write_file(&path, &bytes)?;
     finished.files.push(path);

@@ -7,23 +7,23 @@ use eomgen_sweep::{Axis, Grid, Job, Lyapunov, Measure, Poincare, Span, SweepErro
 use model_spec::model::Model;
 
 use crate::arguments::Sweep;
+use crate::error::{Error, Result};
 use crate::model::{load, orders};
-use crate::problem::{Outcome, Problem};
 use crate::settings::warn_of_inputs;
 
 /// What can be measured.
 const MEASURES: [&str; 2] = ["lyapunov", "poincare"];
 
 /// What the library refuses.
-pub fn refused(error: SweepError) -> Problem {
-    Problem::input(error.to_string())
+pub fn refused(error: SweepError) -> Error {
+    Error::input(error.to_string())
 }
 
 /// Refuses measures that do not exist.
-pub fn check_measures(names: &[String]) -> Outcome {
+pub fn check_measures(names: &[String]) -> Result {
     match names.iter().find(|name| !MEASURES.contains(&name.as_str())) {
         None => Ok(()),
-        Some(unknown) => Err(Problem::input(format!(
+        Some(unknown) => Err(Error::input(format!(
             "--measure {unknown}: unknown measure; there is {}",
             MEASURES.join(" and ")
         ))),
@@ -31,19 +31,19 @@ pub fn check_measures(names: &[String]) -> Outcome {
 }
 
 /// The grid that is asked for.
-pub fn grid(options: &Sweep) -> Outcome<Grid> {
+pub fn grid(options: &Sweep) -> Result<Grid> {
     let axes = options.vary.iter().map(|text| Axis::parse(text));
     let axes = axes.collect::<Result<Vec<_>, _>>().map_err(refused)?;
     Grid::new(axes).map_err(refused)
 }
 
 /// The model derived at the grid's first point, where all varied parameters are numbers.
-pub fn model(options: &Sweep, grid: &Grid, set: &[(&str, f64)]) -> Outcome<CompiledModel> {
+pub fn model(options: &Sweep, grid: &Grid, set: &[(&str, f64)]) -> Result<CompiledModel> {
     if let Some((name, _)) = set
         .iter()
         .find(|(name, _)| grid.names().any(|varied| varied == *name))
     {
-        return Err(Problem::input(format!(
+        return Err(Error::input(format!(
             "`{name}` is both set and varied; give one of --set and --vary"
         )));
     }
@@ -63,10 +63,10 @@ pub fn model(options: &Sweep, grid: &Grid, set: &[(&str, f64)]) -> Outcome<Compi
     )?)
 }
 
-fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Outcome<Model> {
+fn with_parameters(model: &Model, settings: &[(&str, f64)]) -> Result<Model> {
     model
         .with_parameters(settings)
-        .map_err(|error| Problem::model(&model.source, error))
+        .map_err(|error| Error::model(&model.source, error))
 }
 
 /// What is asked for, in the order of the command line.
@@ -74,14 +74,14 @@ pub fn measures<'a>(
     options: &Sweep,
     model: &'a CompiledModel,
     grid: &Grid,
-) -> Outcome<Vec<Box<dyn Measure + 'a>>> {
+) -> Result<Vec<Box<dyn Measure + 'a>>> {
     let lines = grid.axes().iter().filter(|axis| axis.count > 1).count();
     let span = Span {
         transient: options.transient,
         periods: options.periods,
     };
     let frequency = &options.frequency;
-    let measure = |name: &String| -> Outcome<Box<dyn Measure + 'a>> {
+    let measure = |name: &String| -> Result<Box<dyn Measure + 'a>> {
         Ok(match name.as_str() {
             "lyapunov" => Box::new(Lyapunov::new(model, frequency, span).map_err(refused)?),
             _ => Box::new(Poincare::new(model, frequency, span, lines == 1).map_err(refused)?),
@@ -96,7 +96,7 @@ pub fn job(
     grid: &Grid,
     set: &[(&str, f64)],
     measures: &[Box<dyn Measure + '_>],
-) -> Outcome<Job> {
+) -> Result<Job> {
     let (model, orders) = (compiled.model(), compiled.orders());
     let plan = Plan::new(
         &model.source,

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use crate::error::{Error, Result};
 use crate::parquet_file;
-use crate::problem::{Outcome, Problem};
 
 /// Whether a path asks for Parquet.
 fn is_parquet(path: &Path) -> bool {
@@ -49,18 +49,18 @@ impl Table {
     }
 
     /// The bytes of the file: Parquet if its name ends so, else CSV.
-    pub fn encode(&self, path: &Path) -> Outcome<Vec<u8>> {
+    pub fn encode(&self, path: &Path) -> Result<Vec<u8>> {
         if is_parquet(path) {
             return parquet_file::encode(&self.names, &self.columns)
-                .map_err(|error| Problem::input(format!("cannot write Parquet: {error}")));
+                .map_err(|error| Error::input(format!("cannot write Parquet: {error}")));
         }
         self.csv()
     }
 
     /// Numbers with the fewest digits that give them back exactly.
-    fn csv(&self) -> Outcome<Vec<u8>> {
+    fn csv(&self) -> Result<Vec<u8>> {
         let failed =
-            |error: &dyn std::fmt::Display| Problem::input(format!("cannot write CSV: {error}"));
+            |error: &dyn std::fmt::Display| Error::input(format!("cannot write CSV: {error}"));
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer
             .write_record(&self.names)

@@ -7,20 +7,20 @@ use model_spec::diagnostic::Diagnostics;
 use serde_json::{Value, json};
 
 use crate::arguments::Check;
+use crate::error::{Error, Result, say, warn};
 use crate::model::{derive, orders};
-use crate::problem::{Outcome, Problem, say, warn};
 
 /// Runs the command. A derivation is part of the check: what cannot be derived is an
 /// error of the specification too.
-pub fn run(options: &Check) -> Outcome {
+pub fn run(options: &Check) -> Result {
     let (compiled, warnings) = match examine(options) {
         Ok(found) => found,
-        Err(problem) => {
-            if let (true, Problem::Specification(found)) = (options.json, &problem) {
+        Err(error) => {
+            if let (true, Error::Specification(found)) = (options.json, &error) {
                 let document = json!({"passed": false, "diagnostics": found.records()});
                 say(&format!("{document:#}\n"))?;
             }
-            return Err(problem);
+            return Err(error);
         }
     };
     if options.json {
@@ -32,8 +32,8 @@ pub fn run(options: &Check) -> Outcome {
     say(&summary(&compiled))
 }
 
-fn examine(options: &Check) -> Outcome<(CompiledModel, Diagnostics)> {
-    let checked = model_spec::load(&options.spec).map_err(Problem::Specification)?;
+fn examine(options: &Check) -> Result<(CompiledModel, Diagnostics)> {
+    let checked = model_spec::load(&options.spec).map_err(Error::Specification)?;
     let orders = orders(&checked.model, options.order.as_deref())?;
     Ok((derive(checked.model, &orders)?, checked.warnings))
 }

@@ -3,10 +3,10 @@
 use clap::CommandFactory;
 
 use crate::arguments::{Arguments, Completions};
-use crate::problem::{Outcome, say_bytes};
+use crate::error::{Result, say_bytes};
 
 /// Runs the command.
-pub fn run(options: &Completions) -> Outcome {
+pub fn run(options: &Completions) -> Result {
     let mut script = Vec::new();
     let mut program = Arguments::command();
     clap_complete::generate(options.shell, &mut program, "eomgen", &mut script);

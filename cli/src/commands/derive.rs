@@ -4,11 +4,11 @@ use codegen::program::evaluator::Evaluator;
 use codegen::report::Report;
 
 use crate::arguments::{Derive, Format};
+use crate::error::{Error, Result, say};
 use crate::model::load_to_read;
-use crate::problem::{Outcome, Problem, say};
 
 /// Runs the command.
-pub fn run(options: &Derive) -> Outcome {
+pub fn run(options: &Derive) -> Result {
     let compiled = load_to_read(&options.spec, options.order.as_deref())?;
     let format = if options.json {
         Format::Json
@@ -22,7 +22,7 @@ pub fn run(options: &Derive) -> Outcome {
         Format::Latex => say(&report.latex()),
         Format::Json => {
             let text = serde_json::to_string_pretty(&report)
-                .map_err(|error| Problem::input(error.to_string()))?;
+                .map_err(|error| Error::input(error.to_string()))?;
             say(&format!("{text}\n"))
         }
     }

@@ -6,20 +6,20 @@ use serde_json::Value;
 
 use crate::arguments;
 use crate::discovery::{compared, discovered};
-use crate::problem::{Outcome, say};
+use crate::error::{Result, say};
 
 /// Runs `compare`.
-pub fn compare(options: &arguments::Compare) -> Outcome {
-    tell(options.json, &compared(options)?, &options.out)
+pub fn compare(options: &arguments::Compare) -> Result {
+    print(options.json, &compared(options)?, &options.out)
 }
 
 /// Runs `discover`.
-pub fn discover(options: &arguments::Discover) -> Outcome {
-    tell(options.json, &discovered(options)?, &options.out)
+pub fn discover(options: &arguments::Discover) -> Result {
+    print(options.json, &discovered(options)?, &options.out)
 }
 
 /// The verdict, the effects and the gap by channel.
-fn tell(as_json: bool, result: &Value, out: &Path) -> Outcome {
+fn print(as_json: bool, result: &Value, out: &Path) -> Result {
     if as_json {
         return say(&format!("{result:#}\n"));
     }

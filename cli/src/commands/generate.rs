@@ -13,25 +13,24 @@ use crate::bench_files;
 use crate::certification::{certify_source, document};
 use crate::checked_in;
 use crate::emission::source;
+use crate::error::{Error, Result, say, warn};
 use crate::model::{load, orders};
 use crate::output::write_file;
-use crate::problem::{Outcome, Problem, say, warn};
 
 /// Runs the command.
-pub fn run(options: &Generate) -> Outcome {
+pub fn run(options: &Generate) -> Result {
     match (&options.spec, &options.out) {
         (Some(spec), Some(out)) => one(options, spec, out),
         _ => checked_in::run(options.check, options.json),
     }
 }
 
-fn one(options: &Generate, spec: &Path, out: &Path) -> Outcome {
+fn one(options: &Generate, spec: &Path, out: &Path) -> Result {
     let Target::Rust = options.target;
     let model = load(spec)?.model;
     let orders = orders(&model, options.order.as_deref())?;
     let outputs = Extra::outputs(&options.with);
-    let variant =
-        Variant::derive_with(&model, &orders, &outputs).map_err(Problem::Specification)?;
+    let variant = Variant::derive_with(&model, &orders, &outputs).map_err(Error::Specification)?;
     let text = source(&variant.program, Packaging::Crate)?;
     let certificate = match options.certify {
         true => Some(certify_source(&model, &orders, &outputs, text.clone())?),
@@ -72,7 +71,7 @@ fn one(options: &Generate, spec: &Path, out: &Path) -> Outcome {
 }
 
 /// An end with exit status 1 if any check failed.
-fn passed(certificate: &Certificate) -> Outcome {
+fn passed(certificate: &Certificate) -> Result {
     if certificate.passed {
         return Ok(());
     }
@@ -81,5 +80,5 @@ fn passed(certificate: &Certificate) -> Outcome {
     warn(&format!(
         "error: the certificate has failed checks: {names}; `eomgen validate` shows them"
     ));
-    Err(Problem::Failed)
+    Err(Error::Failed)
 }

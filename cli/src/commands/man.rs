@@ -4,11 +4,11 @@ use clap::CommandFactory;
 use clap_mangen::Man as Page;
 
 use crate::arguments::{Arguments, Man};
+use crate::error::{Error, Result, say};
 use crate::output::write_file;
-use crate::problem::{Outcome, Problem, say};
 
 /// Runs the command.
-pub fn run(options: &Man) -> Outcome {
+pub fn run(options: &Man) -> Result {
     let mut program = Arguments::command().disable_help_subcommand(true);
     // Gives every command its whole name, as `eomgen-check`.
     program.build();
@@ -19,7 +19,7 @@ pub fn run(options: &Man) -> Outcome {
         let path = options.out.join(page.get_filename());
         let mut text = Vec::new();
         page.render(&mut text)
-            .map_err(|error| Problem::file("write", &path, &error))?;
+            .map_err(|error| Error::file("write", &path, &error))?;
         write_file(&path, &text)?;
         written += 1;
     }

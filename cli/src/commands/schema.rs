@@ -2,9 +2,9 @@
 
 use model_spec::schema::SCHEMA;
 
-use crate::problem::{Outcome, say};
+use crate::error::{Result, say};
 
 /// Runs the command.
-pub fn run() -> Outcome {
+pub fn run() -> Result {
     say(SCHEMA)
 }

@@ -4,17 +4,17 @@ use eomgen_compiled_model::{DEFAULT_TOLERANCE, Motion, Request};
 use serde_json::json;
 
 use crate::arguments::{Simulate, Solver};
+use crate::error::{Error, Result, warn};
 use crate::model::{derive, load, orders};
 use crate::motion::{columns, follow, in_words, table};
 use crate::output::Destination;
-use crate::problem::{Outcome, Problem, warn};
 use crate::ranges::warn_of_ranges;
 use crate::samples::{check_size, inputs, times};
 use crate::settings::with_settings;
 use crate::table::Table;
 
 /// Runs the command.
-pub fn run(options: &Simulate) -> Outcome {
+pub fn run(options: &Simulate) -> Result {
     let destination = Destination::of(&options.out, options.json)?;
     let model = with_settings(load(&options.spec)?.model, &options.set)?;
     let orders = orders(&model, options.order.as_deref())?;
@@ -41,7 +41,7 @@ pub fn run(options: &Simulate) -> Outcome {
     match &motion.stopped {
         Some(stopped) => {
             warn(&format!("error: {}", stopped.reason));
-            Err(Problem::Failed)
+            Err(Error::Failed)
         }
         None => Ok(()),
     }

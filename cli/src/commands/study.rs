@@ -8,13 +8,13 @@ use eomgen_paper::studies::{StudyError, order, report, responses};
 use serde_json::Value;
 
 use crate::arguments::{Study, StudyName};
+use crate::error::{Error, Result, say};
 use crate::output::{file_place, write_file};
-use crate::problem::{Outcome, Problem, say};
 use crate::progress::Bar;
 use crate::table::Table;
 
 /// Runs the command.
-pub fn run(options: &Study) -> Outcome {
+pub fn run(options: &Study) -> Result {
     let document_path = options.out.join("study.json");
     file_place(&document_path)?;
     let (name, make): (_, fn(responses::Progress<'_>) -> _) = match options.name {
@@ -31,7 +31,7 @@ pub fn run(options: &Study) -> Outcome {
         }
     });
     drop(bar);
-    let (study, arm) = found.map_err(|error: StudyError| Problem::input(error.to_string()))?;
+    let (study, arm) = found.map_err(|error: StudyError| Error::input(error.to_string()))?;
     let document = study.document(name, arm.model());
     write(&study, &options.out)?;
     // Last, so that a folder with this file is whole.
@@ -44,7 +44,7 @@ pub fn run(options: &Study) -> Outcome {
     })
 }
 
-fn write(study: &report::Study, out: &Path) -> Outcome {
+fn write(study: &report::Study, out: &Path) -> Result {
     for table in &study.tables {
         let path = out.join(&table.file);
         write_file(&path, &Table::of(&table.columns).encode(&path)?)?;

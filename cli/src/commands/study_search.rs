@@ -11,8 +11,8 @@ use eomgen_paper::studies::search_report;
 use eomgen_paper::studies::tally::shares;
 
 use crate::arguments::{ModeShapes, StudySearch};
+use crate::error::{Error, Result, say};
 use crate::output::{file_place, write_file};
-use crate::problem::{Outcome, Problem, say};
 use crate::progress::Bar;
 
 /// How many of the best sets are judged again with longer runs, and how many sets around the
@@ -24,13 +24,13 @@ const NEIGHBOURS: usize = 32;
 const MOST_SETS: usize = 1_000_000;
 
 /// Runs the command.
-pub fn run(options: &StudySearch) -> Outcome {
+pub fn run(options: &StudySearch) -> Result {
     let (out, sets) = (options.out.as_path(), options.sets);
     let (document, table) = (out.join("search.json"), out.join("search.csv"));
     file_place(&document)?;
     file_place(&table)?;
     if !(1..=MOST_SETS).contains(&sets) {
-        return Err(Problem::input(format!(
+        return Err(Error::input(format!(
             "--sets {sets}: expected 1 to {MOST_SETS} parameter sets"
         )));
     }
@@ -76,6 +76,6 @@ pub fn run(options: &StudySearch) -> Outcome {
     ))
 }
 
-fn refused(error: StudyError) -> Problem {
-    Problem::input(error.to_string())
+fn refused(error: StudyError) -> Error {
+    Error::input(error.to_string())
 }

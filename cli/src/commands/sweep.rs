@@ -4,14 +4,14 @@ use eomgen_sweep::{Folder, Shard};
 use serde_json::{Value, json};
 
 use crate::arguments::Sweep;
-use crate::problem::{Outcome, say};
+use crate::error::{Result, say};
 use crate::progress::Bar;
 use crate::settings::setting;
 use crate::sweep_files::finish;
 use crate::sweep_job::{check_measures, grid, job, measures, model, refused};
 
 /// Runs the command.
-pub fn run(options: &Sweep) -> Outcome {
+pub fn run(options: &Sweep) -> Result {
     check_measures(&options.measure)?;
     let shard = options
         .shard
@@ -23,7 +23,7 @@ pub fn run(options: &Sweep) -> Outcome {
         .set
         .iter()
         .map(|assignment| setting(assignment))
-        .collect::<Outcome<Vec<_>>>()?;
+        .collect::<Result<Vec<_>>>()?;
     let model = model(options, &grid, &set)?;
     let measures = measures(options, &model, &grid)?;
     let job = job(&model, &grid, &set, &measures)?;
@@ -60,7 +60,7 @@ pub fn run(options: &Sweep) -> Outcome {
 }
 
 /// Says what was done.
-fn end(options: &Sweep, mut counts: Value, document: Value, text: &str) -> Outcome {
+fn end(options: &Sweep, mut counts: Value, document: Value, text: &str) -> Result {
     if !options.json {
         return say(text);
     }

@@ -3,22 +3,22 @@
 use serde_json::json;
 
 use crate::arguments::Tour;
-use crate::problem::{Outcome, Problem, say};
-use crate::tour::{Walked, walk};
+use crate::error::{Error, Result, say};
+use crate::tour::{TourResult, walk};
 
 /// Runs the command.
-pub fn run(options: &Tour) -> Outcome {
+pub fn run(options: &Tour) -> Result {
     let walked = walk(&options.out)?;
     say(&summary(options.json, &walked))?;
     if walked.certificate.passed {
         Ok(())
     } else {
-        Err(Problem::Failed)
+        Err(Error::Failed)
     }
 }
 
 /// What is said at the end.
-fn summary(json: bool, walked: &Walked) -> String {
+fn summary(json: bool, walked: &TourResult) -> String {
     let (checks, switches) = (walked.certificate.checks.len(), walked.switches);
     let (page, passed) = (walked.page.display(), walked.certificate.passed);
     if json {

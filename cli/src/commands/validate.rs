@@ -2,13 +2,13 @@
 
 use crate::arguments::{Extra, Validate};
 use crate::certification::{certify, document, summary};
+use crate::error::{Error, Result, say};
 use crate::model::{load, orders};
 use crate::output::Destination;
-use crate::problem::{Outcome, Problem, say};
 use crate::progress::Note;
 
 /// Runs the command.
-pub fn run(options: &Validate) -> Outcome {
+pub fn run(options: &Validate) -> Result {
     let out = options.out.as_deref();
     let destination = out
         .map(|path| Destination::of(path, options.json))
@@ -31,6 +31,6 @@ pub fn run(options: &Validate) -> Outcome {
     if certificate.passed {
         Ok(())
     } else {
-        Err(Problem::Failed)
+        Err(Error::Failed)
     }
 }

@@ -12,11 +12,11 @@ use sim::inputs::HeldInputs;
 
 use crate::arguments::{Compare, Discover};
 use crate::discovery;
+use crate::error::{Error, Result};
 use crate::model::derive;
 use crate::motion::{simulate, table};
 use crate::output::write_file;
 use crate::page;
-use crate::problem::{Outcome, Problem};
 use crate::table::Table;
 
 /// The stage as it is known.
@@ -35,8 +35,8 @@ const NOISE: f64 = 2e-6;
 /// Relative tolerance of the simulation.
 const TOLERANCE: f64 = 1e-9;
 
-/// What came of it.
-pub struct Told {
+/// The results of the comparison and the search.
+pub struct Rediscovery {
     comparison: Value,
     discovery: Value,
     reports: [String; 2],
@@ -44,7 +44,7 @@ pub struct Told {
 }
 
 /// Makes the records below `out`, compares and discovers.
-pub fn told(out: &Path) -> Outcome<Told> {
+pub fn rediscover(out: &Path) -> Result<Rediscovery> {
     let folder = out.join("hidden");
     let specification = folder.join("stage.toml");
     write_file(&specification, SPECIFICATION.as_bytes())?;
@@ -73,7 +73,7 @@ pub fn told(out: &Path) -> Outcome<Told> {
         effects: None,
         json: false,
     })?;
-    Ok(Told {
+    Ok(Rediscovery {
         comparison,
         discovery,
         reports: [
@@ -84,12 +84,12 @@ pub fn told(out: &Path) -> Outcome<Told> {
     })
 }
 
-fn text(path: PathBuf) -> Outcome<String> {
-    std::fs::read_to_string(&path).map_err(|error| Problem::file("read", &path, &error))
+fn text(path: PathBuf) -> Result<String> {
+    std::fs::read_to_string(&path).map_err(|error| Error::file("read", &path, &error))
 }
 
 /// The stage with its friction, as a specification.
-fn truth() -> Outcome<String> {
+fn truth() -> Result<String> {
     let parameter = |name: &str, value: f64, unit: &str| {
         Edit::AddParameter(NewParameter {
             name: name.to_owned(),
@@ -112,14 +112,14 @@ fn truth() -> Outcome<String> {
         friction,
     ];
     edit::apply(&Source::new("stage.toml", SPECIFICATION), &edits)
-        .map_err(|error| Problem::input(error.to_string()))
+        .map_err(|error| Error::input(error.to_string()))
 }
 
 /// A record of the true stage: reversals of a slow force with a faster one on top; `turn`
 /// makes another one.
-fn record(truth: &str, turn: f64) -> Outcome<Table> {
+fn record(truth: &str, turn: f64) -> Result<Table> {
     let checked =
-        model_spec::check(Source::new("stage.toml", truth)).map_err(Problem::Specification)?;
+        model_spec::check(Source::new("stage.toml", truth)).map_err(Error::Specification)?;
     let compiled = derive(checked.model, &[])?;
     let times: Vec<f64> = (0..SAMPLES).map(|i| i as f64 * SAMPLE).collect();
     let force = |t: &f64| {
@@ -128,7 +128,7 @@ fn record(truth: &str, turn: f64) -> Outcome<Table> {
     };
     let forces: Vec<f64> = times.iter().map(force).collect();
     let inputs = HeldInputs::new(times.clone(), forces.clone(), 1)
-        .ok_or_else(|| Problem::input("the stage has no force"))?;
+        .ok_or_else(|| Error::input("the stage has no force"))?;
     let run = compiled.at_declared()?;
     let request = Request {
         initial: run.initial(),
@@ -140,7 +140,7 @@ fn record(truth: &str, turn: f64) -> Outcome<Table> {
     let motion = table(&run, &simulate(&run, &request)?)?;
     let positions = motion
         .column("q")
-        .ok_or_else(|| Problem::input("the stage has no position"))?;
+        .ok_or_else(|| Error::input("the stage has no position"))?;
     // Fractions of n^2 times the golden section are spread evenly, without a pattern to see.
     let noise = |sample: usize| {
         let turns = (sample * sample) as f64 * 0.618_033_988_749_895;
@@ -167,7 +167,7 @@ fn description() -> String {
     )
 }
 
-impl Told {
+impl Rediscovery {
     /// What was hidden and what was found, in sentences.
     pub fn summary(&self) -> String {
         let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
@@ -179,7 +179,7 @@ impl Told {
             .map(effect)
             .collect();
         let found = match found.len() {
-            0 => "nothing that it believed".to_owned(),
+            0 => "nothing that it accepted".to_owned(),
             _ => found.join(", "),
         };
         format!(

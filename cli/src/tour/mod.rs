@@ -1,4 +1,4 @@
-//! The tour: the whole way once, on the paper's arm and at last a stage that lacks
+//! The tour: every step once, on the paper's arm and at last a stage that lacks
 //! something, for somebody who sees the program for the first time. Leaves one HTML page and the files it shows.
 
 mod hidden;
@@ -18,14 +18,14 @@ use model_spec::source::Source;
 
 use crate::certification::certify;
 use crate::emission::source;
+use crate::error::{Error, Result};
 use crate::model::derive;
 use crate::motion::{in_words, simulate, table};
 use crate::output::{file_place, write_file};
 use crate::page;
-use crate::problem::{Outcome, Problem};
 use crate::progress::Note;
 use crate::table::Table;
-use hidden::{Told, told};
+use hidden::{Rediscovery, rediscover};
 
 /// The paper's arm.
 const SPECIFICATION: &str = models::PLANETARY_ARM.text;
@@ -57,8 +57,8 @@ impl Stopwatch {
     }
 }
 
-/// What a tour leaves.
-pub struct Walked {
+/// What a tour came to.
+pub struct TourResult {
     /// Its page.
     pub page: PathBuf,
     /// The certificate of the arm.
@@ -67,8 +67,8 @@ pub struct Walked {
     pub switches: usize,
 }
 
-/// Walks the whole way and leaves the page, and the files that it shows, in a folder.
-pub fn walk(out: &Path) -> Outcome<Walked> {
+/// Takes every step and writes the page, and the files that it shows, into a folder.
+pub fn walk(out: &Path) -> Result<TourResult> {
     let path = out.join("index.html");
     file_place(&path)?;
     let mut watch = Stopwatch {
@@ -77,7 +77,7 @@ pub fn walk(out: &Path) -> Outcome<Walked> {
     };
     let note = Note::new("reading, deriving and emitting the paper's arm");
     let checked = model_spec::check(Source::new(SPECIFICATION_PATH, SPECIFICATION))
-        .map_err(Problem::Specification)?;
+        .map_err(Error::Specification)?;
     watch.lap("read and check the specification");
     let compiled = derive(checked.model, &[ORDER])?;
     watch.lap("derive the equations and lower them to a program");
@@ -103,15 +103,15 @@ pub fn walk(out: &Path) -> Outcome<Walked> {
     let table = table(&run, &motion)?;
     watch.lap("simulate two seconds");
     let figure = figure(&run, &table)?;
-    leave(out, &compiled, &rust, &certificate, &table, &figure)?;
+    write_files(out, &compiled, &rust, &certificate, &table, &figure)?;
     let note = Note::new("finding a friction that is hidden in a stage");
-    let told = told(out)?;
+    let rediscovery = rediscover(out)?;
     watch.lap("hide a friction in a stage, compare, discover");
     drop(note);
-    let parts = (&rust[..], &figure[..], &told);
+    let parts = (&rust[..], &figure[..], &rediscovery);
     let page = page_text(&compiled, parts, &certificate, &motion, &watch)?;
     write_file(&path, page.as_bytes())?;
-    Ok(Walked {
+    Ok(TourResult {
         page: path,
         certificate,
         switches: motion.trajectory.switches.len(),
@@ -119,16 +119,16 @@ pub fn walk(out: &Path) -> Outcome<Walked> {
 }
 
 /// The files that the page shows.
-fn leave(
+fn write_files(
     out: &Path,
     compiled: &CompiledModel,
     rust: &str,
     certificate: &Certificate,
     table: &Table,
     figure: &str,
-) -> Outcome {
+) -> Result {
     let json = serde_json::to_string_pretty(certificate)
-        .map_err(|error| Problem::input(error.to_string()))?;
+        .map_err(|error| Error::input(error.to_string()))?;
     write_file(
         &out.join("planetary_arm.toml"),
         compiled.model().source.text.as_bytes(),
@@ -144,15 +144,15 @@ fn leave(
 }
 
 /// The mesh deflection and the positioning error over time.
-fn figure(run: &Instance<'_>, table: &Table) -> Outcome<String> {
+fn figure(run: &Instance<'_>, table: &Table) -> Result<String> {
     let column = |name: &str| {
         table
             .column(name)
-            .ok_or_else(|| Problem::input(format!("the trajectory has no column {name}")))
+            .ok_or_else(|| Error::input(format!("the trajectory has no column {name}")))
     };
     let t = column("t")?;
     let backlash = run.value("b_sp").unwrap_or(f64::NAN);
-    let panel = |title: &str, name: &str, references: Vec<Reference>| -> Outcome<Panel<'_>> {
+    let panel = |title: &str, name: &str, references: Vec<Reference>| -> Result<Panel<'_>> {
         Ok(Panel {
             title: title.to_owned(),
             quantity: name.to_owned(),
@@ -188,17 +188,17 @@ fn figure(run: &Instance<'_>, table: &Table) -> Outcome<String> {
             )?,
         ],
     };
-    time_history(&history).map_err(|error| Problem::input(error.to_string()))
+    time_history(&history).map_err(|error| Error::input(error.to_string()))
 }
 
 /// The page. `parts`: the emitted Rust, the figure and what was found.
 fn page_text(
     compiled: &CompiledModel,
-    (rust, figure, told): (&str, &str, &Told),
+    (rust, figure, rediscovery): (&str, &str, &Rediscovery),
     certificate: &Certificate,
     motion: &Motion,
     watch: &Stopwatch,
-) -> Outcome<String> {
+) -> Result<String> {
     let evaluator = Evaluator::new(compiled.program().clone());
     let report = Report::new(compiled.model(), compiled.equations(), &evaluator);
     let summary = format!(
@@ -219,7 +219,7 @@ fn page_text(
             detail: &check.detail,
         })
         .collect();
-    let found = told.summary();
+    let found = rediscovery.summary();
     let tour = page::Tour {
         title: &compiled.model().title,
         generated_by: concat!("eomgen ", env!("CARGO_PKG_VERSION")),
@@ -244,7 +244,7 @@ fn page_text(
                           what the arm's end is off its place, backlash and bending together.",
             }],
         },
-        hidden: told.chapter(&found),
+        hidden: rediscovery.chapter(&found),
         durations: watch
             .steps
             .iter()

@@ -6,17 +6,16 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use discover::error::DiscoverError;
-use eomgen_compiled_model::Error;
 use eomgen_records::Refusal;
 use model_spec::diagnostic::Diagnostics;
 use model_spec::source::Source;
 use model_spec::variant::ModelError;
 
-/// A command's end.
-pub type Outcome<T = ()> = Result<T, Problem>;
+/// What a command comes to.
+pub type Result<T = (), E = Error> = std::result::Result<T, E>;
 
 /// Why a command stopped.
-pub enum Problem {
+pub enum Error {
     /// The input or its use is wrong; the message says what would be right.
     Input(String),
     /// A specification, or another file that people write, is wrong.
@@ -25,16 +24,17 @@ pub enum Problem {
     Failed,
 }
 
-impl From<Error> for Problem {
-    fn from(error: Error) -> Self {
+impl From<eomgen_compiled_model::Error> for Error {
+    fn from(error: eomgen_compiled_model::Error) -> Self {
+        use eomgen_compiled_model::Error as Model;
         match error {
-            Error::Specification(found) => Self::Specification(found),
-            Error::Request(reason) | Error::Stopped { reason, .. } => Self::Input(reason),
+            Model::Specification(found) => Self::Specification(found),
+            Model::Request(reason) | Model::Stopped { reason, .. } => Self::Input(reason),
         }
     }
 }
 
-impl Problem {
+impl Error {
     /// An input error.
     pub fn input(message: impl Into<String>) -> Self {
         Self::Input(message.into())
@@ -84,16 +84,16 @@ pub fn warn(text: &str) {
 }
 
 /// Writes to stdout; a closed pipe ends the program quietly.
-pub fn say(text: &str) -> Outcome {
+pub fn say(text: &str) -> Result {
     say_bytes(text.as_bytes())
 }
 
 /// The same for what need not be text.
-pub fn say_bytes(bytes: &[u8]) -> Outcome {
+pub fn say_bytes(bytes: &[u8]) -> Result {
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
         Ok(()) => Ok(()),
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        Err(error) => Err(Problem::input(format!("cannot write to stdout: {error}"))),
+        Err(error) => Err(Error::input(format!("cannot write to stdout: {error}"))),
     }
 }
