@@ -8,7 +8,6 @@ use std::time::{Duration, Instant};
 
 use codegen::program::evaluator::{Evaluator, Point};
 use codegen::report::Report;
-use codegen::symbolic::formula::Formula;
 use codegen::variant::Variant;
 use model_spec::model::Model;
 
@@ -53,30 +52,6 @@ fn json(report: &Report) -> String {
 fn lever_mass() -> Model {
     let path = models().join("../../tests/tests/features/lever_mass.toml");
     model(&std::fs::read_to_string(path).unwrap())
-}
-
-/// All lines of a report in which formulas are given names.
-fn formulas(report: &Report) -> Vec<&Formula> {
-    let lines = [
-        &report.definitions,
-        &report.terms,
-        &report.shared,
-        &report.pivots,
-        &report.velocity_terms,
-        &report.forces,
-        &report.accelerations,
-    ];
-    let mut all: Vec<&Formula> = lines
-        .into_iter()
-        .flatten()
-        .flat_map(|line| [&line.name, &line.formula])
-        .collect();
-    all.extend(report.mass_matrix.iter().map(|entry| &entry.formula));
-    all.extend(report.coefficients.iter().map(|line| &line.formula));
-    all.extend(&report.guards);
-    all.extend([&report.kinetic, &report.potential]);
-    all.extend(&report.linearity.formula);
-    all
 }
 
 #[test]
