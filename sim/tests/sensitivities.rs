@@ -6,7 +6,7 @@ use std::path::Path;
 
 use model_spec::model::Model;
 use sim::inputs::HeldInputs;
-use sim::piecewise_linear::{By, Lyapunov, PiecewiseLinear};
+use sim::piecewise_linear::{Lyapunov, PiecewiseLinear};
 
 fn model(text_or_name: &str) -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -39,43 +39,6 @@ fn compare(derivative: &[f64], plus: &[f64], minus: &[f64], step: f64) -> (f64, 
 }
 
 #[test]
-fn derivatives_by_parameters_are_those_of_whole_trajectories() {
-    let model = model("planetary_arm.toml");
-    let exact = PiecewiseLinear::of(&model, &[2]).expect("piecewise linear");
-    let values = values(&model, &exact);
-    let initial = model.initial_state(&[2]).expect("initial state");
-    let (none, samples) = (HeldInputs::zero(0), [0.0333, 0.1]);
-    for (place, name) in exact.parameters().iter().enumerate() {
-        let by = [By::Parameter(place, vec![0.0; initial.len()])];
-        let found = exact
-            .sensitivities(&values, &initial, (0.0, 0.1), &samples, &none, &by)
-            .expect("sensitivities");
-        let step = 1e-5 * values[place].abs();
-        let shifted = |sign: f64| {
-            let mut shifted = values.clone();
-            shifted[place] += sign * step;
-            let mut propagator = exact.at(&shifted).expect("a propagator");
-            propagator
-                .simulate(&initial, (0.0, 0.1), &samples, &none, &mut |_| {})
-                .expect("a trajectory")
-        };
-        let (plus, minus) = (shifted(1.0), shifted(-1.0));
-        assert_eq!(plus.switches.len(), minus.switches.len(), "{name}");
-        for (k, derivative) in found.derivatives.iter().enumerate() {
-            let (worst, size) = compare(&derivative[0], &plus.states[k], &minus.states[k], step);
-            // The quotient of whole trajectories is right to about 1e-5: its step squared
-            // times the curvature, and rounding over the step. A parameter that is given and
-            // not used leaves the rounding of the states over the step of the sensitivity's
-            // own quotient, 1e-4 of the parameter.
-            let state = plus.states[k].iter().fold(0.0, |m: f64, y| m.max(y.abs()));
-            let rounding = 4.0 * f64::EPSILON * state / (1e-4 * values[place].abs());
-            let tolerance = 2e-5 * size + rounding;
-            assert!(worst < tolerance, "{name}: {worst:e} of {size:e}");
-        }
-    }
-}
-
-#[test]
 fn derivatives_by_the_initial_state_are_those_of_whole_trajectories() {
     let model = model("planetary_arm.toml");
     let exact = PiecewiseLinear::of(&model, &[1]).expect("piecewise linear");
@@ -85,15 +48,9 @@ fn derivatives_by_the_initial_state_are_those_of_whole_trajectories() {
     for state in [0, 3, 4, 6] {
         let mut direction = vec![0.0; initial.len()];
         direction[state] = 1.0;
-        let found = exact
-            .sensitivities(
-                &values,
-                &initial,
-                (0.0, 0.06),
-                &samples,
-                &none,
-                &[By::Initial(direction)],
-            )
+        let mut propagator = exact.at(&values).expect("a propagator");
+        let found = propagator
+            .neighbours(&initial, (0.0, 0.06), &samples, &none, vec![direction])
             .expect("sensitivities");
         // Well above the rounding of a trajectory over its step, well below what a switch
         // takes: positions in m, rates in m/s.

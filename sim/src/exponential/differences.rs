@@ -1,4 +1,4 @@
-//! How what lies beyond the linear part changes with the state: the part of their forces that
+//! How the nonlinear remainder changes with the state: the part of their forces that
 //! neighbouring motions feel and the linear part's matrix does not hold. By differences, for
 //! the model tells no more of itself than its accelerations.
 
@@ -69,12 +69,12 @@ impl ExponentialIntegrator {
         );
         slopes.state.clone_from(&motion.state);
         let here = (motion.regime, &motion.sides[..]);
-        self.beyond(here, (t, &slopes.state, &motion.given), force, &mut base)?;
+        self.remainder_at(here, (t, &slopes.state, &motion.given), force, &mut base)?;
         for place in 0..n {
             let x = motion.state[place];
             slopes.state[place] = x + self.difference(x, slopes.rates[place]);
             let size = slopes.state[place] - x;
-            self.beyond(here, (t, &slopes.state, &motion.given), force, &mut moved)?;
+            self.remainder_at(here, (t, &slopes.state, &motion.given), force, &mut moved)?;
             slopes.state[place] = x;
             if self.sides_differ(motion, place, size, (&base, &moved)) {
                 continue;

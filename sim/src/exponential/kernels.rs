@@ -3,9 +3,9 @@
 use fearless_simd::{Level, dispatch};
 
 /// Rows are filled up to a multiple of this.
-pub const GROUP: usize = 8;
+pub const LANES: usize = 8;
 
-/// A matrix whose columns stand one after the other, filled with zeros to whole groups of rows.
+/// A matrix whose columns stand one after the other, filled with zeros to whole SIMD vectors of rows.
 #[derive(Clone, Debug, Default)]
 pub struct Columns {
     /// Rows with those that fill up.
@@ -16,7 +16,7 @@ pub struct Columns {
 impl Columns {
     /// A matrix from its entries.
     pub fn of(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let padded = rows.next_multiple_of(GROUP);
+        let padded = rows.next_multiple_of(LANES);
         let mut entries = vec![0.0; padded * columns];
         for column in 0..columns {
             for row in 0..rows {
@@ -54,11 +54,11 @@ impl Columns {
 
 #[inline(always)]
 fn add_product(entries: &[f64], rows: usize, vector: &[f64], out: &mut [f64]) {
-    match rows / GROUP {
-        1 => add_groups::<1>(entries, vector, out),
-        2 => add_groups::<2>(entries, vector, out),
-        3 => add_groups::<3>(entries, vector, out),
-        4 => add_groups::<4>(entries, vector, out),
+    match rows / LANES {
+        1 => add_vectors::<1>(entries, vector, out),
+        2 => add_vectors::<2>(entries, vector, out),
+        3 => add_vectors::<3>(entries, vector, out),
+        4 => add_vectors::<4>(entries, vector, out),
         _ => {
             for (column, factor) in entries.chunks_exact(rows).zip(vector) {
                 for (slot, entry) in out.iter_mut().zip(column) {
@@ -69,37 +69,37 @@ fn add_product(entries: &[f64], rows: usize, vector: &[f64], out: &mut [f64]) {
     }
 }
 
-/// The same for so many groups of rows, whose sums stay in registers: those of even and of odd
+/// The same for so many SIMD vectors of rows, whose sums stay in registers: those of even and of odd
 /// columns apart, so that one addition need not wait for the other.
 #[inline(always)]
-fn add_groups<const GROUPS: usize>(entries: &[f64], vector: &[f64], out: &mut [f64]) {
-    let (entries, _) = entries.as_chunks::<GROUP>();
-    let (out, _) = out.as_chunks_mut::<GROUP>();
-    let mut even = [[0.0; GROUP]; GROUPS];
-    let mut odd = [[0.0; GROUP]; GROUPS];
-    even.copy_from_slice(&out[..GROUPS]);
+fn add_vectors<const VECTORS: usize>(entries: &[f64], vector: &[f64], out: &mut [f64]) {
+    let (entries, _) = entries.as_chunks::<LANES>();
+    let (out, _) = out.as_chunks_mut::<LANES>();
+    let mut even = [[0.0; LANES]; VECTORS];
+    let mut odd = [[0.0; LANES]; VECTORS];
+    even.copy_from_slice(&out[..VECTORS]);
     let (pairs, last) = vector.as_chunks::<2>();
-    let mut columns = entries.chunks_exact(2 * GROUPS);
+    let mut columns = entries.chunks_exact(2 * VECTORS);
     for (columns, [a, b]) in columns.by_ref().zip(pairs) {
-        for group in 0..GROUPS {
-            for lane in 0..GROUP {
-                even[group][lane] += columns[group][lane] * a;
-                odd[group][lane] += columns[GROUPS + group][lane] * b;
+        for vector_of_rows in 0..VECTORS {
+            for lane in 0..LANES {
+                even[vector_of_rows][lane] += columns[vector_of_rows][lane] * a;
+                odd[vector_of_rows][lane] += columns[VECTORS + vector_of_rows][lane] * b;
             }
         }
     }
     if let [factor] = last {
-        let first = 2 * GROUPS * pairs.len();
-        let column = &entries[first..first + GROUPS];
-        for group in 0..GROUPS {
-            for lane in 0..GROUP {
-                even[group][lane] += column[group][lane] * factor;
+        let first = 2 * VECTORS * pairs.len();
+        let column = &entries[first..first + VECTORS];
+        for vector_of_rows in 0..VECTORS {
+            for lane in 0..LANES {
+                even[vector_of_rows][lane] += column[vector_of_rows][lane] * factor;
             }
         }
     }
-    for group in 0..GROUPS {
-        for lane in 0..GROUP {
-            out[group][lane] = even[group][lane] + odd[group][lane];
+    for vector_of_rows in 0..VECTORS {
+        for lane in 0..LANES {
+            out[vector_of_rows][lane] = even[vector_of_rows][lane] + odd[vector_of_rows][lane];
         }
     }
 }

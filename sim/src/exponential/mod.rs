@@ -8,17 +8,17 @@
 //! does to rounding this does to a small part of any sensor's noise, several times faster, and
 //! neighbouring motions come with it. The files: `types`, `kernels` (products),
 //! `surfaces`, `regime` (matrices of a step), `crossing` (where a step meets a surface), `parts`
-//! (steps through surfaces), `remainder` and `beyond` (what is not linear), `tangents`, `slopes`
+//! (steps through surfaces), `remainder` and `remainder_at` (what is not linear), `tangents`, `slopes`
 //! and `differences` (what these feel of that). The method: Hochbruck and Ostermann, Exponential
 //! integrators, Acta Numerica 19 (2010).
 
-mod beyond;
 mod crossing;
 mod differences;
 mod kernels;
 mod parts;
 mod regime;
 mod remainder;
+mod remainder_at;
 mod slopes;
 mod surfaces;
 mod tangents;
@@ -47,7 +47,7 @@ const TURN: f64 = 1.5;
 /// that the samples show.
 const LEAST_STEPS: f64 = 4.0;
 
-/// Steps from sample to sample at most; a model that needs more is not marched.
+/// Steps from sample to sample at most; a model that needs more is not integrated.
 const MOST_STEPS: f64 = 256.0;
 
 /// Intervals that differ from whole steps by less than this part are whole steps: so do the
@@ -55,8 +55,8 @@ const MOST_STEPS: f64 = 256.0;
 const JITTER: f64 = 1e-4;
 
 impl ExponentialIntegrator {
-    /// A march of a model at its parameters, for samples so far apart, s, in so many times the
-    /// steps that its linear part needs; none if it is not of a kind that can be marched.
+    /// An integrator of a model at its parameters, for samples so far apart, s, in so many times the
+    /// steps that its linear part needs; none if it is not of a kind that can be integrated.
     pub fn new(mut evaluator: AffineEvaluator, sample: f64, refinement: f64) -> Option<Self> {
         let surfaces = Surfaces::of(&mut evaluator)?;
         let system = evaluator.system(&vec![0.0; evaluator.guard_count()]);
@@ -137,7 +137,7 @@ impl ExponentialIntegrator {
             regime: 0,
             given,
             base: Vec::new(),
-            watched: Vec::new(),
+            event_values: Vec::new(),
             remainder: Remainder::none(self.states / 2, count),
             next: Vec::new(),
             later: Remainder::none(self.states / 2, count),
@@ -170,7 +170,7 @@ impl ExponentialIntegrator {
             }
         }
         if let Some(force) = &mut options.force {
-            self.meet(&mut motion, t, &mut **force)?;
+            self.find_remainder(&mut motion, t, &mut **force)?;
         }
         if let Some(tangents) = &mut options.tangents {
             tangents.begin(t, &motion.state, values);
@@ -212,11 +212,11 @@ impl ExponentialIntegrator {
         motion.given.extend(inputs);
         if let Some(force) = &mut options.force {
             let t = motion.t;
-            self.meet(motion, t, &mut **force)?;
+            self.find_remainder(motion, t, &mut **force)?;
         }
         self.prepare(motion);
         if let Some(tangents) = &mut options.tangents {
-            tangents.meet(motion.t, &motion.state, inputs);
+            tangents.find_drives(motion.t, &motion.state, inputs);
         }
         let begin = motion.t;
         let count = ((until - begin) / self.step).ceil().max(1.0);
@@ -242,23 +242,23 @@ impl ExponentialIntegrator {
         regime
             .step_given
             .add_product(&motion.given, &mut motion.base);
-        self.watch(motion);
+        self.evaluate_events(motion);
     }
 
     /// Finds the surfaces' functions and, but for how they are moved, their rates where the
     /// motion stands.
-    fn watch(&self, motion: &mut Motion) {
+    fn evaluate_events(&self, motion: &mut Motion) {
         let regime = &self.regimes[motion.regime];
         let half = self.states / 2;
-        motion.watched.clear();
+        motion.event_values.clear();
         let rows = regime.functions.iter().zip(&motion.remainder.moved);
         motion
-            .watched
+            .event_values
             .extend(rows.map(|(row, moved)| row.at(&motion.state, &motion.given) + moved));
         for (row, function) in regime.rates.iter().zip(&regime.functions) {
             let forced = dot(&function.state[half..], &motion.remainder.force);
             motion
-                .watched
+                .event_values
                 .push(row.at(&motion.state, &motion.given) + forced);
         }
     }
@@ -310,7 +310,7 @@ impl ExponentialIntegrator {
             regime.step_force.add_product(held, &mut motion.next);
             let here = (motion.regime, &motion.sides[..]);
             let at = (end, &motion.next[..n], &motion.given[..]);
-            self.beyond(here, at, &mut **force, &mut motion.later)?;
+            self.remainder_at(here, at, &mut **force, &mut motion.later)?;
             let pairs = motion.later.force.iter().zip(&motion.remainder.force);
             motion.change.clear();
             motion
@@ -323,7 +323,7 @@ impl ExponentialIntegrator {
         }
         let regime = &self.regimes[motion.regime];
         let surfaces = motion.sides.len();
-        let (function, rate) = motion.watched.split_at(surfaces);
+        let (function, rate) = motion.event_values.split_at(surfaces);
         let crossed = (0..surfaces).any(|place| {
             let later = motion.later.moved[place];
             let slope = (later - motion.remainder.moved[place]) / self.step;
@@ -341,14 +341,14 @@ impl ExponentialIntegrator {
         }
         motion.state.copy_from_slice(&motion.next[..n]);
         motion
-            .watched
+            .event_values
             .copy_from_slice(&motion.next[n..n + 2 * surfaces]);
         if options.force.is_some() {
             std::mem::swap(&mut motion.remainder, &mut motion.later);
             for place in 0..surfaces {
                 let row = &regime.functions[place].state[half..];
-                motion.watched[place] += motion.remainder.moved[place];
-                motion.watched[surfaces + place] += dot(row, &motion.remainder.force);
+                motion.event_values[place] += motion.remainder.moved[place];
+                motion.event_values[surfaces + place] += dot(row, &motion.remainder.force);
             }
         }
         if options.tangents.as_deref_mut().is_some_and(Tangents::step) {

@@ -1,7 +1,7 @@
 //! Steps through surfaces: made in parts, from one crossing to the next.
 
-use super::beyond::AHEAD;
 use super::crossing::first_crossing;
+use super::remainder_at::AHEAD;
 use super::surfaces::{Side, dot};
 use super::tangents::series;
 use super::types::{ExponentialIntegrator, Motion, Options};
@@ -29,18 +29,18 @@ impl ExponentialIntegrator {
         let surfaces = motion.sides.len();
         self.bring(motion, end - length, options)?;
         for _ in 0..MOST_CROSSINGS {
-            self.watch(motion);
-            let begin = (motion.watched.clone(), motion.state.clone());
+            self.evaluate_events(motion);
+            let begin = (motion.event_values.clone(), motion.state.clone());
             let remainder = motion.remainder.clone();
             self.part(motion, rest);
-            let before = std::mem::take(&mut motion.watched);
+            let before = std::mem::take(&mut motion.event_values);
             if let Some(force) = &mut options.force {
                 let at = (end, &motion.state[..], &motion.given[..]);
                 let functions = &self.regimes[motion.regime].functions;
                 let surfaces = (&self.surfaces, &functions[..]);
                 motion.remainder.find(&mut **force, surfaces, at);
             }
-            self.watch(motion);
+            self.evaluate_events(motion);
             let moved = motion.remainder.moved.iter().zip(&remainder.moved);
             let slopes: Vec<f64> = moved.map(|(there, here)| (there - here) / rest).collect();
             motion.remainder = remainder;
@@ -50,7 +50,10 @@ impl ExponentialIntegrator {
                     let rates = surfaces + place;
                     let ends = (
                         (begin.0[place], begin.0[rates] + slope),
-                        (motion.watched[place], motion.watched[rates] + slope),
+                        (
+                            motion.event_values[place],
+                            motion.event_values[rates] + slope,
+                        ),
                     );
                     let tau = first_crossing(motion.sides[place], ends, rest)?;
                     Some((place, tau))
@@ -59,7 +62,7 @@ impl ExponentialIntegrator {
             let Some((surface, tau)) = first else {
                 return self.ended(motion, rest, end, inputs, options);
             };
-            motion.watched = before;
+            motion.event_values = before;
             motion.state.copy_from_slice(&begin.1);
             let slope = slopes[surface];
             let tau = self.polished(motion, (surface, slope), tau, rest, &begin.1);
@@ -85,7 +88,7 @@ impl ExponentialIntegrator {
         motion.regime = self.regime(&motion.sides)?;
         let mut rates = vec![0.0; self.regimes[motion.regime].matrix.rows];
         self.rates(motion, &mut rates);
-        self.meet_near(motion, (end, AHEAD), &rates, options)?;
+        self.find_remainder_beside(motion, (end, AHEAD), &rates, options)?;
         self.prepare(motion);
         Ok(())
     }
@@ -184,7 +187,7 @@ impl ExponentialIntegrator {
         let mut rates = vec![0.0; self.regimes[motion.regime].matrix.rows];
         self.rates(motion, &mut rates);
         // On this side of a surface that was reached.
-        self.meet_near(motion, (t, -AHEAD), &rates, options)?;
+        self.find_remainder_beside(motion, (t, -AHEAD), &rates, options)?;
         let half = self.states / 2;
         for (place, before) in before.iter().enumerate() {
             let change = 0.5 * tau * (motion.remainder.force[place] - before);
@@ -206,7 +209,7 @@ impl ExponentialIntegrator {
         let before = motion.regime;
         let mut rates = vec![0.0; self.regimes[before].matrix.rows];
         self.rates(motion, &mut rates);
-        self.meet_near(motion, (t, -AHEAD), &rates, options)?;
+        self.find_remainder_beside(motion, (t, -AHEAD), &rates, options)?;
         self.rates(motion, &mut rates);
         let (beyond, outward) = match motion.sides[surface] {
             Side::Above => (Side::Below, -1.0),
@@ -215,7 +218,7 @@ impl ExponentialIntegrator {
         let old = motion.sides[surface];
         motion.sides[surface] = beyond;
         motion.regime = self.regime(&motion.sides)?;
-        self.meet_near(motion, (t, AHEAD), &rates, options)?;
+        self.find_remainder_beside(motion, (t, AHEAD), &rates, options)?;
         let mut after = rates.clone();
         self.rates(motion, &mut after);
         let function = self.regimes[before].functions[surface].state.clone();
@@ -234,13 +237,13 @@ impl ExponentialIntegrator {
                 Some(held) => motion.regime = held,
                 None => motion.sides[surface] = beyond,
             }
-            self.meet_near(motion, (t, AHEAD), &rates, options)?;
+            self.find_remainder_beside(motion, (t, AHEAD), &rates, options)?;
             self.rates(motion, &mut after);
         } else if old == Side::Below && here == 0.0 && there <= 0.0 {
             // It only touches.
             motion.sides[surface] = old;
             motion.regime = before;
-            self.meet_near(motion, (t, -AHEAD), &rates, options)?;
+            self.find_remainder_beside(motion, (t, -AHEAD), &rates, options)?;
             return Ok(());
         }
         if let Some(tangents) = &mut options.tangents {

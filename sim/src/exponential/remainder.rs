@@ -4,7 +4,7 @@
 use super::regime::Regime;
 use super::surfaces::{Row, Surfaces};
 
-/// Terms beyond the linear ones.
+/// What a model adds to its linear part.
 pub trait Force {
     /// Writes the accelerations that they add at a state, each part of the model on the sides
     /// of its own surfaces.
@@ -15,7 +15,7 @@ pub trait Force {
     fn at_guards(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut Vec<f64>) -> bool;
 }
 
-/// What lies beyond the linear part at a state.
+/// The nonlinear remainder at a state.
 #[derive(Clone, Debug, Default)]
 pub struct Remainder {
     /// Accelerations, with a regime's own taken away.

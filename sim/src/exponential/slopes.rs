@@ -3,7 +3,7 @@
 
 use super::remainder::Remainder;
 
-/// Derivatives of the accelerations beyond the linear ones by each state, at the two ends of
+/// Derivatives of the nonlinear remainder's accelerations by each state, at the two ends of
 /// what neighbouring motions go on by.
 #[derive(Debug, Default)]
 pub struct Slopes {

@@ -1,4 +1,4 @@
-//! Neighbouring motions to first order, carried along a march: through steps by the regime's
+//! Neighbouring motions to first order, carried along an integration: through steps by the regime's
 //! own matrix, through switches by the saltation matrix, driven by accelerations that differ.
 
 use super::kernels::{self, Columns};
@@ -48,7 +48,7 @@ pub struct Tangents<'d> {
     /// The drives where the motion stands, and a step later.
     here: Vec<f64>,
     there: Vec<f64>,
-    /// What forces beyond the linear ones do to neighbours, where there are such.
+    /// What the nonlinear remainder do to neighbours, where there are such.
     pub(super) slopes: Option<Slopes>,
     felt: Vec<f64>,
 }
@@ -61,7 +61,7 @@ impl<'d> Tangents<'d> {
             states,
             free: if by_state { states } else { 0 },
             driven,
-            stride: states.next_multiple_of(kernels::GROUP),
+            stride: states.next_multiple_of(kernels::LANES),
             pending: 0,
             on_surface: false,
             vectors: Vec::new(),
@@ -83,11 +83,11 @@ impl<'d> Tangents<'d> {
         }
         self.next = self.vectors.clone();
         self.pending = 0;
-        self.meet(t, state, inputs);
+        self.find_drives(t, state, inputs);
     }
 
     /// Finds the drives anew where the motion stands.
-    pub fn meet(&mut self, t: f64, state: &[f64], inputs: &[f64]) {
+    pub fn find_drives(&mut self, t: f64, state: &[f64], inputs: &[f64]) {
         if self.driven > 0 {
             self.drives.at(t, state, inputs, &mut self.here);
         }
@@ -171,7 +171,7 @@ impl<'d> Tangents<'d> {
         let (n, half) = (self.states, self.states / 2);
         let (t, state, inputs) = end;
         if self.on_surface {
-            self.meet(t, state, inputs);
+            self.find_drives(t, state, inputs);
         }
         let mut rates = vec![0.0; regime.matrix.rows];
         for place in 0..self.count() {
@@ -191,7 +191,7 @@ impl<'d> Tangents<'d> {
             }
             series(&regime.matrix, vector, &mut rates, tau, PART_ERROR);
         }
-        self.meet(t, state, inputs);
+        self.find_drives(t, state, inputs);
         if let Some(slopes) = &mut self.slopes {
             slopes.arrive();
         }

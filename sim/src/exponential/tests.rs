@@ -25,7 +25,7 @@ fn torque(times: &[f64]) -> HeldInputs {
 }
 
 fn run(
-    march: &mut ExponentialIntegrator,
+    integrator: &mut ExponentialIntegrator,
     initial: &[f64],
     times: &[f64],
     inputs: &HeldInputs,
@@ -35,7 +35,7 @@ fn run(
         force: None,
         tangents: None,
     };
-    march
+    integrator
         .run(initial, times, inputs, options, &mut |_, state, _| {
             states.push(state.to_vec());
         })
@@ -44,7 +44,7 @@ fn run(
 }
 
 #[test]
-fn a_march_follows_the_exact_motion_through_its_switches() {
+fn an_integration_follows_the_exact_motion_through_its_switches() {
     let model = rig();
     let exact = PiecewiseLinear::of(&model, &[4]).expect("piecewise linear");
     let values: Vec<f64> = exact_values(&model);
@@ -56,9 +56,9 @@ fn a_march_follows_the_exact_motion_through_its_switches() {
         .simulate(&initial, (0.0, times[199]), &times, &inputs, &mut |_| {})
         .expect("a motion");
     assert!(wanted.switches.len() > 20);
-    let mut march =
-        ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be marched");
-    let found = run(&mut march, &initial, &times, &inputs);
+    let mut integrator =
+        ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be integrated");
+    let found = run(&mut integrator, &initial, &times, &inputs);
     // Deflections of the meshes, the carrier's way and the beam's modes: of micrometres and
     // millimetres; a sensor of the rig resolves 0.7 um.
     for (sample, (a, b)) in found.iter().zip(&wanted.states).enumerate() {
@@ -72,9 +72,9 @@ fn a_march_follows_the_exact_motion_through_its_switches() {
     }
 }
 
-/// Whose surfaces rest on whole regions, which a march would take to be negative there.
+/// Whose surfaces rest on whole regions, which an integration would take to be negative there.
 #[test]
-fn what_surfaces_of_surfaces_move_is_not_marched() {
+fn what_surfaces_of_surfaces_move_is_not_integrated() {
     let text = r#"
 [model]
 name = "preload"
@@ -92,20 +92,20 @@ T = "1/2*m*dot(y)^2"
 springs = { on = "y", value = "-F*JUMP" }
 push = { on = "y", value = "u" }
 "#;
-    let marched = |jump: &str| {
+    let is_integrated = |jump: &str| {
         let source = Source::new("preload", text.replace("JUMP", jump).as_str());
         let model = model_spec::check(source).expect("valid").model;
         let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
         ExponentialIntegrator::new(exact.evaluator(&exact_values(&model)), 1e-3, 1.0).is_some()
     };
-    assert!(marched("sign(y)"));
-    assert!(marched("above(dot(y))"));
+    assert!(is_integrated("sign(y)"));
+    assert!(is_integrated("above(dot(y))"));
     for jump in [
         "sign(deadzone(y, b))",
         "contact(contact(y, b), 0)",
         "sign(u)",
     ] {
-        assert!(!marched(jump), "{jump}");
+        assert!(!is_integrated(jump), "{jump}");
     }
 }
 
@@ -128,8 +128,8 @@ fn tangents_are_differences_of_neighbouring_motions() {
     let inputs = torque(&times);
     let mut initial = vec![0.0; 14];
     (initial[0], initial[7]) = (3e-5, 0.01);
-    let mut march =
-        ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be marched");
+    let mut integrator =
+        ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be integrated");
     let mut free = Free;
     let mut tangents = Tangents::new(14, true, 0, &mut free);
     let mut found = vec![0.0; 14 * 14];
@@ -137,7 +137,7 @@ fn tangents_are_differences_of_neighbouring_motions() {
         force: None,
         tangents: Some(&mut tangents),
     };
-    march
+    integrator
         .run(&initial, &times, &inputs, options, &mut |_, _, tangents| {
             let tangents = tangents.expect("tangents");
             for place in 0..14 {
@@ -155,7 +155,7 @@ fn tangents_are_differences_of_neighbouring_motions() {
         for sign in [1.0, -1.0] {
             let mut moved = initial.clone();
             moved[place] += sign * steps[place];
-            ends.push(run(&mut march, &moved, &times, &inputs)[59].clone());
+            ends.push(run(&mut integrator, &moved, &times, &inputs)[59].clone());
         }
         let scale: f64 = (0..7)
             .map(|k| found[place * 14 + k].abs())
@@ -198,12 +198,12 @@ friction = { on = "x", value = "-T*sign(dot(x))" }
 fn dry_friction_holds_and_lets_go() {
     let model = sliding();
     let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
-    let mut march = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
-        .expect("can be marched");
+    let mut integrator = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
+        .expect("can be integrated");
     // Held for a second, 1 m/s^2 for the next, slowed down by 1.5 m/s^2, held again.
     let inputs = HeldInputs::new(vec![0.0, 1.0, 2.0], vec![2.0, 5.0, 0.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=400).map(|k| f64::from(k) * 0.01).collect();
-    let states = run(&mut march, &[0.0, 0.0], &times, &inputs);
+    let states = run(&mut integrator, &[0.0, 0.0], &times, &inputs);
     assert!(states[100][0].abs() < 1e-12);
     assert!((states[200][0] - 0.5).abs() < 1e-9 && (states[200][1] - 1.0).abs() < 1e-9);
     let stop = 0.5 + 1.0 / 3.0;
@@ -224,8 +224,8 @@ impl Drives for Push {
 fn a_driven_tangent_is_the_motion_of_what_drives_it() {
     let model = sliding();
     let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
-    let mut march = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
-        .expect("can be marched");
+    let mut integrator = ExponentialIntegrator::new(exact.evaluator(&[2.0, 3.0]), 0.01, 1.0)
+        .expect("can be integrated");
     let inputs = HeldInputs::new(vec![0.0], vec![5.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=100).map(|k| f64::from(k) * 0.01).collect();
     let mut push = Push;
@@ -235,7 +235,7 @@ fn a_driven_tangent_is_the_motion_of_what_drives_it() {
         force: None,
         tangents: Some(&mut tangents),
     };
-    march
+    integrator
         .run(
             &[0.0, 0.1],
             &times,

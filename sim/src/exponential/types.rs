@@ -9,7 +9,7 @@ use super::remainder::{Force, RegimeDifference, Remainder};
 use super::surfaces::{Side, Surfaces};
 use super::tangents::Tangents;
 
-/// A model at fixed parameters, ready to be marched.
+/// A model at fixed parameters, ready to be integrated.
 pub struct ExponentialIntegrator {
     pub(super) evaluator: AffineEvaluator,
     pub(super) surfaces: Surfaces,
@@ -36,7 +36,7 @@ pub(super) struct Motion {
     /// What these add to a step.
     pub(super) base: Vec<f64>,
     /// Functions of the surfaces and their rates.
-    pub(super) watched: Vec<f64>,
+    pub(super) event_values: Vec<f64>,
     /// What is not linear there.
     pub(super) remainder: Remainder,
     /// A step's end, what is not linear there, and half of what that changed.
@@ -47,7 +47,7 @@ pub(super) struct Motion {
 
 /// Who goes along.
 pub struct Options<'c, 'd> {
-    /// Accelerations beyond the linear ones.
+    /// What adds accelerations to the linear ones.
     pub force: Option<&'c mut dyn Force>,
     /// Neighbouring motions.
     pub tangents: Option<&'c mut Tangents<'d>>,

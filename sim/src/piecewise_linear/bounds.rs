@@ -12,7 +12,7 @@
 //! left, by their rates: from where the function stands they move it by no more than their
 //! rate in proportion to time.
 
-use super::watched::Local;
+use super::event_evaluation::Local;
 
 /// What a step does to a function.
 pub(super) enum Verdict {

@@ -3,10 +3,10 @@
 
 use nalgebra::{Complex, DVector};
 
+use super::event_evaluation::{Local, ROUNDING};
+use super::event_function::{monomial, monomials};
 use super::forced::{DERIVATIVES, integrals};
-use super::functional::{monomial, monomials};
 use super::regime::Cluster;
-use super::watched::{Local, ROUNDING};
 
 /// A cluster in one flow.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! Surfaces that coincide: their functions are in proportion, and both are on their thresholds
 //! at once. Which of them is crossed first must not decide what happens.
 
-use super::functional::Linear;
+use super::event_function::Linear;
 use super::outline::Outline;
 
 /// What is left of functions that are in proportion, relative.
@@ -9,8 +9,8 @@ const ROUNDING: f64 = 1e-11;
 
 /// A surface that is crossed.
 pub(super) struct Crossing {
-    pub group: usize,
-    /// The group's function in the regime before, without a constant.
+    pub family: usize,
+    /// The family's function in the regime before, without a constant.
     pub function: Linear,
     /// What it equals.
     pub threshold: f64,
@@ -18,17 +18,17 @@ pub(super) struct Crossing {
     pub outline: usize,
 }
 
-/// The threshold that a group's function is on where another surface is crossed, and the factor
+/// The threshold that a family's function is on where another surface is crossed, and the factor
 /// between both functions.
 pub(super) fn coincident_rank(
     outline: &Outline,
-    group: usize,
+    family: usize,
     crossing: &Crossing,
 ) -> Option<(usize, f64)> {
-    let factor = factor(&outline.functions[group], &crossing.function)?;
+    let factor = factor(&outline.functions[family], &crossing.function)?;
     let reached = factor * crossing.threshold;
     let near = |threshold: &f64| (threshold - reached).abs() <= ROUNDING * threshold.abs();
-    let rank = outline.thresholds[group].iter().position(near)?;
+    let rank = outline.thresholds[family].iter().position(near)?;
     Some((rank, factor))
 }
 

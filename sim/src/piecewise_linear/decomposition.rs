@@ -8,7 +8,7 @@
 
 use nalgebra::{Complex, DMatrix};
 
-use super::grouping::{groups, near_zero};
+use super::clustering::{clusters, near_zero};
 use super::invariant::Found;
 use super::schur::SchurForm;
 
@@ -120,7 +120,7 @@ fn time_scale(matrix: &DMatrix<f64>, felt: &[usize]) -> Vec<f64> {
 /// The parts, with those eigenvalues together that are sensitive because of each other.
 fn best_parts(schur: &SchurForm, zeros: usize) -> Found {
     let eigenvalues = schur.eigenvalues();
-    let first = Found::with_groups(schur, zeros, groups(&eigenvalues, zeros, |_, _, _| false));
+    let first = Found::with_clusters(schur, zeros, clusters(&eigenvalues, zeros, |_, _, _| false));
     if first.condition() <= WELL_CONDITIONED {
         return first;
     }
@@ -131,7 +131,7 @@ fn best_parts(schur: &SchurForm, zeros: usize) -> Found {
         let explained = least > WELL_CONDITIONED && least * distance <= SHARED;
         explained || (least > HOPELESS.0 && distance <= HOPELESS.1)
     };
-    let second = Found::with_groups(schur, zeros, groups(&eigenvalues, zeros, shared));
+    let second = Found::with_clusters(schur, zeros, clusters(&eigenvalues, zeros, shared));
     if second.condition() < 0.5 * first.condition() {
         second
     } else {

@@ -6,7 +6,7 @@
 //! and so on. So the state is put onto the surface, and until the function is farther away than
 //! rounding can have brought it, `flow` takes what it does within that for none.
 
-use super::groups::Place;
+use super::parallel_guards::Cell;
 use super::propagator::{Motion, Propagator};
 
 impl Propagator {
@@ -14,25 +14,25 @@ impl Propagator {
     /// from here on, or did until here, and departs from those that did.
     pub(super) fn let_go(&self, motion: &mut Motion, before: usize) {
         let (before, after) = (&self.regimes[before], &self.regimes[motion.regime]);
-        for (group, pair) in before.places.iter().zip(&after.places).enumerate() {
+        for (family, pair) in before.cells.iter().zip(&after.cells).enumerate() {
             if pair.0 == pair.1 {
                 continue;
             }
-            motion.departing.retain(|departing| *departing != group);
+            motion.departing.retain(|departing| *departing != family);
             let (rank, departs) = match pair {
-                (_, Place::On(rank)) => (*rank, false),
-                (Place::On(rank), _) => (*rank, true),
+                (_, Cell::On(rank)) => (*rank, false),
+                (Cell::On(rank), _) => (*rank, true),
                 _ => continue,
             };
-            let function = &after.functions[group];
+            let function = &after.functions[family];
             if function.is_still() {
                 // It rests: there is no surface that the state could be put onto.
                 continue;
             }
             if departs {
-                motion.departing.push(group);
+                motion.departing.push(family);
             }
-            let threshold = self.groups[group].threshold(&after.regime.system, rank);
+            let threshold = self.families[family].threshold(&after.regime.system, rank);
             let row = function.state.as_slice();
             let value: f64 = row.iter().zip(&motion.state).map(|(a, y)| a * y).sum();
             let excess = (value - threshold) / function.state.norm_squared();

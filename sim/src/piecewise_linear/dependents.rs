@@ -1,19 +1,19 @@
 //! Surfaces whose functions feel the sides of others, as that of sign(deadzone(p, b)) does, or
 //! are of inputs alone. Within a regime such a function may have one value throughout: it is
 //! on no side of a threshold then that it equals, and nothing is to be watched. Whenever
-//! another surface is crossed, or an input jumps, its place is decided anew: by its value, and
+//! another surface is crossed, or an input jumps, its cell is decided anew: by its value, and
 //! on a threshold by its rates.
 
 use nalgebra::Complex;
 
 use super::coincidence::{Crossing, coincident_rank};
-use super::groups::Place;
+use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 
 /// A value is on a threshold if it differs by no more than this part of its terms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Where a motion stands when places are decided.
+/// Where a motion stands when cells are decided.
 #[derive(Clone, Copy)]
 pub(super) struct Standing<'a> {
     pub state: &'a [f64],
@@ -39,94 +39,94 @@ impl Propagator {
         self.dependent.contains(&true)
     }
 
-    /// Decides the places of dependent functions, and of all at a start, inner ones first; until
+    /// Decides the cells of dependent functions, and of all at a start, inner ones first; until
     /// they agree with each other, or as often as there are any.
     pub(super) fn settle(
         &mut self,
-        places: &mut [Place],
+        cells: &mut [Cell],
         asking: Asking<'_>,
         standing: Standing<'_>,
     ) {
-        for _ in 0..=places.len() {
-            let before = places.to_vec();
-            for group in 0..places.len() {
-                if self.dependent[group] || matches!(asking, Asking::Start) {
-                    places[group] = self.decided(group, places, asking, standing);
+        for _ in 0..=cells.len() {
+            let before = cells.to_vec();
+            for family in 0..cells.len() {
+                if self.dependent[family] || matches!(asking, Asking::Start) {
+                    cells[family] = self.decided(family, cells, asking, standing);
                 }
             }
-            if places == before {
+            if cells == before {
                 return;
             }
         }
     }
 
-    /// Decides only those that have one value throughout the regime with these places.
-    pub(super) fn settle_resting(&mut self, places: &mut [Place], standing: Standing<'_>) {
-        for _ in 0..=places.len() {
-            let before = places.to_vec();
-            for group in 0..places.len() {
-                if self.dependent[group] {
-                    let outline = self.outline(places);
-                    if let Some(place) = self.outlines[outline].resting(group, standing.inputs) {
-                        places[group] = place;
+    /// Decides only those that have one value throughout the regime with these cells.
+    pub(super) fn settle_resting(&mut self, cells: &mut [Cell], standing: Standing<'_>) {
+        for _ in 0..=cells.len() {
+            let before = cells.to_vec();
+            for family in 0..cells.len() {
+                if self.dependent[family] {
+                    let outline = self.outline(cells);
+                    if let Some(cell) = self.outlines[outline].resting(family, standing.inputs) {
+                        cells[family] = cell;
                     }
                 }
             }
-            if places == before {
+            if cells == before {
                 return;
             }
         }
     }
 
-    /// Whether any function feels on which side of its threshold a group is that is held there:
-    /// others may then be in other places on either side, and no combination of two regimes
+    /// Whether any function feels on which side of its threshold a family is that is held there:
+    /// others may then be in other cells on either side, and no combination of two regimes
     /// tells the motion.
-    pub(super) fn is_felt(&mut self, places: &[Place], group: usize) -> bool {
-        let Place::On(rank) = places[group] else {
+    pub(super) fn is_felt(&mut self, cells: &[Cell], family: usize) -> bool {
+        let Cell::On(rank) = cells[family] else {
             return false;
         };
-        let mut beside = |place: Place| {
-            let mut places = places.to_vec();
-            places[group] = place;
-            self.outline(&places)
+        let mut beside = |cell: Cell| {
+            let mut cells = cells.to_vec();
+            cells[family] = cell;
+            self.outline(&cells)
         };
-        let [below, above] = [Place::Between(rank), Place::Between(rank + 1)].map(&mut beside);
+        let [below, above] = [Cell::Between(rank), Cell::Between(rank + 1)].map(&mut beside);
         let (below, above) = (&self.outlines[below], &self.outlines[above]);
-        (0..places.len()).any(|other| !below.same_function(above, other))
+        (0..cells.len()).any(|other| !below.same_function(above, other))
     }
 
     fn decided(
         &mut self,
-        group: usize,
-        places: &[Place],
+        family: usize,
+        cells: &[Cell],
         asking: Asking<'_>,
         standing: Standing<'_>,
-    ) -> Place {
-        let present = places[group];
-        let here = self.outline(places);
+    ) -> Cell {
+        let present = cells[family];
+        let here = self.outline(cells);
         let outline = &self.outlines[here];
-        if let Some(place) = outline.resting(group, standing.inputs) {
-            return place;
+        if let Some(cell) = outline.resting(family, standing.inputs) {
+            return cell;
         }
         let before = match asking {
             Asking::Start => None,
             Asking::Jump(before) => Some(before),
             Asking::Crossing(crossing) => {
-                if crossing.group == group {
+                if crossing.family == family {
                     return present;
                 }
-                if let Some((rank, _)) = coincident_rank(outline, group, crossing) {
-                    return self.led(group, rank, places, standing);
+                if let Some((rank, _)) = coincident_rank(outline, family, crossing) {
+                    return self.led(family, rank, cells, standing);
                 }
                 Some(crossing.outline)
             }
         };
-        if before.is_some_and(|before| outline.same_function(&self.outlines[before], group)) {
+        if before.is_some_and(|before| outline.same_function(&self.outlines[before], family)) {
             return present;
         }
-        let function = &outline.functions[group];
+        let function = &outline.functions[family];
         let value = function.value(standing.state, standing.inputs, standing.phases);
-        let thresholds = &outline.thresholds[group];
+        let thresholds = &outline.thresholds[family];
         let size = match before {
             // A motion begins where it is said to.
             None => 0.0,
@@ -137,46 +137,40 @@ impl Propagator {
         });
         match tied {
             Some(rank) if before.is_some() && is_beside(present, rank) => present,
-            Some(rank) => self.led(group, rank, places, standing),
-            None => outline.place_at(group, value),
+            Some(rank) => self.led(family, rank, cells, standing),
+            None => outline.cell_at(family, value),
         }
     }
 
     /// Where the rates on both sides of a threshold lead a function that is on it.
-    fn led(
-        &mut self,
-        group: usize,
-        rank: usize,
-        places: &[Place],
-        standing: Standing<'_>,
-    ) -> Place {
-        let mut with = |place: Place| {
-            let mut places = places.to_vec();
-            places[group] = place;
-            self.settle_resting(&mut places, standing);
-            places[group] = place;
-            let outline = self.outline(&places);
-            self.rate_in(outline, &self.outlines[outline].functions[group], standing)
+    fn led(&mut self, family: usize, rank: usize, cells: &[Cell], standing: Standing<'_>) -> Cell {
+        let mut with = |cell: Cell| {
+            let mut cells = cells.to_vec();
+            cells[family] = cell;
+            self.settle_resting(&mut cells, standing);
+            cells[family] = cell;
+            let outline = self.outline(&cells);
+            self.rate_in(outline, &self.outlines[outline].functions[family], standing)
         };
-        let (below, slack_below) = with(Place::Between(rank));
-        let (above, slack_above) = with(Place::Between(rank + 1));
+        let (below, slack_below) = with(Cell::Between(rank));
+        let (above, slack_above) = with(Cell::Between(rank + 1));
         let slack = slack_below.max(slack_above);
         if above > slack && below >= -slack || below > slack && above >= -slack {
-            Place::Between(rank + 1)
+            Cell::Between(rank + 1)
         } else if above < -slack && below > slack {
-            Place::On(rank)
-        } else if below < -slack && above <= slack || !is_beside(places[group], rank) {
-            Place::Between(rank)
+            Cell::On(rank)
+        } else if below < -slack && above <= slack || !is_beside(cells[family], rank) {
+            Cell::Between(rank)
         } else {
-            places[group]
+            cells[family]
         }
     }
 }
 
-/// Whether a place borders on a threshold.
-fn is_beside(place: Place, rank: usize) -> bool {
-    match place {
-        Place::Between(above) => above == rank || above == rank + 1,
-        Place::On(on) => on == rank,
+/// Whether a cell borders on a threshold.
+fn is_beside(cell: Cell, rank: usize) -> bool {
+    match cell {
+        Cell::Between(above) => above == rank || above == rank + 1,
+        Cell::On(on) => on == rank,
     }
 }

@@ -3,7 +3,7 @@
 use super::clock::Clock;
 use super::dependents::{Asking, Standing};
 use super::error::ExactError;
-use super::groups::Place;
+use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 use crate::ode::SolveError;
 
@@ -34,14 +34,14 @@ impl Propagator {
             inputs,
             phases: &phases,
         };
-        let places = if self.has_dependents() {
-            let mut places = vec![Place::Between(0); self.groups.len()];
-            self.settle(&mut places, Asking::Start, standing);
-            places
+        let cells = if self.has_dependents() {
+            let mut cells = vec![Cell::Between(0); self.families.len()];
+            self.settle(&mut cells, Asking::Start, standing);
+            cells
         } else {
-            self.places_at(state, inputs, &phases).0
+            self.cells_at(state, inputs, &phases).0
         };
-        let outline = self.outline(&places);
+        let outline = self.outline(&cells);
         Ok(self.outlines[outline].rates(standing))
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Nothing but differences from the start is summed up: a motion that has hardly moved is as
 //! accurate as its start, though it may be made of modes whose amplitudes are thousands of
-//! times larger and nearly cancel. A flow advances by a step of the ladder or by any time,
+//! times larger and nearly cancel. A flow advances by a step of the step table or by any time,
 //! gives the values and derivatives of the regime's functions where it stands, and the state
 //! there.
 
@@ -10,11 +10,13 @@ use fearless_simd::{Level, Simd, dispatch};
 use nalgebra::Complex;
 
 use super::cluster_flow::ClusterFlow;
+use super::event_evaluation::{EventEvaluation, Local, ROUNDING};
 use super::kernels::{self, Amplitudes};
-use super::ladder::Rung;
-use super::lanes::{LITTLE, Lane, Pairs, groups, numbers, numbers_mut, terms_of_gains};
 use super::regime::Regime;
-use super::watched::{Local, ROUNDING, Watched};
+use super::simd_vectors::{
+    LITTLE, SimdVector, SplitComplex, numbers, numbers_mut, simd_vectors, terms_of_expm1,
+};
+use super::step_table::Step;
 
 /// Magnitudes of amplitudes are found anew when the fastest decay since would make this much
 /// of a difference to their logarithm.
@@ -35,31 +37,31 @@ pub(super) struct Flow {
     /// The state at the start, a unit constant, the inputs, and sine and cosine of each phase.
     given: Vec<f64>,
     /// The coordinates at the start, as [`Regime`] has them.
-    start: Vec<Lane>,
+    start: Vec<SimdVector>,
     /// How far they have moved.
-    moved: Vec<Lane>,
+    moved: Vec<SimdVector>,
     /// The modes' amplitudes at tau.
-    now: Vec<Lane>,
+    now: Vec<SimdVector>,
     /// Their magnitudes, when they were found, s, and how often.
-    size: Vec<Lane>,
+    size: Vec<SimdVector>,
     measured_at: f64,
     measurements: u64,
     /// The integrals' causes, and how these make them move, once it is asked for.
     causes: Vec<f64>,
-    motion: Vec<Lane>,
+    motion: Vec<SimdVector>,
     /// Of the last polynomial.
-    coefficients: Vec<Lane>,
+    coefficients: Vec<SimdVector>,
     /// Powers of a time from the power 0 on, that time, and how many count at near times and
     /// at all.
     powers: Vec<f64>,
     powers_of: f64,
     power_counts: [usize; 2],
-    watched: Vec<Watched>,
+    evaluations: Vec<EventEvaluation>,
     /// Whether a function is leaving a limit that held it.
     departs: bool,
     clusters: Vec<ClusterFlow>,
     /// The state to be.
-    sum: Vec<Lane>,
+    sum: Vec<SimdVector>,
 }
 
 impl Flow {
@@ -83,9 +85,9 @@ impl Flow {
         self.given.resize(state.len() + units, 0.0);
         self.given.extend(phases.iter().flat_map(|e| [e.im, e.re]));
         self.start.clear();
-        let modes = 2 * regime.modes.groups();
+        let modes = 2 * regime.modes.simd_vectors();
         self.start
-            .resize(modes + regime.integrals.groups(), Lane::ZERO);
+            .resize(modes + regime.integrals.simd_vectors(), SimdVector::ZERO);
         regime
             .coordinates
             .add_product(simd, &self.given, &mut self.start);
@@ -100,21 +102,22 @@ impl Flow {
             self.clusters
                 .push(ClusterFlow::new(cluster, state, inputs, phases));
         }
-        self.watched
-            .resize_with(regime.functionals.len(), Watched::default);
+        self.evaluations
+            .resize_with(regime.event_functions.len(), EventEvaluation::default);
         self.departs = false;
         self.power_counts = [0; 2];
         self.powers_of = f64::NAN;
-        for (watched, functional) in self.watched.iter_mut().zip(&regime.functionals) {
-            watched.start(
+        for (evaluation, event_function) in self.evaluations.iter_mut().zip(&regime.event_functions)
+        {
+            evaluation.start(
                 simd,
-                functional,
+                event_function,
                 &self.given,
                 &self.causes,
                 &mut self.coefficients,
             );
             let counts = self.power_counts.iter_mut();
-            for (slot, count) in counts.zip(functional.polynomial.powers()) {
+            for (slot, count) in counts.zip(event_function.polynomial.powers()) {
                 *slot = count.max(*slot);
             }
         }
@@ -124,23 +127,23 @@ impl Flow {
     /// Goes back to the start.
     fn rewind(&mut self, regime: &Regime) {
         self.moved.clear();
-        self.moved.resize(self.start.len(), Lane::ZERO);
+        self.moved.resize(self.start.len(), SimdVector::ZERO);
         self.now.clear();
         self.now
-            .extend_from_slice(&self.start[..2 * regime.modes.groups()]);
+            .extend_from_slice(&self.start[..2 * regime.modes.simd_vectors()]);
     }
 
-    /// Advances the modes by their gains over some time.
+    /// Advances the modes by their expm1 over some time.
     #[inline(always)]
-    fn advance<S: Simd>(&mut self, simd: S, gains: &Pairs) {
-        kernels::advance(simd, gains, self.amplitudes());
+    fn advance<S: Simd>(&mut self, simd: S, expm1: &SplitComplex) {
+        kernels::advance(simd, expm1, self.amplitudes());
     }
 
-    /// Advances by a step of the ladder.
+    /// Advances by a step of the step table.
     #[inline(always)]
-    pub fn step<S: Simd>(&mut self, simd: S, regime: &Regime, rung: &Rung) {
-        self.tau += rung.length;
-        self.advance(simd, &rung.gains);
+    pub fn step<S: Simd>(&mut self, simd: S, regime: &Regime, step: &Step) {
+        self.tau += step.length;
+        self.advance(simd, &step.expm1);
         self.measure(simd, regime);
     }
 
@@ -156,26 +159,26 @@ impl Flow {
         self.tau += time;
         let fastest = regime.modes.magnitude.last().copied().unwrap_or(0.0);
         let mut rest = time;
-        for rung in &regime.ladder.rungs {
+        for step in &regime.step_table.steps {
             if fastest * rest.abs() <= LITTLE || rest <= 0.0 {
                 break;
             }
-            if rung.length <= rest {
-                self.advance(simd, &rung.gains);
-                rest -= rung.length;
+            if step.length <= rest {
+                self.advance(simd, &step.expm1);
+                rest -= step.length;
             }
         }
         if fastest * rest.abs() <= LITTLE {
             self.advance_little(simd, &regime.modes.rates, rest, fastest);
         } else {
-            self.advance(simd, &Pairs::gains(&regime.modes.rate, rest));
+            self.advance(simd, &SplitComplex::expm1(&regime.modes.rate, rest));
         }
     }
 
-    /// Advances by so little that a short series gives the gains.
+    /// Advances by so little that a short series gives the expm1.
     #[inline(always)]
-    fn advance_little<S: Simd>(&mut self, simd: S, rates: &Pairs, time: f64, fastest: f64) {
-        let terms = terms_of_gains(fastest * time.abs());
+    fn advance_little<S: Simd>(&mut self, simd: S, rates: &SplitComplex, time: f64, fastest: f64) {
+        let terms = terms_of_expm1(fastest * time.abs());
         kernels::advance_little(simd, rates, time, terms, self.amplitudes());
     }
 
@@ -200,9 +203,9 @@ impl Flow {
     pub fn go_to<S: Simd>(&mut self, simd: S, regime: &Regime, tau: f64) {
         self.rewind(regime);
         self.tau = 0.0;
-        if tau == regime.ladder.window {
+        if tau == regime.step_table.window {
             self.tau = tau;
-            self.advance(simd, &regime.ladder.through);
+            self.advance(simd, &regime.step_table.through);
         } else {
             self.advance_by(simd, regime, tau);
         }
@@ -210,8 +213,8 @@ impl Flow {
 
     /// Whether no amplitude has overflowed.
     pub fn is_finite(&self) -> bool {
-        let watched = self.watched.iter();
-        let values = watched.flat_map(|watched| [watched.value, watched.size]);
+        let evaluation = self.evaluations.iter();
+        let values = evaluation.flat_map(|evaluation| [evaluation.value, evaluation.size]);
         let sizes = self.size.iter().flat_map(|size| size.to_array());
         values.chain(sizes).all(|value| value.is_finite())
     }
@@ -226,7 +229,7 @@ impl Flow {
         self.measured_at = self.tau;
         let (re, im) = self.now.split_at(self.now.len() / 2);
         self.measurements += 1;
-        self.size.resize(re.len(), Lane::ZERO);
+        self.size.resize(re.len(), SimdVector::ZERO);
         kernels::magnitudes(simd, re, im, &mut self.size);
     }
 
@@ -251,12 +254,12 @@ impl Flow {
     #[inline(always)]
     pub fn sum_up<S: Simd>(&mut self, simd: S, regime: &Regime, place: usize) {
         self.find_powers(regime);
-        let watched = &mut self.watched[place];
-        let functional = &regime.functionals[place];
-        watched.take_sizes(simd, functional, &self.size, self.measurements);
-        watched.sum_up(
+        let evaluation = &mut self.evaluations[place];
+        let event_function = &regime.event_functions[place];
+        evaluation.take_sizes(simd, event_function, &self.size, self.measurements);
+        evaluation.sum_up(
             simd,
-            functional,
+            event_function,
             (&self.now, &self.moved),
             (self.tau, &self.powers),
         );
@@ -265,34 +268,34 @@ impl Flow {
     /// What rounding at the start may have made of the rate of a function, whatever is left of
     /// what cancelled.
     pub fn start_rate_noise(&self, regime: &Regime, place: usize) -> f64 {
-        ROUNDING * regime.functionals[place].rate_size(&self.given)
+        ROUNDING * regime.event_functions[place].rate_size(&self.given)
     }
 
     /// Begins the departure of a function that stands at a limit which held it, so that its
     /// value and its rate there are rounding, whatever their signs. Nothing is to be done if it
     /// leaves for certain.
     pub fn depart<S: Simd>(&mut self, simd: S, regime: &Regime, place: usize) {
-        let Some(rung) = regime.ladder.rungs.last() else {
+        let Some(step) = regime.step_table.steps.last() else {
             return;
         };
         self.sum_up(simd, regime, place);
-        let [value, rate] = self.local(regime, place, rung, |local| {
+        let [value, rate] = self.local(regime, place, step, |local| {
             [local.derivatives[0], local.derivatives[1]]
         });
-        let limits = regime.functionals[place].limits;
+        let limits = regime.event_functions[place].limits;
         let (above, below) = ((value - limits.low).abs(), (limits.high - value).abs());
         let inward = if above <= below { rate } else { -rate };
         let noise = OF_A_DEPARTURE * self.start_rate_noise(regime, place);
         if inward <= noise {
             let distance = above.min(below);
-            self.watched[place].slack = Some([2.0 * distance, 2.0 * rate.abs() + noise]);
+            self.evaluations[place].slack = Some([2.0 * distance, 2.0 * rate.abs() + noise]);
             self.departs = true;
         }
     }
 
     /// Whether a function is still leaving a limit that held it.
     pub fn is_departing(&self, place: usize) -> bool {
-        self.watched[place].slack.is_some()
+        self.evaluations[place].slack.is_some()
     }
 
     /// Ends the departures of functions that are farther from their limits by now than
@@ -302,71 +305,74 @@ impl Flow {
         if !self.departs {
             return;
         }
-        for place in 0..self.watched.len() {
-            let Some([value, rate]) = self.watched[place].slack else {
+        for place in 0..self.evaluations.len() {
+            let Some([value, rate]) = self.evaluations[place].slack else {
                 continue;
             };
             self.sum_up(simd, regime, place);
-            let limits = regime.functionals[place].limits;
-            let now = self.watched[place].value;
+            let limits = regime.event_functions[place].limits;
+            let now = self.evaluations[place].value;
             let distance = (now - limits.low).abs().min((limits.high - now).abs());
             if distance > GONE * (value + rate * self.tau) {
-                self.watched[place].slack = None;
+                self.evaluations[place].slack = None;
             }
         }
-        self.departs = self.watched.iter().any(|watched| watched.slack.is_some());
+        self.departs = self
+            .evaluations
+            .iter()
+            .any(|evaluation| evaluation.slack.is_some());
     }
 
     /// Whether a function is known to keep its limits until a time after the start, s.
     pub fn is_safe(&self, place: usize, until: f64) -> bool {
-        self.watched[place].safe_until >= until
+        self.evaluations[place].safe_until >= until
     }
 
     /// Notes that a function keeps its limits until a time after the start, s.
     pub fn note_safe(&mut self, place: usize, until: f64) {
-        self.watched[place].safe_until = until;
+        self.evaluations[place].safe_until = until;
     }
 
     /// Whether a function has been summed up here.
     pub fn is_summed_up(&self, place: usize) -> bool {
-        self.watched[place].summed_up_at == self.tau
+        self.evaluations[place].summed_up_at == self.tau
     }
 
     /// Whether a function that has been summed up here is certainly between two limits.
     pub fn is_between(&self, place: usize, low: f64, high: f64) -> bool {
-        let value = self.watched[place].value;
+        let value = self.evaluations[place].value;
         self.clusters.is_empty() && low < value && value < high
     }
 
     /// What is made of value and derivatives of a function that has been summed up here, with
-    /// bounds over the next step of `rung`. They stay in registers that way.
+    /// bounds over the next step of `step`. They stay in registers that way.
     #[inline(always)]
     pub fn local<T>(
         &self,
         regime: &Regime,
         place: usize,
-        rung: &Rung,
+        step: &Step,
         make: impl Fn(&Local) -> T,
     ) -> T {
-        let local = self.watched[place].local(rung);
+        let local = self.evaluations[place].local(step);
         if self.clusters.is_empty() && !self.departs {
             make(&local)
         } else {
-            make(&self.completed(local, regime, place, rung))
+            make(&self.completed(local, regime, place, step))
         }
     }
 
     /// With the clusters' parts, and what a departure makes uncertain.
     #[cold]
-    fn completed(&self, mut local: Local, regime: &Regime, place: usize, rung: &Rung) -> Local {
-        if let Some([value, rate]) = self.watched[place].slack {
+    fn completed(&self, mut local: Local, regime: &Regime, place: usize, step: &Step) -> Local {
+        if let Some([value, rate]) = self.evaluations[place].slack {
             local.noise += value + rate * self.tau;
             local.rate_noise += rate;
             local.drift_noise += rate;
         }
         let phases = &regime.system.phases;
-        let span = (self.tau, rung.length);
-        let powers = &regime.functionals[place].cluster_powers;
+        let span = (self.tau, step.length);
+        let powers = &regime.event_functions[place].cluster_powers;
         for ((flow, cluster), powers) in self.clusters.iter().zip(&regime.clusters).zip(powers) {
             flow.add_to(cluster, powers, phases, span, &mut local);
         }
@@ -384,7 +390,7 @@ impl Flow {
         integrals.moved_by(simd, &self.motion, self.tau, &mut self.moved[modes..]);
         let states = out.len();
         self.sum.clear();
-        self.sum.resize(groups(states), Lane::ZERO);
+        self.sum.resize(simd_vectors(states), SimdVector::ZERO);
         numbers_mut(&mut self.sum)[..states].copy_from_slice(&self.given[..states]);
         regime
             .states

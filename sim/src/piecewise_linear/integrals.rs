@@ -12,8 +12,8 @@ use nalgebra::{Complex, DMatrix, DVector};
 use super::decomposition;
 use super::forced::reciprocal;
 use super::kernels;
-use super::lanes::{Lane, groups, numbers, pack};
 use super::modes::Forcing;
+use super::simd_vectors::{SimdVector, numbers, pack, simd_vectors};
 
 /// A sinusoid that turns by more than this within the series' reach is a fast one, rad.
 const FAST: f64 = 4.0;
@@ -33,19 +33,19 @@ const MOST_TERMS: usize = 24;
 /// The coefficients of a function's polynomial in time per unit of each cause.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Polynomial {
-    /// For each cause groups of coefficients of the powers of time, from the power 0 on,
+    /// For each cause SIMD vectors of coefficients of the powers of time, from the power 0 on,
     /// whose is zero.
-    columns: Vec<Vec<Lane>>,
+    columns: Vec<Vec<SimdVector>>,
     /// How many powers count at near times.
     near_powers: usize,
     /// The magnitudes of the first coefficients.
     rates: Vec<f64>,
     /// For each power k what the coefficients of the powers k to k + 3 are multiplied by as
     /// those of the power k in the derivatives of order 0 to 3.
-    factors: Vec<Lane>,
-    /// For each group of coefficients what their magnitudes add to a bound of the fourth
+    factors: Vec<SimdVector>,
+    /// For each SIMD vector of coefficients what their magnitudes add to a bound of the fourth
     /// derivative.
-    fourth: Vec<Lane>,
+    fourth: Vec<SimdVector>,
 }
 
 /// The integrals of a regime.
@@ -64,9 +64,9 @@ pub(super) struct Integrals {
     generator: DMatrix<f64>,
     /// The order of the last derivative that counts.
     orders: usize,
-    /// For each cause how a unit of it moves the coordinates: groups of factors for each
+    /// For each cause how a unit of it moves the coordinates: SIMD vectors of factors for each
     /// power of time from the first on, as far as they count.
-    by_cause: Vec<Vec<Lane>>,
+    by_cause: Vec<Vec<SimdVector>>,
     /// How many powers count at near times, and how long those are, s.
     near_powers: Vec<usize>,
     near: f64,
@@ -145,9 +145,9 @@ impl Integrals {
         (integrals, window)
     }
 
-    /// How many groups the coordinates fill.
-    pub fn groups(&self) -> usize {
-        groups(self.size)
+    /// How many SIMD vectors the coordinates fill.
+    pub fn simd_vectors(&self) -> usize {
+        simd_vectors(self.size)
     }
 
     /// Whether a time after the start, s, is near: fewer powers of it count.
@@ -159,7 +159,7 @@ impl Integrals {
     /// inputs, and exp(i theta) of the phases.
     pub fn causes(
         &self,
-        zeta: &[Lane],
+        zeta: &[SimdVector],
         units: &[f64],
         phases: &[Complex<f64>],
         causes: &mut Vec<f64>,
@@ -179,24 +179,30 @@ impl Integrals {
     }
 
     /// The causes of a free motion from coordinates `zeta`.
-    pub fn free_causes<'z>(&self, zeta: &'z [Lane]) -> &'z [f64] {
+    pub fn free_causes<'z>(&self, zeta: &'z [SimdVector]) -> &'z [f64] {
         &numbers(zeta)[self.pure..self.size]
     }
 
-    /// Writes how the coordinates move, given their causes: groups of coefficients for each
+    /// Writes how the coordinates move, given their causes: SIMD vectors of coefficients for each
     /// power of time from the first on.
     #[inline(always)]
-    pub fn motion<S: Simd>(&self, simd: S, causes: &[f64], out: &mut Vec<Lane>) {
+    pub fn motion<S: Simd>(&self, simd: S, causes: &[f64], out: &mut Vec<SimdVector>) {
         let longest = self.by_cause.iter().map(Vec::len).max().unwrap_or(0);
         out.clear();
-        out.resize(longest, Lane::ZERO);
+        out.resize(longest, SimdVector::ZERO);
         kernels::add_multiples(simd, self.by_cause.iter().map(Vec::as_slice), causes, out);
     }
 
     /// Writes how far the coordinates have moved in `tau` s, given how they move.
     #[inline(always)]
-    pub fn moved_by<S: Simd>(&self, simd: S, motion: &[Lane], tau: f64, out: &mut [Lane]) {
-        let width = self.groups();
+    pub fn moved_by<S: Simd>(
+        &self,
+        simd: S,
+        motion: &[SimdVector],
+        tau: f64,
+        out: &mut [SimdVector],
+    ) {
+        let width = self.simd_vectors();
         if width == 0 {
             return;
         }
@@ -210,12 +216,12 @@ impl Integrals {
     }
 
     /// Writes, for as many of the causes as are asked for, how far a unit of each moves the
-    /// coordinates in `tau` s: a column in groups each.
+    /// coordinates in `tau` s: a column in SIMD vectors each.
     #[inline(always)]
-    pub fn transition<S: Simd>(&self, simd: S, tau: f64, causes: usize, out: &mut Vec<Lane>) {
-        let width = self.groups();
+    pub fn transition<S: Simd>(&self, simd: S, tau: f64, causes: usize, out: &mut Vec<SimdVector>) {
+        let width = self.simd_vectors();
         out.clear();
-        out.resize(causes * width, Lane::ZERO);
+        out.resize(causes * width, SimdVector::ZERO);
         if width > 0 {
             let columns = self.by_cause.iter().zip(&self.near_powers);
             let columns = columns.map(|(factors, near)| match self.is_near(tau) {
@@ -228,9 +234,15 @@ impl Integrals {
 
     /// Writes how far the coordinates have moved, given their causes and the transition.
     #[inline(always)]
-    pub fn moved<S: Simd>(&self, simd: S, causes: &[f64], transition: &[Lane], out: &mut [Lane]) {
-        out.fill(Lane::ZERO);
-        let columns = transition.chunks_exact(self.groups().max(1));
+    pub fn moved<S: Simd>(
+        &self,
+        simd: S,
+        causes: &[f64],
+        transition: &[SimdVector],
+        out: &mut [SimdVector],
+    ) {
+        out.fill(SimdVector::ZERO);
+        let columns = transition.chunks_exact(self.simd_vectors().max(1));
         kernels::add_multiples(simd, columns, causes, out);
     }
 
@@ -256,7 +268,7 @@ impl Integrals {
         let powers = coefficients.iter().map(Vec::len).max().unwrap_or(0);
         let factors = (0..powers).map(|k| {
             let of = |order: usize| falling(k + order, order);
-            Lane::new([0, 1, 2, 3].map(of))
+            SimdVector::new([0, 1, 2, 3].map(of))
         });
         let fourth: Vec<f64> = (0..powers)
             .map(|k| match k {
@@ -348,15 +360,15 @@ impl Polynomial {
         &self,
         simd: S,
         causes: &[f64],
-        coefficients: &mut Vec<Lane>,
-        terms: &mut Vec<Lane>,
+        coefficients: &mut Vec<SimdVector>,
+        terms: &mut Vec<SimdVector>,
     ) -> f64 {
         // With zeros beyond the last ones.
         coefficients.clear();
-        coefficients.resize(self.fourth.len() + 1, Lane::ZERO);
+        coefficients.resize(self.fourth.len() + 1, SimdVector::ZERO);
         let columns = self.columns.iter().map(Vec::as_slice);
         kernels::add_multiples(simd, columns, causes, coefficients);
-        terms.resize(self.factors.len(), Lane::ZERO);
+        terms.resize(self.factors.len(), SimdVector::ZERO);
         kernels::shift_powers(simd, coefficients, &self.factors, terms);
         kernels::sum_magnitudes(simd, coefficients, &self.fourth)
     }

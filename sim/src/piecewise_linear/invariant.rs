@@ -6,8 +6,8 @@ use std::ops::Range;
 use nalgebra::{Complex, DMatrix};
 
 use super::blocks::{decouple, inverse};
+use super::clustering::{REAL, runs};
 use super::decomposition::{Decomposition, Integrals, Part};
-use super::grouping::{REAL, runs};
 use super::refine::{Refinement, Subspaces};
 use super::schur::SchurForm;
 
@@ -21,31 +21,31 @@ pub(super) struct Found {
     scale: Vec<f64>,
     /// The sensitivity of each eigenvalue, in the order of the Schur form.
     pub sensitivity: Vec<f64>,
-    /// The group of each, in the same order.
+    /// The cluster of each, in the same order.
     numbers: Vec<usize>,
 }
 
 impl Found {
-    /// `numbers`: the group of each eigenvalue, 0 for those near zero, in the order of the
+    /// `numbers`: the cluster of each eigenvalue, 0 for those near zero, in the order of the
     /// Schur form.
-    pub fn with_groups(schur: &SchurForm, zeros: usize, numbers: Vec<usize>) -> Self {
+    pub fn with_clusters(schur: &SchurForm, zeros: usize, numbers: Vec<usize>) -> Self {
         let mut order: Vec<usize> = (0..numbers.len()).collect();
         order.sort_by_key(|place| numbers[*place]);
-        let mut group = numbers.clone();
+        let mut cluster = numbers.clone();
         let mut form = SchurForm {
             triangle: schur.triangle.clone(),
             basis: schur.basis.clone(),
             scale: schur.scale.clone(),
         };
-        form.sort_by_key(group.clone());
-        group.sort_unstable();
-        let blocks = runs(&group);
+        form.sort_by_key(cluster.clone());
+        cluster.sort_unstable();
+        let blocks = runs(&cluster);
         let near_zero = (0..zeros).map(|place| form.triangle[(place, place)].norm());
         let radius = near_zero.fold(0.0, f64::max);
         let coupling = decouple(&form.triangle, &blocks);
         let columns = &form.basis * &coupling;
         let rows = inverse(&coupling) * form.basis.adjoint();
-        let mut sensitivity = vec![1.0; group.len()];
+        let mut sensitivity = vec![1.0; cluster.len()];
         for (place, original) in order.into_iter().enumerate().skip(zeros) {
             sensitivity[original] = columns.column(place).norm() * rows.row(place).norm();
         }
@@ -83,7 +83,7 @@ impl Found {
             }
         }
         let found = !pairs.is_empty();
-        found.then(|| Self::with_groups(schur, self.zeros, numbers))
+        found.then(|| Self::with_clusters(schur, self.zeros, numbers))
     }
 
     /// Makes the parts exact, those near zero in a real basis.

@@ -1,12 +1,12 @@
-//! The loops over groups of numbers that a motion spends its time in. With all that calls them
+//! The loops over SIMD vectors of numbers that a motion spends its time in. With all that calls them
 //! they are compiled for several instruction sets; which one is chosen when a motion runs. They
 //! do the same operations in the same order whatever the set, without fused ones, so that no
 //! bit depends on the choice.
 
 use fearless_simd::{Simd, SimdBase, SimdFloat, SimdFrom, f64x4};
 
-use super::functional::{ValueWeights, Weights};
-use super::lanes::{Lane, Pairs, numbers};
+use super::event_function::{ValueWeights, Weights};
+use super::simd_vectors::{SimdVector, SplitComplex, numbers};
 
 /// What a function sums up to.
 pub(super) struct Summed {
@@ -15,20 +15,20 @@ pub(super) struct Summed {
     /// The magnitudes of what moved it.
     pub size: f64,
     /// The derivatives of order 1 to 3 at the places of their orders.
-    pub derivatives: Lane,
+    pub derivatives: SimdVector,
     /// What the polynomial makes up of the first one.
     pub polynomial_rate: f64,
 }
 
-/// Adds a product with a matrix whose rows stand in groups, in each the columns one after the
+/// Adds a product with a matrix whose rows stand in SIMD vectors, in each the columns one after the
 /// other.
 #[inline(always)]
 pub(super) fn add_product<S: Simd>(
     simd: S,
-    entries: &[Lane],
+    entries: &[SimdVector],
     columns: usize,
     vector: &[f64],
-    out: &mut [Lane],
+    out: &mut [SimdVector],
 ) {
     let mut pairs = entries.chunks_exact(2 * columns);
     let mut slots = out.chunks_exact_mut(2);
@@ -55,9 +55,9 @@ pub(super) fn add_product<S: Simd>(
 #[inline(always)]
 pub(super) fn add_multiples<'a, S: Simd>(
     simd: S,
-    columns: impl Iterator<Item = &'a [Lane]>,
+    columns: impl Iterator<Item = &'a [SimdVector]>,
     factors: &[f64],
-    out: &mut [Lane],
+    out: &mut [SimdVector],
 ) {
     for (column, factor) in columns.zip(factors) {
         for (slot, entry) in out.iter_mut().zip(column) {
@@ -66,19 +66,19 @@ pub(super) fn add_multiples<'a, S: Simd>(
     }
 }
 
-/// The amplitudes of modes in groups, the real parts first: at the start, how far they have
+/// The amplitudes of modes in SIMD vectors, the real parts first: at the start, how far they have
 /// moved since, and now.
 pub(super) struct Amplitudes<'a> {
-    pub start: &'a [Lane],
-    pub moved: &'a mut [Lane],
-    pub now: &'a mut [Lane],
+    pub start: &'a [SimdVector],
+    pub moved: &'a mut [SimdVector],
+    pub now: &'a mut [SimdVector],
 }
 
 impl Amplitudes<'_> {
-    /// Advances one of so many groups by its gain.
+    /// Advances one of so many SIMD vectors by its expm1.
     #[inline(always)]
-    fn advance<S: Simd>(&mut self, re: usize, groups: usize, (c, d): (f64x4<S>, f64x4<S>)) {
-        let (im, simd) = (groups + re, c.simd);
+    fn advance<S: Simd>(&mut self, re: usize, vectors: usize, (c, d): (f64x4<S>, f64x4<S>)) {
+        let (im, simd) = (vectors + re, c.simd);
         let (a, b) = (load(simd, self.now[re]), load(simd, self.now[im]));
         let moved_re = load(simd, self.moved[re]) + (a * c - b * d);
         let moved_im = load(simd, self.moved[im]) + (a * d + b * c);
@@ -88,13 +88,16 @@ impl Amplitudes<'_> {
     }
 }
 
-/// Advances modes by their gains over some time.
+/// Advances modes by their expm1 over some time.
 #[inline(always)]
-pub(super) fn advance<S: Simd>(simd: S, gains: &Pairs, mut amplitudes: Amplitudes<'_>) {
-    let groups = gains.re.len();
-    for group in 0..groups {
-        let gain = (load(simd, gains.re[group]), load(simd, gains.im[group]));
-        amplitudes.advance(group, groups, gain);
+pub(super) fn advance<S: Simd>(simd: S, expm1: &SplitComplex, mut amplitudes: Amplitudes<'_>) {
+    let vectors = expm1.re.len();
+    for simd_vector in 0..vectors {
+        let expm1 = (
+            load(simd, expm1.re[simd_vector]),
+            load(simd, expm1.im[simd_vector]),
+        );
+        amplitudes.advance(simd_vector, vectors, expm1);
     }
 }
 
@@ -109,27 +112,27 @@ const RECIPROCALS: [f64; 19] = {
 };
 
 /// Advances modes of these rates by so little, s, that one more than so many terms of a
-/// series give the gains.
+/// series give the expm1.
 #[inline(always)]
 pub(super) fn advance_little<S: Simd>(
     simd: S,
-    rates: &Pairs,
+    rates: &SplitComplex,
     time: f64,
     terms: usize,
     mut amplitudes: Amplitudes<'_>,
 ) {
-    let groups = rates.re.len();
-    for group in 0..groups {
+    let vectors = rates.re.len();
+    for simd_vector in 0..vectors {
         let (x, y) = (
-            load(simd, rates.re[group]) * time,
-            load(simd, rates.im[group]) * time,
+            load(simd, rates.re[simd_vector]) * time,
+            load(simd, rates.im[simd_vector]) * time,
         );
         let (mut c, mut d) = (f64x4::splat(simd, 1.0), f64x4::splat(simd, 0.0));
         for reciprocal in &RECIPROCALS[RECIPROCALS.len() - terms..] {
             let (u, v) = (x * *reciprocal, y * *reciprocal);
             (c, d) = ((u * c - v * d) + 1.0, u * d + v * c);
         }
-        amplitudes.advance(group, groups, (x * c - y * d, x * d + y * c));
+        amplitudes.advance(simd_vector, vectors, (x * c - y * d, x * d + y * c));
     }
 }
 
@@ -138,10 +141,10 @@ pub(super) fn advance_little<S: Simd>(
 pub(super) struct Factors<'a> {
     /// Mode by mode.
     pub weights: &'a [Weights],
-    /// Group by group, in the value.
+    /// SIMD vector by SIMD vector, in the value.
     pub value_weights: &'a [ValueWeights],
     /// For each power of time what it adds to the value and the derivatives of order 1 to 3.
-    pub terms: &'a [Lane],
+    pub terms: &'a [SimdVector],
 }
 
 /// Sums up a function, given the amplitudes, how far they have moved, and the powers of time.
@@ -151,13 +154,13 @@ pub(super) struct Factors<'a> {
 pub(super) fn sum_up<S: Simd>(
     simd: S,
     factors: Factors<'_>,
-    (now, moved): (&[Lane], &[Lane]),
+    (now, moved): (&[SimdVector], &[SimdVector]),
     powers: &[f64],
-    before: &mut [Lane],
+    before: &mut [SimdVector],
 ) -> Summed {
     let zero = f64x4::splat(simd, 0.0);
-    let groups = factors.value_weights.len();
-    let (re, im) = numbers(now).split_at(4 * groups);
+    let vectors = factors.value_weights.len();
+    let (re, im) = numbers(now).split_at(4 * vectors);
     let mut sums = zero;
     let modes = factors.weights.iter().zip(re).zip(im);
     let (slots, all) = before.split_at_mut(factors.weights.len());
@@ -185,7 +188,7 @@ pub(super) fn sum_up<S: Simd>(
     }
     let polynomial = even + odd;
     let (mut value, mut size) = (zero, zero);
-    let (re, im) = moved[..2 * groups].split_at(groups);
+    let (re, im) = moved[..2 * vectors].split_at(vectors);
     for ((weights, re), im) in factors.value_weights.iter().zip(re).zip(im) {
         let (re, im) = (load(simd, *re), load(simd, *im));
         value += load(simd, weights.re) * re - load(simd, weights.im) * im;
@@ -206,8 +209,8 @@ pub(super) fn sum_up<S: Simd>(
 pub(super) fn sum_sizes<S: Simd>(
     simd: S,
     weights: &[Weights],
-    sizes: &[Lane],
-    before: &mut [Lane],
+    sizes: &[SimdVector],
+    before: &mut [SimdVector],
 ) {
     let mut sums = f64x4::splat(simd, 0.0);
     let (slots, all) = before.split_at_mut(weights.len());
@@ -222,9 +225,9 @@ pub(super) fn sum_sizes<S: Simd>(
 #[inline(always)]
 pub(super) fn shift_powers<S: Simd>(
     simd: S,
-    coefficients: &[Lane],
-    factors: &[Lane],
-    out: &mut [Lane],
+    coefficients: &[SimdVector],
+    factors: &[SimdVector],
+    out: &mut [SimdVector],
 ) {
     let shifted = numbers(coefficients).windows(4);
     for ((coefficients, factors), slot) in shifted.zip(factors).zip(out) {
@@ -233,9 +236,9 @@ pub(super) fn shift_powers<S: Simd>(
     }
 }
 
-/// The sum of the magnitudes of numbers in groups, each with its factor.
+/// The sum of the magnitudes of numbers in SIMD vectors, each with its factor.
 #[inline(always)]
-pub(super) fn sum_magnitudes<S: Simd>(simd: S, of: &[Lane], factors: &[Lane]) -> f64 {
+pub(super) fn sum_magnitudes<S: Simd>(simd: S, of: &[SimdVector], factors: &[SimdVector]) -> f64 {
     let mut sum = f64x4::splat(simd, 0.0);
     for (of, factors) in of.iter().zip(factors) {
         sum += load(simd, *of).abs() * load(simd, *factors);
@@ -243,30 +246,35 @@ pub(super) fn sum_magnitudes<S: Simd>(simd: S, of: &[Lane], factors: &[Lane]) ->
     store(sum).total()
 }
 
-/// The magnitudes of amplitudes in groups.
+/// The magnitudes of amplitudes in SIMD vectors.
 #[inline(always)]
-pub(super) fn magnitudes<S: Simd>(simd: S, re: &[Lane], im: &[Lane], out: &mut [Lane]) {
+pub(super) fn magnitudes<S: Simd>(
+    simd: S,
+    re: &[SimdVector],
+    im: &[SimdVector],
+    out: &mut [SimdVector],
+) {
     for ((re, im), slot) in re.iter().zip(im).zip(out) {
         let (re, im) = (load(simd, *re), load(simd, *im));
         *slot = store((re * re + im * im).sqrt());
     }
 }
 
-/// For each of these columns, power by power in groups of a width, the sum over the powers of
+/// For each of these columns, power by power in SIMD vectors of a width, the sum over the powers of
 /// a time from the first on.
 #[inline(always)]
 pub(super) fn sum_powers<'a, S: Simd>(
     simd: S,
-    columns: impl Iterator<Item = &'a [Lane]>,
+    columns: impl Iterator<Item = &'a [SimdVector]>,
     width: usize,
     time: f64,
-    out: &mut [Lane],
+    out: &mut [SimdVector],
 ) {
     for (slots, column) in out.chunks_exact_mut(width).zip(columns) {
-        for (group, slot) in slots.iter_mut().enumerate() {
+        for (simd_vector, slot) in slots.iter_mut().enumerate() {
             let mut sum = f64x4::splat(simd, 0.0);
             for factors in column.chunks_exact(width).rev() {
-                sum = (sum + load(simd, factors[group])) * time;
+                sum = (sum + load(simd, factors[simd_vector])) * time;
             }
             *slot = store(sum);
         }
@@ -274,11 +282,11 @@ pub(super) fn sum_powers<'a, S: Simd>(
 }
 
 #[inline(always)]
-fn load<S: Simd>(simd: S, lane: Lane) -> f64x4<S> {
-    f64x4::simd_from(simd, lane.to_array())
+fn load<S: Simd>(simd: S, vector: SimdVector) -> f64x4<S> {
+    f64x4::simd_from(simd, vector.to_array())
 }
 
 #[inline(always)]
-fn store<S: Simd>(numbers: f64x4<S>) -> Lane {
-    Lane::new(numbers.into())
+fn store<S: Simd>(numbers: f64x4<S>) -> SimdVector {
+    SimdVector::new(numbers.into())
 }

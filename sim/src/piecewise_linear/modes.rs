@@ -5,7 +5,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::decomposition::Part;
 use super::integrals::Integrals;
-use super::lanes::{Pairs, groups};
+use super::simd_vectors::{SplitComplex, simd_vectors};
 
 /// What acts on the rates of the state.
 pub(super) struct Forcing {
@@ -27,8 +27,8 @@ pub(super) struct Modes {
     pub damping: f64,
     /// Which phase a sinusoid belongs to; nothing for a mode.
     pub phase: Vec<Option<usize>>,
-    /// The same rates in groups.
-    pub rates: Pairs,
+    /// The same rates in SIMD vectors.
+    pub rates: SplitComplex,
     /// modes x states: amplitudes without forces.
     pub rows: DMatrix<Complex<f64>>,
     /// states x modes: what an amplitude adds to the state, with the weight of the conjugate.
@@ -91,7 +91,7 @@ impl Modes {
                 }
             }
         }
-        modes.rates = Pairs::of(&modes.rate);
+        modes.rates = SplitComplex::of(&modes.rate);
         let damping = |rate: &Complex<f64>| {
             if rate.re > 0.0 {
                 f64::INFINITY
@@ -136,9 +136,9 @@ impl Modes {
         self.rate.len()
     }
 
-    /// How many groups they fill.
-    pub fn groups(&self) -> usize {
-        groups(self.count())
+    /// How many SIMD vectors they fill.
+    pub fn simd_vectors(&self) -> usize {
+        simd_vectors(self.count())
     }
 }
 

@@ -1,14 +1,24 @@
 //! A motion with its neighbours to first order: how the states at samples depend on the
 //! initial state. One propagator serves many motions at the same parameters, so that its
-//! regimes are prepared once. What parameters do is in [`super::sensitivity`].
+//! regimes are prepared once.
 
 use super::error::ExactError;
 use super::flow::Flow;
 use super::follow::Samples;
 use super::propagator::{Change, Follow, Propagator, Segment};
-use super::sensitivity::Sensitivities;
 use super::tangent::Tangents;
 use crate::inputs::HeldInputs;
+
+/// A trajectory with its derivatives by initial states.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sensitivities {
+    /// The times of the samples, s.
+    pub times: Vec<f64>,
+    /// The state at each of these times.
+    pub states: Vec<Vec<f64>>,
+    /// For each sample and each direction the derivative of the state.
+    pub derivatives: Vec<Vec<Vec<f64>>>,
+}
 
 impl Propagator {
     /// Simulates from `initial` over `span` (begin, end; s) and carries these directions of
@@ -83,6 +93,6 @@ impl Follow for Carrier<'_> {
     }
 
     fn switched(&mut self, change: &Change<'_>) {
-        self.tangents.switch(change, &[]);
+        self.tangents.switch(change);
     }
 }

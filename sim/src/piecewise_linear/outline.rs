@@ -1,12 +1,12 @@
 //! A regime in outline: its equations without what is prepared for stepping, to decide whether
-//! it is the one to be entered.
+//! it is the one to be visited.
 
 use codegen::program::affine::AffineSystem;
 
 use super::dependents::Standing;
 use super::derivative::Rates;
-use super::functional::Linear;
-use super::groups::Place;
+use super::event_function::Linear;
+use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 use super::regime::rates;
 use super::sliding::slide;
@@ -14,67 +14,67 @@ use super::sliding::slide;
 /// The roundings of a sum of products of size 1.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The equations with the groups at some places.
+/// The equations with the families at some cells.
 pub(super) struct Outline {
     system: AffineSystem,
-    /// Each group's function.
+    /// Each family's function.
     pub functions: Vec<Linear>,
-    /// Each group's thresholds, by rank.
+    /// Each family's thresholds, by rank.
     pub thresholds: Vec<Vec<f64>>,
 }
 
 impl Propagator {
-    /// The outline with these places, made if it is new.
-    pub(super) fn outline(&mut self, places: &[Place]) -> usize {
-        if let Some(&known) = self.outlined.get(places) {
+    /// The outline with these cells, made if it is new.
+    pub(super) fn outline(&mut self, cells: &[Cell]) -> usize {
+        if let Some(&known) = self.outlined.get(cells) {
             return known;
         }
         let mut sides = vec![0.0; self.evaluator.guard_count()];
-        for (group, place) in self.groups.iter().zip(places) {
-            group.write_sides(*place, 0.0, &mut sides);
+        for (family, cell) in self.families.iter().zip(cells) {
+            family.write_sides(*cell, 0.0, &mut sides);
         }
         let below = self.evaluator.system(&sides);
-        let held = places.iter().any(|place| matches!(place, Place::On(_)));
+        let held = cells.iter().any(|cell| matches!(cell, Cell::On(_)));
         let sliding = held
-            .then(|| slide(&mut self.evaluator, &self.groups, places))
+            .then(|| slide(&mut self.evaluator, &self.families, cells))
             .flatten();
         let ranks = |index: usize| {
-            let group = &self.groups[index];
-            let ranks = 0..group.ranks.len();
-            ranks.map(|rank| group.threshold(&below, rank)).collect()
+            let family = &self.families[index];
+            let ranks = 0..family.ranks.len();
+            ranks.map(|rank| family.threshold(&below, rank)).collect()
         };
-        let count = self.groups.len();
+        let count = self.families.len();
         let outline = Outline {
-            functions: self.groups.iter().map(|g| g.function(&below)).collect(),
+            functions: self.families.iter().map(|g| g.function(&below)).collect(),
             thresholds: (0..count).map(ranks).collect(),
             system: sliding.map_or(below, |sliding| sliding.system),
         };
         self.outlines.push(outline);
         let index = self.outlines.len() - 1;
-        self.outlined.insert(places.to_vec(), index);
+        self.outlined.insert(cells.to_vec(), index);
         index
     }
 }
 
 impl Outline {
-    /// The place of a group whose function has one value while the inputs are held.
-    pub fn resting(&self, group: usize, inputs: &[f64]) -> Option<Place> {
-        let function = &self.functions[group];
+    /// The cell of a family whose function has one value while the inputs are held.
+    pub fn resting(&self, family: usize, inputs: &[f64]) -> Option<Cell> {
+        let function = &self.functions[family];
         function
             .is_still()
-            .then(|| self.place_at(group, function.value(&[], inputs, &[])))
+            .then(|| self.cell_at(family, function.value(&[], inputs, &[])))
     }
 
-    /// The place of a group whose function has this value: not above a threshold that it equals.
-    pub fn place_at(&self, group: usize, value: f64) -> Place {
-        let thresholds = self.thresholds[group].iter();
-        Place::Between(thresholds.filter(|threshold| value > **threshold).count())
+    /// The cell of a family whose function has this value: not above a threshold that it equals.
+    pub fn cell_at(&self, family: usize, value: f64) -> Cell {
+        let thresholds = self.thresholds[family].iter();
+        Cell::Between(thresholds.filter(|threshold| value > **threshold).count())
     }
 
-    /// Whether a group's function and thresholds are those of another outline.
-    pub fn same_function(&self, other: &Self, group: usize) -> bool {
-        self.functions[group] == other.functions[group]
-            && self.thresholds[group] == other.thresholds[group]
+    /// Whether a family's function and thresholds are those of another outline.
+    pub fn same_function(&self, other: &Self, family: usize) -> bool {
+        self.functions[family] == other.functions[family]
+            && self.thresholds[family] == other.thresholds[family]
     }
 
     /// The rate of a function that is due to the state's, and what rounding may make of it.

@@ -1,5 +1,5 @@
-//! From switch to switch. Which regimes there are is in `entered`, what lies beyond a limit in
-//! `beyond`.
+//! From switch to switch. Which regimes there are is in `visited`, which of them border on each
+//! other in `adjacent`.
 
 use std::collections::HashMap;
 
@@ -9,16 +9,16 @@ use nalgebra::{Complex, DVector};
 
 use super::clock::Clock;
 use super::dependents::{Asking, Standing};
-use super::entered::Entered;
 use super::error::ExactError;
+use super::event_function::Linear;
 use super::flow::Flow;
-use super::functional::Linear;
-use super::groups::{Group, Place, groups};
 use super::outline::Outline;
-use super::passage::{Limit, Passage};
+use super::parallel_guards::{Cell, ParallelGuards, families};
 use super::regime::Regime;
-use super::search::{Effort, Found, passed, search};
+use super::search::{Effort, Found, jumped_over, search};
 use super::switching::switched_rate;
+use super::transition::{Limit, Transition};
+use super::visited::VisitedRegime;
 use crate::inputs::HeldInputs;
 use crate::ode::{SolveError, Switch};
 
@@ -38,16 +38,16 @@ const SWITCHES_AVERAGED: u64 = 1024;
 /// Exact motion at fixed parameters.
 pub struct Propagator {
     pub(super) evaluator: AffineEvaluator,
-    pub(super) groups: Vec<Group>,
-    pub(super) regimes: Vec<Entered>,
-    pub(super) known: HashMap<Vec<Place>, usize>,
-    /// For each group whether its function feels the sides of others, or is of inputs alone.
+    pub(super) families: Vec<ParallelGuards>,
+    pub(super) regimes: Vec<VisitedRegime>,
+    pub(super) known: HashMap<Vec<Cell>, usize>,
+    /// For each family whether its function feels the sides of others, or is of inputs alone.
     pub(super) dependent: Vec<bool>,
     pub(super) outlines: Vec<Outline>,
-    pub(super) outlined: HashMap<Vec<Place>, usize>,
+    pub(super) outlined: HashMap<Vec<Cell>, usize>,
     /// By the regime before, the function and its limit, and the regime after, where the
     /// constant saltation matrix is kept, if it is constant.
-    pub(super) passed: HashMap<(usize, usize, bool, usize), Option<usize>>,
+    pub(super) saltation_of: HashMap<(usize, usize, bool, usize), Option<usize>>,
     flow: Flow,
     pub(super) inputs: usize,
     pub(super) states: usize,
@@ -71,7 +71,7 @@ pub struct Motion {
     /// Switches so far and the time at which the present average began.
     switches: u64,
     averaged_from: f64,
-    /// The groups whose functions are leaving a surface that held the motion.
+    /// The families whose functions are leaving a surface that held the motion.
     pub(super) departing: Vec<usize>,
     /// What was done so far.
     pub(super) effort: Effort,
@@ -84,20 +84,20 @@ pub struct Motion {
 /// Whose functions may have jumped beyond their limits.
 #[derive(Clone, Copy, Debug)]
 enum Jumped {
-    /// Those of any group.
+    /// Those of any family.
     Any,
-    /// Those of any group but this one.
+    /// Those of any family but this one.
     AnyBut(usize),
     /// The shares of both sides, where a motion is held on a surface.
     Held,
 }
 
 impl Jumped {
-    fn may_be(self, group: usize, places: &[Place]) -> bool {
+    fn may_be(self, family: usize, cells: &[Cell]) -> bool {
         match self {
             Self::Any => true,
-            Self::AnyBut(one) => group != one,
-            Self::Held => matches!(places[group], Place::On(_)),
+            Self::AnyBut(one) => family != one,
+            Self::Held => matches!(cells[family], Cell::On(_)),
         }
     }
 }
@@ -114,23 +114,16 @@ pub(super) trait Follow {
 /// A motion within one regime.
 pub(super) struct Segment<'a> {
     pub regime: &'a Regime,
-    pub places: &'a [Place],
     /// When it began.
     pub start: Clock,
     /// The state then.
     pub state: &'a [f64],
-    pub inputs: &'a [f64],
     /// How long it took, s.
     pub tau: f64,
 }
 
 /// A change of regime.
 pub(super) struct Change<'a> {
-    pub clock: Clock,
-    /// Where the groups stood before.
-    pub places: &'a [Place],
-    /// The index of the function that reached its limit, and whether its upper one.
-    pub limit: (usize, bool),
     pub before: &'a Regime,
     pub after: &'a Regime,
     /// The function that reached its limit, as the regime before has it.
@@ -176,15 +169,16 @@ impl Propagator {
         if system.guards.constant.iter().any(|c| !c.is_finite()) {
             return Err(ExactError::NotFinite);
         }
-        let groups = groups(&evaluator, &system);
+        let families = families(&evaluator, &system);
         let rests = evaluator.guards_rest();
-        let rests = |group: &Group| group.ranks.iter().flatten().any(|guard| rests[*guard]);
+        let rests =
+            |family: &ParallelGuards| family.ranks.iter().flatten().any(|guard| rests[*guard]);
         Ok(Self {
-            dependent: groups.iter().map(rests).collect(),
+            dependent: families.iter().map(rests).collect(),
             outlines: Vec::new(),
             outlined: HashMap::new(),
-            passed: HashMap::new(),
-            groups,
+            saltation_of: HashMap::new(),
+            families,
             regimes: Vec::new(),
             known: HashMap::new(),
             flow: Flow::default(),
@@ -226,8 +220,8 @@ impl Propagator {
             return Err(SolveError::Request { problem }.into());
         }
         // The same motion from the same start, whatever was computed before.
-        for entered in &mut self.regimes {
-            entered.rung = 0;
+        for visited in &mut self.regimes {
+            visited.step = 0;
         }
         let clock = Clock::at(t);
         let regime = self.regime_at(clock, state, held(inputs, t, self.inputs))?;
@@ -268,18 +262,18 @@ impl Propagator {
         let remaining = motion.clock.until(target);
         self.check_window(motion, remaining)?;
         let values = held(inputs, now, self.inputs);
-        let Entered {
+        let VisitedRegime {
             regime,
-            rung,
-            places,
+            step,
+            cells,
             ..
         } = &mut self.regimes[motion.regime];
         motion.before.copy_from_slice(&motion.state);
         let flow = &mut self.flow;
-        let length = remaining.min(regime.ladder.window);
+        let length = remaining.min(regime.step_table.window);
         let start = motion.clock;
-        let (found, leapt) = dispatch!(Level::new(), simd => {
-            go_on(simd, flow, (regime, places), motion, (values, length), rung)
+        let (found, by_jump) = dispatch!(Level::new(), simd => {
+            go_on(simd, flow, (regime, cells), motion, (values, length), step)
         });
         let reached = match found {
             Found::Nothing if length < remaining => {
@@ -305,26 +299,28 @@ impl Propagator {
         let tau = flow.tau;
         let segment = Segment {
             regime,
-            places,
             start,
             state: &motion.before,
-            inputs: values,
             tau,
         };
         follow.flowed(&segment, flow);
         if found == Found::Nothing && breakpoint.is_some() {
             self.take_inputs(motion, inputs)?;
         }
-        if let Found::Limit { functional, upper } = found {
+        if let Found::Limit {
+            event_function,
+            upper,
+        } = found
+        {
             motion.at_once = if tau > 0.0 { 0 } else { motion.at_once + 1 };
-            self.switch(motion, (functional, upper, leapt), inputs, follow)?;
+            self.switch(motion, (event_function, upper, by_jump), inputs, follow)?;
         }
         Ok(reached)
     }
 
     /// Refuses a motion so fast, or a time so long, that there would be no end.
     fn check_window(&self, motion: &Motion, remaining: f64) -> Result<(), SolveError> {
-        let window = self.regimes[motion.regime].regime.ladder.window;
+        let window = self.regimes[motion.regime].regime.step_table.window;
         if remaining <= MOST_STEPS * window {
             return Ok(());
         }
@@ -343,15 +339,15 @@ impl Propagator {
         if !self.has_dependents() {
             return Ok(());
         }
-        let mut places = self.regimes[motion.regime].places.clone();
-        let before = self.outline(&places);
+        let mut cells = self.regimes[motion.regime].cells.clone();
+        let before = self.outline(&cells);
         let standing = Standing {
             state: &motion.state,
             inputs: held(inputs, motion.time(), self.inputs),
             phases: &motion.phases,
         };
-        self.settle(&mut places, Asking::Jump(before), standing);
-        motion.regime = self.regime(&places, motion.time())?;
+        self.settle(&mut cells, Asking::Jump(before), standing);
+        motion.regime = self.regime(&cells, motion.time())?;
         Ok(())
     }
 
@@ -359,7 +355,7 @@ impl Propagator {
     fn switch(
         &mut self,
         motion: &mut Motion,
-        (functional, upper, leapt): (usize, bool, bool),
+        (event_function, upper, by_jump): (usize, bool, bool),
         inputs: &HeldInputs,
         follow: &mut dyn Follow,
     ) -> Result<(), ExactError> {
@@ -370,35 +366,32 @@ impl Propagator {
             inputs: values,
             phases: &motion.phases,
         };
-        let group = self.regimes[before].regime.functionals[functional]
+        let family = self.regimes[before].regime.event_functions[event_function]
             .limits
-            .group;
+            .family;
         let limit = Limit {
             before,
-            functional,
-            group,
+            event_function,
+            family,
             upper,
-            leapt,
+            by_jump,
             t: motion.time(),
         };
-        let Passage {
+        let Transition {
             after,
             saltation,
             moves_others,
-        } = self.passage(&limit, standing)?;
-        let (rank, to_positive) = limit.rank(self.regimes[before].places[group]);
+        } = self.transition(&limit, standing)?;
+        let (rank, to_positive) = limit.rank(self.regimes[before].cells[family]);
         let phases = &motion.phases;
-        let guard = self.groups[group].ranks[rank][0];
-        let function = &self.regimes[before].regime.functionals[functional].linear;
+        let guard = self.families[family].ranks[rank][0];
+        let function = &self.regimes[before].regime.event_functions[event_function].linear;
         follow.switched(&Change {
-            clock: motion.clock,
-            places: &self.regimes[before].places,
-            limit: (functional, upper),
             before: &self.regimes[before].regime,
             after: &self.regimes[after].regime,
             function,
             explicit_rate: self.explicit_rate(function, phases),
-            saltation: saltation.map(|place| &self.saltations[place]),
+            saltation: saltation.map(|index| &self.saltations[index]),
             state: &motion.state,
             inputs: values,
             phases,
@@ -410,14 +403,14 @@ impl Propagator {
         });
         motion.regime = after;
         self.let_go(motion, before);
-        if leapt {
+        if by_jump {
             // A jump may have led over more than one limit.
             motion.jumped = Some(Jumped::Any);
         } else if self.has_dependents() {
             // The others were put where they belong.
             motion.jumped = Some(Jumped::Held);
         } else if moves_others {
-            motion.jumped = Some(Jumped::AnyBut(group));
+            motion.jumped = Some(Jumped::AnyBut(family));
         }
         self.count_switch(motion, guard)
     }
@@ -441,37 +434,37 @@ impl Propagator {
 fn go_on<S: Simd>(
     simd: S,
     flow: &mut Flow,
-    (regime, places): (&Regime, &[Place]),
+    (regime, cells): (&Regime, &[Cell]),
     motion: &mut Motion,
     (inputs, length): (&[f64], f64),
-    rung: &mut usize,
+    step: &mut usize,
 ) -> (Found, bool) {
     flow.start(simd, regime, &motion.state, inputs, &motion.phases);
-    // A group's function stands at the group's place among the functions.
-    for group in &motion.departing {
-        flow.depart(simd, regime, *group);
+    // A family's function stands at the index of its family among the functions.
+    for family in &motion.departing {
+        flow.depart(simd, regime, *family);
     }
     if motion.at_once > AT_ONCE {
         // Rounding alone decides between surfaces: the motion itself must.
-        if let Some(shortest) = regime.ladder.rungs.last() {
+        if let Some(shortest) = regime.step_table.steps.last() {
             flow.step(simd, regime, shortest);
         }
         motion.at_once = 0;
     }
-    let leap = match motion.jumped.take() {
-        Some(jumped) => passed(simd, flow, regime, |group| jumped.may_be(group, places)),
+    let jump = match motion.jumped.take() {
+        Some(jumped) => jumped_over(simd, flow, regime, |family| jumped.may_be(family, cells)),
         None => None,
     };
-    let found = match leap {
+    let found = match jump {
         Some(found) => found,
-        None => search(simd, flow, regime, length, rung, &mut motion.effort),
+        None => search(simd, flow, regime, length, step, &mut motion.effort),
     };
-    motion.departing.retain(|group| flow.is_departing(*group));
+    motion.departing.retain(|family| flow.is_departing(*family));
     if found == Found::Nothing {
         flow.go_to(simd, regime, length);
     }
     flow.state(simd, regime, &mut motion.state);
-    (found, leap.is_some())
+    (found, jump.is_some())
 }
 
 /// The inputs in force from a time on, as many as the model has.

@@ -45,7 +45,7 @@ pub(super) struct Subspaces {
 pub(super) struct Refinement {
     /// Whether the subspaces can be relied on.
     pub converged: bool,
-    /// Pairs of blocks that rounding does not tell apart, if not.
+    /// SplitComplex of blocks that rounding does not tell apart, if not.
     pub inseparable: Vec<(usize, usize)>,
 }
 

@@ -7,11 +7,11 @@ use codegen::program::affine::AffineSystem;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::decomposition::{Decomposition, Failure, Part};
-use super::functional::{Functional, Limits, Linear};
+use super::event_function::{EventFunction, Limits, Linear};
 use super::integrals::Integrals;
-use super::ladder::Ladder;
-use super::lanes::Packed;
 use super::modes::{Forcing, Modes, project};
+use super::simd_vectors::Packed;
+use super::step_table::StepTable;
 
 /// A forcing frequency closer to an eigenvalue than this part of it is resonant: the forced
 /// and the free response grow large against each other and would cancel.
@@ -44,7 +44,7 @@ pub(super) struct Cluster {
 
 /// A regime.
 ///
-/// Its coordinates stand in one vector of groups: the real parts of the modes' amplitudes,
+/// Its coordinates stand in one vector of vectors: the real parts of the modes' amplitudes,
 /// the imaginary ones, the integrals.
 #[derive(Clone, Debug)]
 pub(super) struct Regime {
@@ -58,9 +58,9 @@ pub(super) struct Regime {
     pub coordinates: Packed,
     /// A state from coordinates, without what is constant.
     pub states: Packed,
-    /// What is watched.
-    pub functionals: Vec<Functional>,
-    pub ladder: Ladder,
+    /// What is evaluation.
+    pub event_functions: Vec<EventFunction>,
+    pub step_table: StepTable,
 }
 
 impl Regime {
@@ -68,7 +68,7 @@ impl Regime {
     /// up to `slow`, 1/s, are carried as polynomials.
     pub fn new(
         system: AffineSystem,
-        watched: Vec<(Linear, Limits)>,
+        events: Vec<(Linear, Limits)>,
         slow: f64,
     ) -> Result<Self, Failure> {
         let states = system.states;
@@ -87,7 +87,7 @@ impl Regime {
             .iter()
             .map(|p| p.centre.norm())
             .fold(fastest, f64::max);
-        let mut window = Ladder::longest(fastest);
+        let mut window = StepTable::longest(fastest);
         let radii = clustered
             .iter()
             .map(radius)
@@ -108,23 +108,23 @@ impl Regime {
             .into_iter()
             .map(|part| Cluster::new(part, &forcing, window))
             .collect();
-        let functionals: Vec<Functional> = watched
+        let event_functions: Vec<EventFunction> = events
             .into_iter()
             .map(|(linear, limits)| {
                 let integrals = (&integrals, window);
-                Functional::new(linear, limits, &modes, integrals, &clusters)
+                EventFunction::new(linear, limits, &modes, integrals, &clusters)
             })
             .collect();
-        let places = Places::of(&modes, &integrals);
+        let layout = Layout::of(&modes, &integrals);
         Ok(Self {
-            coordinates: places.coordinates(&modes, &integrals),
-            states: places.states(&modes, &integrals, &still_states(&system)),
-            ladder: Ladder::new(&modes, window, fastest),
+            coordinates: layout.coordinates(&modes, &integrals),
+            states: layout.states(&modes, &integrals, &still_states(&system)),
+            step_table: StepTable::new(&modes, window, fastest),
             system,
             modes,
             integrals,
             clusters,
-            functionals,
+            event_functions,
         })
     }
 
@@ -160,18 +160,18 @@ pub(super) fn rates(
 }
 
 /// Where the coordinates stand in their vector.
-struct Places {
+struct Layout {
     /// How many numbers the real parts of the modes' amplitudes fill.
     modes: usize,
-    /// How many groups the whole vector fills.
-    groups: usize,
+    /// How many SIMD vectors the whole vector fills.
+    vectors: usize,
 }
 
-impl Places {
+impl Layout {
     fn of(modes: &Modes, integrals: &Integrals) -> Self {
         Self {
-            modes: 4 * modes.groups(),
-            groups: 2 * modes.groups() + integrals.groups(),
+            modes: 4 * modes.simd_vectors(),
+            vectors: 2 * modes.simd_vectors() + integrals.simd_vectors(),
         }
     }
 
@@ -181,7 +181,7 @@ impl Places {
         amplitudes: &DVector<Complex<f64>>,
         integrals: Option<&DVector<f64>>,
     ) -> Vec<f64> {
-        let mut packed = vec![0.0; 4 * self.groups];
+        let mut packed = vec![0.0; 4 * self.vectors];
         for (mode, amplitude) in amplitudes.iter().enumerate() {
             packed[mode] = amplitude.re;
             packed[self.modes + mode] = amplitude.im;
@@ -218,7 +218,7 @@ impl Places {
                 columns.push(column);
             }
         }
-        Packed::of(4 * self.groups, columns.len(), |row, column| {
+        Packed::of(4 * self.vectors, columns.len(), |row, column| {
             columns[column][row]
         })
     }

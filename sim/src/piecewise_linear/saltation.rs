@@ -9,7 +9,7 @@
 use codegen::program::affine::{AffineRows, AffineSystem};
 use nalgebra::{DVector, Matrix2, Vector2};
 
-use super::functional::Linear;
+use super::event_function::Linear;
 
 /// What is left of a jump that is proportional to the rate, relative.
 const ROUNDING: f64 = 1e-10;

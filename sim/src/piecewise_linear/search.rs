@@ -11,10 +11,10 @@
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::bounds::{Verdict, over};
+use super::event_evaluation::Local;
+use super::event_function::Limits;
 use super::flow::Flow;
-use super::functional::Limits;
 use super::regime::Regime;
-use super::watched::Local;
 
 /// Newton steps towards a crossing; two or three are usual.
 const POLISHING: usize = 60;
@@ -32,7 +32,7 @@ pub(super) enum Found {
     /// The flow stands where this function has reached its upper or lower limit.
     Limit {
         /// The index of the function.
-        functional: usize,
+        event_function: usize,
         /// Whether it is the upper limit.
         upper: bool,
     },
@@ -51,7 +51,7 @@ pub(super) struct Effort {
     crossings: Vec<Crossing>,
 }
 
-/// Searches from where the flow stands to `end` after its start, s. `first` is the rung to
+/// Searches from where the flow stands to `end` after its start, s. `first` is the step to
 /// begin with and becomes the one at which the last step was made.
 #[inline(always)]
 pub(super) fn search<S: Simd>(
@@ -62,22 +62,22 @@ pub(super) fn search<S: Simd>(
     first: &mut usize,
     effort: &mut Effort,
 ) -> Found {
-    let rungs = &regime.ladder.rungs;
-    let last = rungs.len() - 1;
+    let steps = &regime.step_table.steps;
+    let last = steps.len() - 1;
     let mut place = (*first).min(last);
     while flow.tau < end {
         // A step that leads beyond the end need not be longer than the first one that does.
-        while place < last && rungs[place + 1].length >= end - flow.tau {
+        while place < last && steps[place + 1].length >= end - flow.tau {
             place += 1;
         }
         let mut halved = false;
         let outcome = loop {
-            match step(simd, flow, regime, place, rungs[place].length, end, effort) {
+            match step(simd, flow, regime, place, steps[place].length, end, effort) {
                 Outcome::Halve if place < last => {
                     place += 1;
                     halved = true;
                 }
-                Outcome::Halve => break creep(flow, regime, end, effort),
+                Outcome::Halve => break search_grazing(flow, regime, end, effort),
                 other => break other,
             }
         };
@@ -103,7 +103,7 @@ enum Outcome {
 /// A crossing that is certain to come.
 #[derive(Clone, Copy, Debug)]
 struct Crossing {
-    functional: usize,
+    event_function: usize,
     upper: bool,
     /// Between these times after the start of the flow, s.
     within: [f64; 2],
@@ -111,25 +111,25 @@ struct Crossing {
     guess: f64,
 }
 
-/// Steps shorter than those of the ladder, down to where no function moves by more than its
+/// Steps shorter than those of the step table, down to where no function moves by more than its
 /// rounding: what grazes a limit there neither reaches nor leaves it.
 #[cold]
-fn creep(flow: &mut Flow, regime: &Regime, end: f64, effort: &mut Effort) -> Outcome {
-    dispatch!(Level::new(), simd => creep_by(simd, flow, regime, end, effort))
+fn search_grazing(flow: &mut Flow, regime: &Regime, end: f64, effort: &mut Effort) -> Outcome {
+    dispatch!(Level::new(), simd => search_grazing_by(simd, flow, regime, end, effort))
 }
 
 #[inline(always)]
-fn creep_by<S: Simd>(
+fn search_grazing_by<S: Simd>(
     simd: S,
     flow: &mut Flow,
     regime: &Regime,
     end: f64,
     effort: &mut Effort,
 ) -> Outcome {
-    let last = regime.ladder.rungs.len() - 1;
-    let mut length = regime.ladder.rungs[last].length;
-    for functional in 0..regime.functionals.len() {
-        flow.sum_up(simd, regime, functional);
+    let last = regime.step_table.steps.len() - 1;
+    let mut length = regime.step_table.steps[last].length;
+    for event_function in 0..regime.event_functions.len() {
+        flow.sum_up(simd, regime, event_function);
     }
     loop {
         length *= 0.5;
@@ -150,9 +150,9 @@ fn creep_by<S: Simd>(
 
 /// Whether no function moves by more than its rounding within `length` s.
 fn is_still(flow: &Flow, regime: &Regime, length: f64) -> bool {
-    let rungs = &regime.ladder.rungs;
-    (0..regime.functionals.len()).all(|functional| {
-        flow.local(regime, functional, &rungs[rungs.len() - 1], |local| {
+    let steps = &regime.step_table.steps;
+    (0..regime.event_functions.len()).all(|event_function| {
+        flow.local(regime, event_function, &steps[steps.len() - 1], |local| {
             let [_, rate, second, third] = local.derivatives.map(f64::abs);
             let fourth = 0.25 * length * local.fourth;
             let moved = length * (rate + 0.5 * length * (second + length * (third + fourth) / 3.0));
@@ -162,7 +162,7 @@ fn is_still(flow: &Flow, regime: &Regime, length: f64) -> bool {
     })
 }
 
-/// Tries a step of `length` s, at most that of the rung.
+/// Tries a step of `length` s, at most that of the step.
 #[inline(always)]
 fn step<S: Simd>(
     simd: S,
@@ -173,42 +173,42 @@ fn step<S: Simd>(
     end: f64,
     effort: &mut Effort,
 ) -> Outcome {
-    let rung = &regime.ladder.rungs[place];
+    let step = &regime.step_table.steps[place];
     effort.crossings.clear();
     let origin = flow.tau;
     let until = origin + length;
-    for functional in 0..regime.functionals.len() {
+    for event_function in 0..regime.event_functions.len() {
         // Each function is looked at as often as it asks for.
-        if flow.is_safe(functional, until) {
+        if flow.is_safe(event_function, until) {
             continue;
         }
-        if !flow.is_summed_up(functional) {
-            flow.sum_up(simd, regime, functional);
-            if let Some(found) = reached(flow, regime, functional) {
+        if !flow.is_summed_up(event_function) {
+            flow.sum_up(simd, regime, event_function);
+            if let Some(found) = reached(flow, regime, event_function) {
                 return Outcome::Limit(found);
             }
         }
-        let limits = regime.functionals[functional].limits;
+        let limits = regime.event_functions[event_function].limits;
         let verdict = flow.local(
             regime,
-            functional,
-            rung,
+            event_function,
+            step,
             #[inline(always)]
             |local| over(local, [limits.low, limits.high], length),
         );
         match verdict {
-            Verdict::Safe => flow.note_safe(functional, until),
+            Verdict::Safe => flow.note_safe(event_function, until),
             Verdict::Unknown => return Outcome::Halve,
             Verdict::Crossing { upper } => {
                 let guess = flow.local(
                     regime,
-                    functional,
-                    rung,
+                    event_function,
+                    step,
                     #[inline(always)]
                     |local| Distance::to(local, &limits, upper).first_guess(length),
                 );
                 effort.crossings.push(Crossing {
-                    functional,
+                    event_function,
                     upper,
                     within: [origin, until],
                     guess: origin + guess,
@@ -221,8 +221,8 @@ fn step<S: Simd>(
         if until >= end {
             return Outcome::End;
         }
-        if length == rung.length {
-            flow.step(simd, regime, rung);
+        if length == step.length {
+            flow.step(simd, regime, step);
         } else {
             flow.shift(simd, regime, length);
         }
@@ -232,7 +232,7 @@ fn step<S: Simd>(
         return Outcome::End;
     }
     Outcome::Limit(Found::Limit {
-        functional: first.functional,
+        event_function: first.event_function,
         upper: first.upper,
     })
 }
@@ -250,12 +250,12 @@ fn first_of_all<S: Simd>(
     let mut first = guesses.reduce(|a, b| if b.guess < a.guess { b } else { a })?;
     flow.shift(simd, regime, first.guess - flow.tau);
     polish(simd, flow, regime, &first, &mut effort.newton);
-    let seeming = first.functional;
+    let seeming = first.event_function;
     for crossing in &effort.crossings {
-        if crossing.functional == seeming {
+        if crossing.event_function == seeming {
             continue;
         }
-        let here = distance(simd, flow, regime, crossing.functional, crossing.upper);
+        let here = distance(simd, flow, regime, crossing.event_function, crossing.upper);
         if here.value < -here.noise && crossing.within[0] < flow.tau {
             first = Crossing {
                 within: [crossing.within[0], crossing.within[1].min(flow.tau)],
@@ -271,38 +271,44 @@ fn first_of_all<S: Simd>(
 }
 
 /// A limit that a function has reached here already.
-fn reached(flow: &Flow, regime: &Regime, functional: usize) -> Option<Found> {
-    let limits = &regime.functionals[functional].limits;
-    if flow.is_between(functional, limits.low, limits.high) {
+fn reached(flow: &Flow, regime: &Regime, event_function: usize) -> Option<Found> {
+    let limits = &regime.event_functions[event_function].limits;
+    if flow.is_between(event_function, limits.low, limits.high) {
         return None;
     }
-    let rung = regime.ladder.rungs.last()?;
-    let noise = flow.start_rate_noise(regime, functional);
-    let upper = flow.local(regime, functional, rung, |local| {
+    let step = regime.step_table.steps.last()?;
+    let noise = flow.start_rate_noise(regime, event_function);
+    let upper = flow.local(regime, event_function, step, |local| {
         [false, true]
             .into_iter()
             .find(|upper| Distance::to(local, limits, *upper).is_reached(noise))
     })?;
-    Some(Found::Limit { functional, upper })
+    Some(Found::Limit {
+        event_function,
+        upper,
+    })
 }
 
-/// A limit that was passed by a jump: of an input, or of the function itself when another
-/// one switched; of those groups that may have jumped.
+/// A limit that a jump led over: of an input, or of the function itself when another
+/// one switched; of those families that may have jumped.
 #[inline(always)]
-pub(super) fn passed<S: Simd>(
+pub(super) fn jumped_over<S: Simd>(
     simd: S,
     flow: &mut Flow,
     regime: &Regime,
     may_have_jumped: impl Fn(usize) -> bool,
 ) -> Option<Found> {
-    for (functional, of) in regime.functionals.iter().enumerate() {
-        if !may_have_jumped(of.limits.group) {
+    for (event_function, of) in regime.event_functions.iter().enumerate() {
+        if !may_have_jumped(of.limits.family) {
             continue;
         }
         for upper in [false, true] {
-            let here = distance(simd, flow, regime, functional, upper);
+            let here = distance(simd, flow, regime, event_function, upper);
             if here.value < -JUMP * here.noise {
-                return Some(Found::Limit { functional, upper });
+                return Some(Found::Limit {
+                    event_function,
+                    upper,
+                });
             }
         }
     }
@@ -315,18 +321,18 @@ fn distance<S: Simd>(
     simd: S,
     flow: &mut Flow,
     regime: &Regime,
-    functional: usize,
+    event_function: usize,
     upper: bool,
 ) -> Distance {
-    let rungs = &regime.ladder.rungs;
-    flow.sum_up(simd, regime, functional);
+    let steps = &regime.step_table.steps;
+    flow.sum_up(simd, regime, event_function);
     // The shortest step has no fast modes.
     flow.local(
         regime,
-        functional,
-        &rungs[rungs.len() - 1],
+        event_function,
+        &steps[steps.len() - 1],
         #[inline(always)]
-        |local| Distance::to(local, &regime.functionals[functional].limits, upper),
+        |local| Distance::to(local, &regime.event_functions[event_function].limits, upper),
     )
 }
 
@@ -342,7 +348,7 @@ fn polish<S: Simd>(
     let [mut near, mut far] = crossing.within;
     for _ in 0..POLISHING {
         *newton += 1;
-        let here = distance(simd, flow, regime, crossing.functional, crossing.upper);
+        let here = distance(simd, flow, regime, crossing.event_function, crossing.upper);
         // A motion that comes nearer no more has not turned back yet.
         if here.value > 0.0 || here.rate > 0.0 {
             near = flow.tau;

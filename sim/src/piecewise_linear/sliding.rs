@@ -6,8 +6,8 @@
 use codegen::program::affine::{AffineEvaluator, AffineRows, AffineSystem};
 use nalgebra::{DMatrix, DVector};
 
-use super::functional::Linear;
-use super::groups::{Group, Place};
+use super::event_function::Linear;
+use super::parallel_guards::{Cell, ParallelGuards};
 
 /// What is left of a jump that is constant on its surface, relative.
 const ROUNDING: f64 = 1e-11;
@@ -20,28 +20,28 @@ pub(super) struct Sliding {
     pub parts: Vec<Linear>,
 }
 
-/// The motion with the places of all groups, some of them held; nothing if the jumps are
+/// The motion with the cells of all families, some of them held; nothing if the jumps are
 /// not constant on the surfaces or the surfaces do not hold the motion.
 pub(super) fn slide(
     evaluator: &mut AffineEvaluator,
-    groups: &[Group],
-    places: &[Place],
+    families: &[ParallelGuards],
+    cells: &[Cell],
 ) -> Option<Sliding> {
     let mut sides = vec![0.0; evaluator.guard_count()];
     let mut base = |held: Option<usize>| {
-        for (index, (group, place)) in groups.iter().zip(places).enumerate() {
+        for (index, (family, cell)) in families.iter().zip(cells).enumerate() {
             let side = if held == Some(index) { 1.0 } else { 0.0 };
-            group.write_sides(*place, side, &mut sides);
+            family.write_sides(*cell, side, &mut sides);
         }
         evaluator.system(&sides)
     };
     let below = base(None);
     let mut rows = Vec::new();
     let mut jumps = Vec::new();
-    for (index, (group, place)) in groups.iter().zip(places).enumerate() {
-        let Place::On(rank) = *place else { continue };
+    for (index, (family, cell)) in families.iter().zip(cells).enumerate() {
+        let Cell::On(rank) = *cell else { continue };
         let above = base(Some(index));
-        let function = group.function(&below);
+        let function = family.function(&below);
         let still = [&function.inputs, &function.sines, &function.cosines];
         if still
             .iter()
@@ -49,7 +49,7 @@ pub(super) fn slide(
         {
             return None;
         }
-        let threshold = group.threshold(&below, rank);
+        let threshold = family.threshold(&below, rank);
         jumps.push(jump(
             &below.rates,
             &above.rates,
@@ -78,8 +78,8 @@ fn jump(
     let states = row.len();
     let length = row.norm_squared();
     let mut jump = DVector::zeros(states);
-    for place in 0..states {
-        let range = place * states..(place + 1) * states;
+    for state in 0..states {
+        let range = state * states..(state + 1) * states;
         let pairs = above.state[range.clone()].iter().zip(&below.state[range]);
         let difference = DVector::from_iterator(states, pairs.map(|(a, b)| a - b));
         let along = difference.dot(row) / length;
@@ -88,7 +88,7 @@ fn jump(
         if rest.amax() > ROUNDING * scale {
             return None;
         }
-        jump[place] = above.constant[place] - below.constant[place] + along * threshold;
+        jump[state] = above.constant[state] - below.constant[state] + along * threshold;
     }
     Some(jump)
 }
@@ -96,8 +96,8 @@ fn jump(
 /// f = f_below + sum of jumps times parts, with the parts such that every row f = 0.
 fn combine(below: AffineSystem, rows: &[DVector<f64>], jumps: &[DVector<f64>]) -> Option<Sliding> {
     let held = rows.len();
-    let gain = DMatrix::from_fn(held, held, |i, j| rows[i].dot(&jumps[j]));
-    let inverse = gain.try_inverse()?;
+    let projected = DMatrix::from_fn(held, held, |i, j| rows[i].dot(&jumps[j]));
+    let inverse = projected.try_inverse()?;
     // parts = -inverse rows f_below.
     let weights = DMatrix::from_fn(held, below.states, |i, state| {
         -(0..held)

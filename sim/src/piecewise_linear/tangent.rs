@@ -4,11 +4,11 @@
 use fearless_simd::{Level, Simd, dispatch};
 use nalgebra::{Complex, DVector};
 
+use super::event_function::monomials;
 use super::flow::Flow;
-use super::functional::monomials;
-use super::lanes::{self, Lane, Pairs, numbers, numbers_mut};
 use super::propagator::{Change, Follow, Segment};
 use super::regime::{Cluster, Regime};
+use super::simd_vectors::{self, SimdVector, SplitComplex, numbers, numbers_mut};
 
 /// Tangent vectors of a motion.
 #[derive(Clone, Debug, Default)]
@@ -22,11 +22,11 @@ pub(super) struct Tangents {
 /// Memory for one vector on its way.
 #[derive(Clone, Debug, Default)]
 struct Neighbour {
-    coordinates: Vec<Lane>,
+    coordinates: Vec<SimdVector>,
     /// How the integrals move.
-    transition: Vec<Lane>,
-    moved: Vec<Lane>,
-    sum: Vec<Lane>,
+    transition: Vec<SimdVector>,
+    moved: Vec<SimdVector>,
+    sum: Vec<SimdVector>,
 }
 
 impl Tangents {
@@ -40,29 +40,27 @@ impl Tangents {
 
     /// Carries the vectors on for `tau` s.
     pub fn advance(&mut self, regime: &Regime, tau: f64) {
-        let gains = Pairs::gains(&regime.modes.rate, tau);
+        let expm1 = SplitComplex::expm1(&regime.modes.rate, tau);
         let (neighbour, vectors) = (&mut self.neighbour, &mut self.vectors);
         dispatch!(Level::new(), simd => {
             let transition = &mut neighbour.transition;
             let integrals = &regime.integrals;
             integrals.transition(simd, tau, integrals.felt(), transition);
             for vector in vectors {
-                neighbour.carry(simd, regime, &gains, tau, vector);
+                neighbour.carry(simd, regime, &expm1, tau, vector);
             }
         });
     }
 }
 
 impl Tangents {
-    /// Takes the vectors through a switch. `displacements`: how much the function's distance
-    /// from its limit differs in the neighbouring motion at the same state; 0 where missing.
-    pub fn switch(&mut self, change: &Change<'_>, displacements: &[f64]) {
+    /// Takes the vectors through a switch.
+    pub fn switch(&mut self, change: &Change<'_>) {
         let row = change.function.state.as_slice();
         let dot = |vector: &[f64]| row.iter().zip(vector).map(|(a, b)| a * b).sum::<f64>();
-        let displacement = |place: usize| displacements.get(place).copied().unwrap_or(0.0);
         if let Some(constant) = change.saltation {
-            for (place, vector) in self.vectors.iter_mut().enumerate() {
-                let along = dot(vector) + displacement(place);
+            for vector in &mut self.vectors {
+                let along = dot(vector);
                 let slots = vector.iter_mut().zip(constant.iter());
                 slots.for_each(|(slot, u)| *slot += u * along);
             }
@@ -77,8 +75,8 @@ impl Tangents {
         if rate == 0.0 {
             return;
         }
-        for (place, vector) in self.vectors.iter_mut().enumerate() {
-            let delay = (dot(vector) + displacement(place)) / rate;
+        for vector in &mut self.vectors {
+            let delay = dot(vector) / rate;
             for ((slot, a), b) in vector.iter_mut().zip(after).zip(before) {
                 *slot += (a - b) * delay;
             }
@@ -92,44 +90,50 @@ impl Follow for Tangents {
     }
 
     fn switched(&mut self, change: &Change<'_>) {
-        self.switch(change, &[]);
+        self.switch(change);
     }
 }
 
 impl Neighbour {
     /// Adds to a state difference what the flow makes of it after `tau` s, given the modes'
-    /// gains over that time.
+    /// expm1 over that time.
     #[inline(always)]
     fn carry<S: Simd>(
         &mut self,
         simd: S,
         regime: &Regime,
-        gains: &Pairs,
+        expm1: &SplitComplex,
         tau: f64,
         vector: &mut [f64],
     ) {
-        let groups = regime.modes.groups();
+        let vectors = regime.modes.simd_vectors();
         self.coordinates.clear();
-        self.coordinates
-            .resize(2 * groups + regime.integrals.groups(), Lane::ZERO);
+        self.coordinates.resize(
+            2 * vectors + regime.integrals.simd_vectors(),
+            SimdVector::ZERO,
+        );
         regime
             .coordinates
             .add_product(simd, vector, &mut self.coordinates);
-        for group in 0..groups {
-            let (a, b) = (self.coordinates[group], self.coordinates[groups + group]);
-            let (c, d) = (gains.re[group], gains.im[group]);
-            self.coordinates[group] = a * c - b * d;
-            self.coordinates[groups + group] = a * d + b * c;
+        for simd_vector in 0..vectors {
+            let (a, b) = (
+                self.coordinates[simd_vector],
+                self.coordinates[vectors + simd_vector],
+            );
+            let (c, d) = (expm1.re[simd_vector], expm1.im[simd_vector]);
+            self.coordinates[simd_vector] = a * c - b * d;
+            self.coordinates[vectors + simd_vector] = a * d + b * c;
         }
-        let integrals = &mut self.coordinates[2 * groups..];
-        self.moved.resize(integrals.len(), Lane::ZERO);
+        let integrals = &mut self.coordinates[2 * vectors..];
+        self.moved.resize(integrals.len(), SimdVector::ZERO);
         let causes = regime.integrals.free_causes(integrals);
         regime
             .integrals
             .moved(simd, causes, &self.transition, &mut self.moved);
         integrals.copy_from_slice(&self.moved);
         self.sum.clear();
-        self.sum.resize(lanes::groups(vector.len()), Lane::ZERO);
+        self.sum
+            .resize(simd_vectors::simd_vectors(vector.len()), SimdVector::ZERO);
         regime
             .states
             .add_product(simd, numbers(&self.coordinates), &mut self.sum);

@@ -3,17 +3,17 @@
 
 use fearless_simd::Simd;
 
-use super::functional::Functional;
+use super::event_function::EventFunction;
 use super::kernels::{self, Factors};
-use super::ladder::Rung;
-use super::lanes::Lane;
+use super::simd_vectors::SimdVector;
+use super::step_table::Step;
 
 /// The roundings of a few operations on a number of size 1.
 pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A function in one flow.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Watched {
+pub(super) struct EventEvaluation {
     /// It keeps its limits until then, s after the start.
     pub safe_until: f64,
     /// Where it was last summed up, s after the start.
@@ -23,7 +23,7 @@ pub(super) struct Watched {
     /// The sum of its terms' magnitudes.
     start_size: f64,
     /// What each power of time adds to the value and the derivatives of order 1 to 3.
-    terms: Vec<Lane>,
+    terms: Vec<SimdVector>,
     /// The sum of the magnitudes of the terms of the rate at the start, which may cancel.
     rate_size: f64,
     /// A bound of the polynomial's fourth derivative within the window.
@@ -32,14 +32,14 @@ pub(super) struct Watched {
     pub value: f64,
     pub size: f64,
     /// Derivatives of order 1 to 3 at the places of their orders.
-    derivatives: Lane,
+    derivatives: SimdVector,
     /// The polynomial's part of the first one.
     polynomial_rate: f64,
     /// The parts of the modes before each, and of all: of the amplitudes in the value, and of
     /// the derivatives of order 1 to 3.
-    before: Vec<Lane>,
+    before: Vec<SimdVector>,
     /// Their magnitudes in the orders 0, 1, 4 and 2, and of which measurement.
-    sizes_before: Vec<Lane>,
+    sizes_before: Vec<SimdVector>,
     measurement: u64,
     /// What value and rate at the start may be wrong by, as long as the function is leaving a
     /// limit that held it.
@@ -69,26 +69,26 @@ pub(super) struct Local {
     pub drift_noise: f64,
 }
 
-impl Watched {
+impl EventEvaluation {
     /// Prepares for a flow from a start, given what is known there and what drives the
     /// integrals. `coefficients` is memory for them.
     #[inline(always)]
     pub fn start<S: Simd>(
         &mut self,
         simd: S,
-        functional: &Functional,
+        event_function: &EventFunction,
         given: &[f64],
         causes: &[f64],
-        coefficients: &mut Vec<Lane>,
+        coefficients: &mut Vec<SimdVector>,
     ) {
-        let sums = functional.weights.len() + 1;
-        self.before.resize(sums, Lane::ZERO);
-        self.sizes_before.resize(sums, Lane::ZERO);
+        let sums = event_function.weights.len() + 1;
+        self.before.resize(sums, SimdVector::ZERO);
+        self.sizes_before.resize(sums, SimdVector::ZERO);
         self.safe_until = f64::NEG_INFINITY;
         self.summed_up_at = f64::NAN;
         self.slack = None;
-        (self.start, self.start_size) = functional.at(given);
-        let polynomial = &functional.polynomial;
+        (self.start, self.start_size) = event_function.at(given);
+        let polynomial = &event_function.polynomial;
         self.rate_size = polynomial.rate_size(causes);
         self.fourth = polynomial.terms(simd, causes, coefficients, &mut self.terms);
     }
@@ -99,13 +99,13 @@ impl Watched {
     pub fn take_sizes<S: Simd>(
         &mut self,
         simd: S,
-        functional: &Functional,
-        sizes: &[Lane],
+        event_function: &EventFunction,
+        sizes: &[SimdVector],
         measurement: u64,
     ) {
         if self.measurement != measurement {
             self.measurement = measurement;
-            kernels::sum_sizes(simd, &functional.weights, sizes, &mut self.sizes_before);
+            kernels::sum_sizes(simd, &event_function.weights, sizes, &mut self.sizes_before);
         }
     }
 
@@ -115,14 +115,14 @@ impl Watched {
     pub fn sum_up<S: Simd>(
         &mut self,
         simd: S,
-        functional: &Functional,
-        amplitudes: (&[Lane], &[Lane]),
+        event_function: &EventFunction,
+        amplitudes: (&[SimdVector], &[SimdVector]),
         (tau, powers): (f64, &[f64]),
     ) {
         self.summed_up_at = tau;
         let factors = Factors {
-            weights: &functional.weights,
-            value_weights: &functional.value_weights,
+            weights: &event_function.weights,
+            value_weights: &event_function.value_weights,
             terms: &self.terms,
         };
         let summed = kernels::sum_up(simd, factors, amplitudes, powers, &mut self.before);
@@ -133,11 +133,11 @@ impl Watched {
     }
 
     /// Value and derivatives without the clusters' parts, with bounds over the next step of
-    /// `rung`.
+    /// `step`.
     #[inline(always)]
-    pub fn local(&self, rung: &Rung) -> Local {
+    pub fn local(&self, step: &Step) -> Local {
         let modes = self.before.len() - 1;
-        let slow = rung.slow.min(modes);
+        let slow = step.slow.min(modes);
         // Without the fast modes, at whatever phase they are.
         let left_out = self.before[modes] - self.before[slow];
         let all = self.sizes_before[modes];
@@ -149,14 +149,14 @@ impl Watched {
         let (mut fast, mut fast_rate, mut fast_second) = (0.0, 0.0, 0.0);
         if slow < modes {
             // With the rounding of the sums.
-            fast = (sizes[0] + ROUNDING * all[0]) * rung.growth;
-            fast_rate = (sizes[1] + ROUNDING * all[1]) * rung.growth;
-            fast_second = (sizes[3] + ROUNDING * all[3]) * rung.growth;
+            fast = (sizes[0] + ROUNDING * all[0]) * step.growth;
+            fast_rate = (sizes[1] + ROUNDING * all[1]) * step.growth;
+            fast_second = (sizes[3] + ROUNDING * all[3]) * step.growth;
         }
         let fourth = all[2] - sizes[2];
         Local {
             derivatives,
-            fourth: fourth * rung.growth + self.fourth,
+            fourth: fourth * step.growth + self.fourth,
             fast,
             fast_rate,
             fast_second,

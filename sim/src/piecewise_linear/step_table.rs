@@ -1,8 +1,8 @@
-//! Steps of fixed lengths, each half as long as the one before, with every mode's gain
+//! Steps of fixed lengths, each half as long as the one before, with every mode's expm1
 //! over each of them: during a search the modes advance by multiplications alone.
 
-use super::lanes::Pairs;
 use super::modes::Modes;
+use super::simd_vectors::SplitComplex;
 
 /// The longest step times the fastest rate.
 const LONGEST: f64 = 1024.0;
@@ -15,11 +15,11 @@ const TURN: f64 = 2.5;
 
 /// A step of one length.
 #[derive(Clone, Debug)]
-pub(super) struct Rung {
+pub(super) struct Step {
     /// Its length, s.
     pub length: f64,
     /// exp(rate length) - 1 of each mode.
-    pub gains: Pairs,
+    pub expm1: SplitComplex,
     /// The largest growth of a mode within the step, at least 1.
     pub growth: f64,
     /// So many modes, the slowest ones, turn little within the step.
@@ -31,15 +31,15 @@ const FEWEST: usize = 25;
 
 /// Steps from the longest to the shortest.
 #[derive(Clone, Debug)]
-pub(super) struct Ladder {
-    pub rungs: Vec<Rung>,
+pub(super) struct StepTable {
+    pub steps: Vec<Step>,
     /// No step leads further from the start of a regime, s.
     pub window: f64,
     /// exp(rate window) - 1 of each mode.
-    pub through: Pairs,
+    pub through: SplitComplex,
 }
 
-impl Ladder {
+impl StepTable {
     /// The longest step with this fastest rate, s.
     pub fn longest(fastest: f64) -> f64 {
         if fastest > 0.0 {
@@ -53,20 +53,20 @@ impl Ladder {
     pub fn new(modes: &Modes, window: f64, fastest: f64) -> Self {
         // A power of two: sums of steps are then exact.
         let mut length = window.log2().floor().exp2();
-        let mut rungs = Vec::new();
-        while rungs.len() < FEWEST || (length * fastest > SHORTEST && rungs.len() < 80) {
-            rungs.push(Rung::new(modes, length));
+        let mut steps = Vec::new();
+        while steps.len() < FEWEST || (length * fastest > SHORTEST && steps.len() < 80) {
+            steps.push(Step::new(modes, length));
             length *= 0.5;
         }
         Self {
-            rungs,
+            steps,
             window,
-            through: Pairs::gains(&modes.rate, window),
+            through: SplitComplex::expm1(&modes.rate, window),
         }
     }
 }
 
-impl Rung {
+impl Step {
     fn new(modes: &Modes, length: f64) -> Self {
         let growth = modes
             .rate
@@ -78,7 +78,7 @@ impl Rung {
             .partition_point(|rate| rate * length <= TURN);
         Self {
             length,
-            gains: Pairs::gains(&modes.rate, length),
+            expm1: SplitComplex::expm1(&modes.rate, length),
             growth,
             slow,
         }

@@ -4,11 +4,11 @@
 use nalgebra::Complex;
 
 use super::error::ExactError;
-use super::functional::Linear;
-use super::groups::Place;
-use super::passage::Limit;
+use super::event_function::Linear;
+use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 use super::saltation;
+use super::transition::Limit;
 
 /// Rates that differ by less than this part of their size are continuous.
 const CONTINUOUS: f64 = 1e-12;
@@ -16,67 +16,68 @@ const CONTINUOUS: f64 = 1e-12;
 /// The roundings of a sum of products of size 1.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// What lies beyond a limit.
+/// The regime that borders on another at a limit, and what the transition there does.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Beyond {
+pub(super) struct Adjacent {
     pub regime: usize,
-    /// Whether the rate of the group's function may jump there.
+    /// Whether the rate of the family's function may jump there.
     pub jumps: bool,
-    /// Where the constant saltation matrix of the passage is kept, if it is constant.
+    /// Where the constant saltation matrix of the transition is kept, if it is constant.
     pub saltation: Option<usize>,
-    /// Whether the functions of other groups may jump in the passage.
+    /// Whether the functions of other families may jump in the transition.
     pub moves_others: bool,
 }
 
 impl Propagator {
     /// Finds what lies beyond a limit and remembers it.
-    pub(super) fn find_beyond(&mut self, limit: &Limit) -> Result<Beyond, ExactError> {
+    pub(super) fn find_adjacent(&mut self, limit: &Limit) -> Result<Adjacent, ExactError> {
         let &Limit {
             before,
-            functional,
-            group,
+            event_function,
+            family,
             upper,
             t,
             ..
         } = limit;
-        let mut places = self.regimes[before].places.clone();
-        places[group] = places[group].beyond(upper);
-        let held = matches!(self.regimes[before].places[group], Place::On(_));
-        let regime = self.regime(&places, t)?;
-        let jumps = !held && self.rate_jumps(before, regime, group);
-        let entered = &self.regimes[before];
-        let limits = &entered.regime.functionals[functional].limits;
+        let mut cells = self.regimes[before].cells.clone();
+        cells[family] = cells[family].adjacent(upper);
+        let held = matches!(self.regimes[before].cells[family], Cell::On(_));
+        let regime = self.regime(&cells, t)?;
+        let jumps = !held && self.rate_jumps(before, regime, family);
+        let visited = &self.regimes[before];
+        let limits = &visited.regime.event_functions[event_function].limits;
         let constant = saltation::constant(
-            &entered.regime.system,
+            &visited.regime.system,
             &self.regimes[regime].regime.system,
-            &entered.regime.functionals[functional].linear,
+            &visited.regime.event_functions[event_function].linear,
             if upper { limits.high } else { limits.low },
         );
         let saltation = constant.map(|u| {
             self.saltations.push(u);
             self.saltations.len() - 1
         });
-        let beyond = Beyond {
+        let adjacent = Adjacent {
             regime,
             jumps,
             saltation,
-            moves_others: held || self.moves_others(before, regime, group),
+            moves_others: held || self.moves_others(before, regime, family),
         };
-        self.regimes[before].beyond[functional][usize::from(upper)] = Some(beyond);
-        Ok(beyond)
+        self.regimes[before].adjacent[event_function][usize::from(upper)] = Some(adjacent);
+        Ok(adjacent)
     }
 
-    /// Whether what is watched of other groups differs between two regimes.
-    fn moves_others(&self, a: usize, b: usize, group: usize) -> bool {
+    /// Whether any event function of another family differs between two regimes.
+    fn moves_others(&self, a: usize, b: usize, family: usize) -> bool {
         let (a, b) = (&self.regimes[a].regime, &self.regimes[b].regime);
-        let mut pairs = a.functionals.iter().zip(&b.functionals);
-        pairs
-            .any(|(a, b)| a.limits.group != group && (a.linear != b.linear || a.limits != b.limits))
+        let mut pairs = a.event_functions.iter().zip(&b.event_functions);
+        pairs.any(|(a, b)| {
+            a.limits.family != family && (a.linear != b.linear || a.limits != b.limits)
+        })
     }
 
-    /// Whether the rate of a group's function differs between two regimes.
-    fn rate_jumps(&self, a: usize, b: usize, group: usize) -> bool {
-        let row = &self.regimes[a].functions[group].state;
+    /// Whether the rate of a family's function differs between two regimes.
+    fn rate_jumps(&self, a: usize, b: usize, family: usize) -> bool {
+        let row = &self.regimes[a].functions[family].state;
         let (a, b) = (
             &self.regimes[a].regime.system.rates,
             &self.regimes[b].regime.system.rates,
@@ -102,29 +103,29 @@ impl Propagator {
         })
     }
 
-    /// The rate of a group's function at a state as a regime has it.
+    /// The rate of a family's function at a state as a regime has it.
     pub(super) fn rate(
         &self,
         index: usize,
-        group: usize,
+        family: usize,
         state: &[f64],
         inputs: &[f64],
         phases: &[Complex<f64>],
     ) -> f64 {
-        let entered = &self.regimes[index];
-        let function = &entered.functions[group];
+        let visited = &self.regimes[index];
+        let function = &visited.functions[family];
         let mut rates = vec![0.0; self.states];
-        entered.regime.rates(state, inputs, phases, &mut rates);
+        visited.regime.rates(state, inputs, phases, &mut rates);
         let rate: f64 = function.state.iter().zip(&rates).map(|(a, b)| a * b).sum();
         rate + self.explicit_rate(function, phases)
     }
 
-    /// What rounding may make of the rate of a group's function.
-    pub(super) fn rate_rounding(&self, index: usize, group: usize, state: &[f64]) -> f64 {
-        let entered = &self.regimes[index];
-        let matrix = &entered.regime.system.rates.state;
+    /// What rounding may make of the rate of a family's function.
+    pub(super) fn rate_rounding(&self, index: usize, family: usize, state: &[f64]) -> f64 {
+        let visited = &self.regimes[index];
+        let matrix = &visited.regime.system.rates.state;
         let mut size = 0.0;
-        for (factor, row) in entered.functions[group]
+        for (factor, row) in visited.functions[family]
             .state
             .iter()
             .zip(matrix.chunks(self.states.max(1)))
@@ -139,9 +140,9 @@ impl Propagator {
 
     /// The rate of a function of sinusoids that is due to time alone.
     pub(super) fn explicit_rate(&self, function: &Linear, phases: &[Complex<f64>]) -> f64 {
-        let terms = phases.iter().enumerate().map(|(place, phase)| {
-            let omega = self.phases[place][0];
-            omega * (function.sines[place] * phase.re - function.cosines[place] * phase.im)
+        let terms = phases.iter().enumerate().map(|(index, phase)| {
+            let omega = self.phases[index][0];
+            omega * (function.sines[index] * phase.re - function.cosines[index] * phase.im)
         });
         terms.sum()
     }

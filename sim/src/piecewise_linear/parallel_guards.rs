@@ -1,30 +1,30 @@
-//! Switching surfaces in groups of parallel ones, and where a motion stands among them.
+//! Switching surfaces in families of parallel ones, and where a motion stands among them.
 
 use codegen::program::affine::{AffineEvaluator, AffineSystem};
 
-use super::functional::{Limits, Linear};
+use super::event_function::{Limits, Linear};
 
 /// Parallel switching surfaces: thresholds of one linear function.
 #[derive(Clone, Debug)]
-pub(super) struct Group {
+pub(super) struct ParallelGuards {
     /// The first surface: the others differ from it by constants.
     pub first: usize,
     /// The surfaces at each distinct threshold, in ascending order of the thresholds.
     pub ranks: Vec<Vec<usize>>,
 }
 
-/// Where a motion stands within a group.
+/// Where a motion stands within a family.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(super) enum Place {
+pub(super) enum Cell {
     /// Above as many thresholds as the number says, below the others.
     Between(usize),
     /// Held on the threshold of this rank.
     On(usize),
 }
 
-impl Place {
-    /// The place beyond a limit, the upper or the lower one.
-    pub fn beyond(self, upper: bool) -> Self {
+impl Cell {
+    /// The cell beyond a limit, the upper or the lower one.
+    pub fn adjacent(self, upper: bool) -> Self {
         match (self, upper) {
             (Self::Between(above), true) => Self::Between(above + 1),
             (Self::Between(above), false) => Self::Between(above - 1),
@@ -34,42 +34,42 @@ impl Place {
     }
 }
 
-/// The groups of a model's surfaces at its present parameters.
-pub(super) fn groups(evaluator: &AffineEvaluator, system: &AffineSystem) -> Vec<Group> {
-    let mut groups: Vec<Group> = Vec::new();
+/// The families of a model's surfaces at its present parameters.
+pub(super) fn families(evaluator: &AffineEvaluator, system: &AffineSystem) -> Vec<ParallelGuards> {
+    let mut families: Vec<ParallelGuards> = Vec::new();
     for (guard, &first) in evaluator.guard_groups().iter().enumerate() {
         let threshold = |guard: usize| -system.guards.constant[guard];
-        match groups.iter_mut().find(|group| group.first == first) {
-            None => groups.push(Group {
+        match families.iter_mut().find(|family| family.first == first) {
+            None => families.push(ParallelGuards {
                 first,
                 ranks: vec![vec![guard]],
             }),
-            Some(group) => {
-                let place = group
+            Some(family) => {
+                let found = family
                     .ranks
                     .iter()
                     .position(|rank| threshold(rank[0]) >= threshold(guard));
-                match place {
-                    Some(place) if threshold(group.ranks[place][0]) == threshold(guard) => {
-                        group.ranks[place].push(guard);
+                match found {
+                    Some(rank) if threshold(family.ranks[rank][0]) == threshold(guard) => {
+                        family.ranks[rank].push(guard);
                     }
-                    Some(place) => group.ranks.insert(place, vec![guard]),
-                    None => group.ranks.push(vec![guard]),
+                    Some(rank) => family.ranks.insert(rank, vec![guard]),
+                    None => family.ranks.push(vec![guard]),
                 }
             }
         }
     }
-    groups
+    families
 }
 
-impl Group {
-    /// Writes the sides of the group's surfaces; `held` is that of those it is held on.
-    pub fn write_sides(&self, place: Place, held: f64, sides: &mut [f64]) {
+impl ParallelGuards {
+    /// Writes the sides of the family's surfaces; `held` is that of those it is held on.
+    pub fn write_sides(&self, cell: Cell, held: f64, sides: &mut [f64]) {
         for (rank, guards) in self.ranks.iter().enumerate() {
-            let side = match place {
-                Place::Between(above) => f64::from(u8::from(rank < above)),
-                Place::On(on) if on == rank => held,
-                Place::On(on) => f64::from(u8::from(rank < on)),
+            let side = match cell {
+                Cell::Between(above) => f64::from(u8::from(rank < above)),
+                Cell::On(on) if on == rank => held,
+                Cell::On(on) => f64::from(u8::from(rank < on)),
             };
             for guard in guards {
                 sides[*guard] = side;
@@ -90,9 +90,9 @@ impl Group {
     }
 
     /// What bounds the function above so many thresholds.
-    pub fn limits(&self, system: &AffineSystem, group: usize, above: usize) -> Limits {
+    pub fn limits(&self, system: &AffineSystem, family: usize, above: usize) -> Limits {
         Limits {
-            group,
+            family,
             low: match above {
                 0 => f64::NEG_INFINITY,
                 _ => self.threshold(system, above - 1),

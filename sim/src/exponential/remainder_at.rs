@@ -1,7 +1,7 @@
-//! What of a model is not linear between its surfaces: accelerations, and how far the surfaces
+//! The nonlinear remainder along a motion: what of a model is not linear between its surfaces: accelerations, and how far the surfaces
 //! themselves lie beyond the linear part's. Teeth with a transmission error touch where the
 //! deflection less the error reaches the play; where that differs from the linear part's place
-//! by more than the play, a march by the linear part's sides would be in the wrong regime.
+//! by more than the play, an integration by the linear part's sides would be in the wrong regime.
 
 use super::remainder::{Force, RegimeDifference, Remainder};
 use super::surfaces::Side;
@@ -12,8 +12,8 @@ use super::types::{ExponentialIntegrator, Motion, Options};
 pub const AHEAD: f64 = 1e-4;
 
 impl ExponentialIntegrator {
-    /// Finds what lies beyond the linear part where a motion stands.
-    pub(super) fn meet(
+    /// Finds the nonlinear remainder where a motion stands.
+    pub(super) fn find_remainder(
         &mut self,
         motion: &mut Motion,
         t: f64,
@@ -21,11 +21,11 @@ impl ExponentialIntegrator {
     ) -> Result<(), String> {
         let here = (motion.regime, &motion.sides[..]);
         let at = (t, &motion.state[..], &motion.given[..]);
-        self.beyond(here, at, force, &mut motion.remainder)
+        self.remainder_at(here, at, force, &mut motion.remainder)
     }
 
     /// The same at any state, relative to a regime with its sides.
-    pub(super) fn beyond(
+    pub(super) fn remainder_at(
         &mut self,
         (here, sides): (usize, &[Side]),
         (t, state, given): (f64, &[f64], &[f64]),
@@ -39,7 +39,7 @@ impl ExponentialIntegrator {
 
     /// The same where a motion with these rates is so many steps later, or was so many before:
     /// beside a surface that it crosses.
-    pub(super) fn meet_near(
+    pub(super) fn find_remainder_beside(
         &mut self,
         motion: &mut Motion,
         (t, steps): (f64, f64),
@@ -50,14 +50,14 @@ impl ExponentialIntegrator {
             return Ok(());
         };
         if !motion.remainder.moves {
-            return self.meet(motion, t, &mut **force);
+            return self.find_remainder(motion, t, &mut **force);
         }
         let tau = steps * self.step;
-        let pairs = motion.state.iter().zip(rates);
-        let near: Vec<f64> = pairs.map(|(x, rate)| x + tau * rate).collect();
+        let near = motion.state.iter().zip(rates);
+        let near: Vec<f64> = near.map(|(x, rate)| x + tau * rate).collect();
         let here = (motion.regime, &motion.sides[..]);
         let at = (t + tau, &near[..], &motion.given[..]);
-        self.beyond(here, at, &mut **force, &mut motion.remainder)
+        self.remainder_at(here, at, &mut **force, &mut motion.remainder)
     }
 
     /// Takes accelerations relative to a regime with its sides, not to the one in which the

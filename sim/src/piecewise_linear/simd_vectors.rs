@@ -1,6 +1,6 @@
-//! Numbers in groups of four, so that sums over modes run side by side: the order of the
+//! Numbers in SIMD vectors of four, so that sums over modes run side by side: the order of the
 //! additions is fixed, and with it every bit of the result, whatever the processor. The loops
-//! over groups are in `kernels`.
+//! over SIMD vectors are in `kernels`.
 
 use std::ops::{Add, AddAssign, Mul, MulAssign, Sub, SubAssign};
 
@@ -14,9 +14,9 @@ use super::kernels;
 /// compiled for several of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(32))]
-pub(super) struct Lane([f64; 4]);
+pub(super) struct SimdVector([f64; 4]);
 
-impl Lane {
+impl SimdVector {
     pub const ZERO: Self = Self([0.0; 4]);
 
     #[inline(always)]
@@ -37,7 +37,7 @@ impl Lane {
     }
 }
 
-impl Add for Lane {
+impl Add for SimdVector {
     type Output = Self;
 
     #[inline(always)]
@@ -47,7 +47,7 @@ impl Add for Lane {
     }
 }
 
-impl Sub for Lane {
+impl Sub for SimdVector {
     type Output = Self;
 
     #[inline(always)]
@@ -57,7 +57,7 @@ impl Sub for Lane {
     }
 }
 
-impl Mul for Lane {
+impl Mul for SimdVector {
     type Output = Self;
 
     #[inline(always)]
@@ -67,71 +67,71 @@ impl Mul for Lane {
     }
 }
 
-impl AddAssign for Lane {
+impl AddAssign for SimdVector {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl SubAssign for Lane {
+impl SubAssign for SimdVector {
     #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-impl MulAssign for Lane {
+impl MulAssign for SimdVector {
     #[inline(always)]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
 }
 
-/// How many groups hold so many numbers.
-pub(super) fn groups(count: usize) -> usize {
+/// How many SIMD vectors hold so many numbers.
+pub(super) fn simd_vectors(count: usize) -> usize {
     count.div_ceil(4)
 }
 
-/// Numbers in groups, the last one filled with zeros.
-pub(super) fn pack(values: &[f64]) -> Vec<Lane> {
-    let group = |chunk: &[f64]| {
-        let mut group = [0.0; 4];
-        group[..chunk.len()].copy_from_slice(chunk);
-        Lane::new(group)
+/// Numbers in SIMD vectors, the last one filled with zeros.
+pub(super) fn pack(values: &[f64]) -> Vec<SimdVector> {
+    let simd_vector = |chunk: &[f64]| {
+        let mut simd_vector = [0.0; 4];
+        simd_vector[..chunk.len()].copy_from_slice(chunk);
+        SimdVector::new(simd_vector)
     };
-    values.chunks(4).map(group).collect()
+    values.chunks(4).map(simd_vector).collect()
 }
 
-/// The numbers of groups, one after the other.
-pub(super) fn numbers(groups: &[Lane]) -> &[f64] {
-    bytemuck::cast_slice(groups)
+/// The numbers of SIMD vectors, one after the other.
+pub(super) fn numbers(vectors: &[SimdVector]) -> &[f64] {
+    bytemuck::cast_slice(vectors)
 }
 
 /// The same, to be written.
-pub(super) fn numbers_mut(groups: &mut [Lane]) -> &mut [f64] {
-    bytemuck::cast_slice_mut(groups)
+pub(super) fn numbers_mut(vectors: &mut [SimdVector]) -> &mut [f64] {
+    bytemuck::cast_slice_mut(vectors)
 }
 
-/// A real matrix whose rows stand in groups, for products with vectors.
+/// A real matrix whose rows stand in SIMD vectors, for products with vectors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Packed {
     columns: usize,
-    /// Group of rows by group of rows, in each the columns one after the other.
-    entries: Vec<Lane>,
+    /// SIMD vector of rows by SIMD vector of rows, in each the columns one after the other.
+    entries: Vec<SimdVector>,
 }
 
 impl Packed {
     /// A matrix from its entries.
     pub fn of(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let entries = (0..groups(rows)).flat_map(|group| {
+        let entries = (0..simd_vectors(rows)).flat_map(|simd_vector| {
             let entry = &entry;
             (0..columns).map(move |column| {
                 let value = |lane: usize| {
-                    let row = 4 * group + lane;
+                    let row = 4 * simd_vector + lane;
                     if row < rows { entry(row, column) } else { 0.0 }
                 };
-                Lane::new([0, 1, 2, 3].map(value))
+                SimdVector::new([0, 1, 2, 3].map(value))
             })
         });
         let entries = entries.collect();
@@ -140,22 +140,22 @@ impl Packed {
 
     /// Adds the product of the first columns with a vector.
     #[inline(always)]
-    pub fn add_product<S: Simd>(&self, simd: S, vector: &[f64], out: &mut [Lane]) {
+    pub fn add_product<S: Simd>(&self, simd: S, vector: &[f64], out: &mut [SimdVector]) {
         if self.columns > 0 {
             kernels::add_product(simd, &self.entries, self.columns, vector, out);
         }
     }
 }
 
-/// Complex numbers in groups, real and imaginary parts apart.
+/// Complex numbers in SIMD vectors, real and imaginary parts apart.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Pairs {
-    pub re: Vec<Lane>,
-    pub im: Vec<Lane>,
+pub(super) struct SplitComplex {
+    pub re: Vec<SimdVector>,
+    pub im: Vec<SimdVector>,
 }
 
-impl Pairs {
-    /// Complex numbers in groups.
+impl SplitComplex {
+    /// Complex numbers in SIMD vectors.
     pub fn of(values: &[Complex<f64>]) -> Self {
         let part = |of: fn(&Complex<f64>) -> f64| {
             let parts: Vec<f64> = values.iter().map(of).collect();
@@ -168,14 +168,14 @@ impl Pairs {
     }
 
     /// exp(rate time) - 1 of each rate.
-    pub fn gains(rates: &[Complex<f64>], time: f64) -> Self {
-        let gains: Vec<Complex<f64>> = rates.iter().map(|rate| gain(rate * time)).collect();
-        Self::of(&gains)
+    pub fn expm1(rates: &[Complex<f64>], time: f64) -> Self {
+        let expm1: Vec<Complex<f64>> = rates.iter().map(|rate| expm1(rate * time)).collect();
+        Self::of(&expm1)
     }
 }
 
 /// exp(z) - 1, as accurate for small z as for large ones.
-pub(super) fn gain(z: Complex<f64>) -> Complex<f64> {
+pub(super) fn expm1(z: Complex<f64>) -> Complex<f64> {
     let (sine, cosine) = z.im.sin_cos();
     let grown = z.re.exp_m1();
     let half = (0.5 * z.im).sin();
@@ -187,7 +187,7 @@ pub(super) const LITTLE: f64 = 1.0;
 
 /// How many terms it needs for arguments up to this: the first term left out is below 5e-19
 /// of the sum.
-pub(super) fn terms_of_gains(argument: f64) -> usize {
+pub(super) fn terms_of_expm1(argument: f64) -> usize {
     match argument {
         _ if argument <= 1e-4 => 3,
         _ if argument <= 1.0 / 64.0 => 7,
@@ -203,29 +203,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn little_gains_are_exponentials_less_one() {
+    fn expm1_of_little_is_exponentials_less_one() {
         let rates = [
             Complex::new(-3.0, 40.0),
             Complex::new(0.0, 63.0),
             Complex::new(-9.0, 0.0),
         ];
-        let pairs = Pairs::of(&rates);
+        let pairs = SplitComplex::of(&rates);
         for argument in [1e-5, 1e-4, -1e-3, 1.0 / 64.0, -0.1, 0.25, -LITTLE] {
             let time = argument / 63.0;
-            // A unit amplitude moves by its gain.
-            let start = [Lane::new([1.0; 4]), Lane::ZERO];
-            let (mut moved, mut now) = ([Lane::ZERO; 2], start);
+            // A unit amplitude moves by its expm1.
+            let start = [SimdVector::new([1.0; 4]), SimdVector::ZERO];
+            let (mut moved, mut now) = ([SimdVector::ZERO; 2], start);
             let amplitudes = kernels::Amplitudes {
                 start: &start,
                 moved: &mut moved,
                 now: &mut now,
             };
-            let terms = terms_of_gains(argument.abs());
+            let terms = terms_of_expm1(argument.abs());
             dispatch!(Level::new(), simd => kernels::advance_little(simd, &pairs, time, terms, amplitudes));
             let [re, im] = moved;
             for (place, rate) in rates.iter().enumerate() {
                 let found = Complex::new(re.to_array()[place], im.to_array()[place]);
-                let wanted = gain(rate * time);
+                let wanted = expm1(rate * time);
                 // A few roundings of either.
                 assert!((found - wanted).norm() < 1e-15 * wanted.norm());
             }
@@ -233,9 +233,9 @@ mod tests {
     }
 
     #[test]
-    fn gains_of_large_arguments_are_exponentials_less_one() {
+    fn expm1_of_large_arguments_is_exponentials_less_one() {
         for z in [Complex::new(-2.0, 7.0), Complex::new(1.5, -300.0)] {
-            assert!((gain(z) - (z.exp() - 1.0)).norm() < 1e-15 * z.exp().norm());
+            assert!((expm1(z) - (z.exp() - 1.0)).norm() < 1e-15 * z.exp().norm());
         }
     }
 
@@ -245,7 +245,7 @@ mod tests {
             let entry = |i: usize, j: usize| (3 * i + j * j) as f64 - 4.0;
             let packed = Packed::of(rows, columns, entry);
             let vector: Vec<f64> = (0..columns).map(|j| j as f64 + 0.5).collect();
-            let mut out = vec![Lane::new([1.0; 4]); groups(rows)];
+            let mut out = vec![SimdVector::new([1.0; 4]); simd_vectors(rows)];
             dispatch!(Level::new(), simd => packed.add_product(simd, &vector, &mut out));
             for row in 0..rows {
                 let wanted: f64 = (0..columns).map(|j| entry(row, j) * vector[j]).sum();

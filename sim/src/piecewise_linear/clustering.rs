@@ -33,23 +33,23 @@ pub(super) fn near_zero(eigenvalues: &[Complex<f64>], forcing: f64, slow: f64) -
         .collect()
 }
 
-/// Eigenvalues in groups: for each the number of its group, 0 for those near zero. `share`
+/// Eigenvalues in clusters: for each the number of its cluster, 0 for those near zero. `share`
 /// says of two eigenvalues and their relative distance whether they belong together.
-pub(super) fn groups(
+pub(super) fn clusters(
     eigenvalues: &[Complex<f64>],
     zeros: usize,
     share: impl Fn(usize, usize, f64) -> bool,
 ) -> Vec<usize> {
-    let mut group: Vec<usize> = (0..eigenvalues.len())
+    let mut cluster: Vec<usize> = (0..eigenvalues.len())
         .map(|place| if place < zeros { 0 } else { place + 1 })
         .collect();
     for a in zeros..eigenvalues.len() {
         for b in a + 1..eigenvalues.len() {
             let (x, y) = (eigenvalues[a], eigenvalues[b]);
             let distance = 2.0 * (x - y).norm() / (x.norm() + y.norm());
-            if (distance <= EQUAL || share(a, b, distance)) && group[a] != group[b] {
-                let (kept, gone) = (group[a], group[b]);
-                for place in &mut group {
+            if (distance <= EQUAL || share(a, b, distance)) && cluster[a] != cluster[b] {
+                let (kept, gone) = (cluster[a], cluster[b]);
+                for place in &mut cluster {
                     if *place == gone {
                         *place = kept;
                     }
@@ -57,15 +57,15 @@ pub(super) fn groups(
             }
         }
     }
-    group
+    cluster
 }
 
 /// Ranges of equal neighbours.
-pub(super) fn runs(group: &[usize]) -> Vec<Range<usize>> {
+pub(super) fn runs(cluster: &[usize]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
-    for (place, number) in group.iter().enumerate() {
+    for (place, number) in cluster.iter().enumerate() {
         match runs.last_mut() {
-            Some(run) if group[run.start] == *number => run.end = place + 1,
+            Some(run) if cluster[run.start] == *number => run.end = place + 1,
             _ => runs.push(place..place + 1),
         }
     }

@@ -7,9 +7,9 @@ use nalgebra::{Complex, DVector};
 
 use super::forced::factorial;
 use super::integrals::{Integrals, Polynomial};
-use super::lanes::{Lane, Pairs, pack};
 use super::modes::Modes;
 use super::regime::Cluster;
+use super::simd_vectors::{SimdVector, SplitComplex, pack};
 
 /// A function of state, inputs and sinusoids: coefficients as in [`AffineRows`].
 #[derive(Clone, Debug, PartialEq)]
@@ -73,8 +73,8 @@ impl Linear {
 /// What happens to a regime when a function reaches a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Limits {
-    /// The switching group the function belongs to.
-    pub group: usize,
+    /// The family of parallel guards the function belongs to.
+    pub family: usize,
     /// The regime lasts while the function is above.
     pub low: f64,
     /// The regime lasts while the function is below.
@@ -83,9 +83,9 @@ pub(super) struct Limits {
 
 impl Limits {
     /// No limits.
-    pub fn none(group: usize) -> Self {
+    pub fn none(family: usize) -> Self {
         Self {
-            group,
+            family,
             low: f64::NEG_INFINITY,
             high: f64::INFINITY,
         }
@@ -96,29 +96,29 @@ impl Limits {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weights {
     /// Real parts in the derivatives of order 0 to 3.
-    pub re: Lane,
+    pub re: SimdVector,
     /// Imaginary parts.
-    pub im: Lane,
+    pub im: SimdVector,
     /// Magnitudes for the orders 0, 1, 4 and 2.
-    pub size: Lane,
+    pub size: SimdVector,
 }
 
-/// The factors of a group of modes in the value of a function.
+/// The factors of a SIMD vector of modes in the value of a function.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ValueWeights {
-    pub re: Lane,
-    pub im: Lane,
-    pub size: Lane,
+    pub re: SimdVector,
+    pub im: SimdVector,
+    pub size: SimdVector,
 }
 
 /// A function prepared for one regime.
 #[derive(Clone, Debug)]
-pub(super) struct Functional {
+pub(super) struct EventFunction {
     pub linear: Linear,
     pub limits: Limits,
     /// The factors of each mode.
     pub weights: Vec<Weights>,
-    /// The factors of each group of modes in the value.
+    /// The factors of each SIMD vector of modes in the value.
     pub value_weights: Vec<ValueWeights>,
     /// What it feels of the integrals.
     pub polynomial: Polynomial,
@@ -131,7 +131,7 @@ pub(super) struct Functional {
     rate_sizes: Vec<f64>,
 }
 
-impl Functional {
+impl EventFunction {
     /// Prepares a function for a regime with these parts and this window, s.
     pub fn new(
         linear: Linear,
@@ -209,18 +209,18 @@ fn weights(values: &[Complex<f64>], modes: &Modes) -> Vec<Weights> {
         let factors = [0, 1, 2, 3].map(|order| value * rate.powu(order));
         let size = |order: i32| value.norm() * magnitude.powi(order);
         Weights {
-            re: Lane::new(factors.map(|factor| factor.re)),
-            im: Lane::new(factors.map(|factor| factor.im)),
-            size: Lane::new([size(0), size(1), size(4), size(2)]),
+            re: SimdVector::new(factors.map(|factor| factor.re)),
+            im: SimdVector::new(factors.map(|factor| factor.im)),
+            size: SimdVector::new([size(0), size(1), size(4), size(2)]),
         }
     };
     let rates = values.iter().zip(&modes.rate).zip(&modes.magnitude);
     rates.map(of).collect()
 }
 
-/// The same in groups.
+/// The same in SIMD vectors.
 fn value_weights(values: &[Complex<f64>]) -> Vec<ValueWeights> {
-    let parts = Pairs::of(values);
+    let parts = SplitComplex::of(values);
     let sizes: Vec<f64> = values.iter().map(|value| value.norm()).collect();
     let pairs = parts.re.iter().zip(&parts.im).zip(pack(&sizes));
     pairs

@@ -3,8 +3,8 @@
 use super::coincidence::{Crossing, coincident_rank};
 use super::dependents::{Asking, Standing};
 use super::error::ExactError;
-use super::functional::Linear;
-use super::groups::Place;
+use super::event_function::Linear;
+use super::parallel_guards::Cell;
 use super::propagator::Propagator;
 use super::saltation;
 
@@ -13,36 +13,36 @@ use super::saltation;
 pub(super) struct Limit {
     /// The regime it leaves.
     pub before: usize,
-    /// The function that reached its limit, and its group.
-    pub functional: usize,
-    pub group: usize,
+    /// The function that reached its limit, and its family.
+    pub event_function: usize,
+    pub family: usize,
     /// Whether it is the upper limit.
     pub upper: bool,
     /// Whether a jump led over it.
-    pub leapt: bool,
+    pub by_jump: bool,
     /// When, s.
     pub t: f64,
 }
 
 /// How a motion goes on.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Passage {
+pub(super) struct Transition {
     /// The regime it enters.
     pub after: usize,
     /// Where the constant saltation matrix is kept, if it is constant.
     pub saltation: Option<usize>,
-    /// Whether functions of other groups may jump.
+    /// Whether functions of other families may jump.
     pub moves_others: bool,
 }
 
 impl Limit {
-    /// The rank of the threshold, given the place of its group, and whether its surfaces are
+    /// The rank of the threshold, given the cell of its family, and whether its surfaces are
     /// positive beyond.
-    pub fn rank(&self, place: Place) -> (usize, bool) {
-        match (place, self.upper) {
-            (Place::Between(above), true) => (above, true),
-            (Place::Between(above), false) => (above - 1, false),
-            (Place::On(rank), upper) => (rank, upper),
+    pub fn rank(&self, cell: Cell) -> (usize, bool) {
+        match (cell, self.upper) {
+            (Cell::Between(above), true) => (above, true),
+            (Cell::Between(above), false) => (above - 1, false),
+            (Cell::On(rank), upper) => (rank, upper),
         }
     }
 
@@ -53,80 +53,80 @@ impl Limit {
 
 impl Propagator {
     /// How a motion passes a limit of its regime.
-    pub(super) fn passage(
+    pub(super) fn transition(
         &mut self,
         limit: &Limit,
         standing: Standing<'_>,
-    ) -> Result<Passage, ExactError> {
+    ) -> Result<Transition, ExactError> {
         if self.has_dependents() {
-            let after = self.beyond_with_dependents(limit, standing)?;
-            return Ok(Passage {
+            let after = self.adjacent_with_dependents(limit, standing)?;
+            return Ok(Transition {
                 after,
                 saltation: self.saltation(limit, after),
                 moves_others: true,
             });
         }
-        let Limit { before, group, .. } = *limit;
-        let known = self.regimes[before].beyond[limit.functional][usize::from(limit.upper)];
-        let beyond = match known {
-            Some(beyond) => beyond,
-            None => self.find_beyond(limit)?,
+        let Limit { before, family, .. } = *limit;
+        let known = self.regimes[before].adjacent[limit.event_function][usize::from(limit.upper)];
+        let adjacent = match known {
+            Some(adjacent) => adjacent,
+            None => self.find_adjacent(limit)?,
         };
-        let mut passage = Passage {
-            after: beyond.regime,
-            saltation: beyond.saltation,
-            moves_others: beyond.moves_others,
+        let mut transition = Transition {
+            after: adjacent.regime,
+            saltation: adjacent.saltation,
+            moves_others: adjacent.moves_others,
         };
-        if beyond.jumps && !limit.leapt {
+        if adjacent.jumps && !limit.by_jump {
             let Standing {
                 state,
                 inputs,
                 phases,
             } = standing;
-            let rate = |index: usize| self.rate(index, group, state, inputs, phases);
-            let (here, there) = (rate(before), rate(beyond.regime));
+            let rate = |index: usize| self.rate(index, family, state, inputs, phases);
+            let (here, there) = (rate(before), rate(adjacent.regime));
             // A motion that has just left the surface, or hardly gets there, has no rate there
             // but rounding.
-            let slack = self.rate_rounding(beyond.regime, group, state);
+            let slack = self.rate_rounding(adjacent.regime, family, state);
             if there * limit.outward() < -slack && here * limit.outward() > -slack {
-                let mut places = self.regimes[before].places.clone();
-                places[group] = Place::On(limit.rank(places[group]).0);
-                passage.after = self.regime(&places, limit.t)?;
-                passage.saltation = None;
-                passage.moves_others = true;
+                let mut cells = self.regimes[before].cells.clone();
+                cells[family] = Cell::On(limit.rank(cells[family]).0);
+                transition.after = self.regime(&cells, limit.t)?;
+                transition.saltation = None;
+                transition.moves_others = true;
             }
         }
-        Ok(passage)
+        Ok(transition)
     }
 
     /// The regime beyond a limit where functions feel the sides of others.
-    fn beyond_with_dependents(
+    fn adjacent_with_dependents(
         &mut self,
         limit: &Limit,
         standing: Standing<'_>,
     ) -> Result<usize, ExactError> {
-        let group = limit.group;
-        let places = self.regimes[limit.before].places.clone();
-        let outline = self.outline(&places);
-        let rank = limit.rank(places[group]).0;
+        let family = limit.family;
+        let cells = self.regimes[limit.before].cells.clone();
+        let outline = self.outline(&cells);
+        let rank = limit.rank(cells[family]).0;
         let crossing = Crossing {
-            group,
-            function: self.outlines[outline].functions[group].clone(),
-            threshold: self.outlines[outline].thresholds[group][rank],
+            family,
+            function: self.outlines[outline].functions[family].clone(),
+            threshold: self.outlines[outline].thresholds[family][rank],
             outline,
         };
-        let mut after = places.clone();
-        after[group] = places[group].beyond(limit.upper);
-        if limit.leapt {
+        let mut after = cells.clone();
+        after[family] = cells[family].adjacent(limit.upper);
+        if limit.by_jump {
             self.settle(&mut after, Asking::Jump(outline), standing);
             return self.regime(&after, limit.t);
         }
         self.settle(&mut after, Asking::Crossing(&crossing), standing);
-        if matches!(places[group], Place::Between(_))
+        if matches!(cells[family], Cell::Between(_))
             && self.leads_back(limit, &crossing, &after, standing)
         {
-            let held = self.held(limit, &crossing, &places, standing);
-            let (t, guard) = (limit.t, self.groups[group].ranks[rank][0]);
+            let held = self.held(limit, &crossing, &cells, standing);
+            let (t, guard) = (limit.t, self.families[family].ranks[rank][0]);
             let held = held.ok_or(ExactError::Held { t, guard })?;
             return self.regime(&held, limit.t);
         }
@@ -138,7 +138,7 @@ impl Propagator {
         &mut self,
         limit: &Limit,
         crossing: &Crossing,
-        after: &[Place],
+        after: &[Cell],
         standing: Standing<'_>,
     ) -> bool {
         let after = self.outline(after);
@@ -147,20 +147,20 @@ impl Propagator {
         there * limit.outward() < -slack && here * limit.outward() > -slack
     }
 
-    /// The places held on the surface that makes the rates lead back: the one that is crossed
+    /// The cells held on the surface that makes the rates lead back: the one that is crossed
     /// or, of those that coincide with it, the outermost one whose side alone does so.
     fn held(
         &mut self,
         limit: &Limit,
         crossing: &Crossing,
-        places: &[Place],
+        cells: &[Cell],
         standing: Standing<'_>,
-    ) -> Option<Vec<Place>> {
-        let others = (0..places.len())
+    ) -> Option<Vec<Cell>> {
+        let others = (0..cells.len())
             .rev()
-            .filter(|index| *index != limit.group);
-        for index in std::iter::once(limit.group).chain(others) {
-            if index != limit.group && !self.dependent[index] {
+            .filter(|index| *index != limit.family);
+        for index in std::iter::once(limit.family).chain(others) {
+            if index != limit.family && !self.dependent[index] {
                 continue;
             }
             let outline = &self.outlines[crossing.outline];
@@ -168,14 +168,14 @@ impl Propagator {
                 continue;
             };
             let upper = limit.upper == (factor > 0.0);
-            let inside = Place::Between(if upper { rank } else { rank + 1 });
-            if places[index] != inside {
+            let inside = Cell::Between(if upper { rank } else { rank + 1 });
+            if cells[index] != inside {
                 continue;
             }
-            let mut alone = places.to_vec();
-            alone[index] = inside.beyond(upper);
+            let mut alone = cells.to_vec();
+            alone[index] = inside.adjacent(upper);
             if self.leads_back(limit, crossing, &alone, standing) {
-                alone[index] = Place::On(rank);
+                alone[index] = Cell::On(rank);
                 return (!self.is_felt(&alone, index)).then_some(alone);
             }
         }
@@ -196,27 +196,27 @@ impl Propagator {
         )
     }
 
-    /// Where the constant saltation matrix of a passage is kept, if it is constant.
+    /// Where the constant saltation matrix of a transition is kept, if it is constant.
     fn saltation(&mut self, limit: &Limit, after: usize) -> Option<usize> {
-        let key = (limit.before, limit.functional, limit.upper, after);
-        if let Some(&known) = self.passed.get(&key) {
+        let key = (limit.before, limit.event_function, limit.upper, after);
+        if let Some(&known) = self.saltation_of.get(&key) {
             return known;
         }
-        let entered = &self.regimes[limit.before];
-        let functional = &entered.regime.functionals[limit.functional];
-        let limits = &functional.limits;
-        let held = matches!(self.regimes[after].places[limit.group], Place::On(_));
+        let visited = &self.regimes[limit.before];
+        let event_function = &visited.regime.event_functions[limit.event_function];
+        let limits = &event_function.limits;
+        let held = matches!(self.regimes[after].cells[limit.family], Cell::On(_));
         let constant = saltation::constant(
-            &entered.regime.system,
+            &visited.regime.system,
             &self.regimes[after].regime.system,
-            &functional.linear,
+            &event_function.linear,
             if limit.upper { limits.high } else { limits.low },
         );
-        let place = constant.filter(|_| !held).map(|u| {
+        let kept = constant.filter(|_| !held).map(|u| {
             self.saltations.push(u);
             self.saltations.len() - 1
         });
-        self.passed.insert(key, place);
-        place
+        self.saltation_of.insert(key, kept);
+        kept
     }
 }

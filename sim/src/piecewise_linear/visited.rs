@@ -1,0 +1,194 @@
+//! The regimes of a model: made when a motion first enters them, and kept; and which of them a
+//! motion begins in.
+
+use nalgebra::Complex;
+
+use super::adjacent::Adjacent;
+use super::clock::Clock;
+use super::coincidence::factor;
+use super::decomposition::Failure;
+use super::dependents::{Asking, Standing};
+use super::error::ExactError;
+use super::event_function::{Limits, Linear};
+use super::parallel_guards::Cell;
+use super::propagator::Propagator;
+use super::regime::Regime;
+use super::sliding::slide;
+
+/// A regime that a motion has been in: one of a hybrid system's *modes*, a word that here is
+/// for vibration.
+pub(super) struct VisitedRegime {
+    pub cells: Vec<Cell>,
+    pub regime: Regime,
+    /// The family's function as the regime has it, for each family.
+    pub functions: Vec<Linear>,
+    /// The step of the table at which the last search ended.
+    pub step: usize,
+    /// For each function and limit the adjacent regime, once it is known.
+    pub adjacent: Vec<[Option<Adjacent>; 2]>,
+}
+
+impl Propagator {
+    /// The regime with these cells, made if it is new.
+    pub(super) fn regime(&mut self, cells: &[Cell], t: f64) -> Result<usize, ExactError> {
+        if let Some(&known) = self.known.get(cells) {
+            return Ok(known);
+        }
+        let mut sides = vec![0.0; self.evaluator.guard_count()];
+        let held = cells.iter().position(|cell| matches!(cell, Cell::On(_)));
+        let (system, mut parts) = match held {
+            None => {
+                for (family, cell) in self.families.iter().zip(cells) {
+                    family.write_sides(*cell, 0.0, &mut sides);
+                }
+                (self.evaluator.system(&sides), Vec::new())
+            }
+            Some(family) => {
+                let guard = self.families[family].first;
+                if self.has_dependents()
+                    && (0..cells.len()).any(|family| self.is_felt(cells, family))
+                {
+                    return Err(ExactError::Held { t, guard });
+                }
+                let sliding = slide(&mut self.evaluator, &self.families, cells)
+                    .ok_or(ExactError::Held { t, guard })?;
+                (sliding.system, sliding.parts)
+            }
+        };
+        let functions: Vec<Linear> = self
+            .families
+            .iter()
+            .map(|family| family.function(&system))
+            .collect();
+        let mut events = Vec::new();
+        for (index, (family, cell)) in self.families.iter().zip(cells).enumerate() {
+            events.push(match cell {
+                Cell::Between(above) => {
+                    let function = functions[index].clone();
+                    let limits = if self.is_at_rest(&functions, cells, index) {
+                        Limits::none(index)
+                    } else {
+                        family.limits(&system, index, *above)
+                    };
+                    (function, limits)
+                }
+                Cell::On(_) => (
+                    parts.remove(0),
+                    Limits {
+                        family: index,
+                        low: 0.0,
+                        high: 1.0,
+                    },
+                ),
+            });
+        }
+        let regime = Regime::new(system, events, self.slow).map_err(|failure| match failure {
+            Failure::NotFinite => ExactError::NotFinite,
+            Failure::NotConverged => ExactError::NotConverged,
+        })?;
+        let adjacent = vec![[None; 2]; regime.event_functions.len()];
+        self.regimes.push(VisitedRegime {
+            cells: cells.to_vec(),
+            regime,
+            functions,
+            step: 0,
+            adjacent,
+        });
+        let index = self.regimes.len() - 1;
+        self.known.insert(cells.to_vec(), index);
+        Ok(index)
+    }
+
+    /// Whether a function keeps its value throughout the regime with these cells, for which it
+    /// was decided: it is still, or in proportion to one that is held.
+    fn is_at_rest(&self, functions: &[Linear], cells: &[Cell], family: usize) -> bool {
+        let held = |(other, cell): (&Linear, &Cell)| {
+            matches!(cell, Cell::On(_)) && factor(&functions[family], other).is_some()
+        };
+        let mut others = functions.iter().zip(cells);
+        self.has_dependents()
+            && (self.dependent[family] && functions[family].is_still() || others.any(held))
+    }
+
+    /// The cells of all families at a state, below a threshold that is met, and the families
+    /// and ranks of those that are.
+    pub(super) fn cells_at(
+        &mut self,
+        state: &[f64],
+        inputs: &[f64],
+        phases: &[Complex<f64>],
+    ) -> (Vec<Cell>, Vec<(usize, usize)>) {
+        let mut sides = vec![0.0; self.evaluator.guard_count()];
+        let mut cells = vec![Cell::Between(0); self.families.len()];
+        let mut tied = Vec::new();
+        // A function may depend on the cells of others: once more until all agree.
+        for _ in 0..=self.families.len() {
+            for (family, cell) in self.families.iter().zip(&cells) {
+                family.write_sides(*cell, 0.0, &mut sides);
+            }
+            let system = self.evaluator.system(&sides);
+            tied.clear();
+            let mut found = Vec::new();
+            for (index, family) in self.families.iter().enumerate() {
+                let value = family.function(&system).value(state, inputs, phases);
+                let mut above = 0;
+                for rank in 0..family.ranks.len() {
+                    let threshold = family.threshold(&system, rank);
+                    if (value - threshold).abs() <= 4.0 * f64::EPSILON * threshold.abs() {
+                        tied.push((index, rank));
+                    } else if value > threshold {
+                        above = rank + 1;
+                    }
+                }
+                found.push(Cell::Between(above));
+            }
+            if found == cells {
+                break;
+            }
+            cells = found;
+        }
+        (cells, tied)
+    }
+
+    /// The regime of a motion that begins at a state.
+    pub(super) fn regime_at(
+        &mut self,
+        clock: Clock,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<usize, ExactError> {
+        let phases = self.phases_at(clock);
+        if self.has_dependents() {
+            let standing = Standing {
+                state,
+                inputs,
+                phases: &phases,
+            };
+            let mut cells = vec![Cell::Between(0); self.families.len()];
+            self.settle(&mut cells, Asking::Start, standing);
+            return self.regime(&cells, clock.time());
+        }
+        let (mut cells, tied) = self.cells_at(state, inputs, &phases);
+        let mut found = self.regime(&cells, clock.time())?;
+        for (family, rank) in tied {
+            let mut side = |propagator: &mut Self, cell: Cell| {
+                cells[family] = cell;
+                propagator.regime(&cells, clock.time())
+            };
+            let (down, up) = (
+                side(self, Cell::Between(rank))?,
+                side(self, Cell::Between(rank + 1))?,
+            );
+            let below = self.rate(down, family, state, inputs, &phases);
+            let above = self.rate(up, family, state, inputs, &phases);
+            found = if above > 0.0 && below >= 0.0 {
+                side(self, Cell::Between(rank + 1))?
+            } else if above < 0.0 && below > 0.0 {
+                side(self, Cell::On(rank))?
+            } else {
+                side(self, Cell::Between(rank))?
+            };
+        }
+        Ok(found)
+    }
+}
