@@ -1,5 +1,6 @@
 //! Why nothing could be compared or searched.
 
+use crate::ids::WindowId;
 use std::fmt;
 
 use eomgen_compiled_model::Error as ModelError;
@@ -51,11 +52,11 @@ pub struct Unfollowed {
 }
 
 impl Unfollowed {
-    /// Some windows of a set, by their places; none if there are none.
-    pub fn of(windows: &Windows<'_>, places: &[usize]) -> Option<Self> {
-        let window = &windows.list[*places.first()?];
+    /// Some of all windows; none if there are none.
+    pub fn of(windows: &Windows<'_>, unfollowed: &[WindowId]) -> Option<Self> {
+        let window = &windows.list[*unfollowed.first()?];
         Some(Self {
-            count: places.len(),
+            count: unfollowed.len(),
             of: windows.list.len(),
             first: window.times[0],
             record: windows.records[window.record].name.clone(),

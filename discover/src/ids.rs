@@ -58,6 +58,16 @@ macro_rules! ids {
     )*};
 }
 
+/// Windows that stand together.
+pub type WindowRange = std::iter::Map<std::ops::Range<usize>, fn(usize) -> WindowId>;
+
+impl WindowId {
+    /// Windows that stand together, in order.
+    pub fn range(indices: std::ops::Range<usize>) -> WindowRange {
+        indices.map(Self::new as fn(usize) -> Self)
+    }
+}
+
 ids! {
     /// A channel of a dataset.
     ChannelId;

@@ -2,11 +2,12 @@
 //! three of them, to first order along the fitted motion. Whether they are accepted is decided
 //! where they are fitted in full.
 
+use crate::ids::{BasisFunctionId, EquationId};
 use nalgebra::{DMatrix, DVector};
 
 use crate::empirical::expressions::{Scales, Term, terms};
 use crate::fit::fitted::Fit;
-use crate::fit::linearised::LinearisedFit;
+use crate::fit::linearised::{Linearisation, LinearisedFit};
 use crate::fit::residuals::correlation;
 use crate::model::problem::EstimationProblem;
 use crate::residual_force::basis_functions::Range;
@@ -31,18 +32,27 @@ pub struct Expression {
 
 /// A set of terms with what it is expected to do.
 struct Set {
-    places: Vec<usize>,
+    terms: Vec<BasisFunctionId>,
     sizes: Sizes,
 }
 
-/// The best expression in one of some equations, by their places in the list; none where no set
+/// The best expression in one of some equations; none where no set
 /// of terms stands out, or neighbouring motions cannot be followed.
-pub fn chosen(problem: &EstimationProblem<'_>, fit: &Fit, among: &[usize]) -> Option<Expression> {
+pub fn chosen(
+    problem: &EstimationProblem<'_>,
+    fit: &Fit,
+    among: &[EquationId],
+) -> Option<Expression> {
     let equations = Equations::of(problem, fit)?;
     let at = LinearisedFit::of(problem, fit, 1.0);
-    let operating_points = operating_points((&at, problem, fit), &equations);
+    let linearisation = Linearisation {
+        at: &at,
+        problem,
+        fit,
+    };
+    let operating_points = operating_points(linearisation, &equations);
     let inputs = largest_inputs(problem);
-    let of = |equation: &usize| {
+    let of = |equation: &EquationId| {
         let own = operating_points.iter().flatten().map(|all| all[*equation]);
         let range = Range::of(&own.collect::<Vec<OperatingPoint>>());
         let scales = Scales {
@@ -50,20 +60,21 @@ pub fn chosen(problem: &EstimationProblem<'_>, fit: &Fit, among: &[usize]) -> Op
             place: rounded(range.place.0.abs().max(range.place.1.abs())),
             inputs: inputs.clone(),
         };
-        in_equation((&at, problem, fit), &equations, (*equation, &range), scales)
+        in_equation(linearisation, &equations, *equation, range.width(), scales)
     };
     let found = among.iter().filter_map(of);
     found.max_by(|a, b| a.part.total_cmp(&b.part))
 }
 
 fn in_equation(
-    of: (&LinearisedFit, &EstimationProblem<'_>, &Fit),
+    of: Linearisation<'_>,
     equations: &Equations,
-    (equation, range): (usize, &Range),
+    equation: EquationId,
+    width: f64,
     scales: Scales,
 ) -> Option<Expression> {
     let own = &equations.list[equation];
-    let terms = terms(&scales, own.unit == "rad", range.width());
+    let terms = terms(&scales, own.unit == "rad", width);
     let weights = |operating_points: &[OperatingPoint], inputs: &[f64], out: &mut [f64]| {
         for (slot, term) in out.iter_mut().zip(&terms) {
             *slot = term.at(&operating_points[equation], inputs, &scales);
@@ -74,11 +85,11 @@ fn in_equation(
         weights: &weights,
     };
     let blocks = force_responses(of, equations, &columns)?;
-    let regression = Regression::new(of.0, of.2, &blocks)?;
-    let best = best(&regression, (of.0, of.1), &blocks)?;
+    let regression = Regression::new(of.at, of.fit, &blocks)?;
+    let best = best(&regression, of, &blocks)?;
     Some(Expression {
         equation: own.clone(),
-        terms: best.places.iter().map(|p| terms[*p].clone()).collect(),
+        terms: best.terms.iter().map(|term| terms[*term].clone()).collect(),
         sizes: best.sizes.values.iter().copied().collect(),
         part: best.sizes.decrease / regression.squares,
         scales,
@@ -86,26 +97,22 @@ fn in_equation(
 }
 
 /// The best set of one term, or of more where that takes much of what fewer leave.
-fn best(
-    regression: &Regression,
-    (at, problem): (&LinearisedFit, &EstimationProblem<'_>),
-    blocks: &[DMatrix<f64>],
-) -> Option<Set> {
+fn best(regression: &Regression, of: Linearisation<'_>, blocks: &[DMatrix<f64>]) -> Option<Set> {
     let count = blocks.iter().map(DMatrix::ncols).max()?;
     let mut known: Option<Set> = None;
     for size in 1..=thresholds::UNNAMED_TERMS {
         let sets = subsets(count, size).into_iter();
-        let sizes = sets.map(|places| (regression.shared(&places), places));
-        let Some((sizes, places)) = sizes.max_by(|a, b| a.0.decrease.total_cmp(&b.0.decrease))
+        let sizes = sets.map(|terms| (regression.shared(&terms), terms));
+        let Some((sizes, terms)) = sizes.max_by(|a, b| a.0.decrease.total_cmp(&b.0.decrease))
         else {
             break;
         };
         let mut values = DVector::zeros(count);
-        for (place, value) in places.iter().zip(sizes.values.iter()) {
-            values[*place] = *value;
+        for (term, value) in terms.iter().zip(sizes.values.iter()) {
+            values[term.index()] = *value;
         }
-        let left = regression.remaining((at, blocks), &|_| values.clone(), true);
-        let over = correlation(&left, problem.noise.len());
+        let residuals = regression.remaining(of.at, blocks, &|_| values.clone(), true);
+        let over = correlation(&residuals, of.problem.noise.len());
         let gain_before = known.as_ref().map_or(0.0, |set| set.sizes.decrease);
         let squares = regression.squares - sizes.decrease;
         let level = (squares / regression.numbers).max(1.0);
@@ -113,19 +120,21 @@ fn best(
         let is_enough = taken > 2.0 * thresholds::INFORMATION * level * over
             && taken > thresholds::TERM_TAKES * (regression.squares - gain_before);
         if is_enough {
-            known = Some(Set { places, sizes });
+            known = Some(Set { terms, sizes });
         }
     }
     known
 }
 
-/// All sets of so many of so many places.
-fn subsets(count: usize, size: usize) -> Vec<Vec<usize>> {
-    let mut found: Vec<Vec<usize>> = vec![Vec::new()];
+/// All sets of so many of so many terms.
+fn subsets(count: usize, size: usize) -> Vec<Vec<BasisFunctionId>> {
+    let mut found: Vec<Vec<BasisFunctionId>> = vec![Vec::new()];
     for _ in 0..size {
         let longer = found.iter().flat_map(|set| {
-            let from = set.last().map_or(0, |last| last + 1);
-            (from..count).map(move |place| [&set[..], &[place]].concat())
+            let from = set.last().map_or(0, |last| last.index() + 1);
+            BasisFunctionId::first(count)
+                .skip(from)
+                .map(move |term| [&set[..], &[term]].concat())
         });
         found = longer.collect();
     }

@@ -6,6 +6,7 @@
 pub mod chosen;
 pub mod expressions;
 
+use crate::ids::{EffectId, EquationId, UnknownId};
 use model_spec::edit::{Edit, NewForce, NewParameter, NewValue};
 use model_spec::model::Model;
 
@@ -16,12 +17,13 @@ use crate::empirical::chosen::{Expression, chosen};
 use crate::empirical::expressions::{Of, Words};
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
-use crate::fit::{full, preliminary};
+use crate::fit::full;
+use crate::fit::preliminary::{self, WarmStart};
 use crate::model::problem::EstimationProblem;
 use crate::residual_force::residual_force;
 use crate::residual_force::types::RankedEquation;
 use crate::search::acceptance::{EffectUnknown, TestStatistics, acceptance_test};
-use crate::search::found::{Accepted, Found, Rejected};
+use crate::search::found::{Accepted, Found, Rejected, TestGap};
 use crate::search::rejection::Rejection;
 use crate::thresholds;
 
@@ -81,8 +83,10 @@ fn add_empirical(
         }
     };
     let label = candidate.label();
-    let unknowns: Vec<usize> = (before.unknowns.len()..fit.unknowns.len()).collect();
-    let verdict = accepted((before, &fit), &unknowns, floor);
+    let unknowns: Vec<UnknownId> = UnknownId::first(fit.unknowns.len())
+        .skip(before.unknowns.len())
+        .collect();
+    let verdict = accepted(before, &fit, &unknowns, floor);
     let outcome = verdict
         .as_ref()
         .err()
@@ -99,7 +103,10 @@ fn add_empirical(
                 unknowns,
                 equivalent: Vec::new(),
                 statistics,
-                test_gap: (before.test.rms, test),
+                test_gap: TestGap {
+                    before: before.test.rms,
+                    after: test,
+                },
             });
             found.last = Some(fit);
         }
@@ -122,7 +129,7 @@ fn sought(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Expression> {
         .collect();
     as_well.sort_by(|a, b| explains(b).total_cmp(&explains(a)));
     let best = as_well.iter().take(thresholds::UNNAMED_EQUATIONS);
-    let among: Vec<usize> = best.map(|ranking| ranking.equation).collect();
+    let among: Vec<EquationId> = best.map(|ranking| ranking.equation).collect();
     chosen(problem, fit, &among)
 }
 
@@ -255,13 +262,16 @@ fn fitted(
     }
     let texts = candidate.added(problem, &fit.texts, sizes)?;
     let near = || {
-        let left = (fit, fit.train.estimate.cost);
+        let begun = WarmStart {
+            fit,
+            cost: fit.train.estimate.cost,
+        };
         let preliminary = preliminary::expected(
             problem,
             texts.clone(),
             unknowns.clone(),
             theta.clone(),
-            left,
+            begun,
         )?;
         full::complete(problem, preliminary)
     };
@@ -276,13 +286,14 @@ fn fitted(
 /// Whether an expression is accepted: by all that is asked of an effect, each of its terms by
 /// itself, and by how much of the gap it closes.
 fn accepted(
-    (before, after): (&Fit, &Fit),
-    unknowns: &[usize],
+    before: &Fit,
+    after: &Fit,
+    unknowns: &[UnknownId],
     floor: f64,
 ) -> Result<TestStatistics, Rejection> {
-    let own: Vec<EffectUnknown> = (unknowns.iter().enumerate())
-        .map(|(effect, place)| EffectUnknown {
-            place: *place,
+    let own: Vec<EffectUnknown> = (EffectId::first(unknowns.len()).zip(unknowns))
+        .map(|(effect, unknown)| EffectUnknown {
+            unknown: *unknown,
             effect,
             base: 0.0,
             is_shape: false,

@@ -2,6 +2,7 @@
 //! through the records, because those that were fitted at wrong unknowns hold on to what impacts
 //! folded. Once that is near, [`crate::fit::gauss_newton`] goes on.
 
+use crate::ids::UnknownId;
 use nalgebra::DVector;
 
 use crate::fit::gauss_newton::{
@@ -165,23 +166,24 @@ impl<'a> Continuation<'a> {
     ) -> bool {
         let wanted = thresholds::SECANT_MOVES * self.left(estimate);
         let mut taken = false;
-        for (place, unknown) in self.shooting.unknowns.iter().enumerate() {
+        let all = self.shooting.unknowns;
+        for (id, unknown) in UnknownId::first(all.len()).zip(all) {
             if unknown.prior.is_some() || unknown.bounds.0 == unknown.bounds.1 {
                 continue;
             }
-            let mut secant = self.secant(estimate, linear, (place, self.sizes[place]));
+            let mut secant = self.secant(estimate, linear, id);
             let moved = secant.moved();
             if moved > 0.0
                 && !(wanted / thresholds::SECANT_NEAR..wanted * thresholds::SECANT_NEAR)
                     .contains(&moved)
             {
-                self.sizes[place] = secant.size * wanted / moved;
-                secant = self.secant(estimate, linear, (place, self.sizes[place]));
+                self.sizes[id] = secant.size * wanted / moved;
+                secant = self.secant(estimate, linear, id);
             }
             for (linear, change) in linear.iter_mut().zip(&secant.changes) {
                 if let (Some(linear), Some(change)) = (linear, change) {
                     let column = change / secant.size;
-                    linear.by_unknown.set_column(place, &column);
+                    linear.by_unknown.set_column(id.index(), &column);
                     taken = true;
                 }
             }
@@ -189,27 +191,27 @@ impl<'a> Continuation<'a> {
         taken
     }
 
-    /// What a change of an unknown, about so large, does to each window's residuals.
+    /// What a change of an unknown, does to each window's residuals.
     fn secant(
         &self,
         estimate: &Estimate,
         linear: &[Option<WindowDerivatives>],
-        (place, size): (usize, f64),
+        of: UnknownId,
     ) -> Secant {
-        let unknown = &self.shooting.unknowns[place];
-        let value = estimate.theta[place];
+        let (unknown, size) = (&self.shooting.unknowns[of], self.sizes[of]);
+        let value = estimate.theta[of];
         let mut theta = estimate.theta.clone();
         let ends = [value + size, value - size].map(|end| unknown.admissible(end));
-        theta[place] = ends.into_iter().find(|end| *end != value).unwrap_or(value);
-        let size = theta[place] - value;
+        theta[of] = ends.into_iter().find(|end| *end != value).unwrap_or(value);
+        let size = theta[of] - value;
         let initial_states = (self.follow)(&theta, Some(&estimate.initial_states)).states;
         let residuals = self.shooting.residuals(&theta, &initial_states);
-        let of = |(residual, linear): (Option<Residual>, &Option<WindowDerivatives>)| {
+        let changed = |(residual, linear): (Option<Residual>, &Option<WindowDerivatives>)| {
             let (residual, linear) = (residual?, linear.as_ref()?);
             let change = DVector::from_vec(residual.values) - &linear.residual;
             (size != 0.0 && change.iter().all(|c| c.is_finite())).then_some(change)
         };
-        let changes = residuals.into_iter().zip(linear).map(of).collect();
+        let changes = residuals.into_iter().zip(linear).map(changed).collect();
         Secant { size, changes }
     }
 }

@@ -4,6 +4,7 @@
 use crate::fit::prior::InitialStatePrior;
 use crate::fit::residuals::Residuals;
 use crate::fit::shooting::Shooting;
+use crate::ids::UnknownId;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
@@ -47,11 +48,16 @@ impl Fit {
             .collect()
     }
 
+    /// What was estimated, with which it is.
+    pub fn unknowns(&self) -> impl Iterator<Item = (UnknownId, &Unknown)> {
+        UnknownId::first(self.unknowns.len()).zip(&self.unknowns)
+    }
+
     /// The values of some unknowns as a specification states them, SI.
-    pub fn stated(&self, places: &[usize]) -> Vec<f64> {
+    pub fn stated(&self, unknowns: &[UnknownId]) -> Vec<f64> {
         let theta = &self.train.estimate.theta;
-        let of = |place: &usize| self.unknowns[*place].what.stated(theta[*place]);
-        places.iter().map(of).collect()
+        let of = |id: &UnknownId| self.unknowns[*id].what.stated(theta[*id]);
+        unknowns.iter().map(of).collect()
     }
 
     /// The training windows to be explained by the fit's own model.

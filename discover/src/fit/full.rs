@@ -1,6 +1,7 @@
 //! A specification fitted to the records in full: from a preliminary fit to unknowns with their
 //! uncertainty and to its residuals on the records it was fitted to and on the others.
 
+use crate::ids::WindowId;
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::DiscoverError;
@@ -262,12 +263,13 @@ fn refreshed(
     };
     let new = evaluated(shooting, &restarted, found.theta.clone(), initial_states);
     let mut initial_states = found.initial_states.clone();
-    for (place, start) in initial_states.iter_mut().enumerate() {
-        let before = found.squares[place] + prior.cost(place, start);
-        let after = new.squares[place] + restarted.cost(place, &new.initial_states[place]);
+    let windows = WindowId::first(initial_states.len());
+    for (window, start) in windows.zip(&mut initial_states) {
+        let before = found.squares[window] + prior.cost(window, start);
+        let after = new.squares[window] + restarted.cost(window, &new.initial_states[window]);
         if after < before {
-            start.clone_from(&new.initial_states[place]);
-            prior.mean[place].clone_from(&restarted.mean[place]);
+            start.clone_from(&new.initial_states[window]);
+            prior.mean[window].clone_from(&restarted.mean[window]);
         }
     }
     // What is known of a window from the one before holds at these unknowns, not at others.
@@ -290,10 +292,10 @@ fn uncertainty(
 ) -> Vec<f64> {
     let count = shooting.unknowns.len();
     let mut factor = DMatrix::zeros(count + 1, count + 1);
-    for (place, linear) in linear.iter().enumerate() {
+    for (window, linear) in WindowId::first(linear.len()).zip(linear) {
         if let Some(linear) = linear {
-            let window = reduced_block(linear, prior, place, &found.initial_states[place]);
-            factor = triangular_factor(&factor, &window.unknowns());
+            let block = reduced_block(linear, prior, window, &found.initial_states[window]);
+            factor = triangular_factor(&factor, &block.unknowns());
         }
     }
     let mut rows = DMatrix::zeros(count, count + 1);

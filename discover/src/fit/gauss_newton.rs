@@ -4,6 +4,7 @@
 //! are shortened until they help; every window may decide for itself how far its initial
 //! state follows, because impacts fold the outputs.
 
+use crate::ids::WindowId;
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::bounded_least_squares::least_squares;
@@ -94,12 +95,13 @@ fn totalled(
     initial_states: Vec<Vec<f64>>,
     squares: Vec<f64>,
 ) -> Estimate {
-    let of_starts = initial_states
-        .iter()
-        .enumerate()
-        .map(|(p, s)| prior.cost(p, s));
-    let cost =
-        squares.iter().sum::<f64>() + of_starts.sum::<f64>() + prior_of_unknowns(shooting, &theta);
+    let windows = WindowId::first(initial_states.len());
+    let of_initial_states = windows
+        .zip(&initial_states)
+        .map(|(window, state)| prior.cost(window, state));
+    let cost = squares.iter().sum::<f64>()
+        + of_initial_states.sum::<f64>()
+        + prior_of_unknowns(shooting, &theta);
     Estimate {
         theta,
         initial_states,
@@ -131,14 +133,14 @@ pub(crate) fn reduced_blocks(
     present: &Estimate,
     linear: &[Option<WindowDerivatives>],
 ) -> Vec<Option<ReducedBlock>> {
-    let windows = linear.iter().enumerate();
+    let windows = WindowId::first(linear.len()).zip(linear);
     windows
-        .map(|(place, linear)| {
+        .map(|(window, linear)| {
             Some(reduced_block(
                 linear.as_ref()?,
                 prior,
-                place,
-                &present.initial_states[place],
+                window,
+                &present.initial_states[window],
             ))
         })
         .collect()
@@ -243,7 +245,7 @@ fn followed(
     }
     // Most windows follow the whole step; the others are tried again, all at once.
     for damping in &thresholds::INITIAL_STATE_DAMPING[1..] {
-        let stuck: Vec<usize> = (0..best.squares.len())
+        let stuck: Vec<WindowId> = WindowId::first(best.squares.len())
             .filter(|w| total(&best, prior, *w) > total(present, prior, *w))
             .collect();
         if stuck.is_empty() {
@@ -267,7 +269,7 @@ fn followed(
     totalled(shooting, prior, theta, initial_states, squares)
 }
 
-fn total(estimate: &Estimate, prior: &InitialStatePrior, window: usize) -> f64 {
+fn total(estimate: &Estimate, prior: &InitialStatePrior, window: WindowId) -> f64 {
     estimate.squares[window] + prior.cost(window, &estimate.initial_states[window])
 }
 
@@ -276,22 +278,22 @@ fn some_squares(
     shooting: &Shooting<'_>,
     theta: &[f64],
     initial_states: &[Vec<f64>],
-    places: &[usize],
+    windows: &[WindowId],
 ) -> Vec<f64> {
     use rayon::prelude::*;
     let (values, sensors) = (shooting.values(theta), shooting.sensors(theta));
-    let size = places
+    let size = windows
         .len()
         .div_ceil(rayon::current_num_threads().max(1))
         .max(1);
-    let parts: Vec<Vec<f64>> = places
+    let parts: Vec<Vec<f64>> = windows
         .par_chunks(size)
         .map(|part| {
             let mut simulation = shooting.model.simulation(&values).ok();
             part.iter()
-                .map(|place| {
+                .map(|window| {
                     let residual = simulation.as_mut().and_then(|simulation| {
-                        shooting.residual(simulation, &sensors, *place, &initial_states[*place])
+                        shooting.residual(simulation, &sensors, *window, &initial_states[*window])
                     });
                     square(&residual)
                 })
@@ -307,14 +309,14 @@ fn some_squares(
 pub fn inner_solve(
     sensitivities: &mut SensitivityEvaluator<'_>,
     prior: &InitialStatePrior,
-    place: usize,
+    window: WindowId,
     start: Vec<f64>,
     horizons: &[f64],
 ) -> Option<Vec<f64>> {
     let mut present = start;
     for horizon in horizons {
         sensitivities.see(*horizon);
-        present = inner_solve_on_part(sensitivities, prior, place, present)?;
+        present = inner_solve_on_part(sensitivities, prior, window, present)?;
     }
     Some(present)
 }
@@ -322,23 +324,23 @@ pub fn inner_solve(
 fn inner_solve_on_part(
     sensitivities: &mut SensitivityEvaluator<'_>,
     prior: &InitialStatePrior,
-    place: usize,
+    window: WindowId,
     start: Vec<f64>,
 ) -> Option<Vec<f64>> {
-    let total = |residual: &Residual, start: &[f64]| residual.square() + prior.cost(place, start);
-    let mut cost = total(&sensitivities.residual(place, &start)?, &start);
+    let total = |residual: &Residual, start: &[f64]| residual.square() + prior.cost(window, start);
+    let mut cost = total(&sensitivities.residual(window, &start)?, &start);
     let mut present = start;
     for _ in 0..thresholds::INNER_STEPS {
-        let linear = sensitivities.linear(place, &present)?;
-        let window = reduced_block(&linear, prior, place, &present);
+        let linear = sensitivities.linear(window, &present)?;
+        let block = reduced_block(&linear, prior, window, &present);
         let held = DVector::zeros(linear.by_unknown.ncols());
         let better = thresholds::INITIAL_STATE_DAMPING
             .iter()
             .find_map(|damping| {
-                let step = window.initial_state_step(&held, *damping, prior)?;
+                let step = block.initial_state_step(&held, *damping, prior)?;
                 let moved = present.iter().zip(step.iter()).map(|(x, d)| x + d);
                 let moved = sensitivities.admissible(moved.collect());
-                let total = total(&sensitivities.residual(place, &moved)?, &moved);
+                let total = total(&sensitivities.residual(window, &moved)?, &moved);
                 (total < cost).then_some((moved, total))
             });
         let Some((moved, total)) = better else {

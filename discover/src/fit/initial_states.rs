@@ -1,6 +1,7 @@
 //! Where the windows' initial states come from: followed through the record from window to
 //! window, or read from a record smoothed without delay.
 
+use crate::ids::{WindowId, WindowRange};
 use rayon::prelude::*;
 
 use crate::error::DiscoverError;
@@ -67,7 +68,8 @@ pub fn best(
     let found = found
         .into_iter()
         .collect::<Result<Vec<Estimate>, DiscoverError>>()?;
-    let best = (0..shooting.windows.list.len()).map(|window| {
+    let windows = WindowId::first(shooting.windows.list.len());
+    let best = windows.map(|window| {
         let order = |a: &&Estimate, b: &&Estimate| a.squares[window].total_cmp(&b.squares[window]);
         let best = found.iter().min_by(order);
         best.map_or_else(Vec::new, |found| found.initial_states[window].clone())
@@ -113,17 +115,24 @@ fn followed(
     let parts: Vec<std::ops::Range<usize>> = (0..chains)
         .map(|chain| chain * count / chains..(chain + 1) * count / chains)
         .collect();
-    let followed: Vec<Vec<(Vec<f64>, Vec<f64>)>> = parts
+    let followed: Vec<Vec<FollowedState>> = parts
         .into_par_iter()
         .map(|windows| {
             let first = windows.start;
             let known = before
                 .filter(|_| first > 0)
                 .map(|initial_states| initial_states[first].clone());
-            chain(shooting, theta, (firsts, &sd), horizons, (windows, known))
+            let chain = Chain {
+                shooting,
+                firsts,
+                sd: &sd,
+                horizons,
+            };
+            chain.followed(theta, WindowId::range(windows), known)
         })
         .collect();
-    let (mean, states) = followed.into_iter().flatten().unzip();
+    let followed = followed.into_iter().flatten();
+    let (mean, states) = followed.map(|of| (of.mean, of.state)).unzip();
     InitialStates {
         prior: InitialStatePrior { mean, sd },
         states,
@@ -138,54 +147,74 @@ pub fn carried(
     initial_states: &[Vec<f64>],
 ) -> Vec<Option<Vec<f64>>> {
     let list = &shooting.windows.list;
-    shooting.by_threads(|places| {
+    shooting.by_threads(|windows| {
         let mut sensitivities = SensitivityEvaluator::frozen(shooting, theta, 1.0);
-        let mut of = |place: usize| {
-            let before = place.checked_sub(1)?;
-            list[place].follows?;
+        let mut of = |window: WindowId| {
+            let before = WindowId::new(window.index().checked_sub(1)?);
+            list[window].follows?;
             sensitivities
                 .as_mut()?
-                .carried(before, &initial_states[before], list[place].times[0])
+                .carried(before, &initial_states[before], list[window].times[0])
         };
-        places.map(&mut of).collect()
+        windows.map(&mut of).collect()
     })
 }
 
-/// Some windows, one after the other: what is known of each initial state before, and the
-/// state.
-fn chain(
-    shooting: &Shooting<'_>,
-    theta: &[f64],
-    (firsts, sd): (&[Vec<f64>], &[f64]),
-    horizons: &[f64],
-    (windows, mut carried): (std::ops::Range<usize>, Option<Vec<f64>>),
-) -> Vec<(Vec<f64>, Vec<f64>)> {
-    let Some(mut sensitivities) = SensitivityEvaluator::frozen(shooting, theta, 1.0) else {
-        let nothing = vec![0.0; shooting.model.state_count()];
-        return windows
-            .map(|_| (nothing.clone(), nothing.clone()))
-            .collect();
-    };
-    let mut prior = InitialStatePrior {
-        mean: vec![Vec::new(); shooting.windows.list.len()],
-        sd: sd.to_vec(),
-    };
-    let mut found = Vec::with_capacity(windows.len());
-    for place in windows {
-        let window = &shooting.windows.list[place];
-        let begin = match (window.follows, carried.take()) {
-            (Some(_), Some(state)) => state,
-            _ => firsts[window.record].clone(),
+/// How windows are followed one after the other.
+struct Chain<'a> {
+    shooting: &'a Shooting<'a>,
+    /// The first state of each record.
+    firsts: &'a [Vec<f64>],
+    /// One standard deviation of what is known of each state.
+    sd: &'a [f64],
+    horizons: &'a [f64],
+}
+
+/// What is known of a window's initial state before its samples are looked at, and the state.
+struct FollowedState {
+    mean: Vec<f64>,
+    state: Vec<f64>,
+}
+
+impl Chain<'_> {
+    /// The initial states of some windows. `carried`: what is known of the first.
+    fn followed(
+        &self,
+        theta: &[f64],
+        windows: WindowRange,
+        mut carried: Option<Vec<f64>>,
+    ) -> Vec<FollowedState> {
+        let shooting = self.shooting;
+        let Some(mut sensitivities) = SensitivityEvaluator::frozen(shooting, theta, 1.0) else {
+            let nothing = vec![0.0; shooting.model.state_count()];
+            let unknown = |_| FollowedState {
+                mean: nothing.clone(),
+                state: nothing.clone(),
+            };
+            return windows.map(unknown).collect();
         };
-        prior.mean[place].clone_from(&begin);
-        let settled = inner_solve(&mut sensitivities, &prior, place, begin.clone(), horizons);
-        let start = settled.unwrap_or_else(|| begin.clone());
-        if let Some(next) = shooting.windows.list.get(place + 1) {
-            carried = sensitivities.carried(place, &start, next.times[0]);
+        let list = &shooting.windows.list;
+        let mut prior = InitialStatePrior {
+            mean: vec![Vec::new(); list.len()],
+            sd: self.sd.to_vec(),
+        };
+        let mut found = Vec::with_capacity(windows.len());
+        for id in windows {
+            let window = &list[id];
+            let mean = match (window.follows, carried.take()) {
+                (Some(_), Some(state)) => state,
+                _ => self.firsts[window.record].clone(),
+            };
+            prior.mean[id].clone_from(&mean);
+            let solved = inner_solve(&mut sensitivities, &prior, id, mean.clone(), self.horizons);
+            let state = solved.unwrap_or_else(|| mean.clone());
+            if let Some(next) = list.get(id.index() + 1) {
+                carried = sensitivities.carried(id, &state, next.times[0]);
+            }
+            found.push(FollowedState { mean, state });
         }
-        found.push((begin, start));
+        found
     }
-    found
 }
 
 /// Initial states read from smoothed records, where the channels show all coordinates.

@@ -8,6 +8,7 @@ use crate::fit::prior::{InitialStatePrior, InitialStates};
 use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::Shooting;
 use crate::fit::variable_projection::StateProjection;
+use crate::ids::WindowId;
 use crate::model::problem::EstimationProblem;
 use crate::thresholds;
 
@@ -20,13 +21,24 @@ pub struct LinearisedFit {
     /// The part of each window that is looked at.
     pub part: f64,
     /// The windows.
-    pub places: Vec<usize>,
+    pub windows: Vec<WindowId>,
     /// The estimate there.
     pub estimate: Estimate,
     /// Residuals and derivatives.
     pub base: Base,
     /// The size of the residuals, in standard deviations.
     pub level: f64,
+}
+
+/// A linearised fit with what it was made of.
+#[derive(Clone, Copy)]
+pub struct Linearisation<'a> {
+    /// The residuals' derivatives.
+    pub at: &'a LinearisedFit,
+    /// What all fits share.
+    pub problem: &'a EstimationProblem<'a>,
+    /// The fit.
+    pub fit: &'a Fit,
 }
 
 impl LinearisedFit {
@@ -37,20 +49,20 @@ impl LinearisedFit {
         let shooting = Shooting { part, ..whole };
         let all = problem.train.list.len();
         let count = all.min(thresholds::MOST_WINDOWS);
-        let places: Vec<usize> = (0..count).map(|k| k * all / count).collect();
+        let windows: Vec<WindowId> = (0..count).map(|k| WindowId::new(k * all / count)).collect();
         let level = level(&shooting, &estimate) / part.sqrt();
         let mut sensitivities = SensitivityEvaluator::new(&shooting, &estimate.theta, level);
-        let base = places
+        let base = windows
             .iter()
-            .map(|place| {
-                let start = &estimate.initial_states[*place];
-                let linear = sensitivities.as_mut()?.linear(*place, start)?;
-                Some(StateProjection::new(&linear, &prior, *place, start))
+            .map(|window| {
+                let start = &estimate.initial_states[*window];
+                let linear = sensitivities.as_mut()?.linear(*window, start)?;
+                Some(StateProjection::new(&linear, &prior, *window, start))
             })
             .collect();
         Self {
             part,
-            places,
+            windows,
             estimate,
             base,
             level,
@@ -59,11 +71,11 @@ impl LinearisedFit {
 
     /// Every other window where there are many.
     pub fn with_few_windows(&self) -> Self {
-        let every = self.places.len().div_ceil(thresholds::FEW_WINDOWS).max(1);
-        let places = self.places.iter().step_by(every).copied();
+        let every = self.windows.len().div_ceil(thresholds::FEW_WINDOWS).max(1);
+        let windows = self.windows.iter().step_by(every).copied();
         Self {
             part: self.part,
-            places: places.collect(),
+            windows: windows.collect(),
             estimate: self.estimate.clone(),
             base: self.base.iter().step_by(every).cloned().collect(),
             level: self.level,

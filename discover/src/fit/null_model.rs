@@ -3,7 +3,7 @@
 use crate::error::{DiscoverError, Unfollowed};
 use crate::fit::fitted::Fit;
 use crate::fit::full;
-use crate::fit::preliminary;
+use crate::fit::preliminary::{self, WarmStart};
 use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::{Unknown, What, of_null_model};
@@ -36,10 +36,13 @@ pub fn null_fit(problem: &EstimationProblem<'_>, text: &str) -> Result<Fit, Disc
         let held = unknowns.iter().map(held).collect();
         let fit = full::fit(problem, texts(), held, &theta)?;
         let theta = fit.train.estimate.theta.clone();
-        let left = fit.train.estimate.cost;
+        let warm_start = WarmStart {
+            fit: &fit,
+            cost: fit.train.estimate.cost,
+        };
         full::complete(
             problem,
-            preliminary::expected(problem, texts(), unknowns.clone(), theta, (&fit, left))?,
+            preliminary::expected(problem, texts(), unknowns.clone(), theta, warm_start)?,
         )
     };
     let (free, waiting) = rayon::join(

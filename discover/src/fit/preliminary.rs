@@ -30,9 +30,18 @@ pub struct PreliminaryFit {
     pub(crate) initial_states: Vec<Vec<f64>>,
 }
 
+/// A fit whose motions another begins with.
+#[derive(Clone, Copy)]
+pub struct WarmStart<'f> {
+    /// The fit.
+    pub fit: &'f Fit,
+    /// The cost that the other is expected to come to, in squared standard deviations.
+    pub cost: f64,
+}
+
 /// Fits the model's unknowns to the beginnings of the windows, which tells good ones from
 /// bad ones at a part of the cost. `texts`: the specification's, and its linear part's;
-/// `begins`: unknowns to begin with, of which the best is taken.
+/// `guesses`: unknowns to begin with, of which the best is taken.
 ///
 /// # Errors
 /// As for [`crate::fit::full::fit`].
@@ -91,7 +100,7 @@ pub fn preliminary(
 }
 
 /// The model's unknowns as they are expected, with whole windows begun where those of a fit
-/// begin: close to a fit a straight line says enough. `cost`: what it promises to leave.
+/// begin: close to a fit a straight line says enough.
 ///
 /// # Errors
 /// As for [`crate::fit::full::fit`].
@@ -100,8 +109,9 @@ pub fn expected(
     texts: SpecificationTexts,
     unknowns: Vec<Unknown>,
     theta: Vec<f64>,
-    (fit, cost): (&Fit, f64),
+    warm_start: WarmStart<'_>,
 ) -> Result<PreliminaryFit, DiscoverError> {
+    let WarmStart { fit, cost } = warm_start;
     let model = problem.model(&texts.whole, Some(&texts.linear))?;
     let bare = Shooting::new(problem, &model, &problem.train, &unknowns, &[]);
     let ranges = problem.ranges(&model, &bare.values(&theta));

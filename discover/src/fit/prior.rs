@@ -1,5 +1,7 @@
 //! What is known of the windows' initial states before their samples are looked at.
 
+use crate::ids::WindowId;
+
 /// What is known before of each window's initial state: mean and standard deviation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InitialStatePrior {
@@ -11,8 +13,8 @@ pub struct InitialStatePrior {
 
 impl InitialStatePrior {
     /// What it adds to the cost of a window that begins so.
-    pub fn cost(&self, place: usize, start: &[f64]) -> f64 {
-        let Some(mean) = self.mean.get(place) else {
+    pub fn cost(&self, window: WindowId, start: &[f64]) -> f64 {
+        let Some(mean) = self.mean.get(window.index()) else {
             return 0.0;
         };
         let terms = start.iter().zip(mean).zip(&self.sd);

@@ -1,5 +1,6 @@
 //! The frequency at which a fit's residuals are largest.
 
+use crate::ids::ChannelId;
 use realfft::RealFftPlanner;
 
 use crate::fit::fitted::Fit;
@@ -9,13 +10,13 @@ use eomgen_records::samples::typical_step;
 /// The frequency at which the residual of the channel that shows most of it is largest, Hz.
 pub fn peak_frequency(problem: &EstimationProblem<'_>, fit: &Fit) -> Option<f64> {
     let sizes = &fit.train.normalised_rms;
-    let worst = (0..sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))?;
+    let worst = ChannelId::first(sizes.len()).max_by(|a, b| sizes[*a].total_cmp(&sizes[*b]))?;
     frequency(problem, fit, worst)
 }
 
 /// The frequency at which the residual's spectrum, summed over windows of one length, is
 /// largest, Hz.
-pub fn frequency(problem: &EstimationProblem<'_>, fit: &Fit, channel: usize) -> Option<f64> {
+pub fn frequency(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Option<f64> {
     let count = problem.noise.len();
     let length = fit.train.residuals.iter().map(|r| r.len() / count).max()?;
     let step = typical_step(&problem.train.list.first()?.times);
@@ -32,7 +33,7 @@ pub fn frequency(problem: &EstimationProblem<'_>, fit: &Fit, channel: usize) -> 
     {
         let mut signal: Vec<f64> = residual
             .iter()
-            .skip(channel)
+            .skip(channel.index())
             .step_by(count)
             .copied()
             .collect();

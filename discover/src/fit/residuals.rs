@@ -3,6 +3,7 @@
 
 use crate::fit::gauss_newton::Estimate;
 use crate::fit::shooting::Shooting;
+use crate::ids::WindowId;
 use crate::thresholds;
 
 /// The residuals of one set of records.
@@ -23,7 +24,7 @@ pub struct Residuals {
     /// How many samples a residual is correlated over.
     pub correlation: f64,
     /// The windows in which the motion cannot be followed; the others alone are in all this.
-    pub unfollowed: Vec<usize>,
+    pub unfollowed: Vec<WindowId>,
 }
 
 impl Residuals {
@@ -44,7 +45,7 @@ impl Residuals {
     pub fn of(shooting: &Shooting<'_>, estimate: Estimate) -> Self {
         let channels = shooting.channels();
         let residuals = shooting.residuals(&estimate.theta, &estimate.initial_states);
-        let unfollowed: Vec<usize> = (0..residuals.len())
+        let unfollowed: Vec<WindowId> = WindowId::first(residuals.len())
             .filter(|window| residuals[*window].is_none())
             .collect();
         let residuals: Vec<Vec<f64>> = residuals

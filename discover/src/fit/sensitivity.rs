@@ -2,6 +2,7 @@
 //! that come along where the model is run by the exponential integrator, otherwise by difference
 //! quotients.
 
+use crate::ids::WindowId;
 use codegen::program::evaluator::Evaluator;
 use nalgebra::{DMatrix, DVector};
 
@@ -115,27 +116,27 @@ impl<'a> SensitivityEvaluator<'a> {
     }
 
     /// The state that a window's motion reaches at a time, s.
-    pub fn carried(&mut self, place: usize, start: &[f64], until: f64) -> Option<Vec<f64>> {
-        let window = &self.shooting.windows.list[place];
-        let inputs = self.shooting.windows.inputs(window);
+    pub fn carried(&mut self, window: WindowId, start: &[f64], until: f64) -> Option<Vec<f64>> {
+        let samples = &self.shooting.windows.list[window];
+        let inputs = self.shooting.windows.inputs(samples);
         let states = self
             .base
-            .states(start, &[window.times[0], until], inputs)
+            .states(start, &[samples.times[0], until], inputs)
             .ok()?;
         states.into_iter().next_back()
     }
 
     /// A window's residuals alone.
-    pub fn residual(&mut self, place: usize, start: &[f64]) -> Option<Residual> {
+    pub fn residual(&mut self, window: WindowId, start: &[f64]) -> Option<Residual> {
         let shooting = self.shooting;
-        shooting.residual(&mut self.base, &self.sensors, place, start)
+        shooting.residual(&mut self.base, &self.sensors, window, start)
     }
 
     /// A window's residuals and derivatives.
-    pub fn linear(&mut self, place: usize, start: &[f64]) -> Option<WindowDerivatives> {
+    pub fn linear(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
         let found = match self.base.carries_tangents() {
-            true => self.by_tangents(place, start)?,
-            false => self.by_quotients(place, start)?,
+            true => self.by_tangents(window, start)?,
+            false => self.by_quotients(window, start)?,
         };
         let finite = found.residual.iter().chain(found.by_unknown.iter());
         (finite
@@ -145,11 +146,11 @@ impl<'a> SensitivityEvaluator<'a> {
     }
 
     /// The same with neighbouring motions that come along.
-    fn by_tangents(&mut self, place: usize, start: &[f64]) -> Option<WindowDerivatives> {
+    fn by_tangents(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
         let shooting = self.shooting;
-        let window = &shooting.windows.list[place];
-        let inputs = shooting.windows.inputs(window);
-        let times = &window.times[..samples_in(window, shooting.part)];
+        let samples = &shooting.windows.list[window];
+        let inputs = shooting.windows.inputs(samples);
+        let times = &samples.times[..samples_in(samples, shooting.part)];
         let moved = self.neighbours.iter_mut().flatten();
         let moved = moved.filter_map(|of| match &mut of.neighbour {
             Neighbour::Drives { evaluator, .. } => Some(MovedEvaluator {
@@ -166,10 +167,10 @@ impl<'a> SensitivityEvaluator<'a> {
             .base
             .linearised(start, times, inputs, by_state, driven)?;
         let seen = shooting.seen(times, &self.sensors, &integrated.outputs.values);
-        let residual = DVector::from_vec(shooting.normalised(window, &seen));
+        let residual = DVector::from_vec(shooting.normalised(samples, &seen));
         let states = if by_state { start.len() } else { 0 };
-        let by_state = self.columns(window, times, states, &integrated.by_state);
-        let by_drive = self.columns(window, times, count, &integrated.by_drive);
+        let by_state = self.columns(samples, times, states, &integrated.by_state);
+        let by_drive = self.columns(samples, times, count, &integrated.by_drive);
         let mut by_unknown = DMatrix::zeros(residual.len(), self.neighbours.len());
         let mut drive = 0;
         for (column, neighbour) in self.neighbours.iter().enumerate() {
@@ -177,7 +178,7 @@ impl<'a> SensitivityEvaluator<'a> {
             let Some(SteppedNeighbour { neighbour, step }) = neighbour else {
                 let (sensors, step) = moved_sensors(&self.sensors, unknown);
                 let moved = shooting.seen(times, &sensors, &integrated.outputs.values);
-                let moved = shooting.normalised(window, &moved);
+                let moved = shooting.normalised(samples, &moved);
                 for (row, (after, before)) in moved.iter().zip(residual.iter()).enumerate() {
                     by_unknown[(row, column)] = (after - before) / step;
                 }
@@ -199,7 +200,7 @@ impl<'a> SensitivityEvaluator<'a> {
                 }
                 let pairs = moved.iter_mut().zip(&integrated.outputs.values);
                 pairs.for_each(|(moved, own)| *moved = (*moved - own) / step);
-                let own = self.columns(window, times, 1, &moved);
+                let own = self.columns(samples, times, 1, &moved);
                 let mut column = by_unknown.column_mut(column);
                 column += own.column(0);
             }
@@ -216,25 +217,25 @@ impl<'a> SensitivityEvaluator<'a> {
     /// do not come along.
     pub(crate) fn drive_response(
         &mut self,
-        place: usize,
+        window: WindowId,
         start: &[f64],
         driven: NeighbourDrives<'_>,
     ) -> Option<DMatrix<f64>> {
         let shooting = self.shooting;
-        let window = &shooting.windows.list[place];
-        let inputs = shooting.windows.inputs(window);
-        let times = &window.times[..samples_in(window, shooting.part)];
+        let samples = &shooting.windows.list[window];
+        let inputs = shooting.windows.inputs(samples);
+        let times = &samples.times[..samples_in(samples, shooting.part)];
         let count = driven.count;
         let found = self.base.linearised(start, times, inputs, false, driven)?;
-        Some(self.columns(window, times, count, &found.by_drive))
+        Some(self.columns(samples, times, count, &found.by_drive))
     }
 
     /// The same by difference quotients.
-    fn by_quotients(&mut self, place: usize, start: &[f64]) -> Option<WindowDerivatives> {
+    fn by_quotients(&mut self, window: WindowId, start: &[f64]) -> Option<WindowDerivatives> {
         let shooting = self.shooting;
-        let window = &shooting.windows.list[place];
-        let inputs = shooting.windows.inputs(window);
-        let times = &window.times[..samples_in(window, shooting.part)];
+        let samples = &shooting.windows.list[window];
+        let inputs = shooting.windows.inputs(samples);
+        let times = &samples.times[..samples_in(samples, shooting.part)];
         let steps: Vec<f64> = (shooting.ranges.unwrap_or_default().iter())
             .map(|range| thresholds::LARGEST_QUOTIENT * range)
             .collect();
@@ -247,13 +248,13 @@ impl<'a> SensitivityEvaluator<'a> {
             None => (self.base.outputs(start, times, inputs).ok()?, None),
         };
         let seen = shooting.seen(times, &self.sensors, &outputs.values);
-        let residual = DVector::from_vec(shooting.normalised(window, &seen));
+        let residual = DVector::from_vec(shooting.normalised(samples, &seen));
         if residual.iter().any(|r| !r.is_finite()) {
             return None;
         }
         let by_state = match derivatives {
-            Some(derivatives) => self.columns(window, times, start.len(), &derivatives),
-            None => self.by_state(place, start, &residual)?,
+            Some(derivatives) => self.columns(samples, times, start.len(), &derivatives),
+            None => self.by_state(window, start, &residual)?,
         };
         let mut by_unknown = DMatrix::zeros(residual.len(), self.neighbours.len());
         for (column, neighbour) in self.neighbours.iter_mut().enumerate() {
@@ -271,7 +272,7 @@ impl<'a> SensitivityEvaluator<'a> {
                     (shooting.seen(times, &sensors, &outputs.values), step)
                 }
             };
-            let moved = shooting.normalised(window, &moved);
+            let moved = shooting.normalised(samples, &moved);
             for (row, (after, before)) in moved.iter().zip(residual.iter()).enumerate() {
                 by_unknown[(row, column)] = (after - before) / step;
             }
@@ -288,7 +289,7 @@ impl<'a> SensitivityEvaluator<'a> {
     /// them, in standard deviations.
     fn columns(
         &self,
-        window: &Window,
+        samples: &Window,
         times: &[f64],
         count: usize,
         derivatives: &[f64],
@@ -309,7 +310,7 @@ impl<'a> SensitivityEvaluator<'a> {
                 column[to..to + channels].copy_from_slice(&derivatives[from..from + channels]);
             }
             let seen = shooting.seen(times, &sensors, &column);
-            let differences = shooting.differences(window, &seen, |seen, _| seen);
+            let differences = shooting.differences(samples, &seen, |seen, _| seen);
             matrix.column_mut(place).copy_from_slice(&differences);
         }
         matrix
@@ -318,7 +319,7 @@ impl<'a> SensitivityEvaluator<'a> {
     /// The derivative by the initial state; no columns where that is given.
     fn by_state(
         &mut self,
-        place: usize,
+        window: WindowId,
         start: &[f64],
         residual: &DVector<f64>,
     ) -> Option<DMatrix<f64>> {
@@ -335,7 +336,7 @@ impl<'a> SensitivityEvaluator<'a> {
             // to them differs by orders of magnitude.
             for _ in 0..3 {
                 moved[state] = start[state] + step;
-                let after = self.residual(place, &moved)?;
+                let after = self.residual(window, &moved)?;
                 let differences = after.values.iter().zip(residual.iter()).map(|(a, b)| a - b);
                 let mut column = matrix.column_mut(state);
                 let mut furthest: f64 = 0.0;
@@ -363,13 +364,13 @@ pub fn linearised(
     initial_states: &[Vec<f64>],
     level: f64,
 ) -> Vec<Option<WindowDerivatives>> {
-    shooting.by_threads(|places| {
+    shooting.by_threads(|windows| {
         let mut sensitivities = SensitivityEvaluator::new(shooting, theta, level);
-        places
-            .map(|place| {
+        windows
+            .map(|window| {
                 sensitivities
                     .as_mut()?
-                    .linear(place, &initial_states[place])
+                    .linear(window, &initial_states[window])
             })
             .collect()
     })
@@ -390,9 +391,9 @@ fn moved_sensors(sensors: &Sensors, unknown: &Unknown) -> (Sensors, f64) {
     let step = thresholds::SENSOR_QUOTIENT * unknown.scale;
     let mut moved = sensors.clone();
     match unknown.what {
-        What::Gain(place) => moved.gain[place] += step,
-        What::Bias(place) => moved.bias[place] += step,
-        What::Delay(place) => moved.delay[place] += step,
+        What::Gain(channel) => moved.gain[channel] += step,
+        What::Bias(channel) => moved.bias[channel] += step,
+        What::Delay(channel) => moved.delay[channel] += step,
         What::Parameter(_) | What::Inverse(_) => {}
     }
     (moved, step)

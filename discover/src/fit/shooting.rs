@@ -3,6 +3,7 @@
 //! noise. How they depend on both is found in [`crate::fit::sensitivity`]; what to make of it is
 //! decided elsewhere.
 
+use crate::ids::{ChannelId, WindowId, WindowRange};
 use rayon::prelude::*;
 
 use crate::model::estimation_model::EstimationModel;
@@ -108,17 +109,17 @@ impl<'a> Shooting<'a> {
         for sensor in &self.model.specification().sensors {
             // What the specification itself says of a sensor holds until it is estimated.
             if let Some(channel) = self.model.channel(&sensor.channel) {
-                sensors.gain[channel.index()] = sensor.gain;
-                sensors.bias[channel.index()] = sensor.bias;
-                sensors.delay[channel.index()] = sensor.delay;
+                sensors.gain[channel] = sensor.gain;
+                sensors.bias[channel] = sensor.bias;
+                sensors.delay[channel] = sensor.delay;
             }
         }
         for (unknown, value) in self.unknowns.iter().zip(theta) {
             match unknown.what {
                 What::Parameter(_) | What::Inverse(_) => {}
-                What::Gain(place) => sensors.gain[place] = *value,
-                What::Bias(place) => sensors.bias[place] = *value,
-                What::Delay(place) => sensors.delay[place] = *value,
+                What::Gain(channel) => sensors.gain[channel] = *value,
+                What::Bias(channel) => sensors.bias[channel] = *value,
+                What::Delay(channel) => sensors.delay[channel] = *value,
             }
         }
         sensors
@@ -128,13 +129,14 @@ impl<'a> Shooting<'a> {
     /// followed.
     pub fn residuals(&self, theta: &[f64], initial_states: &[Vec<f64>]) -> Vec<Option<Residual>> {
         let (values, sensors) = (self.values(theta), self.sensors(theta));
-        self.by_threads(|places| {
+        self.by_threads(|windows| {
             let Ok(mut simulation) = self.model.simulation(&values) else {
-                return places.map(|_| None).collect();
+                return windows.map(|_| None).collect();
             };
-            places
-                .map(|place| {
-                    self.residual(&mut simulation, &sensors, place, &initial_states[place])
+            windows
+                .map(|window| {
+                    let start = &initial_states[window];
+                    self.residual(&mut simulation, &sensors, window, start)
                 })
                 .collect()
         })
@@ -145,10 +147,10 @@ impl<'a> Shooting<'a> {
         &self,
         simulation: &mut Simulation<'_>,
         sensors: &Sensors,
-        place: usize,
+        window: WindowId,
         start: &[f64],
     ) -> Option<Residual> {
-        let window = &self.windows.list[place];
+        let window = &self.windows.list[window];
         let inputs = self.windows.inputs(window);
         let times = &window.times[..samples_in(window, self.part)];
         let outputs = simulation.outputs(start, times, inputs).ok()?;
@@ -165,17 +167,23 @@ impl<'a> Shooting<'a> {
         let channels = self.channels();
         let samples = times.len();
         let mut seen = vec![0.0; quantities.len()];
-        for channel in 0..channels {
+        for channel in ChannelId::first(channels) {
+            let column = Column {
+                times,
+                values: quantities,
+                channels,
+                channel,
+            };
             let (gain, bias) = (sensors.gain[channel], sensors.bias[channel]);
             let delay = sensors.delay[channel];
             for sample in 0..samples {
                 let quantity = if delay == 0.0 {
-                    quantities[sample * channels + channel]
+                    column.values[sample * channels + channel.index()]
                 } else {
                     let at = times[sample] - delay;
-                    interpolated(times, quantities, (channels, channel), at, sample)
+                    interpolated(&column, at, sample)
                 };
-                seen[sample * channels + channel] = gain * quantity + bias;
+                seen[sample * channels + channel.index()] = gain * quantity + bias;
             }
         }
         seen
@@ -212,15 +220,15 @@ impl<'a> Shooting<'a> {
     /// order.
     pub(crate) fn by_threads<T: Send>(
         &self,
-        work: impl Fn(std::ops::Range<usize>) -> Vec<T> + Send + Sync,
+        work: impl Fn(WindowRange) -> Vec<T> + Send + Sync,
     ) -> Vec<T> {
         let count = self.windows.list.len();
         let threads = rayon::current_num_threads().max(1);
         // The parts do not depend on the number of threads' speed, only on their number; what
         // is computed for a window does not depend on its part.
         let size = count.div_ceil(threads).max(1);
-        let parts: Vec<_> = (0..count.div_ceil(size))
-            .map(|part| part * size..((part + 1) * size).min(count))
+        let parts: Vec<WindowRange> = (0..count.div_ceil(size))
+            .map(|part| WindowId::range(part * size..((part + 1) * size).min(count)))
             .collect();
         let answers: Vec<Vec<T>> = parts.into_par_iter().map(work).collect();
         answers.into_iter().flatten().collect()
@@ -233,14 +241,18 @@ pub(crate) fn samples_in(window: &Window, part: f64) -> usize {
     ((part * count as f64) as usize).clamp(count.min(8), count)
 }
 
+/// A channel's quantity at the samples of a window.
+struct Column<'q> {
+    times: &'q [f64],
+    /// Those of all channels, a row per sample.
+    values: &'q [f64],
+    channels: usize,
+    channel: ChannelId,
+}
+
 /// A channel's quantity at a time near a sample, by the cubic through its four neighbours.
-fn interpolated(
-    times: &[f64],
-    quantities: &[f64],
-    (channels, channel): (usize, usize),
-    at: f64,
-    near: usize,
-) -> f64 {
+fn interpolated(column: &Column<'_>, at: f64, near: usize) -> f64 {
+    let times = column.times;
     let last = times.len() - 1;
     let mut left = near.min(last);
     while left > 0 && times[left] > at {
@@ -259,7 +271,7 @@ fn interpolated(
                 .filter(|j| *j != i)
                 .map(|j| (at - times[j]) / (times[i] - times[j]))
                 .product();
-            weight * quantities[i * channels + channel]
+            weight * column.values[i * column.channels + column.channel.index()]
         })
         .sum()
 }

@@ -2,6 +2,7 @@
 //! projection: Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973): what remains
 //! depends on the unknowns alone.
 
+use crate::ids::{UnknownId, WindowId};
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::prior::InitialStatePrior;
@@ -18,7 +19,7 @@ pub struct ReducedBlock {
 pub fn reduced_block(
     linear: &WindowDerivatives,
     prior: &InitialStatePrior,
-    place: usize,
+    window: WindowId,
     start: &[f64],
 ) -> ReducedBlock {
     let states = linear.by_state.ncols();
@@ -37,7 +38,7 @@ pub fn reduced_block(
     matrix
         .view_mut((0, states + unknowns), (rows, 1))
         .copy_from(&linear.residual);
-    if let Some(mean) = prior.mean.get(place) {
+    if let Some(mean) = prior.mean.get(window.index()) {
         for state in 0..states {
             matrix[(rows + state, state)] = 1.0 / prior.sd[state];
             matrix[(rows + state, states + unknowns)] =
@@ -101,7 +102,7 @@ impl StateProjection {
     pub fn new(
         linear: &WindowDerivatives,
         prior: &InitialStatePrior,
-        place: usize,
+        window: WindowId,
         start: &[f64],
     ) -> Self {
         let (rows, states) = linear.by_state.shape();
@@ -110,7 +111,7 @@ impl StateProjection {
             .view_mut((0, 0), (rows, states))
             .copy_from(&linear.by_state);
         let mut prior_residual = DVector::zeros(states);
-        if let Some(mean) = prior.mean.get(place) {
+        if let Some(mean) = prior.mean.get(window.index()) {
             for state in 0..states {
                 by_state[(rows + state, state)] = 1.0 / prior.sd[state];
                 prior_residual[state] = (start[state] - mean[state]) / prior.sd[state];
@@ -164,12 +165,22 @@ pub fn triangular_factor(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
     both.qr().r()
 }
 
+/// What the prior of a nuisance adds to products of columns.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PriorTerm {
+    /// One over its variance, as much as priors count.
+    pub weight: f64,
+    /// How far the nuisance is from its mean, SI.
+    pub deviation: f64,
+}
+
 /// Adds a prior, or takes it away where its weight is negative, to the products of a nuisance
 /// with itself and with the residual, which stands last.
-pub(crate) fn add_prior(products: &mut DMatrix<f64>, place: usize, (weight, off): (f64, f64)) {
-    let last = products.ncols() - 1;
-    products[(place, place)] += weight;
-    products[(place, last)] += weight * off;
-    products[(last, place)] += weight * off;
-    products[(last, last)] += weight * off * off;
+pub(crate) fn add_prior(products: &mut DMatrix<f64>, nuisance: UnknownId, prior: PriorTerm) {
+    let PriorTerm { weight, deviation } = prior;
+    let (row, last) = (nuisance.index(), products.ncols() - 1);
+    products[(row, row)] += weight;
+    products[(row, last)] += weight * deviation;
+    products[(last, row)] += weight * deviation;
+    products[(last, last)] += weight * deviation * deviation;
 }

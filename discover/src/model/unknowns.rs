@@ -1,6 +1,7 @@
 //! What is estimated beside the windows' initial states: parameters of the model and how the
 //! sensors differ from what they measure, each with its prior and its bounds.
 
+use crate::ids::ChannelId;
 use model_spec::model::{Model, Parameter};
 
 use crate::thresholds;
@@ -17,11 +18,11 @@ pub enum What {
     /// One over a parameter, by name: an effect that is absent where it is infinite.
     Inverse(String),
     /// The gain of a channel, by its place.
-    Gain(usize),
+    Gain(ChannelId),
     /// The bias of a channel, SI.
-    Bias(usize),
+    Bias(ChannelId),
     /// The delay of a channel, s.
-    Delay(usize),
+    Delay(ChannelId),
 }
 
 impl What {
@@ -104,14 +105,15 @@ pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)])
         .train
         .first()
         .map_or(0.0, |record: &Record| typical_step(&record.times));
-    for (place, channel) in dataset.channels.iter().enumerate() {
-        unknowns.extend(of_sensor(place, channel, step));
+    let ids = ChannelId::first(dataset.channels.len());
+    for (id, channel) in ids.zip(&dataset.channels) {
+        unknowns.extend(of_sensor(id, channel, step));
     }
     unknowns
 }
 
 /// The unknowns of one sensor, with the priors of a channel that says nothing else.
-pub fn of_sensor(place: usize, channel: &Channel, step: f64) -> [Unknown; 3] {
+pub fn of_sensor(id: ChannelId, channel: &Channel, step: f64) -> [Unknown; 3] {
     let gain = thresholds::GAIN_PRIOR;
     let bias = thresholds::BIAS_PRIOR * channel.noise;
     let delay = thresholds::DELAY_PRIOR * step;
@@ -119,12 +121,12 @@ pub fn of_sensor(place: usize, channel: &Channel, step: f64) -> [Unknown; 3] {
     let late = (-LONGEST_LEAD * step, LONGEST_DELAY * step);
     let called = |what: What, fault: &str| (what, format!("the {fault} of `{}`", channel.name));
     [
-        Unknown::declared(called(What::Gain(place), "gain"), (1.0, gain), free),
-        Unknown::declared(called(What::Bias(place), "bias"), (0.0, bias), free),
+        Unknown::declared(called(What::Gain(id), "gain"), (1.0, gain), free),
+        Unknown::declared(called(What::Bias(id), "bias"), (0.0, bias), free),
         // What no prior holds is late: no sensor sees ahead.
         Unknown {
             limits: (0.0, late.1),
-            ..Unknown::declared(called(What::Delay(place), "delay"), (0.0, delay), late)
+            ..Unknown::declared(called(What::Delay(id), "delay"), (0.0, delay), late)
         },
     ]
 }

@@ -1,5 +1,6 @@
 //! Results put together from fits and from what the search found.
 
+use crate::ids::ChannelId;
 use std::collections::BTreeMap;
 
 use eomgen_records::dataset::Channel;
@@ -22,7 +23,7 @@ pub(crate) fn gap(
     after: Option<&Fit>,
     floor: &NoiseFloor,
 ) -> BTreeMap<String, ChannelGap> {
-    let of = |fit: &Fit, channel: usize| OnRecords {
+    let of = |fit: &Fit, channel: ChannelId| OnRecords {
         train: fit.train.channels[channel],
         test: fit.test.channels[channel],
     };
@@ -39,7 +40,8 @@ pub(crate) fn effects(problem: &EstimationProblem<'_>, found: &Found) -> Vec<Fou
     let mut order: Vec<&Accepted> = found.accepted.iter().collect();
     order.sort_by(|a, b| {
         // Squares add up: what one effect closes of them hardly depends on what came before.
-        let closed = |effect: &Accepted| effect.test_gap.0.powi(2) - effect.test_gap.1.powi(2);
+        let closed =
+            |effect: &Accepted| effect.test_gap.before.powi(2) - effect.test_gap.after.powi(2);
         closed(b).total_cmp(&closed(a))
     });
     let effects = order.into_iter();
@@ -73,7 +75,7 @@ pub(crate) fn steps(found: &Found) -> Vec<Step> {
         let labels = round.iter().map(|effect| effect.candidate.label());
         steps.push(Step {
             added: labels.collect(),
-            test_rms: round[0].test_gap.1,
+            test_rms: round[0].test_gap.after,
         });
     }
     steps
@@ -105,15 +107,15 @@ fn found_effect(problem: &EstimationProblem<'_>, fit: &Fit, effect: &Accepted) -
     let mut term = candidate.term.clone();
     let own = candidate.parameters.iter().zip(&effect.unknowns);
     let mut parameters: BTreeMap<String, Estimated> = own
-        .map(|(parameter, place)| {
-            let (value, sd) = match fit.unknowns[*place].what {
+        .map(|(parameter, id)| {
+            let (value, sd) = match fit.unknowns[*id].what {
                 What::Inverse(_) => {
-                    let inverse = theta[*place];
-                    (1.0 / inverse, fit.sd[*place] / (inverse * inverse))
+                    let inverse = theta[*id];
+                    (1.0 / inverse, fit.sd[*id] / (inverse * inverse))
                 }
                 _ => {
                     let per_si = parameter.per_si();
-                    (per_si * theta[*place], per_si * fit.sd[*place])
+                    (per_si * theta[*id], per_si * fit.sd[*id])
                 }
             };
             let unit = parameter.unit.clone();
@@ -121,11 +123,11 @@ fn found_effect(problem: &EstimationProblem<'_>, fit: &Fit, effect: &Accepted) -
         })
         .collect();
     if candidate.dropped_prior.is_some()
-        && let Some(place) = effect.unknowns.first()
-        && let Some((name, per_si, unit)) = named(problem, fit, &fit.unknowns[*place].what)
+        && let Some(id) = effect.unknowns.first()
+        && let Some((name, per_si, unit)) = named(problem, fit, &fit.unknowns[*id].what)
     {
-        let value = per_si * theta[*place];
-        let sd = per_si * fit.sd[*place];
+        let value = per_si * theta[*id];
+        let sd = per_si * fit.sd[*id];
         term = format!("{name} = {value}");
         parameters.insert(name, Estimated { value, sd, unit });
     }
@@ -179,12 +181,12 @@ fn named(problem: &EstimationProblem<'_>, fit: &Fit, what: &What) -> Option<(Str
 /// Parameters of the null model, by their names.
 pub(crate) fn refitted(fit: &Fit, accepted: &[Accepted]) -> BTreeMap<String, Estimated> {
     let mut found = BTreeMap::new();
-    for (place, unknown) in fit.unknowns.iter().enumerate() {
+    for (id, unknown) in fit.unknowns() {
         let What::Parameter(name) = &unknown.what else {
             continue;
         };
         let is_own = |effect: &Accepted| {
-            effect.candidate.dropped_prior.is_none() && effect.unknowns.contains(&place)
+            effect.candidate.dropped_prior.is_none() && effect.unknowns.contains(&id)
         };
         if accepted.iter().any(is_own) {
             continue;
@@ -192,8 +194,8 @@ pub(crate) fn refitted(fit: &Fit, accepted: &[Accepted]) -> BTreeMap<String, Est
         let mut parameters = fit.model.specification().parameters.iter();
         if let Some(parameter) = parameters.find(|p| p.name == *name) {
             let entry = Estimated {
-                value: parameter.unit.from_si(fit.train.estimate.theta[place]),
-                sd: parameter.unit.from_si(fit.sd[place]),
+                value: parameter.unit.from_si(fit.train.estimate.theta[id]),
+                sd: parameter.unit.from_si(fit.sd[id]),
                 unit: parameter.unit.text.clone(),
             };
             found.insert(name.clone(), entry);
@@ -216,9 +218,10 @@ pub(crate) fn sensors(problem: &EstimationProblem<'_>, fit: &Fit) -> BTreeMap<St
 /// An entry for each channel, under its name.
 fn by_channel<T>(
     problem: &EstimationProblem<'_>,
-    of: impl Fn(usize, &Channel) -> T,
+    of: impl Fn(ChannelId, &Channel) -> T,
 ) -> BTreeMap<String, T> {
-    let channels = problem.dataset.channels.iter().enumerate();
-    let entries = channels.map(|(place, channel)| (channel.name.clone(), of(place, channel)));
+    let all = &problem.dataset.channels;
+    let channels = ChannelId::first(all.len()).zip(all);
+    let entries = channels.map(|(id, channel)| (channel.name.clone(), of(id, channel)));
     entries.collect()
 }

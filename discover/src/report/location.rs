@@ -3,6 +3,7 @@
 
 use crate::fit::fitted::Fit;
 use crate::fit::residual_spectrum::frequency;
+use crate::ids::{ChannelId, WindowId};
 use crate::model::problem::EstimationProblem;
 use crate::model::smoothing::sloped;
 use crate::residual_force::types::ResidualForce;
@@ -32,7 +33,8 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
         .zip(&problem.noise)
         .map(|(gap, noise)| gap / noise)
         .collect();
-    let Some(worst) = (0..count).max_by(|a, b| normalised_rms[*a].total_cmp(&normalised_rms[*b]))
+    let Some(worst) =
+        ChannelId::first(count).max_by(|a, b| normalised_rms[*a].total_cmp(&normalised_rms[*b]))
     else {
         return String::new();
     };
@@ -42,12 +44,12 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
         channel.name, fit.train.channels[worst], channel.unit, normalised_rms[worst]
     );
     let squares = &fit.train.estimate.squares;
-    let per_sample = |place: usize| squares[place] / problem.train.list[place].times.len() as f64;
-    let windows = 0..squares.len();
+    let per_sample = |id: WindowId| squares[id] / problem.train.list[id].times.len() as f64;
+    let windows = WindowId::first(squares.len());
     if squares.len() > 1
-        && let Some(place) = windows.max_by(|a, b| per_sample(*a).total_cmp(&per_sample(*b)))
+        && let Some(worst) = windows.max_by(|a, b| per_sample(*a).total_cmp(&per_sample(*b)))
     {
-        let window = &problem.train.list[place];
+        let window = &problem.train.list[worst];
         text += &format!(
             " It is worst from {:.3} s to {:.3} s of {}.",
             window.times[0],
@@ -65,14 +67,14 @@ fn by_channel(problem: &EstimationProblem<'_>, fit: &Fit) -> String {
 }
 
 /// Whether the residual's size follows the channel's speed.
-fn by_speed(problem: &EstimationProblem<'_>, fit: &Fit, channel: usize) -> Option<String> {
+fn by_speed(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId) -> Option<String> {
     let count = problem.noise.len();
     let mut pairs: Vec<(f64, f64)> = Vec::new();
     for (window, residual) in problem.train.list.iter().zip(&fit.train.residuals) {
         let values: Vec<f64> = window
             .measured
             .iter()
-            .skip(channel)
+            .skip(channel.index())
             .step_by(count)
             .copied()
             .collect();
@@ -81,7 +83,7 @@ fn by_speed(problem: &EstimationProblem<'_>, fit: &Fit, channel: usize) -> Optio
         let speed = (slopes.iter().map(|s| s * s).sum::<f64>() / slopes.len() as f64).sqrt();
         let own: Vec<f64> = residual
             .iter()
-            .skip(channel)
+            .skip(channel.index())
             .step_by(count)
             .copied()
             .collect();

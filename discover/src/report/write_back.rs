@@ -1,6 +1,7 @@
 //! The specification with what was found: effects added, refitted numbers set, sensors
 //! described, every comment kept.
 
+use crate::ids::{ChannelId, UnknownId};
 use model_spec::edit::{self, Edit, SetParameter, SetSensor};
 use model_spec::source::Source;
 
@@ -36,14 +37,14 @@ pub fn extended(
             .written(&text, &problem.path, &values, &source);
         text = written?;
     }
-    let added: Vec<usize> = written()
+    let added: Vec<UnknownId> = written()
         .flat_map(|effect| effect.unknowns.clone())
         .collect();
     let mut edits = Vec::new();
-    for (place, unknown) in fit.unknowns.iter().enumerate() {
+    for (id, unknown) in fit.unknowns() {
         if let What::Parameter(name) = &unknown.what
-            && has_moved(fit, place, !accepted.is_empty())
-            && !added.contains(&place)
+            && has_moved(fit, id, !accepted.is_empty())
+            && !added.contains(&id)
             && let Some(parameter) = fit
                 .model
                 .specification()
@@ -53,7 +54,7 @@ pub fn extended(
         {
             edits.push(Edit::SetParameter(SetParameter {
                 name: name.clone(),
-                value: parameter.unit.from_si(theta[place]),
+                value: parameter.unit.from_si(theta[id]),
                 source: source.clone(),
             }));
         }
@@ -84,35 +85,36 @@ fn provenance(problem: &EstimationProblem<'_>) -> String {
 
 /// Whether an unknown's estimate differs from where it began, at all or by more than its
 /// uncertainty makes of it.
-fn has_moved(fit: &Fit, place: usize, at_all: bool) -> bool {
+fn has_moved(fit: &Fit, unknown: UnknownId, at_all: bool) -> bool {
     let least = if at_all {
         0.0
     } else {
-        thresholds::WRITTEN_FROM * fit.sd[place]
+        thresholds::WRITTEN_FROM * fit.sd[unknown]
     };
-    (fit.train.estimate.theta[place] - fit.unknowns[place].start).abs() > least
+    (fit.train.estimate.theta[unknown] - fit.unknowns[unknown].start).abs() > least
 }
 
 /// The sensors that differ from true ones, at all or by more than their uncertainty.
 fn sensors(problem: &EstimationProblem<'_>, fit: &Fit, at_all: bool) -> Vec<Edit> {
     let shooting = fit.shooting(problem);
     let sensors = shooting.sensors(&fit.train.estimate.theta);
-    let moved = |channel: usize| {
-        fit.unknowns.iter().enumerate().any(|(place, unknown)| {
+    let moved = |channel: ChannelId| {
+        fit.unknowns().any(|(id, unknown)| {
             let own = matches!(unknown.what, What::Gain(c) | What::Bias(c) | What::Delay(c) if c == channel);
-            own && has_moved(fit, place, at_all)
+            own && has_moved(fit, id, at_all)
         })
     };
-    let channels = problem.dataset.channels.iter().enumerate();
+    let all = &problem.dataset.channels;
+    let channels = ChannelId::first(all.len()).zip(all);
     channels
-        .filter(|(place, _)| moved(*place))
-        .map(|(place, channel)| {
+        .filter(|(id, _)| moved(*id))
+        .map(|(id, channel)| {
             Edit::SetSensor(SetSensor {
                 channel: channel.name.clone(),
-                gain: sensors.gain[place],
-                bias: sensors.bias[place],
+                gain: sensors.gain[id],
+                bias: sensors.bias[id],
                 // A specification knows no sensor that sees ahead.
-                delay: sensors.delay[place].max(0.0),
+                delay: sensors.delay[id].max(0.0),
             })
         })
         .collect()

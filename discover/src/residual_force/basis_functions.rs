@@ -3,6 +3,7 @@
 //! place or over time is a line with bends; one that repeats is a wave. How much of each there is
 //! is estimated elsewhere.
 
+use crate::ids::EquationId;
 use std::f64::consts::TAU;
 
 use crate::residual_force::equations::OperatingPoint;
@@ -28,8 +29,8 @@ pub enum Over {
 /// A force of unknown size in an equation: a sum of shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Family {
-    /// The equation's place in the list.
-    pub equation: usize,
+    /// The equation in which it acts.
+    pub equation: EquationId,
     /// What the force is a function of.
     pub over: Over,
     /// Where it bends, in order; over the rate those of negative rates first, and 0 twice.
@@ -81,7 +82,7 @@ impl Range {
 
 impl Family {
     /// Over the rate.
-    pub fn over_rate(equation: usize, range: &Range) -> Self {
+    pub fn over_rate(equation: EquationId, range: &Range) -> Self {
         // Closer near rest, where friction bends most.
         let last = (thresholds::RATE_BENDS - 1) as f64;
         let side: Vec<f64> = (0..thresholds::RATE_BENDS)
@@ -96,7 +97,7 @@ impl Family {
     }
 
     /// Over the place, or over a turn where that is gone through.
-    pub fn over_place(equation: usize, range: &Range, is_angle: bool) -> Self {
+    pub fn over_place(equation: EquationId, range: &Range, is_angle: bool) -> Self {
         if is_angle && range.width() > TAU {
             let bend = |k: usize| TAU * k as f64 / thresholds::TURN_BENDS as f64;
             return Self {
@@ -116,7 +117,7 @@ impl Family {
     }
 
     /// Over the time of a window of this length, s.
-    pub fn over_time(equation: usize, length: f64) -> Self {
+    pub fn over_time(equation: EquationId, length: f64) -> Self {
         let bend = |k: usize| length * k as f64 / (thresholds::TIME_BENDS - 1) as f64;
         Self {
             equation,
@@ -126,7 +127,7 @@ impl Family {
     }
 
     /// A wave.
-    pub fn wave(equation: usize, over: Over) -> Self {
+    pub fn wave(equation: EquationId, over: Over) -> Self {
         Self {
             equation,
             over,
@@ -196,7 +197,12 @@ fn turned(bends: &[f64], at: f64, out: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::{Family, Over, Range};
+    use crate::ids::EquationId;
     use crate::residual_force::equations::OperatingPoint;
+
+    fn equation() -> EquationId {
+        EquationId::new(0)
+    }
 
     const RANGE: Range = Range {
         place: (-1.0, 3.0),
@@ -221,13 +227,13 @@ mod tests {
                 rate: 0.9 * at - 0.95,
                 time: 0.2 * (at + 1.0),
             };
-            let place = Family::over_place(0, &RANGE, false);
+            let place = Family::over_place(equation(), &RANGE, false);
             assert!((sum(&place, &line, operating_point) - line(at)).abs() < 1e-12);
-            let rate = Family::over_rate(0, &RANGE);
+            let rate = Family::over_rate(equation(), &RANGE);
             assert!(
                 (sum(&rate, &line, operating_point) - line(operating_point.rate)).abs() < 1e-12
             );
-            let time = Family::over_time(0, 0.8);
+            let time = Family::over_time(equation(), 0.8);
             assert!(
                 (sum(&time, &line, operating_point) - line(operating_point.time)).abs() < 1e-12
             );
@@ -236,7 +242,7 @@ mod tests {
 
     #[test]
     fn a_force_over_the_rate_may_jump_where_it_turns() {
-        let rate = Family::over_rate(0, &RANGE);
+        let rate = Family::over_rate(equation(), &RANGE);
         let mut weights = vec![0.0; rate.count()];
         for (at, forwards) in [(-0.5, 0.0), (0.5, 1.0), (0.0, 0.5)] {
             let operating_point = OperatingPoint {
@@ -255,7 +261,7 @@ mod tests {
             place: (-10.0, 10.0),
             ..RANGE
         };
-        let turn = Family::over_place(0, &wide, true);
+        let turn = Family::over_place(equation(), &wide, true);
         assert_eq!(turn.over, Over::Turn);
         let mut weights = [vec![0.0; turn.count()], vec![0.0; turn.count()]];
         for (weights, at) in weights

@@ -1,12 +1,11 @@
 //! Families of shapes whose columns stand beside each other in one regression. Which families, and
 //! what follows from their sizes, is decided elsewhere.
 
+use crate::ids::{BasisFunctionId, FamilyId};
 use nalgebra::{DMatrix, DVector};
 
-use crate::fit::fitted::Fit;
-use crate::fit::linearised::LinearisedFit;
+use crate::fit::linearised::Linearisation;
 use crate::fit::residuals::correlation;
-use crate::model::problem::EstimationProblem;
 use crate::residual_force::basis_functions::{Family, Over};
 use crate::residual_force::equations::{Equations, OperatingPoint};
 use crate::residual_force::force_response::{ForceColumns, force_responses};
@@ -22,11 +21,7 @@ pub(crate) struct FamilyRegression {
 }
 
 impl FamilyRegression {
-    pub fn at(
-        of: (&LinearisedFit, &EstimationProblem<'_>, &Fit),
-        equations: &Equations,
-        families: Vec<Family>,
-    ) -> Option<Self> {
+    pub fn at(of: Linearisation<'_>, equations: &Equations, families: Vec<Family>) -> Option<Self> {
         let mut firsts = Vec::new();
         let mut count = 0;
         let mut own = Vec::new();
@@ -46,7 +41,7 @@ impl FamilyRegression {
             weights: &weights,
         };
         let blocks = force_responses(of, equations, &columns)?;
-        let regression = Regression::new(of.0, of.2, &blocks)?;
+        let regression = Regression::new(of.at, of.fit, &blocks)?;
         Some(Self {
             families,
             firsts,
@@ -55,30 +50,26 @@ impl FamilyRegression {
         })
     }
 
-    pub fn range(&self, family: usize) -> std::ops::Range<usize> {
+    pub fn range(&self, family: FamilyId) -> std::ops::Range<usize> {
         let first = self.firsts[family];
         first..first + self.families[family].count()
     }
 
-    pub fn shared(&self, family: usize) -> Sizes {
-        let places: Vec<usize> = self.range(family).collect();
-        self.regression.shared(&places)
+    pub fn shared(&self, family: FamilyId) -> Sizes {
+        let functions: Vec<BasisFunctionId> =
+            self.range(family).map(BasisFunctionId::new).collect();
+        self.regression.shared(&functions)
     }
 
     /// The part of the squares that a family explains, beyond what as many numbers do by chance.
-    pub fn part(&self, family: usize) -> f64 {
+    pub fn part(&self, family: FamilyId) -> f64 {
         let found = self.shared(family);
         let chance = noise(self, found.decrease) * found.values.len() as f64;
         (found.decrease - chance) / self.regression.squares
     }
 
     /// Over how many samples what a family leaves is correlated.
-    pub fn correlation(
-        &self,
-        (at, problem): (&LinearisedFit, &EstimationProblem<'_>),
-        family: usize,
-        level: f64,
-    ) -> f64 {
+    pub fn correlation(&self, of: Linearisation<'_>, family: FamilyId, level: f64) -> f64 {
         let count = self.blocks.iter().map(DMatrix::ncols).max().unwrap_or(0);
         let range = self.range(family);
         let whole = |sizes: Option<&Sizes>| {
@@ -90,32 +81,34 @@ impl FamilyRegression {
             }
             values
         };
-        let of = (at, &self.blocks[..]);
-        let left = match self.families[family].over {
+        let remaining = |values: &dyn Fn(usize) -> DVector<f64>, shared: bool| {
+            self.regression
+                .remaining(of.at, &self.blocks, values, shared)
+        };
+        let residuals = match self.families[family].over {
             Over::Time => {
                 let found = self.regression.each(range.clone(), level);
-                let values = |window: usize| whole(found.windows[window].as_ref());
-                self.regression.remaining(of, &values, false)
+                remaining(&|window| whole(found.windows[window].as_ref()), false)
             }
             _ => {
                 let found = self.shared(family);
-                self.regression
-                    .remaining(of, &|_| whole(Some(&found)), true)
+                remaining(&|_| whole(Some(&found)), true)
             }
         };
-        correlation(&left, problem.noise.len())
+        correlation(&residuals, of.problem.noise.len())
     }
 
     /// What the variance of an uncorrelated unit residual is multiplied with: by the size of
     /// what a family leaves, the samples over which that is correlated and what a straight line
     /// does not see.
-    pub fn inflation(&self, of: (&LinearisedFit, &EstimationProblem<'_>), family: usize) -> f64 {
-        let left = noise(self, self.shared(family).decrease);
-        left * self.correlation(of, family, 1.0) * thresholds::WIDER * thresholds::WIDER
+    pub fn inflation(&self, of: Linearisation<'_>, family: FamilyId) -> f64 {
+        let variance = noise(self, self.shared(family).decrease);
+        variance * self.correlation(of, family, 1.0) * thresholds::WIDER * thresholds::WIDER
     }
 
-    pub fn find(&self, wanted: impl Fn(Over) -> bool) -> Option<usize> {
-        self.families.iter().position(|family| wanted(family.over))
+    pub fn find(&self, wanted: impl Fn(Over) -> bool) -> Option<FamilyId> {
+        let position = self.families.iter().position(|family| wanted(family.over));
+        position.map(FamilyId::new)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Motions with small forces beside the one without, by Runge-Kutta steps, where no march
 //! carries neighbouring motions. Which forces is decided elsewhere.
 
+use crate::ids::WindowId;
 use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 
@@ -18,7 +19,7 @@ pub(crate) struct Stepped<'s> {
     sensors: Sensors,
     evaluator: Evaluator,
     observables: Vec<f64>,
-    place: usize,
+    window: WindowId,
     steps: usize,
 }
 
@@ -31,7 +32,7 @@ struct Step {
 
 impl<'s> Stepped<'s> {
     /// A window at these unknowns; none if a solver decides on its steps.
-    pub fn new(shooting: &'s Shooting<'s>, theta: &[f64], place: usize) -> Option<Self> {
+    pub fn new(shooting: &'s Shooting<'s>, theta: &[f64], window: WindowId) -> Option<Self> {
         let model = shooting.model;
         Some(Self {
             sensors: Sensors {
@@ -41,7 +42,7 @@ impl<'s> Stepped<'s> {
             evaluator: model.evaluator(&shooting.values(theta)),
             observables: model.measured.observables(),
             steps: model.steps?,
-            place,
+            window,
             shooting,
         })
     }
@@ -59,7 +60,7 @@ impl<'s> Stepped<'s> {
         let mut steps = Vec::new();
         let own = self.motion(start, None, Some(&mut steps))?;
         let windows = self.shooting.windows;
-        let inputs = windows.inputs(&windows.list[self.place]);
+        let inputs = windows.inputs(&windows.list[self.window]);
         let mut accelerations = vec![Vec::with_capacity(3 * steps.len() * half); count];
         let mut all = vec![0.0; count * half];
         let (mut rates, mut square) = (vec![0.0; start.len()], 0.0);
@@ -113,14 +114,14 @@ impl<'s> Stepped<'s> {
         let changes: Vec<f64> = (moved.iter().zip(own))
             .map(|(a, b)| (a - b) / size)
             .collect();
-        let window = &self.shooting.windows.list[self.place];
+        let window = &self.shooting.windows.list[self.window];
         let times = self.times();
         let seen = self.shooting.seen(times, &self.sensors, &changes);
         Some(self.shooting.differences(window, &seen, |seen, _| seen))
     }
 
     fn times(&self) -> &'s [f64] {
-        let window = &self.shooting.windows.list[self.place];
+        let window = &self.shooting.windows.list[self.window];
         &window.times[..samples_in(window, self.shooting.part)]
     }
 
@@ -133,7 +134,7 @@ impl<'s> Stepped<'s> {
     ) -> Option<Vec<f64>> {
         let (half, times) = (start.len() / 2, self.times());
         let windows = self.shooting.windows;
-        let inputs = windows.inputs(&windows.list[self.place]);
+        let inputs = windows.inputs(&windows.list[self.window]);
         let mut state = start.to_vec();
         let mut method = RungeKutta::new(start.len());
         let mut shown = Vec::with_capacity(times.len() * self.shooting.channels());

@@ -3,15 +3,14 @@
 //! otherwise a motion with a small force is integrated beside the one without. What is made of them
 //! is decided elsewhere.
 
+use crate::ids::EquationId;
 use codegen::program::evaluator::Point;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use crate::fit::fitted::Fit;
-use crate::fit::linearised::LinearisedFit;
+use crate::fit::linearised::Linearisation;
 use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::{Shooting, samples_in};
-use crate::model::problem::EstimationProblem;
 use crate::model::simulation::NeighbourDrives;
 use crate::residual_force::equations::{EquationEvaluator, Equations, OperatingPoint};
 use crate::residual_force::finite_difference_response::Stepped;
@@ -24,7 +23,7 @@ pub type Weights<'w> = dyn Fn(&[OperatingPoint], &[f64], &mut [f64]) + Sync + 'w
 /// equations stand and from the inputs.
 pub struct ForceColumns<'w> {
     /// The equation of each.
-    pub equations: Vec<usize>,
+    pub equations: Vec<EquationId>,
     /// Fills a weight per column.
     pub weights: &'w Weights<'w>,
 }
@@ -67,7 +66,7 @@ impl Drives for ForceDrives<'_> {
         for (slots, (equation, weight)) in
             slots.zip(self.columns.equations.iter().zip(&self.weights))
         {
-            let own = &self.accelerations[equation * half..(equation + 1) * half];
+            let own = &self.accelerations[equation.index() * half..(equation.index() + 1) * half];
             let pairs = slots.iter_mut().zip(own);
             pairs.for_each(|(slot, acceleration)| *slot = weight * acceleration);
         }
@@ -77,10 +76,11 @@ impl Drives for ForceDrives<'_> {
 /// For each window that is looked at a column per shape, in standard deviations per unit of force;
 /// no columns where the fit has no motion. None if neighbouring motions cannot be followed at all.
 pub fn force_responses(
-    (at, problem, fit): (&LinearisedFit, &EstimationProblem<'_>, &Fit),
+    of: Linearisation<'_>,
     equations: &Equations,
     columns: &ForceColumns<'_>,
 ) -> Option<Vec<DMatrix<f64>>> {
+    let Linearisation { at, problem, fit } = of;
     let whole = fit.shooting(problem);
     let shooting = Shooting {
         part: at.part,
@@ -97,34 +97,36 @@ pub fn force_responses(
     }
     let count = columns.equations.len();
     let size = at
-        .places
+        .windows
         .len()
         .div_ceil(rayon::current_num_threads().max(1));
-    let parts: Vec<Vec<DMatrix<f64>>> = (0..at.places.len())
+    let parts: Vec<Vec<DMatrix<f64>>> = (0..at.windows.len())
         .collect::<Vec<_>>()
         .par_chunks(size.max(1))
         .map(|part| {
             let mut sensitivities = SensitivityEvaluator::frozen(&shooting, theta, 1.0);
             let mut forces = ForceDrives::new(equations, columns, 0.0);
-            let mut one = |window: usize| {
-                at.base[window].as_ref()?;
-                let place = at.places[window];
-                let start = &at.estimate.initial_states[place];
-                forces.begin = problem.train.list[place].times[0];
+            let mut one = |number: usize| {
+                at.base[number].as_ref()?;
+                let window = at.windows[number];
+                let start = &at.estimate.initial_states[window];
+                forces.begin = problem.train.list[window].times[0];
                 let driven = NeighbourDrives {
                     count,
                     drives: &mut forces,
                 };
                 match carries_tangents {
-                    true => sensitivities.as_mut()?.drive_response(place, start, driven),
+                    true => sensitivities
+                        .as_mut()?
+                        .drive_response(window, start, driven),
                     false => {
-                        Stepped::new(&shooting, theta, place)?.columns(start, driven, at.level)
+                        Stepped::new(&shooting, theta, window)?.columns(start, driven, at.level)
                     }
                 }
             };
             let none = || DMatrix::zeros(0, 0);
             part.iter()
-                .map(|window| one(*window).unwrap_or_else(none))
+                .map(|number| one(*number).unwrap_or_else(none))
                 .collect()
         })
         .collect();
@@ -133,19 +135,20 @@ pub fn force_responses(
 
 /// Where the equations stand along the windows' motions, at every sample.
 pub fn operating_points(
-    (at, problem, fit): (&LinearisedFit, &EstimationProblem<'_>, &Fit),
+    of: Linearisation<'_>,
     equations: &Equations,
 ) -> Vec<Vec<Vec<OperatingPoint>>> {
+    let Linearisation { at, problem, fit } = of;
     let shooting = fit.shooting(problem);
     let Ok(mut simulation) = fit.model.simulation(&shooting.values(&at.estimate.theta)) else {
         return Vec::new();
     };
     let mut evaluator = equations.evaluator();
-    let windows = at.places.iter().map(|place| {
-        let window = &problem.train.list[*place];
+    let windows = at.windows.iter().map(|id| {
+        let window = &problem.train.list[*id];
         let times = &window.times[..samples_in(window, at.part)];
         let inputs = problem.train.inputs(window);
-        let states = simulation.states(&at.estimate.initial_states[*place], times, inputs);
+        let states = simulation.states(&at.estimate.initial_states[*id], times, inputs);
         let samples = times.iter().zip(states.unwrap_or_default());
         let samples = samples.map(|(t, state)| {
             let mut operating_points = Vec::new();

@@ -18,20 +18,22 @@ pub mod regression;
 pub mod types;
 pub mod wording;
 
+use crate::ids::EquationId;
 use std::f64::consts::TAU;
 
 use crate::fit::fitted::Fit;
-use crate::fit::linearised::LinearisedFit;
+use crate::fit::linearised::{Linearisation, LinearisedFit};
 use crate::fit::residual_spectrum::peak_frequency;
 use crate::model::problem::EstimationProblem;
 use crate::residual_force::basis_functions::{Family, Over, Range};
-use crate::residual_force::equations::{Equation, Equations, OperatingPoint};
+use crate::residual_force::equations::{Equations, OperatingPoint};
 use crate::residual_force::family_regression::FamilyRegression;
 use crate::residual_force::force_response::operating_points;
 use crate::residual_force::profiles::Blocks;
 use crate::residual_force::ranking::{Ranking, simple};
 use crate::residual_force::types::{Kind, ResidualForce};
 use crate::thresholds;
+use eomgen_records::samples::typical_step;
 
 /// The residual force of a fit, in an equation by its name or in the one where it explains most;
 /// none where neighbouring motions cannot be followed.
@@ -42,9 +44,13 @@ pub fn residual_force(
 ) -> Option<ResidualForce> {
     let equations = Equations::of(problem, fit)?;
     let at = LinearisedFit::of(problem, fit, 1.0);
-    let of = (&at, problem, fit);
+    let of = Linearisation {
+        at: &at,
+        problem,
+        fit,
+    };
     let operating_points = operating_points(of, &equations);
-    let ranges: Vec<Range> = (0..equations.list.len())
+    let ranges: Vec<Range> = EquationId::first(equations.list.len())
         .map(|equation| {
             let own = operating_points.iter().flatten().map(|all| all[equation]);
             Range::of(&own.collect::<Vec<OperatingPoint>>())
@@ -56,7 +62,7 @@ pub fn residual_force(
         .flatten()
         .map(|s| s.time)
         .fold(0.0, f64::max);
-    let general = |equation: usize| {
+    let general = |equation: EquationId| {
         let is_angle = equations.list[equation].unit == "rad";
         [
             Family::over_rate(equation, &ranges[equation]),
@@ -64,22 +70,36 @@ pub fn residual_force(
             Family::over_time(equation, length),
         ]
     };
-    let moves = |equation: &usize| ranges[*equation].width() > 0.0 && ranges[*equation].rate > 0.0;
-    let all: Vec<usize> = (0..equations.list.len()).filter(moves).collect();
-    let wave = |equation: usize| {
-        let own = &equations.list[equation];
-        waves((equation, own), &ranges[equation], (problem, fit, length))
+    let moves =
+        |equation: &EquationId| ranges[*equation].width() > 0.0 && ranges[*equation].rate > 0.0;
+    let all: Vec<EquationId> = EquationId::first(equations.list.len())
+        .filter(moves)
+        .collect();
+    let wave = |equation: EquationId| {
+        let mut families = Vec::new();
+        if equations.list[equation].unit == "rad" {
+            families.extend(orders(equation, &ranges[equation]));
+        }
+        families.extend(frequencies(equation, of, length));
+        families
     };
-    let named = |name: &str| all.iter().position(|e| equations.list[*e].name == name);
+    let named = |name: &str| {
+        all.iter()
+            .copied()
+            .find(|e| equations.list[*e].name == name)
+    };
     let mut families: Vec<Family> = all.iter().flat_map(|e| general(*e)).collect();
     if let [only] = all[..] {
         families.extend(wave(only));
     }
-    let few = at.with_few_windows();
-    let regressed = FamilyRegression::at((&few, problem, fit), &equations, families)?;
-    let ranking = Ranking::of(&regressed, all.len(), (&few, problem))?;
-    let number = wanted.and_then(named).unwrap_or(ranking.best);
-    let equation = all[number];
+    let few_windows = at.with_few_windows();
+    let few = Linearisation {
+        at: &few_windows,
+        ..of
+    };
+    let regressed = FamilyRegression::at(few, &equations, families)?;
+    let ranking = Ranking::of(&regressed, &all, few)?;
+    let equation = wanted.and_then(named).unwrap_or(ranking.best);
     let close = match all.len() {
         1 => None,
         _ => {
@@ -88,26 +108,25 @@ pub fn residual_force(
         }
     };
     let (close, seen) = match &close {
-        Some(close) => (close, &at),
-        None => (&regressed, &few),
+        Some(close) => (close, of),
+        None => (&regressed, few),
     };
     let blocks = Blocks {
-        at: seen,
-        problem,
+        of: seen,
         operating_points: &operating_points,
         equation,
     };
-    let mut found = blocks.profiles(close, &ranges[equation], fit);
-    found.ranking = ranking.ranking(&all);
+    let mut found = blocks.profiles(close, &ranges[equation]);
+    found.ranking = ranking.ranking();
     found.equations.clone_from(&equations.list);
-    found.best = all[ranking.best];
+    found.best = ranking.best;
     if ranking.stands_out {
         found.part = ranking.part;
         found.kind = Some(match ranking.is_state {
             false => Kind::Time,
-            true => simple(&regressed, ranking.family, (&few, problem)),
+            true => simple(&regressed, ranking.family, few),
         });
-    } else if found.frequency.part > thresholds::STANDS_OUT && number == ranking.best {
+    } else if found.frequency.part > thresholds::STANDS_OUT && equation == ranking.best {
         // A line may stand between the bends over time.
         found.part = found.frequency.part;
         found.kind = Some(Kind::Time);
@@ -115,21 +134,22 @@ pub fn residual_force(
     Some(found)
 }
 
-/// Waves that are looked at in one equation: orders that are gone through at least once, and
-/// frequencies from one period per window on.
-fn waves(
-    (equation, of): (usize, &Equation),
-    range: &Range,
-    (problem, fit, length): (&EstimationProblem<'_>, &Fit, f64),
-) -> Vec<Family> {
-    let mut found = Vec::new();
-    if of.unit == "rad" && range.width() > TAU / 4.0 {
-        let turns = |order: &u32| f64::from(*order) * range.width() > TAU;
-        let orders = thresholds::FORCE_ORDERS.into_iter().filter(turns);
-        found.extend(orders.map(|order| Family::wave(equation, Over::Order(order))));
+/// Waves over an angle: orders that are gone through at least once.
+fn orders(equation: EquationId, range: &Range) -> Vec<Family> {
+    if range.width() <= TAU / 4.0 {
+        return Vec::new();
     }
-    let step = eomgen_records::samples::typical_step(&problem.dataset.train[0].times);
-    let mut frequencies: Vec<f64> = peak_frequency(problem, fit).into_iter().collect();
+    let turns = |order: &u32| f64::from(*order) * range.width() > TAU;
+    let orders = thresholds::FORCE_ORDERS.into_iter().filter(turns);
+    let wave = |order: u32| Family::wave(equation, Over::Order(order));
+    orders.map(wave).collect()
+}
+
+/// Waves over time: frequencies from one period per window of this length, s, on, and that at which
+/// the residual is largest.
+fn frequencies(equation: EquationId, of: Linearisation<'_>, length: f64) -> Vec<Family> {
+    let step = typical_step(&of.problem.dataset.train[0].times);
+    let mut frequencies: Vec<f64> = peak_frequency(of.problem, of.fit).into_iter().collect();
     let mut periods = 1.0;
     for number in 1..=thresholds::MOST_FREQUENCIES {
         if periods * thresholds::PERIOD_SAMPLES * step > length {
@@ -144,6 +164,5 @@ fn waves(
     }
     frequencies.sort_by(f64::total_cmp);
     let wave = |frequency: f64| Family::wave(equation, Over::Frequency(frequency));
-    found.extend(frequencies.into_iter().map(wave));
-    found
+    frequencies.into_iter().map(wave).collect()
 }

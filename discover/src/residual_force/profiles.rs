@@ -1,40 +1,35 @@
 //! What the residual force in one equation is like: its profiles over rate, place, time, shaft
 //! order, frequency and amplitude, with one standard deviation each.
 
+use crate::ids::{EquationId, FamilyId};
 use nalgebra::DVector;
 
-use crate::fit::fitted::Fit;
-use crate::fit::linearised::LinearisedFit;
-use crate::model::problem::EstimationProblem;
+use crate::fit::linearised::Linearisation;
 use crate::residual_force::basis_functions::{Family, Over, Range};
 use crate::residual_force::equations::OperatingPoint;
 use crate::residual_force::family_regression::{FamilyRegression, noise};
-use crate::residual_force::regression::{Each, Sizes};
+use crate::residual_force::regression::{Each, Sizes, WindowSize};
 use crate::residual_force::types::{Profile, ResidualForce};
 use crate::thresholds;
 
 /// What profiles are read from.
 pub(crate) struct Blocks<'b> {
-    pub at: &'b LinearisedFit,
-    pub problem: &'b EstimationProblem<'b>,
+    pub of: Linearisation<'b>,
     pub operating_points: &'b [Vec<Vec<OperatingPoint>>],
-    pub equation: usize,
+    pub equation: EquationId,
 }
 
 impl Blocks<'_> {
     /// All profiles of one equation.
-    pub fn profiles(
-        &self,
-        regressed: &FamilyRegression,
-        range: &Range,
-        fit: &Fit,
-    ) -> ResidualForce {
-        let decrease = [0, 1].map(|family| regressed.shared(family).decrease);
-        let inflation = regressed.inflation(
-            (self.at, self.problem),
-            usize::from(decrease[1] > decrease[0]),
-        );
-        let over = |family: usize| {
+    pub fn profiles(&self, regressed: &FamilyRegression, range: &Range) -> ResidualForce {
+        let [by_rate, by_place] = [0, 1].map(FamilyId::new);
+        let decrease = [by_rate, by_place].map(|family| regressed.shared(family).decrease);
+        let better = match decrease[1] > decrease[0] {
+            true => by_place,
+            false => by_rate,
+        };
+        let inflation = regressed.inflation(self.of, better);
+        let over = |family: FamilyId| {
             let found = regressed.shared(family);
             Profile {
                 over: regressed.families[family].bends.clone(),
@@ -46,18 +41,19 @@ impl Blocks<'_> {
         };
         let level = noise(regressed, decrease[0].max(decrease[1]));
         let mut order = Profile::default();
-        for (place, family) in regressed.families.iter().enumerate() {
+        let ids = FamilyId::first(regressed.families.len());
+        for (id, family) in ids.zip(&regressed.families) {
             let Over::Order(number) = family.over else {
                 continue;
             };
-            let found = regressed.shared(place);
+            let found = regressed.shared(id);
             let sd = deviations(&found, inflation);
             order.over.push(f64::from(number));
             order.values.push(found.values.norm());
             order
                 .sd
                 .push((0.5 * (sd[0] * sd[0] + sd[1] * sd[1])).sqrt());
-            let part = regressed.part(place);
+            let part = regressed.part(id);
             if part > order.part {
                 order.part = part;
                 order.peak = Some(order.over.len() - 1);
@@ -71,12 +67,12 @@ impl Blocks<'_> {
             equation: self.equation,
             kind: None,
             part: 0.0,
-            rate: over(0),
-            place: over(1),
+            rate: over(by_rate),
+            place: over(by_place),
             time: self.over_time(regressed, level),
             order,
             frequency,
-            amplitude: self.by_amplitude(regressed, range, (level, fit)),
+            amplitude: self.by_amplitude(regressed, range, level),
         }
     }
 
@@ -88,8 +84,8 @@ impl Blocks<'_> {
         };
         let found = regressed.regression.each(regressed.range(family), level);
         profile.part = found.part;
-        for (place, sizes) in self.at.places.iter().zip(&found.windows) {
-            let window = &self.problem.train.list[*place];
+        for (id, sizes) in self.of.at.windows.iter().zip(&found.windows) {
+            let window = &self.of.problem.train.list[*id];
             let (Some(sizes), 0) = (sizes, window.record) else {
                 continue;
             };
@@ -116,14 +112,17 @@ impl Blocks<'_> {
             Over::Frequency(frequency) => Some(frequency),
             _ => None,
         };
-        let all = regressed.families.iter().enumerate();
-        let places: Vec<(usize, f64)> = all.filter_map(|(k, f)| Some((k, frequency(f)?))).collect();
-        let (Some(first), Some(last)) = (places.first(), places.last()) else {
+        let ids = FamilyId::first(regressed.families.len());
+        let all = ids.zip(&regressed.families);
+        let waves: Vec<(FamilyId, f64)> = all
+            .filter_map(|(id, family)| Some((id, frequency(family)?)))
+            .collect();
+        let (Some(first), Some(last)) = (waves.first(), waves.last()) else {
             return profile;
         };
         let whole = regressed.range(first.0).start..regressed.range(last.0).end;
         let found = regressed.regression.each(whole.clone(), level);
-        for (family, frequency) in places {
+        for (family, frequency) in waves {
             let range = regressed.range(family);
             let own = range.start - whole.start..range.end - whole.start;
             let (size, sd) = usual(&found, own, level);
@@ -141,12 +140,7 @@ impl Blocks<'_> {
 
     /// What of the force goes with the rate in each window, at its root mean square there, over
     /// the largest rate.
-    fn by_amplitude(
-        &self,
-        regressed: &FamilyRegression,
-        range: &Range,
-        (level, fit): (f64, &Fit),
-    ) -> Profile {
+    fn by_amplitude(&self, regressed: &FamilyRegression, range: &Range, level: f64) -> Profile {
         let mut profile = Profile::default();
         let Some(family) = regressed.find(|over| over == Over::Rate) else {
             return profile;
@@ -155,10 +149,10 @@ impl Blocks<'_> {
         let sizes = regressed
             .regression
             .in_windows(regressed.range(family), &bends);
-        let correlation = fit.train.correlation;
+        let correlation = self.of.fit.train.correlation;
         let mut points: Vec<(f64, f64, f64)> = Vec::new();
         for (operating_points, size) in self.operating_points.iter().zip(sizes) {
-            let Some((size, variance)) = size else {
+            let Some(WindowSize { value, variance }) = size else {
                 continue;
             };
             let rates = operating_points.iter().map(|all| all[self.equation].rate);
@@ -167,7 +161,7 @@ impl Blocks<'_> {
                 rates.map(|r| r * r).sum::<f64>() / operating_points.len().max(1) as f64;
             let usual = square.sqrt();
             let sd = (level * correlation * variance).sqrt() * usual;
-            points.push((largest.min(2.0 * range.rate), size * usual, sd));
+            points.push((largest.min(2.0 * range.rate), value * usual, sd));
         }
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         // A window that hardly shows the force says nothing of it.

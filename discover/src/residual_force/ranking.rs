@@ -1,38 +1,40 @@
 //! The equations compared: in which a missing force explains most, whether that stands out, and
 //! the simple functions that it consists of.
 
+use crate::ids::{EquationId, FamilyId};
 use nalgebra::{DMatrix, DVector};
 
-use crate::fit::linearised::LinearisedFit;
-use crate::model::problem::EstimationProblem;
+use crate::fit::linearised::Linearisation;
 use crate::residual_force::basis_functions::Over;
 use crate::residual_force::family_regression::{FamilyRegression, noise};
-use crate::residual_force::types::{Kind, RankedEquation, Simple};
+use crate::residual_force::types::{Kind, RankedEquation, Simple, SimplePart};
 use crate::thresholds;
 
 /// How the equations compare.
 pub(crate) struct Ranking {
-    /// For each the parts of the squares by rate or place and by time.
-    pub parts: Vec<(f64, f64)>,
-    pub best: usize,
+    equations: Vec<RankedEquation>,
+    pub best: EquationId,
     /// The family that the best one's force is of.
-    pub family: usize,
+    pub family: FamilyId,
     pub is_state: bool,
     pub part: f64,
     pub stands_out: bool,
 }
 
 impl Ranking {
-    /// Three families for each of so many equations: over rate, place and time.
+    /// Three families for each of some equations: over rate, place and time.
     pub fn of(
         regressed: &FamilyRegression,
-        count: usize,
-        of: (&LinearisedFit, &EstimationProblem<'_>),
+        all: &[EquationId],
+        of: Linearisation<'_>,
     ) -> Option<Self> {
-        let regression = &regressed.regression;
-        let states: Vec<(f64, usize)> = (0..count)
+        let (regression, count) = (&regressed.regression, all.len());
+        let states: Vec<(f64, FamilyId)> = (0..count)
             .map(|number| {
-                let part = |family: usize| (regressed.part(family), family);
+                let part = |family: usize| {
+                    let family = FamilyId::new(family);
+                    (regressed.part(family), family)
+                };
                 let (rate, place) = (part(3 * number), part(3 * number + 1));
                 if rate.0 >= place.0 { rate } else { place }
             })
@@ -40,7 +42,10 @@ impl Ranking {
         let by_state = (0..count).max_by(|a, b| states[*a].0.total_cmp(&states[*b].0))?;
         let level = noise(regressed, regressed.shared(states[by_state].1).decrease);
         let times: Vec<f64> = (0..count)
-            .map(|number| regression.each(regressed.range(3 * number + 2), level).part)
+            .map(|number| {
+                let family = FamilyId::new(3 * number + 2);
+                regression.each(regressed.range(family), level).part
+            })
             .collect();
         let by_time = (0..count).max_by(|a, b| times[*a].total_cmp(&times[*b]))?;
         let is_state = states[by_state].0 > thresholds::STATE_EXPLAINS * times[by_time];
@@ -52,15 +57,19 @@ impl Ranking {
             .max_by(|a, b| (states[*a].0 + times[*a]).total_cmp(&(states[*b].0 + times[*b])))?;
         let (best, part, family) = match is_state {
             true => (by_state, states[by_state].0, states[by_state].1),
-            false => (by_time, times[by_time], 3 * by_time + 2),
+            false => (by_time, times[by_time], FamilyId::new(3 * by_time + 2)),
         };
         let correlation = regressed.correlation(of, family, level);
-        let left = (1.0 - part).max(0.0) * regression.squares / regression.numbers;
-        let whitened = part * regression.squares / (2.0 * left.max(1.0) * correlation);
-        let parts = states.iter().zip(&times);
+        let mean_square = (1.0 - part).max(0.0) * regression.squares / regression.numbers;
+        let whitened = part * regression.squares / (2.0 * mean_square.max(1.0) * correlation);
+        let equations = (0..count).map(|number| RankedEquation {
+            equation: all[number],
+            by_state: states[number].0,
+            by_time: times[number],
+        });
         Some(Self {
-            parts: parts.map(|((state, _), time)| (*state, *time)).collect(),
-            best,
+            equations: equations.collect(),
+            best: all[best],
             family,
             is_state,
             part,
@@ -68,14 +77,9 @@ impl Ranking {
         })
     }
 
-    pub fn ranking(&self, all: &[usize]) -> Vec<RankedEquation> {
-        let mut ranking: Vec<RankedEquation> = (all.iter().zip(&self.parts))
-            .map(|(equation, (by_state, by_time))| RankedEquation {
-                equation: *equation,
-                by_state: *by_state,
-                by_time: *by_time,
-            })
-            .collect();
+    /// The equations, the best first.
+    pub fn ranking(&self) -> Vec<RankedEquation> {
+        let mut ranking = self.equations.clone();
         let order = |of: &RankedEquation| {
             if self.is_state {
                 of.by_state
@@ -92,8 +96,8 @@ impl Ranking {
 /// if it takes more.
 pub(crate) fn simple(
     regressed: &FamilyRegression,
-    family: usize,
-    of: (&LinearisedFit, &EstimationProblem<'_>),
+    family: FamilyId,
+    of: Linearisation<'_>,
 ) -> Kind {
     let over = regressed.families[family].over;
     let bends = &regressed.families[family].bends;
@@ -151,7 +155,11 @@ pub(crate) fn simple(
             let sizes = (0..set.len()).map(|k| {
                 let sd = (inflation * sizes.covariance[(k, k)]).sqrt();
                 let straight = thresholds::STRAIGHT * sizes.values[k];
-                (set[k], sizes.values[k], sd.hypot(straight))
+                SimplePart {
+                    function: set[k],
+                    value: sizes.values[k],
+                    sd: sd.hypot(straight),
+                }
             });
             sizes.collect()
         });

@@ -3,12 +3,12 @@
 //! in which each window's initial state is eliminated. Which shapes, and what they tell, is
 //! decided elsewhere.
 
+use crate::ids::BasisFunctionId;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::fit::fitted::Fit;
 use crate::fit::linearised::LinearisedFit;
-use crate::fit::variable_projection::StateProjection;
-use crate::fit::variable_projection::add_prior;
+use crate::fit::variable_projection::{PriorTerm, StateProjection, add_prior};
 use crate::thresholds;
 
 /// Nuisances that initial states do as well are distinguished by one of these parts of their
@@ -53,6 +53,15 @@ pub struct Each {
     pub part: f64,
 }
 
+/// A size in one window.
+#[derive(Clone, Copy, Debug)]
+pub struct WindowSize {
+    /// The size.
+    pub value: f64,
+    /// What its squared standard deviation is times that of the residual.
+    pub variance: f64,
+}
+
 impl Regression {
     /// Takes columns for each window that is looked at.
     pub fn new(at: &LinearisedFit, fit: &Fit, columns: &[DMatrix<f64>]) -> Option<Self> {
@@ -79,10 +88,13 @@ impl Regression {
             numbers += rows as f64;
         }
         let held = products[(n + count, n + count)];
-        for (place, unknown) in fit.unknowns.iter().enumerate() {
+        for (id, unknown) in fit.unknowns() {
             if let Some((mean, sd)) = unknown.prior {
-                let prior = (fit.prior_weight / (sd * sd), theta[place] - mean);
-                add_prior(&mut products, place, prior);
+                let prior = PriorTerm {
+                    weight: fit.prior_weight / (sd * sd),
+                    deviation: theta[id] - mean,
+                };
+                add_prior(&mut products, id, prior);
             }
         }
         let mut rest = products.view((n, n), (count + 1, count + 1)).into_owned();
@@ -124,12 +136,13 @@ impl Regression {
         )
     }
 
-    /// Sizes of columns, the same for all windows.
-    pub fn shared(&self, places: &[usize]) -> Sizes {
-        let gram = DMatrix::from_fn(places.len(), places.len(), |r, c| {
-            self.gram[(places[r], places[c])]
+    /// Sizes of basis functions, the same for all windows.
+    pub fn shared(&self, functions: &[BasisFunctionId]) -> Sizes {
+        let count = functions.len();
+        let gram = DMatrix::from_fn(count, count, |r, c| {
+            self.gram[(functions[r].index(), functions[c].index())]
         });
-        let right = DVector::from_fn(places.len(), |r, _| self.right[places[r]]);
+        let right = DVector::from_fn(count, |r, _| self.right[functions[r].index()]);
         sizes(&gram, &right, 0.0)
     }
 
@@ -180,13 +193,16 @@ impl Regression {
         &self,
         places: std::ops::Range<usize>,
         of: &DVector<f64>,
-    ) -> Vec<Option<(f64, f64)>> {
+    ) -> Vec<Option<WindowSize>> {
         let (first, count) = (places.start, places.len());
         let one = |window: &DMatrix<f64>| {
             let last = window.ncols().checked_sub(1)?;
             let square = of.dot(&(window.view((first, first), (count, count)) * of));
             let right = -of.dot(&window.view((first, last), (count, 1)).column(0));
-            (square > 0.0).then(|| (right / square, 1.0 / square))
+            (square > 0.0).then(|| WindowSize {
+                value: right / square,
+                variance: 1.0 / square,
+            })
         };
         self.windows.iter().map(one).collect()
     }
@@ -195,7 +211,8 @@ impl Regression {
     /// `shared`: whether they are the same for all windows, and nuisances give way to them.
     pub fn remaining(
         &self,
-        (at, columns): (&LinearisedFit, &[DMatrix<f64>]),
+        at: &LinearisedFit,
+        columns: &[DMatrix<f64>],
         values: &dyn Fn(usize) -> DVector<f64>,
         shared: bool,
     ) -> Vec<Vec<f64>> {

@@ -1,5 +1,6 @@
 //! What is told of a residual force.
 
+use crate::ids::EquationId;
 use crate::residual_force::equations::Equation;
 
 /// Numbers with one standard deviation each, over something.
@@ -20,8 +21,8 @@ pub struct Profile {
 /// How well a force in an equation does.
 #[derive(Clone, Debug)]
 pub struct RankedEquation {
-    /// The equation's place in the list.
-    pub equation: usize,
+    /// The equation.
+    pub equation: EquationId,
     /// The part of the squares that a force over its rate explains, or over its place.
     pub by_state: f64,
     /// The same of a force over time that differs from window to window.
@@ -32,11 +33,22 @@ pub struct RankedEquation {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     /// Its rate: so much of simple functions of it.
-    Rate(Vec<(Simple, f64, f64)>),
+    Rate(Vec<SimplePart>),
     /// Its place.
-    Place(Vec<(Simple, f64, f64)>),
+    Place(Vec<SimplePart>),
     /// Neither.
     Time,
+}
+
+/// So much of a simple function, in SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SimplePart {
+    /// The function.
+    pub function: Simple,
+    /// How much of it.
+    pub value: f64,
+    /// One standard deviation.
+    pub sd: f64,
 }
 
 /// Simple functions of a rate or a place.
@@ -61,9 +73,9 @@ pub struct ResidualForce {
     /// Those in which a force explains something, the best first.
     pub ranking: Vec<RankedEquation>,
     /// The best.
-    pub best: usize,
+    pub best: EquationId,
     /// The one whose profiles these are.
-    pub equation: usize,
+    pub equation: EquationId,
     /// What the force in the best is a function of; none if nothing stands out.
     pub kind: Option<Kind>,
     /// How much of the squares it explains.

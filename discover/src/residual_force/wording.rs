@@ -2,7 +2,7 @@
 //! squares it explains. No more is said than its numbers support.
 
 use crate::residual_force::equations::Equation;
-use crate::residual_force::types::{Kind, Profile, ResidualForce, Simple};
+use crate::residual_force::types::{Kind, Profile, ResidualForce, Simple, SimplePart};
 use crate::thresholds;
 
 /// One sentence or two on the residual force of the model as it is.
@@ -76,7 +76,7 @@ fn words(equation: &Equation) -> (&'static str, &'static str) {
     }
 }
 
-fn simple(parts: &[(Simple, f64, f64)], equation: &Equation, is_rate: bool) -> String {
+fn simple(parts: &[SimplePart], equation: &Equation, is_rate: bool) -> String {
     let (rate, place) = words(equation);
     let of = if is_rate { rate } else { place };
     let force = equation.force_unit();
@@ -96,9 +96,14 @@ fn simple(parts: &[(Simple, f64, f64)], equation: &Equation, is_rate: bool) -> S
         _ => format!("{force} s^2/m^2"),
     };
     let along = |value: f64| if value < 0.0 { "against" } else { "with" };
-    let texts = parts.iter().map(|(simple, value, sd)| {
+    let texts = parts.iter().map(|part| {
+        let SimplePart {
+            function,
+            value,
+            sd,
+        } = part;
         let number = |unit: &str| format!("{} +- {}", plain(value.abs()), in_unit(*sd, unit));
-        match simple {
+        match function {
             Simple::Constant => format!("a constant {} +- {}", plain(*value), in_unit(*sd, force)),
             Simple::Sign => format!("{} {} the {of}'s sign", number(force), along(*value)),
             Simple::Linear => format!("{} {} the {of}", number(&unit), along(*value)),

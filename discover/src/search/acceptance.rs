@@ -2,6 +2,7 @@
 //! the effect is accepted. Every limit stands in [`crate::thresholds`].
 
 use crate::fit::fitted::Fit;
+use crate::ids::{EffectId, UnknownId};
 use crate::search::rejection::Rejection;
 use crate::thresholds;
 
@@ -23,10 +24,10 @@ pub struct TestStatistics {
 /// An unknown of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectUnknown {
-    /// Its place among the unknowns of the fit.
-    pub place: usize,
-    /// Which of the effects that are judged together it belongs to, from 0.
-    pub effect: usize,
+    /// Which of the unknowns of the fit it is.
+    pub unknown: UnknownId,
+    /// Which of the effects that are tested together it belongs to.
+    pub effect: EffectId,
     /// Its value where the effect is absent, SI.
     pub base: f64,
     /// Whether it shapes the effect without scaling it.
@@ -118,22 +119,24 @@ fn size(before: &Fit, after: &Fit) -> f64 {
 /// The size of an effect in standard deviations; of several the smallest. The two parts of a
 /// wave count together.
 fn significance(fit: &Fit, own: &[EffectUnknown]) -> f64 {
-    let effects = own.iter().map(|own| own.effect + 1).max().unwrap_or(0);
-    let of = |effect: usize| {
+    let effects = own.iter().map(|own| own.effect.index() + 1).max();
+    let of = |effect: EffectId| {
         let scaling = own
             .iter()
             .filter(|own| own.effect == effect && !own.is_shape);
-        let ratios =
-            scaling.map(|own| (fit.train.estimate.theta[own.place] - own.base) / fit.sd[own.place]);
+        let ratios = scaling
+            .map(|own| (fit.train.estimate.theta[own.unknown] - own.base) / fit.sd[own.unknown]);
         ratios.map(|t| t * t).sum::<f64>().sqrt()
     };
-    (0..effects).map(of).fold(f64::INFINITY, f64::min)
+    EffectId::first(effects.unwrap_or(0))
+        .map(of)
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// A parameter that a bound holds.
 fn at_bound(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
     let held = own.iter().find(|own| !own.is_shape && is_held(fit, own))?;
-    let name = fit.unknowns[held.place].label.clone();
+    let name = fit.unknowns[held.unknown].label.clone();
     Some(match held.prior {
         Some(_) => Rejection::AtLimit(name),
         None => Rejection::WrongSign(name),
@@ -142,8 +145,8 @@ fn at_bound(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
 
 /// Whether an unknown is held by one of its bounds.
 pub fn is_held(fit: &Fit, own: &EffectUnknown) -> bool {
-    let unknown = &fit.unknowns[own.place];
-    let value = fit.train.estimate.theta[own.place];
+    let unknown = &fit.unknowns[own.unknown];
+    let value = fit.train.estimate.theta[own.unknown];
     value <= unknown.bounds.0 || value >= unknown.bounds.1
 }
 
@@ -151,10 +154,10 @@ pub fn is_held(fit: &Fit, own: &EffectUnknown) -> bool {
 fn within_prior(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
     own.iter().find_map(|own| {
         let prior = own.prior?;
-        let off = (fit.train.estimate.theta[own.place] - own.base).abs() / prior;
+        let off = (fit.train.estimate.theta[own.unknown] - own.base).abs() / prior;
         // Beyond its prior for certain, not by what the record leaves open.
-        let sure = off - thresholds::STANDARD_ERRORS * fit.sd[own.place] / prior;
+        let sure = off - thresholds::STANDARD_ERRORS * fit.sd[own.unknown] / prior;
         let is_off = sure > thresholds::SHIFTED;
-        (!is_off).then(|| Rejection::WithinPrior(fit.unknowns[own.place].label.clone(), off))
+        (!is_off).then(|| Rejection::WithinPrior(fit.unknowns[own.unknown].label.clone(), off))
     })
 }

@@ -5,7 +5,8 @@
 use crate::catalogue::candidate::{Candidate, candidates};
 use crate::catalogue::effect::Effect;
 use crate::catalogue::sites::sites;
-use crate::fit::preliminary::PreliminaryFit;
+use crate::fit::preliminary::{PreliminaryFit, WarmStart};
+use crate::ids::{CandidateId, FittedId, ResponseId};
 use crate::model::usual_rates::usual_rates;
 use crate::search::fitted::{FittedHypothesis, full_fits};
 use crate::search::hypothesis::{Hypothesis, begun_at};
@@ -18,7 +19,7 @@ use crate::thresholds;
 pub fn test_alternatives(
     pool: &Pool<'_>,
     fitted_hypotheses: &mut Vec<FittedHypothesis>,
-    answer: usize,
+    answer: FittedId,
     effects: &[Effect],
 ) {
     let preliminaries = alternatives(pool, fitted_hypotheses, answer, effects).unwrap_or_default();
@@ -39,7 +40,7 @@ pub fn test_alternatives(
 fn alternatives(
     pool: &Pool<'_>,
     fitted_hypotheses: &[FittedHypothesis],
-    answer: usize,
+    answer: FittedId,
     effects: &[Effect],
 ) -> Option<Vec<(Hypothesis, PreliminaryFit)>> {
     let fitted = &fitted_hypotheses[answer];
@@ -60,16 +61,21 @@ fn alternatives(
         pool.candidate(response).label()
     ));
     let mut predictions = predictions(pool, fitted, &in_model)?;
-    predictions.sort_by(|a, b| a.1.total_cmp(&b.1));
+    predictions.sort_by(|a, b| a.prediction.cost.total_cmp(&b.prediction.cost));
     predictions.truncate(thresholds::FITS_AT_ONCE);
     let shape_ratio = shape_ratio(pool, fitted).unwrap_or(1.0);
-    let preliminaries = predictions.into_iter().filter_map(|(place, cost, sizes)| {
+    let preliminaries = predictions.into_iter().filter_map(|of| {
+        let Prediction { cost, sizes } = of.prediction;
         let hypothesis = Hypothesis {
-            responses: vec![rivals[place]],
+            responses: vec![rivals[of.candidate]],
             deleted: None,
             sizes,
         };
-        let preliminary = begun_at(pool, &hypothesis, (&fitted.fit, cost), shape_ratio).ok()?;
+        let warm_start = WarmStart {
+            fit: &fitted.fit,
+            cost,
+        };
+        let preliminary = begun_at(pool, &hypothesis, warm_start, shape_ratio).ok()?;
         Some((hypothesis, preliminary))
     });
     Some(preliminaries.collect())
@@ -80,9 +86,9 @@ fn alternatives(
 fn in_model(
     pool: &Pool<'_>,
     fitted: &FittedHypothesis,
-    rivals: &[usize],
+    rivals: &[ResponseId],
     effects: &[Effect],
-) -> (Vec<usize>, Vec<Candidate>) {
+) -> (Vec<ResponseId>, Vec<Candidate>) {
     if rivals.is_empty() {
         return Default::default();
     }
@@ -94,7 +100,7 @@ fn in_model(
         &usual_rates(pool.context.problem.dataset, model),
     );
     let shape_ratio = shape_ratio(pool, fitted).unwrap_or(1.0);
-    let again = |rival: &usize| {
+    let again = |rival: &ResponseId| {
         let label = pool.candidate(*rival).label();
         let found = known.iter().find(|candidate| candidate.label() == label)?;
         let mut found = found.clone();
@@ -105,29 +111,36 @@ fn in_model(
     rivals.iter().filter_map(again).unzip()
 }
 
+/// What a candidate promises.
+struct Predicted {
+    candidate: CandidateId,
+    prediction: Prediction,
+}
+
 /// Which candidates promise to leave little without a fitted hypothesis' own terms, what they leave
 /// and their sizes.
 fn predictions(
     pool: &Pool<'_>,
     fitted: &FittedHypothesis,
     in_model: &[Candidate],
-) -> Option<Vec<(usize, f64, Vec<f64>)>> {
+) -> Option<Vec<Predicted>> {
     let mut screening = screening(pool.context.problem, &fitted.fit, in_model, 1.0);
     let cost = screening.predicted(&[]).cost;
     let theta = &fitted.fit.train.estimate.theta;
     for own in &fitted.own {
         screening = match own.is_shape {
-            true => screening.held(own.place),
-            false => screening.without(own.place, theta[own.place])?,
+            true => screening.held(own.unknown),
+            false => screening.without(own.unknown, theta[own.unknown])?,
         };
     }
-    let predictions = (0..screening.responses.len()).map(|place| {
-        let Prediction { cost, sizes } = screening.predicted(&[place]);
-        (screening.responses[place].candidate, cost, sizes)
+    let ids = ResponseId::first(screening.responses.len());
+    let predictions = ids.map(|id| Predicted {
+        candidate: screening.responses[id].candidate,
+        prediction: screening.predicted(&[id]),
     });
     Some(
         predictions
-            .filter(|(_, predictions, _)| *predictions < thresholds::RIVAL * cost)
+            .filter(|of| of.prediction.cost < thresholds::RIVAL * cost)
             .collect(),
     )
 }
@@ -140,7 +153,7 @@ fn shape_ratio(pool: &Pool<'_>, fitted: &FittedHypothesis) -> Option<f64> {
         .candidate_unknowns
         .iter()
         .find(|of| of.is_shape)?;
-    Some(fitted.fit.train.estimate.theta[shape.place] / began.unknown.start)
+    Some(fitted.fit.train.estimate.theta[shape.unknown] / began.unknown.start)
 }
 
 /// The same effect elsewhere, and what the record hardly tells from it, unless it leaves as
@@ -148,24 +161,23 @@ fn shape_ratio(pool: &Pool<'_>, fitted: &FittedHypothesis) -> Option<f64> {
 fn rivals(
     pool: &Pool<'_>,
     fitted_hypotheses: &[FittedHypothesis],
-    answer: usize,
-    response: usize,
-) -> Vec<usize> {
+    answer: FittedId,
+    response: ResponseId,
+) -> Vec<ResponseId> {
     let selected = pool.candidate(response);
     let enough = (1.0 + thresholds::DISTINGUISHED) * fitted_hypotheses[answer].fit.rms();
-    let is_rival = |place: &usize| {
-        let of = pool.candidate(*place);
+    let is_rival = |id: &ResponseId| {
+        let of = pool.candidate(*id);
         let done = fitted_hypotheses
             .iter()
-            .any(|fitted| fitted.responses == [*place] && fitted.fit.rms() < enough);
+            .any(|fitted| fitted.responses == [*id] && fitted.fit.rms() < enough);
         let turns = |c: &Candidate| c.order.as_ref().map(|(_, order)| *order);
         let same = of.effect == selected.effect && turns(of) == turns(selected);
-        let is_own = pool.screening.responses[*place].dropped_prior.is_none();
-        let similar =
-            || pool.screening.similarity(*place, response) > thresholds::INDISTINGUISHABLE;
-        *place != response && is_own && !done && (same || similar())
+        let is_own = pool.screening.responses[*id].dropped_prior.is_none();
+        let similar = || pool.screening.similarity(*id, response) > thresholds::INDISTINGUISHABLE;
+        *id != response && is_own && !done && (same || similar())
     };
-    (0..pool.screening.responses.len())
+    ResponseId::first(pool.screening.responses.len())
         .filter(is_rival)
         .collect()
 }

@@ -2,7 +2,9 @@
 
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
-use crate::fit::{full, preliminary};
+use crate::fit::full;
+use crate::fit::preliminary::{self, WarmStart};
+use crate::ids::UnknownId;
 use crate::model::problem::EstimationProblem;
 use crate::search::found::{Accepted, Found};
 use crate::thresholds;
@@ -56,18 +58,21 @@ fn without(
     let mut unknowns = fit.unknowns.clone();
     let mut theta = fit.train.estimate.theta.clone();
     if gone.candidate.dropped_prior.is_some() {
-        for at in &gone.unknowns {
-            unknowns[*at].clone_from(&found.null.unknowns[*at]);
-            theta[*at] = found.null.unknowns[*at].start;
+        for id in &gone.unknowns {
+            unknowns[*id].clone_from(&found.null.unknowns[*id]);
+            theta[*id] = found.null.unknowns[*id].start;
         }
     } else {
-        let is_kept = |at: &usize| !gone.unknowns.contains(at);
-        let kept: Vec<usize> = (0..unknowns.len()).filter(is_kept).collect();
-        unknowns = kept.iter().map(|at| unknowns[*at].clone()).collect();
-        theta = kept.iter().map(|at| theta[*at]).collect();
+        let is_kept = |id: &UnknownId| !gone.unknowns.contains(id);
+        let kept: Vec<UnknownId> = UnknownId::first(unknowns.len()).filter(is_kept).collect();
+        unknowns = kept.iter().map(|id| unknowns[*id].clone()).collect();
+        theta = kept.iter().map(|id| theta[*id]).collect();
     }
-    let left = fit.train.estimate.cost;
-    let preliminary = preliminary::expected(problem, texts, unknowns, theta, (fit, left))?;
+    let warm_start = WarmStart {
+        fit,
+        cost: fit.train.estimate.cost,
+    };
+    let preliminary = preliminary::expected(problem, texts, unknowns, theta, warm_start)?;
     full::complete(problem, preliminary)
 }
 
@@ -78,8 +83,9 @@ fn renumber(accepted: &mut Vec<Accepted>, place: usize) {
         return;
     }
     for effect in accepted {
-        for at in &mut effect.unknowns {
-            *at -= gone.unknowns.iter().filter(|gone| *gone < at).count();
+        for id in &mut effect.unknowns {
+            let before = gone.unknowns.iter().filter(|gone| *gone < id).count();
+            *id = UnknownId::new(id.index() - before);
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Hypotheses fitted, side by side: to the beginnings of windows, and in full.
 
+use crate::ids::ResponseId;
 use rayon::prelude::*;
 
 use crate::error::DiscoverError;
@@ -13,8 +14,8 @@ use crate::search::rejection::Rejection;
 
 /// A hypothesis fitted in full.
 pub struct FittedHypothesis {
-    /// Their places among the screened.
-    pub responses: Vec<usize>,
+    /// The responses of its candidates.
+    pub responses: Vec<ResponseId>,
     /// Their unknowns.
     pub own: Vec<EffectUnknown>,
     /// The fit with them.

@@ -2,6 +2,7 @@
 
 use crate::catalogue::candidate::Candidate;
 use crate::fit::fitted::Fit;
+use crate::ids::UnknownId;
 use crate::search::acceptance::TestStatistics;
 
 /// An effect that was accepted.
@@ -10,13 +11,22 @@ pub struct Accepted {
     /// The effect at its place.
     pub candidate: Candidate,
     /// Which of the unknowns of the last fit are its own.
-    pub unknowns: Vec<usize>,
+    pub unknowns: Vec<UnknownId>,
     /// Those that were indistinguishable from it.
     pub equivalent: Vec<Candidate>,
     /// What spoke for it when it was added.
     pub statistics: TestStatistics,
-    /// The test gap before it was added and after, in standard deviations.
-    pub test_gap: (f64, f64),
+    /// The gap on the test records.
+    pub test_gap: TestGap,
+}
+
+/// The root mean square of the test records' residuals, in standard deviations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TestGap {
+    /// Before an effect was added.
+    pub before: f64,
+    /// With it.
+    pub after: f64,
 }
 
 /// A candidate that was not accepted, and why.

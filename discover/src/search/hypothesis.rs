@@ -2,8 +2,8 @@
 //! how a fit begins.
 
 use crate::error::DiscoverError;
-use crate::fit::fitted::Fit;
-use crate::fit::preliminary::{self, PreliminaryFit};
+use crate::fit::preliminary::{self, PreliminaryFit, WarmStart};
+use crate::ids::{EffectId, ResponseId, UnknownId};
 use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::Unknown;
 use crate::search::acceptance::EffectUnknown;
@@ -12,25 +12,32 @@ use crate::search::pool::Pool;
 /// Candidates to be fitted together, and a parameter whose term they replace.
 #[derive(Clone)]
 pub struct Hypothesis {
-    /// The candidates' places among the screened.
-    pub responses: Vec<usize>,
-    /// The place of the parameter.
-    pub deleted: Option<usize>,
+    /// The candidates' responses.
+    pub responses: Vec<ResponseId>,
+    /// The parameter.
+    pub deleted: Option<UnknownId>,
     /// The candidates' promised sizes, in order.
     pub sizes: Vec<f64>,
+}
+
+/// The unknowns of a fit with further ones, and where they begin, SI.
+struct Extended {
+    unknowns: Vec<Unknown>,
+    theta: Vec<f64>,
 }
 
 /// The unknowns of a hypothesis' effects in a fit with them.
 pub fn own_unknowns(pool: &Pool<'_>, hypothesis: &Hypothesis) -> Vec<EffectUnknown> {
     let mut next = pool.context.fit.unknowns.len();
     let mut own = Vec::new();
-    for (effect, response) in hypothesis.responses.iter().enumerate() {
+    let effects = EffectId::first(hypothesis.responses.len());
+    for (effect, response) in effects.zip(&hypothesis.responses) {
         let response = &pool.screening.responses[*response];
-        if let Some(place) = response.dropped_prior
-            && let Some((mean, sd)) = pool.context.fit.unknowns[place].prior
+        if let Some(unknown) = response.dropped_prior
+            && let Some((mean, sd)) = pool.context.fit.unknowns[unknown].prior
         {
             own.push(EffectUnknown {
-                place,
+                unknown,
                 effect,
                 base: mean,
                 is_shape: false,
@@ -39,7 +46,7 @@ pub fn own_unknowns(pool: &Pool<'_>, hypothesis: &Hypothesis) -> Vec<EffectUnkno
         }
         for candidate_unknown in &response.candidate_unknowns {
             own.push(EffectUnknown {
-                place: next,
+                unknown: UnknownId::new(next),
                 effect,
                 base: candidate_unknown.base,
                 is_shape: candidate_unknown.is_shape,
@@ -57,7 +64,7 @@ pub fn preliminary(
     hypothesis: &Hypothesis,
 ) -> Result<PreliminaryFit, DiscoverError> {
     let (problem, fit) = (pool.context.problem, pool.context.fit);
-    let (unknowns, theta) = unknowns_with(pool, hypothesis, pool.parts[0]);
+    let Extended { unknowns, theta } = unknowns_with(pool, hypothesis, pool.parts[0]);
     let texts = texts(pool, hypothesis, &unknowns, &theta)?;
     // What swings in coordinates of its own is far from the fit however little it does.
     let adds_states = hypothesis.responses.iter().any(|response| {
@@ -66,11 +73,12 @@ pub fn preliminary(
     });
     if pool.is_whole && hypothesis.deleted.is_none() && !adds_states {
         let cost = pool.screening.predicted(&hypothesis.responses).cost;
-        return preliminary::expected(problem, texts, unknowns, theta, (fit, cost));
+        let warm_start = WarmStart { fit, cost };
+        return preliminary::expected(problem, texts, unknowns, theta, warm_start);
     }
     let others = pool.parts[1..]
         .iter()
-        .map(|part| unknowns_with(pool, hypothesis, *part).1);
+        .map(|part| unknowns_with(pool, hypothesis, *part).theta);
     let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
     let mut preliminary = preliminary::preliminary(problem, texts, unknowns, &begins)?;
     if pool.is_whole {
@@ -86,36 +94,42 @@ pub fn with_shape(
     hypothesis: &Hypothesis,
     times: f64,
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let (unknowns, mut theta) = unknowns_with(pool, hypothesis, 1.0);
+    let Extended {
+        unknowns,
+        mut theta,
+    } = unknowns_with(pool, hypothesis, 1.0);
     for own in own_unknowns(pool, hypothesis)
         .iter()
         .filter(|own| own.is_shape)
     {
-        theta[own.place] = unknowns[own.place].admissible(times * theta[own.place]);
+        theta[own.unknown] = unknowns[own.unknown].admissible(times * theta[own.unknown]);
     }
     let texts = texts(pool, hypothesis, &unknowns, &theta)?;
     preliminary::preliminary(pool.context.problem, texts, unknowns, &[theta])
 }
 
-/// A hypothesis of one candidate, begun with the motions of a fit with another. `cost`: what that
-/// promises to leave; `shaped`: how many times its usual size a shape is.
+/// A hypothesis of one candidate, begun with the motions of a fit with another. `shape_ratio`: how
+/// many times its usual size a shape is.
 pub fn begun_at(
     pool: &Pool<'_>,
     hypothesis: &Hypothesis,
-    (begin, cost): (&Fit, f64),
+    warm_start: WarmStart<'_>,
     shape_ratio: f64,
 ) -> Result<PreliminaryFit, DiscoverError> {
-    let (unknowns, mut theta) = unknowns_with(pool, hypothesis, 1.0);
+    let Extended {
+        unknowns,
+        mut theta,
+    } = unknowns_with(pool, hypothesis, 1.0);
     let count = pool.context.fit.unknowns.len();
-    theta[..count].copy_from_slice(&begin.train.estimate.theta[..count]);
+    theta[..count].copy_from_slice(&warm_start.fit.train.estimate.theta[..count]);
     for own in own_unknowns(pool, hypothesis)
         .iter()
         .filter(|own| own.is_shape)
     {
-        theta[own.place] = unknowns[own.place].admissible(shape_ratio * theta[own.place]);
+        theta[own.unknown] = unknowns[own.unknown].admissible(shape_ratio * theta[own.unknown]);
     }
     let texts = texts(pool, hypothesis, &unknowns, &theta)?;
-    preliminary::expected(pool.context.problem, texts, unknowns, theta, (begin, cost))
+    preliminary::expected(pool.context.problem, texts, unknowns, theta, warm_start)
 }
 
 /// The specification's texts with a hypothesis' candidates, at these values of the unknowns.
@@ -146,21 +160,21 @@ fn texts(
 
 /// The unknowns with a hypothesis' candidates and their values, so much of the promised sizes from
 /// absent.
-fn unknowns_with(pool: &Pool<'_>, hypothesis: &Hypothesis, part: f64) -> (Vec<Unknown>, Vec<f64>) {
+fn unknowns_with(pool: &Pool<'_>, hypothesis: &Hypothesis, part: f64) -> Extended {
     let fit = pool.context.fit;
     let mut unknowns = fit.unknowns.clone();
     let mut theta = fit.restarted();
-    if let Some(place) = hypothesis.deleted {
-        unknowns[place].bounds = (0.0, 0.0);
-        theta[place] = 0.0;
+    if let Some(deleted) = hypothesis.deleted {
+        unknowns[deleted].bounds = (0.0, 0.0);
+        theta[deleted] = 0.0;
     }
     let mut sizes = hypothesis.sizes.iter().map(|size| part * size);
     for response in &hypothesis.responses {
         let response = &pool.screening.responses[*response];
-        if let Some(place) = response.dropped_prior {
+        if let Some(id) = response.dropped_prior {
             let size = sizes.next().unwrap_or(0.0);
-            unknowns[place] = unknowns[place].without_prior();
-            theta[place] = unknowns[place].admissible(fit.train.estimate.theta[place] + size);
+            unknowns[id] = unknowns[id].without_prior();
+            theta[id] = unknowns[id].admissible(fit.train.estimate.theta[id] + size);
             continue;
         }
         for candidate_unknown in &response.candidate_unknowns {
@@ -183,5 +197,5 @@ fn unknowns_with(pool: &Pool<'_>, hypothesis: &Hypothesis, part: f64) -> (Vec<Un
             unknowns.push(unknown);
         }
     }
-    (unknowns, theta)
+    Extended { unknowns, theta }
 }

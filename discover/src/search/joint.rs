@@ -1,6 +1,7 @@
 //! Two effects of which neither is accepted alone, and which no pair promised: the best single one,
 //! and what is accepted beside it.
 
+use crate::ids::EffectId;
 use crate::search::acceptance::{EffectUnknown, acceptance_test, is_held};
 use crate::search::context::Context;
 use crate::search::excitation_window::ExcitationWindow;
@@ -32,7 +33,7 @@ pub fn joint_acceptance(round: &Round<'_>, tested: &[TestedPool]) -> Option<Sele
     tested.fitted_hypotheses.retain(|fitted| fitted.explains);
     let mut found = selected(beside.context, tested)?;
     let second = found.fitted.own.into_iter().map(|own| EffectUnknown {
-        effect: own.effect + 1,
+        effect: EffectId::new(own.effect.index() + 1),
         ..own
     });
     found.fitted.own = first.own.iter().cloned().chain(second).collect();

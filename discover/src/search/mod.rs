@@ -38,13 +38,15 @@ use crate::catalogue::candidate::Candidate;
 use crate::catalogue::effect::Effect;
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
+use crate::ids::{EffectId, ResponseId};
 use crate::model::problem::EstimationProblem;
 use crate::search::acceptance::test_statistics;
 use crate::search::answer::answer;
 use crate::search::backward_elimination::eliminate_backwards;
 use crate::search::context::Context;
-use crate::search::found::{Accepted, Found, Rejected};
+use crate::search::found::{Accepted, Found, Rejected, TestGap};
 use crate::search::round::Round;
+use crate::search::screening::NotExcited;
 use crate::search::selected::Selected;
 use crate::search::tested::TestedPool;
 use crate::thresholds;
@@ -109,15 +111,16 @@ fn note_rejected(rejected: &mut Vec<Rejected>, tested: &TestedPool) {
             not_testable,
         });
     };
-    for (candidate, reason) in &screening.not_excited {
-        note(&candidates[*candidate], reason.clone(), true);
+    for NotExcited { candidate, reason } in &screening.not_excited {
+        note(&candidates[*candidate], reason.to_string(), true);
     }
-    for (place, response) in screening.responses.iter().enumerate() {
+    let ids = ResponseId::first(screening.responses.len());
+    for (id, response) in ids.zip(&screening.responses) {
         let candidate = &candidates[response.candidate];
-        let perturbed_responses = fitted_hypotheses
+        let alone = fitted_hypotheses
             .iter()
-            .find(|fitted| fitted.responses == [place]);
-        match perturbed_responses.map(|fitted| &fitted.verdict) {
+            .find(|fitted| fitted.responses == [id]);
+        match alone.map(|fitted| &fitted.verdict) {
             Some(Err(reason)) => note(candidate, reason.to_string(), false),
             Some(Ok(_)) => {}
             None if response.unexplained_fraction <= thresholds::UNEXPLAINED_FRACTION => note(
@@ -140,27 +143,36 @@ fn note_rejected(rejected: &mut Vec<Rejected>, tested: &TestedPool) {
 /// Takes what is named over, with the candidates that are indistinguishable from it.
 fn accept(found: &mut Found, selected: Selected) {
     let (before, best) = (found.best(), selected.fitted);
-    let gap = (before.test.rms, best.fit.test.rms);
+    let gap = TestGap {
+        before: before.test.rms,
+        after: best.fit.test.rms,
+    };
     let statistics = best
         .verdict
         .unwrap_or_else(|_| test_statistics(before, &best.fit, &best.own));
-    let accepted = selected.candidates.into_iter().enumerate();
-    let accepted = accepted.map(|(number, candidate)| {
-        let own = best.own.iter().filter(|own| own.effect == number);
+    let effects = EffectId::first(selected.candidates.len());
+    let accepted = effects.zip(selected.candidates).map(|(effect, candidate)| {
+        let own = best.own.iter().filter(|own| own.effect == effect);
         Accepted {
             candidate,
-            unknowns: own.map(|own| own.place).collect(),
-            equivalent: selected.equivalent[number].clone(),
+            unknowns: own.map(|own| own.unknown).collect(),
+            equivalent: selected.equivalent[effect].clone(),
             statistics: statistics.clone(),
             test_gap: match selected.half {
-                Some((first, between)) if first == number => (gap.0, between),
-                Some((_, between)) => (between, gap.1),
+                Some(half) if half.effect == effect => TestGap {
+                    after: half.test_rms,
+                    ..gap
+                },
+                Some(half) => TestGap {
+                    before: half.test_rms,
+                    ..gap
+                },
                 None => gap,
             },
         }
     });
     let mut accepted: Vec<Accepted> = accepted.collect();
-    if selected.half.is_some_and(|(first, _)| first != 0) {
+    if selected.half.is_some_and(|half| half.effect.index() != 0) {
         accepted.reverse();
     }
     found.accepted.extend(accepted);

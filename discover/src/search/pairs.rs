@@ -1,6 +1,7 @@
 //! Pairs of candidates: those that promise clearly more than one alone, and others in the place of
 //! one of a pair's two effects.
 
+use crate::ids::{FittedId, ResponseId, UnknownId};
 use crate::model::unknowns::What;
 use crate::search::acceptance::{EffectUnknown, is_held};
 use crate::search::fitted::{FittedHypothesis, full_fits, preliminary_fits};
@@ -18,9 +19,9 @@ pub fn pairs(pool: &Pool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothe
         fitted.own.iter().any(of)
     };
     let away = singles.iter().filter(ran_away);
-    let away: Vec<usize> = away.flat_map(|fitted| fitted.responses.clone()).collect();
-    let is_there = |response: &usize| !away.contains(response);
-    let ranking: Vec<usize> = pool.ranking().into_iter().filter(is_there).collect();
+    let away: Vec<ResponseId> = away.flat_map(|fitted| fitted.responses.clone()).collect();
+    let is_there = |response: &ResponseId| !away.contains(response);
+    let ranking: Vec<ResponseId> = pool.ranking().into_iter().filter(is_there).collect();
     let mut added = 0;
     let mut preliminaries = preliminary_fits(pool, best_pairs(pool, &ranking, &away));
     preliminaries.retain(|(hypothesis, _)| {
@@ -43,18 +44,18 @@ pub fn pairs(pool: &Pool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothe
 /// of the model that may go the pair that takes its place best. Of what repeats with an angle the
 /// best alone are paired, and with something else: of that there is so much that some of it is
 /// lucky.
-fn best_pairs(pool: &Pool<'_>, ranking: &[usize], away: &[usize]) -> Vec<Hypothesis> {
+fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], away: &[ResponseId]) -> Vec<Hypothesis> {
     let screening = pool.screening;
     let best = ranking
         .first()
         .map_or(0.0, |r| screening.responses[*r].decrease);
     let single = screening.predicted(&[]).cost - best;
     // What is nothing alone may be half of a pair: friction of two kinds in place of a third.
-    let repeats = |r: &usize| pool.candidate(*r).order.is_some();
-    let repeating: Vec<usize> = (ranking.iter().copied().filter(repeats))
+    let repeats = |r: &ResponseId| pool.candidate(*r).order.is_some();
+    let repeating: Vec<ResponseId> = (ranking.iter().copied().filter(repeats))
         .take(thresholds::MOST_FITS)
         .collect();
-    let few: Vec<usize> = (0..screening.responses.len())
+    let few: Vec<ResponseId> = ResponseId::first(screening.responses.len())
         .filter(|r| {
             let response = &screening.responses[*r];
             let is_one = !repeats(r) || repeating.contains(r);
@@ -63,8 +64,9 @@ fn best_pairs(pool: &Pool<'_>, ranking: &[usize], away: &[usize]) -> Vec<Hypothe
                 && response.unexplained_fraction > thresholds::UNEXPLAINED_FRACTION
         })
         .collect();
-    let never = |a: usize, b: usize| pool.share_a_name(a, b) || (repeats(&a) && repeats(&b));
-    let best_of = |deleted: Option<usize>, screening: &Screening| {
+    let never =
+        |a: ResponseId, b: ResponseId| pool.share_a_name(a, b) || (repeats(&a) && repeats(&b));
+    let best_of = |deleted: Option<UnknownId>, screening: &Screening| {
         let mut found: Vec<(f64, Hypothesis)> = Vec::new();
         for (number, a) in few.iter().enumerate() {
             let others = few[number + 1..].iter();
@@ -96,16 +98,16 @@ fn best_pairs(pool: &Pool<'_>, ranking: &[usize], away: &[usize]) -> Vec<Hypothe
             .collect::<Vec<Hypothesis>>()
     };
     let mut hypotheses = best_of(None, screening);
-    for (place, unknown) in pool.context.fit.unknowns.iter().enumerate() {
-        let value = pool.context.fit.train.estimate.theta[place];
+    for (id, unknown) in pool.context.fit.unknowns() {
+        let value = pool.context.fit.train.estimate.theta[id];
         let near = unknown
             .prior
             .is_some_and(|(mean, sd)| mean.abs() < thresholds::PRIOR_REACH * sd);
         if matches!(unknown.what, What::Parameter(_))
             && near
-            && let Some(screening) = screening.without(place, value)
+            && let Some(screening) = screening.without(id, value)
         {
-            hypotheses.extend(best_of(Some(place), &screening));
+            hypotheses.extend(best_of(Some(id), &screening));
         }
     }
     hypotheses
@@ -116,14 +118,14 @@ fn best_pairs(pool: &Pool<'_>, ranking: &[usize], away: &[usize]) -> Vec<Hypothe
 pub fn other_halves(
     pool: &Pool<'_>,
     fitted_hypotheses: &[FittedHypothesis],
-    pair: usize,
+    pair: FittedId,
 ) -> Vec<FittedHypothesis> {
     let [a, b] = fitted_hypotheses[pair].responses[..] else {
         return Vec::new();
     };
-    let mut found: Vec<(f64, Vec<usize>)> = Vec::new();
+    let mut found: Vec<(f64, Vec<ResponseId>)> = Vec::new();
     for (kept, other) in [(a, b), (b, a)] {
-        for response in 0..pool.screening.responses.len() {
+        for response in ResponseId::first(pool.screening.responses.len()) {
             let is_new = ![kept, other].contains(&response)
                 && !pool.share_a_name(kept, response)
                 && pool.candidate(response).order.is_none();
@@ -145,7 +147,7 @@ pub fn other_halves(
     }
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     found.truncate(thresholds::FITS_AT_ONCE);
-    let hypothesis = |(_, responses): (f64, Vec<usize>)| Hypothesis {
+    let hypothesis = |(_, responses): (f64, Vec<ResponseId>)| Hypothesis {
         sizes: pool.screening.predicted(&responses).sizes,
         responses,
         deleted: None,

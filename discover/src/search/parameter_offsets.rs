@@ -3,13 +3,22 @@
 
 use crate::catalogue::candidate::{self, Candidate};
 use crate::fit::fitted::Fit;
+use crate::ids::{CandidateId, ResponseId};
 use crate::model::unknowns::{Unknown, What};
 use crate::search::context::Context;
 use crate::search::pool::Pool;
-use crate::search::screening::screening;
+use crate::search::screening::{ScreenedResponse, screening};
 use crate::search::singles::similar;
 use crate::search::tested::TestedPool;
 use crate::thresholds;
+
+/// Parameters that look like what was named.
+pub struct SimilarOffsets {
+    /// What was screened, what was named among it, and the fits of those that look like it.
+    pub tested: TestedPool,
+    /// The response of what was named.
+    pub selected: ResponseId,
+}
 
 /// The parameters of a model that no unknown moves.
 pub fn offsets(fit: &Fit) -> Vec<Candidate> {
@@ -25,11 +34,10 @@ pub fn offsets(fit: &Fit) -> Vec<Candidate> {
     free.filter_map(candidate::offset_of).collect()
 }
 
-/// Parameters that look like what was named, fitted in its place: those that explain the records,
-/// and the response of what was named, beside which they were screened. None where nothing looks
-/// like it, and where what was named is such a parameter: it had all others beside it. The task's
-/// fit is what was fitted before anything was named.
-pub fn beside(context: Context<'_>, selected: &Candidate) -> Option<(TestedPool, usize)> {
+/// Parameters that look like what was named, fitted in its place: those that explain the records.
+/// None where nothing looks like it, and where what was named is such a parameter: it was screened
+/// with all others. The context's fit is what was fitted before anything was named.
+pub fn similar_offsets(context: Context<'_>, selected: &Candidate) -> Option<SimilarOffsets> {
     let offsets = offsets(context.fit);
     let is_named =
         |shift: &Candidate| (&shift.effect, &shift.on) == (&selected.effect, &selected.on);
@@ -49,7 +57,9 @@ pub fn beside(context: Context<'_>, selected: &Candidate) -> Option<(TestedPool,
     };
     let candidates: Vec<Candidate> = std::iter::once(selected.clone()).chain(offsets).collect();
     let screening = screening(context.problem, context.fit, &candidates, part);
-    let own = screening.responses.iter().position(|r| r.candidate == 0)?;
+    let is_selected = |r: &ScreenedResponse| r.candidate == CandidateId::new(0);
+    let own = screening.responses.iter().position(is_selected)?;
+    let own = ResponseId::new(own);
     let pool = Pool::new(context, &candidates, &screening, is_whole);
     let mut fitted_hypotheses = similar(&pool, own);
     fitted_hypotheses.retain(|fitted| fitted.explains);
@@ -58,5 +68,8 @@ pub fn beside(context: Context<'_>, selected: &Candidate) -> Option<(TestedPool,
         screening,
         fitted_hypotheses,
     };
-    Some((tested, own))
+    Some(SimilarOffsets {
+        tested,
+        selected: own,
+    })
 }

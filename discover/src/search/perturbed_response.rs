@@ -1,6 +1,7 @@
 //! Responses of candidates by motions of their own models, each at a size that moves the
 //! outputs by a part of the misfit: whatever a candidate changes needs no code of its own then.
 
+use crate::ids::WindowId;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -63,7 +64,7 @@ fn response(
     sizes: &[f64],
 ) -> Result<CandidateResponse, DiscoverError> {
     let LinearisedFit {
-        places,
+        windows,
         base,
         level,
         estimate,
@@ -97,9 +98,9 @@ fn response(
         ..whole
     };
     let nuisances = fit.unknowns.len();
-    let mut columns = vec![Vec::new(); places.len()];
-    for place in 0..candidate_unknowns.len() {
-        if candidate_unknowns[place].is_shape {
+    let mut columns = vec![Vec::new(); windows.len()];
+    for number in 0..candidate_unknowns.len() {
+        if candidate_unknowns[number].is_shape {
             continue;
         }
         let theta = |size: f64| {
@@ -109,17 +110,18 @@ fn response(
                     .iter()
                     .map(|candidate_unknown| candidate_unknown.unknown.start),
             );
-            theta[nuisances + place] = candidate_unknowns[place].base + size;
+            theta[nuisances + number] = candidate_unknowns[number].base + size;
             theta
         };
         // The size is found on the first, the middle and the last of the windows.
-        let few = [0, places.len() / 2, places.len() - 1];
-        let size = trial_size(candidate_unknowns[place].unknown.scale, *level, |size| {
+        let few = [0, windows.len() / 2, windows.len() - 1];
+        let size = trial_size(candidate_unknowns[number].unknown.scale, *level, |size| {
             let changes = changes(
                 &shooting,
-                (fit, estimate),
+                fit,
+                estimate,
                 &theta(size),
-                few.iter().map(|k| (places[*k], &base[*k])),
+                few.iter().map(|k| (windows[*k], &base[*k])),
             )?;
             let numbers: f64 = changes.iter().map(|c| c.len() as f64).sum();
             let square: f64 = changes.iter().map(DVector::norm_squared).sum();
@@ -128,13 +130,13 @@ fn response(
         let Some(size) = size else {
             return Err(DiscoverError::NotExcited);
         };
-        let pairs = places.iter().copied().zip(base.iter());
-        let changes = changes(&shooting, (fit, estimate), &theta(size), pairs)
+        let pairs = windows.iter().copied().zip(base.iter());
+        let changes = changes(&shooting, fit, estimate, &theta(size), pairs)
             .ok_or(DiscoverError::CandidateUnfollowed)?;
         for (window, change) in columns.iter_mut().zip(changes) {
             window.push(change / size);
         }
-        candidate_unknowns[place].unknown.scale = size;
+        candidate_unknowns[number].unknown.scale = size;
     }
     let blocks = columns.iter().map(|columns| {
         let rows = columns.first().map_or(0, |c: &DVector<f64>| c.len());
@@ -149,19 +151,20 @@ fn response(
 /// Changes of the residuals in some windows; none if a motion cannot be followed.
 fn changes<'b>(
     shooting: &Shooting<'_>,
-    (fit, estimate): (&Fit, &Estimate),
+    fit: &Fit,
+    estimate: &Estimate,
     theta: &[f64],
-    windows: impl Iterator<Item = (usize, &'b Option<StateProjection>)>,
+    windows: impl Iterator<Item = (WindowId, &'b Option<StateProjection>)>,
 ) -> Option<Vec<DVector<f64>>> {
     let mut sensitivities = SensitivityEvaluator::frozen(shooting, theta, 1.0)?;
     let mut changes = Vec::new();
-    for (place, base) in windows {
+    for (window, base) in windows {
         let Some(base) = base else {
             changes.push(DVector::zeros(0));
             continue;
         };
-        let start = fit.mapped(shooting.model, &estimate.initial_states[place]);
-        let residual = sensitivities.residual(place, &start)?;
+        let start = fit.mapped(shooting.model, &estimate.initial_states[window]);
+        let residual = sensitivities.residual(window, &start)?;
         changes.push(DVector::from_vec(residual.values) - &base.residual);
     }
     Some(changes)

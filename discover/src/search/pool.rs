@@ -1,6 +1,7 @@
 //! Candidates with what they promise: the pool from which hypotheses are made.
 
 use crate::catalogue::candidate::Candidate;
+use crate::ids::ResponseId;
 use crate::search::context::Context;
 use crate::search::screening::Screening;
 use crate::thresholds;
@@ -41,7 +42,7 @@ impl<'r> Pool<'r> {
     }
 
     /// Candidates that promise enough, the best first.
-    pub fn ranking(&self) -> Vec<usize> {
+    pub fn ranking(&self) -> Vec<ResponseId> {
         let screening = self.screening;
         let alone = screening.predicted(&[]).cost;
         let promise =
@@ -49,7 +50,7 @@ impl<'r> Pool<'r> {
                 true => thresholds::PROMISE_FAR,
                 false => thresholds::PROMISE,
             };
-        let enough = |r: &usize| {
+        let enough = |r: &ResponseId| {
             let response = &screening.responses[*r];
             // What a nuisance gains without its prior, the others did not do within theirs.
             let is_own = response.dropped_prior.is_some()
@@ -57,26 +58,28 @@ impl<'r> Pool<'r> {
                 || response.decrease > thresholds::ENOUGH * alone;
             is_own && response.decrease > promise * alone
         };
-        let mut ranking: Vec<usize> = (0..screening.responses.len()).filter(enough).collect();
-        let decrease = |r: &usize| screening.responses[*r].decrease;
+        let mut ranking: Vec<ResponseId> = ResponseId::first(screening.responses.len())
+            .filter(enough)
+            .collect();
+        let decrease = |r: &ResponseId| screening.responses[*r].decrease;
         ranking.sort_by(|a, b| decrease(b).total_cmp(&decrease(a)));
         ranking
     }
 
     /// The candidate of a response.
-    pub fn candidate(&self, response: usize) -> &Candidate {
+    pub fn candidate(&self, response: ResponseId) -> &Candidate {
         &self.candidates[self.screening.responses[response].candidate]
     }
 
-    /// The names of some candidates, by their places among the screened.
-    pub fn label(&self, responses: &[usize]) -> String {
+    /// The names of the candidates of some responses.
+    pub fn label(&self, responses: &[ResponseId]) -> String {
         let labels = responses.iter().map(|r| self.candidate(*r).label());
         labels.collect::<Vec<_>>().join(" and ")
     }
 
     /// Whether two candidates give a parameter the same name: one effect at two places. Of these
     /// the next round may add the other.
-    pub fn share_a_name(&self, a: usize, b: usize) -> bool {
+    pub fn share_a_name(&self, a: ResponseId, b: ResponseId) -> bool {
         let (a, b) = (self.candidate(a), self.candidate(b));
         let has = |name: &str| b.parameters.iter().any(|other| other.name == name);
         a.parameters.iter().any(|parameter| has(&parameter.name))

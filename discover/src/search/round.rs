@@ -6,6 +6,7 @@ use crate::catalogue::candidate::{Candidate, candidates};
 use crate::catalogue::effect::Effect;
 use crate::catalogue::sites::sites;
 use crate::fit::fitted::Fit;
+use crate::ids::CandidateId;
 use crate::model::usual_rates::usual_rates;
 use crate::search::context::Context;
 use crate::search::dropped_priors::dropped_prior;
@@ -132,9 +133,9 @@ impl Round<'_> {
         let (mut candidates, repeating) = self.candidates(fit, window);
         (self.context.progress)(&format!("screening {} candidates", candidates.len()));
         let screened = screening(self.context.problem, fit, &candidates, window.part());
-        let (mut from, mut fitted_hypotheses) = (0, Vec::new());
+        let (mut from, mut fitted_hypotheses) = (CandidateId::new(0), Vec::new());
         if repeating.is_empty() || self.promises_enough(&screened) {
-            fitted_hypotheses = singles(&self.pool_in(window, &candidates, &screened), 0);
+            fitted_hypotheses = singles(&self.pool_in(window, &candidates, &screened), from);
             if repeating.is_empty() || fitted_hypotheses.iter().any(|fitted| self.is_close(fitted))
             {
                 return Some(TestedPool {
@@ -143,7 +144,7 @@ impl Round<'_> {
                     fitted_hypotheses,
                 });
             }
-            from = candidates.len();
+            from = CandidateId::new(candidates.len());
         }
         (self.context.progress)(&format!(
             "screening {} candidates that repeat with an angle",
@@ -214,7 +215,10 @@ impl Round<'_> {
             &offsets,
             window.part(),
         );
-        let fitted_hypotheses = singles(&self.pool_in(window, &offsets, &screening), 0);
+        let fitted_hypotheses = singles(
+            &self.pool_in(window, &offsets, &screening),
+            CandidateId::new(0),
+        );
         TestedPool {
             candidates: offsets,
             screening,

@@ -3,16 +3,18 @@
 //! of the misfit each candidate, or a set of them, may explain, and which are similar. Whoever
 //! passes is fitted in full elsewhere.
 
+use crate::ids::{CandidateId, ResponseId, UnknownId};
 use std::borrow::Cow;
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::catalogue::candidate::Candidate;
 use crate::catalogue::candidate_unknown::CandidateUnknown;
+use crate::error::DiscoverError;
 use crate::fit::bounded_least_squares::least_squares;
 use crate::fit::fitted::Fit;
 use crate::fit::linearised::{Base, LinearisedFit};
-use crate::fit::variable_projection::add_prior;
+use crate::fit::variable_projection::{PriorTerm, add_prior};
 use crate::model::problem::EstimationProblem;
 use crate::search::response::CandidateResponse;
 use crate::search::responses::responses;
@@ -21,14 +23,14 @@ use crate::thresholds;
 /// A screened candidate.
 #[derive(Clone, Debug)]
 pub struct ScreenedResponse {
-    /// The candidate's place in the list.
-    pub candidate: usize,
+    /// The candidate.
+    pub candidate: CandidateId,
     /// Its unknowns.
     pub candidate_unknowns: Vec<CandidateUnknown>,
     /// Where its columns stand.
     columns: std::ops::Range<usize>,
     /// The nuisance that gives up its prior, if that is the effect.
-    pub dropped_prior: Option<usize>,
+    pub dropped_prior: Option<UnknownId>,
     /// The part of what it does that initial states and nuisances cannot do as well.
     pub unexplained_fraction: f64,
     /// How much it lowers the sum of squares alone, in squared standard deviations.
@@ -46,21 +48,36 @@ pub struct Prediction {
     pub sizes: Vec<f64>,
 }
 
+/// Products of columns without the priors of some nuisances.
+struct Released<'s> {
+    products: Cow<'s, DMatrix<f64>>,
+    nuisances: Vec<UnknownId>,
+}
+
+/// A candidate that does nothing that could be seen.
+#[derive(Clone, Debug)]
+pub struct NotExcited {
+    /// The candidate.
+    pub candidate: CandidateId,
+    /// Why.
+    pub reason: DiscoverError,
+}
+
 /// All responses.
 #[derive(Clone)]
 pub struct Screening {
     /// Products of all columns: nuisances, candidates, the residual last.
     products: DMatrix<f64>,
     nuisances: usize,
-    /// What the prior of each nuisance adds to the products: a weight and how far it is off.
-    priors: Vec<(f64, f64)>,
+    /// What the prior of each nuisance adds to the products.
+    priors: Vec<PriorTerm>,
     bounds: Vec<(f64, f64)>,
     /// The bounds of each nuisance once its prior is dropped.
     limits: Vec<(f64, f64)>,
     /// The candidates that do something, in their order.
     pub responses: Vec<ScreenedResponse>,
     /// The candidates that do nothing that could be seen, with why.
-    pub not_excited: Vec<(usize, String)>,
+    pub not_excited: Vec<NotExcited>,
     /// How many numbers were looked at.
     pub numbers: f64,
 }
@@ -73,7 +90,7 @@ pub fn screening(
     part: f64,
 ) -> Screening {
     let at = LinearisedFit::of(problem, fit, part);
-    let (base, places, estimate) = (&at.base, &at.places, &at.estimate);
+    let (base, estimate) = (&at.base, &at.estimate);
     let own: Vec<Candidate> = (candidates.iter().filter(|c| c.dropped_prior.is_none()))
         .cloned()
         .collect();
@@ -83,7 +100,7 @@ pub fn screening(
     let mut not_excited = Vec::new();
     let mut blocks = Vec::new();
     let mut columns = nuisances;
-    for (candidate, of) in candidates.iter().enumerate() {
+    for (candidate, of) in CandidateId::first(candidates.len()).zip(candidates) {
         let mut response = ScreenedResponse {
             candidate,
             candidate_unknowns: Vec::new(),
@@ -94,8 +111,8 @@ pub fn screening(
             values: Vec::new(),
         };
         if let Some(what) = &of.dropped_prior {
-            response.dropped_prior =
-                (fit.unknowns.iter()).position(|unknown| unknown.what == *what);
+            let same = fit.unknowns().find(|(_, unknown)| unknown.what == *what);
+            response.dropped_prior = same.map(|(id, _)| id);
             responses.push(response);
             continue;
         }
@@ -114,20 +131,22 @@ pub fn screening(
                 responses.push(response);
                 blocks.push(block);
             }
-            Some(Err(reason)) => not_excited.push((candidate, reason.to_string())),
+            Some(Err(reason)) => not_excited.push(NotExcited { candidate, reason }),
             None => {}
         }
     }
-    let mut products = products(fit, places, base, &blocks, columns);
+    let mut products = products(fit, base, &blocks, columns);
     let (mut bounds, mut limits, mut priors) = (Vec::new(), Vec::new(), Vec::new());
-    for (place, unknown) in fit.unknowns.iter().enumerate() {
-        let value = estimate.theta[place];
+    for (id, unknown) in fit.unknowns() {
+        let value = estimate.theta[id];
         bounds.push((unknown.bounds.0 - value, unknown.bounds.1 - value));
         limits.push((unknown.limits.0 - value, unknown.limits.1 - value));
-        let prior = unknown.prior.map_or((0.0, 0.0), |(mean, sd)| {
-            (fit.prior_weight / (sd * sd), value - mean)
+        let prior = unknown.prior.map(|(mean, sd)| PriorTerm {
+            weight: fit.prior_weight / (sd * sd),
+            deviation: value - mean,
         });
-        add_prior(&mut products, place, prior);
+        let prior = prior.unwrap_or_default();
+        add_prior(&mut products, id, prior);
         priors.push(prior);
     }
     for response in &responses {
@@ -150,21 +169,15 @@ pub fn screening(
         not_excited,
         numbers: base.iter().flatten().map(|b| b.residual.len() as f64).sum(),
     };
-    screening.acceptance_test();
+    screening.predict_singles();
     screening
 }
 
 /// Products of all columns with the initial states eliminated.
-fn products(
-    fit: &Fit,
-    places: &[usize],
-    base: &Base,
-    blocks: &[Vec<DMatrix<f64>>],
-    columns: usize,
-) -> DMatrix<f64> {
+fn products(fit: &Fit, base: &Base, blocks: &[Vec<DMatrix<f64>>], columns: usize) -> DMatrix<f64> {
     let nuisances = fit.unknowns.len();
     let mut products = DMatrix::zeros(columns + 1, columns + 1);
-    for (window, base) in (0..places.len()).zip(base) {
+    for (window, base) in base.iter().enumerate() {
         let Some(base) = base else { continue };
         let rows = base.residual.len();
         let mut matrix = DMatrix::zeros(rows, columns + 1);
@@ -185,51 +198,57 @@ fn products(
 
 impl Screening {
     /// How well each candidate does alone.
-    fn acceptance_test(&mut self) {
+    fn predict_singles(&mut self) {
         let alone = self.predicted(&[]).cost;
-        for place in 0..self.responses.len() {
+        for id in ResponseId::first(self.responses.len()) {
             let Prediction {
                 cost,
                 sizes: values,
-            } = self.predicted(&[place]);
-            let unexplained_fraction = self.unexplained_fraction(place);
-            let response = &mut self.responses[place];
+            } = self.predicted(&[id]);
+            let unexplained_fraction = self.unexplained_fraction(id);
+            let response = &mut self.responses[id];
             response.decrease = alone - cost;
             response.values = values;
             response.unexplained_fraction = unexplained_fraction;
         }
     }
 
-    /// The products once the nuisances that these responses release have no priors, and those
-    /// nuisances.
-    fn dropped_prior(&self, set: &[usize]) -> (Cow<'_, DMatrix<f64>>, Vec<usize>) {
-        let places: Vec<usize> = (set.iter())
+    /// The products once nuisances have no priors that are these responses themselves.
+    fn without_priors(&self, responses: &[ResponseId]) -> Released<'_> {
+        let nuisances: Vec<UnknownId> = (responses.iter())
             .filter_map(|response| self.responses[*response].dropped_prior)
             .collect();
         let mut products = Cow::Borrowed(&self.products);
-        for place in &places {
-            let (weight, off) = self.priors[*place];
-            add_prior(products.to_mut(), *place, (-weight, off));
+        for nuisance in &nuisances {
+            let prior = self.priors[*nuisance];
+            let gone = PriorTerm {
+                weight: -prior.weight,
+                ..prior
+            };
+            add_prior(products.to_mut(), *nuisance, gone);
         }
-        (products, places)
+        Released {
+            products,
+            nuisances,
+        }
     }
 
-    /// The sum of squares that a set of responses leaves, and their sizes in order: how far
-    /// each is from absent.
-    pub fn predicted(&self, set: &[usize]) -> Prediction {
-        let mut places: Vec<usize> = (0..self.nuisances).collect();
-        for response in set {
-            places.extend(self.responses[*response].columns.clone());
+    /// What some responses come to together.
+    pub fn predicted(&self, responses: &[ResponseId]) -> Prediction {
+        let mut columns: Vec<usize> = (0..self.nuisances).collect();
+        for response in responses {
+            columns.extend(self.responses[*response].columns.clone());
         }
-        let (products, dropped_prior) = self.dropped_prior(set);
+        let released = self.without_priors(responses);
+        let products = &released.products;
         let last = products.ncols() - 1;
-        let (a, b) = system(&products, &places);
-        let bounds: Vec<(f64, f64)> = places
+        let LeastSquares { a, b } = least_squares_of(products, &columns);
+        let bounds: Vec<(f64, f64)> = columns
             .iter()
-            .map(|place| {
-                let (low, high) = match dropped_prior.contains(place) {
-                    true => self.limits[*place],
-                    false => self.bounds[*place],
+            .map(|column| {
+                let (low, high) = match released.nuisances.contains(&UnknownId::new(*column)) {
+                    true => self.limits[*column],
+                    false => self.bounds[*column],
                 };
                 (low.min(0.0), high.max(0.0))
             })
@@ -237,10 +256,10 @@ impl Screening {
         let x = least_squares(&a, &b, &bounds);
         let cost = (&a * &x - &b).norm_squared() - b.norm_squared() + products[(last, last)];
         let mut added = x.iter().skip(self.nuisances);
-        let sizes = set.iter().flat_map(|response| {
+        let sizes = responses.iter().flat_map(|response| {
             let response = &self.responses[*response];
             match response.dropped_prior {
-                Some(place) => vec![x[place]],
+                Some(nuisance) => vec![x[nuisance.index()]],
                 None => added
                     .by_ref()
                     .take(response.columns.len())
@@ -254,17 +273,17 @@ impl Screening {
 
     /// The same with a parameter of the model set to 0, its term deleted; none where that is
     /// not admissible.
-    pub fn without(&self, nuisance: usize, value: f64) -> Option<Self> {
+    pub fn without(&self, nuisance: UnknownId, value: f64) -> Option<Self> {
         let (low, high) = self.bounds[nuisance];
         if value == 0.0 || !(low..=high).contains(&-value) {
             return None;
         }
         let last = self.products.ncols() - 1;
         let mut products = self.products.clone();
-        let column = products.column(nuisance) * -value;
+        let column = products.column(nuisance.index()) * -value;
         let mut residual = products.column_mut(last);
         residual += column;
-        let row = products.row(nuisance) * -value;
+        let row = products.row(nuisance.index()) * -value;
         let mut residual = products.row_mut(last);
         residual += row;
         let mut bounds = self.bounds.clone();
@@ -282,39 +301,39 @@ impl Screening {
     }
 
     /// The same with a nuisance held where it is.
-    pub fn held(mut self, nuisance: usize) -> Self {
+    pub fn held(mut self, nuisance: UnknownId) -> Self {
         self.bounds[nuisance] = (0.0, 0.0);
         self
     }
 
     /// The part of a response's square that the nuisances cannot do as well.
-    fn unexplained_fraction(&self, place: usize) -> f64 {
-        let (products, dropped_prior) = self.dropped_prior(&[place]);
-        let direction = self.direction(&products, place);
-        let own = product(&products, &direction, &direction);
-        let rest = self.without_nuisances((&products, &dropped_prior), &direction, &direction);
+    fn unexplained_fraction(&self, response: ResponseId) -> f64 {
+        let released = self.without_priors(&[response]);
+        let direction = self.direction(&released.products, response);
+        let own = product(&released.products, &direction, &direction);
+        let unexplained = self.without_nuisances(&released, &direction, &direction);
         if own > 0.0 {
-            (rest / own).max(0.0)
+            (unexplained / own).max(0.0)
         } else {
             0.0
         }
     }
 
     /// Where a response's columns stand, if only as those of a nuisance that it drops the prior of.
-    fn columns(&self, place: usize) -> std::ops::Range<usize> {
-        let response = &self.responses[place];
+    fn columns(&self, response: ResponseId) -> std::ops::Range<usize> {
+        let response = &self.responses[response];
         match response.dropped_prior {
-            Some(place) => place..place + 1,
+            Some(nuisance) => nuisance.index()..nuisance.index() + 1,
             None => response.columns.clone(),
         }
     }
 
     /// A response at its best size as a combination of columns.
-    fn direction(&self, products: &DMatrix<f64>, place: usize) -> DVector<f64> {
-        let response = &self.responses[place];
+    fn direction(&self, products: &DMatrix<f64>, id: ResponseId) -> DVector<f64> {
+        let response = &self.responses[id];
         let mut direction = DVector::zeros(products.ncols());
         let all_zero = response.values.iter().all(|v| *v == 0.0);
-        for (number, column) in self.columns(place).enumerate() {
+        for (number, column) in self.columns(id).enumerate() {
             direction[column] = if all_zero || response.values.is_empty() {
                 1.0 / products[(column, column)].sqrt().max(f64::MIN_POSITIVE)
             } else {
@@ -328,19 +347,21 @@ impl Screening {
     /// out.
     fn without_nuisances(
         &self,
-        (products, dropped_prior): (&DMatrix<f64>, &[usize]),
+        released: &Released<'_>,
         a: &DVector<f64>,
         b: &DVector<f64>,
     ) -> f64 {
-        let places: Vec<usize> = (0..self.nuisances)
-            .filter(|p| !dropped_prior.contains(p))
+        let products = &*released.products;
+        let rows: Vec<usize> = UnknownId::first(self.nuisances)
+            .filter(|nuisance| !released.nuisances.contains(nuisance))
+            .map(UnknownId::index)
             .collect();
-        let n = places.len();
+        let n = rows.len();
         let whole = product(products, a, b);
-        let cross = |v: &DVector<f64>| (products * v).select_rows(&places);
+        let cross = |v: &DVector<f64>| (products * v).select_rows(&rows);
         let block = DMatrix::from_fn(n, n, |r, c| {
             let ridge = if r == c { 1.0 + thresholds::RIDGE } else { 1.0 };
-            ridge * products[(places[r], places[c])]
+            ridge * products[(rows[r], rows[c])]
         });
         match block.cholesky() {
             Some(factor) => whole - cross(a).dot(&factor.solve(&cross(b))),
@@ -351,20 +372,21 @@ impl Screening {
     /// How similar two responses are, 0 to 1, once the nuisances are taken out: how well
     /// either can do what the other does. One of several parameters can do what one of few does
     /// even where its own best size is another.
-    pub fn similarity(&self, a: usize, b: usize) -> f64 {
-        let (products, dropped_prior) = self.dropped_prior(&[a, b]);
-        let at = (&*products, &dropped_prior[..]);
-        self.done_by(at, a, b).max(self.done_by(at, b, a))
+    pub fn similarity(&self, a: ResponseId, b: ResponseId) -> f64 {
+        let released = self.without_priors(&[a, b]);
+        let by_b = self.done_by(&released, a, b);
+        by_b.max(self.done_by(&released, b, a))
     }
 
     /// The cosine between what a response does at its best size and the nearest of all that
     /// another can do.
-    fn done_by(&self, at: (&DMatrix<f64>, &[usize]), response: usize, other: usize) -> f64 {
-        let wanted = self.direction(at.0, response);
+    fn done_by(&self, released: &Released<'_>, response: ResponseId, other: ResponseId) -> f64 {
+        let products = &*released.products;
+        let wanted = self.direction(products, response);
         let columns: Vec<DVector<f64>> = (self.columns(other))
             .map(|column| {
-                let size = at.0[(column, column)].sqrt().max(f64::MIN_POSITIVE);
-                let mut unit = DVector::zeros(at.0.ncols());
+                let size = products[(column, column)].sqrt().max(f64::MIN_POSITIVE);
+                let mut unit = DVector::zeros(products.ncols());
                 unit[column] = 1.0 / size;
                 unit
             })
@@ -372,12 +394,12 @@ impl Screening {
         let count = columns.len();
         let gram = DMatrix::from_fn(count, count, |r, c| {
             let ridge = if r == c { thresholds::RIDGE } else { 0.0 };
-            self.without_nuisances(at, &columns[r], &columns[c]) + ridge
+            self.without_nuisances(released, &columns[r], &columns[c]) + ridge
         });
         let right = DVector::from_fn(count, |r, _| {
-            self.without_nuisances(at, &columns[r], &wanted)
+            self.without_nuisances(released, &columns[r], &wanted)
         });
-        let size = self.without_nuisances(at, &wanted, &wanted);
+        let size = self.without_nuisances(released, &wanted, &wanted);
         match gram.cholesky() {
             Some(factor) if size > 0.0 => {
                 let done = right.dot(&factor.solve(&right));
@@ -392,28 +414,36 @@ fn product(products: &DMatrix<f64>, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
     a.dot(&(products * b))
 }
 
-/// A and b whose least squares are those of some columns against the residual, to be lowered
-/// to its negative.
-fn system(products: &DMatrix<f64>, places: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
-    let (count, last) = (places.len(), products.ncols() - 1);
-    let scale: Vec<f64> = places
+/// A system |a x - b| to be made smallest.
+struct LeastSquares {
+    a: DMatrix<f64>,
+    b: DVector<f64>,
+}
+
+/// The least squares of some columns against the residual, to be lowered to its negative.
+fn least_squares_of(products: &DMatrix<f64>, columns: &[usize]) -> LeastSquares {
+    let (count, last) = (columns.len(), products.ncols() - 1);
+    let scale: Vec<f64> = columns
         .iter()
         .map(|p| products[(*p, *p)].sqrt().max(f64::MIN_POSITIVE))
         .collect();
     let gram = DMatrix::from_fn(count, count, |r, c| {
         let ridge = if r == c { thresholds::RIDGE } else { 0.0 };
-        products[(places[r], places[c])] / (scale[r] * scale[c]) + ridge
+        products[(columns[r], columns[c])] / (scale[r] * scale[c]) + ridge
     });
-    let right = DVector::from_fn(count, |r, _| -products[(places[r], last)] / scale[r]);
+    let right = DVector::from_fn(count, |r, _| -products[(columns[r], last)] / scale[r]);
     let Some(factor) = gram.cholesky() else {
-        return (DMatrix::zeros(count, count), DVector::zeros(count));
+        return LeastSquares {
+            a: DMatrix::zeros(count, count),
+            b: DVector::zeros(count),
+        };
     };
     let lower = factor.l();
     let b = lower
         .solve_lower_triangular(&right)
         .unwrap_or_else(|| DVector::zeros(count));
     let a = DMatrix::from_fn(count, count, |r, c| lower[(c, r)] * scale[c]);
-    (a, b)
+    LeastSquares { a, b }
 }
 
 #[cfg(test)]
@@ -421,13 +451,14 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::{ScreenedResponse, Screening};
+    use crate::ids::{CandidateId, ResponseId};
 
     /// Responses with these columns, the last of which is the residual, and their best sizes.
     fn screening(columns: &DMatrix<f64>, of: &[(std::ops::Range<usize>, &[f64])]) -> Screening {
         let response =
             |(candidate, (columns, values)): (usize, &(std::ops::Range<usize>, &[f64]))| {
                 ScreenedResponse {
-                    candidate,
+                    candidate: CandidateId::new(candidate),
                     candidate_unknowns: Vec::new(),
                     columns: columns.clone(),
                     dropped_prior: None,
@@ -448,6 +479,10 @@ mod tests {
         }
     }
 
+    fn response(index: usize) -> ResponseId {
+        ResponseId::new(index)
+    }
+
     #[test]
     fn what_of_many_parameters_holds_what_of_one_looks_like_it() {
         // Two parameters that do x and y, at their best size x alone; one does 3 x + 4 y, one z.
@@ -463,9 +498,12 @@ mod tests {
         let of: [(std::ops::Range<usize>, &[f64]); 3] =
             [(0..2, &[1.0, 0.0]), (2..3, &[0.2]), (3..4, &[1.0])];
         let screening = screening(&columns, &of);
-        assert!((screening.similarity(0, 1) - 1.0).abs() < 1e-6);
-        assert!((screening.similarity(1, 0) - 1.0).abs() < 1e-6);
-        assert!(screening.similarity(0, 2) < 1e-6 && screening.similarity(1, 2) < 1e-6);
+        assert!((screening.similarity(response(0), response(1)) - 1.0).abs() < 1e-6);
+        assert!((screening.similarity(response(1), response(0)) - 1.0).abs() < 1e-6);
+        assert!(
+            screening.similarity(response(0), response(2)) < 1e-6
+                && screening.similarity(response(1), response(2)) < 1e-6
+        );
     }
 
     #[test]
@@ -473,6 +511,6 @@ mod tests {
         let columns = DMatrix::from_row_slice(2, 3, &[1.0, 3.0, 1.0, 0.0, 4.0, 1.0]);
         let of: [(std::ops::Range<usize>, &[f64]); 2] = [(0..1, &[-2.0]), (1..2, &[5.0])];
         // The cosine of the angle in a triangle of sides 3, 4 and 5.
-        assert!((screening(&columns, &of).similarity(0, 1) - 0.6).abs() < 1e-6);
+        assert!((screening(&columns, &of).similarity(response(0), response(1)) - 0.6).abs() < 1e-6);
     }
 }

@@ -1,6 +1,7 @@
 //! What is named of a round: the accepted hypothesis that leaves least, and whatever the records do
 //! not tell from it.
 
+use crate::ids::{EffectId, FittedId, ResponseId};
 use std::cmp::Ordering;
 
 use crate::catalogue::candidate::Candidate;
@@ -23,8 +24,24 @@ pub struct Selected {
     pub fitted: FittedHypothesis,
     /// What is indistinguishable from each of them.
     pub equivalent: Vec<Vec<Candidate>>,
-    /// Of a pair the half that was accepted alone, by its number, and the test gap that it left.
-    pub half: Option<(usize, f64)>,
+    /// Of a pair the half that was accepted alone.
+    pub half: Option<AcceptedHalf>,
+}
+
+/// One of two effects that was accepted alone: a step of the way.
+#[derive(Clone, Copy, Debug)]
+pub struct AcceptedHalf {
+    /// Which.
+    pub effect: EffectId,
+    /// The root mean square of the test records' residuals that it left, in standard deviations.
+    pub test_rms: f64,
+}
+
+/// What of a hypothesis the records do not distinguish from what another has instead.
+struct IndistinguishableHalf {
+    effect: EffectId,
+    /// The other's response.
+    response: ResponseId,
 }
 
 /// What is named of the fitted hypotheses of a round that explain the records; none if nothing is
@@ -35,18 +52,19 @@ pub fn selected(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
     let [candidate] = &selected.candidates[..] else {
         return Some(selected);
     };
-    let with = (candidate, &selected.fitted.fit);
-    let Some((tested, own)) = parameter_offsets::beside(context, candidate) else {
+    let fit = &selected.fitted.fit;
+    let Some(similar) = parameter_offsets::similar_offsets(context, candidate) else {
         return Some(selected);
     };
+    let own = similar.selected;
     let TestedPool {
         candidates,
         screening,
         fitted_hypotheses,
-    } = tested;
+    } = similar.tested;
     let (better, others): (Vec<FittedHypothesis>, Vec<FittedHypothesis>) = fitted_hypotheses
         .into_iter()
-        .partition(|fitted| fitted.verdict.is_ok() && is_clearly_better(&fitted.fit, with.1));
+        .partition(|fitted| fitted.verdict.is_ok() && is_clearly_better(&fitted.fit, fit));
     if !better.is_empty() {
         return best(TestedPool {
             candidates,
@@ -58,7 +76,7 @@ pub fn selected(context: Context<'_>, tested: TestedPool) -> Option<Selected> {
         |fitted: &FittedHypothesis| &candidates[screening.responses[fitted.responses[0]].candidate];
     let indistinguishable = others.iter().filter(|fitted| {
         is_indistinguishable(
-            with.1,
+            fit,
             &fitted.fit,
             screening.similarity(own, fitted.responses[0]),
         )
@@ -102,8 +120,8 @@ fn best(tested: TestedPool) -> Option<Selected> {
         mut fitted_hypotheses,
     } = tested;
     let least = best_of(&fitted_hypotheses)?;
-    let is_simpler = |place: &usize| {
-        let (other, least) = (&fitted_hypotheses[*place], &fitted_hypotheses[least]);
+    let is_simpler = |id: &FittedId| {
+        let (other, least) = (&fitted_hypotheses[*id], &fitted_hypotheses[least]);
         let is_less_off = match (off(other), off(least)) {
             (Some(other), Some(least)) => other < least,
             _ => false,
@@ -112,29 +130,29 @@ fn best(tested: TestedPool) -> Option<Selected> {
             && other.verdict.is_ok()
             && indistinguishable_half(least, other, &screening).is_some()
     };
-    let simpler = (0..fitted_hypotheses.len()).filter(is_simpler);
-    let order = |place: &usize| {
+    let simpler = FittedId::first(fitted_hypotheses.len()).filter(is_simpler);
+    let order = |id: &FittedId| {
         (
-            fitted_hypotheses[*place].own.len(),
-            off(&fitted_hypotheses[*place]).unwrap_or(0.0),
+            fitted_hypotheses[*id].own.len(),
+            off(&fitted_hypotheses[*id]).unwrap_or(0.0),
         )
     };
     let best = simpler
         .min_by(|a, b| order(a).partial_cmp(&order(b)).unwrap_or(Ordering::Equal))
         .unwrap_or(least);
-    let fitted = fitted_hypotheses.remove(best);
-    let candidate = |response: usize| &candidates[screening.responses[response].candidate];
+    let fitted = fitted_hypotheses.remove(best.index());
+    let candidate = |response: ResponseId| &candidates[screening.responses[response].candidate];
     let own: Vec<Candidate> = (fitted.responses.iter())
         .map(|response| candidate(*response).clone())
         .collect();
     let mut equivalent = vec![Vec::new(); own.len()];
     for other in &fitted_hypotheses {
-        let Some((half, response)) = indistinguishable_half(&fitted, other, &screening) else {
+        let Some(half) = indistinguishable_half(&fitted, other, &screening) else {
             continue;
         };
-        let (other, own) = (candidate(response), &own[half]);
+        let (other, own) = (candidate(half.response), &own[half.effect]);
         if (&other.effect, &other.on) != (&own.effect, &own.on) {
-            equivalent[half].push(other.clone());
+            equivalent[half.effect].push(other.clone());
         }
     }
     Some(Selected {
@@ -149,21 +167,21 @@ fn best(tested: TestedPool) -> Option<Selected> {
 /// not.
 fn off(fitted: &FittedHypothesis) -> Option<f64> {
     let theta = &fitted.fit.train.estimate.theta;
-    let of = |own: &EffectUnknown| Some((theta[own.place] - own.base).abs() / own.prior?);
+    let of = |own: &EffectUnknown| Some((theta[own.unknown] - own.base).abs() / own.prior?);
     let all: Option<Vec<f64>> = fitted.own.iter().map(of).collect();
     all.map(|all| all.into_iter().fold(0.0, f64::max))
 }
 
 /// The accepted hypothesis that leaves least; a pair only if it leaves clearly less than the best
 /// single effect.
-pub fn best_of(fitted_hypotheses: &[FittedHypothesis]) -> Option<usize> {
-    let left = |place: &usize| fitted_hypotheses[*place].fit.rms();
+pub fn best_of(fitted_hypotheses: &[FittedHypothesis]) -> Option<FittedId> {
+    let rms = |id: &FittedId| fitted_hypotheses[*id].fit.rms();
     let least = |count: fn(usize) -> bool| {
         let is_such =
             |fitted: &FittedHypothesis| fitted.verdict.is_ok() && count(fitted.responses.len());
-        let places =
-            (0..fitted_hypotheses.len()).filter(|place| is_such(&fitted_hypotheses[*place]));
-        places.min_by(|a, b| left(a).total_cmp(&left(b)))
+        let all = FittedId::first(fitted_hypotheses.len());
+        let such = all.filter(|id| is_such(&fitted_hypotheses[*id]));
+        such.min_by(|a, b| rms(a).total_cmp(&rms(b)))
     };
     match (least(|n| n == 1), least(|n| n > 1)) {
         (Some(single), Some(pair)) => {
@@ -191,21 +209,26 @@ fn indistinguishable_half(
     fitted: &FittedHypothesis,
     other: &FittedHypothesis,
     screening: &Screening,
-) -> Option<(usize, usize)> {
+) -> Option<IndistinguishableHalf> {
     if fitted.responses.len() != other.responses.len() {
         return None;
     }
-    let differ = |a: &[usize], b: &[usize]| a.iter().position(|response| !b.contains(response));
+    let differ =
+        |a: &[ResponseId], b: &[ResponseId]| a.iter().position(|response| !b.contains(response));
     let half = differ(&fitted.responses, &other.responses)?;
     let response = other.responses[differ(&other.responses, &fitted.responses)?];
     let shared = fitted
         .responses
         .iter()
         .filter(|own| other.responses.contains(own));
-    let is_rest = shared.count() + 1 == fitted.responses.len();
+    let is_all_else = shared.count() + 1 == fitted.responses.len();
     let similarity = screening.similarity(fitted.responses[half], response);
-    (is_rest && is_indistinguishable(&fitted.fit, &other.fit, similarity))
-        .then_some((half, response))
+    (is_all_else && is_indistinguishable(&fitted.fit, &other.fit, similarity)).then_some(
+        IndistinguishableHalf {
+            effect: EffectId::new(half),
+            response,
+        },
+    )
 }
 
 /// Whether records do not distinguish what led to a fit from what led to another: the responses are
@@ -225,7 +248,7 @@ fn is_indistinguishable(one: &Fit, other: &Fit, similarity: f64) -> bool {
 }
 
 /// The half of a pair that was accepted alone, and the test gap that it left: a step of the way.
-fn half_way(best: &FittedHypothesis, others: &[FittedHypothesis]) -> Option<(usize, f64)> {
+fn half_way(best: &FittedHypothesis, others: &[FittedHypothesis]) -> Option<AcceptedHalf> {
     if best.responses.len() < 2 {
         return None;
     }
@@ -239,5 +262,8 @@ fn half_way(best: &FittedHypothesis, others: &[FittedHypothesis]) -> Option<(usi
             _ => None,
         });
     let (half, fitted) = halves.min_by(|a, b| a.1.fit.rms().total_cmp(&b.1.fit.rms()))?;
-    Some((half, fitted.fit.test.rms))
+    Some(AcceptedHalf {
+        effect: EffectId::new(half),
+        test_rms: fitted.fit.test.rms,
+    })
 }

@@ -2,6 +2,7 @@
 //! fit, and those that look like another.
 
 use crate::fit::preliminary::PreliminaryFit;
+use crate::ids::{CandidateId, ResponseId};
 use crate::search::fitted::{FittedHypothesis, full_fits, preliminary_fits};
 use crate::search::hypothesis::Hypothesis;
 use crate::search::pool::Pool;
@@ -9,7 +10,7 @@ use crate::search::shape_restarts::reshape;
 use crate::thresholds;
 
 /// The best candidates alone and those that look like them, of those from this one on.
-pub fn singles(pool: &Pool<'_>, from: usize) -> Vec<FittedHypothesis> {
+pub fn singles(pool: &Pool<'_>, from: CandidateId) -> Vec<FittedHypothesis> {
     let mut ranking = pool.ranking();
     ranking.retain(|response| pool.screening.responses[*response].candidate >= from);
     if let Some(best) = ranking.first() {
@@ -61,8 +62,8 @@ pub fn singles(pool: &Pool<'_>, from: usize) -> Vec<FittedHypothesis> {
 
 /// The candidates that look like one of them, as far as they promise enough, the most alike
 /// first; at most [`thresholds::MOST_FITS`].
-pub fn similar(pool: &Pool<'_>, response: usize) -> Vec<FittedHypothesis> {
-    let similarity = |other: &usize| pool.screening.similarity(response, *other);
+pub fn similar(pool: &Pool<'_>, response: ResponseId) -> Vec<FittedHypothesis> {
+    let similarity = |other: &ResponseId| pool.screening.similarity(response, *other);
     let mut similar = pool.ranking();
     similar.retain(|other| *other != response && similarity(other) > thresholds::INDISTINGUISHABLE);
     similar.sort_by(|a, b| similarity(b).total_cmp(&similarity(a)));
@@ -73,11 +74,11 @@ pub fn similar(pool: &Pool<'_>, response: usize) -> Vec<FittedHypothesis> {
 /// Those of the ranked that are begun: of what repeats with an angle, of which there is so
 /// much that some is lucky, half as many, and of the orders of one effect at one place the
 /// two best.
-fn chosen(pool: &Pool<'_>, ranking: &[usize]) -> Vec<Hypothesis> {
+fn chosen(pool: &Pool<'_>, ranking: &[ResponseId]) -> Vec<Hypothesis> {
     let (mut plain, mut repeating) = (Vec::new(), Vec::new());
     for response in ranking {
         let of = pool.candidate(*response);
-        let is_same = |known: &&usize| {
+        let is_same = |known: &&ResponseId| {
             let known = pool.candidate(**known);
             known.effect == of.effect && known.on == of.on
         };

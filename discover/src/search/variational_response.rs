@@ -2,6 +2,7 @@
 //! of the candidate's model are compared with the fitted one's, and what they differ by drives
 //! a tangent vector. Hundreds of candidates are looked at in one march.
 
+use crate::ids::CandidateId;
 use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -31,11 +32,19 @@ struct Points {
 
 /// A candidate's model with sizes at which it differs a little.
 struct Ready {
-    candidate: usize,
+    candidate: CandidateId,
     candidate_unknowns: Vec<CandidateUnknown>,
     model: EstimationModel,
-    /// For each parameter that scales it the values there, and the size.
-    moved: Vec<(Vec<f64>, f64)>,
+    /// For each parameter that scales it.
+    moved: Vec<MovedValues>,
+}
+
+/// Values of a model's parameters, one of which is moved.
+struct MovedValues {
+    /// All of them, SI.
+    values: Vec<f64>,
+    /// By how much.
+    size: f64,
 }
 
 /// For each candidate what it does, or why that cannot be seen; none where its own motion must
@@ -51,15 +60,16 @@ pub fn variational_responses(
     let Some(points) = points(at, problem, fit) else {
         return found;
     };
-    let ready: Vec<Option<Result<Ready, DiscoverError>>> = (0..candidates.len())
-        .into_par_iter()
-        .map(|place| ready(problem, fit, (place, &candidates[place]), &points))
+    let ids: Vec<CandidateId> = CandidateId::first(candidates.len()).collect();
+    let ready: Vec<Option<Result<Ready, DiscoverError>>> = ids
+        .par_iter()
+        .map(|id| ready(problem, fit, candidates, *id, &points))
         .collect();
     let mut all = Vec::new();
-    for (place, ready) in ready.into_iter().enumerate() {
+    for (id, ready) in ids.into_iter().zip(ready) {
         match ready {
             Some(Ok(ready)) => all.push(ready),
-            Some(Err(reason)) => found[place] = Some(Err(reason)),
+            Some(Err(reason)) => found[id] = Some(Err(reason)),
             None => {}
         }
     }
@@ -108,7 +118,7 @@ fn sized(
 fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Option<Points> {
     let shooting = fit.shooting(problem);
     let LinearisedFit {
-        estimate, places, ..
+        estimate, windows, ..
     } = at;
     let values = shooting.values(&estimate.theta);
     let mut simulation = fit.model.simulation(&values).ok()?;
@@ -123,10 +133,10 @@ fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
         rates: Vec::new(),
         squares: vec![0.0; n / 2],
     };
-    for place in [0, places.len() / 2, places.len() - 1].map(|k| places[k]) {
-        let window = &problem.train.list[place];
+    for id in [0, windows.len() / 2, windows.len() - 1].map(|k| windows[k]) {
+        let window = &problem.train.list[id];
         let inputs = problem.train.inputs(window);
-        let Ok(states) = simulation.states(&estimate.initial_states[place], &window.times, inputs)
+        let Ok(states) = simulation.states(&estimate.initial_states[id], &window.times, inputs)
         else {
             continue;
         };
@@ -149,9 +159,11 @@ fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
 fn ready(
     problem: &EstimationProblem<'_>,
     fit: &Fit,
-    (place, candidate): (usize, &Candidate),
+    candidates: &[Candidate],
+    id: CandidateId,
     points: &Points,
 ) -> Option<Result<Ready, DiscoverError>> {
+    let candidate = &candidates[id];
     let start: Vec<f64> = candidate
         .parameters
         .iter()
@@ -189,14 +201,17 @@ fn ready(
         let Some(size) = small(&model, &at, points) else {
             return Some(Err(DiscoverError::NotExcited));
         };
-        moved.push((at(size), size));
+        moved.push(MovedValues {
+            values: at(size),
+            size,
+        });
     }
     let own = fit.shooting(problem).values(&fit.train.estimate.theta);
     if model.linear_outputs(&values) != fit.model.linear_outputs(&own) {
         return None;
     }
     Some(Ok(Ready {
-        candidate: place,
+        candidate: id,
         candidate_unknowns,
         model,
         moved,
@@ -264,15 +279,15 @@ fn drive_responses(
     };
     let LinearisedFit {
         estimate,
-        places,
+        windows,
         base,
         ..
     } = at;
-    let size = places
+    let size = windows
         .len()
         .div_ceil(rayon::current_num_threads().max(1))
         .max(1);
-    let parts: Vec<Vec<DMatrix<f64>>> = (0..places.len())
+    let parts: Vec<Vec<DMatrix<f64>>> = (0..windows.len())
         .collect::<Vec<_>>()
         .par_chunks(size)
         .map(|part| {
@@ -287,16 +302,16 @@ fn drive_responses(
                 .flat_map(|of| {
                     of.moved
                         .iter()
-                        .map(|(values, size)| (of.model.evaluator(values), *size))
+                        .map(|moved| (of.model.evaluator(&moved.values), moved.size))
                 })
                 .collect();
             let mut own = fit.model.evaluator(&shooting.values(&estimate.theta));
             part.iter()
-                .map(|window| {
-                    if base[*window].is_none() {
+                .map(|number| {
+                    if base[*number].is_none() {
                         return none();
                     }
-                    let place = places[*window];
+                    let window = windows[*number];
                     let moved = evaluators
                         .iter_mut()
                         .map(|(evaluator, size)| MovedEvaluator {
@@ -304,8 +319,8 @@ fn drive_responses(
                             size: *size,
                         });
                     let mut differences = AccelerationDifferences::new(&mut own, moved.collect());
-                    let start = &estimate.initial_states[place];
-                    let columns = sensitivities.drive_response(place, start, differences.drives());
+                    let start = &estimate.initial_states[window];
+                    let columns = sensitivities.drive_response(window, start, differences.drives());
                     columns.unwrap_or_else(none)
                 })
                 .collect()
