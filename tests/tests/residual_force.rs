@@ -8,7 +8,7 @@ use std::path::Path;
 use discover::fit::null_model::null_fit;
 use discover::model::problem::EstimationProblem;
 use discover::residual_force::residual_force;
-use discover::residual_force::types::{Kind, Profile, ResidualForce, Simple};
+use discover::residual_force::types::{Kind, Profile, ResidualForce, Simple, SimplePart};
 use discover::residual_force::wording::described;
 use model_spec::source::Source;
 
@@ -163,9 +163,11 @@ fn dry_friction_is_seen_on_its_carriage_with_its_size() {
     let Some(Kind::Rate(parts)) = &force.kind else {
         panic!("{:?}", force.kind);
     };
-    let (_, size, sd) = parts
+    let SimplePart {
+        value: size, sd, ..
+    } = parts
         .iter()
-        .find(|part| part.0 == Simple::Sign)
+        .find(|part| part.function == Simple::Sign)
         .expect("a sign");
     assert!((size + 2.0).abs() < 4.0 * sd && *sd < 0.2, "{size} +- {sd}");
     assert!(
@@ -212,9 +214,11 @@ fn a_spring_is_seen_on_its_carriage_with_its_stiffness() {
     let Some(Kind::Place(parts)) = &force.kind else {
         panic!("{:?}", force.kind);
     };
-    let (_, size, sd) = parts
+    let SimplePart {
+        value: size, sd, ..
+    } = parts
         .iter()
-        .find(|part| part.0 == Simple::Linear)
+        .find(|part| part.function == Simple::Linear)
         .expect("a line");
     assert!(
         (size + 40.0).abs() < 4.0 * sd && *sd < 4.0,
