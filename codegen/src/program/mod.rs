@@ -8,7 +8,7 @@
 //! arithmetic, every sum has its order, and nothing is contracted, so that all backends give
 //! the same bits.
 //!
-//! `types` (what a program is made of), `lowering` (from the equations of motion to it),
+//! `value` and `types` (what a program is made of), `lowering` (from the equations of motion to it),
 //! `evaluator` (runs it), `affine` (the matrices of a piecewise-linear model), `describe` (what a
 //! prepared value is), `operation_count` (what a call costs).
 
@@ -18,6 +18,7 @@ pub mod evaluator;
 pub mod lowering;
 mod operation_count;
 mod types;
+mod value;
 
 pub use crate::mechanics::outputs::{
     BlockPlace, Decided, Jacobian, JacobianBlock, Output, Outputs, Products, SURFACES_OF_A_REGIME,
@@ -26,6 +27,7 @@ pub use crate::mechanics::outputs::{
 pub use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::graph::{Argument, Variable};
 pub use types::{
-    Extent, MassBlocks, Op, PARTIAL_SUMS, Program, ProgramField, ProgramGuard, ProgramParameter,
-    ProgramTable, Quantity, RowValues, ScaledValue, Value, ValueId,
+    MassBlocks, Program, ProgramField, ProgramGuard, ProgramParameter, ProgramTable, Quantity,
+    RowValues,
 };
+pub use value::{Extent, Op, PARTIAL_SUMS, ScaledValue, Value, ValueId};

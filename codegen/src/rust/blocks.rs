@@ -1,9 +1,9 @@
 //! Statements for matrices: products, Gram matrices, assembled blocks and Cholesky factors,
 //! as loops in the order that the program defines.
 
-use super::body::{Body, looped, reference};
+use super::body::{Body, looped};
 use super::emit_error::{EmitError, Emitted};
-use super::expression::{Expression, assignment};
+use super::expression::{Expression, assignment, reference};
 use crate::program::{Extent, Op, ValueId};
 
 impl Body<'_> {

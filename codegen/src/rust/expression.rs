@@ -195,3 +195,8 @@ pub fn array<T: std::fmt::Display>(items: &[T]) -> String {
     }
     format!("[{BLOCK}{ZERO}{}{COMMA_OUT}{CLOSE}]", listed(items))
 }
+
+/// A reference to an array.
+pub fn reference(array: String) -> Expression {
+    Expression::atom(format!("&{array}"))
+}
