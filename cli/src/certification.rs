@@ -3,7 +3,7 @@
 use codegen::mechanics::outputs::Output;
 use codegen::rust::Packaging;
 use codegen::variant::Variant;
-use eomgen_paper::by_hand::by_hand;
+use eomgen_paper::reference_equations::reference_equations;
 use eomgen_validate::certificate::{Certificate, Check};
 use eomgen_validate::of_model::certificate;
 use model_spec::model::Model;
@@ -37,8 +37,8 @@ pub fn certify_source(
     let order = one_order(model, orders)?;
     let refused = |error| Error::model(&model.source, error);
     let values = model.parameter_values().map_err(refused)?;
-    let by_hand = by_hand(model, order, &values);
-    certificate(model, order, outputs, emitted, &by_hand).map_err(refused)
+    let reference_equations = reference_equations(model, order, &values);
+    certificate(model, order, outputs, emitted, &reference_equations).map_err(refused)
 }
 
 /// The order of all fields.

@@ -6,8 +6,8 @@ use codegen::program::evaluator::Evaluator;
 use eomgen_validate::certificate::Certificate;
 use eomgen_validate::certify::{Subject, certify};
 use eomgen_validate::derived::Derived;
-use eomgen_validate::derived_requests::DerivedRequests;
-use eomgen_validate::requested::Requested;
+use eomgen_validate::derived_outputs::DerivedOutputs;
+use eomgen_validate::outputs::Outputs;
 use eomgen_validate::variant::Variant;
 use model_spec::model::Model;
 use model_spec::source::Source;
@@ -27,7 +27,7 @@ pub fn certificate(model: &Model, subject: &Model) -> Certificate {
     certificate_with(model, subject, &[])
 }
 
-/// The same, with what is requested of `subject`.
+/// The same, with what is asked for of `subject`.
 pub fn certificate_with(model: &Model, subject: &Model, outputs: &[Output]) -> Certificate {
     let parameters = model.parameter_values().expect("values");
     let variants = |order: usize| {
@@ -36,10 +36,10 @@ pub fn certificate_with(model: &Model, subject: &Model, outputs: &[Output]) -> C
     };
     let order = model.fields.first().map_or(0, |field| field.order);
     let orders: Vec<usize> = subject.fields.iter().map(|field| field.order).collect();
-    let requested = || {
+    let functions = || {
         let derived = codegen::variant::Variant::derive_with(subject, &orders, outputs);
         let program = derived.map_err(|found| found.render(false))?.program;
-        Ok(Box::new(DerivedRequests::new(Evaluator::new(program))) as Box<dyn Requested>)
+        Ok(Box::new(DerivedOutputs::new(Evaluator::new(program))) as Box<dyn Outputs>)
     };
     certify(&Subject {
         model,
@@ -48,7 +48,7 @@ pub fn certificate_with(model: &Model, subject: &Model, outputs: &[Output]) -> C
         variants: &variants,
         references: &[],
         absent: &[],
-        requested: (!outputs.is_empty()).then_some(&requested),
+        outputs: (!outputs.is_empty()).then_some(&functions),
         emitted: Err("judged elsewhere".to_owned()),
         regimes: Err("judged elsewhere".to_owned()),
         exact: Err("judged elsewhere".to_owned()),

@@ -6,7 +6,7 @@ use codegen::mechanics::outputs::Output;
 use codegen::program::lowering::lower;
 use codegen::rust::{Packaging, emit};
 use codegen::variant::Variant;
-use eomgen_paper::by_hand::by_hand;
+use eomgen_paper::reference_equations::reference_equations;
 use eomgen_tests::models::{load, project, shipped, variant};
 use eomgen_validate::certificate::Certificate;
 use eomgen_validate::of_model::certificate;
@@ -18,8 +18,9 @@ fn with_references(model: &Model, order: usize, outputs: &[Output], source: Stri
     let values = model
         .parameter_values()
         .expect("the parameters have values");
-    let by_hand = by_hand(model, order, &values);
-    certificate(model, order, outputs, source, &by_hand).expect("the parameters have values")
+    let reference_equations = reference_equations(model, order, &values);
+    certificate(model, order, outputs, source, &reference_equations)
+        .expect("the parameters have values")
 }
 
 /// The certificate of a shipped specification with every field at `order`.
@@ -156,8 +157,11 @@ fn every_shipped_specification_passes_at_its_own_order() {
         }
         let certificate = of(&name, order);
         passes(&certificate, &may_skip);
-        let by_hand = count(&certificate, "reference");
-        assert!(by_hand > 0, "{name}: not a word about equations by hand");
+        let reference_equations = count(&certificate, "reference");
+        assert!(
+            reference_equations > 0,
+            "{name}: not a word about equations by hand"
+        );
     }
 }
 

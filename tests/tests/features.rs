@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use codegen::program::evaluator::Point;
 use codegen::rust::{Packaging, emit};
 use eomgen_tests::models::{samples, variant};
-use eomgen_validate::certify::ByHand;
+use eomgen_validate::certify::ReferenceEquations;
 use eomgen_validate::of_model::certificate;
 use eomgen_validate::sampler::Sample;
 use model_spec::model::Model;
@@ -100,7 +100,7 @@ fn certify(name: &str, orders: &[usize]) {
             order,
             &[],
             emitted(&model, order),
-            &ByHand::default(),
+            &ReferenceEquations::default(),
         )
         .unwrap();
         failures.extend(certificate.failures().map(|check| {

@@ -1,7 +1,7 @@
 //! The closed forms of the other machines: energy, limits that textbooks give, refusals.
 
 use eomgen_paper::reference::Evaluation;
-use eomgen_paper::reference::closed_forms::{Situation, Unfit, find};
+use eomgen_paper::reference::closed_forms::{NotApplicable, StateAndParameters, find};
 use eomgen_paper::reference::mode_shapes::ModeShape;
 use proptest::prelude::*;
 
@@ -51,10 +51,15 @@ fn look_up(values: Values) -> impl Fn(&str) -> Option<f64> {
     }
 }
 
-fn evaluate(model: &str, values: Values, order: usize, state: &[f64]) -> Result<Evaluation, Unfit> {
+fn evaluate(
+    model: &str,
+    values: Values,
+    order: usize,
+    state: &[f64],
+) -> Result<Evaluation, NotApplicable> {
     let closed_form = find(model).expect("a known model");
     let parameter = look_up(values);
-    closed_form(&Situation {
+    closed_form(&StateAndParameters {
         parameter: &parameter,
         input: &|_| None,
         order,
@@ -229,9 +234,9 @@ fn the_axis_feels_friction_against_its_motion() {
 fn what_is_missing_is_named() {
     assert!(find("planetary_arm").is_none());
     let error = evaluate("pendulum", &[("m", 1.0), ("a", 1.0)], 0, &[0.0, 0.0]);
-    assert_eq!(error, Err(Unfit::Parameter("g")));
+    assert_eq!(error, Err(NotApplicable::Parameter("g")));
     let error = evaluate("double_pendulum", DOUBLE, 0, &[0.0; 3]);
-    assert_eq!(error, Err(Unfit::State(4)));
+    assert_eq!(error, Err(NotApplicable::State(4)));
     let error = evaluate("hub_beam_tip_mass", BEAM, 2, &[0.0; 4]);
-    assert_eq!(error, Err(Unfit::State(6)));
+    assert_eq!(error, Err(NotApplicable::State(6)));
 }

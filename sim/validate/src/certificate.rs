@@ -21,7 +21,7 @@ pub struct Certificate {
     pub specification_sha256: String,
     /// SHA-256 of the emitted source; none (null) if nothing was emitted.
     pub source_sha256: Option<String>,
-    /// What was requested beside the rates, by the names of `--with`.
+    /// What was asked for beside the rates, by the names of `--with`.
     pub with: Vec<String>,
     /// The values of all parameters, in SI, in the order of the specification.
     #[serde(serialize_with = "by_name")]
@@ -61,7 +61,7 @@ pub struct Certified {
     pub specification_sha256: String,
     /// SHA-256 of the emitted source, if there is one.
     pub source_sha256: Option<String>,
-    /// What was requested, by name.
+    /// What was asked for, by name.
     pub with: Vec<String>,
     /// Names and values of all parameters, in SI.
     pub parameters: Vec<(String, f64)>,

@@ -1,12 +1,12 @@
 //! Runs every check that applies to a model at one order and writes the certificate.
 
 use super::certificate::{Certificate, Certified, Check, Worst};
-use super::checks::requested::Judged;
+use super::checks::outputs::Judged;
 use super::checks::{
-    MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, exact, nesting, regimes, requested, states,
+    MASS_TOLERANCE, ROW_TOLERANCE, balance, emitted, exact, nesting, outputs, regimes, states,
 };
 use super::oracle::{Oracle, OracleError};
-use super::requested::Requested;
+use super::outputs::Outputs;
 use super::variant::Variant;
 use model_spec::model::{MAX_ORDER, Model};
 use model_spec::source::sha256;
@@ -17,7 +17,7 @@ pub use super::checks::states::Reference;
 
 /// What was written by hand for a model.
 #[derive(Default)]
-pub struct ByHand {
+pub struct ReferenceEquations {
     /// The equations.
     pub references: Vec<Reference>,
     /// A line for each that does not apply, with the reason.
@@ -38,8 +38,8 @@ pub struct Subject<'s> {
     pub references: &'s [Reference],
     /// Lines for equations written by hand that do not apply to it, with the reason.
     pub absent: &'s [Check],
-    /// Makes what was requested of this order, with these parameters; none if nothing was.
-    pub requested: Option<&'s dyn Fn() -> Result<Box<dyn Requested>, String>>,
+    /// Makes what was asked for of this order, with these parameters; none if nothing was.
+    pub outputs: Option<&'s dyn Fn() -> Result<Box<dyn Outputs>, String>>,
     /// The emitted source with the specification's own parameters, or why there is none.
     pub emitted: Result<Emitted, String>,
     /// The emitted source with kernels of regimes, or why there is none; its functions are not
@@ -75,7 +75,7 @@ pub fn about(
         specification_sha256: model.source.hash(),
         source_sha256: emitted.map(|emitted| sha256(&emitted.source)),
         with: emitted
-            .and_then(|emitted| emitted.requests.clone())
+            .and_then(|emitted| emitted.outputs.clone())
             .unwrap_or_default(),
         parameters: names.zip(parameters.iter().copied()).collect(),
     }
@@ -90,21 +90,21 @@ fn all_checks(subject: &Subject<'_>) -> Result<Vec<Check>, String> {
     checks.push(balance::check(&oracle, variant).map_err(text)?);
     checks.extend(nested(subject, &oracle, variant)?);
     checks.extend(rigid(subject, variant)?);
-    let mut requested = subject.requested.map(|make| make()).transpose()?;
-    if let Some(requested) = &mut requested {
+    let mut outputs = subject.outputs.map(|make| make()).transpose()?;
+    if let Some(outputs) = &mut outputs {
         let judged = Judged {
             oracle: &oracle,
             model: subject.model,
             order: subject.order,
             parameters: subject.parameters,
         };
-        let found = requested::check(&judged, variant, requested.as_mut());
+        let found = outputs::check(&judged, variant, outputs.as_mut());
         checks.extend(found.map_err(text)?);
     }
     checks.extend(match &subject.emitted {
         Ok(emitted) => {
-            let requested = requested.as_deref_mut();
-            emitted::check(&oracle, variant, requested, emitted).map_err(text)?
+            let outputs = outputs.as_deref_mut();
+            emitted::check(&oracle, variant, outputs, emitted).map_err(text)?
         }
         Err(reason) => emitted::skipped(None, reason),
     });

@@ -14,16 +14,18 @@ use model_spec::model::Model;
 use model_spec::variant::ModelError;
 
 use crate::certificate::Certificate;
-use crate::certify::{ByHand, Emitted, EmittedFunction, Sized, Subject, about, certify};
+use crate::certify::{
+    Emitted, EmittedFunction, ReferenceEquations, Sized, Subject, about, certify,
+};
 use crate::derived::Derived;
-use crate::derived_requests::DerivedRequests;
-use crate::requested::Requested;
+use crate::derived_outputs::DerivedOutputs;
+use crate::outputs::Outputs;
 use crate::variant::Variant;
 use eomgen_compiled_model::{CompiledModel, Orders};
 use sim::piecewise_linear::Propagator;
 
 /// The certificate of `model` with every field at `order`; `emitted` is the source of
-/// that variant with `requests`, as a file by itself.
+/// that variant with `outputs`, as a file by itself.
 ///
 /// # Errors
 /// If the parameters have no finite values.
@@ -32,11 +34,11 @@ pub fn certificate(
     order: usize,
     outputs: &[Output],
     emitted: String,
-    by_hand: &ByHand,
+    reference_equations: &ReferenceEquations,
 ) -> Result<Certificate, ModelError> {
     let parameters = model.parameter_values()?;
     let variants = |order: usize| variant(model, order, &parameters);
-    let on_request = || on_request(model, order, &parameters, outputs);
+    let output_functions = || output_functions(model, order, &parameters, outputs);
     let propagator = exact(model, order).map(RefCell::new);
     let derivative = |time: f64, state: &[f64], inputs: &[f64]| match &propagator {
         Ok(propagator) => rates(&mut propagator.borrow_mut(), time, state, inputs),
@@ -48,9 +50,9 @@ pub fn certificate(
         order,
         parameters: &parameters,
         variants: &variants,
-        references: &by_hand.references,
-        absent: &by_hand.absent,
-        requested: (!outputs.is_empty()).then_some(&on_request),
+        references: &reference_equations.references,
+        absent: &reference_equations.absent,
+        outputs: (!outputs.is_empty()).then_some(&output_functions),
         regimes: kernels(model, order, &parameters, &emitted.input_fields),
         emitted: Ok(emitted),
         exact: match &propagator {
@@ -92,7 +94,7 @@ fn source(model: &Model, outputs: &[Output], source: String) -> Emitted {
             EmittedFunction::Guards,
             EmittedFunction::MassMatrix,
         ],
-        requests: Some(names.collect()),
+        outputs: Some(names.collect()),
     }
 }
 
@@ -112,7 +114,7 @@ fn kernels(
         source,
         input_fields: input_fields.to_vec(),
         functions: Vec::new(),
-        requests: None,
+        outputs: None,
     })
 }
 
@@ -146,18 +148,18 @@ fn variant(model: &Model, order: usize, parameters: &[f64]) -> Result<Box<dyn Va
     Ok(Box::new(Derived::new(evaluator)))
 }
 
-/// What was requested of that variant.
-fn on_request(
+/// What was asked for of that variant.
+fn output_functions(
     model: &Model,
     order: usize,
     parameters: &[f64],
     outputs: &[Output],
-) -> Result<Box<dyn Requested>, String> {
+) -> Result<Box<dyn Outputs>, String> {
     let evaluator = Evaluator::new(program(model, order, parameters, outputs)?);
-    Ok(Box::new(DerivedRequests::new(evaluator)))
+    Ok(Box::new(DerivedOutputs::new(evaluator)))
 }
 
-/// The program of that variant with what is requested.
+/// The program of that variant with what is asked for.
 fn program(
     model: &Model,
     order: usize,
@@ -166,8 +168,6 @@ fn program(
 ) -> Result<Program, String> {
     let orders = vec![order; model.fields.len()];
     let mut equations = derive(model, &orders).map_err(|error| error.to_string())?;
-    let requested = derive_outputs(&mut equations, outputs).map_err(|error| error.to_string())?;
-    Ok(lower_with_outputs(
-        model, &equations, parameters, &requested,
-    ))
+    let formed = derive_outputs(&mut equations, outputs).map_err(|error| error.to_string())?;
+    Ok(lower_with_outputs(model, &equations, parameters, &formed))
 }

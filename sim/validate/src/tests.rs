@@ -5,11 +5,11 @@ use super::certificate::{Certificate, Check};
 use super::certify::{Emitted, EmittedFunction, Reference, Subject, certify};
 use super::compiler::Compiler;
 use super::oracle::Oracle;
-use super::requested::Requested;
+use super::outputs::Outputs;
 use super::test_models::{
     BEAM, DOUBLE_PENDULUM, FAR, LOGARITHM, PRELOAD, ROTOR, SPRING, TANK, model,
 };
-use super::test_requests::SpringRequests;
+use super::test_outputs::SpringOutputs;
 use super::test_variants::{
     Beam, DoublePendulum, EMITTED, FAR_TERM, FREE_ROTOR, Fault, KERNELS, LOGARITHMIC, Preload,
     Single, Spring, TIMED_TANK,
@@ -33,7 +33,7 @@ fn certificate(
         variants,
         references,
         absent: &[],
-        requested: None,
+        outputs: None,
         emitted,
         regimes: Err("not emitted".into()),
         exact: Err("not linear".into()),
@@ -83,13 +83,13 @@ fn preload(kernel: &str, derivative: bool) -> Certificate {
         variants: &|_| Ok(Box::new(Preload)),
         references: &[],
         absent: &[],
-        requested: None,
+        outputs: None,
         emitted: Err("not emitted".into()),
         regimes: Ok(Emitted {
             source: KERNELS.replace("WITHIN", kernel),
             input_fields: Vec::new(),
             functions: Vec::new(),
-            requests: None,
+            outputs: None,
         }),
         exact: Ok(&derivative),
     })
@@ -322,7 +322,7 @@ fn emitted(source: &str) -> Emitted {
         source: source.to_owned(),
         input_fields: vec!["u".into()],
         functions: vec![EmittedFunction::Rates, EmittedFunction::Energy],
-        requests: None,
+        outputs: None,
     }
 }
 
@@ -361,12 +361,12 @@ fn a_missing_compiler_is_a_reason() {
     assert!(found.unwrap_err().contains("no-such-rustc"));
 }
 
-/// The certificate of the right spring with requests of which the one of this name is wrong.
-fn requests(wrong: &'static str) -> Certificate {
+/// The certificate of the right spring with outputs of which the one of this name is wrong.
+fn outputs_with_fault(wrong: &'static str) -> Certificate {
     let model = model(SPRING);
     let parameters = model.parameter_values().unwrap();
     let variants = |_| Ok(Box::new(Spring(Fault::None)) as Box<dyn Variant>);
-    let requested = || Ok(Box::new(SpringRequests(wrong)) as Box<dyn Requested>);
+    let outputs = || Ok(Box::new(SpringOutputs(wrong)) as Box<dyn Outputs>);
     certify(&Subject {
         model: &model,
         order: 0,
@@ -374,14 +374,14 @@ fn requests(wrong: &'static str) -> Certificate {
         variants: &variants,
         references: &[],
         absent: &[],
-        requested: Some(&requested),
+        outputs: Some(&outputs),
         emitted: Err("not emitted".into()),
         regimes: Err("not emitted".into()),
         exact: Err("not linear".into()),
     })
 }
 
-/// The checks of everything that may be requested.
+/// The checks of everything that may be asked for.
 const REQUESTED: [&str; 12] = [
     "bias_forces",
     "inverse_dynamics",
@@ -398,13 +398,13 @@ const REQUESTED: [&str; 12] = [
 ];
 
 #[test]
-fn what_was_requested_passes_where_it_is_right_and_fails_by_a_thousandth() {
-    let right = requests("");
+fn an_output_passes_where_it_is_right_and_fails_by_a_thousandth() {
+    let right = outputs_with_fault("");
     assert!(right.passed, "{:?}", failures(&right));
     for name in REQUESTED {
         let check = find(&right, name);
         assert!(check.passed && !check.skipped, "{check:?}");
-        assert_eq!(failures(&requests(name)), [name]);
+        assert_eq!(failures(&outputs_with_fault(name)), [name]);
     }
 }
 

@@ -8,7 +8,7 @@ use super::super::compiler::Compiler;
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
-use super::kinds::{self, OnRequest};
+use super::kinds::{self, BorrowedOutputs};
 use super::linked::{Emitted, EmittedFunction, differences, line, run};
 use std::fmt::Write as _;
 
@@ -19,7 +19,7 @@ const STATES: usize = 100;
 /// The seed of the states.
 const SEED: u64 = 0x0e31_77ed;
 
-/// Compiles `emitted` and compares it with `variant` and `requested` at random states. The
+/// Compiles `emitted` and compares it with `variant` and `functions` at random states. The
 /// value of the first check is the number of numbers whose bits differ.
 ///
 /// # Errors
@@ -27,7 +27,7 @@ const SEED: u64 = 0x0e31_77ed;
 pub fn check(
     oracle: &Oracle,
     variant: &mut dyn Variant,
-    requested: Option<OnRequest<'_>>,
+    functions: Option<BorrowedOutputs<'_>>,
     emitted: &Emitted,
 ) -> Result<Vec<Check>, OracleError> {
     let mut sampler = Sampler::new(oracle, SEED)?;
@@ -39,7 +39,7 @@ pub fn check(
     }
     if samples.is_empty() {
         let reason = "no state of the model's domain was found";
-        return Ok(skipped(emitted.requests.as_deref(), reason));
+        return Ok(skipped(emitted.outputs.as_deref(), reason));
     }
     let found = tempfile::tempdir().map_err(|error| format!("no temporary folder: {error}"));
     let (folder, compiler) = match found.and_then(|folder| {
@@ -47,7 +47,7 @@ pub fn check(
         Ok((folder, compiler))
     }) {
         Ok(found) => found,
-        Err(reason) => return Ok(skipped(emitted.requests.as_deref(), &reason)),
+        Err(reason) => return Ok(skipped(emitted.outputs.as_deref(), &reason)),
     };
     let folder = folder.path();
     let calls = calls(&emitted.functions);
@@ -57,15 +57,15 @@ pub fn check(
         Err(message) => Worst::of(f64::INFINITY, message),
     };
     let mut checks = vec![Check::made(NAME, worst, 0.0)];
-    let judged = (variant, requested);
+    let judged = (variant, functions);
     checks.extend(kinds::check(&compiler, folder, emitted, judged, &samples));
     Ok(checks)
 }
 
-/// The checks of emitted source with `requests`, none of which can be made.
-pub fn skipped(requests: Option<&[String]>, reason: &str) -> Vec<Check> {
+/// The checks of emitted source with `outputs`, none of which can be made.
+pub fn skipped(outputs: Option<&[String]>, reason: &str) -> Vec<Check> {
     let mut checks = vec![Check::skipped(NAME, 0.0, reason)];
-    checks.extend(requests.map_or_else(Vec::new, |names| kinds::skipped(names, reason)));
+    checks.extend(outputs.map_or_else(Vec::new, |names| kinds::skipped(names, reason)));
     checks
 }
 

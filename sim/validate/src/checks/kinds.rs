@@ -1,12 +1,12 @@
-//! The emitted source beyond rates of plain `f64`, compiled once more: requested functions
+//! The emitted source beyond rates of plain `f64`, compiled once more: output functions
 //! against their evaluation here, bit for bit; eight states at once against each alone, bit
 //! for bit; single precision against a bound of what it rounds away, found by running the
 //! same source with numbers that carry such a bound.
 
 use super::super::certificate::{Check, Worst};
 use super::super::compiler::Compiler;
+use super::super::outputs::{JACOBIANS, Outputs};
 use super::super::random::Random;
-use super::super::requested::{JACOBIANS, Requested};
 use super::super::sampler::Sample;
 use super::super::variant::Variant;
 use super::linked::{Emitted, differences, line, run_linked};
@@ -22,10 +22,10 @@ const LANES: usize = 8;
 /// The seed of directions, weights and accelerations.
 const SEED: u64 = 0x51de_5eed;
 
-/// What was requested, borrowed from where it is kept.
-pub type OnRequest<'r> = &'r mut (dyn Requested + 'static);
+/// What was asked for, borrowed from where it is kept.
+pub type BorrowedOutputs<'r> = &'r mut (dyn Outputs + 'static);
 
-/// Everything a requested function is called with.
+/// Everything an output function is called with.
 struct Arguments {
     sample: Sample,
     accelerations: Vec<f64>,
@@ -62,11 +62,11 @@ impl Arguments {
     }
 }
 
-/// The names of the checks that belong to `requests`.
-fn names(requests: &[String]) -> Vec<&'static str> {
-    let has = |name: &str| requests.iter().any(|known| known == name);
+/// The names of the checks that belong to `outputs`.
+fn names(outputs: &[String]) -> Vec<&'static str> {
+    let has = |name: &str| outputs.iter().any(|known| known == name);
     let mut found = Vec::new();
-    if calls(requests)
+    if calls(outputs)
         .iter()
         .any(|call| call.row == "emitted_requests")
     {
@@ -85,9 +85,9 @@ fn tolerance(name: &str) -> f64 {
     if name == "f32" { SINGLE_TOLERANCE } else { 0.0 }
 }
 
-/// The checks of `requests`, none of which can be made.
-pub fn skipped(requests: &[String], reason: &str) -> Vec<Check> {
-    let names = names(requests).into_iter();
+/// The checks of `outputs`, none of which can be made.
+pub fn skipped(outputs: &[String], reason: &str) -> Vec<Check> {
+    let names = names(outputs).into_iter();
     names
         .map(|name| Check::skipped(name, tolerance(name), reason))
         .collect()
@@ -98,10 +98,10 @@ pub fn check(
     compiler: &Compiler,
     folder: &Path,
     emitted: &Emitted,
-    (variant, requested): (&mut dyn Variant, Option<OnRequest<'_>>),
+    (variant, functions): (&mut dyn Variant, Option<BorrowedOutputs<'_>>),
     samples: &[Sample],
 ) -> Vec<Check> {
-    let Some(requests) = &emitted.requests else {
+    let Some(outputs) = &emitted.outputs else {
         return Vec::new();
     };
     let mut random = Random::new(SEED);
@@ -110,9 +110,9 @@ pub fn check(
         .take(STATES)
         .map(|sample| Arguments::drawn(sample, &mut random))
         .collect();
-    let calls = calls(requests);
+    let calls = calls(outputs);
     let text: Vec<String> = arguments.iter().map(Arguments::line).collect();
-    let source = harness_source(emitted, &calls, requests);
+    let source = harness_source(emitted, &calls, outputs);
     let found = run_linked(
         compiler,
         folder,
@@ -123,13 +123,13 @@ pub fn check(
         let mut reading = Reading {
             lines: lines.lines(),
             variant,
-            requested,
+            functions,
         };
-        reading.worst(requests, &calls, &arguments)
+        reading.worst(outputs, &calls, &arguments)
     });
     match found {
         Ok(checks) => checks,
-        Err(message) => names(requests)
+        Err(message) => names(outputs)
             .into_iter()
             .map(|name| {
                 let worst = Worst::of(f64::INFINITY, message.clone());
@@ -148,9 +148,9 @@ struct Call {
     text: String,
 }
 
-/// The calls of everything in `requests` that gives numbers of its own.
-fn calls(requests: &[String]) -> Vec<Call> {
-    let has = |name: &str| requests.iter().any(|known| known == name);
+/// The calls of everything in `outputs` that gives numbers of its own.
+fn calls(outputs: &[String]) -> Vec<Call> {
+    let has = |name: &str| outputs.iter().any(|known| known == name);
     let at = "t, &state, &inputs, &coefficients";
     let mut calls = Vec::new();
     let mut add = |row, name, text| calls.push(Call { row, name, text });
@@ -220,7 +220,7 @@ fn extents(name: &str) -> (&'static str, &'static str) {
     (rows, columns)
 }
 
-fn harness_source(emitted: &Emitted, calls: &[Call], requests: &[String]) -> String {
+fn harness_source(emitted: &Emitted, calls: &[Call], outputs: &[String]) -> String {
     let fields = emitted.input_fields.iter();
     let by_inputs: Vec<String> = fields.map(|field| format!("by_inputs.{field}")).collect();
     let statement = |call: &Call| {
@@ -241,7 +241,7 @@ fn harness_source(emitted: &Emitted, calls: &[Call], requests: &[String]) -> Str
         };
         source = source.replace(&format!("/*CAST {kind}*/"), &conversion);
     }
-    if requests.iter().any(|name| name == "lanes") {
+    if outputs.iter().any(|name| name == "lanes") {
         source = source
             .replace("//LANES\n", include_str!("harness/lanes.rs"))
             .replace("        //GROUPS\n", GROUPS);
@@ -277,7 +277,7 @@ fn inputs_of(fields: &[String]) -> String {
 struct Reading<'l, 'r> {
     lines: std::str::Lines<'l>,
     variant: &'r mut dyn Variant,
-    requested: Option<OnRequest<'r>>,
+    functions: Option<BorrowedOutputs<'r>>,
 }
 
 impl Reading<'_, '_> {
@@ -288,7 +288,7 @@ impl Reading<'_, '_> {
 
     fn worst(
         &mut self,
-        requests: &[String],
+        outputs: &[String],
         calls: &[Call],
         arguments: &[Arguments],
     ) -> Result<Vec<Check>, String> {
@@ -314,7 +314,7 @@ impl Reading<'_, '_> {
         }
         let (single, lanes) = (numbers(&self.next()?)?, numbers(&self.next()?)?);
         let mut checks = Vec::new();
-        for name in names(requests) {
+        for name in names(outputs) {
             let worst = match name {
                 "f32" => of_single(&single),
                 "lanes" => {
@@ -337,25 +337,25 @@ impl Reading<'_, '_> {
     fn expected(&mut self, name: &str, at: &Arguments) -> Result<Vec<Vec<f64>>, String> {
         let sample = &at.sample;
         let missing = || format!("{name} is not there");
-        let requested = self.requested.as_deref_mut().ok_or_else(missing)?;
+        let functions = self.functions.as_deref_mut().ok_or_else(missing)?;
         let found = match name {
-            "bias_forces" => requested.bias_forces(sample).map(|rows| vec![rows]),
+            "bias_forces" => functions.bias_forces(sample).map(|rows| vec![rows]),
             "inverse_dynamics" => {
-                let rows = requested.inverse_dynamics(sample, &at.accelerations);
+                let rows = functions.inverse_dynamics(sample, &at.accelerations);
                 rows.map(|rows| vec![rows])
             }
-            "guard_rates" => requested.guard_rates(sample).map(|rates| vec![rates]),
-            "jacobian_vector_product" => requested
+            "guard_rates" => functions.guard_rates(sample).map(|rates| vec![rates]),
+            "jacobian_vector_product" => functions
                 .jacobian_vector_product(sample, &at.direction, &at.input_direction)
                 .map(|rows| vec![rows]),
-            "vector_jacobian_product" => requested
+            "vector_jacobian_product" => functions
                 .vector_jacobian_product(sample, &at.weights)
                 .map(|(by_state, by_inputs)| vec![by_state, by_inputs]),
-            "vector_jacobian_product_by_parameters" => requested
+            "vector_jacobian_product_by_parameters" => functions
                 .vector_jacobian_product_by_parameters(sample, &at.weights)
                 .map(|rows| vec![rows]),
             "linearise" => return self.linearised(sample),
-            name => row_by_row(requested, name, sample).map(|rows| vec![rows]),
+            name => row_by_row(functions, name, sample).map(|rows| vec![rows]),
         };
         found.ok_or_else(missing)
     }
@@ -377,8 +377,8 @@ impl Reading<'_, '_> {
             "observables_by_state",
             "observables_by_inputs",
         ] {
-            let requested = self.requested.as_deref_mut();
-            let rows = requested.and_then(|requested| row_by_row(requested, name, sample));
+            let functions = self.functions.as_deref_mut();
+            let rows = functions.and_then(|functions| row_by_row(functions, name, sample));
             found.push(rows.ok_or_else(|| format!("{name} is not there"))?);
         }
         Ok(found)
@@ -386,8 +386,8 @@ impl Reading<'_, '_> {
 }
 
 /// A Jacobian's numbers, row by row.
-fn row_by_row(requested: &mut dyn Requested, name: &str, sample: &Sample) -> Option<Vec<f64>> {
-    let jacobian = requested.jacobian(name, sample)?;
+fn row_by_row(functions: &mut dyn Outputs, name: &str, sample: &Sample) -> Option<Vec<f64>> {
+    let jacobian = functions.jacobian(name, sample)?;
     Some(jacobian.transpose().as_slice().to_vec())
 }
 
@@ -429,17 +429,17 @@ fn numbers(line: &str) -> Result<Vec<f64>, String> {
 mod tests {
     use super::*;
 
-    /// What is compiled for these inputs and requests, of source with or without coefficients.
-    fn harness(inputs: &[&str], requests: &[&str], source: &str) -> String {
+    /// What is compiled for these inputs and outputs, of source with or without coefficients.
+    fn harness(inputs: &[&str], outputs: &[&str], source: &str) -> String {
         let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
-        let requests: Vec<String> = owned(requests);
+        let outputs: Vec<String> = owned(outputs);
         let emitted = Emitted {
             source: source.to_owned(),
             input_fields: owned(inputs),
             functions: Vec::new(),
-            requests: Some(requests.clone()),
+            outputs: Some(outputs.clone()),
         };
-        harness_source(&emitted, &calls(&requests), &requests)
+        harness_source(&emitted, &calls(&outputs), &outputs)
     }
 
     #[test]

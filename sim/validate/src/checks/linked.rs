@@ -18,9 +18,9 @@ pub struct Emitted {
     pub input_fields: Vec<String>,
     /// The functions to compare.
     pub functions: Vec<EmittedFunction>,
-    /// What was requested besides, by the names of `--with`, of source that computes with
+    /// What was asked for besides, by the names of `--with`, of source that computes with
     /// any number of its trait `Scalar`; none of plain functions of `f64`.
-    pub requests: Option<Vec<String>>,
+    pub outputs: Option<Vec<String>>,
 }
 
 /// A function of an emitted crate.

@@ -1,6 +1,6 @@
 //! The checks of a certificate, one file each: [`states`] at random states in every
-//! regime, [`balance`] along a trajectory, [`nesting`] between orders, [`requested`] for
-//! functions on request, [`emitted`] for source text, with `kinds` for other kinds of
+//! regime, [`balance`] along a trajectory, [`nesting`] between orders, [`outputs`] for
+//! output functions, [`emitted`] for source text, with `kinds` for other kinds of
 //! numbers, [`regimes`] for its kernels of regimes, [`exact`] for what the exact solver
 //! integrates. `certify` runs them all.
 //!
@@ -14,8 +14,8 @@ mod inside;
 mod kinds;
 pub mod linked;
 pub mod nesting;
+pub mod outputs;
 pub mod regimes;
-pub mod requested;
 pub mod states;
 
 use super::oracle::Equations;

@@ -1,32 +1,32 @@
 //! The double pendulum: two point masses on massless rods, both angles from the
 //! vertical, hanging at 0 (Landau and Lifshitz, "Mechanics", section 5, problem 1).
 
-use super::balance::Balance;
-use super::{Situation, Unfit};
+use super::linear_system::LinearSystem;
+use super::{NotApplicable, StateAndParameters};
 use crate::reference::evaluation::Evaluation;
 
-pub fn accelerations(situation: &Situation<'_>) -> Result<Evaluation, Unfit> {
-    let (m_1, m_2) = (situation.required("m_1")?, situation.required("m_2")?);
-    let (l_1, l_2) = (situation.required("l_1")?, situation.required("l_2")?);
-    let g = situation.required("g")?;
-    let (c_1, c_2) = (situation.optional("c_1"), situation.optional("c_2"));
-    let ([theta_1, theta_2], [theta_1_dot, theta_2_dot]) = situation.motion()?;
+pub fn accelerations(at: &StateAndParameters<'_>) -> Result<Evaluation, NotApplicable> {
+    let (m_1, m_2) = (at.required("m_1")?, at.required("m_2")?);
+    let (l_1, l_2) = (at.required("l_1")?, at.required("l_2")?);
+    let g = at.required("g")?;
+    let (c_1, c_2) = (at.optional("c_1"), at.optional("c_2"));
+    let ([theta_1, theta_2], [theta_1_dot, theta_2_dot]) = at.motion()?;
     let coupling = m_2 * l_1 * l_2;
     let (sin, cos) = (theta_1 - theta_2).sin_cos();
     let elbow = c_2 * (theta_2_dot - theta_1_dot);
 
-    let mut balance = Balance::new(2);
-    balance.mass(0, 0, (m_1 + m_2) * l_1 * l_1);
-    balance.mass(0, 1, coupling * cos);
-    balance.mass(1, 1, m_2 * l_2 * l_2);
+    let mut system = LinearSystem::new(2);
+    system.mass(0, 0, (m_1 + m_2) * l_1 * l_1);
+    system.mass(0, 1, coupling * cos);
+    system.mass(1, 1, m_2 * l_2 * l_2);
 
-    balance.force(0, -coupling * sin * theta_2_dot * theta_2_dot);
-    balance.force(0, -(m_1 + m_2) * g * l_1 * theta_1.sin());
-    balance.force(0, -c_1 * theta_1_dot);
-    balance.force(0, elbow);
+    system.force(0, -coupling * sin * theta_2_dot * theta_2_dot);
+    system.force(0, -(m_1 + m_2) * g * l_1 * theta_1.sin());
+    system.force(0, -c_1 * theta_1_dot);
+    system.force(0, elbow);
 
-    balance.force(1, coupling * sin * theta_1_dot * theta_1_dot);
-    balance.force(1, -m_2 * g * l_2 * theta_2.sin());
-    balance.force(1, -elbow);
-    balance.solve()
+    system.force(1, coupling * sin * theta_1_dot * theta_1_dot);
+    system.force(1, -m_2 * g * l_2 * theta_2.sin());
+    system.force(1, -elbow);
+    system.solve()
 }

@@ -4,34 +4,34 @@
 //! 0 (Cazzolato and Prime, "On the dynamics of the Furuta pendulum", 2011, with slender
 //! links).
 
-use super::balance::Balance;
-use super::{Situation, Unfit};
+use super::linear_system::LinearSystem;
+use super::{NotApplicable, StateAndParameters};
 use crate::reference::evaluation::Evaluation;
 
-pub fn accelerations(situation: &Situation<'_>) -> Result<Evaluation, Unfit> {
-    let arm = situation.required("J_a")?;
-    let arm_length = situation.required("L")?;
-    let (m, l) = (situation.required("m")?, situation.required("l")?);
-    let g = situation.required("g")?;
-    let inertia = situation.optional("J");
-    let (c_a, c_p) = (situation.optional("c_a"), situation.optional("c_p"));
-    let ([_, theta], [phi_dot, theta_dot]) = situation.motion()?;
+pub fn accelerations(at: &StateAndParameters<'_>) -> Result<Evaluation, NotApplicable> {
+    let arm = at.required("J_a")?;
+    let arm_length = at.required("L")?;
+    let (m, l) = (at.required("m")?, at.required("l")?);
+    let g = at.required("g")?;
+    let inertia = at.optional("J");
+    let (c_a, c_p) = (at.optional("c_a"), at.optional("c_p"));
+    let ([_, theta], [phi_dot, theta_dot]) = at.motion()?;
     let (sin, cos) = theta.sin_cos();
     let swing = inertia + m * l * l;
 
-    let mut balance = Balance::new(2);
-    balance.mass(0, 0, arm + m * arm_length * arm_length);
-    balance.mass(0, 0, swing * sin * sin);
-    balance.mass(0, 1, m * arm_length * l * cos);
-    balance.mass(1, 1, swing);
+    let mut system = LinearSystem::new(2);
+    system.mass(0, 0, arm + m * arm_length * arm_length);
+    system.mass(0, 0, swing * sin * sin);
+    system.mass(0, 1, m * arm_length * l * cos);
+    system.mass(1, 1, swing);
 
-    balance.force(0, situation.input("u"));
-    balance.force(0, m * arm_length * l * sin * theta_dot * theta_dot);
-    balance.force(0, -2.0 * swing * sin * cos * phi_dot * theta_dot);
-    balance.force(0, -c_a * phi_dot);
+    system.force(0, at.input("u"));
+    system.force(0, m * arm_length * l * sin * theta_dot * theta_dot);
+    system.force(0, -2.0 * swing * sin * cos * phi_dot * theta_dot);
+    system.force(0, -c_a * phi_dot);
 
-    balance.force(1, swing * sin * cos * phi_dot * phi_dot);
-    balance.force(1, -m * g * l * sin);
-    balance.force(1, -c_p * theta_dot);
-    balance.solve()
+    system.force(1, swing * sin * cos * phi_dot * phi_dot);
+    system.force(1, -m * g * l * sin);
+    system.force(1, -c_p * theta_dot);
+    system.solve()
 }

@@ -6,12 +6,12 @@
 //! a parameter that a machine may lack (a damping, an inertia) counts as 0 where it is
 //! missing.
 
-mod balance;
 mod cart_two_arms;
 mod double_pendulum;
 mod emps;
 mod furuta_pendulum;
 mod hub_beam_tip_mass;
+mod linear_system;
 mod pendulum;
 mod two_link_arm;
 
@@ -20,7 +20,7 @@ use std::fmt;
 use super::evaluation::Evaluation;
 
 /// Where a closed form is evaluated.
-pub struct Situation<'a> {
+pub struct StateAndParameters<'a> {
     /// Parameters by name, SI.
     pub parameter: &'a dyn Fn(&str) -> Option<f64>,
     /// Inputs by name, SI; an input without a value is 0.
@@ -32,11 +32,11 @@ pub struct Situation<'a> {
 }
 
 /// Accelerations of a machine, in the order of its coordinates, with row scales.
-pub type ClosedForm = fn(&Situation<'_>) -> Result<Evaluation, Unfit>;
+pub type ClosedForm = fn(&StateAndParameters<'_>) -> Result<Evaluation, NotApplicable>;
 
 /// Why a closed form has no value in a situation.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Unfit {
+pub enum NotApplicable {
     /// A parameter that every such machine has is not there.
     Parameter(&'static str),
     /// The state has not this many entries.
@@ -45,7 +45,7 @@ pub enum Unfit {
     Mass,
 }
 
-impl fmt::Display for Unfit {
+impl fmt::Display for NotApplicable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Parameter(name) => write!(f, "the closed form needs the parameter {name}"),
@@ -55,7 +55,7 @@ impl fmt::Display for Unfit {
     }
 }
 
-impl std::error::Error for Unfit {}
+impl std::error::Error for NotApplicable {}
 
 /// The closed form that belongs to the model called `name`.
 pub fn find(name: &str) -> Option<ClosedForm> {
@@ -71,10 +71,10 @@ pub fn find(name: &str) -> Option<ClosedForm> {
     }
 }
 
-impl Situation<'_> {
+impl StateAndParameters<'_> {
     /// A parameter every such machine has.
-    fn required(&self, name: &'static str) -> Result<f64, Unfit> {
-        (self.parameter)(name).ok_or(Unfit::Parameter(name))
+    fn required(&self, name: &'static str) -> Result<f64, NotApplicable> {
+        (self.parameter)(name).ok_or(NotApplicable::Parameter(name))
     }
 
     /// A parameter that counts as 0 where the machine lacks it.
@@ -88,11 +88,11 @@ impl Situation<'_> {
     }
 
     /// Coordinates and rates of a machine with `N` coordinates and no field.
-    fn motion<const N: usize>(&self) -> Result<([f64; N], [f64; N]), Unfit> {
+    fn motion<const N: usize>(&self) -> Result<([f64; N], [f64; N]), NotApplicable> {
         let (position, rate) = self.state.split_at(self.state.len() / 2);
         match (position.try_into(), rate.try_into()) {
             (Ok(position), Ok(rate)) => Ok((position, rate)),
-            _ => Err(Unfit::State(2 * N)),
+            _ => Err(NotApplicable::State(2 * N)),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What was requested of a derived model, seen by the certificate: the evaluator of its
+//! What was asked for of a derived model, seen by the certificate: the evaluator of its
 //! program behind the trait. Nothing is derived here.
 
 use codegen::program::BlockPlace;
@@ -6,15 +6,15 @@ use codegen::program::Jacobian;
 use codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 
-use crate::requested::Requested;
+use crate::outputs::Outputs;
 use crate::sampler::Sample;
 
-/// The requested functions of a derived variant with fixed parameters.
-pub struct DerivedRequests {
+/// The output functions of a derived variant with fixed parameters.
+pub struct DerivedOutputs {
     evaluator: Evaluator,
 }
 
-impl DerivedRequests {
+impl DerivedOutputs {
     /// Takes an evaluator, prepared with the parameters to be used.
     pub fn new(evaluator: Evaluator) -> Self {
         Self { evaluator }
@@ -33,10 +33,10 @@ fn point(at: &Sample) -> Point<'_> {
     }
 }
 
-impl Requested for DerivedRequests {
+impl Outputs for DerivedOutputs {
     fn names(&self) -> Vec<String> {
-        let requests = self.evaluator.program().outputs.kinds.iter();
-        requests.map(|request| request.name().to_owned()).collect()
+        let outputs = self.evaluator.program().outputs.kinds.iter();
+        outputs.map(|output| output.name().to_owned()).collect()
     }
 
     fn parameter_names(&self) -> Vec<String> {

@@ -14,10 +14,10 @@ pub const JACOBIANS: [&str; 6] = [
     "observables_by_parameters",
 ];
 
-/// Functions on request of one variant. None (`None`) of those that were not requested.
+/// The output functions of one variant. None (`None`) of those that were not asked for.
 /// Observables are those of the specification with `energy` and `power` last.
-pub trait Requested {
-    /// What was requested, by the names of `--with`.
+pub trait Outputs {
+    /// What was asked for, by the names of `--with`.
     fn names(&self) -> Vec<String>;
 
     /// Names of the independent parameters, in the order of columns by parameters.

@@ -2,17 +2,17 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Unfit;
+use super::NotApplicable;
 use crate::reference::evaluation::{Evaluation, Row};
 
-/// The balance of every coordinate: M(q) q'' = f(q, q').
-pub struct Balance {
+/// The equation of every coordinate: M(q) q'' = f(q, q').
+pub struct LinearSystem {
     mass: DMatrix<f64>,
     force: Vec<Row>,
 }
 
-impl Balance {
-    /// A balance of `coordinates` rows with nothing in it.
+impl LinearSystem {
+    /// A system of `coordinates` rows with nothing in it.
     pub fn new(coordinates: usize) -> Self {
         Self {
             mass: DMatrix::zeros(coordinates, coordinates),
@@ -38,10 +38,15 @@ impl Balance {
     /// The accelerations q''. The scale of row i is that of
     /// |M^-1| (largest term of f + |M| |q''|), the componentwise bound for the rounding
     /// of a solve (Higham, "Accuracy and Stability of Numerical Algorithms", chapter 7).
-    pub fn solve(self) -> Result<Evaluation, Unfit> {
+    pub fn solve(self) -> Result<Evaluation, NotApplicable> {
         let force = DVector::from_iterator(self.force.len(), self.force.iter().map(Row::sum));
-        let inverse = self.mass.clone().try_inverse().ok_or(Unfit::Mass)?;
-        let accelerations = self.mass.clone().lu().solve(&force).ok_or(Unfit::Mass)?;
+        let inverse = self.mass.clone().try_inverse().ok_or(NotApplicable::Mass)?;
+        let accelerations = self
+            .mass
+            .clone()
+            .lu()
+            .solve(&force)
+            .ok_or(NotApplicable::Mass)?;
         let largest = self.force.iter().map(Row::largest);
         let terms = DVector::from_iterator(self.force.len(), largest)
             + self.mass.abs() * accelerations.abs();

@@ -1,7 +1,7 @@
 //! Which models the equations written by hand belong to: those with the same equations,
 //! whatever their numbers, names of terms, comments and observables.
 
-use eomgen_paper::by_hand::by_hand;
+use eomgen_paper::reference_equations::reference_equations;
 use model_spec::model::Model;
 use model_spec::models;
 use model_spec::source::Source;
@@ -26,7 +26,7 @@ fn with(text: &str, from: &str, to: &str) -> String {
 fn of(text: &str, order: usize) -> (Vec<String>, Vec<(String, String)>) {
     let model = model(text);
     let values = model.parameter_values().expect("values");
-    let found = by_hand(&model, order, &values);
+    let found = reference_equations(&model, order, &values);
     let names = found.references.into_iter().map(|known| known.name);
     let absent = found
         .absent
@@ -66,7 +66,7 @@ fn the_numbers_are_passed_on() {
             .expect(name)
     };
     values[place("F_v")] = 20.0;
-    let found = by_hand(&heavier, 0, &values);
+    let found = reference_equations(&heavier, 0, &values);
     let deviation = |acceleration: f64| {
         let expected = (7.0 - 20.0 * 0.5) / 50.0;
         (found.references[0].deviation)(0.0, &[0.1, 0.5], &[7.0], &[acceleration * expected])
@@ -132,7 +132,7 @@ fn a_parameter_that_a_machine_of_the_kind_may_have_is_not_passed_on_where_it_doe
     );
     let model = model(&text);
     let values = model.parameter_values().expect("values");
-    let found = by_hand(&model, 0, &values);
+    let found = reference_equations(&model, 0, &values);
     let at_rest = (found.references[0].deviation)(0.0, &[0.1, 0.0], &[95.0], &[1.0]);
     assert!(at_rest < 1e-15, "{at_rest:e}");
 }

@@ -1,12 +1,12 @@
-//! What may be requested of the spring of the certificate's tests, written out by hand, each
+//! What may be asked for of the spring of the certificate's tests, written out by hand, each
 //! with a fault of a thousandth in one number.
 
-use super::requested::Requested;
+use super::outputs::Outputs;
 use super::sampler::Sample;
 use nalgebra::DMatrix;
 
-/// The requests of the spring; the function of this name has a fault.
-pub(super) struct SpringRequests(pub &'static str);
+/// The outputs of the spring; the function of this name has a fault.
+pub(super) struct SpringOutputs(pub &'static str);
 
 const M: f64 = 2.0;
 const K: f64 = 300.0;
@@ -25,7 +25,7 @@ fn force(sample: &Sample) -> f64 {
     pull - K * stretch - C * side.abs() * rate
 }
 
-impl SpringRequests {
+impl SpringOutputs {
     /// The numbers, the last that is not 0 off by a thousandth if this one has the fault.
     fn given(&self, name: &str, mut numbers: Vec<f64>) -> Vec<f64> {
         let last = numbers.iter_mut().rev().find(|number| **number != 0.0);
@@ -83,13 +83,13 @@ impl SpringRequests {
 
     /// Weights times one of the Jacobians.
     fn weighted(&self, name: &str, at_: &Sample, weights: &[f64]) -> Vec<f64> {
-        let jacobian = SpringRequests("").rates_by(name, at_);
+        let jacobian = SpringOutputs("").rates_by(name, at_);
         let weights = DMatrix::from_row_slice(1, 2, weights);
         (weights * jacobian).as_slice().to_vec()
     }
 }
 
-impl Requested for SpringRequests {
+impl Outputs for SpringOutputs {
     fn names(&self) -> Vec<String> {
         let names = [
             "bias_forces",
@@ -128,7 +128,7 @@ impl Requested for SpringRequests {
         state: &[f64],
         inputs: &[f64],
     ) -> Option<Vec<f64>> {
-        let right = SpringRequests("");
+        let right = SpringOutputs("");
         let by_state = right.rates_by("rates_by_state", at) * DMatrix::from_row_slice(2, 1, state);
         let by_inputs = right.rates_by("rates_by_inputs", at) * inputs[0];
         let product = (by_state + by_inputs).as_slice().to_vec();

@@ -5,13 +5,13 @@ use model_spec::model::Model;
 use model_spec::models;
 use model_spec::source::Source;
 
-use crate::reference::closed_forms::{self, Situation};
+use crate::reference::closed_forms::{self, StateAndParameters};
 use crate::reference::equation_10::{self, ShaftMotion};
 use crate::reference::equation_22::{Coefficients, Equation22};
 use crate::reference::{Evaluation, PlanetaryArmParameters, equation_12};
 use crate::same_motion::difference;
 use eomgen_validate::certificate::Check;
-use eomgen_validate::certify::{ByHand, Reference};
+use eomgen_validate::certify::{Reference, ReferenceEquations};
 use eomgen_validate::checks::ROW_TOLERANCE;
 
 /// The paper's time scale omega_n = sqrt(k_sp/M_sp), in rad/s, and displacement scale b_c, in m.
@@ -34,7 +34,7 @@ const SHIPPED: [&str; 8] = [
 const GIVEN_OF_THE_ARM: [&str; 3] = ["I_s", "I_p", "I_c"];
 
 /// What was written by hand for `model` at `order`, with parameter values in SI.
-pub fn by_hand(model: &Model, order: usize, values: &[f64]) -> ByHand {
+pub fn reference_equations(model: &Model, order: usize, values: &[f64]) -> ReferenceEquations {
     let known = match written(model) {
         Ok(known) => known,
         Err(reason) => return absent("reference", reason),
@@ -46,7 +46,7 @@ pub fn by_hand(model: &Model, order: usize, values: &[f64]) -> ByHand {
         };
     }
     match closed_form(&known, model, order, values) {
-        Ok(reference) => ByHand {
+        Ok(reference) => ReferenceEquations {
             references: vec![reference],
             absent: Vec::new(),
         },
@@ -54,8 +54,8 @@ pub fn by_hand(model: &Model, order: usize, values: &[f64]) -> ByHand {
     }
 }
 
-fn absent(name: &str, reason: String) -> ByHand {
-    ByHand {
+fn absent(name: &str, reason: String) -> ReferenceEquations {
+    ReferenceEquations {
         references: Vec::new(),
         absent: vec![Check::skipped(name, ROW_TOLERANCE, reason)],
     }
@@ -86,15 +86,15 @@ fn written(model: &Model) -> Result<Model, String> {
 }
 
 /// Eq. (12) and Eq. (10) for the rigid arm; Eq. (22) in SI and in the paper's scales for the flexible one.
-fn arm(parameters: PlanetaryArmParameters, order: usize) -> ByHand {
+fn arm(parameters: PlanetaryArmParameters, order: usize) -> ReferenceEquations {
     if order == 0 {
-        return ByHand {
+        return ReferenceEquations {
             references: rigid_arm(parameters),
             absent: Vec::new(),
         };
     }
     let coefficients = Coefficients::new(&parameters, order);
-    let mut found = ByHand {
+    let mut found = ReferenceEquations {
         references: vec![reference(
             "equation_22",
             move |t, state, _, accelerations| {
@@ -233,7 +233,7 @@ fn closed_form(
         .map(|input| input.name.clone())
         .collect();
     let evaluate = move |state: &[f64], inputs: &[f64]| {
-        form(&Situation {
+        form(&StateAndParameters {
             parameter: &|name| {
                 parameters
                     .iter()

@@ -1,0 +1,247 @@
+//! Jacobians and their products against differences of the oracle's rows along directions.
+
+use super::directions::Moved;
+use super::judged::Judged;
+use super::rows::{DIFFERENCE_TOLERANCE, Rows, STEPS, relative, worst};
+use crate::differences::{Direction, Slope, Surroundings};
+use crate::oracle::Equations;
+use crate::outputs::{JACOBIANS, Outputs};
+use crate::random::Random;
+use crate::sampler::Sample;
+use model_spec::model::Model;
+use nalgebra::{DMatrix, DVector};
+
+/// What is compared along every direction from one state.
+pub(super) struct Known {
+    /// The oracle's mass matrix.
+    mass: DMatrix<f64>,
+    /// Jacobians by name.
+    jacobians: Vec<(&'static str, DMatrix<f64>)>,
+    /// One number per row of the equations.
+    multipliers: DVector<f64>,
+    /// The weights of the rates that belong to these.
+    weights: Vec<f64>,
+    by_state_and_inputs: Option<(Vec<f64>, Vec<f64>)>,
+    by_parameters: Option<Vec<f64>>,
+    /// Places of the independent parameters among all.
+    independent: Vec<usize>,
+}
+
+impl Known {
+    pub fn new(
+        judged: &Judged<'_>,
+        equations: &Equations,
+        outputs: &mut dyn Outputs,
+        sample: &Sample,
+        random: &mut Random,
+    ) -> Self {
+        let mass = equations.mass.clone();
+        let scales = equations.residuals(&vec![0.0; equations.size()]);
+        // Weights M mu of the accelerations: mu times the rows says what their sum is.
+        let multipliers = DVector::from_iterator(
+            scales.len(),
+            scales.iter().map(|row| {
+                let scale = if row.scale > 0.0 { row.scale } else { 1.0 };
+                random.away_from_zero() / scale
+            }),
+        );
+        let velocities = sample.state.iter().skip(scales.len());
+        let mut weights: Vec<f64> = velocities
+            .map(|rate| random.away_from_zero() / rate.abs().max(f64::MIN_POSITIVE))
+            .collect();
+        weights.extend((&mass * &multipliers).iter());
+        let jacobians = JACOBIANS.iter().filter_map(|name| {
+            let found = outputs.jacobian(name, sample)?;
+            Some((*name, found))
+        });
+        Self {
+            jacobians: jacobians.collect(),
+            by_state_and_inputs: outputs.vector_jacobian_product(sample, &weights),
+            by_parameters: outputs.vector_jacobian_product_by_parameters(sample, &weights),
+            independent: places(judged.model, &outputs.parameter_names()),
+            mass,
+            multipliers,
+            weights,
+        }
+    }
+}
+
+/// Places of these names among a model's parameters.
+pub(super) fn places(model: &Model, names: &[String]) -> Vec<usize> {
+    let place = |name: &String| {
+        model
+            .parameters
+            .iter()
+            .position(|known| known.name == *name)
+    };
+    names.iter().filter_map(place).collect()
+}
+
+/// Everything that is known along one direction.
+pub(super) fn along(
+    rows: &mut Rows,
+    surroundings: &Surroundings<'_>,
+    known: &Known,
+    outputs: &mut dyn Outputs,
+    (moved, direction): &(Moved, Direction),
+    place: &str,
+) {
+    let Direction { state, inputs, .. } = direction;
+    let product = match moved {
+        Moved::Parameters => None,
+        _ => outputs.jacobian_vector_product(surroundings.sample, state, inputs),
+    };
+    let mut best: Vec<(&str, Vec<f64>)> = Vec::new();
+    for step in STEPS {
+        let Some(slopes) = surroundings.slopes(direction, step) else {
+            continue;
+        };
+        let found = known.deviations(*moved, direction, product.as_deref(), &slopes);
+        if best.is_empty() {
+            best = found;
+        } else {
+            for ((_, best), (_, found)) in best.iter_mut().zip(found) {
+                for (best, found) in best.iter_mut().zip(found) {
+                    *best = best.min(found);
+                }
+            }
+        }
+        if best
+            .iter()
+            .flat_map(|(_, rows)| rows)
+            .all(|row| *row < 0.01 * DIFFERENCE_TOLERANCE)
+        {
+            break;
+        }
+    }
+    for (name, deviations) in best {
+        rows.include(name, DIFFERENCE_TOLERANCE, worst(deviations), place);
+    }
+}
+
+impl Known {
+    /// How far everything is from what the slopes along a direction say, row by row.
+    fn deviations(
+        &self,
+        moved: Moved,
+        direction: &Direction,
+        product: Option<&[f64]>,
+        slopes: &[Slope],
+    ) -> Vec<(&'static str, Vec<f64>)> {
+        let by = match moved {
+            Moved::State => ("_by_state", &direction.state),
+            Moved::Inputs => ("_by_inputs", &direction.inputs),
+            Moved::Parameters => ("_by_parameters", &self.of_independent(direction)),
+        };
+        let mut found = Vec::new();
+        for (name, jacobian) in &self.jacobians {
+            if !name.ends_with(by.0) {
+                continue;
+            }
+            let change = times(jacobian, by.1);
+            found.push((
+                *name,
+                if name.starts_with("rates") {
+                    self.of_rates(&change, direction, slopes)
+                } else {
+                    of_observables(&change, &slopes[self.mass.nrows()..])
+                },
+            ));
+        }
+        if let Some(product) = product {
+            found.push((
+                "jacobian_vector_product",
+                self.of_rates(product, direction, slopes),
+            ));
+        }
+        let weighted = match moved {
+            Moved::State => self.by_state_and_inputs.as_ref().map(|found| &found.0),
+            Moved::Inputs => self.by_state_and_inputs.as_ref().map(|found| &found.1),
+            Moved::Parameters => self.by_parameters.as_ref(),
+        };
+        if let Some(weighted) = weighted {
+            let name = match moved {
+                Moved::Parameters => "vector_jacobian_product_by_parameters",
+                _ => "vector_jacobian_product",
+            };
+            found.push((
+                name,
+                vec![self.of_weights(weighted, by.1, direction, slopes)],
+            ));
+        }
+        found
+    }
+
+    /// What a direction does to the independent parameters alone.
+    fn of_independent(&self, direction: &Direction) -> Vec<f64> {
+        let places = self.independent.iter();
+        places.map(|place| direction.parameters[*place]).collect()
+    }
+
+    /// Changes of the rates: those of the accelerations must undo the change of the rows.
+    fn of_rates(&self, change: &[f64], direction: &Direction, slopes: &[Slope]) -> Vec<f64> {
+        let size = self.mass.nrows();
+        if change.len() != 2 * size {
+            return vec![f64::INFINITY; 2 * size];
+        }
+        let (velocities, accelerations) = change.split_at(size);
+        let same = velocities.iter().zip(&direction.state[size..]);
+        let mut found: Vec<f64> = same.map(|(found, by)| relative(found - by, *by)).collect();
+        for (row, slope) in slopes.iter().take(size).enumerate() {
+            let masses = self.mass.row(row);
+            let addends = masses.iter().zip(accelerations).map(|(mass, a)| mass * a);
+            let scale = addends
+                .clone()
+                .fold(slope.scale, |scale, a| scale.max(a.abs()));
+            found.push(relative(addends.sum::<f64>() + slope.value, scale));
+        }
+        found
+    }
+
+    /// The change of the weighted rates against that of the weighted rows.
+    fn of_weights(
+        &self,
+        weighted: &[f64],
+        by: &[f64],
+        direction: &Direction,
+        slopes: &[Slope],
+    ) -> f64 {
+        if weighted.len() != by.len() {
+            return f64::INFINITY;
+        }
+        let size = self.mass.nrows();
+        let (mut found, mut scale) = (0.0, 0.0_f64);
+        for (weighted, by) in weighted.iter().zip(by) {
+            found += weighted * by;
+            scale = scale.max((weighted * by).abs());
+        }
+        for (weight, by) in self.weights.iter().zip(&direction.state[size..]) {
+            found -= weight * by;
+            scale = scale.max((weight * by).abs());
+        }
+        for (multiplier, slope) in self.multipliers.iter().zip(slopes) {
+            found += multiplier * slope.value;
+            scale = scale.max(multiplier.abs() * slope.scale);
+        }
+        relative(found, scale)
+    }
+}
+
+/// A matrix times a vector; not a number for every row if they do not fit.
+pub(super) fn times(matrix: &DMatrix<f64>, vector: &[f64]) -> Vec<f64> {
+    if matrix.ncols() != vector.len() {
+        return vec![f64::NAN; matrix.nrows()];
+    }
+    let product = matrix * DVector::from_column_slice(vector);
+    product.as_slice().to_vec()
+}
+
+pub(super) fn of_observables(change: &[f64], slopes: &[Slope]) -> Vec<f64> {
+    if change.len() != slopes.len() {
+        return vec![f64::INFINITY; slopes.len()];
+    }
+    let pairs = change.iter().zip(slopes);
+    pairs
+        .map(|(found, slope)| relative(found - slope.value, slope.scale.max(found.abs())))
+        .collect()
+}

@@ -1,0 +1,104 @@
+//! Directions in which equations are differentiated: of the state, of inputs, of parameters.
+
+use super::judged::Judged;
+use crate::differences::Direction;
+use crate::oracle::OracleError;
+use crate::random::Random;
+use crate::sizes;
+use model_spec::model::ParameterValue;
+
+/// The most directions at a state; of more variables, this many are drawn.
+const DIRECTIONS: usize = 40;
+/// The most coordinates with which all those are tried, and directions with more.
+const SMALL: (usize, usize) = (12, 8);
+
+/// Which variables a direction moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Moved {
+    State,
+    Inputs,
+    Parameters,
+}
+
+/// Directions in which to differentiate, each in one kind of variables: one variable after
+/// the other, of many a few and sums of all.
+pub(super) fn directions(
+    judged: &Judged<'_>,
+    names: &[String],
+    parameters_too: bool,
+    random: &mut Random,
+) -> Result<Vec<(Moved, Direction)>, OracleError> {
+    let wanted = ["jacobians", "linearisation", "products"];
+    if !names.iter().any(|name| wanted.contains(&name.as_str())) {
+        return Ok(Vec::new());
+    }
+    let oracle = judged.oracle;
+    let (states, inputs) = (2 * oracle.size(), oracle.input_count());
+    let still = Direction::still(states, inputs, judged.parameters.len());
+    let small = oracle.size() <= SMALL.0;
+    let mut found = Vec::new();
+    for entries in drawn(&sizes::of_state(oracle)?, small, random) {
+        let direction = Direction {
+            state: entries,
+            ..still.clone()
+        };
+        found.push((Moved::State, direction));
+    }
+    for entries in drawn(&vec![1.0; inputs], small, random) {
+        let direction = Direction {
+            inputs: entries,
+            ..still.clone()
+        };
+        found.push((Moved::Inputs, direction));
+    }
+    let independent = independent(judged);
+    for entries in drawn(&independent, small, random) {
+        let direction = Direction {
+            parameters: entries,
+            ..still.clone()
+        };
+        if small || parameters_too {
+            found.push((Moved::Parameters, direction));
+        }
+    }
+    Ok(found)
+}
+
+/// The sizes of independent parameters, 0 for derived ones and for those that are 0, which
+/// have no size.
+pub(super) fn independent(judged: &Judged<'_>) -> Vec<f64> {
+    let parameters = judged.model.parameters.iter().zip(judged.parameters);
+    parameters
+        .map(|(parameter, value)| match parameter.value {
+            ParameterValue::Number(_) => value.abs(),
+            ParameterValue::Expression(_) => 0.0,
+        })
+        .collect()
+}
+
+/// Vectors of these sizes: each entry by itself if there are few.
+pub(super) fn drawn(sizes: &[f64], small: bool, random: &mut Random) -> Vec<Vec<f64>> {
+    let alone = |index: usize| {
+        let entries = sizes.iter().enumerate();
+        let entry = |(other, size): (usize, &f64)| if other == index { *size } else { 0.0 };
+        entries.map(entry).collect::<Vec<f64>>()
+    };
+    let moving: Vec<usize> = (0..sizes.len())
+        .filter(|index| sizes[*index] > 0.0)
+        .collect();
+    if small && moving.len() <= DIRECTIONS {
+        return moving.into_iter().map(alone).collect();
+    }
+    let mut found: Vec<Vec<f64>> = (2..SMALL.1)
+        .filter_map(|_| random.pick(&moving).map(|index| alone(*index)))
+        .collect();
+    for _ in 0..2 {
+        found.push(
+            sizes
+                .iter()
+                .map(|size| size * random.away_from_zero())
+                .collect(),
+        );
+    }
+    found
+}

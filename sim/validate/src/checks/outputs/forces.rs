@@ -1,0 +1,37 @@
+//! Bias forces and inverse dynamics against the oracle's mass matrix and forces.
+
+use super::rows::{Rows, relative, worst};
+use crate::checks::ROW_TOLERANCE;
+use crate::oracle::Equations;
+use crate::outputs::Outputs;
+use crate::random::Random;
+use crate::sampler::Sample;
+
+/// Bias forces, and inverse dynamics at random accelerations.
+pub(super) fn forces(
+    rows: &mut Rows,
+    equations: &Equations,
+    outputs: &mut dyn Outputs,
+    sample: &Sample,
+    random: &mut Random,
+    place: &str,
+) {
+    let mut compare = |name, accelerations: &[f64], found: Option<Vec<f64>>| {
+        let Some(found) = found else { return };
+        let expected = equations.residuals(accelerations);
+        let deviations = expected.iter().enumerate().map(|(row, expected)| {
+            let found = found.get(row).copied().unwrap_or(f64::NAN);
+            relative(found - expected.value, expected.scale)
+        });
+        rows.include(name, ROW_TOLERANCE, worst(deviations), place);
+    };
+    let still = vec![0.0; equations.size()];
+    compare("bias_forces", &still, outputs.bias_forces(sample));
+    // As large as those of the motion, so that no row is inertia alone.
+    let accelerations: Vec<f64> = match equations.accelerations() {
+        Some(own) => own.iter().map(|a| a * random.away_from_zero()).collect(),
+        None => still.iter().map(|_| random.away_from_zero()).collect(),
+    };
+    let found = outputs.inverse_dynamics(sample, &accelerations);
+    compare("inverse_dynamics", &accelerations, found);
+}

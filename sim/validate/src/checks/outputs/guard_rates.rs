@@ -1,0 +1,64 @@
+//! The guards' rates against differences of the guards along the oracle's motion.
+
+use super::rows::{DIFFERENCE_TOLERANCE, Rows, STEPS, relative, worst};
+use crate::differences::{Slope, slopes};
+use crate::oracle::{Oracle, OracleError};
+use crate::outputs::Outputs;
+use crate::sampler::Sample;
+use crate::sizes;
+use crate::variant::Variant;
+
+/// The guards' rates against differences of the guards along the oracle's motion.
+pub(super) fn guard_rates(
+    rows: &mut Rows,
+    oracle: &Oracle,
+    variant: &mut dyn Variant,
+    outputs: &mut dyn Outputs,
+    sample: &Sample,
+    place: &str,
+) -> Result<(), OracleError> {
+    let Some(found) = outputs
+        .guard_rates(sample)
+        .filter(|rates| !rates.is_empty())
+    else {
+        return Ok(());
+    };
+    let equations = oracle.equations(sample.time, &sample.state, &sample.inputs)?;
+    let Some(accelerations) = equations.accelerations() else {
+        return Ok(());
+    };
+    let rates = [&sample.state[oracle.size()..], accelerations.as_slice()].concat();
+    let sizes = sizes::of_state(oracle)?;
+    let fastest = rates
+        .iter()
+        .zip(&sizes)
+        .map(|(rate, size)| (rate / size).abs());
+    // The time in which no entry of the state moves by more than its size.
+    let time = fastest.fold(1.0, f64::max).recip();
+    let mut best = vec![f64::INFINITY; found.len()];
+    for step in STEPS {
+        let expected = slopes(step, |length| {
+            let moved = length * time;
+            let state = sample.state.iter().zip(&rates);
+            let state: Vec<f64> = state.map(|(x, rate)| x + moved * rate).collect();
+            let guards = variant
+                .guards(sample.time + moved, &state, &sample.inputs)
+                .ok()?;
+            let slope = |value: f64| Slope {
+                value,
+                scale: value.abs(),
+            };
+            Some(guards.into_iter().map(slope).collect())
+        });
+        let Some(expected) = expected.filter(|expected| expected.len() == found.len()) else {
+            continue;
+        };
+        for (best, (found, expected)) in best.iter_mut().zip(found.iter().zip(expected)) {
+            let change = found * time;
+            let scale = expected.scale.max(change.abs());
+            *best = best.min(relative(change - expected.value, scale));
+        }
+    }
+    rows.include("guard_rates", DIFFERENCE_TOLERANCE, worst(best), place);
+    Ok(())
+}

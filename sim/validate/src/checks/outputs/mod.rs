@@ -1,0 +1,93 @@
+//! What was asked for beside the rates, against the oracle: inverse dynamics and bias forces
+//! by its mass matrix and forces, Jacobians and their products by differences of its rows
+//! along directions, the guards' rates by differences of the guards along its motion.
+
+mod derivatives;
+mod directions;
+mod forces;
+mod guard_rates;
+mod judged;
+mod rows;
+
+use crate::certificate::Check;
+use crate::differences::Surroundings;
+use crate::oracle::{Oracle, OracleError};
+use crate::outputs::Outputs;
+use crate::random::Random;
+use crate::sampler::{Sample, Sampler};
+use crate::variant::Variant;
+
+use derivatives::{Known, along};
+use directions::directions;
+use forces::forces;
+use guard_rates::guard_rates;
+pub(crate) use judged::Judged;
+pub use rows::DIFFERENCE_TOLERANCE;
+use rows::Rows;
+
+/// The most states, each of a regime of its own; with fewer regimes, the fewest.
+const STATES: (usize, usize) = (9, 4);
+/// The seed of states and directions.
+const SEED: u64 = 0x4e0b_1a75;
+
+/// The checks of everything that was asked for.
+///
+/// # Errors
+/// [`OracleError`] as from [`Oracle::equations`].
+pub(crate) fn check(
+    judged: &Judged<'_>,
+    variant: &mut dyn Variant,
+    outputs: &mut dyn Outputs,
+) -> Result<Vec<Check>, OracleError> {
+    let names = outputs.names();
+    let mut rows = Rows::default();
+    let mut random = Random::new(SEED);
+    let samples = samples(judged.oracle)?;
+    for (count, sample) in (1..).zip(&samples) {
+        let place = format!("state {count}");
+        let equations = judged
+            .oracle
+            .equations(sample.time, &sample.state, &sample.inputs)?;
+        forces(&mut rows, &equations, outputs, sample, &mut random, &place);
+        guard_rates(&mut rows, judged.oracle, variant, outputs, sample, &place)?;
+        let Some(accelerations) = equations.accelerations() else {
+            continue;
+        };
+        let surroundings = Surroundings {
+            oracle: judged.oracle,
+            model: judged.model,
+            order: judged.order,
+            parameters: judged.parameters,
+            sample,
+            accelerations: accelerations.as_slice().to_vec(),
+        };
+        let known = Known::new(judged, &equations, outputs, sample, &mut random);
+        for direction in directions(judged, &names, count <= 2, &mut random)? {
+            along(
+                &mut rows,
+                &surroundings,
+                &known,
+                outputs,
+                &direction,
+                &place,
+            );
+        }
+    }
+    Ok(rows.into_checks(judged, &names, samples.len()))
+}
+
+/// Random states in several regimes.
+fn samples(oracle: &Oracle) -> Result<Vec<Sample>, OracleError> {
+    let mut sampler = Sampler::new(oracle, SEED)?;
+    let (most, fewest) = STATES;
+    let mut samples = Vec::new();
+    let regimes = sampler.regimes()?;
+    for regime in regimes
+        .iter()
+        .cycle()
+        .take(regimes.len().clamp(fewest, most))
+    {
+        samples.extend(sampler.draw_in(regime)?.map(|drawn| drawn.sample));
+    }
+    Ok(samples)
+}

@@ -1,0 +1,99 @@
+//! How far rows are from what they should be, and the checks that come of it.
+
+use super::judged::Judged;
+use crate::certificate::{Check, Worst};
+use crate::outputs::JACOBIANS;
+
+/// Deviation from a difference that passes, relative to the largest term of the row for a
+/// change of the variable by its own size. The rows are known to 1e-14 of that; the longest
+/// step that is tried divides it by 1/16, the shortest by 1/65536.
+pub const DIFFERENCE_TOLERANCE: f64 = 1e-9;
+/// The steps, in sizes of the variables: a long one for what is smooth, short ones for what
+/// is not smooth as far.
+pub(super) const STEPS: [f64; 5] = [
+    1.0 / 16.0,
+    1.0 / 128.0,
+    1.0 / 1024.0,
+    1.0 / 8192.0,
+    1.0 / 65536.0,
+];
+
+/// |difference|/scale, 0 for no difference at all; no number is infinitely far.
+pub(super) fn relative(difference: f64, scale: f64) -> f64 {
+    let ratio = (difference / scale).abs();
+    if difference == 0.0 {
+        0.0
+    } else if ratio.is_nan() {
+        f64::INFINITY
+    } else {
+        ratio
+    }
+}
+
+pub(super) fn worst(deviations: impl IntoIterator<Item = f64>) -> f64 {
+    deviations.into_iter().fold(0.0, f64::max)
+}
+
+/// The worst deviation of each check so far, in the order in which they first came.
+#[derive(Default)]
+pub(super) struct Rows {
+    found: Vec<(&'static str, f64, Worst)>,
+}
+
+impl Rows {
+    pub fn include(&mut self, name: &'static str, tolerance: f64, deviation: f64, place: &str) {
+        let worst = Worst::of(deviation, place);
+        match self.found.iter_mut().find(|(known, ..)| *known == name) {
+            Some((_, _, known)) => known.include(worst),
+            None => self.found.push((name, tolerance, worst)),
+        }
+    }
+
+    /// The checks, with a line for each that could not be made.
+    pub fn into_checks(self, judged: &Judged<'_>, names: &[String], states: usize) -> Vec<Check> {
+        let mut checks = Vec::new();
+        for name in expected(names) {
+            let found = self.found.iter().find(|(known, ..)| *known == name);
+            checks.push(match found {
+                Some((_, tolerance, worst)) => {
+                    Check::made(name, worst.clone().among(states, "states"), *tolerance)
+                }
+                None => Check::skipped(name, DIFFERENCE_TOLERANCE, reason(judged, name)),
+            });
+        }
+        checks
+    }
+}
+
+/// The checks that belong to what was asked for.
+pub(super) fn expected(names: &[String]) -> Vec<&'static str> {
+    let has = |name: &str| names.iter().any(|known| known == name);
+    let mut found = Vec::new();
+    for name in ["bias_forces", "inverse_dynamics", "guard_rates"] {
+        if has(name) {
+            found.push(name);
+        }
+    }
+    if has("jacobians") || has("linearisation") {
+        found.extend(JACOBIANS);
+    }
+    if has("products") {
+        found.extend([
+            "jacobian_vector_product",
+            "vector_jacobian_product",
+            "vector_jacobian_product_by_parameters",
+        ]);
+    }
+    found
+}
+
+/// Why a check that belongs to what was asked for was not made.
+pub(super) fn reason(judged: &Judged<'_>, name: &str) -> &'static str {
+    if name.ends_with("_by_inputs") && judged.oracle.input_count() == 0 {
+        "the model has no input"
+    } else if name == "guard_rates" && judged.oracle.switches().is_empty() {
+        "the model has no piecewise function"
+    } else {
+        "no state was found whose neighbours are in its regime"
+    }
+}
