@@ -77,6 +77,8 @@ ids! {
     ParameterId;
     /// An unknown of a fit.
     UnknownId;
+    /// An observable of a model.
+    ObservableId;
     /// An equation of motion in which a force may be missing.
     EquationId;
     /// A family of basis functions of a regression.
@@ -87,7 +89,7 @@ ids! {
     CandidateId;
     /// The response of a candidate that changes the outputs.
     ResponseId;
-    /// An effect of those that a hypothesis holds together.
+    /// An effect of those that a hypothesis holds together, or that were accepted.
     EffectId;
     /// A hypothesis of those that were fitted in full.
     FittedId;

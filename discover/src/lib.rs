@@ -35,7 +35,7 @@
 //! Data flows one way: [`model`] (a model that can be run, and what is unknown of it); [`fit`]
 //! (estimates, how well they are known, and what they leave); [`catalogue`] (what a model may
 //! lack, and where); [`mod@residual_force`] (in which equation a force is missing, and what it is
-//! like); [`mod@search`] (which effects are accepted); [`empirical`] (what is left and has no name);
+//! like); [`mod@search`] (which effects are accepted); [`empirical`] (what remains and has no name);
 //! [`report`] (the result, for programs and for people). [`thresholds`] holds what decides,
 //! [`error`] what can go wrong, [`ids`] the indices of everything that is counted.
 

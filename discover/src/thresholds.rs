@@ -135,7 +135,7 @@ pub const WIDER: f64 = 1.8;
 /// record once windows are fitted.
 pub const STANDS_OUT: f64 = 0.1;
 
-/// A residual force is said to be a function of its rate or place if that explains this part of
+/// A residual force is said to be a function of its rate or position if that explains this part of
 /// what a force that is free in every window does.
 pub const STATE_EXPLAINS: f64 = 0.6;
 
@@ -155,7 +155,7 @@ pub const STRAIGHT: f64 = 0.05;
 pub const UNNAMED_FROM: f64 = 2.0;
 
 /// It is accepted only if it closes this part of the gap to the floor, on both: what is missing
-/// and is a function of rates, places and inputs can be closed, what is none cannot.
+/// and is a function of rates, positions and inputs can be closed, what is none cannot.
 pub const UNNAMED_CLOSES: f64 = 0.5;
 
 /// The most terms that it has: more are read by nobody.
@@ -417,8 +417,8 @@ pub const DRAWN_POINTS: usize = 2;
 /// Bends of a force over the rate, on either side of rest.
 pub const RATE_BENDS: usize = 5;
 
-/// Bends of a force over the place.
-pub const PLACE_BENDS: usize = 9;
+/// Bends of a force over the position.
+pub const POSITION_BENDS: usize = 9;
 
 /// Bends of a force over the time of a window.
 pub const TIME_BENDS: usize = 8;

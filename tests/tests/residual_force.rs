@@ -211,7 +211,7 @@ fn a_spring_is_seen_on_its_carriage_with_its_stiffness() {
     let force = found(&|_, place| -40.0 * place);
     println!("{}", described(&force));
     assert_eq!(force.equations[force.best].name, "q");
-    let Some(Kind::Place(parts)) = &force.kind else {
+    let Some(Kind::Position(parts)) = &force.kind else {
         panic!("{:?}", force.kind);
     };
     let SimplePart {
@@ -225,12 +225,12 @@ fn a_spring_is_seen_on_its_carriage_with_its_stiffness() {
         "{size} +- {sd}"
     );
     let largest = force
-        .place
+        .position
         .over
         .iter()
         .map(|at| 40.0 * at.abs())
         .fold(0.0, f64::max);
-    assert!(is(&force.place, |_, at| -40.0 * at, largest) >= 5);
+    assert!(is(&force.position, |_, at| -40.0 * at, largest) >= 5);
 }
 
 #[test]

@@ -57,7 +57,7 @@ pub fn chosen(
         let range = Range::of(&own.collect::<Vec<OperatingPoint>>());
         let scales = Scales {
             rate: rounded(range.rate),
-            place: rounded(range.place.0.abs().max(range.place.1.abs())),
+            position: rounded(range.position.0.abs().max(range.position.1.abs())),
             inputs: inputs.clone(),
         };
         in_equation(linearisation, &equations, *equation, range.width(), scales)

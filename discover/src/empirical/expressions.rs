@@ -1,4 +1,4 @@
-//! Expressions that have no name: products of few functions of a rate, a place and the inputs,
+//! Expressions that have no name: products of few functions of a rate, a position and the inputs,
 //! each divided by how large it becomes in the training records. They can be computed along a
 //! motion and written into a specification. Which of them a force is made of is decided
 //! elsewhere.
@@ -13,9 +13,9 @@ use crate::thresholds::{self, STEEP};
 pub enum Of {
     /// The rate.
     Rate,
-    /// The place.
-    Place,
-    /// An input, by its place in the model.
+    /// The position.
+    Position,
+    /// An input, by its position in the model.
     Input(usize),
 }
 
@@ -48,8 +48,8 @@ pub struct Term {
 pub struct Scales {
     /// The rate.
     pub rate: f64,
-    /// The place.
-    pub place: f64,
+    /// The position.
+    pub position: f64,
     /// Each input.
     pub inputs: Vec<f64>,
 }
@@ -58,7 +58,7 @@ pub struct Scales {
 pub struct Words {
     /// What a force works on.
     pub on: String,
-    /// The scales of rate and place.
+    /// The scales of rate and position.
     pub scales: [String; 2],
     /// Each input with its scale.
     pub inputs: Vec<(String, String)>,
@@ -112,7 +112,7 @@ impl Term {
         let factor = |(of, function): &(Of, Function)| {
             let (value, scale) = match of {
                 Of::Rate => (operating_point.rate, scales.rate),
-                Of::Place => (operating_point.place, scales.place),
+                Of::Position => (operating_point.position, scales.position),
                 Of::Input(input) => (inputs[*input], scales.inputs[*input]),
             };
             function.at(value / scale, value)
@@ -126,7 +126,7 @@ impl Term {
         for (of, function) in &self.factors {
             let factor = match of {
                 Of::Rate => function.text(&format!("dot({})", arguments.on), &arguments.scales[0]),
-                Of::Place => function.text(&arguments.on, &arguments.scales[1]),
+                Of::Position => function.text(&arguments.on, &arguments.scales[1]),
                 Of::Input(input) => {
                     let (quantity, scale) = &arguments.inputs[*input];
                     function.text(quantity, scale)
@@ -153,12 +153,12 @@ pub fn terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
     use Function::{Cosine, Power, Signed, Sine, Size, Step};
     let rates = [Power(1), Size, Power(2), Signed, Power(3), Step].map(|f| (Of::Rate, f));
     let rates = if scales.rate > 0.0 { &rates[..] } else { &[] };
-    let mut places = Vec::new();
-    if scales.place > 0.0 && !(is_angle && width > TAU) {
-        places.extend([Power(1), Power(2), Power(3)].map(|f| (Of::Place, f)));
+    let mut positions = Vec::new();
+    if scales.position > 0.0 && !(is_angle && width > TAU) {
+        positions.extend([Power(1), Power(2), Power(3)].map(|f| (Of::Position, f)));
     }
     if is_angle {
-        places.extend([Cosine(1), Sine(1), Cosine(2), Sine(2)].map(|f| (Of::Place, f)));
+        positions.extend([Cosine(1), Sine(1), Cosine(2), Sine(2)].map(|f| (Of::Position, f)));
     }
     let mut inputs = Vec::new();
     for (input, scale) in scales.inputs.iter().enumerate() {
@@ -169,17 +169,17 @@ pub fn terms(scales: &Scales, is_angle: bool, width: f64) -> Vec<Term> {
     let mut found = vec![Term {
         factors: Vec::new(),
     }];
-    let alone = rates.iter().chain(&places).chain(&inputs);
+    let alone = rates.iter().chain(&positions).chain(&inputs);
     found.extend(alone.map(|factor| Term {
         factors: vec![*factor],
     }));
     // What an input does may change with the motion; it goes in with its first power.
     let drives = inputs.iter().filter(|factor| factor.1 == Power(1));
-    let motion = rates.iter().chain(&places);
+    let motion = rates.iter().chain(&positions);
     let with_inputs = drives.flat_map(|drive| motion.clone().map(move |factor| [*drive, *factor]));
     let both = rates
         .iter()
-        .flat_map(|rate| places.iter().map(move |place| [*rate, *place]));
+        .flat_map(|rate| positions.iter().map(move |position| [*rate, *position]));
     let products = with_inputs.chain(both).map(|factors| Term {
         factors: factors.to_vec(),
     });
@@ -203,16 +203,19 @@ mod tests {
             factors: factors.to_vec(),
         };
         let operating_point = OperatingPoint {
-            place: 0.5,
+            position: 0.5,
             rate: -2.0,
             time: 0.0,
         };
         let scales = Scales {
             rate: 4.0,
-            place: 1.0,
+            position: 1.0,
             inputs: vec![10.0],
         };
-        let product = term(&[(Of::Rate, Function::Signed), (Of::Place, Function::Sine(2))]);
+        let product = term(&[
+            (Of::Rate, Function::Signed),
+            (Of::Position, Function::Sine(2)),
+        ]);
         assert_eq!(
             product.text("e_1", &arguments),
             "e_1*(dot(theta)/w_0)*abs(dot(theta)/w_0)*sin(2*theta)"
@@ -221,14 +224,14 @@ mod tests {
         assert!((value + 0.25 * 1.0_f64.sin()).abs() < 1e-15);
         let with_inputs = term(&[
             (Of::Input(0), Function::Power(1)),
-            (Of::Place, Function::Power(2)),
+            (Of::Position, Function::Power(2)),
         ]);
         assert_eq!(
             with_inputs.text("e_2", &arguments),
             "e_2*(u/u_0)*(theta/theta_0)^2"
         );
         assert!((with_inputs.at(&operating_point, &[3.0], &scales) - 0.3 * 0.25).abs() < 1e-15);
-        assert!(with_inputs.scales(Of::Input(0)) && !product.scales(Of::Place));
+        assert!(with_inputs.scales(Of::Input(0)) && !product.scales(Of::Position));
         assert_eq!(term(&[]).text("e_3", &arguments), "e_3");
     }
 
@@ -236,11 +239,11 @@ mod tests {
     fn what_does_not_move_is_in_no_term() {
         let scales = Scales {
             rate: 1.0,
-            place: 0.0,
+            position: 0.0,
             inputs: vec![0.0, 2.0],
         };
         let all = terms(&scales, false, 0.0);
-        let still = |term: &&Term| term.scales(Of::Place) || term.scales(Of::Input(0));
+        let still = |term: &&Term| term.scales(Of::Position) || term.scales(Of::Input(0));
         assert_eq!(all.iter().filter(still).count(), 0);
         assert!(all.iter().any(|term| term.scales(Of::Input(1))));
         for (number, term) in all.iter().enumerate() {

@@ -39,20 +39,20 @@ pub fn unnamed(
     floor: f64,
     progress: &(dyn Fn(&str) + Sync),
 ) {
-    let is_shift = |effect: &Accepted| {
+    let is_offset = |effect: &Accepted| {
         effect.candidate.dropped_prior.is_some() || effect.candidate.effect == PARAMETER_OFFSET
     };
     let leaves_little = found.best().leaves_less(thresholds::UNNAMED_FROM * floor);
-    if !found.accepted.iter().all(is_shift) || (leaves_little && found.last.is_some()) {
+    if !found.accepted.iter().all(is_offset) || (leaves_little && found.last.is_some()) {
         return;
     }
-    let (offset, with_shifts) = (std::mem::take(&mut found.accepted), found.last.take());
+    let (offset, with_offsets) = (std::mem::take(&mut found.accepted), found.last.take());
     add_empirical(problem, found, floor, progress);
-    if let Some(with_shifts) = with_shifts {
+    if let Some(with_offsets) = with_offsets {
         let is_better =
-            (found.last.as_ref()).is_some_and(|last| last.leaves_clearly_less(&with_shifts));
+            (found.last.as_ref()).is_some_and(|last| last.leaves_clearly_less(&with_offsets));
         if !is_better {
-            (found.accepted, found.last) = (offset, Some(with_shifts));
+            (found.accepted, found.last) = (offset, Some(with_offsets));
         }
     }
 }
@@ -66,7 +66,7 @@ fn add_empirical(
     progress: &dyn Fn(&str),
 ) {
     let before = found.best();
-    let is_wide = |left: f64| left > thresholds::UNNAMED_FROM * floor;
+    let is_wide = |rms: f64| rms > thresholds::UNNAMED_FROM * floor;
     if !(is_wide(before.train.rms) && is_wide(before.test.rms)) {
         return;
     }
@@ -165,20 +165,20 @@ fn written(model: &Model, expression: &Expression) -> Candidate {
         scales: [
             scale(Of::Rate, ("e_rate", scales.rate, per_second), "rate"),
             scale(
-                Of::Place,
+                Of::Position,
                 (
                     "e_place",
-                    scales.place,
+                    scales.position,
                     if equation.unit == "rad" { "1" } else { "m" },
                 ),
                 "place",
             ),
         ],
         inputs: (model.inputs.iter().zip(&scales.inputs).enumerate())
-            .map(|(place, (input, size))| {
+            .map(|(number, (input, size))| {
                 let wanted = format!("e_{}", input.name);
                 let of = (wanted.as_str(), *size, input.unit.text.as_str());
-                (input.name.clone(), scale(Of::Input(place), of, "input"))
+                (input.name.clone(), scale(Of::Input(number), of, "input"))
             })
             .collect(),
     };
@@ -262,7 +262,7 @@ fn fitted(
     }
     let texts = candidate.added(problem, &fit.texts, sizes)?;
     let near = || {
-        let begun = WarmStart {
+        let warm_start = WarmStart {
             fit,
             cost: fit.train.estimate.cost,
         };
@@ -271,7 +271,7 @@ fn fitted(
             texts.clone(),
             unknowns.clone(),
             theta.clone(),
-            begun,
+            warm_start,
         )?;
         full::complete(problem, preliminary)
     };

@@ -1,4 +1,4 @@
-//! WindowDerivatives least squares with bounds, by active sets: small, dense and deterministic.
+//! Linear least squares with bounds, by active sets: small, dense and deterministic.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -19,42 +19,42 @@ pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[(f64, f64)]) 
         .map(|c| c.norm().max(f64::MIN_POSITIVE))
         .collect();
     let mut free = vec![true; columns];
-    for (place, (low, high)) in bounds.iter().enumerate() {
-        free[place] = low < high;
+    for (column, (low, high)) in bounds.iter().enumerate() {
+        free[column] = low < high;
     }
     for _ in 0..MOST_CHANGES {
         let target = free_solution(a, b, &x, &free, &scale);
         // How far the way is free.
         let mut reach = 1.0;
         let mut stop = None;
-        for place in (0..columns).filter(|place| free[*place]) {
-            let move_by = target[place] - x[place];
-            let (low, high) = bounds[place];
+        for column in (0..columns).filter(|column| free[*column]) {
+            let move_by = target[column] - x[column];
+            let (low, high) = bounds[column];
             let limit = if move_by > 0.0 { high } else { low };
-            if move_by != 0.0 && (limit - x[place]) / move_by < reach {
-                reach = ((limit - x[place]) / move_by).max(0.0);
-                stop = Some((place, limit));
+            if move_by != 0.0 && (limit - x[column]) / move_by < reach {
+                reach = ((limit - x[column]) / move_by).max(0.0);
+                stop = Some((column, limit));
             }
         }
-        for place in (0..columns).filter(|place| free[*place]) {
-            x[place] += reach * (target[place] - x[place]);
+        for column in (0..columns).filter(|column| free[*column]) {
+            x[column] += reach * (target[column] - x[column]);
         }
-        if let Some((place, limit)) = stop {
-            x[place] = limit;
-            free[place] = false;
+        if let Some((column, limit)) = stop {
+            x[column] = limit;
+            free[column] = false;
             continue;
         }
         let slope = a.transpose() * (b - a * &x);
         let largest = (0..columns)
             .map(|p| (slope[p] / scale[p]).abs())
             .fold(0.0, f64::max);
-        let wants_in = |place: &usize| {
-            let (low, high) = bounds[*place];
-            let along = slope[*place] / scale[*place];
-            !free[*place]
+        let wants_in = |column: &usize| {
+            let (low, high) = bounds[*column];
+            let along = slope[*column] / scale[*column];
+            !free[*column]
                 && low < high
                 && along.abs() > FLAT * b.norm().max(largest)
-                && ((x[*place] <= low && along > 0.0) || (x[*place] >= high && along < 0.0))
+                && ((x[*column] <= low && along > 0.0) || (x[*column] >= high && along < 0.0))
         };
         let steepest = (0..columns).filter(wants_in).max_by(|p, q| {
             (slope[*p] / scale[*p])
@@ -62,7 +62,7 @@ pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[(f64, f64)]) 
                 .total_cmp(&(slope[*q] / scale[*q]).abs())
         });
         match steepest {
-            Some(place) => free[place] = true,
+            Some(column) => free[column] = true,
             None => break,
         }
     }
@@ -77,9 +77,9 @@ fn free_solution(
     free: &[bool],
     scale: &[f64],
 ) -> DVector<f64> {
-    let places: Vec<usize> = (0..free.len()).filter(|place| free[*place]).collect();
+    let in_use: Vec<usize> = (0..free.len()).filter(|column| free[*column]).collect();
     let mut target = x.clone();
-    if places.is_empty() {
+    if in_use.is_empty() {
         return target;
     }
     let held = b
@@ -88,18 +88,18 @@ fn free_solution(
             .fold(DVector::zeros(b.len()), |sum: DVector<f64>, p| {
                 sum + a.column(p) * x[p]
             });
-    let matrix = DMatrix::from_fn(a.nrows(), places.len(), |r, c| {
-        a[(r, places[c])] / scale[places[c]]
+    let matrix = DMatrix::from_fn(a.nrows(), in_use.len(), |r, c| {
+        a[(r, in_use[c])] / scale[in_use[c]]
     });
-    // A motion that has left all bounds says nothing of where to go; a decomposition would
+    // A motion beyond all bounds says nothing of where to go; a decomposition would
     // panic.
     if !matrix.iter().chain(&held).all(|value| value.is_finite()) {
         return target;
     }
     let decomposition = matrix.svd(true, true);
     if let Ok(solution) = decomposition.solve(&held, 1e-12) {
-        for (value, place) in solution.iter().zip(&places) {
-            target[*place] = value / scale[*place];
+        for (value, column) in solution.iter().zip(&in_use) {
+            target[*column] = value / scale[*column];
         }
     }
     target

@@ -60,7 +60,7 @@ pub fn continuation(
     present
 }
 
-/// Goes on where tangents lead nowhere though much more than noise is left.
+/// Goes on where tangents lead nowhere though the residual is much more than noise.
 pub fn continuation_by_secants(
     shooting: &Shooting<'_>,
     present: &mut Continued,
@@ -106,8 +106,8 @@ impl<'a> Continuation<'a> {
         }
     }
 
-    /// How many standard deviations the residuals are.
-    fn left(&self, present: &Estimate) -> f64 {
+    /// The root mean square of the residuals, in standard deviations.
+    fn residual_rms(&self, present: &Estimate) -> f64 {
         let count = self.shooting.part * self.shooting.windows.numbers();
         (present.squares.iter().sum::<f64>() / count).sqrt()
     }
@@ -116,7 +116,7 @@ impl<'a> Continuation<'a> {
     fn go(&mut self, present: &mut Continued, steps: usize, derivatives: Derivatives) {
         for _ in 0..steps {
             if derivatives == Derivatives::Secants
-                && self.left(&present.estimate) < thresholds::AT_FLOOR
+                && self.residual_rms(&present.estimate) < thresholds::AT_FLOOR
             {
                 return;
             }
@@ -164,7 +164,7 @@ impl<'a> Continuation<'a> {
         estimate: &Estimate,
         linear: &mut [Option<WindowDerivatives>],
     ) -> bool {
-        let wanted = thresholds::SECANT_MOVES * self.left(estimate);
+        let wanted = thresholds::SECANT_MOVES * self.residual_rms(estimate);
         let mut taken = false;
         let all = self.shooting.unknowns;
         for (id, unknown) in UnknownId::first(all.len()).zip(all) {

@@ -71,14 +71,14 @@ impl Fit {
         )
     }
 
-    /// A state of the fit's model as one of another model: what that has beside is 0.
+    /// A state of the fit's model as one of another model: states that only the other has are 0.
     pub fn mapped(&self, model: &EstimationModel, state: &[f64]) -> Vec<f64> {
         if state.is_empty() {
             return Vec::new();
         }
         let value = |name: &String| {
-            let place = self.model.states.iter().position(|known| known == name);
-            place.map_or(0.0, |place| state[place])
+            let index = self.model.states.iter().position(|known| known == name);
+            index.map_or(0.0, |index| state[index])
         };
         model.states.iter().map(value).collect()
     }
@@ -89,8 +89,8 @@ impl Fit {
     }
 
     /// Whether it leaves less than so many standard deviations, on both sets of records.
-    pub fn leaves_less(&self, noises: f64) -> bool {
-        self.train.rms.max(self.test.rms) < noises
+    pub fn leaves_less(&self, rms: f64) -> bool {
+        self.train.rms.max(self.test.rms) < rms
     }
 
     /// Whether it leaves less than another by what is asked of an effect, on both sets of records.

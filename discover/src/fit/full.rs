@@ -21,7 +21,7 @@ use crate::model::unknowns::Unknown;
 use crate::thresholds;
 
 /// Where whole windows are fitted from.
-struct Begin {
+struct StartingPoint {
     /// What is known of their initial states.
     prior: InitialStatePrior,
     /// The estimate so far.
@@ -65,7 +65,7 @@ pub fn complete(
     );
     let near = near(problem, &all, &preliminary);
     let is_followed = near.is_followed;
-    let (prior, train) = settled(problem, &mut all, near);
+    let (prior, train) = converged(problem, &mut all, near);
     let prior_weight = all.prior_weight;
     let estimate = &train.estimate;
     let level = level(&all, estimate);
@@ -123,7 +123,7 @@ fn near(
     problem: &EstimationProblem<'_>,
     all: &Shooting<'_>,
     preliminary: &PreliminaryFit,
-) -> Begin {
+) -> StartingPoint {
     if let (None, true) = (&preliminary.whole, problem.estimates_initial_states()) {
         let theta = continued_unknowns(problem, all, preliminary);
         let follow = following(
@@ -137,7 +137,7 @@ fn near(
         if preliminary.model.is_linear() {
             continuation_by_secants(all, &mut near, &follow);
         }
-        return Begin {
+        return StartingPoint {
             is_far: near.estimate.cost
                 > thresholds::HOPELESS * thresholds::HOPELESS * problem.train.numbers(),
             prior: near.prior,
@@ -151,7 +151,7 @@ fn near(
         preliminary.initial_states.clone(),
     );
     let estimate = evaluated(all, &prior, theta, initial_states);
-    Begin {
+    StartingPoint {
         is_far: preliminary.whole.is_none()
             && estimate.cost
                 > thresholds::HOPELESS * thresholds::HOPELESS * problem.train.numbers(),
@@ -162,10 +162,10 @@ fn near(
 }
 
 /// Whole windows fitted, and those followed anew that are better for it, as long as that helps.
-fn settled(
+fn converged(
     problem: &EstimationProblem<'_>,
     all: &mut Shooting<'_>,
-    near: Begin,
+    near: StartingPoint,
 ) -> (InitialStatePrior, Residuals) {
     let (mut prior, estimate) = (near.prior, near.estimate);
     let free = match near.is_far {
@@ -179,7 +179,7 @@ fn settled(
         ),
     };
     let mut residuals = Residuals::of(all, free);
-    // What is left where records are trusted as if noise were all that they hold says how
+    // What remains where records are trusted as if noise were all that they hold says how
     // far they may be trusted against the priors.
     all.prior_weight = (residuals.rms * residuals.rms).max(1.0) * residuals.correlation;
     for _ in 0..thresholds::REFRESHES {
@@ -195,9 +195,9 @@ fn settled(
         let before = found.cost;
         let (new_prior, found) = refreshed(problem, all, prior, found);
         prior = new_prior;
-        let is_settled = found.cost > (1.0 - thresholds::REFRESH_DECREASE) * before;
+        let is_converged = found.cost > (1.0 - thresholds::REFRESH_DECREASE) * before;
         residuals = Residuals::of(all, found);
-        if is_settled {
+        if is_converged {
             break;
         }
     }
@@ -299,15 +299,15 @@ fn uncertainty(
         }
     }
     let mut rows = DMatrix::zeros(count, count + 1);
-    for (place, unknown) in shooting.unknowns.iter().enumerate() {
+    for (row, unknown) in shooting.unknowns.iter().enumerate() {
         let sd = unknown.prior.map_or(f64::INFINITY, |(_, sd)| sd);
-        rows[(place, place)] = shooting.prior_weight.sqrt() / sd;
+        rows[(row, row)] = shooting.prior_weight.sqrt() / sd;
     }
     let factor = triangular_factor(&factor, &rows);
     let square = factor.view((0, 0), (count, count)).into_owned();
     (0..count)
-        .map(|place| {
-            let unit = DVector::from_fn(count, |row, _| f64::from(u8::from(row == place)));
+        .map(|column| {
+            let unit = DVector::from_fn(count, |row, _| f64::from(u8::from(row == column)));
             let solved = square.transpose().solve_lower_triangular(&unit);
             solved.map_or(f64::INFINITY, |v| v.norm())
         })

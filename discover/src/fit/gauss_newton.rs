@@ -1,6 +1,6 @@
 //! Estimation by separable Gauss-Newton steps on multiple shooting (Bock 1983): each window's
 //! initial state is projected out of its own residuals (variable projection: Golub and Pereyra
-//! 1973) by a QR factorisation, and the rest depends on the unknowns alone. Steps
+//! 1973) by a QR factorisation, and what remains depends on the unknowns alone. Steps
 //! are shortened until they help; every window may decide for itself how far its initial
 //! state follows, because impacts fold the outputs.
 
@@ -43,10 +43,10 @@ pub fn damped_gauss_newton(
         let Some(next) = step(shooting, prior, &present, &linear) else {
             break;
         };
-        let gain = present.cost - next.cost;
-        let settled = gain < thresholds::LEAST_DECREASE * present.cost;
+        let decrease = present.cost - next.cost;
+        let converged = decrease < thresholds::LEAST_DECREASE * present.cost;
         present = next;
-        if settled {
+        if converged {
             break;
         }
     }
@@ -183,13 +183,13 @@ pub(crate) fn change_of_unknowns(
         factor = triangular_factor(&factor, &window.unknowns());
     }
     let mut rows = DMatrix::zeros(2 * count, count + 1);
-    for (place, unknown) in shooting.unknowns.iter().enumerate() {
+    for (column, unknown) in shooting.unknowns.iter().enumerate() {
         if let Some((mean, sd)) = unknown.prior {
             let weight = shooting.prior_weight.sqrt() / sd;
-            rows[(place, place)] = weight;
-            rows[(place, count)] = (present.theta[place] - mean) * weight;
+            rows[(column, column)] = weight;
+            rows[(column, count)] = (present.theta[column] - mean) * weight;
         }
-        rows[(count + place, place)] = damping * factor.column(place).norm();
+        rows[(count + column, column)] = damping * factor.column(column).norm();
     }
     let factor = triangular_factor(&factor, &rows);
     let a = factor.columns(0, count).into_owned();
@@ -315,7 +315,7 @@ pub fn inner_solve(
 ) -> Option<Vec<f64>> {
     let mut present = start;
     for horizon in horizons {
-        sensitivities.see(*horizon);
+        sensitivities.truncate(*horizon);
         present = inner_solve_on_part(sensitivities, prior, window, present)?;
     }
     Some(present)
@@ -346,9 +346,9 @@ fn inner_solve_on_part(
         let Some((moved, total)) = better else {
             break;
         };
-        let settled = cost - total < thresholds::INNER_DECREASE * total;
+        let converged = cost - total < thresholds::INNER_DECREASE * total;
         (present, cost) = (moved, total);
-        if settled {
+        if converged {
             break;
         }
     }

@@ -50,13 +50,13 @@ pub fn best(
     theta: &[f64],
     ranges: &[f64],
 ) -> Result<Vec<Vec<f64>>, DiscoverError> {
-    let ladders = [&thresholds::HORIZONS[..], &thresholds::OTHER_HORIZONS];
-    let ladders = if problem.estimates_initial_states() {
-        &ladders[..]
+    let sequences = [&thresholds::HORIZONS[..], &thresholds::OTHER_HORIZONS];
+    let sequences = if problem.estimates_initial_states() {
+        &sequences[..]
     } else {
-        &ladders[..1]
+        &sequences[..1]
     };
-    let found: Vec<Result<Estimate, DiscoverError>> = ladders
+    let found: Vec<Result<Estimate, DiscoverError>> = sequences
         .par_iter()
         .map(|horizons| {
             let found = at_unknowns(problem, shooting, theta, ranges, horizons, None)?;
@@ -237,7 +237,7 @@ fn read_smoothed(
             })?);
     }
     let mut initial_states = vec![Vec::new(); windows.list.len()];
-    for (place, record) in windows.records.iter().enumerate() {
+    for (number, record) in windows.records.iter().enumerate() {
         let smooth: Vec<(Vec<f64>, Vec<f64>)> = sources
             .iter()
             .map(|source| {
@@ -247,7 +247,7 @@ fn read_smoothed(
             })
             .collect();
         for (window, start) in windows.list.iter().zip(&mut initial_states) {
-            if window.record == place {
+            if window.record == number {
                 let values = smooth.iter().map(|(values, _)| values[window.first]);
                 let slopes = smooth.iter().map(|(_, slopes)| slopes[window.first]);
                 *start = values.chain(slopes).collect();

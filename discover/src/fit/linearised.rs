@@ -15,10 +15,10 @@ use crate::thresholds;
 /// A window at the fit: residual, derivatives by state and by unknowns.
 pub type Base = Vec<Option<StateProjection>>;
 
-/// Where candidates are looked at: beginnings of windows, over which a motion is nearly linear
+/// Where candidates are linearised: beginnings of windows, over which a motion is nearly linear
 /// in whatever changes it, with initial states that suit these parts.
 pub struct LinearisedFit {
-    /// The part of each window that is looked at.
+    /// The part of each window that is linearised.
     pub part: f64,
     /// The windows.
     pub windows: Vec<WindowId>,

@@ -43,6 +43,6 @@ pub fn frequency(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId)
             .zip(&spectrum)
             .for_each(|(s, c)| *s += c.norm_sqr());
     }
-    let place = (1..sum.len()).max_by(|a, b| sum[*a].total_cmp(&sum[*b]))?;
-    Some(place as f64 / (length as f64 * step))
+    let peak = (1..sum.len()).max_by(|a, b| sum[*a].total_cmp(&sum[*b]))?;
+    Some(peak as f64 / (length as f64 * step))
 }

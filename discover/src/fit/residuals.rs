@@ -28,7 +28,7 @@ pub struct Residuals {
 }
 
 impl Residuals {
-    /// The same, infinite where the motion cannot be followed in some window: what is left there is
+    /// The same, infinite where the motion cannot be followed in some window: what remains there is
     /// not known, and the other windows do not stand for it.
     pub fn whole(mut self) -> Self {
         if !self.unfollowed.is_empty() {
@@ -54,9 +54,9 @@ impl Residuals {
             .collect();
         let mut sums = vec![(0.0, 0.0); channels];
         for (window, residual) in shooting.windows.list.iter().zip(&residuals) {
-            for (place, value) in residual.iter().enumerate() {
-                if window.measured[place].is_finite() {
-                    let sum = &mut sums[place % channels];
+            for (number, value) in residual.iter().enumerate() {
+                if window.measured[number].is_finite() {
+                    let sum = &mut sums[number % channels];
                     *sum = (sum.0 + value * value, sum.1 + 1.0);
                 }
             }

@@ -68,14 +68,14 @@ impl<'a> SensitivityEvaluator<'a> {
         let base = shooting.model.simulation(&values).ok()?;
         let equations = shooting.model.evaluator(&values);
         let mut neighbours = Vec::with_capacity(theta.len());
-        for (place, unknown) in shooting.unknowns.iter().enumerate() {
+        for (number, unknown) in shooting.unknowns.iter().enumerate() {
             if !matches!(unknown.what, What::Parameter(_) | What::Inverse(_)) {
                 neighbours.push(None);
                 continue;
             }
-            let step = quotient_step(unknown, theta[place]);
+            let step = quotient_step(unknown, theta[number]);
             let mut moved = theta.to_vec();
-            moved[place] += step;
+            moved[number] += step;
             let values = shooting.values(&moved);
             let neighbour = if base.carries_tangents() {
                 Neighbour::Drives {
@@ -110,8 +110,8 @@ impl<'a> SensitivityEvaluator<'a> {
         })
     }
 
-    /// From here on only this part of a window is looked at, from its beginning.
-    pub fn see(&mut self, part: f64) {
+    /// From here on only this part of a window is compared, from its beginning.
+    pub fn truncate(&mut self, part: f64) {
         self.shooting.part = part;
     }
 
@@ -303,15 +303,15 @@ impl<'a> SensitivityEvaluator<'a> {
         let rows = times.len() * channels;
         let mut matrix = DMatrix::zeros(rows, count);
         let mut column = vec![0.0; rows];
-        for place in 0..count {
+        for number in 0..count {
             for sample in 0..times.len() {
-                let from = (sample * count + place) * channels;
+                let from = (sample * count + number) * channels;
                 let to = sample * channels;
                 column[to..to + channels].copy_from_slice(&derivatives[from..from + channels]);
             }
             let seen = shooting.seen(times, &sensors, &column);
             let differences = shooting.differences(samples, &seen, |seen, _| seen);
-            matrix.column_mut(place).copy_from_slice(&differences);
+            matrix.column_mut(number).copy_from_slice(&differences);
         }
         matrix
     }

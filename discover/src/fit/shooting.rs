@@ -36,9 +36,9 @@ pub struct Shooting<'a> {
     pub unknowns: &'a [Unknown],
     /// The range of each state, where initial states are estimated.
     pub ranges: Option<&'a [f64]>,
-    /// The part of each window that is looked at, from its beginning.
+    /// The part of each window that is compared, from its beginning.
     pub part: f64,
-    /// How much the unknowns' priors count beside the residuals: the square of the misfit that
+    /// How much the unknowns' priors count against the residuals: the square of the misfit that
     /// noise does not explain, times the samples over which it is correlated. A misfit says
     /// nothing of a sensor beyond its own size.
     pub prior_weight: f64,
@@ -206,11 +206,11 @@ impl<'a> Shooting<'a> {
         let inside = judged(samples);
         let pairs = seen.iter().zip(&window.measured).enumerate();
         pairs
-            .map(|(place, (seen, measured))| {
-                if measured.is_nan() || !inside.contains(&(place / channels)) {
+            .map(|(number, (seen, measured))| {
+                if measured.is_nan() || !inside.contains(&(number / channels)) {
                     0.0
                 } else {
-                    of(*seen, *measured) / self.noise[place % channels]
+                    of(*seen, *measured) / self.noise[number % channels]
                 }
             })
             .collect()
@@ -254,15 +254,15 @@ struct Column<'q> {
 fn interpolated(column: &Column<'_>, at: f64, near: usize) -> f64 {
     let times = column.times;
     let last = times.len() - 1;
-    let mut left = near.min(last);
-    while left > 0 && times[left] > at {
-        left -= 1;
+    let mut before = near.min(last);
+    while before > 0 && times[before] > at {
+        before -= 1;
     }
-    while left < last && times[left + 1] <= at {
-        left += 1;
+    while before < last && times[before + 1] <= at {
+        before += 1;
     }
     let count = times.len().min(4);
-    let first = left.saturating_sub(1).min(times.len() - count);
+    let first = before.saturating_sub(1).min(times.len() - count);
     let nodes = first..first + count;
     nodes
         .clone()

@@ -54,9 +54,9 @@ pub fn reduced_block(
 impl ReducedBlock {
     /// What the unknowns and the residual look like once the initial state is free.
     pub fn unknowns(&self) -> DMatrix<f64> {
-        let rest = self.factor.ncols() - self.states;
+        let remaining = self.factor.ncols() - self.states;
         self.factor
-            .view((self.states, self.states), (rest, rest))
+            .view((self.states, self.states), (remaining, remaining))
             .into_owned()
     }
 

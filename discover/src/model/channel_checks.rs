@@ -1,6 +1,6 @@
 //! Whether columns are what they are called: the model, as it is specified, is run through the
 //! beginning of a training record. A column that follows it with the other sign, with the
-//! factor between two units, or that follows another channel instead, has a wrong label. A
+//! factor between two units, or that follows another channel instead, has a wrong name. A
 //! model that lacks something makes none of these.
 
 use crate::model::problem::EstimationProblem;
@@ -17,10 +17,10 @@ const FACTORS: [(f64, &str); 6] = [
     (0.017_453_292_52, "as if radians were given for degrees, "),
 ];
 
-/// Looks at the labels of the first training record; returns what is worth a remark.
+/// Looks at the columns of the first training record; returns what is worth a remark.
 ///
 /// # Errors
-/// A column with a wrong label.
+/// A column with a wrong name.
 pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>, Refusal> {
     let mut notes = Vec::new();
     let record = &problem.dataset.train[0];
@@ -33,7 +33,7 @@ pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>,
     let run = model
         .simulation(&model.values)
         .and_then(|mut simulation| simulation.outputs(&first, times, &record.inputs));
-    // A model that cannot be run so far is judged by its fit.
+    // A model that cannot be run so far is tested by its fit.
     let Ok(run) = run else { return Ok(notes) };
     let channels = &problem.dataset.channels;
     let count = channels.len();
@@ -43,9 +43,9 @@ pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>,
             column.collect()
         })
         .collect();
-    for (place, channel) in channels.iter().enumerate() {
-        let measured = &record.channels[place][..samples];
-        let own = Likeness::of(times, &expected[place], measured, channel.noise);
+    for (own_index, channel) in channels.iter().enumerate() {
+        let measured = &record.channels[own_index][..samples];
+        let own = Correspondence::of(times, &expected[own_index], measured, channel.noise);
         let refuse = |message: String| {
             Err(Refusal::file(
                 &record.path,
@@ -72,10 +72,10 @@ pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>,
             }
         }
         for (other, instead) in channels.iter().enumerate() {
-            let alike = Likeness::of(times, &expected[other], measured, channel.noise);
-            if other != place
-                && alike.correlation > thresholds::FOLLOWS
-                && (alike.factor - 1.0).abs() < thresholds::AGREES
+            let swapped = Correspondence::of(times, &expected[other], measured, channel.noise);
+            if other != own_index
+                && swapped.correlation > thresholds::FOLLOWS
+                && (swapped.factor - 1.0).abs() < thresholds::AGREES
             {
                 return refuse(format!(
                     "its column is what the model expects of `{}`; are columns exchanged?",
@@ -94,14 +94,14 @@ pub fn check(problem: &EstimationProblem<'_>, text: &str) -> Result<Vec<String>,
 }
 
 /// How a column follows what is expected, lines taken out of both.
-struct Likeness {
+struct Correspondence {
     correlation: f64,
     factor: f64,
     /// Whether there is enough to be followed.
     shows: bool,
 }
 
-impl Likeness {
+impl Correspondence {
     fn of(times: &[f64], expected: &[f64], measured: &[f64], noise: f64) -> Self {
         let none = Self {
             correlation: 0.0,
@@ -146,7 +146,7 @@ fn without_line(pairs: &[(f64, f64)]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Likeness, without_line};
+    use super::{Correspondence, without_line};
 
     #[test]
     fn a_line_is_taken_out_and_nothing_else() {
@@ -156,7 +156,9 @@ mod tests {
         assert!(without_line(&line).iter().all(|v| v.abs() < 1e-12));
         let expected: Vec<f64> = times.iter().map(|t| wave(*t)).collect();
         let measured: Vec<f64> = times.iter().map(|t| 5.0 * t - 2.0 * wave(*t)).collect();
-        let alike = Likeness::of(&times, &expected, &measured, 1e-3);
-        assert!((alike.factor + 2.0).abs() < 1e-9 && alike.correlation < -0.999_999);
+        let correspondence = Correspondence::of(&times, &expected, &measured, 1e-3);
+        assert!(
+            (correspondence.factor + 2.0).abs() < 1e-9 && correspondence.correlation < -0.999_999
+        );
     }
 }

@@ -174,7 +174,7 @@ impl EstimationModel {
     }
 
     /// Decides in how many steps a motion goes from sample to sample, where that is not
-    /// known beforehand: as many as change its outputs by less than a part of the noise, tried
+    /// known beforehand: as many as change its outputs by less than a part of the noise, tested
     /// on the beginning of a record. Where there are none, a solver with error control goes on
     /// deciding.
     pub fn choose_steps(&mut self, record: &Record, initial: &[f64], noise: &[f64]) {

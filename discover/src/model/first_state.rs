@@ -19,8 +19,9 @@ pub fn first_state(
         Initial::Rest => {}
         Initial::Given(values) => {
             for (name, value) in values {
-                if let Some(place) = model.states.iter().position(|state| state == name) {
-                    state[place] = *value;
+                let known = model.states.iter().position(|state| state == name);
+                if let Some(index) = known {
+                    state[index] = *value;
                 }
             }
         }
@@ -29,11 +30,11 @@ pub fn first_state(
             for (channel, column) in channels.iter().zip(&record.channels) {
                 let (value, slope) = begin(&record.times, column);
                 match channel.quantity {
-                    Quantity::Coordinate(place) => {
-                        state[place] = value;
-                        state[half + place] = slope;
+                    Quantity::Coordinate(coordinate) => {
+                        state[coordinate] = value;
+                        state[half + coordinate] = slope;
                     }
-                    Quantity::Rate(place) => state[half + place] = value,
+                    Quantity::Rate(coordinate) => state[half + coordinate] = value,
                     Quantity::Observable(_) => {}
                 }
             }

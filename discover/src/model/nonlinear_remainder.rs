@@ -30,7 +30,7 @@ impl NonlinearRemainder {
 }
 
 /// For each guard of the linear part the whole model's: the one of the same formula, or, of
-/// those that are left, the next. None if all are the same, or what is left is not as many.
+/// those that have none, the next. None if all are the same, or those that have none are not as many.
 fn corresponding_guards(whole: &Evaluator, linear: &Evaluator) -> Option<Vec<usize>> {
     let formulas = |model: &Evaluator| -> Vec<String> {
         let guards = model.program().guards.iter();
@@ -40,17 +40,17 @@ fn corresponding_guards(whole: &Evaluator, linear: &Evaluator) -> Option<Vec<usi
     let is_single = [(whole, &all), (linear, &own)]
         .into_iter()
         .all(|(model, formulas)| model.guard_count() == formulas.len());
-    let left: Vec<usize> = (0..all.len()).filter(|g| !own.contains(&all[*g])).collect();
+    let unmatched: Vec<usize> = (0..all.len()).filter(|g| !own.contains(&all[*g])).collect();
     let changed = own.iter().filter(|formula| !all.contains(formula)).count();
-    if !is_single || changed == 0 || changed != left.len() {
+    if !is_single || changed == 0 || changed != unmatched.len() {
         return None;
     }
-    let mut left = left.into_iter();
-    let places = own.iter().map(|formula| {
+    let mut unmatched = unmatched.into_iter();
+    let corresponding = own.iter().map(|formula| {
         let same = all.iter().position(|known| known == formula);
-        same.or_else(|| left.next())
+        same.or_else(|| unmatched.next())
     });
-    places.collect()
+    corresponding.collect()
 }
 
 impl Force for NonlinearRemainder {
@@ -67,13 +67,13 @@ impl Force for NonlinearRemainder {
     }
 
     fn at_guards(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut Vec<f64>) -> bool {
-        let Some(places) = &self.guards else {
+        let Some(guards) = &self.guards else {
             return false;
         };
         self.whole
             .guards(Point { t, state, inputs }, &mut self.values);
         out.clear();
-        out.extend(places.iter().map(|place| self.values[*place]));
+        out.extend(guards.iter().map(|guard| self.values[*guard]));
         true
     }
 }
@@ -170,18 +170,18 @@ mod tests {
             .linearised(&initial, times, &record.inputs, true, free)
             .expect("tangents");
         let count = initial.len();
-        for (place, tangent) in found.by_state[3 * count..].iter().enumerate() {
-            let size = if place < count / 2 { 1e-10 } else { 1e-7 };
+        for (state, tangent) in found.by_state[3 * count..].iter().enumerate() {
+            let size = if state < count / 2 { 1e-10 } else { 1e-7 };
             let [more, less] = [size, -size].map(|change| {
                 let mut moved = initial.clone();
-                moved[place] += change;
+                moved[state] += change;
                 let states = simulation.states(&moved, times, &record.inputs);
                 states.expect("a motion")[3][0]
             });
             let quotient = (more - less) / (2.0 * size);
             // What is felt is held over two steps, three of which the contact lasts.
             let is_near = (tangent - quotient).abs() < 3e-2 * quotient.abs();
-            assert!(is_near, "{place}: {tangent:e} for {quotient:e}");
+            assert!(is_near, "{state}: {tangent:e} for {quotient:e}");
         }
     }
 }

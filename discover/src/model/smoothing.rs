@@ -26,8 +26,8 @@ pub fn smoothed(times: &[f64], column: &[f64]) -> Vec<f64> {
 pub fn sloped(times: &[f64], values: &[f64]) -> Vec<f64> {
     let last = values.len() - 1;
     (0..values.len())
-        .map(|place| {
-            let (a, b) = (place.saturating_sub(1), (place + 1).min(last));
+        .map(|sample| {
+            let (a, b) = (sample.saturating_sub(1), (sample + 1).min(last));
             (values[b] - values[a]) / (times[b] - times[a])
         })
         .collect()
@@ -47,9 +47,9 @@ pub fn bridged(times: &[f64], column: &[f64]) -> Vec<f64> {
     values[last + 1..].fill(ends.1);
     for pair in known.windows(2) {
         let (a, b) = (pair[0], pair[1]);
-        for place in a + 1..b {
-            let part = (times[place] - times[a]) / (times[b] - times[a]);
-            values[place] = column[a] + part * (column[b] - column[a]);
+        for sample in a + 1..b {
+            let part = (times[sample] - times[a]) / (times[b] - times[a]);
+            values[sample] = column[a] + part * (column[b] - column[a]);
         }
     }
     values
@@ -93,11 +93,11 @@ mod tests {
         let motion: Vec<f64> = times.iter().map(|t| (3.0 * t).sin()).collect();
         let smooth = smoothed(&times, &motion);
         let slope = sloped(&times, &smooth);
-        for place in 0..times.len() {
-            assert!((smooth[place] - motion[place]).abs() < 1e-4);
+        for sample in 0..times.len() {
+            assert!((smooth[sample] - motion[sample]).abs() < 1e-4);
         }
-        for place in 200..3800 {
-            assert!((slope[place] - 3.0 * (3.0 * times[place]).cos()).abs() < 1e-3);
+        for sample in 200..3800 {
+            assert!((slope[sample] - 3.0 * (3.0 * times[sample]).cos()).abs() < 1e-3);
         }
     }
 

@@ -17,7 +17,7 @@ pub enum What {
     Parameter(String),
     /// One over a parameter, by name: an effect that is absent where it is infinite.
     Inverse(String),
-    /// The gain of a channel, by its place.
+    /// The gain of a channel.
     Gain(ChannelId),
     /// The bias of a channel, SI.
     Bias(ChannelId),

@@ -16,13 +16,13 @@ pub fn usual_rates(dataset: &Dataset, model: &Model) -> BTreeMap<String, f64> {
     for (channel, column) in channels {
         let smooth = smoothed(&record.times, column);
         let (name, slopes) = match channel.quantity {
-            Quantity::Rate(place) => (&model.coordinates[place].name, smooth),
-            Quantity::Observable(place) => (
-                &model.observables[place].name,
+            Quantity::Rate(coordinate) => (&model.coordinates[coordinate].name, smooth),
+            Quantity::Observable(observable) => (
+                &model.observables[observable].name,
                 sloped(&record.times, &smooth),
             ),
-            Quantity::Coordinate(place) => (
-                &model.coordinates[place].name,
+            Quantity::Coordinate(coordinate) => (
+                &model.coordinates[coordinate].name,
                 sloped(&record.times, &smooth),
             ),
         };

@@ -10,7 +10,7 @@ use crate::residual_force::figures::figures as figures_of_force;
 use crate::residual_force::types::ResidualForce;
 
 /// How the equations compare, and what the force in one of them is like.
-pub(crate) fn force_section(force: &ResidualForce, left: Option<&ResidualForce>) -> Markup {
+pub(crate) fn force_section(force: &ResidualForce, after: Option<&ResidualForce>) -> Markup {
     let percent = |part: f64| format!("{:.0} %", 100.0 * part.max(0.0));
     let rows = html! {
         @for ranking in &force.ranking {
@@ -32,7 +32,7 @@ pub(crate) fn force_section(force: &ResidualForce, left: Option<&ResidualForce>)
             "A force that was put into this equation, its bars one standard deviation to either side. "
             "What records do not show is left out."
         }
-        (drawn(&figures_of_force(force, left)))
+        (drawn(&figures_of_force(force, after)))
     }
 }
 

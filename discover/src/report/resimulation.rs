@@ -37,7 +37,7 @@ pub fn resimulated(
         .map(|(unknown, value)| (unknown.clone(), *value))
         .unzip();
     let ranges = fit.mapped(&model, &fit.ranges);
-    let left = |windows: &Windows<'_>, estimate: &Estimate| {
+    let rms = |windows: &Windows<'_>, estimate: &Estimate| {
         let shooting = Shooting::new(problem, &model, windows, &sensors, &ranges);
         let initial_states = estimate.initial_states.iter();
         let initial_states = initial_states
@@ -52,7 +52,7 @@ pub fn resimulated(
         Residuals::of(&shooting, estimate).whole().rms
     };
     Ok(Resimulation {
-        train: left(&problem.train, &fit.train.estimate),
-        test: left(&problem.test, &fit.test.estimate),
+        train: rms(&problem.train, &fit.train.estimate),
+        test: rms(&problem.test, &fit.test.estimate),
     })
 }

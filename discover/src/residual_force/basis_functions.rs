@@ -1,6 +1,6 @@
 //! Shapes of an unknown force: functions of where a motion stands, as sums of which a force is
 //! sought. A force over the rate may jump where the motion turns, as friction does; one over a
-//! place or over time is a line with bends; one that repeats is a wave. How much of each there is
+//! position or over time is a line with bends; one that repeats is a wave. How much of each there is
 //! is estimated elsewhere.
 
 use crate::ids::EquationId;
@@ -14,9 +14,9 @@ use crate::thresholds;
 pub enum Over {
     /// The rate.
     Rate,
-    /// The place.
-    Place,
-    /// The place within a turn.
+    /// The position.
+    Position,
+    /// The position within a turn.
     Turn,
     /// The time within a window, differently in each.
     Time,
@@ -40,43 +40,43 @@ pub struct Family {
 /// Where a motion stands in an equation, over all windows.
 #[derive(Clone, Debug, Default)]
 pub struct Range {
-    /// The usual lowest and highest place.
-    pub place: (f64, f64),
+    /// The usual lowest and highest position.
+    pub position: (f64, f64),
     /// The usual largest rate either way.
     pub rate: f64,
-    /// The root mean square of place and rate.
+    /// The root mean square of position and rate.
     pub usual: (f64, f64),
 }
 
 impl Range {
-    /// The range of some places; one in a hundred lies outside at either end.
+    /// The range of some positions; one in a hundred lies outside at either end.
     pub fn of(operating_points: &[OperatingPoint]) -> Self {
         let sorted = |of: &dyn Fn(&OperatingPoint) -> f64| {
             let mut values: Vec<f64> = operating_points.iter().map(of).collect();
             values.sort_by(f64::total_cmp);
             values
         };
-        let places = sorted(&|s| s.place);
+        let positions = sorted(&|s| s.position);
         let rates = sorted(&|s| s.rate.abs());
-        let last = places.len().saturating_sub(1);
+        let last = positions.len().saturating_sub(1);
         let at = |values: &[f64], part: f64| {
-            let place = (part * last as f64).round() as usize;
-            values.get(place).copied().unwrap_or(0.0)
+            let index = (part * last as f64).round() as usize;
+            values.get(index).copied().unwrap_or(0.0)
         };
         let usual = |values: &[f64]| {
             let sum: f64 = values.iter().map(|v| v * v).sum();
             (sum / values.len().max(1) as f64).sqrt()
         };
         Self {
-            place: (at(&places, 0.01), at(&places, 0.99)),
+            position: (at(&positions, 0.01), at(&positions, 0.99)),
             rate: at(&rates, 0.99),
-            usual: (usual(&places), usual(&rates)),
+            usual: (usual(&positions), usual(&rates)),
         }
     }
 
     /// How far it goes.
     pub fn width(&self) -> f64 {
-        self.place.1 - self.place.0
+        self.position.1 - self.position.0
     }
 }
 
@@ -96,8 +96,8 @@ impl Family {
         }
     }
 
-    /// Over the place, or over a turn where that is gone through.
-    pub fn over_place(equation: EquationId, range: &Range, is_angle: bool) -> Self {
+    /// Over the position, or over a turn where that is gone through.
+    pub fn over_position(equation: EquationId, range: &Range, is_angle: bool) -> Self {
         if is_angle && range.width() > TAU {
             let bend = |k: usize| TAU * k as f64 / thresholds::TURN_BENDS as f64;
             return Self {
@@ -107,12 +107,12 @@ impl Family {
             };
         }
         let bend = |k: usize| {
-            range.place.0 + range.width() * k as f64 / (thresholds::PLACE_BENDS - 1) as f64
+            range.position.0 + range.width() * k as f64 / (thresholds::POSITION_BENDS - 1) as f64
         };
         Self {
             equation,
-            over: Over::Place,
-            bends: (0..thresholds::PLACE_BENDS).map(bend).collect(),
+            over: Over::Position,
+            bends: (0..thresholds::POSITION_BENDS).map(bend).collect(),
         }
     }
 
@@ -139,7 +139,7 @@ impl Family {
     pub fn count(&self) -> usize {
         match self.over {
             Over::Order(_) | Over::Frequency(_) => 2,
-            Over::Rate | Over::Place | Over::Turn | Over::Time => self.bends.len(),
+            Over::Rate | Over::Position | Over::Turn | Over::Time => self.bends.len(),
         }
     }
 
@@ -151,11 +151,11 @@ impl Family {
             out.copy_from_slice(&[cosine, sine]);
         };
         match self.over {
-            Over::Order(order) => wave(f64::from(order) * operating_point.place),
+            Over::Order(order) => wave(f64::from(order) * operating_point.position),
             Over::Frequency(frequency) => wave(TAU * frequency * operating_point.time),
-            Over::Place => bent(&self.bends, operating_point.place, out),
+            Over::Position => bent(&self.bends, operating_point.position, out),
             Over::Time => bent(&self.bends, operating_point.time, out),
-            Over::Turn => turned(&self.bends, operating_point.place, out),
+            Over::Turn => turned(&self.bends, operating_point.position, out),
             Over::Rate => {
                 let half = self.bends.len() / 2;
                 let (negative, positive) = out.split_at_mut(half);
@@ -205,7 +205,7 @@ mod tests {
     }
 
     const RANGE: Range = Range {
-        place: (-1.0, 3.0),
+        position: (-1.0, 3.0),
         rate: 2.0,
         usual: (1.0, 1.0),
     };
@@ -223,12 +223,12 @@ mod tests {
         for step in 0..40 {
             let at = -1.0 + 0.1 * f64::from(step);
             let operating_point = OperatingPoint {
-                place: at,
+                position: at,
                 rate: 0.9 * at - 0.95,
                 time: 0.2 * (at + 1.0),
             };
-            let place = Family::over_place(equation(), &RANGE, false);
-            assert!((sum(&place, &line, operating_point) - line(at)).abs() < 1e-12);
+            let position = Family::over_position(equation(), &RANGE, false);
+            assert!((sum(&position, &line, operating_point) - line(at)).abs() < 1e-12);
             let rate = Family::over_rate(equation(), &RANGE);
             assert!(
                 (sum(&rate, &line, operating_point) - line(operating_point.rate)).abs() < 1e-12
@@ -258,10 +258,10 @@ mod tests {
     #[test]
     fn a_turn_closes() {
         let wide = Range {
-            place: (-10.0, 10.0),
+            position: (-10.0, 10.0),
             ..RANGE
         };
-        let turn = Family::over_place(equation(), &wide, true);
+        let turn = Family::over_position(equation(), &wide, true);
         assert_eq!(turn.over, Over::Turn);
         let mut weights = [vec![0.0; turn.count()], vec![0.0; turn.count()]];
         for (weights, at) in weights
@@ -269,7 +269,7 @@ mod tests {
             .zip([-0.1, 4.0 * std::f64::consts::PI - 0.1])
         {
             let operating_point = OperatingPoint {
-                place: at,
+                position: at,
                 ..OperatingPoint::default()
             };
             turn.at(&operating_point, weights);

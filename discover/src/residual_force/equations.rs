@@ -11,7 +11,7 @@ use crate::catalogue::effect::SiteKind;
 use crate::catalogue::sites::sites;
 use crate::fit::fitted::Fit;
 use crate::fit::shooting::Shooting;
-use crate::ids::ParameterId;
+use crate::ids::{ObservableId, ParameterId};
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 
@@ -44,7 +44,7 @@ impl Equation {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OperatingPoint {
     /// What a force works on, m or rad.
-    pub place: f64,
+    pub position: f64,
     /// Its rate, m/s or rad/s.
     pub rate: f64,
     /// The time from the window's beginning, s.
@@ -59,15 +59,22 @@ pub struct Equations {
     values: Vec<f64>,
     /// The parameters that are the forces, among the values.
     forces: Vec<ParameterId>,
-    /// The observables that are place and rate.
-    shown: Vec<(usize, usize)>,
+    /// The observables that are position and rate.
+    shown: Vec<PositionAndRate>,
+}
+
+/// The observables that tell where a motion stands in an equation.
+#[derive(Clone, Copy, Debug)]
+struct PositionAndRate {
+    position: ObservableId,
+    rate: ObservableId,
 }
 
 /// The equations of a model, ready to be asked along a motion.
 pub struct EquationEvaluator {
     free: Evaluator,
     forced: Vec<Evaluator>,
-    shown: Vec<(usize, usize)>,
+    shown: Vec<PositionAndRate>,
     observables: Vec<f64>,
     rates: [Vec<f64>; 2],
 }
@@ -95,7 +102,7 @@ impl Equations {
                 source: String::new(),
             }));
             let shown = [
-                ("place", equation.on.clone()),
+                ("position", equation.on.clone()),
                 ("rate", format!("dot({})", equation.on)),
             ];
             for (word, value) in shown {
@@ -116,7 +123,8 @@ impl Equations {
         }
         let observable = |name: String| {
             let mut observables = model.specification().observables.iter();
-            observables.position(|observable| observable.name == name)
+            let position = observables.position(|observable| observable.name == name);
+            position.map(ObservableId::new)
         };
         let numbers = 0..list.len();
         let forces = numbers
@@ -124,12 +132,12 @@ impl Equations {
             .map(|n| model.parameter(&names("residual", n)));
         let forces = forces.collect::<Option<Vec<ParameterId>>>()?;
         let shown = numbers.map(|n| {
-            Some((
-                observable(names("place", n))?,
-                observable(names("rate", n))?,
-            ))
+            Some(PositionAndRate {
+                position: observable(names("position", n))?,
+                rate: observable(names("rate", n))?,
+            })
         });
-        let shown = shown.collect::<Option<Vec<(usize, usize)>>>()?;
+        let shown = shown.collect::<Option<Vec<PositionAndRate>>>()?;
         let whole = Shooting::new(problem, &model, &problem.train, &fit.unknowns, &fit.ranges);
         let values = whole.values(&fit.train.estimate.theta);
         Some(Self {
@@ -160,13 +168,13 @@ impl Equations {
 }
 
 impl EquationEvaluator {
-    /// Where each equation stands; time is left at 0.
+    /// Where each equation stands; time stays 0.
     pub fn operating_points(&mut self, point: Point<'_>, out: &mut Vec<OperatingPoint>) {
         self.free.observables(point, &mut self.observables);
         out.clear();
-        out.extend(self.shown.iter().map(|(place, rate)| OperatingPoint {
-            place: self.observables[*place],
-            rate: self.observables[*rate],
+        out.extend(self.shown.iter().map(|shown| OperatingPoint {
+            position: self.observables[shown.position],
+            rate: self.observables[shown.rate],
             ..OperatingPoint::default()
         }));
     }
@@ -190,7 +198,7 @@ impl EquationEvaluator {
     }
 }
 
-/// The places where effects may act along one line, and what of a flexible body is observed.
+/// The sites where effects may act along one line, and what of a flexible body is observed.
 fn equations(model: &Model) -> Vec<Equation> {
     let unit = |text: &str| match text {
         "rad" => Some("rad"),
@@ -214,10 +222,10 @@ fn equations(model: &Model) -> Vec<Equation> {
         }
     }
     for observable in &model.observables {
-        let ExprKind::Definition(place) = observable.value.kind else {
+        let ExprKind::Definition(number) = observable.value.kind else {
             continue;
         };
-        let definition = &model.definitions[place];
+        let definition = &model.definitions[number];
         if bends(model, &definition.value) == Some(true)
             && let Some(unit) = unit(&observable.unit.text)
         {
@@ -232,19 +240,21 @@ fn equations(model: &Model) -> Vec<Equation> {
     found
 }
 
-/// Whether an expression holds a field; none if it holds more than places.
+/// Whether an expression holds a field; none if it holds more than positions.
 fn bends(model: &Model, expr: &Expr) -> Option<bool> {
-    let (mut bends, mut is_place) = (false, true);
+    let (mut bends, mut is_position) = (false, true);
     expr.visit(&mut |part| match &part.kind {
         ExprKind::Field(_) => bends = true,
-        ExprKind::Definition(place) => match self::bends(model, &model.definitions[*place].value) {
-            Some(inner) => bends |= inner,
-            None => is_place = false,
-        },
+        ExprKind::Definition(definition) => {
+            match self::bends(model, &model.definitions[*definition].value) {
+                Some(inner) => bends |= inner,
+                None => is_position = false,
+            }
+        }
         ExprKind::Dot(_) | ExprKind::Time | ExprKind::Input(_) | ExprKind::Call(..) => {
-            is_place = false;
+            is_position = false;
         }
         _ => {}
     });
-    is_place.then_some(bends)
+    is_position.then_some(bends)
 }

@@ -1,4 +1,4 @@
-//! Pictures of the residual force: over time, rate, place, shaft order, frequency and amplitude,
+//! Pictures of the residual force: over time, rate, position, shaft order, frequency and amplitude,
 //! before and after. A bar at each point is one standard deviation to either side.
 
 use eomgen_plot::{Axes, Frame, Panel, Plate, Series, plate};
@@ -80,7 +80,7 @@ pub fn figures(before: &ResidualForce, after: Option<&ResidualForce>) -> String 
 
 fn pictures(equation: &Equation) -> [Picture; 6] {
     let over = |symbol, unit| Axes::Quantity { symbol, unit };
-    let (place, name) = match equation.unit {
+    let (position, name) = match equation.unit {
         "rad" => ("angle", "over the angle"),
         _ => ("position", "over the position"),
     };
@@ -94,10 +94,10 @@ fn pictures(equation: &Equation) -> [Picture; 6] {
         },
         Picture {
             title: name,
-            axes: over(place, equation.unit),
+            axes: over(position, equation.unit),
             is_line: true,
             by_window: false,
-            of: |force| &force.place,
+            of: |force| &force.position,
         },
         Picture {
             title: "over time, first record",

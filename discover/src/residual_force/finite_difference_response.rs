@@ -1,4 +1,4 @@
-//! Motions with small forces beside the one without, by Runge-Kutta steps, where no march
+//! Motions with small forces beside the one without, by Runge-Kutta steps, where no integrator
 //! carries neighbouring motions. Which forces is decided elsewhere.
 
 use crate::ids::WindowId;
@@ -14,7 +14,7 @@ use sim::ode::runge_kutta::RungeKutta;
 const POINTS: [usize; 4] = [0, 1, 1, 2];
 
 /// A window of a model that is run by Runge-Kutta steps.
-pub(crate) struct Stepped<'s> {
+pub(crate) struct SteppedWindow<'s> {
     shooting: &'s Shooting<'s>,
     sensors: Sensors,
     evaluator: Evaluator,
@@ -30,7 +30,7 @@ struct Step {
     points: [(f64, Vec<f64>); 3],
 }
 
-impl<'s> Stepped<'s> {
+impl<'s> SteppedWindow<'s> {
     /// A window at these unknowns; none if a solver decides on its steps.
     pub fn new(shooting: &'s Shooting<'s>, theta: &[f64], window: WindowId) -> Option<Self> {
         let model = shooting.model;
@@ -68,8 +68,8 @@ impl<'s> Stepped<'s> {
             for (t, state) in &step.points {
                 let inputs = inputs.at(step.middle);
                 drives.at(*t, state, inputs, &mut all);
-                for (push, now) in accelerations.iter_mut().zip(all.chunks_exact(half)) {
-                    push.extend_from_slice(now);
+                for (force, now) in accelerations.iter_mut().zip(all.chunks_exact(half)) {
+                    force.extend_from_slice(now);
                 }
                 let t = *t;
                 self.evaluator.rates(Point { t, state, inputs }, &mut rates);
@@ -78,13 +78,13 @@ impl<'s> Stepped<'s> {
         }
         let mut matrix = DMatrix::zeros(own.len(), count);
         let mut part = thresholds::FIRST_FORCE;
-        for (column, push) in accelerations.iter().enumerate() {
-            let size: f64 = push.iter().map(|a| a * a).sum();
+        for (column, force) in accelerations.iter().enumerate() {
+            let size: f64 = force.iter().map(|a| a * a).sum();
             if size == 0.0 {
                 continue;
             }
             let usual = (square / size).sqrt();
-            let seen = self.change(start, (&own, push), part * usual)?;
+            let seen = self.change(start, (&own, force), part * usual)?;
             let moved = (seen.iter().map(|c| c * c).sum::<f64>() / seen.len() as f64).sqrt();
             // What the first moves tells how large the others may be.
             let wanted = thresholds::FORCE_MOVES * level / (moved * usual);
@@ -93,7 +93,7 @@ impl<'s> Stepped<'s> {
                     || part > thresholds::FORCE_NEAR * wanted)
             {
                 part = wanted;
-                let seen = self.change(start, (&own, push), part * usual)?;
+                let seen = self.change(start, (&own, force), part * usual)?;
                 matrix.column_mut(column).copy_from_slice(&seen);
                 continue;
             }
@@ -103,14 +103,14 @@ impl<'s> Stepped<'s> {
         is_finite.then_some(matrix)
     }
 
-    /// How far a push of this size moves the outputs, in standard deviations per unit.
+    /// How far a force of this size moves the outputs, in standard deviations per unit.
     fn change(
         &mut self,
         start: &[f64],
-        (own, push): (&[f64], &[f64]),
+        (own, force): (&[f64], &[f64]),
         size: f64,
     ) -> Option<Vec<f64>> {
-        let moved = self.motion(start, Some((size, push)), None)?;
+        let moved = self.motion(start, Some((size, force)), None)?;
         let changes: Vec<f64> = (moved.iter().zip(own))
             .map(|(a, b)| (a - b) / size)
             .collect();
@@ -125,11 +125,11 @@ impl<'s> Stepped<'s> {
         &window.times[..samples_in(window, self.shooting.part)]
     }
 
-    /// The quantities along a motion, pushed if so, and its steps where they are wanted.
+    /// The quantities along a motion, with a force if there is one, and its steps where they are wanted.
     fn motion(
         &mut self,
         start: &[f64],
-        push: Option<(f64, &[f64])>,
+        force: Option<(f64, &[f64])>,
         mut visited: Option<&mut Vec<Step>>,
     ) -> Option<Vec<f64>> {
         let (half, times) = (start.len() / 2, self.times());
@@ -137,8 +137,12 @@ impl<'s> Stepped<'s> {
         let inputs = windows.inputs(&windows.list[self.window]);
         let mut state = start.to_vec();
         let mut method = RungeKutta::new(start.len());
-        let mut shown = Vec::with_capacity(times.len() * self.shooting.channels());
-        self.show((*times.first()?, &state), inputs.at(times[0]), &mut shown);
+        let mut measured = Vec::with_capacity(times.len() * self.shooting.channels());
+        self.measure(
+            (*times.first()?, &state),
+            inputs.at(times[0]),
+            &mut measured,
+        );
         let mut number = 0;
         for pair in times.windows(2) {
             let h = (pair[1] - pair[0]) / self.steps as f64;
@@ -155,9 +159,9 @@ impl<'s> Stepped<'s> {
                         inputs: held,
                     };
                     self.evaluator.rates(at, rates);
-                    if let Some((size, push)) = push {
+                    if let Some((size, force)) = force {
                         let first = (3 * number + point) * half;
-                        let force_responses = rates[half..].iter_mut().zip(&push[first..]);
+                        let force_responses = rates[half..].iter_mut().zip(&force[first..]);
                         force_responses.for_each(|(k, a)| *k += size * a);
                     }
                     if visited.is_some() {
@@ -169,16 +173,16 @@ impl<'s> Stepped<'s> {
                     visited.push(Step { middle, points });
                 }
             }
-            self.show((pair[1], &state), inputs.at(pair[1]), &mut shown);
+            self.measure((pair[1], &state), inputs.at(pair[1]), &mut measured);
         }
-        let is_finite = shown.iter().all(|value| value.is_finite());
-        is_finite.then_some(shown)
+        let is_finite = measured.iter().all(|value| value.is_finite());
+        is_finite.then_some(measured)
     }
 
     /// Appends the quantities at a state.
-    fn show(&mut self, (t, state): (f64, &[f64]), inputs: &[f64], shown: &mut Vec<f64>) {
+    fn measure(&mut self, (t, state): (f64, &[f64]), inputs: &[f64], values: &mut Vec<f64>) {
         let point = Point { t, state, inputs };
         let measured = &self.shooting.model.measured;
-        measured.append(&mut self.evaluator, point, &mut self.observables, shown);
+        measured.append(&mut self.evaluator, point, &mut self.observables, values);
     }
 }

@@ -13,7 +13,7 @@ use crate::fit::sensitivity::SensitivityEvaluator;
 use crate::fit::shooting::{Shooting, samples_in};
 use crate::model::simulation::NeighbourDrives;
 use crate::residual_force::equations::{EquationEvaluator, Equations, OperatingPoint};
-use crate::residual_force::finite_difference_response::Stepped;
+use crate::residual_force::finite_difference_response::SteppedWindow;
 use sim::exponential::Drives;
 
 /// Weights of shapes in the equations: where each equation stands, and a weight per column.
@@ -73,7 +73,7 @@ impl Drives for ForceDrives<'_> {
     }
 }
 
-/// For each window that is looked at a column per shape, in standard deviations per unit of force;
+/// For each window a column per shape, in standard deviations per unit of force;
 /// no columns where the fit has no motion. None if neighbouring motions cannot be followed at all.
 pub fn force_responses(
     of: Linearisation<'_>,
@@ -119,9 +119,8 @@ pub fn force_responses(
                     true => sensitivities
                         .as_mut()?
                         .drive_response(window, start, driven),
-                    false => {
-                        Stepped::new(&shooting, theta, window)?.columns(start, driven, at.level)
-                    }
+                    false => SteppedWindow::new(&shooting, theta, window)?
+                        .columns(start, driven, at.level),
                 }
             };
             let none = || DMatrix::zeros(0, 0);

@@ -66,7 +66,7 @@ pub fn residual_force(
         let is_angle = equations.list[equation].unit == "rad";
         [
             Family::over_rate(equation, &ranges[equation]),
-            Family::over_place(equation, &ranges[equation], is_angle),
+            Family::over_position(equation, &ranges[equation], is_angle),
             Family::over_time(equation, length),
         ]
     };

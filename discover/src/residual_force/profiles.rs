@@ -1,4 +1,4 @@
-//! What the residual force in one equation is like: its profiles over rate, place, time, shaft
+//! What the residual force in one equation is like: its profiles over rate, position, time, shaft
 //! order, frequency and amplitude, with one standard deviation each.
 
 use crate::ids::{EquationId, FamilyId};
@@ -22,10 +22,10 @@ pub(crate) struct Blocks<'b> {
 impl Blocks<'_> {
     /// All profiles of one equation.
     pub fn profiles(&self, regressed: &FamilyRegression, range: &Range) -> ResidualForce {
-        let [by_rate, by_place] = [0, 1].map(FamilyId::new);
-        let decrease = [by_rate, by_place].map(|family| regressed.shared(family).decrease);
+        let [by_rate, by_position] = [0, 1].map(FamilyId::new);
+        let decrease = [by_rate, by_position].map(|family| regressed.shared(family).decrease);
         let better = match decrease[1] > decrease[0] {
-            true => by_place,
+            true => by_position,
             false => by_rate,
         };
         let inflation = regressed.inflation(self.of, better);
@@ -68,7 +68,7 @@ impl Blocks<'_> {
             kind: None,
             part: 0.0,
             rate: over(by_rate),
-            place: over(by_place),
+            position: over(by_position),
             time: self.over_time(regressed, level),
             order,
             frequency,

@@ -22,7 +22,7 @@ pub(crate) struct Ranking {
 }
 
 impl Ranking {
-    /// Three families for each of some equations: over rate, place and time.
+    /// Three families for each of some equations: over rate, position and time.
     pub fn of(
         regressed: &FamilyRegression,
         all: &[EquationId],
@@ -35,8 +35,8 @@ impl Ranking {
                     let family = FamilyId::new(family);
                     (regressed.part(family), family)
                 };
-                let (rate, place) = (part(3 * number), part(3 * number + 1));
-                if rate.0 >= place.0 { rate } else { place }
+                let (rate, position) = (part(3 * number), part(3 * number + 1));
+                if rate.0 >= position.0 { rate } else { position }
             })
             .collect();
         let by_state = (0..count).max_by(|a, b| states[*a].0.total_cmp(&states[*b].0))?;
@@ -49,7 +49,7 @@ impl Ranking {
             .collect();
         let by_time = (0..count).max_by(|a, b| times[*a].total_cmp(&times[*b]))?;
         let is_state = states[by_state].0 > thresholds::STATE_EXPLAINS * times[by_time];
-        // What explains as much over rate or place is distinguished by what it explains over time.
+        // What explains as much over rate or position is distinguished by what it explains over time.
         let most = states[by_state].0;
         let as_well = |a: &usize| states[*a].0 >= most.min(thresholds::AS_WELL * most);
         let by_state = (0..count)
@@ -92,7 +92,7 @@ impl Ranking {
     }
 }
 
-/// The simple functions, one or two, that a force over rate or place consists of nearly; nothing
+/// The simple functions, one or two, that a force over rate or position consists of nearly; nothing
 /// if it takes more.
 pub(crate) fn simple(
     regressed: &FamilyRegression,
@@ -103,20 +103,20 @@ pub(crate) fn simple(
     let bends = &regressed.families[family].bends;
     let half = bends.len() / 2;
     let is_rate = over == Over::Rate;
-    let side = |place: usize| match is_rate {
-        true if place < half => -1.0,
+    let side = |k: usize| match is_rate {
+        true if k < half => -1.0,
         true => 1.0,
-        false => bends[place].signum(),
+        false => bends[k].signum(),
     };
     let column = |of: Simple| {
-        let at = |place: usize| match of {
+        let at = |k: usize| match of {
             Simple::Constant => 1.0,
-            Simple::Sign => side(place),
-            Simple::Linear => bends[place],
-            Simple::Size => bends[place].abs(),
-            Simple::Square => bends[place] * bends[place].abs(),
+            Simple::Sign => side(k),
+            Simple::Linear => bends[k],
+            Simple::Size => bends[k].abs(),
+            Simple::Square => bends[k] * bends[k].abs(),
         };
-        DVector::from_fn(bends.len(), |place, _| at(place))
+        DVector::from_fn(bends.len(), |k, _| at(k))
     };
     let known: &[Simple] = match (is_rate, over) {
         (true, _) => &[
@@ -165,6 +165,6 @@ pub(crate) fn simple(
         });
     match is_rate {
         true => Kind::Rate(described),
-        false => Kind::Place(described),
+        false => Kind::Position(described),
     }
 }

@@ -23,7 +23,7 @@ pub struct Regression {
     right: DVector<f64>,
     /// The sum of squares that initial states and nuisances leave, in standard deviations.
     pub squares: f64,
-    /// How many numbers were looked at.
+    /// How many numbers there are.
     pub numbers: f64,
     /// The nuisances' products: with themselves, factored, and with columns and residual.
     nuisances: Option<(Cholesky<f64, Dyn>, DMatrix<f64>)>,
@@ -39,7 +39,7 @@ pub struct Sizes {
     /// One for each.
     pub values: DVector<f64>,
     /// What one squared standard deviation of each, and their products, are times that of the
-    /// residual that is left.
+    /// remaining residual.
     pub covariance: DMatrix<f64>,
     /// How much they lower the sum of squares.
     pub decrease: f64,
@@ -63,7 +63,7 @@ pub struct WindowSize {
 }
 
 impl Regression {
-    /// Takes columns for each window that is looked at.
+    /// Takes columns for each window.
     pub fn new(at: &LinearisedFit, fit: &Fit, columns: &[DMatrix<f64>]) -> Option<Self> {
         let count = columns.iter().map(DMatrix::ncols).max()?;
         let theta = &at.estimate.theta;
@@ -97,7 +97,7 @@ impl Regression {
                 add_prior(&mut products, id, prior);
             }
         }
-        let mut rest = products.view((n, n), (count + 1, count + 1)).into_owned();
+        let mut reduced = products.view((n, n), (count + 1, count + 1)).into_owned();
         let mut nuisances = None;
         if n > 0 {
             let factored = |ridge: f64| {
@@ -109,13 +109,13 @@ impl Regression {
             };
             let cross = products.view((0, n), (n, count + 1)).into_owned();
             let factor = RIDGES.into_iter().find_map(factored)?;
-            rest -= cross.transpose() * factor.solve(&cross);
+            reduced -= cross.transpose() * factor.solve(&cross);
             nuisances = Some((factor, cross));
         }
         Some(Self {
-            gram: rest.view((0, 0), (count, count)).into_owned(),
-            right: -rest.view((0, count), (count, 1)).column(0),
-            squares: rest[(count, count)],
+            gram: reduced.view((0, 0), (count, count)).into_owned(),
+            right: -reduced.view((0, count), (count, 1)).column(0),
+            squares: reduced[(count, count)],
             numbers,
             nuisances,
             held,

@@ -14,7 +14,7 @@ pub struct Profile {
     pub sd: Vec<f64>,
     /// The part of the squares that it explains; of several waves that which explains most.
     pub part: f64,
-    /// The place of the wave that does.
+    /// The position of the wave that does.
     pub peak: Option<usize>,
 }
 
@@ -23,7 +23,7 @@ pub struct Profile {
 pub struct RankedEquation {
     /// The equation.
     pub equation: EquationId,
-    /// The part of the squares that a force over its rate explains, or over its place.
+    /// The part of the squares that a force over its rate explains, or over its position.
     pub by_state: f64,
     /// The same of a force over time that differs from window to window.
     pub by_time: f64,
@@ -34,8 +34,8 @@ pub struct RankedEquation {
 pub enum Kind {
     /// Its rate: so much of simple functions of it.
     Rate(Vec<SimplePart>),
-    /// Its place.
-    Place(Vec<SimplePart>),
+    /// Its position.
+    Position(Vec<SimplePart>),
     /// Neither.
     Time,
 }
@@ -51,7 +51,7 @@ pub struct SimplePart {
     pub sd: f64,
 }
 
-/// Simple functions of a rate or a place.
+/// Simple functions of a rate or a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Simple {
     /// The same everywhere.
@@ -82,8 +82,8 @@ pub struct ResidualForce {
     pub part: f64,
     /// Over the rate.
     pub rate: Profile,
-    /// Over the place, or within a turn.
-    pub place: Profile,
+    /// Over the position, or within a turn.
+    pub position: Profile,
     /// Over the time of the first record, s.
     pub time: Profile,
     /// The size over the shaft order; none for what does not turn.

@@ -19,7 +19,7 @@ pub fn described(force: &ResidualForce) -> String {
     );
     let own = |ranking: &crate::residual_force::types::RankedEquation| match kind {
         Kind::Time => ranking.by_time,
-        Kind::Rate(_) | Kind::Place(_) => ranking.by_state,
+        Kind::Rate(_) | Kind::Position(_) => ranking.by_state,
     };
     let others = force.ranking.iter().filter(|r| r.equation != force.best);
     let as_well = others.filter(|r| own(r) > thresholds::AS_WELL * force.part);
@@ -48,9 +48,9 @@ fn shape(force: &ResidualForce, kind: &Kind) -> String {
     let equation = &force.equations[force.best];
     match kind {
         Kind::Rate(parts) if parts.is_empty() => over(force, &force.rate, true),
-        Kind::Place(parts) if parts.is_empty() => over(force, &force.place, false),
+        Kind::Position(parts) if parts.is_empty() => over(force, &force.position, false),
         Kind::Rate(parts) => simple(parts, equation, true),
-        Kind::Place(parts) => simple(parts, equation, false),
+        Kind::Position(parts) => simple(parts, equation, false),
         Kind::Time => {
             let frequencies = &force.frequency;
             let is_looked_at = force.best == force.equation;
@@ -68,7 +68,7 @@ fn shape(force: &ResidualForce, kind: &Kind) -> String {
     }
 }
 
-/// What rate and place are called.
+/// What rate and position are called.
 fn words(equation: &Equation) -> (&'static str, &'static str) {
     match equation.unit {
         "rad" => ("rate", "angle"),
@@ -77,8 +77,8 @@ fn words(equation: &Equation) -> (&'static str, &'static str) {
 }
 
 fn simple(parts: &[SimplePart], equation: &Equation, is_rate: bool) -> String {
-    let (rate, place) = words(equation);
-    let of = if is_rate { rate } else { place };
+    let (rate, position) = words(equation);
+    let of = if is_rate { rate } else { position };
     let force = equation.force_unit();
     let by = match (is_rate, equation.unit) {
         (true, "rad") => "s/rad",
@@ -125,10 +125,10 @@ fn simple(parts: &[SimplePart], equation: &Equation, is_rate: bool) -> String {
 /// The lowest and the highest of a profile whose numbers are known.
 fn over(force: &ResidualForce, profile: &Profile, is_rate: bool) -> String {
     let equation = &force.equations[force.best];
-    let (rate, place) = words(equation);
+    let (rate, position) = words(equation);
     let (of, unit) = match is_rate {
         true => (rate, equation.rate_unit()),
-        false => (place, equation.unit),
+        false => (position, equation.unit),
     };
     let is_known =
         |k: &usize| profile.sd[*k] > 0.0 && profile.values[*k].abs() > 2.0 * profile.sd[*k];

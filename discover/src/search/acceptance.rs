@@ -6,7 +6,7 @@ use crate::ids::{EffectId, UnknownId};
 use crate::search::rejection::Rejection;
 use crate::thresholds;
 
-/// What speaks for an effect.
+/// The statistics of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TestStatistics {
     /// The part by which the test records' gap falls.
@@ -36,7 +36,7 @@ pub struct EffectUnknown {
     pub prior: Option<f64>,
 }
 
-/// Judges a fit with effects whose unknowns these are.
+/// Tests a fit with effects whose unknowns these are.
 ///
 /// # Errors
 /// Why they are not accepted.
@@ -57,7 +57,7 @@ pub fn acceptance_test(
     Ok(statistics)
 }
 
-/// Judges whether the records are explained better, however uncertain the sizes are: something
+/// Tests whether the records are explained better, however uncertain the sizes are: something
 /// declared that does the same makes them so.
 ///
 /// # Errors
@@ -107,7 +107,7 @@ pub fn test_statistics(before: &Fit, after: &Fit, own: &[EffectUnknown]) -> Test
 }
 
 /// What the effect does to the channel that shows it best, on the records that do, in standard
-/// deviations: of the root mean square that is left the part that goes.
+/// deviations: the part of the root mean square that goes.
 fn size(before: &Fit, after: &Fit) -> f64 {
     let channels = |of: fn(&Fit) -> &Vec<f64>| of(before).iter().zip(of(after));
     let both =

@@ -9,7 +9,7 @@ use crate::fit::preliminary::{PreliminaryFit, WarmStart};
 use crate::ids::{CandidateId, FittedId, ResponseId};
 use crate::model::usual_rates::usual_rates;
 use crate::search::fitted::{FittedHypothesis, full_fits};
-use crate::search::hypothesis::{Hypothesis, begun_at};
+use crate::search::hypothesis::{Hypothesis, warm_started};
 use crate::search::pool::Pool;
 use crate::search::screening::{Prediction, screening};
 use crate::thresholds;
@@ -75,7 +75,7 @@ fn alternatives(
             fit: &fitted.fit,
             cost,
         };
-        let preliminary = begun_at(pool, &hypothesis, warm_start, shape_ratio).ok()?;
+        let preliminary = warm_started(pool, &hypothesis, warm_start, shape_ratio).ok()?;
         Some((hypothesis, preliminary))
     });
     Some(preliminaries.collect())

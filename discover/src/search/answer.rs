@@ -7,18 +7,18 @@ use crate::search::round::Round;
 use crate::search::selected::{Selected, best_of, selected};
 use crate::search::tested::TestedPool;
 
-/// What is named of all that was looked at; none if nothing is accepted, alone or together.
+/// What is named of all that was tested; none if nothing is accepted, alone or together.
 pub fn answer(round: &Round<'_>, mut tested: Vec<TestedPool>) -> Option<Selected> {
     let least = |tested: &TestedPool| {
         let accepted = tested
             .fitted_hypotheses
             .iter()
             .filter(|fitted| fitted.verdict.is_ok());
-        let left = accepted.map(|fitted| fitted.fit.rms());
-        left.fold(f64::INFINITY, f64::min)
+        let rms = accepted.map(|fitted| fitted.fit.rms());
+        rms.fold(f64::INFINITY, f64::min)
     };
     let best = (0..tested.len())
-        .filter(|place| least(&tested[*place]).is_finite())
+        .filter(|number| least(&tested[*number]).is_finite())
         .min_by(|a, b| least(&tested[*a]).total_cmp(&least(&tested[*b])));
     let Some(best) = best else {
         return round

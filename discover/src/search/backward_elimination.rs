@@ -4,7 +4,7 @@ use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
 use crate::fit::full;
 use crate::fit::preliminary::{self, WarmStart};
-use crate::ids::UnknownId;
+use crate::ids::{EffectId, UnknownId};
 use crate::model::problem::EstimationProblem;
 use crate::search::found::{Accepted, Found};
 use crate::thresholds;
@@ -18,17 +18,17 @@ pub fn eliminate_backwards(
 ) {
     while found.accepted.len() > 1 {
         let best = found.best();
-        let fits = (0..found.accepted.len()).filter_map(|place| {
-            let fit = without(problem, found, place).ok()?;
-            is_as_good(best, &fit).then_some((place, fit))
+        let fits = EffectId::first(found.accepted.len()).filter_map(|effect_id| {
+            let fit = without(problem, found, effect_id).ok()?;
+            is_as_good(best, &fit).then_some((effect_id, fit))
         });
         let least = fits.min_by(|a, b| a.1.train.rms.total_cmp(&b.1.train.rms));
-        let Some((place, fit)) = least else {
+        let Some((effect_id, fit)) = least else {
             return;
         };
-        let label = found.accepted[place].candidate.label();
+        let label = found.accepted[effect_id].candidate.label();
         progress(&format!("  {label} is needed no more"));
-        renumber(&mut found.accepted, place);
+        renumber(&mut found.accepted, effect_id);
         found.last = Some(fit);
     }
 }
@@ -43,13 +43,13 @@ fn is_as_good(with: &Fit, without: &Fit) -> bool {
 fn without(
     problem: &EstimationProblem<'_>,
     found: &Found,
-    place: usize,
+    effect_id: EffectId,
 ) -> Result<Fit, DiscoverError> {
     let fit = found.best();
-    let gone = &found.accepted[place];
+    let gone = &found.accepted[effect_id];
     let mut texts = found.null.texts.clone();
-    for (other, effect) in found.accepted.iter().enumerate() {
-        if other == place || effect.candidate.dropped_prior.is_some() {
+    for (other, effect) in EffectId::first(found.accepted.len()).zip(&found.accepted) {
+        if other == effect_id || effect.candidate.dropped_prior.is_some() {
             continue;
         }
         let values = fit.stated(&effect.unknowns);
@@ -77,8 +77,8 @@ fn without(
 }
 
 /// Takes an effect off the list; the unknowns of those behind it move up.
-fn renumber(accepted: &mut Vec<Accepted>, place: usize) {
-    let gone = accepted.remove(place);
+fn renumber(accepted: &mut Vec<Accepted>, effect_id: EffectId) {
+    let gone = accepted.remove(effect_id.index());
     if gone.candidate.dropped_prior.is_some() {
         return;
     }

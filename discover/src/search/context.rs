@@ -23,12 +23,12 @@ impl Context<'_> {
         self.fit.train.rms < thresholds::MUCH_IS_LEFT
     }
 
-    /// Whether candidates are seen over whole windows first.
+    /// Whether candidates are screened over whole windows first.
     pub fn is_whole(&self) -> bool {
         self.is_near() || !self.problem.estimates_initial_states()
     }
 
-    /// Whether what was left is most of the way to what a right model would leave.
+    /// Whether what it explains is most of the way to what a right model would leave.
     pub fn explains_most(&self, fit: &Fit) -> bool {
         let little = (thresholds::CLOSE * self.floor).max(thresholds::MOST_OF * self.fit.rms());
         fit.leaves_less(little)

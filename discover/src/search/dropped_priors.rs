@@ -19,21 +19,21 @@ pub fn dropped_prior(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Candidat
                 "a parameter is off by more than was declared",
                 "measure it by itself",
             ),
-            What::Gain(place) => (
+            What::Gain(channel) => (
                 "sensor_gain",
-                problem.dataset.channels[*place].name.clone(),
+                problem.dataset.channels[*channel].name.clone(),
                 "a sensor shows too much or too little",
                 "calibrate it over its range",
             ),
-            What::Bias(place) => (
+            What::Bias(channel) => (
                 "sensor_bias",
-                problem.dataset.channels[*place].name.clone(),
+                problem.dataset.channels[*channel].name.clone(),
                 "a sensor is off by a constant",
                 "read it where its quantity is known",
             ),
-            What::Delay(place) => (
+            What::Delay(channel) => (
                 "sensor_delay",
-                problem.dataset.channels[*place].name.clone(),
+                problem.dataset.channels[*channel].name.clone(),
                 "a sensor is late",
                 "excite it with a step that is recorded itself",
             ),

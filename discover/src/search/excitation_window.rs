@@ -1,4 +1,4 @@
-//! How motions are looked at while candidates are screened.
+//! Which part of motions is used while candidates are screened.
 
 use model_spec::edit::{self, Edit, SetParameter};
 use model_spec::source::Source;
@@ -10,7 +10,7 @@ use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
 use crate::thresholds;
 
-/// How motions are looked at while candidates are screened.
+/// Which part of motions is used while candidates are screened.
 #[derive(Clone, Copy, PartialEq)]
 pub enum ExcitationWindow {
     /// The beginnings of windows, where a motion is nearly linear in whatever changes it.
@@ -23,7 +23,7 @@ pub enum ExcitationWindow {
 }
 
 impl ExcitationWindow {
-    /// The part of each window that is looked at.
+    /// The part of each window that is used.
     pub fn part(self) -> f64 {
         match self {
             Self::Beginnings => thresholds::FIRST_PART,

@@ -82,7 +82,7 @@ pub fn preliminary(
     let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
     let mut preliminary = preliminary::preliminary(problem, texts, unknowns, &begins)?;
     if pool.is_whole {
-        // NonlinearRemainder others that are promised and not begun.
+        // Beside others that are promised and not begun.
         preliminary.cost = pool.screening.predicted(&hypothesis.responses).cost;
     }
     Ok(preliminary)
@@ -110,7 +110,7 @@ pub fn with_shape(
 
 /// A hypothesis of one candidate, begun with the motions of a fit with another. `shape_ratio`: how
 /// many times its usual size a shape is.
-pub fn begun_at(
+pub fn warm_started(
     pool: &Pool<'_>,
     hypothesis: &Hypothesis,
     warm_start: WarmStart<'_>,
@@ -150,7 +150,7 @@ fn texts(
         let own = next..next + response.candidate_unknowns.len();
         next = own.end;
         let values: Vec<f64> = own
-            .map(|place| unknowns[place].what.stated(theta[place]))
+            .map(|index| unknowns[index].what.stated(theta[index]))
             .collect();
         let candidate = &pool.candidates[response.candidate];
         texts = candidate.added(pool.context.problem, &texts, &values)?;

@@ -10,7 +10,7 @@ use crate::search::round::Round;
 use crate::search::selected::{Selected, selected};
 use crate::search::tested::TestedPool;
 
-/// What is accepted together of what was looked at, if it explains most of what is left.
+/// What is accepted together of what was tested, if it explains most of the residual.
 pub fn joint_acceptance(round: &Round<'_>, tested: &[TestedPool]) -> Option<Selected> {
     let all = tested.iter().flat_map(|tested| {
         let with = move |fitted| (tested, fitted);
@@ -21,7 +21,7 @@ pub fn joint_acceptance(round: &Round<'_>, tested: &[TestedPool]) -> Option<Sele
     let response = &tested.screening.responses[first.responses[0]];
     let candidate = tested.candidates[response.candidate].clone();
     (round.context.progress)(&format!("looking at what is beside {}", candidate.label()));
-    let beside = Round {
+    let with_first = Round {
         context: Context {
             fit: &first.fit,
             ..round.context
@@ -29,20 +29,20 @@ pub fn joint_acceptance(round: &Round<'_>, tested: &[TestedPool]) -> Option<Sele
         is_first: false,
         effects: round.effects,
     };
-    let mut tested = beside.tested_in(ExcitationWindow::Whole)?;
+    let mut tested = with_first.tested_in(ExcitationWindow::Whole)?;
     tested.fitted_hypotheses.retain(|fitted| fitted.explains);
-    let mut found = selected(beside.context, tested)?;
+    let mut found = selected(with_first.context, tested)?;
     let second = found.fitted.own.into_iter().map(|own| EffectUnknown {
         effect: EffectId::new(own.effect.index() + 1),
         ..own
     });
     found.fitted.own = first.own.iter().cloned().chain(second).collect();
     found.fitted.verdict = acceptance_test(round.context.fit, &found.fitted.fit, &found.fitted.own);
-    let is_believed =
+    let is_accepted =
         found.fitted.verdict.is_ok() && round.context.explains_most(&found.fitted.fit);
     found.candidates.insert(0, candidate);
     found.equivalent.insert(0, Vec::new());
-    is_believed.then_some(found)
+    is_accepted.then_some(found)
 }
 
 /// Whether a single effect leaves clearly less though it is not accepted, and was not held.

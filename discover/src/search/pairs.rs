@@ -14,16 +14,18 @@ use crate::thresholds;
 /// Pairs, and pairs in place of a term of the model. `singles`: what was fitted alone.
 pub fn pairs(pool: &Pool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothesis> {
     // A sensor that runs to the end of what is admitted stands in for something else.
-    let ran_away = |fitted: &&FittedHypothesis| {
+    let is_at_limit = |fitted: &&FittedHypothesis| {
         let of = |own: &EffectUnknown| own.prior.is_some() && is_held(&fitted.fit, own);
         fitted.own.iter().any(of)
     };
-    let away = singles.iter().filter(ran_away);
-    let away: Vec<ResponseId> = away.flat_map(|fitted| fitted.responses.clone()).collect();
-    let is_there = |response: &ResponseId| !away.contains(response);
+    let at_limit = singles.iter().filter(is_at_limit);
+    let at_limit: Vec<ResponseId> = at_limit
+        .flat_map(|fitted| fitted.responses.clone())
+        .collect();
+    let is_there = |response: &ResponseId| !at_limit.contains(response);
     let ranking: Vec<ResponseId> = pool.ranking().into_iter().filter(is_there).collect();
     let mut added = 0;
-    let mut preliminaries = preliminary_fits(pool, best_pairs(pool, &ranking, &away));
+    let mut preliminaries = preliminary_fits(pool, best_pairs(pool, &ranking, &at_limit));
     preliminaries.retain(|(hypothesis, _)| {
         added += usize::from(hypothesis.deleted.is_none());
         hypothesis.deleted.is_some() || added <= thresholds::FITS_AT_ONCE
@@ -44,7 +46,7 @@ pub fn pairs(pool: &Pool<'_>, singles: &[FittedHypothesis]) -> Vec<FittedHypothe
 /// of the model that may go the pair that takes its place best. Of what repeats with an angle the
 /// best alone are paired, and with something else: of that there is so much that some of it is
 /// lucky.
-fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], away: &[ResponseId]) -> Vec<Hypothesis> {
+fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], at_limit: &[ResponseId]) -> Vec<Hypothesis> {
     let screening = pool.screening;
     let best = ranking
         .first()
@@ -60,7 +62,7 @@ fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], away: &[ResponseId]) -> V
             let response = &screening.responses[*r];
             let is_one = !repeats(r) || repeating.contains(r);
             is_one
-                && !away.contains(r)
+                && !at_limit.contains(r)
                 && response.unexplained_fraction > thresholds::UNEXPLAINED_FRACTION
         })
         .collect();
@@ -129,9 +131,9 @@ pub fn other_halves(
             let is_new = ![kept, other].contains(&response)
                 && !pool.share_a_name(kept, response)
                 && pool.candidate(response).order.is_none();
-            let is_seen = pool.screening.responses[response].unexplained_fraction
+            let is_distinct = pool.screening.responses[response].unexplained_fraction
                 > thresholds::UNEXPLAINED_FRACTION;
-            let similarity = match is_new && is_seen {
+            let similarity = match is_new && is_distinct {
                 true => pool.screening.similarity(other, response),
                 false => 0.0,
             };

@@ -40,7 +40,7 @@ pub fn offsets(fit: &Fit) -> Vec<Candidate> {
 pub fn similar_offsets(context: Context<'_>, selected: &Candidate) -> Option<SimilarOffsets> {
     let offsets = offsets(context.fit);
     let is_named =
-        |shift: &Candidate| (&shift.effect, &shift.on) == (&selected.effect, &selected.on);
+        |offset: &Candidate| (&offset.effect, &offset.on) == (&selected.effect, &selected.on);
     if offsets.is_empty() || offsets.iter().any(is_named) {
         return None;
     }

@@ -6,6 +6,7 @@ use crate::catalogue::candidate::Candidate;
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;
 use crate::fit::linearised::LinearisedFit;
+use crate::ids::CandidateId;
 use crate::model::problem::EstimationProblem;
 use crate::search::perturbed_response::perturbed_responses;
 use crate::search::response::CandidateResponse;
@@ -19,16 +20,16 @@ pub fn responses(
     candidates: &[Candidate],
 ) -> Vec<Result<CandidateResponse, DiscoverError>> {
     let mut found = variational_responses(at, problem, fit, candidates);
-    let rest: Vec<usize> = (0..candidates.len())
-        .filter(|place| found[*place].is_none())
+    let not_driven: Vec<CandidateId> = CandidateId::first(candidates.len())
+        .filter(|id| found[*id].is_none())
         .collect();
-    let others: Vec<Candidate> = rest
+    let others: Vec<Candidate> = not_driven
         .iter()
-        .map(|place| candidates[*place].clone())
+        .map(|id| candidates[*id].clone())
         .collect();
     let perturbed_responses = perturbed_responses(at, problem, fit, &others);
-    for (place, response) in rest.into_iter().zip(perturbed_responses) {
-        found[place] = Some(response);
+    for (id, response) in not_driven.into_iter().zip(perturbed_responses) {
+        found[id] = Some(response);
     }
     found.into_iter().flatten().collect()
 }

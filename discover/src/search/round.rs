@@ -1,4 +1,4 @@
-//! One round of the search: motions looked at in one excitation window after the other until what
+//! One round of the search: motions in one excitation window after the other until what
 //! is accepted leaves little, pairs if that leaves much, and parameters that nobody called
 //! uncertain.
 
@@ -31,11 +31,11 @@ pub struct Round<'l> {
 }
 
 impl Round<'_> {
-    /// All that was looked at.
+    /// All that was tested.
     pub fn round(&self) -> Vec<TestedPool> {
         let mut tested: Vec<TestedPool> = Vec::new();
         let mut seen: Vec<ExcitationWindow> = Vec::new();
-        let mut has_shifts = false;
+        let mut has_offsets = false;
         for window in self.windows() {
             if *window == ExcitationWindow::BacklashRemoved {
                 // Without play everything but teeth is seen worse: it is for what nothing else
@@ -46,7 +46,7 @@ impl Round<'_> {
                 // Teeth are fitted slowly: a parameter that explains all saves that.
                 if self.is_first && !self.context.is_near() {
                     tested.push(self.offsets());
-                    has_shifts = true;
+                    has_offsets = true;
                     if is_any(&tested, &|fitted| self.is_enough(fitted)) {
                         break;
                     }
@@ -55,10 +55,10 @@ impl Round<'_> {
             let Some(found) = self.tested_in(*window) else {
                 continue;
             };
-            let place = seen.len();
-            tested.insert(place, found);
+            let number = seen.len();
+            tested.insert(number, found);
             seen.push(*window);
-            // Near the floor another look is quick, and what is nearly as good may be the answer.
+            // Near the floor another excitation window is quick, and what is nearly as good may be the answer.
             let is_done = match self.context.is_near() {
                 true => is_any(&tested, &|fitted| self.is_enough(fitted)),
                 false => is_any(&tested, &|fitted| self.is_close(fitted)),
@@ -74,11 +74,11 @@ impl Round<'_> {
             true => self.is_first && !is_any(&tested, &|fitted| self.is_close(fitted)),
             false => self.is_first || !self.context.is_near(),
         };
-        if is_open && !has_shifts {
+        if is_open && !has_offsets {
             tested.push(self.offsets());
-            has_shifts = true;
+            has_offsets = true;
         }
-        if has_shifts {
+        if has_offsets {
             keep_clear(&mut tested);
         }
         tested
@@ -228,7 +228,7 @@ impl Round<'_> {
 
     /// The candidates of an excitation window, and those that repeat with an angle, which are many.
     /// Teeth that move with an angle do so by much more than they deflect, and often than their
-    /// play: they are looked at where all play is closed, and nothing else is there.
+    /// play: they are screened where all play is closed, and nothing else is there.
     fn candidates(&self, fit: &Fit, window: ExcitationWindow) -> (Vec<Candidate>, Vec<Candidate>) {
         let (problem, has_play) = (
             self.context.problem,

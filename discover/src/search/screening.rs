@@ -42,7 +42,7 @@ pub struct ScreenedResponse {
 /// What a set of responses comes to by a straight line.
 #[derive(Clone, Debug)]
 pub struct Prediction {
-    /// The sum of squares that is left, in squared standard deviations, with what priors add.
+    /// The sum of squares that remains, in squared standard deviations, with what priors add.
     pub cost: f64,
     /// How far each parameter is from where its effect is absent, in order, SI.
     pub sizes: Vec<f64>,
@@ -78,7 +78,7 @@ pub struct Screening {
     pub responses: Vec<ScreenedResponse>,
     /// The candidates that do nothing that could be seen, with why.
     pub not_excited: Vec<NotExcited>,
-    /// How many numbers were looked at.
+    /// How many numbers there are.
     pub numbers: f64,
 }
 

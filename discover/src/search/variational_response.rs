@@ -1,6 +1,6 @@
 //! Responses of candidates as neighbouring motions: along the fitted motion the accelerations
 //! of the candidate's model are compared with the fitted one's, and what they differ by drives
-//! a tangent vector. Hundreds of candidates are looked at in one march.
+//! a tangent vector. Hundreds of candidates are screened in one integration.
 
 use crate::ids::CandidateId;
 use codegen::program::evaluator::{Evaluator, Point};
@@ -245,8 +245,8 @@ fn change(evaluator: &mut Evaluator, points: &Points) -> f64 {
     let half = points.squares.len();
     let mut sums = vec![0.0; half];
     let mut rates = vec![0.0; 2 * half];
-    for (place, t) in points.times.iter().enumerate() {
-        let (state, inputs) = (&points.states[place], &points.inputs[place]);
+    for (number, t) in points.times.iter().enumerate() {
+        let (state, inputs) = (&points.states[number], &points.inputs[number]);
         evaluator.rates(
             Point {
                 t: *t,
@@ -255,7 +255,7 @@ fn change(evaluator: &mut Evaluator, points: &Points) -> f64 {
             },
             &mut rates,
         );
-        let pairs = rates[half..].iter().zip(&points.rates[place][half..]);
+        let pairs = rates[half..].iter().zip(&points.rates[number][half..]);
         for (sum, (a, b)) in sums.iter_mut().zip(pairs) {
             *sum += (a - b) * (a - b);
         }

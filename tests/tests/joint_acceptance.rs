@@ -1,4 +1,4 @@
-//! Two effects in swings of a pendulum, of which one repeats with the angle and neither is believed
+//! Two effects in swings of a pendulum, of which one repeats with the angle and neither is accepted
 //! alone: both are named.
 
 use eomgen_tests::models::path;
@@ -68,7 +68,7 @@ fn swing(from: f64) -> String {
 }
 
 #[test]
-fn friction_and_a_ripple_that_are_believed_only_together_are_both_named() {
+fn friction_and_a_ripple_that_are_accepted_only_together_are_both_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let place = |name: &str| folder.path().join(name);
     std::fs::write(place("dataset.toml"), DESCRIPTION).expect("a file");
