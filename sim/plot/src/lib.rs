@@ -27,7 +27,7 @@
 //! A figure goes through these files: [`figure`] (what the caller states), `quantity` (SI
 //! prefixes and axis labels), `axis` (positions and ticks), `decimate` (many samples to few
 //! points), `layout` (where everything goes), `panel` (drawing it), `canvas` (SVG elements);
-//! [`symbol`] and `lettering` write names and text. [`mod@plate`] sets frames with axes of their
+//! `symbol` and `lettering` write names and text. [`mod@plate`] sets frames with axes of their
 //! own side by side. [`bars`] has histograms and shares, [`map`] the pictures made of pixels.
 //! What is drawn, and why, is the caller's business: nothing here knows of a model.
 //!
@@ -47,7 +47,7 @@ pub mod map;
 mod panel;
 pub mod plate;
 mod quantity;
-pub mod symbol;
+mod symbol;
 
 #[cfg(test)]
 mod tests;

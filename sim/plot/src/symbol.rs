@@ -60,16 +60,6 @@ impl Symbol {
         }
     }
 
-    /// With one dot above.
-    pub fn rate(self) -> Self {
-        self.marked(DOT_ABOVE)
-    }
-
-    /// With two dots above.
-    pub fn acceleration(self) -> Self {
-        self.marked(TWO_DOTS_ABOVE)
-    }
-
     fn marked(mut self, mark: char) -> Self {
         self.head.push(mark);
         self
