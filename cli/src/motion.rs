@@ -1,6 +1,5 @@
 //! A motion on the command line: simulated with a progress bar, its samples as a table.
 
-use codegen::program::evaluator::Point;
 use eomgen_compiled_model::{Choice, Instance, Motion, Request, Solver};
 
 use crate::error::{Error, Result, warn};
@@ -9,17 +8,12 @@ use crate::table::Table;
 
 /// The states at all times asked for, with a progress bar for a run that takes long.
 pub fn simulate(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> {
-    let motion = follow(instance, request)?;
-    match motion.stopped {
-        Some(stopped) => Err(Error::input(stopped.reason)),
-        None => Ok(motion),
-    }
+    Ok(follow(instance, request)?.complete()?)
 }
 
 /// The same, of the times that the solver comes to; an error if that is none.
 pub fn follow(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> {
-    let begin = request.times.first().copied().unwrap_or(0.0);
-    let end = request.times.last().copied().unwrap_or(begin);
+    let (begin, end) = request.span();
     let bar = Bar::new("simulating", end - begin, "s");
     let motion = instance.follow(request, &mut |t| bar.set(t - begin))?;
     if let Some(Choice::NotFollowed(reason)) = &motion.choice {
@@ -51,17 +45,12 @@ pub fn table(instance: &Instance<'_>, motion: &Motion) -> Result<Table> {
     let columns = columns(instance);
     let mut row = Vec::with_capacity(columns.len());
     let mut table = Table::new(columns);
-    let mut evaluator = instance.evaluator()?;
-    let mut observables = vec![0.0; evaluator.program().observables.len()];
-    let trajectory = &motion.trajectory;
-    for (&t, state) in trajectory.times.iter().zip(&trajectory.states) {
-        let inputs = motion.inputs.at(t);
-        evaluator.observables(Point { t, state, inputs }, &mut observables);
+    instance.observe(motion, |t, state, observables| {
         row.clear();
         row.push(t);
         row.extend_from_slice(state);
-        row.extend_from_slice(&observables);
+        row.extend_from_slice(observables);
         table.push(&row);
-    }
+    })?;
     Ok(table)
 }

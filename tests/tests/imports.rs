@@ -211,24 +211,14 @@ impl Crate {
         }
     }
 
-    fn reachable(&self, from: &Names) -> BTreeSet<Names> {
-        let mut found = BTreeSet::new();
-        let mut waiting = vec![from.clone()];
-        while let Some(module) = waiting.pop() {
-            for other in self.imports.get(&module).into_iter().flatten() {
-                if found.insert(other.clone()) {
-                    waiting.push(other.clone());
-                }
-            }
-        }
-        found
-    }
-
     /// Files that import each other, directly or by others.
     fn circles(&self) -> BTreeSet<BTreeSet<String>> {
-        let reach: BTreeMap<_, _> = (self.files.keys().map(|file| (file, self.reachable(file))))
-            .filter(|(file, reachable)| reachable.contains(*file))
-            .collect();
+        let reach: BTreeMap<_, _> = (self
+            .files
+            .keys()
+            .map(|file| (file, reachable(&self.imports, file))))
+        .filter(|(file, reachable)| reachable.contains(*file))
+        .collect();
         let circle = |file: &Names| -> BTreeSet<String> {
             let together = reach.iter().filter(|(other, reachable)| {
                 reachable.contains(file) && reach[file].contains(**other)
@@ -238,7 +228,7 @@ impl Crate {
         reach.keys().map(|file| circle(file)).collect()
     }
 
-    /// Pairs of folders, each of which imports from the other.
+    /// Folders that import from themselves by way of others.
     fn folders_both_ways(&self) -> Vec<String> {
         let is_folder = |name: &String| self.files.keys().any(|m| m.len() > 1 && m[0] == *name);
         let mut arrows = BTreeMap::<&String, BTreeSet<&String>>::new();
@@ -253,22 +243,24 @@ impl Crate {
                 }
             }
         }
-        let mut found = Vec::new();
-        for start in arrows.keys() {
-            let (mut seen, mut waiting) = (BTreeSet::new(), vec![*start]);
-            while let Some(at) = waiting.pop() {
-                for next in arrows.get(at).into_iter().flatten() {
-                    if seen.insert(*next) {
-                        waiting.push(next);
-                    }
-                }
-            }
-            if seen.contains(start) {
-                found.push((*start).clone());
+        let comes_back = |start: &&&String| reachable(&arrows, **start).contains(**start);
+        let found = arrows.keys().filter(comes_back);
+        found.map(|folder| (*folder).clone()).collect()
+    }
+}
+
+/// All that arrows lead to, one after the other.
+fn reachable<K: Ord + Clone>(arrows: &BTreeMap<K, BTreeSet<K>>, from: &K) -> BTreeSet<K> {
+    let mut found = BTreeSet::new();
+    let mut waiting = vec![from];
+    while let Some(at) = waiting.pop() {
+        for next in arrows.get(at).into_iter().flatten() {
+            if found.insert(next.clone()) {
+                waiting.push(next);
             }
         }
-        found
     }
+    found
 }
 
 fn crates() -> Vec<(String, Crate)> {

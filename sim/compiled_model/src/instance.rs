@@ -1,7 +1,5 @@
 //! A compiled model at one set of parameter values.
 
-use std::cell::RefCell;
-
 use codegen::program::evaluator::{Evaluator, Point};
 use model_spec::diagnostic::{Diagnostic, Diagnostics};
 use model_spec::model::ParameterValue;
@@ -48,7 +46,6 @@ impl<'m> Instance<'m> {
     fn new(compiled: &'m CompiledModel, settings: &[(&str, f64)]) -> Result<Self, Error> {
         let declared = compiled.model();
         let refused = |error| Error::model(declared, error);
-        let independent = compiled.parameter_names();
         let model = declared.with_parameters(settings).map_err(refused)?;
         let is_expression = |name: &&str| {
             let mut parameters = declared.parameters.iter();
@@ -63,17 +60,17 @@ impl<'m> Instance<'m> {
             return Err(Diagnostics::one(declared.source.clone(), wrong).into());
         }
         let values = model.parameter_values().map_err(refused)?;
-        let place = |name: &String| model.parameters.iter().position(|p| p.name == *name);
-        let parameters = independent.iter().map(|name| {
-            // Every parameter of a program is one of its model.
-            place(name).map_or(f64::NAN, |place| values[place])
-        });
-        Ok(Self {
+        let mut instance = Self {
             model: compiled,
-            parameters: parameters.collect(),
+            parameters: Vec::new(),
             initial: model.initial_state(compiled.orders()).map_err(refused)?,
             values,
-        })
+        };
+        let independent = compiled.program().parameters.iter();
+        let value = |name: &str| instance.value(name).unwrap_or(f64::NAN);
+        // Every parameter of a program is one of its model.
+        instance.parameters = independent.map(|p| value(&p.quantity.name)).collect();
+        Ok(instance)
     }
 
     /// The compiled model.
@@ -133,19 +130,28 @@ impl<'m> Instance<'m> {
     /// # Errors
     /// As [`Instance::evaluator`].
     pub fn observables(&self, motion: &Motion) -> Result<Vec<Vec<f64>>, Error> {
-        let evaluator = RefCell::new(self.evaluator()?);
+        let mut rows = Vec::with_capacity(motion.trajectory.times.len());
+        self.observe(motion, |_, _, observables| rows.push(observables.to_vec()))?;
+        Ok(rows)
+    }
+
+    /// Shows time (s), state and observables of every sample of a motion, one after the other.
+    ///
+    /// # Errors
+    /// As [`Instance::evaluator`].
+    pub fn observe(
+        &self,
+        motion: &Motion,
+        mut show: impl FnMut(f64, &[f64], &[f64]),
+    ) -> Result<(), Error> {
+        let mut evaluator = self.evaluator()?;
+        let mut observables = vec![0.0; evaluator.program().observables.len()];
         let trajectory = &motion.trajectory;
-        let rows = trajectory.times.iter().zip(&trajectory.states);
-        let observe = |(t, state): (&f64, &Vec<f64>)| {
-            let mut row = vec![0.0; self.model.program().observables.len()];
-            let point = Point {
-                t: *t,
-                state,
-                inputs: motion.inputs.at(*t),
-            };
-            evaluator.borrow_mut().observables(point, &mut row);
-            row
-        };
-        Ok(rows.map(observe).collect())
+        for (&t, state) in trajectory.times.iter().zip(&trajectory.states) {
+            let inputs = motion.inputs.at(t);
+            evaluator.observables(Point { t, state, inputs }, &mut observables);
+            show(t, state, &observables);
+        }
+        Ok(())
     }
 }

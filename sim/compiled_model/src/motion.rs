@@ -3,6 +3,8 @@
 use sim::inputs::HeldInputs;
 use sim::ode::Trajectory;
 
+use crate::error::Error;
+
 /// How to integrate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Solver {
@@ -43,6 +45,19 @@ pub struct Motion {
     pub choice: Option<Choice>,
     /// Why the solver did not come to the end, if it did not.
     pub stopped: Option<Stopped>,
+}
+
+impl Motion {
+    /// The motion, if the solver came to the end.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] where it did not.
+    pub fn complete(self) -> Result<Self, Error> {
+        match self.stopped {
+            None => Ok(self),
+            Some(Stopped { t, reason }) => Err(Error::Stopped { t, reason }),
+        }
+    }
 }
 
 /// Why a solver was taken.

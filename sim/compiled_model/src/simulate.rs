@@ -32,7 +32,7 @@ pub struct Request<'r> {
 
 impl Request<'_> {
     /// The first and the last of the times, s.
-    fn span(&self) -> (f64, f64) {
+    pub fn span(&self) -> (f64, f64) {
         let first = self.times.first().copied().unwrap_or(0.0);
         (first, self.times.last().copied().unwrap_or(first))
     }
@@ -60,11 +60,7 @@ impl Instance<'_> {
             solver,
             tolerance: DEFAULT_TOLERANCE,
         };
-        let motion = self.follow(&request, &mut |_| {})?;
-        match motion.stopped {
-            None => Ok(motion),
-            Some(Stopped { t, reason }) => Err(Error::Stopped { t, reason }),
-        }
+        self.follow(&request, &mut |_| {})?.complete()
     }
 
     /// The same, of the times that the solver comes to. `progress` is told the time of the motion.
