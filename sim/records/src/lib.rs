@@ -6,6 +6,36 @@
 //! numbers of a [`record`], checked by [`samples`]; all records are a [`dataset`], examined by
 //! [`checks`] and `coverage`, cut into [`windows`]. [`inputs`] are read alone for a simulation.
 //! What is wrong is a [`refusal`]. Nothing here is simulated or fitted.
+//!
+//! ```
+//! use eomgen_records::read_dataset;
+//!
+//! # let folder = std::env::temp_dir().join(format!("eomgen-records-{}", std::process::id()));
+//! # std::fs::create_dir_all(&folder)?;
+//! let samples = (0..40).map(|k| f64::from(k) * 0.01);
+//! let rows = samples.map(|t| format!("{t},{}\n", 100.0 * (3.0 * t).cos()));
+//! std::fs::write(folder.join("run.csv"), format!("t,theta\n{}", rows.collect::<String>()))?;
+//! let dataset = folder.join("dataset.toml");
+//! std::fs::write(&dataset, r#"
+//! title = "a pendulum, let go"
+//! [records]
+//! train = ["run.csv"]
+//! [time]
+//! column = "t"
+//! unit = "s"
+//! [channels.theta]
+//! column = "theta"
+//! unit = "mrad"
+//! noise = 0.1
+//! "#)?;
+//! let model = model_spec::check(model_spec::models::PENDULUM.source())?.model;
+//! let read = read_dataset(&dataset, &model)?;
+//! // Everything is in SI.
+//! assert_eq!(read.channels[0].noise, 1e-4);
+//! assert_eq!(read.train[0].channels[0][0], 0.1);
+//! # std::fs::remove_dir_all(&folder)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod bound;
 pub mod checks;

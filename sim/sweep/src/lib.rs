@@ -8,6 +8,34 @@
 //! [`shard`] (who computes which chunk), [`run`](mod@run) (computing them), [`merge`](mod@merge) (all chunks to one
 //! table). Messages and final files are the caller's.
 //!
+//! ```
+//! use eomgen_compiled_model::{CompiledModel, Orders};
+//! use eomgen_sweep::{Axis, Folder, Grid, Job, Lyapunov, Measure, Shard, Span, merge, run};
+//! use eomgen_sweep::{job::Plan, parameters};
+//!
+//! let shipped = model_spec::models::PLANETARY_ARM;
+//! let model = CompiledModel::of_text("planetary_arm.toml", shipped.text, Orders::All(0))?;
+//! let grid = Grid::new(vec![Axis::parse("b_sp=10e-6:50e-6:3")?])?;
+//! let span = Span { transient: 2, periods: 10 };
+//! let measures: [Box<dyn Measure + '_>; 1] = [Box::new(Lyapunov::new(&model, "omega", span)?)];
+//! let plan = Plan::new(
+//!     &model.model().source,
+//!     &model.model().name,
+//!     model.orders(),
+//!     &[],
+//!     parameters::columns(model.model(), &grid)?,
+//!     &grid,
+//!     measures.iter().map(|measure| measure.describe()).collect(),
+//! );
+//! # let path = std::env::temp_dir().join(format!("eomgen-sweep-{}", std::process::id()));
+//! let folder = Folder::open(&path, Job::new(plan)?)?;
+//! run(&folder, &measures, Shard::WHOLE, 0, &mut |_, _| {})?;
+//! let table = merge(&folder)?;
+//! assert_eq!(table.column("b_sp").map(<[f64]>::len), Some(3));
+//! # std::fs::remove_dir_all(&path)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # The same bytes
 //!
 //! A number in the result depends on the job and the point alone: a worker keeps nothing

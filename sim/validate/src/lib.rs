@@ -6,6 +6,23 @@
 //! emitted source; [`certify`](certify::certify) runs them and writes the
 //! [`certificate`]. Nothing here knows how the equations under test were derived or
 //! evaluated.
+//!
+//! The oracle by itself says what a right model's rows are at a state:
+//!
+//! ```
+//! use eomgen_validate::oracle::Oracle;
+//!
+//! let model = model_spec::check(model_spec::models::PENDULUM.source())?.model;
+//! let values = model.parameter_values()?;
+//! let oracle = Oracle::new(&model, 0, &values)?;
+//! let equations = oracle.equations(0.0, &[0.3, 0.0], &[])?;
+//! let accelerations = equations.accelerations().ok_or("no inertia")?;
+//! // Of M q'' + c - f nothing is left but rounding.
+//! for row in equations.residuals(accelerations.as_slice()) {
+//!     assert!(row.value.abs() <= 1e-14 * row.scale);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod certificate;
 pub mod certify;
