@@ -2,7 +2,7 @@
 
 use eomgen_compiled_model::{Choice, Instance, Motion, Request, Solver};
 
-use crate::error::{Error, Result, warn};
+use crate::error::{Result, warn};
 use crate::progress::Bar;
 use crate::table::Table;
 

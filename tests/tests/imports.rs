@@ -231,7 +231,7 @@ impl Crate {
     /// Folders that import from themselves by way of others.
     fn folders_both_ways(&self) -> Vec<String> {
         let is_folder = |name: &String| self.files.keys().any(|m| m.len() > 1 && m[0] == *name);
-        let mut arrows = BTreeMap::<&String, BTreeSet<&String>>::new();
+        let mut arrows = BTreeMap::<String, BTreeSet<String>>::new();
         for (from, all) in &self.imports {
             for to in all {
                 if let (Some(a), Some(b)) = (from.first(), to.first())
@@ -239,13 +239,12 @@ impl Crate {
                     && is_folder(a)
                     && is_folder(b)
                 {
-                    arrows.entry(a).or_default().insert(b);
+                    arrows.entry(a.clone()).or_default().insert(b.clone());
                 }
             }
         }
-        let comes_back = |start: &&&String| reachable(&arrows, **start).contains(**start);
-        let found = arrows.keys().filter(comes_back);
-        found.map(|folder| (*folder).clone()).collect()
+        let comes_back = |start: &&String| reachable(&arrows, start).contains(*start);
+        arrows.keys().filter(comes_back).cloned().collect()
     }
 }
 

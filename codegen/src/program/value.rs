@@ -55,9 +55,9 @@ pub const PARTIAL_SUMS: usize = 8;
 pub enum Op {
     /// A number.
     Constant(f64),
-    /// A table of numbers, by its place in [`Program::tables`].
+    /// A table of numbers, by its place in [`Program::tables`](super::Program::tables).
     Table(usize),
-    /// An independent parameter, by its place in [`Program::parameters`].
+    /// An independent parameter, by its place in [`Program::parameters`](super::Program::parameters).
     Parameter(usize),
     /// A coordinate of the state.
     Coordinate(usize),
