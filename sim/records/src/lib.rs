@@ -12,14 +12,17 @@
 //!
 //! # let folder = std::env::temp_dir().join(format!("eomgen-records-{}", std::process::id()));
 //! # std::fs::create_dir_all(&folder)?;
-//! let samples = (0..40).map(|k| f64::from(k) * 0.01);
-//! let rows = samples.map(|t| format!("{t},{}\n", 100.0 * (3.0 * t).cos()));
-//! std::fs::write(folder.join("run.csv"), format!("t,theta\n{}", rows.collect::<String>()))?;
+//! for (name, amplitude) in [("small.csv", 100.0), ("large.csv", 200.0)] {
+//!     let times = (0..200).map(|k| f64::from(k) * 0.01);
+//!     let rows = times.map(|t| format!("{t},{}\n", amplitude * (3.0 * t).cos()));
+//!     std::fs::write(folder.join(name), format!("t,theta\n{}", rows.collect::<String>()))?;
+//! }
 //! let dataset = folder.join("dataset.toml");
 //! std::fs::write(&dataset, r#"
 //! title = "a pendulum, let go"
 //! [records]
-//! train = ["run.csv"]
+//! train = ["small.csv"]
+//! test = ["large.csv"]
 //! [time]
 //! column = "t"
 //! unit = "s"

@@ -16,7 +16,7 @@
 //! let shipped = model_spec::models::PLANETARY_ARM;
 //! let model = CompiledModel::of_text("planetary_arm.toml", shipped.text, Orders::All(0))?;
 //! let grid = Grid::new(vec![Axis::parse("b_sp=10e-6:50e-6:3")?])?;
-//! let span = Span { transient: 2, periods: 10 };
+//! let span = Span { transient: 2, periods: 20 };
 //! let measures: [Box<dyn Measure + '_>; 1] = [Box::new(Lyapunov::new(&model, "omega", span)?)];
 //! let plan = Plan::new(
 //!     &model.model().source,
