@@ -4,9 +4,9 @@ use std::error::Error;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use codegen::mechanics::outputs::Output;
-use codegen::rust::{Packaging, emit};
-use codegen::variant::Variant;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_codegen::variant::Variant;
 
 /// The orders; the macro in `benches/rates.rs` goes through the same.
 const ORDERS: [usize; 9] = [0, 1, 2, 4, 8, 16, 32, 64, 128];
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm.toml");
     println!("cargo::rerun-if-changed={}", specification.display());
     let out = PathBuf::from(std::env::var("OUT_DIR")?);
-    let model = model_spec::load(&specification)
+    let model = eomgen_model_spec::load(&specification)
         .map_err(|problems| problems.render(false))?
         .model;
     let mut modules = String::new();

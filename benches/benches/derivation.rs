@@ -3,15 +3,15 @@
 
 use std::path::Path;
 
-use codegen::mechanics::equations::derive;
-use codegen::program::lowering::lower;
-use codegen::rust::{Packaging, emit};
 use criterion::{Criterion, criterion_group, criterion_main};
+use eomgen_codegen::mechanics::equations::derive;
+use eomgen_codegen::program::lowering::lower;
+use eomgen_codegen::rust::{Packaging, emit};
 
 fn derivation(criterion: &mut Criterion) {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm.toml");
-    let Ok(checked) = model_spec::load(&path) else {
+    let Ok(checked) = eomgen_model_spec::load(&path) else {
         panic!("the shipped specification is in order");
     };
     let model = checked.model;

@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use eomgen_benches::{generated, state};
-use lanes::{LANES, Lanes, Registers, Task, Vector};
+use eomgen_lanes::{LANES, Lanes, Registers, Task, Vector};
 
 /// Of this crate, because a scalar is made of its own or of the traits of its own.
 #[allow(dead_code)]
@@ -14,9 +14,9 @@ mod variants {
     include!(concat!(env!("OUT_DIR"), "/variants.rs"));
 }
 
-::lanes::scalar!(variants::full_order_4);
-::lanes::scalar!(variants::full_order_16);
-::lanes::scalar!(variants::full_order_64);
+::eomgen_lanes::scalar!(variants::full_order_4);
+::eomgen_lanes::scalar!(variants::full_order_16);
+::eomgen_lanes::scalar!(variants::full_order_64);
 
 /// States.
 const STATES: usize = 16;
@@ -91,7 +91,7 @@ macro_rules! compare {
         print!("order {:>2}: one by one {alone:6.1} ns", $order);
         for registers in Registers::ALL.into_iter().filter(|kind| kind.are_there()) {
             let time = best(|| {
-                lanes::run_with(registers, All {
+                eomgen_lanes::run_with(registers, All {
                     states: black_box(&states),
                     rates: &mut lane_rates,
                     coefficients: black_box(&coefficients),

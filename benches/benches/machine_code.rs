@@ -4,17 +4,17 @@
 use std::hint::black_box;
 use std::path::Path;
 
-use codegen::mechanics::equations::derive;
-use codegen::program::Program;
-use codegen::program::evaluator::{Evaluator, Point};
-use codegen::program::lowering::lower;
 use criterion::{Criterion, criterion_group, criterion_main};
 use eomgen_benches::{generated, state, variants};
+use eomgen_codegen::mechanics::equations::derive;
+use eomgen_codegen::program::Program;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::lowering::lower;
 
 fn program(order: usize) -> Program {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm.toml");
-    let Ok(checked) = model_spec::load(&path) else {
+    let Ok(checked) = eomgen_model_spec::load(&path) else {
         panic!("the shipped specification is in order");
     };
     let model = checked.model;
@@ -43,7 +43,7 @@ macro_rules! compare {
         let program = program($order);
         let point = Point { t: 0.3, state: &state, inputs: &[] };
         for (name, mut evaluator) in [
-            ("machine_code", jit::evaluator(program.clone())),
+            ("machine_code", eomgen_jit::evaluator(program.clone())),
             ("interpreted", Evaluator::new(program.clone())),
         ] {
             group.bench_function(name, |bencher| {
@@ -55,7 +55,7 @@ macro_rules! compare {
             });
         }
         group.bench_function("start", |bencher| {
-            bencher.iter(|| jit::evaluator(black_box(program.clone())))
+            bencher.iter(|| eomgen_jit::evaluator(black_box(program.clone())))
         });
         group.finish();
     })*};

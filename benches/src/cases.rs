@@ -4,11 +4,11 @@
 use std::hint::black_box;
 use std::path::Path;
 
-use codegen::rust::{Packaging, emit};
-use codegen::variant::Variant;
+use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::model::Model;
 use eomgen_paper::reference::PlanetaryArmParameters;
 use eomgen_paper::reference::equation_22::{Eliminated, Equation22};
-use model_spec::model::Model;
 
 use crate::contenders::equation_22;
 use crate::instructions::CALLS;
@@ -112,7 +112,7 @@ pub fn run() {
     run_right_hand_sides();
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm.toml");
-    let Ok(checked) = model_spec::load(&path) else {
+    let Ok(checked) = eomgen_model_spec::load(&path) else {
         panic!("the shipped model can be read");
     };
     derive_and_emit_4(&checked.model);

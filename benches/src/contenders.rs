@@ -36,7 +36,7 @@ macro_rules! generated {
 #[inline(never)]
 pub fn floor<const N: usize>(t: f64, state: &[f64; N], omega: f64, rates: &mut [f64; N]) {
     copy_in_pairs(&state[N / 2..], &mut rates[..N / 2]);
-    rates[N / 2] = elementary::sin(omega * t);
+    rates[N / 2] = eomgen_elementary::sin(omega * t);
 }
 
 /// Hand-assembled Eq. (22).

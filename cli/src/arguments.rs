@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
-use codegen::mechanics::outputs::{Output, UnknownOutput};
+use eomgen_codegen::mechanics::outputs::{Output, UnknownOutput};
 
 /// From a specification of a mechanical system's energies to fast, checked equations of
 /// motion in Rust.

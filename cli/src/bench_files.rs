@@ -3,9 +3,9 @@
 
 use std::path::{Path, PathBuf};
 
-use codegen::mechanics::outputs::Output;
-use codegen::variant::Variant;
-use model_spec::model::Model;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::model::Model;
 
 use crate::error::{Error, Result};
 use crate::output::write_file;

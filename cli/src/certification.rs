@@ -1,12 +1,12 @@
 //! Certificates of variants: made, written, summarised.
 
-use codegen::mechanics::outputs::Output;
-use codegen::rust::Packaging;
-use codegen::variant::Variant;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::rust::Packaging;
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::model::Model;
 use eomgen_paper::reference_equations::reference_equations;
 use eomgen_validate::certificate::{Certificate, Check};
 use eomgen_validate::of_model::certificate;
-use model_spec::model::Model;
 
 use crate::emission::source;
 use crate::error::{Error, Result};

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use codegen::rust::Packaging;
+use eomgen_codegen::rust::Packaging;
+use eomgen_model_spec::model::Model;
 use eomgen_validate::of_model::unchecked;
-use model_spec::model::Model;
 use serde_json::{Value, json};
 
 use crate::certification::{certify_source, document};

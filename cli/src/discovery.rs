@@ -4,12 +4,12 @@
 use std::path::Path;
 use std::time::Instant;
 
-use discover::report::result::Validation;
-use discover::{Specification, catalogue};
+use eomgen_discover::report::result::Validation;
+use eomgen_discover::{Specification, catalogue};
+use eomgen_model_spec::source::Source;
 use eomgen_records::dataset::Dataset;
 use eomgen_records::read_dataset;
 use eomgen_validate::certificate::Check;
-use model_spec::source::Source;
 use serde_json::{Value, json};
 
 use crate::arguments;
@@ -28,7 +28,7 @@ pub fn compared(options: &arguments::Compare) -> Result<Value> {
         text: &text,
         order,
     };
-    let found = discover::compare(specification, &dataset, options.seed, &warn);
+    let found = eomgen_discover::compare(specification, &dataset, options.seed, &warn);
     let found = found.map_err(Error::discovery)?;
     let mut document = found.to_json();
     document["seconds"] = json!(begin.elapsed().as_secs_f64());
@@ -48,7 +48,7 @@ pub fn discovered(options: &arguments::Discover) -> Result<Value> {
         text: &text,
         order,
     };
-    let found = discover::discover(specification, dataset, &effects, options.seed, &warn);
+    let found = eomgen_discover::discover(specification, dataset, &effects, options.seed, &warn);
     let mut found = found.map_err(Error::discovery)?;
     found.validation = validated(&path, &found.extended, order)?;
     let mut document = found.to_json();
@@ -64,7 +64,7 @@ pub fn discovered(options: &arguments::Discover) -> Result<Value> {
 /// derived anew and set beside the independent oracle and the emitted source. None where fields
 /// have different orders, for which there are no such checks.
 fn validated(path: &str, text: &str, order: Option<usize>) -> Result<Option<Validation>> {
-    let checked = model_spec::check(Source::new(path, text));
+    let checked = eomgen_model_spec::check(Source::new(path, text));
     let model = checked.map_err(Error::Specification)?.model;
     let orders = model.orders(order);
     let orders = orders.map_err(|error| Error::model(&model.source, error))?;

@@ -1,7 +1,7 @@
 //! Emitted source.
 
-use codegen::program::Program;
-use codegen::rust::{Packaging, emit};
+use eomgen_codegen::program::Program;
+use eomgen_codegen::rust::{Packaging, emit};
 
 use crate::error::{Error, Result};
 

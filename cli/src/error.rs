@@ -5,11 +5,11 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use discover::error::DiscoverError;
+use eomgen_discover::error::DiscoverError;
+use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::source::Source;
+use eomgen_model_spec::variant::ModelError;
 use eomgen_records::Refusal;
-use model_spec::diagnostic::Diagnostics;
-use model_spec::source::Source;
-use model_spec::variant::ModelError;
 
 /// What a command comes to.
 pub type Result<T = (), E = Error> = std::result::Result<T, E>;

@@ -1,9 +1,9 @@
 //! The pictures of a finished sweep: a map over two axes, a diagram over one.
 
+use eomgen_model_spec::unit::Unit;
 use eomgen_plot::map::{Coordinate, Map, Scatter, Shades};
 use eomgen_plot::{PlotError, map_png, scatter_png};
 use eomgen_sweep::{Column, Description, Job, Table};
-use model_spec::unit::Unit;
 
 /// A picture of each measure as PNG, with the measure's name; none where not one or two
 /// axes have several values.

@@ -4,14 +4,14 @@ use std::io::IsTerminal;
 use std::path::Path;
 
 use eomgen_compiled_model::{CompiledModel, Orders};
-use model_spec::Checked;
-use model_spec::model::Model;
+use eomgen_model_spec::Checked;
+use eomgen_model_spec::model::Model;
 
 use crate::error::{Error, Result, warn};
 
 /// Reads and checks a specification; warnings go to stderr.
 pub fn load(path: &Path) -> Result<Checked> {
-    let checked = model_spec::load(path).map_err(Error::Specification)?;
+    let checked = eomgen_model_spec::load(path).map_err(Error::Specification)?;
     if !checked.warnings.is_empty() {
         warn(&checked.warnings.render(std::io::stderr().is_terminal()));
     }
@@ -25,7 +25,7 @@ pub fn orders(model: &Model, text: Option<&str>) -> Result<Vec<usize>> {
         Some(text) => Some(text.trim().parse::<usize>().map_err(|_| {
             Error::input(format!(
                 "--order {text}: expected a whole number from 0 to {}",
-                model_spec::model::MAX_ORDER
+                eomgen_model_spec::model::MAX_ORDER
             ))
         })?),
     };

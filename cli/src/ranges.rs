@@ -1,9 +1,9 @@
 //! Whether a motion stays where its model lives: what is said when a coordinate or an input
 //! leaves its range.
 
-use model_spec::model::Model;
-use sim::inputs::HeldInputs;
-use sim::ode::Trajectory;
+use eomgen_model_spec::model::Model;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::Trajectory;
 
 use crate::error::{Error, Result, warn};
 

@@ -1,8 +1,8 @@
 //! The inputs of a simulation and the times of its samples.
 
+use eomgen_model_spec::model::Model;
 use eomgen_records::read_inputs;
-use model_spec::model::Model;
-use sim::inputs::HeldInputs;
+use eomgen_sim::inputs::HeldInputs;
 
 use crate::arguments::Simulate;
 use crate::error::{Error, Result, warn};

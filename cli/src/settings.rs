@@ -1,6 +1,6 @@
 //! Parameter values given as `NAME=VALUE`, and inputs that nothing gives.
 
-use model_spec::model::Model;
+use eomgen_model_spec::model::Model;
 
 use crate::error::{Error, Result, warn};
 

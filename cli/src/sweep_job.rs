@@ -1,10 +1,10 @@
 //! What a sweep is asked for: its grid, model, measures and job.
 
 use eomgen_compiled_model::{CompiledModel, Orders};
+use eomgen_model_spec::model::Model;
 use eomgen_sweep::job::Plan;
 use eomgen_sweep::parameters::columns;
 use eomgen_sweep::{Axis, Grid, Job, Lyapunov, Measure, Poincare, Span, SweepError};
-use model_spec::model::Model;
 
 use crate::arguments::Sweep;
 use crate::error::{Error, Result};

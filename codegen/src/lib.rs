@@ -1,10 +1,10 @@
 //! From a checked model to equations of motion, and from these to programs and source.
 //!
 //! ```
-//! use codegen::program::evaluator::{Evaluator, Point};
-//! use codegen::rust::{Packaging, emit};
-//! use codegen::variant::Variant;
-//! use model_spec::source::Source;
+//! use eomgen_codegen::program::evaluator::{Evaluator, Point};
+//! use eomgen_codegen::rust::{Packaging, emit};
+//! use eomgen_codegen::variant::Variant;
+//! use eomgen_model_spec::source::Source;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let text = r#"
@@ -25,7 +25,7 @@
 //! [potential]
 //! gravity = "-m*g*l*cos(theta)"
 //! "#;
-//! let model = model_spec::check(Source::new("pendulum.toml", text))?.model;
+//! let model = eomgen_model_spec::check(Source::new("pendulum.toml", text))?.model;
 //!
 //! // Derived for fields of these orders: a pendulum has none.
 //! let variant = Variant::derive(&model, &[])?;

@@ -2,8 +2,8 @@
 //! specification and want what is emitted: what goes wrong on it is a finding on the
 //! specification. Nothing is derived here.
 
-use model_spec::diagnostic::{Diagnostic, Diagnostics};
-use model_spec::model::Model;
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::model::Model;
 
 use crate::mechanics::equations::{Equations, derive};
 use crate::mechanics::inertia;

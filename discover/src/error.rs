@@ -4,11 +4,11 @@ use crate::ids::WindowId;
 use std::fmt;
 
 use eomgen_compiled_model::Error as ModelError;
+use eomgen_model_spec::edit::EditError;
 use eomgen_records::Refusal;
 use eomgen_records::windows::Windows;
-use model_spec::edit::EditError;
-use sim::ode::SolveError;
-use sim::piecewise_linear::ExactError;
+use eomgen_sim::ode::SolveError;
+use eomgen_sim::piecewise_linear::ExactError;
 
 /// What can go wrong on the way from a specification and records to a result.
 #[derive(Clone, Debug)]

@@ -3,14 +3,14 @@
 //! ```no_run
 //! use std::path::Path;
 //!
-//! use discover::report::result::Verdict;
-//! use discover::{Specification, catalogue};
+//! use eomgen_discover::report::result::Verdict;
+//! use eomgen_discover::{Specification, catalogue};
 //! use eomgen_records::read_dataset;
-//! use model_spec::source::Source;
+//! use eomgen_model_spec::source::Source;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let text = std::fs::read_to_string("arm.toml")?;
-//! let model = model_spec::check(Source::new("arm.toml", text.as_str()))?.model;
+//! let model = eomgen_model_spec::check(Source::new("arm.toml", text.as_str()))?.model;
 //! let dataset = read_dataset(Path::new("records/dataset.toml"), &model)?;
 //! let specification = Specification {
 //!     path: "arm.toml",
@@ -19,7 +19,7 @@
 //! };
 //! let effects = catalogue::effects(None)?;
 //! let progress = |line: &str| eprintln!("{line}");
-//! let found = discover::discover(specification, dataset, &effects, 1, &progress)?;
+//! let found = eomgen_discover::discover(specification, dataset, &effects, 1, &progress)?;
 //! if found.verdict == Verdict::EffectsFound {
 //!     for effect in &found.effects {
 //!         println!("{} on {}: {}", effect.at.effect, effect.at.on, effect.term);

@@ -27,11 +27,11 @@
 
 use std::path::{Path, PathBuf};
 
-use codegen::mechanics::outputs::Output;
-use codegen::rust::{Packaging, emit};
-use codegen::variant::Variant;
-use model_spec::Checked;
-use model_spec::diagnostic::{Diagnostics, Record};
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::Checked;
+use eomgen_model_spec::diagnostic::{Diagnostics, Record};
 
 /// Why nothing, or not everything, was generated. Its `Debug` is its message, so that
 /// `fn main() -> Result<(), eomgen_build::Error>` shows it as it is meant to be read.
@@ -94,7 +94,7 @@ pub fn generate_with(
     let root = std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(PathBuf::new, PathBuf::from);
     let path = specification.as_ref();
     println!("cargo::rerun-if-changed={}", root.join(path).display());
-    let checked = model_spec::load_from(&root, path).map_err(|found| refused(&found))?;
+    let checked = eomgen_model_spec::load_from(&root, path).map_err(|found| refused(&found))?;
     for warning in checked.warnings.records() {
         println!("cargo::warning={}", line(&warning));
     }
@@ -172,7 +172,7 @@ fn line(finding: &Record) -> String {
 
 #[cfg(test)]
 mod tests {
-    use model_spec::source::Source;
+    use eomgen_model_spec::source::Source;
 
     use super::*;
 
@@ -180,13 +180,13 @@ mod tests {
                             [coordinates]\na = { unit = \"rad\" }\n[kinetic]\nrotor = \"1/2*J*dot(a)^2\"\n";
 
     fn checked(text: &str) -> Checked {
-        model_spec::check(Source::new("p.toml", text)).expect("sound")
+        eomgen_model_spec::check(Source::new("p.toml", text)).expect("sound")
     }
 
     fn arm() -> Checked {
         let path =
             Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm.toml");
-        model_spec::load(&path).expect("sound")
+        eomgen_model_spec::load(&path).expect("sound")
     }
 
     fn names(paths: &[PathBuf]) -> Vec<String> {

@@ -128,8 +128,8 @@ pub use eomgen_macros::model;
 /// ```
 #[cfg(feature = "library")]
 pub mod library {
-    pub use discover;
     pub use eomgen_compiled_model::*;
+    pub use eomgen_discover as discover;
     pub use eomgen_records as records;
-    pub use sim;
+    pub use eomgen_sim as sim;
 }

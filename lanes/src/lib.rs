@@ -21,9 +21,9 @@
 //!         potential { gravity: -m*g*l*cos(theta) }
 //!     }
 //! }
-//! lanes::scalar!(pendulum);
+//! eomgen_lanes::scalar!(pendulum);
 //!
-//! use lanes::{Lanes, Vector};
+//! use eomgen_lanes::{Lanes, Vector};
 //!
 //! /// One step of Euler's method for eight pendulums in each entry of `states`.
 //! struct Step<'a> {
@@ -31,7 +31,7 @@
 //!     coefficients: pendulum::Coefficients,
 //! }
 //!
-//! impl lanes::Task for Step<'_> {
+//! impl eomgen_lanes::Task for Step<'_> {
 //!     type Output = ();
 //!     #[inline(always)]
 //!     fn run<V: Vector>(self) {
@@ -49,7 +49,7 @@
 //!
 //! let mut states = [[[0.5; 8], [0.0; 8]]; 100];
 //! let coefficients = pendulum::Coefficients::prepare(&pendulum::Parameters::default());
-//! lanes::run(Step { states: &mut states, coefficients });
+//! eomgen_lanes::run(Step { states: &mut states, coefficients });
 //! assert!(states[99][1][7] < 0.0);
 //! ```
 //!

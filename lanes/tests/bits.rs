@@ -1,18 +1,18 @@
 //! Every lane has the bits of its numbers alone, in whatever registers the machine has: all
 //! functions of the language, and a model with contacts in other regimes from lane to lane.
 
-use lanes::{LANES, Lanes, Registers, Task, Vector};
+use eomgen_lanes::{LANES, Lanes, Registers, Task, Vector};
 use proptest::prelude::*;
 
 mod functions {
     eomgen::model! { spec = "../tests/tests/features/functions.toml", order = 0, with = [lanes] }
 }
-lanes::scalar!(functions);
+eomgen_lanes::scalar!(functions);
 
 mod arm {
     eomgen::model! { spec = "../model-spec/models/planetary_arm.toml", order = 9, with = [lanes] }
 }
-lanes::scalar!(arm);
+eomgen_lanes::scalar!(arm);
 
 macro_rules! bits {
     ($module:ident, $test:ident, $scale:literal) => {
@@ -55,7 +55,7 @@ macro_rules! bits {
                     }
                 }
                 for registers in Registers::ALL.into_iter().filter(|r| r.are_there()) {
-                    let found = lanes::run_with(registers, all());
+                    let found = eomgen_lanes::run_with(registers, all());
                     for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
                         let same = found.to_bits() == expected.to_bits() || (found.is_nan() && expected.is_nan());
                         prop_assert!(same, "{registers:?}: {found:e} and {expected:e}");

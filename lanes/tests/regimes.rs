@@ -1,13 +1,13 @@
 //! The kernel of a regime on lanes that are all in it: each has the bits of its numbers alone.
 
-use lanes::{LANES, Lanes, Registers, Task, Vector};
+use eomgen_lanes::{LANES, Lanes, Registers, Task, Vector};
 
 mod arm {
     eomgen::model! {
         spec = "../model-spec/models/planetary_arm.toml", order = 9, with = [lanes, regimes]
     }
 }
-lanes::scalar!(arm);
+eomgen_lanes::scalar!(arm);
 
 /// x_sp above its play, x_pr within it: the guards are x - b and x + b of each.
 const REGIME: u32 = 0b1011;
@@ -42,7 +42,7 @@ fn lanes_within_one_regime() {
             states: &states,
             coefficients: &coefficients,
         };
-        let (regime, found) = lanes::run_with(registers, task);
+        let (regime, found) = eomgen_lanes::run_with(registers, task);
         assert_eq!(regime, REGIME);
         for k in 0..LANES {
             let state = states.map(|numbers| numbers[k]);

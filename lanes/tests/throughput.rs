@@ -6,14 +6,14 @@ use std::hint::black_box;
 use std::ops::{Add, Mul};
 use std::time::Instant;
 
-use lanes::{LANES, Lanes, Registers, Task, Vector};
+use eomgen_lanes::{LANES, Lanes, Registers, Task, Vector};
 
 mod arm {
     eomgen::model! {
         spec = "../model-spec/models/planetary_arm.toml", order = 16, with = [lanes]
     }
 }
-lanes::scalar!(arm);
+eomgen_lanes::scalar!(arm);
 
 /// How often each is timed; the fastest counts, which other work disturbs least.
 const ROUNDS: usize = 300;
@@ -129,7 +129,7 @@ fn steps_of_eight_are_faster_than_one_after_the_other() {
                 states: states_here,
                 coefficients,
             };
-            eight = eight.min(seconds(|| lanes::run_with(registers, task)));
+            eight = eight.min(seconds(|| eomgen_lanes::run_with(registers, task)));
             assert_eq!(states.map(|numbers| numbers[3]), state);
         }
         let times = LANES as f64 * one / eight;

@@ -1,7 +1,7 @@
 //! Reads and checks a declarative specification of a mechanical system.
 //!
 //! ```
-//! use model_spec::source::Source;
+//! use eomgen_model_spec::source::Source;
 //!
 //! let text = r#"
 //! [model]
@@ -13,14 +13,14 @@
 //! [kinetic]
 //! mass = "1/2*m*dot(x)^2"
 //! "#;
-//! let model = model_spec::check(Source::new("oscillator.toml", text))?.model;
+//! let model = eomgen_model_spec::check(Source::new("oscillator.toml", text))?.model;
 //! assert_eq!(model.name, "oscillator");
 //! assert_eq!(model.state_names(&[]), ["x", "x_dot"]);
 //!
 //! let wrong = text.replace("dot(x)", "x");
-//! let found = model_spec::check(Source::new("oscillator.toml", wrong.as_str()));
+//! let found = eomgen_model_spec::check(Source::new("oscillator.toml", wrong.as_str()));
 //! assert!(found.is_err()); // kg m^2 is no energy; the message shows where
-//! # Ok::<(), model_spec::diagnostic::Diagnostics>(())
+//! # Ok::<(), eomgen_model_spec::diagnostic::Diagnostics>(())
 //! ```
 //!
 //! The pipeline, one file each: `source` (text and places), [`lexer`], [`parser`] (tokens

@@ -5,9 +5,9 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use model_spec::diagnostic::{Diagnostics, Severity};
-use model_spec::source::Source;
-use model_spec::{MAX_SIZE, check, load};
+use eomgen_model_spec::diagnostic::{Diagnostics, Severity};
+use eomgen_model_spec::source::Source;
+use eomgen_model_spec::{MAX_SIZE, check, load};
 
 /// The longest that refusing a specification may take.
 const PATIENCE: Duration = Duration::from_secs(1);

@@ -1,10 +1,10 @@
 //! Edits made by program: what is asked for changes, everything else stays byte for byte.
 
-use model_spec::edit::{
+use eomgen_model_spec::edit::{
     Edit, EditError, NewCoordinate, NewForce, NewParameter, NewTerm, NewValue, Section,
     Substitution, apply,
 };
-use model_spec::source::Source;
+use eomgen_model_spec::source::Source;
 
 const SPRING: &str = r#"# A mass on a spring with play.
 

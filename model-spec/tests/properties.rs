@@ -1,15 +1,15 @@
 //! Properties of the language on arbitrary input: nothing panics, precedence survives
 //! being written out and read back, units follow the laws of multiplication.
 
-use model_spec::ast::{BinaryOperator, Syntax, SyntaxKind};
-use model_spec::check;
-use model_spec::dimension::Dimension;
-use model_spec::lexer::tokens;
-use model_spec::models;
-use model_spec::parser::parse;
-use model_spec::source::Source;
-use model_spec::span::Span;
-use model_spec::unit::Unit;
+use eomgen_model_spec::ast::{BinaryOperator, Syntax, SyntaxKind};
+use eomgen_model_spec::check;
+use eomgen_model_spec::dimension::Dimension;
+use eomgen_model_spec::lexer::tokens;
+use eomgen_model_spec::models;
+use eomgen_model_spec::parser::parse;
+use eomgen_model_spec::source::Source;
+use eomgen_model_spec::span::Span;
+use eomgen_model_spec::unit::Unit;
 use proptest::prelude::*;
 
 fn parsed(text: &str) -> Option<Syntax> {

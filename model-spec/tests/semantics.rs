@@ -1,10 +1,10 @@
 //! What a specification means once it is accepted: values, units, orders, names, warnings.
 
-use model_spec::Checked;
-use model_spec::diagnostic::Severity;
-use model_spec::model::{CoefficientKind, ExprKind, MAX_ORDER, Model};
-use model_spec::models;
-use model_spec::source::Source;
+use eomgen_model_spec::Checked;
+use eomgen_model_spec::diagnostic::Severity;
+use eomgen_model_spec::model::{CoefficientKind, ExprKind, MAX_ORDER, Model};
+use eomgen_model_spec::models;
+use eomgen_model_spec::source::Source;
 
 const BEAM: &str = r#"[model]
 name = "beam"
@@ -59,11 +59,12 @@ delay = 0.001
 "#;
 
 fn checked(text: &str) -> Checked {
-    model_spec::check(Source::new("test.toml", text)).unwrap_or_else(|found| panic!("{found}"))
+    eomgen_model_spec::check(Source::new("test.toml", text))
+        .unwrap_or_else(|found| panic!("{found}"))
 }
 
 fn refused(text: &str) -> String {
-    let found = model_spec::check(Source::new("test.toml", text)).expect_err("not a model");
+    let found = eomgen_model_spec::check(Source::new("test.toml", text)).expect_err("not a model");
     found.render(false)
 }
 

@@ -3,12 +3,13 @@
 
 use std::path::Path;
 
-use model_spec::model::Model;
-use model_spec::models;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::models;
 
 fn shipped(name: &str) -> Model {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
-    let checked = model_spec::load(&folder.join(name)).unwrap_or_else(|found| panic!("{found}"));
+    let checked =
+        eomgen_model_spec::load(&folder.join(name)).unwrap_or_else(|found| panic!("{found}"));
     assert!(checked.warnings.is_empty(), "{}", checked.warnings);
     checked.model
 }

@@ -8,10 +8,10 @@
 //! A mass on a spring with play, by the general solver and exactly:
 //!
 //! ```
-//! use sim::inputs::HeldInputs;
-//! use sim::ode::{self, Settings, System};
-//! use sim::piecewise_linear::PiecewiseLinear;
-//! use model_spec::source::Source;
+//! use eomgen_sim::inputs::HeldInputs;
+//! use eomgen_sim::ode::{self, Settings, System};
+//! use eomgen_sim::piecewise_linear::PiecewiseLinear;
+//! use eomgen_model_spec::source::Source;
 //!
 //! struct Mass;
 //!
@@ -56,7 +56,7 @@
 //! [potential]
 //! spring = "1/2*k*deadzone(x, b)^2"
 //! "#;
-//! let model = model_spec::check(Source::new("mass_with_play.toml", text))?.model;
+//! let model = eomgen_model_spec::check(Source::new("mass_with_play.toml", text))?.model;
 //! let mut propagator = PiecewiseLinear::of(&model, &[])?.propagator(&model)?;
 //! let none = HeldInputs::zero(0);
 //! let exact = propagator.simulate(&initial, span, &samples, &none, &mut |_| {})?;

@@ -4,15 +4,15 @@
 
 use std::path::Path;
 
-use model_spec::model::Model;
-use sim::inputs::HeldInputs;
-use sim::piecewise_linear::{Lyapunov, PiecewiseLinear};
+use eomgen_model_spec::model::Model;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::piecewise_linear::{Lyapunov, PiecewiseLinear};
 
 fn model(text_or_name: &str) -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../model-spec/models")
         .join(text_or_name);
-    model_spec::load(&path)
+    eomgen_model_spec::load(&path)
         .expect("the specification is right")
         .model
 }
@@ -84,8 +84,8 @@ fn exponents_of_a_damped_oscillator_are_its_decay() {
                 omega = { value = 3, unit = \"rad/s\" }\n[coordinates]\nx = { unit = \"m\" }\n\
                 [kinetic]\nmass = \"1/2*m*dot(x)^2\"\n[potential]\nspring = \"1/2*k*x^2\"\n\
                 [forces]\nextra = { on = \"x\", value = \"F*sin(omega*t) - c*dot(x)\" }\n";
-    let source = model_spec::source::Source::new("mass.toml", text);
-    let model = model_spec::check(source).expect("right").model;
+    let source = eomgen_model_spec::source::Source::new("mass.toml", text);
+    let model = eomgen_model_spec::check(source).expect("right").model;
     let exact = PiecewiseLinear::of(&model, &[]).expect("linear");
     let mut propagator = exact.propagator(&model).expect("a propagator");
     let request = Lyapunov {

@@ -4,7 +4,7 @@ mod systems;
 
 use std::f64::consts::PI;
 
-use sim::ode::{
+use eomgen_sim::ode::{
     Method, Names, Settings, SolveError, Surface, System, Trajectory, simulate, simulate_into,
 };
 use systems::{Functions, dead_zone, dry_friction, smooth};

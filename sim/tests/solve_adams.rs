@@ -4,7 +4,7 @@ mod systems;
 
 use std::f64::consts::PI;
 
-use sim::ode::{Method, Settings, SolveError, System, Trajectory, simulate};
+use eomgen_sim::ode::{Method, Settings, SolveError, System, Trajectory, simulate};
 use systems::{Functions, dead_zone, dry_friction, smooth};
 
 fn adams(tolerance: f64) -> Settings {

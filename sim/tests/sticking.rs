@@ -2,9 +2,9 @@
 //! stepping: every step's friction impulses are those in their bounds that bring the speeds to
 //! zero, or as near as they can. It knows no surfaces, no regimes and no events.
 
-use model_spec::source::Source;
-use sim::inputs::HeldInputs;
-use sim::piecewise_linear::PiecewiseLinear;
+use eomgen_model_spec::source::Source;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::piecewise_linear::PiecewiseLinear;
 
 /// A motor drives a load through a shaft with play, rubbed dry at one end or at both.
 fn drive(more: &str) -> String {
@@ -175,7 +175,8 @@ fn with_friction(
 
 fn equations(more: &str) -> PiecewiseLinear {
     let source = Source::new("drive.toml", drive(more));
-    let checked = model_spec::check(source).unwrap_or_else(|e| panic!("{}", e.render(false)));
+    let checked =
+        eomgen_model_spec::check(source).unwrap_or_else(|e| panic!("{}", e.render(false)));
     PiecewiseLinear::of(&checked.model, &[]).expect("a piecewise-linear model")
 }
 

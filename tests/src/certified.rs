@@ -1,22 +1,22 @@
 //! Certificates of models given as text, without compiling what would be emitted: whether a
 //! right model passes and a wrong one fails.
 
-use codegen::mechanics::outputs::Output;
-use codegen::program::evaluator::Evaluator;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
 use eomgen_validate::certificate::Certificate;
 use eomgen_validate::certify::{Subject, certify};
 use eomgen_validate::derived::Derived;
 use eomgen_validate::derived_outputs::DerivedOutputs;
 use eomgen_validate::outputs::Outputs;
 use eomgen_validate::variant::Variant;
-use model_spec::model::Model;
-use model_spec::source::Source;
 
 use crate::models::variant;
 
 /// The model of a text, which must be sound.
 pub fn checked(text: &str) -> Model {
-    match model_spec::check(Source::new("model.toml", text)) {
+    match eomgen_model_spec::check(Source::new("model.toml", text)) {
         Ok(checked) => checked.model,
         Err(found) => panic!("{}\n{text}", found.render(false)),
     }
@@ -37,7 +37,7 @@ pub fn certificate_with(model: &Model, subject: &Model, outputs: &[Output]) -> C
     let order = model.fields.first().map_or(0, |field| field.order);
     let orders: Vec<usize> = subject.fields.iter().map(|field| field.order).collect();
     let functions = || {
-        let derived = codegen::variant::Variant::derive_with(subject, &orders, outputs);
+        let derived = eomgen_codegen::variant::Variant::derive_with(subject, &orders, outputs);
         let program = derived.map_err(|found| found.render(false))?.program;
         Ok(Box::new(DerivedOutputs::new(Evaluator::new(program))) as Box<dyn Outputs>)
     };

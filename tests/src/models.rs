@@ -4,10 +4,10 @@ use eomgen_validate::oracle::Oracle;
 use eomgen_validate::sampler::{Sample, Sampler};
 use std::path::{Path, PathBuf};
 
-use codegen::mechanics::equations::{Equations, derive};
-use codegen::program::evaluator::Evaluator;
-use codegen::program::lowering::lower;
-use model_spec::model::Model;
+use eomgen_codegen::mechanics::equations::{Equations, derive};
+use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_codegen::program::lowering::lower;
+use eomgen_model_spec::model::Model;
 
 /// The project's folder.
 pub fn project() -> &'static Path {
@@ -38,7 +38,7 @@ pub fn path(name: &str) -> PathBuf {
 
 /// A shipped specification, checked.
 pub fn load(name: &str) -> Model {
-    model_spec::load(&path(name))
+    eomgen_model_spec::load(&path(name))
         .expect("a shipped specification loads")
         .model
 }

@@ -4,14 +4,14 @@
 use std::cell::RefCell;
 use std::fmt::Write;
 
-use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_compiled_model::Driven;
-use model_spec::check;
-use model_spec::model::Model;
-use model_spec::source::Source;
-use sim::inputs::HeldInputs;
-use sim::ode::{Settings, SolveError, Trajectory, simulate};
-use sim::piecewise_linear::{ExactError, PiecewiseLinear, Propagator};
+use eomgen_model_spec::check;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::{Settings, SolveError, Trajectory, simulate};
+use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear, Propagator};
 
 use crate::models::variant;
 

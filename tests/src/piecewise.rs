@@ -2,8 +2,8 @@
 //! are pure numbers, and half-widths and offsets are few, so that functions rest on whole
 //! regions, at zero and at thresholds of others. Nothing is checked here.
 
+use eomgen_sim::inputs::HeldInputs;
 use eomgen_validate::random::Random;
-use sim::inputs::HeldInputs;
 
 use crate::motions::Subject;
 
@@ -26,8 +26,8 @@ pub fn machine(random: &mut Random, deepest: usize) -> Subject {
         text +=
             &format!("f_{index} = {{ on = \"{on}\", value = \"-{size:.3}*J/s^2*({term})\" }}\n");
     }
-    let source = model_spec::source::Source::new("random.toml", text.as_str());
-    let model = match model_spec::check(source) {
+    let source = eomgen_model_spec::source::Source::new("random.toml", text.as_str());
+    let model = match eomgen_model_spec::check(source) {
         Ok(checked) => checked.model,
         Err(found) => panic!("{text}\n{}", found.render(false)),
     };

@@ -5,7 +5,7 @@
 use std::fmt::Write;
 use std::process::Command;
 
-use codegen::rust::{Packaging, emit};
+use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_tests::models::{load, project, variant};
 
 /// What the run is to print, refreshed with EOMGEN_REFRESH.

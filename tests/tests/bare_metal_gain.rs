@@ -1,7 +1,7 @@
 //! The gain of the example controller (`examples/bare_metal/controller.rs`), computed anew
 //! as its documentation says.
 
-use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_tests::models::{load, project, variant};
 use nalgebra::{DMatrix, DVector};
 

@@ -2,16 +2,16 @@
 //! is made and passes, and fails where it should. What each check means and its tolerance
 //! stand in the certificate.
 
-use codegen::mechanics::outputs::Output;
-use codegen::program::lowering::lower;
-use codegen::rust::{Packaging, emit};
-use codegen::variant::Variant;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::program::lowering::lower;
+use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::model::Model;
 use eomgen_paper::reference_equations::reference_equations;
+use eomgen_sim::piecewise_linear::PiecewiseLinear;
 use eomgen_tests::models::{load, project, shipped, variant};
 use eomgen_validate::certificate::Certificate;
 use eomgen_validate::of_model::certificate;
-use model_spec::model::Model;
-use sim::piecewise_linear::PiecewiseLinear;
 
 /// The certificate of a source, with the equations that were written by hand for the model.
 fn with_references(model: &Model, order: usize, outputs: &[Output], source: String) -> Certificate {

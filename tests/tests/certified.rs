@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
+use eomgen_model_spec::source::sha256;
 use eomgen_tests::program::{accepted, run, text};
-use model_spec::source::sha256;
 use serde_json::Value;
 
 /// A lever that pushes a ram through a joint with play.

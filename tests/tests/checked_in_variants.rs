@@ -1,9 +1,9 @@
 //! The checked-in variants are what the generator emits, and compute bit for bit what the
 //! evaluator computes, interpreted and as machine code.
 
-use codegen::program::evaluator::{Evaluator, Point};
-use codegen::program::lowering::lower;
-use codegen::rust::{Packaging, emit};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::lowering::lower;
+use eomgen_codegen::rust::{Packaging, emit};
 use eomgen_tests::models::{load, project, samples, variant};
 use eomgen_tests::program::eomgen;
 
@@ -40,7 +40,7 @@ macro_rules! variants {
         $(
             #[test]
             fn $module() {
-                use generated::$module as module;
+                use eomgen_generated::$module as module;
                 assert_eq!(module::ORDERS, [$order]);
                 let coefficients = module::Coefficients::prepare(&module::Parameters::default());
                 let inputs = module::Inputs::default();
@@ -86,7 +86,7 @@ fn same_bits(
 ) {
     let model = load("planetary_arm");
     let mut evaluator = variant(&model, order).evaluator;
-    let mut compiled = jit::evaluator(evaluator.program().clone());
+    let mut compiled = eomgen_jit::evaluator(evaluator.program().clone());
     assert_eq!(state_names, evaluator.program().state_names());
     let named = evaluator
         .program()

@@ -2,7 +2,7 @@
 //! hand-written ones of Eq. (22), and complete, so that the equations can be put together
 //! from them again.
 
-use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_paper::reference::PlanetaryArmParameters;
 use eomgen_paper::reference::equation_22::{Coefficients, ModeRow};
 use eomgen_tests::models::{load, samples, variant};

@@ -2,11 +2,11 @@
 //! energies and differs from what is misprinted. `cargo test --release -p eomgen-tests
 //! --test errata -- --nocapture` prints the table.
 
-use codegen::program::evaluator::Point;
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_model_spec::model::Model;
 use eomgen_paper::reference::PlanetaryArmParameters;
 use eomgen_paper::reference::errata::errata_table;
 use eomgen_tests::models::{load, variant};
-use model_spec::model::Model;
 
 /// The specification's model with the parameters of the hand-written equations.
 fn with_parameters(model: &Model, parameters: &PlanetaryArmParameters) -> Model {

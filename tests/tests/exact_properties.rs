@@ -6,11 +6,11 @@
 
 use std::time::{Duration, Instant};
 
+use eomgen_sim::ode::{SolveError, Trajectory};
+use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
 use proptest::prelude::*;
-use sim::ode::{SolveError, Trajectory};
-use sim::piecewise_linear::ExactError;
 
 /// The longest that the exact solver may take for one motion.
 const LIMIT: Duration = Duration::from_secs(2);

@@ -8,18 +8,18 @@
 
 use std::cell::RefCell;
 
-use codegen::program::evaluator::Evaluator;
-use codegen::program::lowering::lower;
+use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_codegen::program::lowering::lower;
 use eomgen_compiled_model::Driven;
+use eomgen_model_spec::model::Model;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::{Settings, Trajectory, simulate};
+use eomgen_sim::piecewise_linear::PiecewiseLinear;
 use eomgen_tests::models::load;
 use eomgen_tests::taylor::arm::Case;
 use eomgen_tests::taylor::double_double::DoubleDouble;
 use eomgen_tests::taylor::run::{LONGEST, Run};
 use eomgen_tests::taylor::scalar::Scalar;
-use model_spec::model::Model;
-use sim::inputs::HeldInputs;
-use sim::ode::{Settings, Trajectory, simulate};
-use sim::piecewise_linear::PiecewiseLinear;
 
 /// The paper's faster ripple, 10 pi rad/s.
 const OMEGA: f64 = 31.41592653589793;
@@ -248,8 +248,8 @@ fn general_solver_agrees(order: usize, b: f64) {
     let reference = Reference::new(order, b, 0.02);
     let model = model(reference.case);
     let orders = vec![order; model.fields.len()];
-    let equations =
-        codegen::mechanics::equations::derive(&model, &orders).expect("the model can be derived");
+    let equations = eomgen_codegen::mechanics::equations::derive(&model, &orders)
+        .expect("the model can be derived");
     let parameters = model
         .parameter_values()
         .expect("the parameters have values");

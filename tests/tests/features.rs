@@ -4,13 +4,13 @@
 
 use std::path::{Path, PathBuf};
 
-use codegen::program::evaluator::Point;
-use codegen::rust::{Packaging, emit};
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_model_spec::model::Model;
 use eomgen_tests::models::{samples, variant};
 use eomgen_validate::certify::ReferenceEquations;
 use eomgen_validate::of_model::certificate;
 use eomgen_validate::sampler::Sample;
-use model_spec::model::Model;
 
 /// Declares a test per file, and that no file is forgotten.
 macro_rules! features {
@@ -85,7 +85,7 @@ fn folder() -> PathBuf {
 }
 
 fn load(name: &str) -> Model {
-    model_spec::load(&folder().join(format!("{name}.toml")))
+    eomgen_model_spec::load(&folder().join(format!("{name}.toml")))
         .unwrap_or_else(|found| panic!("{}", found.render(false)))
         .model
 }

@@ -1,12 +1,12 @@
 //! Which models are seen to be linear between their switching surfaces.
 
-use codegen::mechanics::equations::derive;
-use codegen::mechanics::linearity::{Linearity, linearity};
-use codegen::symbolic::formula::written_out;
+use eomgen_codegen::mechanics::equations::derive;
+use eomgen_codegen::mechanics::linearity::{Linearity, linearity};
+use eomgen_codegen::symbolic::formula::written_out;
+use eomgen_model_spec::check;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
 use eomgen_tests::models::{load, shipped};
-use model_spec::check;
-use model_spec::model::Model;
-use model_spec::source::Source;
 
 fn kind_of(text: &str) -> String {
     let source = Source::new("test.toml", text);

@@ -7,16 +7,16 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use codegen::mechanics::equations::derive;
-use codegen::program::evaluator::{Evaluator, Point};
-use codegen::program::lowering::lower;
-use codegen::program::{Op, Program};
+use eomgen_codegen::mechanics::equations::derive;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::lowering::lower;
+use eomgen_codegen::program::{Op, Program};
 use eomgen_compiled_model::Driven;
+use eomgen_model_spec::model::Model;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::{Settings, simulate};
 use eomgen_tests::models::{load, project, shipped};
 use eomgen_validate::random::Random;
-use model_spec::model::Model;
-use sim::inputs::HeldInputs;
-use sim::ode::{Settings, simulate};
 
 /// Points compared for each program and set of parameters.
 const POINTS: usize = 40;
@@ -122,7 +122,7 @@ struct Drawn {
 
 impl Pair {
     fn new(name: String, program: Program) -> Self {
-        let machine = jit::compile(&program).expect("machine code for this machine");
+        let machine = eomgen_jit::compile(&program).expect("machine code for this machine");
         Self {
             name,
             compiled: Evaluator::with_code(program.clone(), std::sync::Arc::new(machine)),
@@ -254,7 +254,9 @@ fn compare(name: &str, model: &Model, order: usize) {
 fn compare_all(paths: &[PathBuf], orders: &[usize]) {
     for path in paths {
         let name = path.file_stem().expect("a name").to_string_lossy();
-        let model = model_spec::load(path).expect("a specification").model;
+        let model = eomgen_model_spec::load(path)
+            .expect("a specification")
+            .model;
         let orders = if model.fields.is_empty() {
             &[0]
         } else {
@@ -294,7 +296,10 @@ fn the_general_solver_takes_the_same_steps_either_way() {
         let initial = model.initial_state(&orders).expect("an initial state");
         let samples: Vec<f64> = (0..=20).map(|k| f64::from(k) * 1e-3).collect();
         let inputs = HeldInputs::zero(program.inputs.len());
-        let evaluators = [Evaluator::new(program.clone()), jit::evaluator(program)];
+        let evaluators = [
+            Evaluator::new(program.clone()),
+            eomgen_jit::evaluator(program),
+        ];
         let [interpreted, compiled] = evaluators.map(|evaluator| {
             let system = Driven::new(RefCell::new(evaluator), &inputs);
             let settings = Settings::default();
@@ -315,7 +320,7 @@ fn tapered_by_sum() -> Model {
         "1/2*sum(i, w, integral(rho*A*exp(-x/l)*phi[i]^2, w)*dot(q[i])^2)",
     );
     assert!(text.contains(integral));
-    let checked = model_spec::check(model_spec::source::Source::new(
+    let checked = eomgen_model_spec::check(eomgen_model_spec::source::Source::new(
         "tapered.toml",
         text.replace(integral, sum),
     ));
@@ -336,7 +341,11 @@ fn every_operation_and_function_is_compared() {
     let mut models: Vec<Model> = [shipped(), specifications(&folder)]
         .concat()
         .iter()
-        .map(|path| model_spec::load(path).expect("a specification").model)
+        .map(|path| {
+            eomgen_model_spec::load(path)
+                .expect("a specification")
+                .model
+        })
         .collect();
     models.push(tapered_by_sum());
     let (mut operations, mut functions) = (BTreeSet::new(), BTreeSet::new());

@@ -3,24 +3,24 @@
 
 use std::fmt::Write as _;
 
-use codegen::mechanics::outputs::Output;
-use codegen::program::evaluator::Point;
-use codegen::rust::{Packaging, emit};
-use codegen::variant::Variant;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::source::Source;
+use eomgen_sim::ode::Trajectory;
+use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::models::variant;
 use eomgen_tests::motions::{Subject, difference, grid};
 use eomgen_tests::piecewise::machine;
 use eomgen_validate::compiler::{self, Compiler};
 use eomgen_validate::random::Random;
-use model_spec::source::Source;
-use sim::ode::Trajectory;
-use sim::piecewise_linear::ExactError;
 
 /// What solvers and kernels may differ by.
 const AGREED: f64 = 1e-8;
 
 fn subject(text: &str) -> Subject {
-    match model_spec::check(Source::new("made.toml", text)) {
+    match eomgen_model_spec::check(Source::new("made.toml", text)) {
         Ok(checked) => Subject::new(checked.model, 0),
         Err(found) => panic!("{text}\n{}", found.render(false)),
     }
@@ -165,7 +165,7 @@ push = { on = "y", value = "F*sign(u)" }
 "#,
     );
     let times = vec![0.0, 1.0, 2.0, 3.0];
-    let inputs = sim::inputs::HeldInputs::new(times, vec![0.0, 1.0, 0.0, -1.0], 1);
+    let inputs = eomgen_sim::inputs::HeldInputs::new(times, vec![0.0, 1.0, 0.0, -1.0], 1);
     subject.inputs = inputs.expect("ascending times");
     let motion = subject.exact((0.0, 4.0), &[1.0, 2.0, 3.0, 4.0]);
     let rates: Vec<f64> = motion.states.iter().map(|state| state[1]).collect();

@@ -5,12 +5,12 @@ use eomgen_records::read_dataset;
 use std::fs;
 use std::path::Path;
 
-use discover::fit::null_model::null_fit;
-use discover::model::problem::EstimationProblem;
-use discover::residual_force::residual_force;
-use discover::residual_force::types::{Kind, Profile, ResidualForce, Simple, SimplePart};
-use discover::residual_force::wording::described;
-use model_spec::source::Source;
+use eomgen_discover::fit::null_model::null_fit;
+use eomgen_discover::model::problem::EstimationProblem;
+use eomgen_discover::residual_force::residual_force;
+use eomgen_discover::residual_force::types::{Kind, Profile, ResidualForce, Simple, SimplePart};
+use eomgen_discover::residual_force::wording::described;
+use eomgen_model_spec::source::Source;
 
 const SPECIFICATION: &str = r#"
 [model]
@@ -131,7 +131,7 @@ fn found_by(hidden: &dyn Fn(f64, f64) -> f64, specification: &str) -> ResidualFo
 }
 
 fn found_in(folder: &Path, specification: &str) -> ResidualForce {
-    let model = model_spec::check(Source::new("two_carriages.toml", specification));
+    let model = eomgen_model_spec::check(Source::new("two_carriages.toml", specification));
     let model = model.expect("a sound specification").model;
     let dataset = read_dataset(&folder.join("dataset.toml"), &model).expect("a sound dataset");
     let problem = EstimationProblem::new(&dataset, None, "two_carriages.toml", specification);

@@ -124,7 +124,7 @@ fn by_command_line(folder: &Path) -> Vec<Bits> {
 
 #[test]
 fn all_routes_give_the_same_bits() {
-    let checked_in = bits!(generated::planetary_arm_order_4);
+    let checked_in = bits!(eomgen_generated::planetary_arm_order_4);
     assert_eq!(checked_in.len(), 9 * STATES_PER_REGIME);
     assert!(checked_in == bits!(with_macro::arm), "the macro differs");
     assert!(

@@ -3,10 +3,10 @@
 
 use std::path::{Path, PathBuf};
 
+use eomgen_model_spec::source::Source;
 use eomgen_tests::models::{project, shipped};
 use eomgen_tests::program::accepted;
 use jsonschema::Validator;
-use model_spec::source::Source;
 use serde_json::Value;
 
 fn validator() -> Validator {
@@ -47,7 +47,7 @@ fn json(path: &Path) -> Option<Value> {
 /// What the reader says of a specification; nothing if it is sound.
 fn reader(document: &Value) -> String {
     let text = toml_edit::ser::to_string(document).expect("TOML");
-    match model_spec::check(Source::new("a.toml", text)) {
+    match eomgen_model_spec::check(Source::new("a.toml", text)) {
         Ok(_) => String::new(),
         Err(found) => found.render(false),
     }

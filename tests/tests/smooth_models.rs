@@ -8,12 +8,12 @@
 //!       cargo test --release -p eomgen-tests --test smooth_models -- --nocapture
 //! ```
 
-use codegen::mechanics::outputs::Output;
-use codegen::program::evaluator::Point;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_model_spec::model::Model;
 use eomgen_tests::certified::{certificate, certificate_with, checked};
 use eomgen_tests::models::variant;
 use eomgen_tests::smooth_models::{SmoothModel, SmoothModels};
-use model_spec::model::Model;
 
 fn number(name: &str, absent: u64) -> u64 {
     let given = std::env::var(name).ok();

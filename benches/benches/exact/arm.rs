@@ -2,8 +2,8 @@
 //! switching surfaces, and the same motion in variables that make the right-hand side
 //! continuous. No solver is called here.
 
-use generated::planetary_arm_order_4 as g;
-use sim::ode::System;
+use eomgen_generated::planetary_arm_order_4 as g;
+use eomgen_sim::ode::System;
 
 /// Numbers in the state: x_sp, x_pr, x_c, q_1 .. q_4 (m), then their rates (m/s).
 pub const STATES: usize = g::STATES;

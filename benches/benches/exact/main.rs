@@ -15,10 +15,10 @@ use std::hint::black_box;
 use std::path::Path;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use model_spec::model::Model;
-use sim::inputs::HeldInputs;
-use sim::ode::Trajectory;
-use sim::piecewise_linear::{PiecewiseLinear, Propagator};
+use eomgen_model_spec::model::Model;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::Trajectory;
+use eomgen_sim::piecewise_linear::{PiecewiseLinear, Propagator};
 
 /// The orders at which the cost of a switch is told.
 const ORDERS: [usize; 4] = [0, 4, 16, 64];
@@ -36,7 +36,7 @@ impl Exact {
     fn new(order: usize) -> Self {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
         let path = folder.join("../model-spec/models/planetary_arm.toml");
-        let model = model_spec::load(&path).expect("a model").model;
+        let model = eomgen_model_spec::load(&path).expect("a model").model;
         let derived = PiecewiseLinear::of(&model, &[order]).expect("piecewise linear");
         Self {
             order,

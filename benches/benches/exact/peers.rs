@@ -4,7 +4,7 @@
 use differential_equations::methods::{Adaptive, DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
 use differential_equations::status::Status;
-use sim::ode::{Method, Settings, simulate};
+use eomgen_sim::ode::{Method, Settings, simulate};
 
 use crate::arm::{Located, Momentum, STATES};
 

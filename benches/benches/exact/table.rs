@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use sim::ode::Method;
+use eomgen_sim::ode::Method;
 
 use crate::Exact;
 use crate::arm::STATES;

@@ -3,7 +3,7 @@
 use std::io::IsTerminal;
 
 use eomgen_compiled_model::CompiledModel;
-use model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::diagnostic::Diagnostics;
 use serde_json::{Value, json};
 
 use crate::arguments::Check;
@@ -33,7 +33,7 @@ pub fn run(options: &Check) -> Result {
 }
 
 fn examine(options: &Check) -> Result<(CompiledModel, Diagnostics)> {
-    let checked = model_spec::load(&options.spec).map_err(Error::Specification)?;
+    let checked = eomgen_model_spec::load(&options.spec).map_err(Error::Specification)?;
     let orders = orders(&checked.model, options.order.as_deref())?;
     Ok((derive(checked.model, &orders)?, checked.warnings))
 }

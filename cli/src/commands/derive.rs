@@ -1,7 +1,7 @@
 //! `eomgen derive`: the equations of motion on stdout.
 
-use codegen::program::evaluator::Evaluator;
-use codegen::report::Report;
+use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_codegen::report::Report;
 
 use crate::arguments::{Derive, Format};
 use crate::error::{Error, Result, say};

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use codegen::rust::Packaging;
-use codegen::variant::Variant;
+use eomgen_codegen::rust::Packaging;
+use eomgen_codegen::variant::Variant;
 use eomgen_validate::certificate::Certificate;
 use serde_json::json;
 

@@ -1,6 +1,6 @@
 //! `eomgen schema`: the language's JSON schema, for editors.
 
-use model_spec::schema::SCHEMA;
+use eomgen_model_spec::schema::SCHEMA;
 
 use crate::error::{Result, say};
 

@@ -1,8 +1,8 @@
 //! The step that shows the derived equations: definitions, energies, M q'' + c = f entry by
 //! entry, the named coefficients with their values, the accelerations, what switches.
 
-use codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
-use codegen::symbolic::formula::{Formula, Symbol};
+use eomgen_codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
+use eomgen_codegen::symbolic::formula::{Formula, Symbol};
 use eomgen_page::{formula, number, table};
 use maud::{Markup, html};
 

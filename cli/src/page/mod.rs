@@ -11,7 +11,7 @@ mod steps;
 #[cfg(test)]
 mod tests;
 
-use codegen::report::Report;
+use eomgen_codegen::report::Report;
 use eomgen_page::{Figure, document};
 use maud::{Markup, html};
 

@@ -1,8 +1,8 @@
 //! The whole page: every step is there, nothing refers to the outside, and text from a
 //! specification stays text.
 
-use codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
-use codegen::symbolic::formula::Formula;
+use eomgen_codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
+use eomgen_codegen::symbolic::formula::Formula;
 
 use super::*;
 

@@ -4,11 +4,11 @@
 use std::path::{Path, PathBuf};
 
 use eomgen_compiled_model::{Request, Solver};
-use model_spec::edit::{self, Edit, NewForce, NewParameter, NewValue};
-use model_spec::models;
-use model_spec::source::Source;
+use eomgen_model_spec::edit::{self, Edit, NewForce, NewParameter, NewValue};
+use eomgen_model_spec::models;
+use eomgen_model_spec::source::Source;
+use eomgen_sim::inputs::HeldInputs;
 use serde_json::Value;
-use sim::inputs::HeldInputs;
 
 use crate::arguments::{Compare, Discover};
 use crate::discovery;
@@ -119,7 +119,7 @@ fn truth() -> Result<String> {
 /// makes another one.
 fn record(truth: &str, turn: f64) -> Result<Table> {
     let checked =
-        model_spec::check(Source::new("stage.toml", truth)).map_err(Error::Specification)?;
+        eomgen_model_spec::check(Source::new("stage.toml", truth)).map_err(Error::Specification)?;
     let compiled = derive(checked.model, &[])?;
     let times: Vec<f64> = (0..SAMPLES).map(|i| i as f64 * SAMPLE).collect();
     let force = |t: &f64| {

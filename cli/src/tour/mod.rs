@@ -6,15 +6,15 @@ mod hidden;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use codegen::program::evaluator::Evaluator;
-use codegen::report::Report;
-use codegen::rust::Packaging;
+use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_codegen::report::Report;
+use eomgen_codegen::rust::Packaging;
 use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
+use eomgen_model_spec::models;
+use eomgen_model_spec::source::Source;
 use eomgen_page::Figure;
 use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
 use eomgen_validate::certificate::Certificate;
-use model_spec::models;
-use model_spec::source::Source;
 
 use crate::certification::certify;
 use crate::emission::source;
@@ -76,7 +76,7 @@ pub fn walk(out: &Path) -> Result<TourResult> {
         steps: Vec::new(),
     };
     let note = Note::new("reading, deriving and emitting the paper's arm");
-    let checked = model_spec::check(Source::new(SPECIFICATION_PATH, SPECIFICATION))
+    let checked = eomgen_model_spec::check(Source::new(SPECIFICATION_PATH, SPECIFICATION))
         .map_err(Error::Specification)?;
     watch.lap("read and check the specification");
     let compiled = derive(checked.model, &[ORDER])?;

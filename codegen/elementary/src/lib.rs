@@ -1,7 +1,7 @@
 //! Elementary functions as plain floating-point operations: the same bits everywhere.
 //!
 //! ```
-//! use elementary::{Function, exp, sin_cos};
+//! use eomgen_elementary::{Function, exp, sin_cos};
 //!
 //! let (sine, cosine) = sin_cos(0.5);
 //! assert!((sine * sine + cosine * cosine - 1.0).abs() < 1e-15);

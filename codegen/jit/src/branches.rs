@@ -3,7 +3,7 @@
 //! branches are foreseen. Two lanes may want different arms and compute both.
 
 use cranelift_codegen::ir::condcodes::FloatCC;
-use elementary::{Kernel, Operation};
+use eomgen_elementary::{Kernel, Operation};
 
 /// The fewest operations worth a branch.
 const WORTH: usize = 8;

@@ -1,7 +1,7 @@
 //! Kernels of single numbers written with branches: only the arm taken is computed.
 
 use cranelift_codegen::ir::{BlockArg, InstBuilder, Value, types};
-use elementary::{Kernel, Operation};
+use eomgen_elementary::{Kernel, Operation};
 
 use crate::branches::{Arm, Branches, Choice};
 use crate::lanes::Lanes;

@@ -1,8 +1,8 @@
 //! Elements of values: numbers from registers and memory, and the operations that give each
 //! element from the operands' elements of the same index.
 
-use codegen::program::{Extent, Op, PARTIAL_SUMS, ValueId};
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Opcode, Value, types};
+use eomgen_codegen::program::{Extent, Op, PARTIAL_SUMS, ValueId};
 
 use crate::lanes::{Array, At, Lanes, SHORT, pairs};
 use crate::stage::Writer;

@@ -6,12 +6,12 @@
 
 use std::rc::Rc;
 
-use codegen::program::Arguments;
-use codegen::program::evaluator::{Law, law};
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Value, types};
-use elementary::{Function as Elementary, Kernel, Operation};
-use model_spec::model::Function;
+use eomgen_codegen::program::Arguments;
+use eomgen_codegen::program::evaluator::{Law, law};
+use eomgen_elementary::{Function as Elementary, Kernel, Operation};
+use eomgen_model_spec::model::Function;
 
 use crate::branches::Branches;
 use crate::lanes::Lanes;

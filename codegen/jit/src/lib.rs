@@ -2,9 +2,9 @@
 //! compiler installed: the same bits as the interpreter and as emitted Rust.
 //!
 //! ```
-//! use codegen::program::evaluator::{Evaluator, Point};
-//! use codegen::variant::Variant;
-//! use model_spec::source::Source;
+//! use eomgen_codegen::program::evaluator::{Evaluator, Point};
+//! use eomgen_codegen::variant::Variant;
+//! use eomgen_model_spec::source::Source;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let text = r#"
@@ -24,14 +24,14 @@
 //! [potential]
 //! spring = "1/2*k*x^2"
 //! "#;
-//! let model = model_spec::check(Source::new("oscillator.toml", text))?.model;
+//! let model = eomgen_model_spec::check(Source::new("oscillator.toml", text))?.model;
 //! let program = Variant::derive(&model, &[])?.program;
 //!
 //! // x and its rate, in m and m/s.
 //! let state = [0.1, 0.3];
 //! let point = Point { t: 0.0, state: &state, inputs: &[] };
 //! let (mut compiled, mut interpreted) = ([0.0; 2], [0.0; 2]);
-//! jit::evaluator(program.clone()).rates(point, &mut compiled);
+//! eomgen_jit::evaluator(program.clone()).rates(point, &mut compiled);
 //! Evaluator::new(program).rates(point, &mut interpreted);
 //! assert_eq!(compiled, interpreted);
 //! assert!((compiled[1] + 2.5).abs() < 1e-15);
@@ -52,8 +52,8 @@
 
 use std::sync::Arc;
 
-use codegen::program::Program;
-use codegen::program::evaluator::{Evaluator, MachineCode};
+use eomgen_codegen::program::Program;
+use eomgen_codegen::program::evaluator::{Evaluator, MachineCode};
 
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 mod branches;

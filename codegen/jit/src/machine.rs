@@ -5,14 +5,14 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::Mutex;
 
-use codegen::program::Program;
-use codegen::program::evaluator::{MachineCode, Places, Point, Stage};
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::{AbiParam, InstBuilder, Signature, types};
 use cranelift_codegen::settings::{self, Configurable};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{FuncId, Module, default_libcall_names};
+use eomgen_codegen::program::Program;
+use eomgen_codegen::program::evaluator::{MachineCode, Places, Point, Stage};
 
 use crate::constants::Constants;
 use crate::stage::{Call, Shared, Task, Writer};

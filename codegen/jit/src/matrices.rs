@@ -1,8 +1,8 @@
 //! Matrix operations, in memory, in the order of summation that the program defines. A loop
 //! over elements carries the sum of one element or of two neighbouring ones.
 
-use codegen::program::{Extent, Op, ScaledValue, ValueId};
 use cranelift_codegen::ir::{InstBuilder, Value, types};
+use eomgen_codegen::program::{Extent, Op, ScaledValue, ValueId};
 
 use crate::lanes::Array;
 use crate::lanes::{At, Lanes};

@@ -9,11 +9,11 @@
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
-use codegen::program::evaluator::{Places, Stage};
-use codegen::program::{Extent, Op, Program, RowValues, ValueId};
 use cranelift_codegen::ir::Value;
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder};
-use elementary::{Function as Elementary, Kernel};
+use eomgen_codegen::program::evaluator::{Places, Stage};
+use eomgen_codegen::program::{Extent, Op, Program, RowValues, ValueId};
+use eomgen_elementary::{Function as Elementary, Kernel};
 
 use crate::branches::Branches;
 use crate::constants::Constants;

@@ -3,13 +3,13 @@
 
 use std::path::Path;
 
-use codegen::program::{Extent, Op};
-use codegen::variant::Variant;
+use eomgen_codegen::program::{Extent, Op};
+use eomgen_codegen::variant::Variant;
 
 #[test]
 fn a_leaf_that_is_asked_for_by_elements_is_refused() {
     let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../model-spec/models");
-    let checked = model_spec::load(&models.join("hub_beam_tip_mass.toml"));
+    let checked = eomgen_model_spec::load(&models.join("hub_beam_tip_mass.toml"));
     let model = checked
         .unwrap_or_else(|e| panic!("{}", e.render(false)))
         .model;
@@ -17,7 +17,7 @@ fn a_leaf_that_is_asked_for_by_elements_is_refused() {
     let mut program = variant
         .unwrap_or_else(|e| panic!("{}", e.render(false)))
         .program;
-    assert!(jit::compile(&program).is_ok());
+    assert!(eomgen_jit::compile(&program).is_ok());
     let vector = program.ids().find(|id| {
         let value = program.value(*id);
         let is_vector = matches!(value.extent, Extent::Vector(_));
@@ -27,7 +27,7 @@ fn a_leaf_that_is_asked_for_by_elements_is_refused() {
     });
     let vector = vector.expect("a vector that is computed per call");
     program.values[vector.index()].op = Op::Coordinate(0);
-    let refused = jit::compile(&program)
+    let refused = eomgen_jit::compile(&program)
         .map(|_| ())
         .expect_err("a misplaced leaf");
     let message = refused.to_string();

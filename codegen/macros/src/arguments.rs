@@ -1,7 +1,7 @@
 //! What stands in the brackets of the macro: a file and an order, or sections. What the
 //! sections hold is the business of `tables`.
 
-use codegen::mechanics::outputs::Output;
+use eomgen_codegen::mechanics::outputs::Output;
 use proc_macro2::{Span, TokenStream};
 use syn::parse::{Parse, ParseStream};
 use syn::token::Brace;
@@ -121,7 +121,7 @@ fn path_after(key: &Ident, input: ParseStream<'_>) -> syn::Result<LitStr> {
 fn order_after(key: &Ident, input: ParseStream<'_>) -> syn::Result<Order> {
     let place = place(key, input);
     let wrong = || {
-        let most = model_spec::model::MAX_ORDER;
+        let most = eomgen_model_spec::model::MAX_ORDER;
         let message = format!(
             "the order is not a whole number\nhelp: give the number of modes, from 0 to {most}"
         );

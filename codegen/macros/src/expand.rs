@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use codegen::mechanics::outputs::Output;
-use codegen::rust::{Packaging, emit};
-use codegen::variant::Variant;
-use model_spec::diagnostic::Diagnostics;
-use model_spec::source::Source;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::source::Source;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use syn::{Error, LitStr};
@@ -45,7 +45,7 @@ fn file(
         Error::new(place, message)
     })?;
     let written = path.value();
-    let checked = model_spec::load_from(root, Path::new(&written))
+    let checked = eomgen_model_spec::load_from(root, Path::new(&written))
         .map_err(|found| refused(&found, &root.join(&written), place))?;
     let model = checked.model;
     let orders = model.orders(order.as_ref().map(|order| order.value));
@@ -84,7 +84,7 @@ fn refused(found: &Diagnostics, path: &Path, place: Span) -> Error {
 fn in_place(stream: TokenStream, outputs: &[Output]) -> syn::Result<TokenStream> {
     let placed = specification(&sections(stream)?)?;
     let source = Source::new(IN_PLACE, placed.text.as_str());
-    let checked = model_spec::check(source).map_err(|found| at_tokens(&found, &placed))?;
+    let checked = eomgen_model_spec::check(source).map_err(|found| at_tokens(&found, &placed))?;
     let model = checked.model;
     let orders = model
         .orders(None)
@@ -110,7 +110,7 @@ fn emitted(variant: &Variant) -> syn::Result<TokenStream> {
         .map_err(|error: proc_macro2::LexError| failed(error.to_string()))
 }
 
-fn described(error: &model_spec::variant::ModelError) -> String {
+fn described(error: &eomgen_model_spec::variant::ModelError) -> String {
     match &error.help {
         Some(help) => format!("{}\nhelp: {help}", error.message),
         None => error.message.clone(),

@@ -1,7 +1,7 @@
 //! What is wrong with a specification as errors and warnings of the compiler. What is
 //! wrong is decided elsewhere.
 
-use model_spec::diagnostic::{Diagnostic, Diagnostics, Label};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, Label};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{quote, quote_spanned};
 use syn::Error;

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use model_spec::span::Span as Bytes;
+use eomgen_model_spec::span::Span as Bytes;
 use proc_macro2::Span;
 
 /// A text and the origins of its parts.

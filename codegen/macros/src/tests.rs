@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use model_spec::diagnostic::Diagnostics;
-use model_spec::source::Source;
+use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::source::Source;
 use proc_macro2::TokenStream;
 use toml_edit::{DocumentMut, TableLike};
 
@@ -21,7 +21,7 @@ fn placed(text: &str) -> syn::Result<Placed> {
 fn refused(text: &str) -> (Diagnostics, Placed) {
     let placed = placed(text).expect("sections");
     let source = Source::new("model!", placed.text.as_str());
-    let found = model_spec::check(source).expect_err("refused");
+    let found = eomgen_model_spec::check(source).expect_err("refused");
     (found, placed)
 }
 
@@ -92,10 +92,10 @@ fn shipped() -> Vec<PathBuf> {
 /// The emitted items without the lines that name the specification's hash.
 fn emitted(source: Source) -> String {
     let hash = source.hash();
-    let model = model_spec::check(source).expect("sound").model;
+    let model = eomgen_model_spec::check(source).expect("sound").model;
     let orders = model.orders(None).expect("orders");
-    let variant = codegen::variant::Variant::derive(&model, &orders).expect("derived");
-    let text = codegen::rust::emit(&variant.program, codegen::rust::Packaging::Crate);
+    let variant = eomgen_codegen::variant::Variant::derive(&model, &orders).expect("derived");
+    let text = eomgen_codegen::rust::emit(&variant.program, eomgen_codegen::rust::Packaging::Crate);
     text.expect("emitted").replace(&hash, "")
 }
 

@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use model_spec::model::{Coefficient, CoefficientKind, Expr, ExprKind};
+use eomgen_model_spec::model::{Coefficient, CoefficientKind, Expr, ExprKind};
 
 use crate::mechanics::solve::Accelerations;
 use crate::mechanics::translate::{DeriveError, Derived, Translator};
@@ -180,11 +180,11 @@ fn at_rest_except(graph: &mut Graph, id: NodeId, kept: &[NodeId]) -> NodeId {
             Operation::Call(function, _) => {
                 matches!(
                     function,
-                    model_spec::model::Function::Deadzone
-                        | model_spec::model::Function::Contact
-                        | model_spec::model::Function::Sign
-                        | model_spec::model::Function::Abs
-                        | model_spec::model::Function::Above
+                    eomgen_model_spec::model::Function::Deadzone
+                        | eomgen_model_spec::model::Function::Contact
+                        | eomgen_model_spec::model::Function::Sign
+                        | eomgen_model_spec::model::Function::Abs
+                        | eomgen_model_spec::model::Function::Above
                 )
             }
             _ => false,

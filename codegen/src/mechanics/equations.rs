@@ -2,7 +2,7 @@
 //! d/dt(dT/dq') - dT/dq + dV/dq + dR/dq' = Q, as nodes of one graph: mass matrix,
 //! generalised forces, accelerations, energy, power and guards.
 
-use model_spec::model::{Model, ParameterValue, Term};
+use eomgen_model_spec::model::{Model, ParameterValue, Term};
 
 use crate::mechanics::coefficients::{NamedCoefficient, named};
 use crate::mechanics::forces::{applied_forces, guards, power};

@@ -1,7 +1,7 @@
 //! Forces by virtual work and from the dissipation, their power, and the surfaces at which
 //! they switch.
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use crate::mechanics::guard::Guard;
 use crate::mechanics::lagrange::{GradientBy, Variables};
@@ -23,7 +23,7 @@ pub(crate) fn applied_forces(
     for force in &translator.model.forces {
         let value = translator.node(&force.value)?;
         // A force may be called what means something else in a formula.
-        if model_spec::reserved(&force.name).is_none() {
+        if eomgen_model_spec::reserved(&force.name).is_none() {
             translator.graph.suggest_name(value, &force.name);
         }
         named.push(value);

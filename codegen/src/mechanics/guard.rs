@@ -1,6 +1,6 @@
 //! A switching surface, as a node and the function that switches there.
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use crate::symbolic::graph::NodeId;
 

@@ -1,7 +1,7 @@
 //! The rows of Lagrange's equations: gradients by coordinates and rates, the mass matrix and
 //! the velocity terms of a kinetic energy.
 
-use model_spec::model::Model;
+use eomgen_model_spec::model::Model;
 
 use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;

@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use crate::mechanics::equations::Equations;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape};

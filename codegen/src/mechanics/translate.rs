@@ -3,10 +3,10 @@
 
 use std::collections::HashMap;
 
-use model_spec::ast::BinaryOperator;
-use model_spec::diagnostic::Diagnostic;
-use model_spec::model::{Expr, ExprKind, Model};
-use model_spec::span::Span;
+use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::diagnostic::Diagnostic;
+use eomgen_model_spec::model::{Expr, ExprKind, Model};
+use eomgen_model_spec::span::Span;
 
 use crate::mechanics::fields::domain::Domain;
 use crate::mechanics::fields::function::FieldFunction;

@@ -1,6 +1,6 @@
 //! The numbers of a piecewise-linear model: matrices for given parameters and sides.
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use crate::program::evaluator::Evaluator;
 use crate::program::{Extent, Program, ValueId};

@@ -1,6 +1,6 @@
 //! The values of a program: what each holds, how it is computed, and from which.
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::graph::{Argument, Variable};

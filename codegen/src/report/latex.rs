@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use super::types::{Line, Report};
 use crate::symbolic::formula::{Formula, prose};

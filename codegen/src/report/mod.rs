@@ -11,7 +11,7 @@ mod text;
 mod types;
 mod writer;
 
-use model_spec::model::Model;
+use eomgen_model_spec::model::Model;
 
 use crate::mechanics::equations::Equations;
 use crate::program::evaluator::Evaluator;

@@ -1,7 +1,7 @@
 //! Which nodes the report shows, under which names: what is chosen before any formula is
 //! written, because formulas share lines.
 
-use model_spec::model::{Model, Term};
+use eomgen_model_spec::model::{Model, Term};
 
 use crate::mechanics::coefficients::EquationRow;
 use crate::mechanics::equations::Equations;

@@ -1,6 +1,6 @@
 //! The parts of the report, written from the equations.
 
-use model_spec::model::Term;
+use eomgen_model_spec::model::Term;
 
 use super::outline::{Outline, Shown};
 use super::types::{CoefficientLine, Line, MassMatrixEntry, Sentence};

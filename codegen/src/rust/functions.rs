@@ -8,7 +8,7 @@ use super::piecewise::{
     ABOVE, CHOSEN, CONTACT, DEADZONE, DEADZONE_ON_SIDE, EITHER, POSITIVE, TOUCHING,
 };
 use super::slopes;
-use elementary::Function as Elementary;
+use eomgen_elementary::Function as Elementary;
 
 /// What a file needs besides the operators.
 #[derive(Clone, Debug, Default)]

@@ -5,7 +5,7 @@ use super::expression::{Expression, assignment};
 use super::layout::{DEEPER, SHALLOWER};
 use super::literals::block;
 use super::slopes;
-use elementary::{Function as Elementary, Kernel, Operation};
+use eomgen_elementary::{Function as Elementary, Kernel, Operation};
 
 fn describe(function: Elementary) -> &'static str {
     match function {

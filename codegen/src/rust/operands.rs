@@ -8,8 +8,8 @@ use super::literals::identifier;
 use super::sides::of_side;
 use crate::program::evaluator::{Law, law};
 use crate::program::{Argument, Extent, Op, Output, ValueId, Variable};
-use elementary::Function as Elementary;
-use model_spec::model::Function;
+use eomgen_elementary::Function as Elementary;
+use eomgen_model_spec::model::Function;
 
 impl<'a> Body<'a> {
     /// A scalar.

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use super::expression::Expression;
 use super::functions::Needed;

@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 
 use super::literals::block;
-use elementary::Function as Elementary;
+use eomgen_elementary::Function as Elementary;
 
 /// The emitted type that stands for a function.
 pub fn type_name(function: Elementary) -> &'static str {

@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Shape, Space};

@@ -9,7 +9,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 pub use crate::symbolic::operation::{
     Argument, Assembly, Bits, Dependence, NodeId, Operation, ScaledMatrix, Shape, Space, Variable,

@@ -1,6 +1,6 @@
 //! What the nodes of the graph compute, their shapes, and what they depend on.
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
 

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::graph::{Bits, Graph, NodeId, Operation, Shape};

@@ -3,7 +3,7 @@
 
 use std::process::Command;
 
-use codegen::rust::{Packaging, emit};
+use eomgen_codegen::rust::{Packaging, emit};
 
 use crate::support::{compile, emitted, folder, model, program, shipped};
 

@@ -1,6 +1,6 @@
 //! What emitted source says of a mass matrix that can lose its definiteness on the way.
 
-use codegen::program::evaluator::Point;
+use eomgen_codegen::program::evaluator::Point;
 
 use crate::support::{emitted, evaluator, model, shipped};
 

@@ -3,9 +3,9 @@
 
 use std::path::Path;
 
-use codegen::mechanics::outputs::Output;
-use codegen::rust::{Packaging, emit};
-use codegen::variant::Variant;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_codegen::variant::Variant;
 
 use crate::support::{compile, emitted, emitted_with_all, models, shipped};
 

@@ -279,7 +279,7 @@ proptest! {
         let Some((reference, allowed)) = expected(&tree, state) else { return Ok(()) };
         let mut text = String::new();
         tree.write(&mut text);
-        let mut evaluator = match model_spec::check(model_spec::source::Source::new("r", spec(&text))) {
+        let mut evaluator = match eomgen_model_spec::check(eomgen_model_spec::source::Source::new("r", spec(&text))) {
             Ok(checked) => evaluator(&checked.model, 0),
             // Refused where constants alone divide by zero or overflow.
             Err(_) => return Ok(()),

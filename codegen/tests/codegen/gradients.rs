@@ -1,9 +1,9 @@
 //! Gradients backward through branches: what is infinite or no number in a branch that is not
 //! taken does not come through.
 
-use codegen::mechanics::outputs::Output;
-use codegen::program::evaluator::{Evaluator, Point};
-use codegen::variant::Variant;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::variant::Variant;
 
 /// A mass that a constant force pushes, and farther out one with a slope that is infinite at 0.
 const PUSHED: &str = r#"

@@ -1,6 +1,6 @@
 //! Switching surfaces: every place where the motion changes its law has one.
 
-use codegen::program::evaluator::Point;
+use eomgen_codegen::program::evaluator::Point;
 
 use crate::support::{evaluator, model, shipped};
 

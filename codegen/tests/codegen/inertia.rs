@@ -1,8 +1,8 @@
 //! Inertia at the initial state: what lacks it is refused where it is declared, and right models
 //! are not.
 
-use codegen::variant::Variant;
-use model_spec::diagnostic::Record;
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::diagnostic::Record;
 
 use crate::support::{model, models};
 

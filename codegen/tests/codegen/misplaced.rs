@@ -1,7 +1,7 @@
 //! Programs that make no sense are refused, not emitted as NaN or as a matrix of zeros.
 
-use codegen::program::{Extent, Op, Program, ValueId};
-use codegen::rust::{EmitError, Packaging, emit};
+use eomgen_codegen::program::{Extent, Op, Program, ValueId};
+use eomgen_codegen::rust::{EmitError, Packaging, emit};
 
 use crate::support::{program, shipped};
 

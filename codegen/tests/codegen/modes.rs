@@ -1,9 +1,9 @@
 //! Mode tables against published digits, against a reference to 25 digits, and against
 //! integrals by a rule that has nothing in common with the tables' own.
 
-use codegen::mechanics::fields::modes::table;
-use codegen::symbolic::tables::TableKind;
-use model_spec::model::Basis;
+use eomgen_codegen::mechanics::fields::modes::table;
+use eomgen_codegen::symbolic::tables::TableKind;
+use eomgen_model_spec::model::Basis;
 
 use crate::support::{evaluator, model, observables};
 

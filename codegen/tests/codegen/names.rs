@@ -263,7 +263,9 @@ fn prose_with_a_meaning_elsewhere() {
             spec = spec.replace(from, &to);
         }
         // A checker that refuses the text is as good.
-        if model_spec::check(model_spec::source::Source::new("p", spec.clone())).is_ok() {
+        if eomgen_model_spec::check(eomgen_model_spec::source::Source::new("p", spec.clone()))
+            .is_ok()
+        {
             compiles("prose", &spec);
         }
     }

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use codegen::rust::{Packaging, emit};
+use eomgen_codegen::rust::{Packaging, emit};
 
 use crate::support::{compile_by, program, program_with_all, shipped};
 

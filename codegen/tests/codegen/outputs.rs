@@ -1,7 +1,7 @@
 //! Requests that a model refuses: what is said, and what it still answers.
 
-use codegen::mechanics::outputs::Output;
-use codegen::variant::Variant;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::variant::Variant;
 
 /// A beam whose inertia grows where it bends: its modal mass matrix is dense and moves.
 const SWELLING: &str = r#"

@@ -6,10 +6,10 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use codegen::program::evaluator::{Evaluator, Point};
-use codegen::report::Report;
-use codegen::variant::Variant;
-use model_spec::model::Model;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::report::Report;
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::model::Model;
 
 use crate::support::{chain_of_pendulums, evaluator, model, models, observables, shipped};
 

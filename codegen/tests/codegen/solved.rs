@@ -2,7 +2,7 @@
 //! against elimination with pivoting of the dense matrix; and named coefficients against
 //! differences of the accelerations.
 
-use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use crate::support::{accelerations, equations, evaluator, model, program, shipped};
 
@@ -168,7 +168,7 @@ fn coefficients_of_the_modes_are_slopes_of_the_accelerations() {
     }
 }
 
-fn slopes_agree(model: &model_spec::model::Model, order: usize) {
+fn slopes_agree(model: &eomgen_model_spec::model::Model, order: usize) {
     let names: Vec<String> = equations(model, order)
         .coefficients
         .iter()

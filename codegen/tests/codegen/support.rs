@@ -4,19 +4,19 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use codegen::mechanics::equations::{Equations, derive};
-use codegen::mechanics::outputs::Output;
-use codegen::program::Program;
-use codegen::program::evaluator::{Evaluator, Point};
-use codegen::program::lowering::lower;
-use codegen::rust::{Packaging, emit};
-use codegen::variant::Variant;
-use model_spec::model::Model;
-use model_spec::source::Source;
+use eomgen_codegen::mechanics::equations::{Equations, derive};
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::program::Program;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::lowering::lower;
+use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
 
 /// A specification given as text, checked.
 pub fn model(text: &str) -> Model {
-    match model_spec::check(Source::new("test.toml", text)) {
+    match eomgen_model_spec::check(Source::new("test.toml", text)) {
         Ok(checked) => checked.model,
         Err(found) => panic!("{}", found.render(false)),
     }

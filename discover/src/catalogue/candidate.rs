@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use model_spec::edit::{self, Edit, EditError, NewParameter, NewValue, SetParameter};
-use model_spec::model::{Model, Parameter, ParameterValue};
-use model_spec::source::Source;
+use eomgen_model_spec::edit::{self, Edit, EditError, NewParameter, NewValue, SetParameter};
+use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
+use eomgen_model_spec::source::Source;
 
 use crate::catalogue::effect::{Change, Effect, SiteKind};
 use crate::catalogue::sites::Site;

@@ -1,8 +1,8 @@
 //! The edits of an effect: what they add, or what they replace and where.
 
-use model_spec::diagnostic::{Diagnostic, Diagnostics};
-use model_spec::edit::Section;
-use model_spec::table::Entry;
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::edit::Section;
+use eomgen_model_spec::table::Entry;
 
 use super::effect::{Change, SiteKind, Within};
 use super::fields::{new_name, some, text};

@@ -1,6 +1,6 @@
 //! Effects as data: each a list of edits with placeholders.
 
-use model_spec::edit::Section;
+use eomgen_model_spec::edit::Section;
 
 /// An effect.
 #[derive(Clone, Debug)]

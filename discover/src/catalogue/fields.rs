@@ -1,7 +1,7 @@
 //! Keys of a table in a file of effects that hold text, a list or a new name.
 
-use model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
-use model_spec::table::{Entry, Record, Written};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use eomgen_model_spec::table::{Entry, Record, Written};
 
 /// The elements of a list, at least one.
 pub(super) fn some<'d>(

@@ -1,11 +1,11 @@
 //! A file of effects: what its entries say, with every word, key and placeholder known. What an
 //! effect does in a specification is checked where it is placed.
 
-use model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
-use model_spec::source::Source;
-use model_spec::span::Span;
-use model_spec::table::{Entry, Name, Record, Written};
-use model_spec::toml_file;
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use eomgen_model_spec::source::Source;
+use eomgen_model_spec::span::Span;
+use eomgen_model_spec::table::{Entry, Name, Record, Written};
+use eomgen_model_spec::toml_file;
 
 use super::change::change;
 use super::effect::{Effect, EffectParameter, SiteKind};

@@ -17,9 +17,9 @@ pub mod user_effects;
 
 use std::path::Path;
 
-use model_spec::diagnostic::Diagnostics;
-use model_spec::source::Source;
-use model_spec::toml_file;
+use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::source::Source;
+use eomgen_model_spec::toml_file;
 
 use crate::catalogue::effect::Effect;
 use crate::thresholds;

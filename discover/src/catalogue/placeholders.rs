@@ -1,9 +1,9 @@
 //! Names in braces within the texts of an effect: all of them known, and the expressions around
 //! them sound.
 
-use model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
-use model_spec::suggest::did_you_mean;
-use model_spec::table::{Record, Written};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use eomgen_model_spec::suggest::did_you_mean;
+use eomgen_model_spec::table::{Record, Written};
 
 use super::fields::text;
 

@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use model_spec::ast::BinaryOperator;
-use model_spec::edit::Section;
-use model_spec::model::{Expr, ExprKind, Function, Model, Term};
+use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::edit::Section;
+use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
 
 use crate::catalogue::effect::SiteKind;
 

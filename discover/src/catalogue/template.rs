@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use model_spec::edit::{Edit, NewCoordinate, NewForce, NewTerm, Section, Substitution};
-use model_spec::model::{Expr, Model};
+use eomgen_model_spec::edit::{Edit, NewCoordinate, NewForce, NewTerm, Section, Substitution};
+use eomgen_model_spec::model::{Expr, Model};
 
 use crate::catalogue::effect::{Change, Within};
 use crate::catalogue::sites::Site;

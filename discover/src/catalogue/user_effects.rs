@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use model_spec::source::Source;
+use eomgen_model_spec::source::Source;
 
 use crate::catalogue::candidate::{CandidateParameter, candidates};
 use crate::catalogue::effect::Effect;
@@ -16,7 +16,7 @@ use crate::error::DiscoverError;
 /// # Errors
 /// What is wrong with a specification that an effect leaves.
 pub fn check(effects: &[Effect], path: &str, text: &str) -> Result<Vec<String>, DiscoverError> {
-    let Ok(checked) = model_spec::check(Source::new(path, text)) else {
+    let Ok(checked) = eomgen_model_spec::check(Source::new(path, text)) else {
         // What is wrong with the specification itself is said where it is read.
         return Ok(Vec::new());
     };

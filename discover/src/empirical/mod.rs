@@ -7,8 +7,8 @@ pub mod chosen;
 pub mod expressions;
 
 use crate::ids::{EffectId, EquationId, UnknownId};
-use model_spec::edit::{Edit, NewForce, NewParameter, NewValue};
-use model_spec::model::Model;
+use eomgen_model_spec::edit::{Edit, NewForce, NewParameter, NewValue};
+use eomgen_model_spec::model::Model;
 
 use crate::catalogue::candidate::{Candidate, CandidateParameter, PARAMETER_OFFSET, names};
 use crate::catalogue::candidate_unknown::CandidateUnknown;

@@ -1,7 +1,7 @@
 //! What drives neighbouring motions: how the accelerations of neighbouring models differ.
 
-use codegen::program::evaluator::{Evaluator, Point};
-use sim::exponential::Drives;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_sim::exponential::Drives;
 
 use crate::model::simulation::NeighbourDrives;
 

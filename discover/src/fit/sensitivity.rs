@@ -3,7 +3,7 @@
 //! quotients.
 
 use crate::ids::WindowId;
-use codegen::program::evaluator::Evaluator;
+use eomgen_codegen::program::evaluator::Evaluator;
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::acceleration_differences::{AccelerationDifferences, MovedEvaluator};

@@ -2,10 +2,10 @@
 //! the measured quantities among its outputs, and steps that are short enough beside the sensors'
 //! noise. It runs in [`crate::model::simulation`]; what is estimated with it is decided elsewhere.
 
-use codegen::program::evaluator::Evaluator;
+use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_compiled_model::{CompiledModel, Error, Orders};
-use model_spec::diagnostic::Diagnostics;
-use model_spec::model::{Model, Parameter, ParameterValue};
+use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::model::{Model, Parameter, ParameterValue};
 
 use crate::error::SimulationError;
 use crate::ids::{ChannelId, ParameterId};
@@ -17,7 +17,7 @@ use crate::thresholds;
 use eomgen_records::dataset::Channel;
 use eomgen_records::record::Record;
 use eomgen_records::samples::typical_step;
-use sim::exponential::ExponentialIntegrator;
+use eomgen_sim::exponential::ExponentialIntegrator;
 
 /// A derived model with its measured outputs.
 pub struct EstimationModel {

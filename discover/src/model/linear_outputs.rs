@@ -1,6 +1,6 @@
 //! Measured quantities as linear functions of the state, found by evaluating them.
 
-use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
 use crate::model::measured_outputs::MeasuredOutputs;
 use crate::thresholds;

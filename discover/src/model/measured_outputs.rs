@@ -1,6 +1,6 @@
 //! Which of a model's states and observables the channels measure.
 
-use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_records::dataset::{Channel, Quantity};
 
 /// Where a channel's quantity is found.

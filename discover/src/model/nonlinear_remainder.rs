@@ -1,9 +1,9 @@
 //! What of a model lies beyond its linear part, as two compiled programs tell it: one of the
 //! whole model and one of that part.
 
-use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 
-use sim::exponential::Force;
+use eomgen_sim::exponential::Force;
 
 /// What a model's rates are beyond those of its linear part, at fixed parameters.
 pub(crate) struct NonlinearRemainder {
@@ -83,13 +83,13 @@ mod tests {
     use std::fs;
     use std::path::{Path, PathBuf};
 
-    use sim::inputs::HeldInputs;
+    use eomgen_sim::inputs::HeldInputs;
 
     use crate::model::estimation_model::EstimationModel;
     use crate::model::simulation::NeighbourDrives;
     use eomgen_records::dataset::{Channel, Quantity};
     use eomgen_records::record::Record;
-    use sim::exponential::Free;
+    use eomgen_sim::exponential::Free;
 
     /// The rig, and the rig with teeth that deviate by more than twice the play.
     fn texts() -> (String, String) {

@@ -1,7 +1,7 @@
 //! What all fits to one dataset share: its windows, the standard deviation of its channels' noise,
 //! and the models of specifications ready to run along them.
 
-use model_spec::source::Source;
+use eomgen_model_spec::source::Source;
 
 use crate::error::DiscoverError;
 use crate::model::estimation_model::EstimationModel;
@@ -33,7 +33,9 @@ impl<'d> EstimationProblem<'d> {
     /// The problem of a dataset and of a specification's text.
     pub fn new(dataset: &'d Dataset, order: Option<usize>, path: &str, text: &str) -> Self {
         let states = || {
-            let model = model_spec::check(Source::new(path, text)).ok()?.model;
+            let model = eomgen_model_spec::check(Source::new(path, text))
+                .ok()?
+                .model;
             Some(model.state_names(&model.orders(order).ok()?))
         };
         Self {

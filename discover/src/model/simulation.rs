@@ -5,19 +5,19 @@
 
 use std::cell::RefCell;
 
-use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_compiled_model::Driven;
-use sim::inputs::HeldInputs;
-use sim::ode::{Settings, simulate};
-use sim::piecewise_linear::Propagator;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::{Settings, simulate};
+use eomgen_sim::piecewise_linear::Propagator;
 
 use crate::error::SimulationError;
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::measured_outputs::MeasuredOutputs;
 use crate::model::nonlinear_remainder::NonlinearRemainder;
 use crate::thresholds;
-use sim::exponential::{Drives, ExponentialIntegrator, Force, Options, Tangents};
-use sim::ode::runge_kutta::RungeKutta;
+use eomgen_sim::exponential::{Drives, ExponentialIntegrator, Force, Options, Tangents};
+use eomgen_sim::ode::runge_kutta::RungeKutta;
 
 /// A model at fixed parameters.
 pub struct Simulation<'m> {

@@ -2,7 +2,7 @@
 //! sensors differ from what they measure, each with its prior and its bounds.
 
 use crate::ids::ChannelId;
-use model_spec::model::{Model, Parameter};
+use eomgen_model_spec::model::{Model, Parameter};
 
 use crate::thresholds;
 use eomgen_records::dataset::{Channel, Dataset};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use model_spec::model::Model;
+use eomgen_model_spec::model::Model;
 
 use crate::model::smoothing::{sloped, smoothed};
 use eomgen_records::dataset::{Dataset, Quantity};

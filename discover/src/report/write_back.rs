@@ -2,8 +2,8 @@
 //! described, every comment kept.
 
 use crate::ids::{ChannelId, UnknownId};
-use model_spec::edit::{self, Edit, SetParameter, SetSensor};
-use model_spec::source::Source;
+use eomgen_model_spec::edit::{self, Edit, SetParameter, SetSensor};
+use eomgen_model_spec::source::Source;
 
 use crate::error::DiscoverError;
 use crate::fit::fitted::Fit;

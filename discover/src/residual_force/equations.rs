@@ -2,10 +2,10 @@
 //! end of a flexible body. Along a motion each tells where it stands and how a force of one unit
 //! in it accelerates the model. What forces are tried is decided elsewhere.
 
-use codegen::program::evaluator::{Evaluator, Point};
-use model_spec::edit::{self, Edit, NewForce, NewParameter, NewTerm, NewValue, Section};
-use model_spec::model::{Expr, ExprKind, Model};
-use model_spec::source::Source;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_model_spec::edit::{self, Edit, NewForce, NewParameter, NewTerm, NewValue, Section};
+use eomgen_model_spec::model::{Expr, ExprKind, Model};
+use eomgen_model_spec::source::Source;
 
 use crate::catalogue::effect::SiteKind;
 use crate::catalogue::sites::sites;

@@ -2,13 +2,13 @@
 //! carries neighbouring motions. Which forces is decided elsewhere.
 
 use crate::ids::WindowId;
-use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 
 use crate::fit::shooting::{Sensors, Shooting, samples_in};
 use crate::model::simulation::NeighbourDrives;
 use crate::thresholds;
-use sim::ode::runge_kutta::RungeKutta;
+use eomgen_sim::ode::runge_kutta::RungeKutta;
 
 /// Whether each of a step's four slopes is at its beginning, its middle or its end.
 const POINTS: [usize; 4] = [0, 1, 1, 2];

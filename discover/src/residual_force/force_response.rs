@@ -4,7 +4,7 @@
 //! is decided elsewhere.
 
 use crate::ids::EquationId;
-use codegen::program::evaluator::Point;
+use eomgen_codegen::program::evaluator::Point;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -14,7 +14,7 @@ use crate::fit::shooting::{Shooting, samples_in};
 use crate::model::simulation::NeighbourDrives;
 use crate::residual_force::equations::{EquationEvaluator, Equations, OperatingPoint};
 use crate::residual_force::finite_difference_response::SteppedWindow;
-use sim::exponential::Drives;
+use eomgen_sim::exponential::Drives;
 
 /// Weights of shapes in the equations: where each equation stands, and a weight per column.
 pub type Weights<'w> = dyn Fn(&[OperatingPoint], &[f64], &mut [f64]) + Sync + 'w;

@@ -1,7 +1,7 @@
 //! Which part of motions is used while candidates are screened.
 
-use model_spec::edit::{self, Edit, SetParameter};
-use model_spec::source::Source;
+use eomgen_model_spec::edit::{self, Edit, SetParameter};
+use eomgen_model_spec::source::Source;
 
 use crate::catalogue::sites::plays;
 use crate::fit::fitted::Fit;

@@ -3,7 +3,7 @@
 //! a tangent vector. Hundreds of candidates are screened in one integration.
 
 use crate::ids::CandidateId;
-use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 

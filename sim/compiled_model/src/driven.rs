@@ -4,10 +4,10 @@
 use std::borrow::Borrow;
 use std::cell::{RefCell, RefMut};
 
-use codegen::program::evaluator::{Evaluator, Point};
-use codegen::program::{Op, ValueId};
-use sim::inputs::HeldInputs;
-use sim::ode::{Surface, System};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::{Op, ValueId};
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::{Surface, System};
 
 /// A derived model driven by inputs, as the solvers see it; it owns or borrows both. The mass
 /// matrix has positive pivots at the evaluator's parameters.

@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use model_spec::diagnostic::Diagnostics;
-use model_spec::model::Model;
-use model_spec::variant::ModelError;
-use sim::piecewise_linear::ExactError;
+use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::variant::ModelError;
+use eomgen_sim::piecewise_linear::ExactError;
 
 /// What keeps a model from being compiled or run.
 #[derive(Clone, Debug)]

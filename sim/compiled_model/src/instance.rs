@@ -1,11 +1,11 @@
 //! A compiled model at one set of parameter values.
 
-use codegen::program::evaluator::{Evaluator, Point};
-use model_spec::diagnostic::{Diagnostic, Diagnostics};
-use model_spec::model::ParameterValue;
-use sim::inputs::HeldInputs;
-use sim::ode::NOT_POSITIVE;
-use sim::piecewise_linear::{ExactError, Propagator};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::model::ParameterValue;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::NOT_POSITIVE;
+use eomgen_sim::piecewise_linear::{ExactError, Propagator};
 
 use crate::error::Error;
 use crate::model::CompiledModel;

@@ -4,14 +4,14 @@
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use codegen::mechanics::equations::Equations;
-use codegen::program::Program;
-use codegen::program::evaluator::{Evaluator, MachineCode};
-use codegen::variant::Variant;
-use model_spec::Checked;
-use model_spec::model::Model;
-use model_spec::source::Source;
-use sim::piecewise_linear::{ExactError, PiecewiseLinear};
+use eomgen_codegen::mechanics::equations::Equations;
+use eomgen_codegen::program::Program;
+use eomgen_codegen::program::evaluator::{Evaluator, MachineCode};
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::Checked;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
+use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear};
 
 use crate::error::Error;
 
@@ -70,12 +70,12 @@ pub struct CompiledModel {
 
 impl CompiledModel {
     /// Reads, checks and derives a specification. Its warnings are dropped: who shows them reads
-    /// it with [`model_spec::load`] and goes on with [`CompiledModel::derive`].
+    /// it with [`eomgen_model_spec::load`] and goes on with [`CompiledModel::derive`].
     ///
     /// # Errors
     /// [`Error::Specification`] with what is wrong, each at its place.
     pub fn load(path: impl AsRef<Path>, orders: Orders<'_>) -> Result<Self, Error> {
-        let Checked { model, .. } = model_spec::load(path.as_ref())?;
+        let Checked { model, .. } = eomgen_model_spec::load(path.as_ref())?;
         Self::derive(model, orders)
     }
 
@@ -84,7 +84,7 @@ impl CompiledModel {
     /// # Errors
     /// As [`CompiledModel::load`].
     pub fn of_text(name: &str, text: &str, orders: Orders<'_>) -> Result<Self, Error> {
-        let Checked { model, .. } = model_spec::check(Source::new(name, text))?;
+        let Checked { model, .. } = eomgen_model_spec::check(Source::new(name, text))?;
         Self::derive(model, orders)
     }
 
@@ -164,7 +164,7 @@ impl CompiledModel {
     /// An evaluator of the program at these values of the independent parameters, SI: machine
     /// code where this kind of machine is known, interpreted elsewhere, with the same numbers.
     pub fn evaluator(&self, parameters: &[f64]) -> Evaluator {
-        let code = self.code.get_or_init(|| jit::code(&self.program));
+        let code = self.code.get_or_init(|| eomgen_jit::code(&self.program));
         let program = self.program.clone();
         let mut evaluator = match code {
             Some(code) => Evaluator::with_code(program, code.clone()),

@@ -1,7 +1,7 @@
 //! A simulated motion, the solver it comes from, and why it is that one.
 
-use sim::inputs::HeldInputs;
-use sim::ode::Trajectory;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::Trajectory;
 
 use crate::error::Error;
 

@@ -3,9 +3,9 @@
 
 use std::cell::RefCell;
 
-use sim::inputs::HeldInputs;
-use sim::ode::{Method, Names, Settings, SolveError, Surface, Trajectory, simulate_into};
-use sim::piecewise_linear::{ExactError, Propagator};
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::ode::{Method, Names, Settings, SolveError, Surface, Trajectory, simulate_into};
+use eomgen_sim::piecewise_linear::{ExactError, Propagator};
 
 use crate::driven::Driven;
 use crate::error::Error;

@@ -3,16 +3,16 @@
 
 use std::path::{Path, PathBuf};
 
-use codegen::program::evaluator::Evaluator;
-use codegen::report::Report;
-use codegen::symbolic::formula::Formula;
-use codegen::variant::Variant;
+use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_codegen::report::Report;
+use eomgen_codegen::symbolic::formula::Formula;
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::models;
+use eomgen_model_spec::source::Source;
 use eomgen_page::formula;
-use model_spec::models;
-use model_spec::source::Source;
 
 fn report(text: &str) -> Report {
-    let checked = model_spec::check(Source::new("test.toml", text))
+    let checked = eomgen_model_spec::check(Source::new("test.toml", text))
         .unwrap_or_else(|found| panic!("{}", found.render(false)));
     let orders = checked.model.orders(None).unwrap();
     let variant = Variant::derive_to_read(&checked.model, &orders, &[])

@@ -9,13 +9,13 @@
 //! ```
 //! use eomgen_paper::reference_equations::reference_equations;
 //!
-//! let arm = model_spec::check(model_spec::models::PLANETARY_ARM.source())?.model;
+//! let arm = eomgen_model_spec::check(eomgen_model_spec::models::PLANETARY_ARM.source())?.model;
 //! let values = arm.parameter_values()?;
 //! let found = reference_equations(&arm, 0, &values);
 //! // Eq. (12) and Eq. (22) hold of the rigid arm.
 //! assert!(!found.references.is_empty());
 //!
-//! let emps = model_spec::check(model_spec::models::EMPS.source())?.model;
+//! let emps = eomgen_model_spec::check(eomgen_model_spec::models::EMPS.source())?.model;
 //! let values = emps.parameter_values()?;
 //! assert_eq!(reference_equations(&emps, 0, &values).references.len(), 1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -1,9 +1,9 @@
 //! Which hand-written equations belong to a model, as references for its certificate. The
 //! equations themselves are in [`crate::reference`].
 
-use model_spec::model::Model;
-use model_spec::models;
-use model_spec::source::Source;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::models;
+use eomgen_model_spec::source::Source;
 
 use crate::reference::closed_forms::{self, StateAndParameters};
 use crate::reference::equation_10::{self, ShaftMotion};
@@ -65,7 +65,8 @@ fn absent(name: &str, reason: String) -> ReferenceEquations {
 fn written(model: &Model) -> Result<Model, String> {
     let mut reason = format!("nobody has written the equations of {} by hand", model.name);
     for text in SHIPPED {
-        let Ok(checked) = model_spec::check(Source::new("a shipped specification", text)) else {
+        let Ok(checked) = eomgen_model_spec::check(Source::new("a shipped specification", text))
+        else {
             continue;
         };
         let known = checked.model;

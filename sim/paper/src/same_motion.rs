@@ -3,7 +3,7 @@
 //! energies and forces and the numbers that stand in them; comments, names of terms,
 //! observables and how an expression is divided into definitions do not.
 
-use model_spec::model::{Expr, ExprKind, Field, Force, Model, ParameterValue, Term};
+use eomgen_model_spec::model::{Expr, ExprKind, Field, Force, Model, ParameterValue, Term};
 
 /// What keeps `model` from having the equations of motion of `known`; none if it has them.
 /// A parameter that `known` derives from others may have any value if its name is among

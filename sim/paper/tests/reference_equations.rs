@@ -1,17 +1,17 @@
 //! Which models the equations written by hand belong to: those with the same equations,
 //! whatever their numbers, names of terms, comments and observables.
 
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::models;
+use eomgen_model_spec::source::Source;
 use eomgen_paper::reference_equations::reference_equations;
-use model_spec::model::Model;
-use model_spec::models;
-use model_spec::source::Source;
 
 const EMPS: &str = models::EMPS.text;
 const ARM: &str = models::PLANETARY_ARM.text;
 const TWO_LINKS: &str = models::TWO_LINK_ARM.text;
 
 fn model(text: &str) -> Model {
-    model_spec::check(Source::new("a.toml", text))
+    eomgen_model_spec::check(Source::new("a.toml", text))
         .unwrap_or_else(|found| panic!("{}", found.render(false)))
         .model
 }

@@ -5,7 +5,7 @@ mod arm;
 
 use arm::Arm;
 use eomgen_paper::reference::mode_shapes::ModeShape;
-use sim::ode::{Method, Settings, Trajectory, simulate};
+use eomgen_sim::ode::{Method, Settings, Trajectory, simulate};
 
 const REFERENCE: &str = include_str!("../../../tests/reference/trajectory_order4.csv");
 

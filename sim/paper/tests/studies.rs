@@ -13,7 +13,7 @@ use eomgen_paper::studies::reading::{Forcing, Key, Kind, Reading};
 use eomgen_paper::studies::search::{Judged, Request, orders, search};
 use eomgen_paper::studies::sets::{RANGES, set};
 use eomgen_paper::studies::tally::{exclusive, histogram, share_with, shares, undecided};
-use sim::inputs::HeldInputs;
+use eomgen_sim::inputs::HeldInputs;
 
 /// A reading with a transmission error that follows b and a deflection that does not.
 fn reading(key: &Key, kind: Kind) -> Reading {

@@ -2,11 +2,11 @@
 
 use crate::description::{ChannelColumn, Description, InitialState};
 use crate::units::unit;
-use model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
-use model_spec::model::{Model, ParameterValue};
-use model_spec::suggest::did_you_mean;
-use model_spec::table::{Name, Number, Written};
-use model_spec::unit::Unit;
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics, quoted};
+use eomgen_model_spec::model::{Model, ParameterValue};
+use eomgen_model_spec::suggest::did_you_mean;
+use eomgen_model_spec::table::{Name, Number, Written};
+use eomgen_model_spec::unit::Unit;
 
 use crate::dataset::{Channel, Initial, Quantity, Uncertain};
 
@@ -79,7 +79,7 @@ pub fn inputs<'d>(
     model: &Model,
     found: &mut Diagnostics,
 ) -> Vec<Option<(&'d Written, Unit)>> {
-    let of = |input: &model_spec::model::Input| {
+    let of = |input: &eomgen_model_spec::model::Input| {
         let mut columns = description.inputs.iter();
         let column = columns.find(|column| column.name.text == input.name)?;
         let unit = found.keep(unit(&column.column.unit, &input.unit.text))?;

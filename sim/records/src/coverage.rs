@@ -2,8 +2,8 @@
 //! that move by more than noise. A verdict on nothing would be that nothing is missing.
 
 use crate::description::Description;
-use model_spec::diagnostic::{Diagnostic, Diagnostics};
-use model_spec::table::Number;
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::table::Number;
 
 use crate::dataset::Dataset;
 use crate::record::Record;

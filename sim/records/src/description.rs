@@ -3,11 +3,11 @@
 
 use std::path::Path;
 
-use model_spec::diagnostic::{Diagnostic, Diagnostics};
-use model_spec::source::Source;
-use model_spec::span::Span;
-use model_spec::table::{Entry, Name, Number, Record, Written};
-use model_spec::toml_file;
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::source::Source;
+use eomgen_model_spec::span::Span;
+use eomgen_model_spec::table::{Entry, Name, Number, Record, Written};
+use eomgen_model_spec::toml_file;
 
 /// The largest dataset file accepted, in bytes.
 const LARGEST: u64 = 1 << 20;

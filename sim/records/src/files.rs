@@ -2,8 +2,8 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use model_spec::diagnostic::Diagnostic;
-use model_spec::table::Written;
+use eomgen_model_spec::diagnostic::Diagnostic;
+use eomgen_model_spec::table::Written;
 
 use crate::description::Description;
 

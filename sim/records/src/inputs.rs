@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use model_spec::diagnostic::Diagnostics;
-use model_spec::model::Model;
-use model_spec::suggest::did_you_mean;
-use sim::inputs::HeldInputs;
+use eomgen_model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::suggest::did_you_mean;
+use eomgen_sim::inputs::HeldInputs;
 
 use crate::bound;
 use crate::checks::held_inputs;

@@ -31,7 +31,7 @@
 //! unit = "mrad"
 //! noise = 0.1
 //! "#)?;
-//! let model = model_spec::check(model_spec::models::PENDULUM.source())?.model;
+//! let model = eomgen_model_spec::check(eomgen_model_spec::models::PENDULUM.source())?.model;
 //! let read = read_dataset(&dataset, &model)?;
 //! // Everything is in SI.
 //! assert_eq!(read.channels[0].noise, 1e-4);

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use model_spec::model::Model;
-use model_spec::table::Written;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::table::Written;
 
 use crate::bound::bound;
 use crate::checks::examine;

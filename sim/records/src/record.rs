@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use model_spec::diagnostic::{Diagnostic, Diagnostics};
-use model_spec::model::Model;
-use model_spec::table::Written;
-use model_spec::unit::Unit;
-use sim::inputs::HeldInputs;
+use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::table::Written;
+use eomgen_model_spec::unit::Unit;
+use eomgen_sim::inputs::HeldInputs;
 
 use crate::columns;
 use crate::description::Description;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use model_spec::diagnostic::Diagnostics;
+use eomgen_model_spec::diagnostic::Diagnostics;
 
 /// Why records are not taken: where they are wrong, what is wrong and what would be right.
 #[derive(Clone, Debug)]

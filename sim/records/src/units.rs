@@ -1,8 +1,8 @@
 //! Units of a dataset file.
 
-use model_spec::diagnostic::Diagnostic;
-use model_spec::table::Written;
-use model_spec::unit::Unit;
+use eomgen_model_spec::diagnostic::Diagnostic;
+use eomgen_model_spec::table::Written;
+use eomgen_model_spec::unit::Unit;
 
 /// A unit of a dataset file that has the dimension of the expected one.
 ///

@@ -1,7 +1,7 @@
 //! Records cut into windows, each simulated from a state of its own. How that state is found
 //! is decided elsewhere.
 
-use sim::inputs::HeldInputs;
+use eomgen_sim::inputs::HeldInputs;
 
 use crate::record::Record;
 use crate::samples::typical_step;

@@ -27,7 +27,7 @@ mod types;
 use std::collections::HashMap;
 
 use crate::inputs::HeldInputs;
-use codegen::program::affine::AffineEvaluator;
+use eomgen_codegen::program::affine::AffineEvaluator;
 
 use crossing::first_crossing;
 use regime::Regime;

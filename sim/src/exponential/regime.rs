@@ -2,7 +2,7 @@
 //! where u is a unit constant and the inputs. A state held on surfaces moves by the convex
 //! combination of the motions on both sides that keeps it there.
 
-use codegen::program::affine::{AffineEvaluator, AffineSystem};
+use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 use nalgebra::DMatrix;
 
 use super::kernels::Columns;

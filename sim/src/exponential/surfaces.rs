@@ -1,6 +1,6 @@
 //! The switching surfaces of a piecewise-linear model and on which side of each a motion is.
 
-use codegen::program::affine::{AffineEvaluator, AffineSystem};
+use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 
 /// On which side of a surface a motion is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -3,8 +3,8 @@ use std::path::Path;
 
 use crate::inputs::HeldInputs;
 use crate::piecewise_linear::PiecewiseLinear;
-use model_spec::model::Model;
-use model_spec::source::Source;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
 
 use super::{Drives, ExponentialIntegrator, Free, Options, Tangents};
 
@@ -12,7 +12,7 @@ fn rig() -> Model {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models/planetary_arm_rig.toml");
     let text = fs::read_to_string(path).expect("the rig");
-    model_spec::check(Source::new("rig", &*text))
+    eomgen_model_spec::check(Source::new("rig", &*text))
         .expect("valid")
         .model
 }
@@ -94,7 +94,7 @@ push = { on = "y", value = "u" }
 "#;
     let is_integrated = |jump: &str| {
         let source = Source::new("preload", text.replace("JUMP", jump).as_str());
-        let model = model_spec::check(source).expect("valid").model;
+        let model = eomgen_model_spec::check(source).expect("valid").model;
         let exact = PiecewiseLinear::of(&model, &[]).expect("piecewise linear");
         ExponentialIntegrator::new(exact.evaluator(&exact_values(&model)), 1e-3, 1.0).is_some()
     };
@@ -111,11 +111,10 @@ push = { on = "y", value = "u" }
 
 fn exact_values(model: &Model) -> Vec<f64> {
     let all = model.parameter_values().expect("values");
-    let independent = model
-        .parameters
-        .iter()
-        .zip(&all)
-        .filter(|(p, _)| matches!(p.value, model_spec::model::ParameterValue::Number(_)));
+    let independent =
+        model.parameters.iter().zip(&all).filter(|(p, _)| {
+            matches!(p.value, eomgen_model_spec::model::ParameterValue::Number(_))
+        });
     independent.map(|(_, value)| *value).collect()
 }
 
@@ -189,7 +188,7 @@ block = "1/2*m*dot(x)^2"
 push = { on = "x", value = "u" }
 friction = { on = "x", value = "-T*sign(dot(x))" }
 "#;
-    model_spec::check(Source::new("block", text))
+    eomgen_model_spec::check(Source::new("block", text))
         .expect("valid")
         .model
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use codegen::program::affine::AffineEvaluator;
+use eomgen_codegen::program::affine::AffineEvaluator;
 
 use super::regime::Regime;
 use super::remainder::{Force, RegimeDifference, Remainder};

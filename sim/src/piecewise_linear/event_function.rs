@@ -2,7 +2,7 @@
 //! derivatives by time cost a few products per mode, and the limits between which it stays
 //! while the regime lasts.
 
-use codegen::program::affine::AffineRows;
+use eomgen_codegen::program::affine::AffineRows;
 use nalgebra::{Complex, DVector};
 
 use super::forced::factorial;

@@ -1,10 +1,10 @@
 //! Which models can be propagated exactly, and what is derived once for all parameters.
 
-use codegen::mechanics::affine::affine;
-use codegen::mechanics::equations::derive;
-use codegen::program::affine::{AffineEvaluator, AffineProgram};
-use codegen::program::lowering::lower_affine;
-use model_spec::model::{Model, ParameterValue};
+use eomgen_codegen::mechanics::affine::affine;
+use eomgen_codegen::mechanics::equations::derive;
+use eomgen_codegen::program::affine::{AffineEvaluator, AffineProgram};
+use eomgen_codegen::program::lowering::lower_affine;
+use eomgen_model_spec::model::{Model, ParameterValue};
 
 use super::error::ExactError;
 use super::propagator::Propagator;
@@ -27,11 +27,12 @@ impl PiecewiseLinear {
         let equations =
             derive(model, orders).map_err(|error| ExactError::Model(error.message.clone()))?;
         // The node in the way is named while its graph is still there.
-        if let codegen::mechanics::linearity::Linearity::Nonlinear(node) =
-            codegen::mechanics::linearity::linearity(&equations)
+        if let eomgen_codegen::mechanics::linearity::Linearity::Nonlinear(node) =
+            eomgen_codegen::mechanics::linearity::linearity(&equations)
         {
             let formula =
-                codegen::symbolic::formula::abridged(&equations.graph, model, node).to_string();
+                eomgen_codegen::symbolic::formula::abridged(&equations.graph, model, node)
+                    .to_string();
             return Err(ExactError::NotLinear { formula });
         }
         let affine = affine(equations).map_err(|_| ExactError::NotLinear {

@@ -1,7 +1,7 @@
 //! A regime in outline: its equations without what is prepared for stepping, to decide whether
 //! it is the one to be visited.
 
-use codegen::program::affine::AffineSystem;
+use eomgen_codegen::program::affine::AffineSystem;
 
 use super::dependents::Standing;
 use super::derivative::Rates;

@@ -1,6 +1,6 @@
 //! Switching surfaces in families of parallel ones, and where a motion stands among them.
 
-use codegen::program::affine::{AffineEvaluator, AffineSystem};
+use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 
 use super::event_function::{Limits, Linear};
 

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use codegen::program::affine::AffineEvaluator;
+use eomgen_codegen::program::affine::AffineEvaluator;
 use fearless_simd::{Level, Simd, dispatch};
 use nalgebra::{Complex, DVector};
 

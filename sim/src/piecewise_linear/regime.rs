@@ -3,7 +3,7 @@
 //! The state moves from where it began by a polynomial (the integrals), by exponentials (the
 //! modes, and one per sinusoid for the response it forces), and in rare cases by clusters: eigenvalues that nearly agree, or that a forcing frequency nearly meets.
 
-use codegen::program::affine::AffineSystem;
+use eomgen_codegen::program::affine::AffineSystem;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::decomposition::{Decomposition, Failure, Part};

@@ -6,7 +6,7 @@
 //! u (rate of g) on the surface; it is then found once, and a grazing crossing divides
 //! nothing small by nothing small.
 
-use codegen::program::affine::{AffineRows, AffineSystem};
+use eomgen_codegen::program::affine::{AffineRows, AffineSystem};
 use nalgebra::{DVector, Matrix2, Vector2};
 
 use super::event_function::Linear;

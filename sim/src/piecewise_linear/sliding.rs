@@ -3,7 +3,7 @@
 //! is followed (Filippov). How much of either side is a linear function of the motion
 //! again; where it leaves 0 to 1 the surface is left.
 
-use codegen::program::affine::{AffineEvaluator, AffineRows, AffineSystem};
+use eomgen_codegen::program::affine::{AffineEvaluator, AffineRows, AffineSystem};
 use nalgebra::{DMatrix, DVector};
 
 use super::event_function::Linear;

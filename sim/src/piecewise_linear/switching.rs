@@ -1,6 +1,6 @@
 //! What switching can do to a model at all, whatever its state.
 
-use codegen::program::affine::{AffineEvaluator, AffineSystem};
+use eomgen_codegen::program::affine::{AffineEvaluator, AffineSystem};
 
 use super::propagator::Propagator;
 

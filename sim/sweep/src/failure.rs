@@ -1,8 +1,8 @@
 //! What of a failed point is kept.
 
 use eomgen_compiled_model::Error;
-use sim::ode::SolveError;
-use sim::piecewise_linear::ExactError;
+use eomgen_sim::ode::SolveError;
+use eomgen_sim::piecewise_linear::ExactError;
 
 use crate::measure::Failure;
 

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use eomgen_compiled_model::Instance;
-use model_spec::model::Model;
-use model_spec::unit::Unit;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::unit::Unit;
 
 use crate::error::SweepError;
 use crate::measure::Failure;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use model_spec::source::Source;
+use eomgen_model_spec::source::Source;
 use serde::{Deserialize, Serialize};
 
 use super::error::SweepError;

@@ -13,7 +13,7 @@
 //! use eomgen_sweep::{Axis, Folder, Grid, Job, Lyapunov, Measure, Shard, Span, merge, run};
 //! use eomgen_sweep::{job::Plan, parameters};
 //!
-//! let shipped = model_spec::models::PLANETARY_ARM;
+//! let shipped = eomgen_model_spec::models::PLANETARY_ARM;
 //! let model = CompiledModel::of_text("planetary_arm.toml", shipped.text, Orders::All(0))?;
 //! let grid = Grid::new(vec![Axis::parse("b_sp=10e-6:50e-6:3")?])?;
 //! let span = Span { transient: 2, periods: 20 };

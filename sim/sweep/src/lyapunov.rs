@@ -1,5 +1,5 @@
 //! The measure `lyapunov`: how fast neighbouring motions part, with tangent vectors that are
-//! carried exactly. The numbers themselves come from [`sim::piecewise_linear`].
+//! carried exactly. The numbers themselves come from [`eomgen_sim::piecewise_linear`].
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use super::measure::{Column, Description, Failure, Measure, Worker};
 use super::span::Span;
 use eomgen_analysis::exponent::{FEWEST, mean_exponent};
 use eomgen_compiled_model::CompiledModel;
-use sim::piecewise_linear::{ExactError, Lyapunov as Request};
+use eomgen_sim::piecewise_linear::{ExactError, Lyapunov as Request};
 
 /// Measures a model at many parameter values that are linear between their switches.
 pub struct Lyapunov<'a> {

@@ -1,6 +1,6 @@
 //! The varied parameters as columns of a result.
 
-use model_spec::model::Model;
+use eomgen_model_spec::model::Model;
 
 use crate::error::SweepError;
 use crate::grid::Grid;

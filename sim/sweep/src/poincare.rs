@@ -10,7 +10,7 @@ use super::measure::{Column, Description, Failure, Measure, Worker};
 use super::span::Span;
 use eomgen_analysis::poincare::{LONGEST_PERIOD, Section};
 use eomgen_compiled_model::{CompiledModel, Driven, Instance};
-use sim::ode::{Settings, Trajectory, simulate};
+use eomgen_sim::ode::{Settings, Trajectory, simulate};
 
 /// Looks at the motion per forcing period: one belongs to the section, all together give the
 /// extent of the motion.

@@ -1,6 +1,6 @@
 //! Small systems with known solutions, for the tests of the solvers.
 
-use sim::ode::System;
+use eomgen_sim::ode::System;
 
 /// A system made of functions.
 pub struct Functions<R, G> {

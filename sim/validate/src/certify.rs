@@ -8,8 +8,8 @@ use super::checks::{
 use super::oracle::{Oracle, OracleError};
 use super::outputs::Outputs;
 use super::variant::Variant;
-use model_spec::model::{MAX_ORDER, Model};
-use model_spec::source::sha256;
+use eomgen_model_spec::model::{MAX_ORDER, Model};
+use eomgen_model_spec::source::sha256;
 
 pub use super::checks::exact::{Derivative, Sized};
 pub use super::checks::linked::{Emitted, EmittedFunction};

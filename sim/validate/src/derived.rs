@@ -1,8 +1,8 @@
 //! A derived model seen by the certificate: the evaluator of its program behind its trait. No
 //! equation is written here.
 
-use codegen::program::evaluator::{Evaluator, Point};
-use sim::ode::NOT_POSITIVE;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_sim::ode::NOT_POSITIVE;
 
 use crate::variant::Variant;
 

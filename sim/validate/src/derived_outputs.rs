@@ -1,9 +1,9 @@
 //! What was asked for of a derived model, seen by the certificate: the evaluator of its
 //! program behind the trait. Nothing is derived here.
 
-use codegen::program::BlockPlace;
-use codegen::program::Jacobian;
-use codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::BlockPlace;
+use eomgen_codegen::program::Jacobian;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use nalgebra::DMatrix;
 
 use crate::outputs::Outputs;

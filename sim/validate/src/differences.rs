@@ -4,7 +4,7 @@
 
 use super::oracle::{Oracle, Side};
 use super::sampler::Sample;
-use model_spec::model::{Model, ParameterValue};
+use eomgen_model_spec::model::{Model, ParameterValue};
 
 /// Weights of f(k h) - f(-k h), k = 1 .. 4 (Fornberg, "Generation of finite difference
 /// formulas on arbitrarily spaced grids", Math. Comp. 51, 1988, table 1).

@@ -12,7 +12,7 @@
 //! ```
 //! use eomgen_validate::oracle::Oracle;
 //!
-//! let model = model_spec::check(model_spec::models::PENDULUM.source())?.model;
+//! let model = eomgen_model_spec::check(eomgen_model_spec::models::PENDULUM.source())?.model;
 //! let values = model.parameter_values()?;
 //! let oracle = Oracle::new(&model, 0, &values)?;
 //! let equations = oracle.equations(0.0, &[0.3, 0.0], &[])?;

@@ -3,15 +3,15 @@
 
 use std::cell::RefCell;
 
-use codegen::mechanics::equations::derive;
-use codegen::mechanics::outputs::Output;
-use codegen::mechanics::outputs::derive_outputs;
-use codegen::program::Program;
-use codegen::program::evaluator::Evaluator;
-use codegen::program::lowering::lower_with_outputs;
-use codegen::rust::{Packaging, emit};
-use model_spec::model::Model;
-use model_spec::variant::ModelError;
+use eomgen_codegen::mechanics::equations::derive;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::mechanics::outputs::derive_outputs;
+use eomgen_codegen::program::Program;
+use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_codegen::program::lowering::lower_with_outputs;
+use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::variant::ModelError;
 
 use crate::certificate::Certificate;
 use crate::certify::{
@@ -22,7 +22,7 @@ use crate::derived_outputs::DerivedOutputs;
 use crate::outputs::Outputs;
 use crate::variant::Variant;
 use eomgen_compiled_model::{CompiledModel, Orders};
-use sim::piecewise_linear::Propagator;
+use eomgen_sim::piecewise_linear::Propagator;
 
 /// The certificate of `model` with every field at `order`; `emitted` is the source of
 /// that variant with `outputs`, as a file by itself.

@@ -1,11 +1,11 @@
 //! Small models for the tests of the validation, each with equations a textbook gives.
 
-use model_spec::model::Model;
-use model_spec::source::Source;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
 
 /// The model a specification describes.
 pub(super) fn model(text: &str) -> Model {
-    match model_spec::check(Source::new("test.toml", text)) {
+    match eomgen_model_spec::check(Source::new("test.toml", text)) {
         Ok(checked) => checked.model,
         Err(diagnostics) => panic!("{}", diagnostics.render(false)),
     }

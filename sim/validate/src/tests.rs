@@ -415,7 +415,7 @@ fn a_certificate_names_the_texts_and_the_values_that_it_is_about() {
         certificate.specification_sha256,
         model(SPRING).source.hash()
     );
-    let source = model_spec::source::sha256(EMITTED);
+    let source = eomgen_model_spec::source::sha256(EMITTED);
     assert_eq!(certificate.source_sha256, Some(source));
     let values = [("m", 2.0), ("k", 300.0), ("b", 0.01), ("c", 5.0)];
     let values = values.map(|(name, value)| (name.to_owned(), value));

@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
-use discover::catalogue::candidate::{Candidate, candidates};
-use discover::catalogue::effects;
-use discover::catalogue::sites::sites;
+use eomgen_discover::catalogue::candidate::{Candidate, candidates};
+use eomgen_discover::catalogue::effects;
+use eomgen_discover::catalogue::sites::sites;
+use eomgen_model_spec::edit::{self, Edit, SetParameter};
+use eomgen_model_spec::source::Source;
 use eomgen_tests::program;
-use model_spec::edit::{self, Edit, SetParameter};
-use model_spec::source::Source;
 use serde_json::Value;
 
 /// The longest a search may take, on a machine with much else to do.
@@ -337,7 +337,7 @@ impl Machine {
 
     /// An entry of the catalogue as a candidate.
     fn candidate(&self, hidden: &Hidden, entry: usize, order: Option<u32>) -> Candidate {
-        let checked = model_spec::check(Source::new(self.name, self.specification));
+        let checked = eomgen_model_spec::check(Source::new(self.name, self.specification));
         let model = checked.unwrap_or_else(|found| panic!("{found}")).model;
         let catalogue = effects(None).expect("the catalogue");
         let mut named = catalogue

@@ -3,16 +3,16 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use codegen::variant::Variant;
-use discover::catalogue::candidate::{Candidate, candidates};
-use discover::catalogue::effect::{Effect, SiteKind};
-use discover::catalogue::effects;
-use discover::catalogue::sites::sites;
+use eomgen_codegen::variant::Variant;
+use eomgen_discover::catalogue::candidate::{Candidate, candidates};
+use eomgen_discover::catalogue::effect::{Effect, SiteKind};
+use eomgen_discover::catalogue::effects;
+use eomgen_discover::catalogue::sites::sites;
+use eomgen_model_spec::source::Source;
 use eomgen_tests::models::shipped;
-use model_spec::source::Source;
 
 /// The candidates of an effect in a model, of each place and angle the first order alone.
-fn placed(model: &model_spec::model::Model, effect: &Effect) -> Vec<Candidate> {
+fn placed(model: &eomgen_model_spec::model::Model, effect: &Effect) -> Vec<Candidate> {
     let one = std::slice::from_ref(effect);
     let mut found = candidates(model, one, &sites(model), &BTreeMap::new());
     let key = |c: &Candidate| {
@@ -36,14 +36,15 @@ fn every_effect_leaves_every_shipped_specification_sound() {
             .to_string_lossy()
             .into_owned();
         let text = std::fs::read_to_string(&path).expect("a specification");
-        let model = model_spec::load(&path).expect("a model").model;
+        let model = eomgen_model_spec::load(&path).expect("a model").model;
         for (place, effect) in effects.iter().enumerate() {
             for candidate in placed(&model, effect) {
                 let label = format!("{} in {name}", candidate.label());
                 let values = vec![1.5; candidate.parameters.len()];
                 let written = candidate.written(&text, &name, &values, "a test");
                 let written = written.unwrap_or_else(|error| panic!("{label}: {error}"));
-                let checked = model_spec::check(Source::new(name.as_str(), written.as_str()));
+                let checked =
+                    eomgen_model_spec::check(Source::new(name.as_str(), written.as_str()));
                 let checked = checked.unwrap_or_else(|found| panic!("{label}: {found}"));
                 let orders = vec![1; checked.model.fields.len()];
                 let derived = Variant::derive(&checked.model, &orders);
@@ -111,7 +112,7 @@ fn springs_have_room_for_a_users_effect() {
     let effects = effects(Some(&path)).unwrap_or_else(|found| panic!("{found}"));
     let own = effects.last().expect("an effect");
     assert!(own.is_own);
-    let checked = model_spec::check(Source::new("two_carriages.toml", TWO_CARRIAGES));
+    let checked = eomgen_model_spec::check(Source::new("two_carriages.toml", TWO_CARRIAGES));
     let model = checked.expect("a specification").model;
     let found = placed(&model, own);
     let places: Vec<&str> = found

@@ -1,10 +1,10 @@
 //! The shipped arm with parameters at the edge of what makes sense, against the general
 //! solver.
 
+use eomgen_sim::ode::Trajectory;
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{Subject, difference, grid};
 use eomgen_validate::variant::Variant;
-use sim::ode::Trajectory;
 
 use eomgen_tests::models::variant;
 use eomgen_validate::derived::Derived;

@@ -2,9 +2,9 @@
 //! going through, the same request gives the same bits, and tangent vectors are the
 //! difference of neighbouring motions.
 
+use eomgen_sim::piecewise_linear::Lyapunov;
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
-use sim::piecewise_linear::Lyapunov;
 
 fn arm(order: usize, b: f64) -> Subject {
     let model = load("planetary_arm").with_parameters(&[("b_sp", b), ("b_pr", b)]);
@@ -140,7 +140,7 @@ fn growths(subject: &Subject, until: f64, step: f64, felt: &[usize]) -> (f64, f6
     (growth, 0.5 * apart.ln())
 }
 
-fn propagator_of(subject: &Subject) -> sim::piecewise_linear::Propagator {
+fn propagator_of(subject: &Subject) -> eomgen_sim::piecewise_linear::Propagator {
     subject.propagator().expect("a propagator")
 }
 

@@ -1,10 +1,10 @@
 //! Coulomb friction with true stick, against closed forms and against friction that is
 //! steep instead of set-valued.
 
+use eomgen_model_spec::check;
+use eomgen_model_spec::source::Source;
 use eomgen_tests::models::project;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
-use model_spec::check;
-use model_spec::source::Source;
 
 /// A block with dry friction T, pushed by F sin(omega t).
 fn pushed(force: f64, start: [f64; 2]) -> Subject {

@@ -1,11 +1,11 @@
 //! Sampled-and-held inputs: their jumps move the motion, switching surfaces and what keeps
 //! a stuck mass in its place.
 
+use eomgen_model_spec::model::Model;
 use eomgen_records::read_inputs;
+use eomgen_sim::inputs::HeldInputs;
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
-use model_spec::model::Model;
-use sim::inputs::HeldInputs;
 
 /// Inputs that hold from the times given on.
 fn held(model: &Model, name: &str, unit: &str, steps: &[(f64, f64)]) -> HeldInputs {

@@ -1,8 +1,8 @@
 //! min, max, abs, nested dead zones and several thresholds of one coordinate, against the
 //! general solver.
 
+use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
-use sim::piecewise_linear::ExactError;
 
 /// Two masses with a force on the first, shaken.
 fn with_force(force: &str) -> Subject {

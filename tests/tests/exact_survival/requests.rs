@@ -1,9 +1,9 @@
 //! Requests that make no sense and models that cannot move are refused in words.
 
+use eomgen_sim::ode::SolveError;
+use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::models::load;
 use eomgen_tests::motions::{Spec, Subject};
-use sim::ode::SolveError;
-use sim::piecewise_linear::ExactError;
 
 fn mass(m: f64) -> Subject {
     let spec = Spec::default()

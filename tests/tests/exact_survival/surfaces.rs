@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
+use eomgen_sim::ode::SolveError;
+use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::motions::{Spec, Subject, difference, grid};
-use sim::ode::SolveError;
-use sim::piecewise_linear::ExactError;
 
 /// A ball that falls onto a spring at x = 0.
 fn ball(height: f64, speed: f64) -> Spec {

@@ -2,7 +2,7 @@
 //! the crate's table.
 
 use crate::oracle::{Exact, assert_within, magnitudes, uniform};
-use elementary::{cosh, exp, exp_minus_one, ln, sinh, tanh};
+use eomgen_elementary::{cosh, exp, exp_minus_one, ln, sinh, tanh};
 
 /// The largest argument whose exponential is finite.
 const LARGEST: f64 = 709.782_712_893_384;

@@ -2,7 +2,7 @@
 
 use crate::hard_cases::near_multiples_of_half_pi;
 use crate::oracle::Random;
-use elementary::{Function, Kernel, sin_cos_kernel};
+use eomgen_elementary::{Function, Kernel, sin_cos_kernel};
 use std::collections::HashSet;
 
 /// Zeros, ones, edges of every function's domain, infinities, NaN; both signs.

@@ -2,7 +2,7 @@
 
 use crate::hard_cases::roots_near_a_tie;
 use crate::oracle::{Random, assert_pairs_within, sample};
-use elementary::{pow, sqrt};
+use eomgen_elementary::{pow, sqrt};
 
 /// A basis and an exponent whose power is anywhere between underflow and overflow.
 fn with_any_power(random: &mut Random, basis: f64) -> (f64, f64) {

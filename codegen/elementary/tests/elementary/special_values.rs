@@ -1,6 +1,6 @@
 //! Zeros, infinities, NaN and the edges of domains, as tables.
 
-use elementary::Function::{self, *};
+use eomgen_elementary::Function::{self, *};
 
 const INF: f64 = f64::INFINITY;
 const NAN: f64 = f64::NAN;
@@ -55,13 +55,17 @@ fn every_function_of_nan_is_nan() {
 
 #[test]
 fn angles_beyond_the_largest_are_nan() {
-    let beyond = elementary::LARGEST_ANGLE.next_up();
+    let beyond = eomgen_elementary::LARGEST_ANGLE.next_up();
     for function in [Sin, Cos, Tan] {
         for x in [beyond, -beyond, 1e15, 1e300, f64::MAX, INF, -INF] {
             assert_value(function, &[x], NAN);
         }
-        assert!(!function.apply(&[elementary::LARGEST_ANGLE]).is_nan());
-        assert!(!function.apply(&[-elementary::LARGEST_ANGLE]).is_nan());
+        assert!(!function.apply(&[eomgen_elementary::LARGEST_ANGLE]).is_nan());
+        assert!(
+            !function
+                .apply(&[-eomgen_elementary::LARGEST_ANGLE])
+                .is_nan()
+        );
     }
 }
 

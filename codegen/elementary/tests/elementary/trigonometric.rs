@@ -2,7 +2,7 @@
 
 use crate::hard_cases::near_multiples_of_half_pi;
 use crate::oracle::{Exact, assert_pairs_within, assert_within, magnitudes, sample, ulps, uniform};
-use elementary::{LARGEST_ANGLE, acos, asin, atan, atan2, cos, sin, sin_cos, tan};
+use eomgen_elementary::{LARGEST_ANGLE, acos, asin, atan, atan2, cos, sin, sin_cos, tan};
 use std::f64::consts::FRAC_PI_4;
 
 /// From the smallest subnormal to 1e9, and dense where angles usually are.

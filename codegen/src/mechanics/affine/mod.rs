@@ -16,7 +16,7 @@ mod sides;
 
 use std::collections::HashMap;
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::may_rest;

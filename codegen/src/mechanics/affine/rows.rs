@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use crate::mechanics::rows::RowNodes;
 use crate::symbolic::differentiate::{ModalDerivative, by_scalar};

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use crate::mechanics::equations::Equations;
 use crate::mechanics::forces::{Surfaces, surfaces};

@@ -1,6 +1,6 @@
 //! The domain of a field, as nodes of the graph.
 
-use model_spec::model::Basis;
+use eomgen_model_spec::model::Basis;
 
 use super::modes;
 use crate::symbolic::graph::{Graph, NodeId};

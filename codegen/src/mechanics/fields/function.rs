@@ -8,8 +8,8 @@
 //! coefficients are prepared. What does not fit, an integrand that is not quadratic in the
 //! field, is evaluated at the quadrature nodes.
 
-use model_spec::ast::BinaryOperator;
-use model_spec::model::Function;
+use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::model::Function;
 
 use super::term::{Atom, IntegrandTerm};
 use crate::mechanics::fields::domain::Domain;

@@ -8,8 +8,8 @@
 //! digits from r of about 12 on. The elementary functions are the project's own, so that
 //! the tables have the same bits on every machine.
 
-use elementary::Function;
-use model_spec::model::Basis;
+use eomgen_elementary::Function;
+use eomgen_model_spec::model::Basis;
 
 use crate::mechanics::fields::quadrature::{QuadratureRule, gauss_legendre};
 use crate::symbolic::tables::{TableKind, quadrature_size};

@@ -1,7 +1,7 @@
 //! Mode shapes at a point and integrals of one term of an integrand, as nodes: exact
 //! dimensionless constants where there are some, quadrature elsewhere.
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use crate::mechanics::fields::domain::Domain;
 use crate::mechanics::fields::modes::is_orthogonal;

@@ -1,7 +1,7 @@
 //! Gauss-Legendre nodes and weights on [0, 1], by Newton's method on the Legendre
 //! recurrence. Nothing here knows of modes.
 
-use elementary::Function;
+use eomgen_elementary::Function;
 
 /// A rule of quadrature on [0, 1]: the integral is nearly the sum of weights times values.
 #[derive(Clone, Debug, PartialEq)]

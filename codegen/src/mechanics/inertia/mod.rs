@@ -4,9 +4,9 @@
 
 mod lack;
 
-use model_spec::diagnostic::Diagnostic;
-use model_spec::model::Model;
-use model_spec::span::Span;
+use eomgen_model_spec::diagnostic::Diagnostic;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::span::Span;
 
 use crate::mechanics::equations::Equations;
 use crate::symbolic::graph::Dependence;

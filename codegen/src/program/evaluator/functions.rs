@@ -1,7 +1,7 @@
 //! Functions of one or two numbers, as every backend defines them.
 
-use elementary::Function as Elementary;
-use model_spec::model::Function;
+use eomgen_elementary::Function as Elementary;
+use eomgen_model_spec::model::Function;
 
 /// 1/a for a positive pivot, NaN elsewhere.
 pub(super) fn pivot_reciprocal(a: f64) -> f64 {

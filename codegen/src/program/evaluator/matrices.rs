@@ -1,7 +1,7 @@
 //! Matrix operations of the evaluator: products, Gram matrices, assembled blocks, Cholesky
 //! factors, in the order of summation that the program defines.
 
-use elementary::Function as Elementary;
+use eomgen_elementary::Function as Elementary;
 
 use super::operands::Operands;
 use crate::program::{ScaledValue, ValueId};

@@ -1,6 +1,6 @@
 //! One value of a program, computed from those before it.
 
-use elementary::Function as Elementary;
+use eomgen_elementary::Function as Elementary;
 
 use super::functions::{call, pivot_reciprocal};
 use super::matrices::{apply, assemble, cholesky, cholesky_solve, gram, gram_diagonal};

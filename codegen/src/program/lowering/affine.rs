@@ -1,6 +1,6 @@
 //! The program of a piecewise-linear model's coefficients: prepared values only.
 
-use model_spec::model::Model;
+use eomgen_model_spec::model::Model;
 
 use super::quantities::{program_parameters, quantity};
 use super::values::Lowering;

@@ -1,6 +1,6 @@
 //! Sums and products as binary operations in a fixed order.
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use super::values::Lowering;
 use crate::program::{Extent, Op, ValueId};

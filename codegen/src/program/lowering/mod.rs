@@ -10,7 +10,7 @@ mod outputs;
 mod quantities;
 mod values;
 
-use model_spec::model::Model;
+use eomgen_model_spec::model::Model;
 
 use crate::mechanics::equations::Equations;
 use crate::mechanics::outputs::Outputs;

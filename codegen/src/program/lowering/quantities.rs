@@ -1,7 +1,7 @@
 //! Named quantities of a program, with their units in SI.
 
-use model_spec::model::{Model, ParameterValue};
-use model_spec::unit::Unit;
+use eomgen_model_spec::model::{Model, ParameterValue};
+use eomgen_model_spec::unit::Unit;
 
 use crate::program::{ProgramParameter, Quantity};
 

@@ -4,7 +4,7 @@
 //! holds together. So long sums stand in parentheses that do not stretch, and long quotients
 //! beside a stroke.
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 
 use super::letters;
 use super::symbol::Symbol;

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use model_spec::model::Model;
+use eomgen_model_spec::model::Model;
 
 use super::shared::{Shared, is_leaf, own_length};
 use super::symbol::{Index, Symbol};

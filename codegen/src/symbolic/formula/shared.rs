@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-use model_spec::model::Model;
+use eomgen_model_spec::model::Model;
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
 

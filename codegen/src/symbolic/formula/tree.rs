@@ -1,6 +1,6 @@
 //! A formula as a tree, without a notation.
 
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 use serde::{Serialize, Serializer};
 
 use super::symbol::{Index, Symbol};

@@ -1,6 +1,6 @@
 //! The constants of a basis as MathML: values and integrals of mode shapes.
 
-use codegen::symbolic::tables::TableKind;
+use eomgen_codegen::symbolic::tables::TableKind;
 use maud::{Markup, html};
 
 use super::{element, fenced, identifier};

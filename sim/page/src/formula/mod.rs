@@ -4,11 +4,11 @@
 
 mod basis;
 
-use codegen::symbolic::formula::{
+use eomgen_codegen::symbolic::formula::{
     Choice, Formula, Level, MatrixPart, Symbol, Term, letter, powers_of_ten, small_fraction,
 };
+use eomgen_model_spec::model::Function;
 use maud::{Markup, html};
-use model_spec::model::Function;
 
 /// Between factors, where nothing is seen: the invisible times of Unicode.
 const TIMES: &str = "\u{2062}";

@@ -137,7 +137,7 @@ impl PlanetaryArmParameters {
 
     /// The motor's torque fluctuation at time `t` in s, N m: F_w sin(omega t) of Eq. (11).
     pub fn torque_fluctuation(&self, t: f64) -> f64 {
-        self.F_w * elementary::sin(self.omega * t)
+        self.F_w * eomgen_elementary::sin(self.omega * t)
     }
 }
 

@@ -3,14 +3,14 @@
 
 use std::f64::consts::TAU;
 
-use model_spec::model::Model;
-use model_spec::models;
-use model_spec::source::Source;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::models;
+use eomgen_model_spec::source::Source;
 
 use super::error::StudyError;
 use crate::reference::mode_shapes::ModeShape;
 use eomgen_compiled_model::{CompiledModel, Orders};
-use sim::piecewise_linear::Propagator;
+use eomgen_sim::piecewise_linear::Propagator;
 
 /// The paper's arm as it is shipped.
 const SPECIFICATION: &str = models::PLANETARY_ARM.text;
@@ -113,7 +113,7 @@ impl Arm {
     pub fn with(shapes: Shapes, orders: &[usize]) -> Result<Self, StudyError> {
         let text = SPECIFICATION.replace(Shapes::Corrected.basis(), shapes.basis());
         let source = Source::new("planetary_arm.toml", text);
-        let checked = model_spec::check(source)
+        let checked = eomgen_model_spec::check(source)
             .map_err(|diagnostics| StudyError::Request(diagnostics.render(false)))?;
         let model = checked.model;
         let values = model

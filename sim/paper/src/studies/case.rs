@@ -9,7 +9,7 @@ use eomgen_analysis::classify::{Evidence, Verdict};
 use eomgen_analysis::modes::{BandPower, TipShares, band_power, tip_shares};
 use eomgen_analysis::poincare::Shape;
 use eomgen_analysis::spectrum::{Trend, welch, without_harmonics};
-use sim::piecewise_linear::Propagator;
+use eomgen_sim::piecewise_linear::Propagator;
 
 use super::arm::{Arm, Case, Lengths};
 use super::error::StudyError;

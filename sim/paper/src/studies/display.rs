@@ -2,7 +2,7 @@
 //! measured of a case is another matter, see [`super::case`](mod@super::case).
 
 use eomgen_analysis::spectrum::{PowerSpectrum, Trend, welch};
-use sim::inputs::HeldInputs;
+use eomgen_sim::inputs::HeldInputs;
 
 use super::arm::{Arm, Case};
 use super::case::Record;

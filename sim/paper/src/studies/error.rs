@@ -4,7 +4,7 @@ use std::fmt;
 
 use eomgen_analysis::AnalysisError;
 use eomgen_compiled_model::Error;
-use sim::piecewise_linear::ExactError;
+use eomgen_sim::piecewise_linear::ExactError;
 
 /// Why a study could not be made.
 #[derive(Clone, Debug, PartialEq)]

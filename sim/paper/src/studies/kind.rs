@@ -4,7 +4,7 @@ use eomgen_analysis::classify::{Evidence, Motion, SIGNIFICANCE, Verdict, classif
 use eomgen_analysis::exponent::Exponent;
 use eomgen_analysis::poincare::{Section, Shape};
 use eomgen_analysis::zero_one::chaos_indicator;
-use sim::piecewise_linear::Propagator;
+use eomgen_sim::piecewise_linear::Propagator;
 
 use super::arm::Case;
 use super::error::StudyError;

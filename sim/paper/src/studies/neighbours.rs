@@ -10,8 +10,8 @@
 use std::f64::consts::TAU;
 
 use eomgen_analysis::exponent::{Exponent, mean_exponent};
-use sim::inputs::HeldInputs;
-use sim::piecewise_linear::{Carried, Propagator};
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::piecewise_linear::{Carried, Propagator};
 
 use super::arm::{Case, Lengths};
 use super::error::StudyError;

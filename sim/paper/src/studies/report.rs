@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use eomgen_analysis::exponent::Exponent;
 use eomgen_analysis::spectrum::PowerSpectrum;
-use model_spec::model::{Model, ParameterValue};
+use eomgen_model_spec::model::{Model, ParameterValue};
 
 use super::arm::Case;
 use super::case::{Amplitude, Measurement};

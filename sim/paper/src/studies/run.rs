@@ -1,7 +1,7 @@
 //! A motion after its transient, from rest at zero, that can be followed on.
 
-use sim::inputs::HeldInputs;
-use sim::piecewise_linear::Propagator;
+use eomgen_sim::inputs::HeldInputs;
+use eomgen_sim::piecewise_linear::Propagator;
 
 use super::arm::Case;
 use super::error::StudyError;

@@ -2,7 +2,7 @@
 
 use eomgen_paper::reference::PlanetaryArmParameters;
 use eomgen_paper::reference::equation_22::Equation22;
-use sim::ode::System;
+use eomgen_sim::ode::System;
 
 /// The arm with S modes in physical units.
 pub struct Arm<const S: usize> {

@@ -6,7 +6,7 @@ use super::conditioned::Conditioned;
 use super::functions;
 use super::scene::{Direction, Motion, Scene};
 use super::tree::Tree;
-use model_spec::ast::BinaryOperator;
+use eomgen_model_spec::ast::BinaryOperator;
 use num_dual::{Dual, DualNum, HyperDual};
 use std::cell::Cell;
 
@@ -241,7 +241,7 @@ impl<'s> Pass<'s> {
 
     fn call<N: Level>(
         &self,
-        function: model_spec::model::Function,
+        function: eomgen_model_spec::model::Function,
         arguments: &[Tree],
         frame: &Frame<'_>,
     ) -> N {

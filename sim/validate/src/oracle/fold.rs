@@ -2,7 +2,7 @@
 
 use super::functions;
 use super::tree::Tree;
-use model_spec::ast::BinaryOperator;
+use eomgen_model_spec::ast::BinaryOperator;
 
 /// `left operator right`, a power with a constant exponent in its own form.
 pub(super) fn binary(operator: BinaryOperator, left: Tree, right: Tree) -> Tree {

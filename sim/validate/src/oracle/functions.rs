@@ -3,7 +3,7 @@
 //! derivative of that side; the derivative of a step is 0 and sign(0) = 0.
 
 use super::switches::Side;
-use model_spec::model::Function;
+use eomgen_model_spec::model::Function;
 use num_dual::DualNum;
 
 /// The value of `function` at `arguments`; NaN where an argument is missing, which the

@@ -9,7 +9,7 @@ use super::places::{Domain, PlaceSet};
 use super::scene::{Direction, Scene};
 use super::system::{Integral, System};
 use super::tree::{Leaf, Tree};
-use model_spec::model::{Expr, ExprKind, Field, Model};
+use eomgen_model_spec::model::{Expr, ExprKind, Field, Model};
 
 /// Turns expressions of one variant into trees.
 pub(super) struct Lowering<'m> {

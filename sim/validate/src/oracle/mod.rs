@@ -47,10 +47,10 @@ pub use equations::{Equations, Residual, RowTerm, RowTermKind};
 pub use error::OracleError;
 pub use switches::{Side, Switch, SwitchValue};
 
+use eomgen_model_spec::evaluate::evaluate as evaluate_constant;
+use eomgen_model_spec::model::{Expr, Model, Range};
 use evaluate::Pass;
 use lower::Lowering;
-use model_spec::evaluate::evaluate as evaluate_constant;
-use model_spec::model::{Expr, Model, Range};
 use nalgebra::DMatrix;
 use observables::lower_observables;
 use scene::{Direction, Scene};

@@ -6,7 +6,7 @@ use super::lower::Lowering;
 use super::scene::Direction;
 use super::tree::Tree;
 use super::{Oracle, OracleError};
-use model_spec::model::Model;
+use eomgen_model_spec::model::Model;
 
 /// The tree of every observable; none of one that cannot be evaluated here.
 pub(super) fn lower_observables(lowering: &mut Lowering<'_>, model: &Model) -> Vec<Option<Tree>> {

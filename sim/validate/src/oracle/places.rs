@@ -11,7 +11,7 @@
 use super::double_double::DoubleDouble;
 use super::legendre::unit_rule;
 use super::shapes::Shape;
-use model_spec::model::Basis;
+use eomgen_model_spec::model::Basis;
 use nalgebra::DMatrix;
 
 /// The highest derivative of a mode shape the language knows.

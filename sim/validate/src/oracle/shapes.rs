@@ -12,7 +12,7 @@
 //! small delta_r, its first part reduced exactly before it is multiplied by pi.
 
 use super::double_double::DoubleDouble;
-use model_spec::model::Basis;
+use eomgen_model_spec::model::Basis;
 use std::f64::consts::PI;
 
 /// Mode r of a beam of unit length.

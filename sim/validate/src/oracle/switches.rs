@@ -6,7 +6,7 @@ use super::evaluate::Pass;
 use super::scene::Direction;
 use super::tree::Tree;
 use super::{Oracle, OracleError};
-use model_spec::model::{Function, Model};
+use eomgen_model_spec::model::{Function, Model};
 
 /// A quantity at whose zero, or at plus and minus a half-width, something switches.
 #[derive(Clone, Debug, PartialEq)]
@@ -258,7 +258,7 @@ impl Search<'_> {
 }
 
 fn difference(left: &Tree, right: &Tree) -> Tree {
-    let operator = model_spec::ast::BinaryOperator::Subtract;
+    let operator = eomgen_model_spec::ast::BinaryOperator::Subtract;
     Tree::Binary(operator, left.clone().into(), right.clone().into())
 }
 

@@ -7,7 +7,7 @@ use super::evaluate::{Number, Pass};
 use super::lower::Lowering;
 use super::scene::{Direction, Scene};
 use super::tree::{Dependence, Tree};
-use model_spec::model::{Force, Term};
+use eomgen_model_spec::model::{Force, Term};
 
 /// An addend of a named term.
 #[derive(Debug)]

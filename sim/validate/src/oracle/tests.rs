@@ -4,8 +4,8 @@
 use super::super::sampler::Sampler;
 use super::super::test_models::{BEAM, DOUBLE_PENDULUM, SPRING, model};
 use super::{Equations, Oracle, OracleError, Side};
-use model_spec::model::{Expr, ExprKind};
-use model_spec::span::Span;
+use eomgen_model_spec::model::{Expr, ExprKind};
+use eomgen_model_spec::span::Span;
 
 fn oracle(text: &str, order: usize) -> Oracle {
     let model = model(text);

@@ -2,8 +2,8 @@
 //! of nodes, constants are folded. Made by `lower`, evaluated by `evaluate`. Nothing is
 //! differentiated here.
 
-use model_spec::ast::BinaryOperator;
-use model_spec::model::Function;
+use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::model::Function;
 use std::collections::BTreeSet;
 
 /// An expression of the state, the time and the inputs.

@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
 
-use codegen::mechanics::outputs::Output;
-use codegen::program::evaluator::Evaluator;
-use codegen::variant::Variant;
+use eomgen_codegen::mechanics::outputs::Output;
+use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_codegen::variant::Variant;
 
 /// A specification and the order of its fields.
 pub type Specification = (&'static str, usize);
@@ -34,7 +34,7 @@ pub fn with_both<R>(
 
 fn derive((path, order): Specification) -> [Evaluator; 2] {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-    let Ok(checked) = model_spec::load(&path) else {
+    let Ok(checked) = eomgen_model_spec::load(&path) else {
         panic!("{} is no specification", path.display());
     };
     let orders = checked.model.orders(Some(order)).expect("an order");
@@ -42,5 +42,5 @@ fn derive((path, order): Specification) -> [Evaluator; 2] {
         panic!("{} cannot be derived", path.display());
     };
     let interpreted = Evaluator::new(variant.program.clone());
-    [interpreted, jit::evaluator(variant.program)]
+    [interpreted, eomgen_jit::evaluator(variant.program)]
 }

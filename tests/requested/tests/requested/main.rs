@@ -12,8 +12,8 @@ mod models;
 mod rounded;
 mod tracked;
 
-use codegen::program::evaluator::Point as EvaluatorPoint;
 use dual::Dual;
+use eomgen_codegen::program::evaluator::Point as EvaluatorPoint;
 use proptest::prelude::*;
 use tracked::Tracked;
 

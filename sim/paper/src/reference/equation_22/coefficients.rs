@@ -206,7 +206,7 @@ impl Coefficients {
     }
 
     fn a_11_fluctuation(&self, t: f64) -> f64 {
-        self.a_11_amplitude * elementary::sin(self.omega * t)
+        self.a_11_amplitude * eomgen_elementary::sin(self.omega * t)
     }
 
     /// The accelerations of x_sp, x_pr, x_c, q_1 .. q_S (m/s^2) at time `t` (s) and

@@ -107,7 +107,7 @@ impl<const S: usize> Eliminated<S> {
             - self.sun * f_sp
             - x_pr
             - 2.0 * x_c;
-        let x_sp = sun + self.fluctuation * elementary::sin(self.omega * t);
+        let x_sp = sun + self.fluctuation * eomgen_elementary::sin(self.omega * t);
 
         let (velocity, acceleration) = rates.split_at_mut(3 + S);
         copy_in_pairs(rate, velocity);

@@ -101,7 +101,7 @@ impl<const S: usize> Equation22<S> {
             f_k(position[1], self.half_width[1]),
             f_c(position[1], rate[1], self.half_width[1]),
         ];
-        let a_11 = self.a_11[0] + self.a_11[1] * elementary::sin(self.omega * tau);
+        let a_11 = self.a_11[0] + self.a_11[1] * eomgen_elementary::sin(self.omega * tau);
         let motor = self.motor[0] * rate[0] + self.motor[0] * rate[1] + self.motor[1] * rate[2];
         let bending = dot(&self.a_18, &q);
         acceleration[0] = a_11 + motor + self.mesh[0].on(&mesh) + bending;

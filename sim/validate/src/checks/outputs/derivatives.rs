@@ -8,7 +8,7 @@ use crate::oracle::Equations;
 use crate::outputs::{JACOBIANS, Outputs};
 use crate::random::Random;
 use crate::sampler::Sample;
-use model_spec::model::Model;
+use eomgen_model_spec::model::Model;
 use nalgebra::{DMatrix, DVector};
 
 /// What is compared along every direction from one state.

@@ -5,7 +5,7 @@ use crate::differences::Direction;
 use crate::oracle::OracleError;
 use crate::random::Random;
 use crate::sizes;
-use model_spec::model::ParameterValue;
+use eomgen_model_spec::model::ParameterValue;
 
 /// The most directions at a state; of more variables, this many are drawn.
 const DIRECTIONS: usize = 40;

@@ -1,7 +1,7 @@
 //! What is judged.
 
 use crate::oracle::Oracle;
-use model_spec::model::Model;
+use eomgen_model_spec::model::Model;
 
 /// What is judged.
 pub(crate) struct Judged<'j> {
