@@ -184,7 +184,8 @@ fn the_arm_of_two_links_passes_at_every_kind_of_order() {
     ];
     passes(&rigid, &may_skip);
     assert_eq!(count(&rigid, "reference"), 1);
-    for order in [1, 4, 16] {
+    // Order 16 takes half a minute and has the loops of order 8.
+    for order in [1, 4, 8] {
         let may_skip = ["guards", "regime_kernels", "exact_derivative", "reference"];
         passes(&of("two_link_arm", order), &may_skip);
     }

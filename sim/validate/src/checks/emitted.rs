@@ -4,7 +4,7 @@
 //! plain numbers is in `kinds`.
 
 use super::super::certificate::{Check, Worst};
-use super::super::compiler::Compiler;
+use super::super::compiler::{Compiler, Optimization};
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
@@ -51,7 +51,13 @@ pub fn check(
     };
     let folder = folder.path();
     let calls = calls(&emitted.functions);
-    let found = run(&compiler, folder, (emitted, &calls), &samples);
+    let found = run(
+        &compiler,
+        folder,
+        (emitted, &calls),
+        Optimization::Full,
+        &samples,
+    );
     let worst = match found.and_then(|lines| compare(variant, emitted, &samples, &lines)) {
         Ok(worst) => worst,
         Err(message) => Worst::of(f64::INFINITY, message),

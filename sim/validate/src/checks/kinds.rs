@@ -4,7 +4,7 @@
 //! same source with numbers that carry such a bound.
 
 use super::super::certificate::{Check, Worst};
-use super::super::compiler::Compiler;
+use super::super::compiler::{Compiler, Optimization};
 use super::super::outputs::{JACOBIANS, Outputs};
 use super::super::random::Random;
 use super::super::sampler::Sample;
@@ -117,6 +117,7 @@ pub fn check(
         compiler,
         folder,
         ("kinds", &source),
+        Optimization::None,
         &(text.join("\n") + "\n"),
     )
     .and_then(|lines| {

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use crate::compiler::{self, Compiler};
+use crate::compiler::{self, Compiler, Optimization};
 use crate::sampler::Sample;
 use crate::variant::Variant;
 
@@ -84,12 +84,17 @@ impl EmittedFunction {
 }
 
 /// Compiles the source to a library in `folder`.
-fn build(compiler: &Compiler, folder: &Path, emitted: &Emitted) -> Result<(), String> {
+fn build(
+    compiler: &Compiler,
+    folder: &Path,
+    emitted: &Emitted,
+    optimization: Optimization,
+) -> Result<(), String> {
     let library = folder.join("model.rs");
     compiler::write(&library, &emitted.source)?;
     let kind = ["--crate-type", "rlib", "--crate-name", "model"];
     let object = folder.join("libmodel.rlib");
-    let output = compiler.compile(&library, &object, &kind)?;
+    let output = compiler.compile(&library, &object, optimization, &kind)?;
     succeed("the emitted source", output).map(drop)
 }
 
@@ -98,11 +103,12 @@ pub fn run(
     compiler: &Compiler,
     folder: &Path,
     (emitted, calls): (&Emitted, &str),
+    optimization: Optimization,
     samples: &[Sample],
 ) -> Result<String, String> {
-    build(compiler, folder, emitted)?;
+    build(compiler, folder, emitted, optimization)?;
     let harness = ("harness", &*harness_source(emitted, calls));
-    run_linked(compiler, folder, harness, &table(samples))
+    run_linked(compiler, folder, harness, optimization, &table(samples))
 }
 
 /// What a program that calls the library in `folder` prints for `input`.
@@ -110,12 +116,13 @@ pub fn run_linked(
     compiler: &Compiler,
     folder: &Path,
     (name, source): (&str, &str),
+    optimization: Optimization,
     input: &str,
 ) -> Result<String, String> {
     let (harness, program) = (folder.join(format!("{name}.rs")), folder.join(name));
     compiler::write(&harness, source)?;
     let link = format!("model={}", folder.join("libmodel.rlib").display());
-    let linked = compiler.compile(&harness, &program, &["--extern", &link])?;
+    let linked = compiler.compile(&harness, &program, optimization, &["--extern", &link])?;
     succeed("the harness", linked)?;
     let output = compiler::execute(&program, input)?;
     succeed("the compiled model", output)

@@ -2,7 +2,7 @@
 //! states in every regime, some of them where a switching function rests at zero.
 
 use super::super::certificate::{Check, Worst};
-use super::super::compiler::Compiler;
+use super::super::compiler::{Compiler, Optimization};
 use super::super::oracle::{Oracle, OracleError};
 use super::super::sampler::Sample;
 use super::super::variant::Variant;
@@ -47,7 +47,13 @@ pub fn check(
     let found = samples.and_then(|samples| {
         let (samples, numbers) = in_regimes(variant, samples)?;
         let calls = calls(&numbers);
-        let lines = run(&compiler, folder.path(), (emitted, &calls), &samples)?;
+        let lines = run(
+            &compiler,
+            folder.path(),
+            (emitted, &calls),
+            Optimization::None,
+            &samples,
+        )?;
         compare(variant, &samples, &lines, numbers.len())
     });
     let worst = found.unwrap_or_else(|message| Worst::of(f64::INFINITY, message));
