@@ -35,7 +35,7 @@ pub const HELD_OUT: f64 = 0.05;
 pub const STANDARD_ERRORS: f64 = 2.0;
 
 /// And if half the fall of the whitened squares is this large: some hundred candidates are
-/// looked at, of which the luckiest reaches ln 100 = 5.
+/// screened, of which the luckiest reaches ln 100 = 5.
 pub const INFORMATION: f64 = 10.0;
 
 /// And if its parameters are this many standard deviations, correlated residuals allowed for.
@@ -71,7 +71,7 @@ pub const MOST_EFFECTS: usize = 4;
 /// The most candidates that are fitted in full in one round.
 pub const MOST_FITS: usize = 4;
 
-/// Motions are looked at in another way too, unless what is accepted leaves less than so many
+/// A further excitation window is searched, unless what is accepted leaves less than so many
 /// floors: what one excitation window shows may stand in for what another shows better.
 pub const CLOSE: f64 = 1.5;
 
@@ -91,7 +91,7 @@ pub const PROMISE_FAR: f64 = 0.005;
 /// Much more than noise are so many standard deviations.
 pub const MUCH_IS_LEFT: f64 = 3.0;
 
-/// Where more than `CLOSE` floors are left, a candidate that, begun, leaves no less than this part
+/// Where more than `CLOSE` floors are left, a candidate whose preliminary fit leaves no less than this part
 /// of the squares is not fitted in full: of a hundred such that were, none was accepted.
 pub const HELPS: f64 = 0.95;
 
@@ -282,7 +282,7 @@ pub const INNER_STEPS: usize = 6;
 /// development seeds of the blind suite.
 pub const FULL_STEPS: usize = 4;
 
-/// The most further steps over beginnings of windows before whole ones are looked at.
+/// The most further steps over beginnings of windows before whole ones are fitted.
 pub const FURTHER_STEPS: usize = 12;
 
 /// What leaves more standard deviations than this over whole windows is not worth following anew.
@@ -368,7 +368,7 @@ pub const RESPONSE_MOVES: f64 = 0.3;
 /// grows does less and less.
 pub const INITIAL_PARTS: [f64; 5] = [1.0, 0.3, 0.1, 3.0, 10.0];
 
-/// How many times its usual size a shape is where a fit is begun anew from another: as far from it
+/// How many times its usual size a shape is where a fit is started anew from another: as far from it
 /// to either side.
 pub const OTHER_SHAPES: [f64; 2] = [0.4, 2.5];
 
@@ -383,10 +383,10 @@ pub const RESPONSE_NEAR: (f64, f64) = (0.2, 5.0);
 
 // The residual force.
 
-/// Shaft orders, per turn, over which a residual force is looked at.
+/// Shaft orders, per turn, over which a residual force is shown.
 pub const FORCE_ORDERS: [u32; 10] = [1, 2, 3, 4, 6, 8, 12, 16, 24, 36];
 
-/// The most frequencies over which a residual force is looked at: a picture shows no more.
+/// The most frequencies over which a residual force is shown: a picture shows no more.
 pub const MOST_FREQUENCIES: usize = 12;
 
 /// Bends of a force over a whole turn.

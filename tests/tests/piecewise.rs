@@ -13,7 +13,7 @@ use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::models::variant;
 use eomgen_tests::motions::{Subject, difference, grid};
 use eomgen_tests::piecewise::machine;
-use eomgen_validate::compiler::{self, Compiler};
+use eomgen_validate::compiler::{self, Compiler, Optimization};
 use eomgen_validate::random::Random;
 
 /// What solvers and kernels may differ by.
@@ -369,7 +369,7 @@ fn compare_kernels(batch: &[Emitted], tally: &mut Tally) {
         folder.path().join("kernels"),
     );
     compiler::write(&file, &source).expect("a file");
-    let built = compiler.compile(&file, &program, &["-C", "opt-level=0"]);
+    let built = compiler.compile(&file, &program, Optimization::None, &[]);
     let built = built.expect("a compiler that ends");
     assert!(built.success, "{}", built.stderr);
     let run = compiler::execute(&program, &lines).expect("a program that ends");

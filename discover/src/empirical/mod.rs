@@ -90,10 +90,10 @@ fn add_empirical(
     let outcome = verdict
         .as_ref()
         .err()
-        .map_or_else(|| "believed".to_owned(), Rejection::to_string);
+        .map_or_else(|| "accepted".to_owned(), Rejection::to_string);
     let (train, test) = (fit.train.rms, fit.test.rms);
     progress(&format!(
-        "  {label}, {}: {train:.2} noises are left in training, {test:.2} in test; {outcome}",
+        "  {label}, {}: residuals of {train:.2} standard deviations of the noise in training, {test:.2} in test; {outcome}",
         candidate.term
     ));
     match verdict {
@@ -243,7 +243,7 @@ fn simplest(
     }
 }
 
-/// The fit with an expression: begun close to the one without, and anew from the beginnings of
+/// The fit with an expression: started close to the one without, and anew from the beginnings of
 /// the windows; the better of both.
 fn fitted(
     problem: &EstimationProblem<'_>,

@@ -99,7 +99,7 @@ pub fn preliminary(
     })
 }
 
-/// The model's unknowns as they are expected, with whole windows begun where those of a fit
+/// The model's unknowns as they are expected, with whole windows started where those of a fit
 /// begin: close to a fit a straight line says enough.
 ///
 /// # Errors

@@ -64,7 +64,7 @@ fn reflected(values: &[f64], padding: usize) -> Vec<f64> {
     before.chain(values.iter().copied()).chain(after).collect()
 }
 
-/// A second-order Butterworth low-pass by the bilinear transform, begun in equilibrium.
+/// A second-order Butterworth low-pass by the bilinear transform, started in equilibrium.
 fn low_pass(values: &mut [f64]) {
     let c = 1.0 / (PI * thresholds::SMOOTHING_CUT_OFF).tan();
     let a0 = 1.0 + 2f64.sqrt() * c + c * c;

@@ -152,7 +152,10 @@ fn step_table(steps: &[Step]) -> Markup {
             }
         }
     };
-    table(&["model", "test gap, in noises"], &rows)
+    table(
+        &["model", "test gap, in standard deviations of the noise"],
+        &rows,
+    )
 }
 
 /// Whether the equations of the specification that was written are right.
@@ -160,16 +163,16 @@ fn validation_line(discovery: &Discovery) -> Markup {
     let Some(validation) = &discovery.validation else {
         return html! {};
     };
-    let noises = |rms: f64| match rms.is_finite() {
+    let deviations = |rms: f64| match rms.is_finite() {
         true => format!("{rms:.2}"),
         false => "?".to_owned(),
     };
     let text = match validation.passed {
         true => format!(
-            "The specification that was written was derived anew; its equations pass all {} checks of eomgen validate. Run on the records it leaves {} noises in training and {} in test.",
+            "The specification that was written was derived anew; its equations pass all {} checks of eomgen validate. Simulated on the records, its residuals are {} standard deviations of the noise in training and {} in test.",
             validation.checks.len(),
-            noises(discovery.resimulation.train),
-            noises(discovery.resimulation.test)
+            deviations(discovery.resimulation.train),
+            deviations(discovery.resimulation.test)
         ),
         false => format!(
             "The specification that was written was derived anew; its equations FAIL {}.",

@@ -35,7 +35,7 @@ pub fn test_alternatives(
     }
 }
 
-/// The best of those that may stand in the place of a fitted hypothesis, begun where that ended;
+/// The best of those that may stand in the place of a fitted hypothesis, started where that ended;
 /// none if it is not one effect with terms of its own.
 fn alternatives(
     pool: &Pool<'_>,

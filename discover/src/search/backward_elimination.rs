@@ -39,7 +39,7 @@ fn is_as_good(with: &Fit, without: &Fit) -> bool {
     !worse(with.train.rms, without.train.rms) && !worse(with.test.rms, without.test.rms)
 }
 
-/// The fit with all effects but one, begun where the fit with it ended.
+/// The fit with all effects but one, started where the fit with it ended.
 fn without(
     problem: &EstimationProblem<'_>,
     found: &Found,

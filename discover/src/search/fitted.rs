@@ -27,7 +27,7 @@ pub struct FittedHypothesis {
     pub explains: bool,
 }
 
-/// Hypotheses begun, side by side; the best first.
+/// Preliminary fits of hypotheses, side by side; the best first.
 pub fn preliminary_fits(
     pool: &Pool<'_>,
     hypotheses: Vec<Hypothesis>,
@@ -83,10 +83,10 @@ pub fn full_fits(
                 let outcome = verdict
                     .as_ref()
                     .err()
-                    .map_or_else(|| "believed".to_owned(), Rejection::to_string);
+                    .map_or_else(|| "accepted".to_owned(), Rejection::to_string);
                 let (train, test) = (new.train.rms, new.test.rms);
                 (pool.context.progress)(&format!(
-                    "  {label}: {train:.2} noises are left in training, {test:.2} in test; {outcome}"
+                    "  {label}: residuals of {train:.2} standard deviations of the noise in training, {test:.2} in test; {outcome}"
                 ));
                 fitted_hypotheses.push(FittedHypothesis {
                     responses: hypothesis.responses,

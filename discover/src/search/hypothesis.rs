@@ -82,7 +82,7 @@ pub fn preliminary(
     let begins: Vec<Vec<f64>> = std::iter::once(theta).chain(others).collect();
     let mut preliminary = preliminary::preliminary(problem, texts, unknowns, &begins)?;
     if pool.is_whole {
-        // Beside others that are promised and not begun.
+        // Beside others that are promised and not fitted yet.
         preliminary.cost = pool.screening.predicted(&hypothesis.responses).cost;
     }
     Ok(preliminary)
@@ -108,7 +108,7 @@ pub fn with_shape(
     preliminary::preliminary(pool.context.problem, texts, unknowns, &[theta])
 }
 
-/// A hypothesis of one candidate, begun with the motions of a fit with another. `shape_ratio`: how
+/// A hypothesis of one candidate, started from the motions of a fit with another. `shape_ratio`: how
 /// many times its usual size a shape is.
 pub fn warm_started(
     pool: &Pool<'_>,

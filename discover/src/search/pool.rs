@@ -17,14 +17,14 @@ pub struct Pool<'r> {
     pub screening: &'r Screening,
     /// Whether that was seen over whole windows.
     pub is_whole: bool,
-    /// The most candidates that are begun.
+    /// The most candidates that get a preliminary fit.
     pub most: usize,
     /// Parts of the promised sizes among which they begin with the best.
     pub parts: &'r [f64],
 }
 
 impl<'r> Pool<'r> {
-    /// Candidates to be fitted, begun as most are.
+    /// Candidates to be fitted, started as most are.
     pub fn new(
         context: Context<'r>,
         candidates: &'r [Candidate],

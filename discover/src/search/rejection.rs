@@ -66,7 +66,7 @@ impl fmt::Display for Rejection {
             ),
             Self::Information { found, asked } => write!(
                 f,
-                "too little evidence in the training records: a gain of {found:.1}, {asked} are asked for"
+                "too small a gain in the training records: {found:.1}, {asked} are asked for"
             ),
             Self::Significance(t) => write!(
                 f,

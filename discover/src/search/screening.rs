@@ -49,7 +49,7 @@ pub struct Prediction {
 }
 
 /// Products of columns without the priors of some nuisances.
-struct Released<'s> {
+struct PriorsDropped<'s> {
     products: Cow<'s, DMatrix<f64>>,
     nuisances: Vec<UnknownId>,
 }
@@ -214,7 +214,7 @@ impl Screening {
     }
 
     /// The products once nuisances have no priors that are these responses themselves.
-    fn without_priors(&self, responses: &[ResponseId]) -> Released<'_> {
+    fn without_priors(&self, responses: &[ResponseId]) -> PriorsDropped<'_> {
         let nuisances: Vec<UnknownId> = (responses.iter())
             .filter_map(|response| self.responses[*response].dropped_prior)
             .collect();
@@ -227,7 +227,7 @@ impl Screening {
             };
             add_prior(products.to_mut(), *nuisance, gone);
         }
-        Released {
+        PriorsDropped {
             products,
             nuisances,
         }
@@ -239,14 +239,14 @@ impl Screening {
         for response in responses {
             columns.extend(self.responses[*response].columns.clone());
         }
-        let released = self.without_priors(responses);
-        let products = &released.products;
+        let dropped = self.without_priors(responses);
+        let products = &dropped.products;
         let last = products.ncols() - 1;
         let LeastSquares { a, b } = least_squares_of(products, &columns);
         let bounds: Vec<(f64, f64)> = columns
             .iter()
             .map(|column| {
-                let (low, high) = match released.nuisances.contains(&UnknownId::new(*column)) {
+                let (low, high) = match dropped.nuisances.contains(&UnknownId::new(*column)) {
                     true => self.limits[*column],
                     false => self.bounds[*column],
                 };
@@ -308,10 +308,10 @@ impl Screening {
 
     /// The part of a response's square that the nuisances cannot do as well.
     fn unexplained_fraction(&self, response: ResponseId) -> f64 {
-        let released = self.without_priors(&[response]);
-        let direction = self.direction(&released.products, response);
-        let own = product(&released.products, &direction, &direction);
-        let unexplained = self.without_nuisances(&released, &direction, &direction);
+        let dropped = self.without_priors(&[response]);
+        let direction = self.direction(&dropped.products, response);
+        let own = product(&dropped.products, &direction, &direction);
+        let unexplained = self.without_nuisances(&dropped, &direction, &direction);
         if own > 0.0 {
             (unexplained / own).max(0.0)
         } else {
@@ -347,13 +347,13 @@ impl Screening {
     /// out.
     fn without_nuisances(
         &self,
-        released: &Released<'_>,
+        dropped: &PriorsDropped<'_>,
         a: &DVector<f64>,
         b: &DVector<f64>,
     ) -> f64 {
-        let products = &*released.products;
+        let products = &*dropped.products;
         let rows: Vec<usize> = UnknownId::first(self.nuisances)
-            .filter(|nuisance| !released.nuisances.contains(nuisance))
+            .filter(|nuisance| !dropped.nuisances.contains(nuisance))
             .map(UnknownId::index)
             .collect();
         let n = rows.len();
@@ -373,15 +373,15 @@ impl Screening {
     /// either can do what the other does. One of several parameters can do what one of few does
     /// even where its own best size is another.
     pub fn similarity(&self, a: ResponseId, b: ResponseId) -> f64 {
-        let released = self.without_priors(&[a, b]);
-        let by_b = self.done_by(&released, a, b);
-        by_b.max(self.done_by(&released, b, a))
+        let dropped = self.without_priors(&[a, b]);
+        let by_b = self.done_by(&dropped, a, b);
+        by_b.max(self.done_by(&dropped, b, a))
     }
 
     /// The cosine between what a response does at its best size and the nearest of all that
     /// another can do.
-    fn done_by(&self, released: &Released<'_>, response: ResponseId, other: ResponseId) -> f64 {
-        let products = &*released.products;
+    fn done_by(&self, dropped: &PriorsDropped<'_>, response: ResponseId, other: ResponseId) -> f64 {
+        let products = &*dropped.products;
         let wanted = self.direction(products, response);
         let columns: Vec<DVector<f64>> = (self.columns(other))
             .map(|column| {
@@ -394,12 +394,12 @@ impl Screening {
         let count = columns.len();
         let gram = DMatrix::from_fn(count, count, |r, c| {
             let ridge = if r == c { thresholds::RIDGE } else { 0.0 };
-            self.without_nuisances(released, &columns[r], &columns[c]) + ridge
+            self.without_nuisances(dropped, &columns[r], &columns[c]) + ridge
         });
         let right = DVector::from_fn(count, |r, _| {
-            self.without_nuisances(released, &columns[r], &wanted)
+            self.without_nuisances(dropped, &columns[r], &wanted)
         });
-        let size = self.without_nuisances(released, &wanted, &wanted);
+        let size = self.without_nuisances(dropped, &wanted, &wanted);
         match gram.cholesky() {
             Some(factor) if size > 0.0 => {
                 let done = right.dot(&factor.solve(&right));

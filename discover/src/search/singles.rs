@@ -71,7 +71,7 @@ pub fn similar(pool: &Pool<'_>, response: ResponseId) -> Vec<FittedHypothesis> {
     full_fits(pool, preliminary_fits(pool, chosen(pool, &similar)))
 }
 
-/// Those of the ranked that are begun: of what repeats with an angle, of which there is so
+/// Those of the ranked that get a preliminary fit: of what repeats with an angle, of which there is so
 /// much that some is lucky, half as many, and of the orders of one effect at one place the
 /// two best.
 fn chosen(pool: &Pool<'_>, ranking: &[ResponseId]) -> Vec<Hypothesis> {
