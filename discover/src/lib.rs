@@ -44,6 +44,7 @@ pub mod empirical;
 pub mod error;
 pub mod fit;
 pub mod ids;
+pub mod interval;
 pub mod model;
 pub mod report;
 pub mod residual_force;

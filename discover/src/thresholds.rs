@@ -1,9 +1,11 @@
 //! Every constant that decides something, in one place, with its reason.
 
+use crate::interval::Interval;
+
 /// Standard deviation of a sensor's gain before it is estimated: a calibrated sensor.
 pub const GAIN_PRIOR: f64 = 0.01;
 
-/// Standard deviation of a sensor's bias, in standard deviations.
+/// Standard deviation of a sensor's bias, in standard deviations of its noise.
 pub const BIAS_PRIOR: f64 = 10.0;
 
 /// Standard deviation of a sensor's delay, in samples: held somewhere between two of them.
@@ -21,7 +23,7 @@ pub const ADDED_STATE: f64 = 10.0;
 /// A shape, such as the speed at which friction has fallen, is searched within these factors
 /// of its usual size, a tenth of the usual speed. What has not fallen at a third of that speed
 /// is no friction near rest: it would take over what another friction does at every speed.
-pub const SHAPE_RANGE: (f64, f64) = (0.02, 3.0);
+pub const SHAPE_RANGE: Interval = Interval::new(0.02, 3.0);
 
 /// Columns that agree to this part of their square are one: products of doubles know no
 /// better.
@@ -354,7 +356,7 @@ pub const SHAFT_ORDERS: [u32; 8] = [1, 2, 3, 4, 6, 8, 12, 24];
 pub const SMALL_CHANGE: f64 = 1e-4;
 
 /// A change is small and above rounding within these factors of that.
-pub const SMALL_NEAR: (f64, f64) = (1e-3, 10.0);
+pub const SMALL_NEAR: Interval = Interval::new(1e-3, 10.0);
 
 /// Every so many samples of a window such a size is looked for.
 pub const SAMPLED: usize = 5;
@@ -379,7 +381,7 @@ pub const SIZE_ATTEMPTS: usize = 8;
 pub const SIZE_FACTOR: f64 = 1e6;
 
 /// Within these factors of `RESPONSE_MOVES` a response is as large as wanted.
-pub const RESPONSE_NEAR: (f64, f64) = (0.2, 5.0);
+pub const RESPONSE_NEAR: Interval = Interval::new(0.2, 5.0);
 
 // The residual force.
 

@@ -176,6 +176,7 @@ fn the_pages_show_the_examples() {
         "with_build_script/build.rs",
         "with_build_script/src/lib.rs",
         "with_command_line/controller.rs",
+        "with_library/main.rs",
     ]
     .iter()
     .map(|file| std::fs::read_to_string(project().join("examples").join(file)).expect("a file"))

@@ -11,6 +11,7 @@ use crate::catalogue::effect::{Change, Effect, SiteKind};
 use crate::catalogue::sites::Site;
 use crate::catalogue::template::{edits, free_name, instantiated, terms};
 use crate::error::DiscoverError;
+use crate::interval::Interval;
 use crate::model::estimation_model::is_linear;
 use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
@@ -67,8 +68,8 @@ pub struct CandidateParameter {
 pub struct ParameterOffset {
     /// Its value in the specification, SI.
     pub from: f64,
-    /// Its smallest and largest admissible value, SI.
-    pub bounds: (f64, f64),
+    /// Its admissible values, SI.
+    pub bounds: Interval,
     /// The number of its units that one SI unit is.
     per_si: f64,
 }

@@ -1,6 +1,7 @@
 //! A candidate's parameter as something to be estimated.
 
 use crate::catalogue::candidate::CandidateParameter;
+use crate::interval::Interval;
 use crate::model::unknowns::{Unknown, What};
 use crate::thresholds;
 
@@ -26,12 +27,9 @@ impl CandidateUnknown {
         let name = parameter.name.clone();
         let base = parameter.base();
         let bounds = match (parameter.shape, &parameter.offset) {
-            (Some(shape), _) => (
-                thresholds::SHAPE_RANGE.0 * shape,
-                thresholds::SHAPE_RANGE.1 * shape,
-            ),
+            (Some(shape), _) => thresholds::SHAPE_RANGE.times(shape),
             (None, Some(offset)) => offset.bounds,
-            (None, None) => (low, f64::INFINITY),
+            (None, None) => Interval::new(low, f64::INFINITY),
         };
         let unknown = Unknown {
             label: format!("`{name}`"),

@@ -1,5 +1,6 @@
 //! Linear least squares with bounds, by active sets: small, dense and deterministic.
 
+use crate::interval::Interval;
 use nalgebra::{DMatrix, DVector};
 
 /// Changes of the active set before the present one is taken; each lowers the sum of
@@ -11,7 +12,7 @@ const FLAT: f64 = 1e-10;
 
 /// The x within `bounds` (which hold 0) for which |A x - b| is smallest. Unbounded
 /// directions that change nothing stay 0.
-pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[(f64, f64)]) -> DVector<f64> {
+pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[Interval]) -> DVector<f64> {
     let columns = a.ncols();
     let mut x = DVector::zeros(columns);
     let scale: Vec<f64> = a
@@ -19,8 +20,8 @@ pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[(f64, f64)]) 
         .map(|c| c.norm().max(f64::MIN_POSITIVE))
         .collect();
     let mut free = vec![true; columns];
-    for (column, (low, high)) in bounds.iter().enumerate() {
-        free[column] = low < high;
+    for (column, interval) in bounds.iter().enumerate() {
+        free[column] = interval.low < interval.high;
     }
     for _ in 0..MOST_CHANGES {
         let target = free_solution(a, b, &x, &free, &scale);
@@ -29,7 +30,7 @@ pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[(f64, f64)]) 
         let mut stop = None;
         for column in (0..columns).filter(|column| free[*column]) {
             let move_by = target[column] - x[column];
-            let (low, high) = bounds[column];
+            let Interval { low, high } = bounds[column];
             let limit = if move_by > 0.0 { high } else { low };
             if move_by != 0.0 && (limit - x[column]) / move_by < reach {
                 reach = ((limit - x[column]) / move_by).max(0.0);
@@ -49,7 +50,7 @@ pub fn least_squares(a: &DMatrix<f64>, b: &DVector<f64>, bounds: &[(f64, f64)]) 
             .map(|p| (slope[p] / scale[p]).abs())
             .fold(0.0, f64::max);
         let wants_in = |column: &usize| {
-            let (low, high) = bounds[*column];
+            let Interval { low, high } = bounds[*column];
             let along = slope[*column] / scale[*column];
             !free[*column]
                 && low < high
@@ -109,13 +110,17 @@ fn free_solution(
 mod tests {
     use nalgebra::{DMatrix, DVector};
 
-    use super::least_squares;
+    use super::{Interval, least_squares};
 
     #[test]
     fn without_bounds_it_is_least_squares() {
         let a = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 1.0, 1.0, 1.0, 2.0]);
         let b = DVector::from_vec(vec![1.0, 3.0, 5.0]);
-        let x = least_squares(&a, &b, &[(-9.0, 9.0), (-9.0, 9.0)]);
+        let x = least_squares(
+            &a,
+            &b,
+            &[Interval::new(-9.0, 9.0), Interval::new(-9.0, 9.0)],
+        );
         assert!((x - DVector::from_vec(vec![1.0, 2.0])).norm() < 1e-12);
     }
 
@@ -123,7 +128,11 @@ mod tests {
     fn what_is_not_a_number_moves_nothing() {
         let a = DMatrix::from_row_slice(2, 2, &[1.0, f64::NAN, 0.0, 1.0]);
         let b = DVector::from_vec(vec![1.0, f64::INFINITY]);
-        let x = least_squares(&a, &b, &[(-9.0, 9.0), (-9.0, 9.0)]);
+        let x = least_squares(
+            &a,
+            &b,
+            &[Interval::new(-9.0, 9.0), Interval::new(-9.0, 9.0)],
+        );
         assert_eq!(x, DVector::zeros(2));
     }
 
@@ -132,7 +141,7 @@ mod tests {
         // Minimise (x + y - 1)^2 + (x - y - 3)^2: free at (2, -1); with y >= 0 at (2, 0).
         let a = DMatrix::from_row_slice(2, 2, &[1.0, 1.0, 1.0, -1.0]);
         let b = DVector::from_vec(vec![1.0, 3.0]);
-        let x = least_squares(&a, &b, &[(-9.0, 9.0), (0.0, 9.0)]);
+        let x = least_squares(&a, &b, &[Interval::new(-9.0, 9.0), Interval::new(0.0, 9.0)]);
         assert!((x - DVector::from_vec(vec![2.0, 0.0])).norm() < 1e-12);
     }
 
@@ -141,7 +150,7 @@ mod tests {
         // The steepest way from 0 first meets x <= 0.5; the minimum lies at (-1, 2).
         let a = DMatrix::from_row_slice(2, 2, &[3.0, 1.0, 0.0, 1.0]);
         let b = DVector::from_vec(vec![-1.0, 2.0]);
-        let x = least_squares(&a, &b, &[(-5.0, 0.5), (0.0, 5.0)]);
+        let x = least_squares(&a, &b, &[Interval::new(-5.0, 0.5), Interval::new(0.0, 5.0)]);
         assert!((x - DVector::from_vec(vec![-1.0, 2.0])).norm() < 1e-12);
     }
 }

@@ -168,7 +168,7 @@ impl<'a> Continuation<'a> {
         let mut taken = false;
         let all = self.shooting.unknowns;
         for (id, unknown) in UnknownId::first(all.len()).zip(all) {
-            if unknown.prior.is_some() || unknown.bounds.0 == unknown.bounds.1 {
+            if unknown.prior.is_some() || unknown.bounds.is_point() {
                 continue;
             }
             let mut secant = self.secant(estimate, linear, id);

@@ -44,7 +44,7 @@ impl Fit {
     pub fn restarted(&self) -> Vec<f64> {
         let known = self.unknowns.iter().zip(&self.train.estimate.theta);
         known
-            .map(|(unknown, value)| unknown.prior.map_or(*value, |(mean, _)| mean))
+            .map(|(unknown, value)| unknown.prior.map_or(*value, |prior| prior.mean))
             .collect()
     }
 

@@ -300,7 +300,7 @@ fn uncertainty(
     }
     let mut rows = DMatrix::zeros(count, count + 1);
     for (row, unknown) in shooting.unknowns.iter().enumerate() {
-        let sd = unknown.prior.map_or(f64::INFINITY, |(_, sd)| sd);
+        let sd = unknown.prior.map_or(f64::INFINITY, |prior| prior.sd);
         rows[(row, row)] = shooting.prior_weight.sqrt() / sd;
     }
     let factor = triangular_factor(&factor, &rows);

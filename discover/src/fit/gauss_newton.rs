@@ -5,6 +5,8 @@
 //! state follows, because impacts fold the outputs.
 
 use crate::ids::WindowId;
+use crate::interval::Interval;
+use crate::model::unknowns::NormalPrior;
 use nalgebra::{DMatrix, DVector};
 
 use crate::fit::bounded_least_squares::least_squares;
@@ -82,7 +84,11 @@ fn square(residual: &Option<Residual>) -> f64 {
 /// What the unknowns' priors add to the cost.
 fn prior_of_unknowns(shooting: &Shooting<'_>, theta: &[f64]) -> f64 {
     let terms = shooting.unknowns.iter().zip(theta).map(|(unknown, value)| {
-        let (mean, sd) = unknown.prior.unwrap_or((*value, 1.0));
+        let unknown_before = NormalPrior {
+            mean: *value,
+            sd: 1.0,
+        };
+        let NormalPrior { mean, sd } = unknown.prior.unwrap_or(unknown_before);
         ((value - mean) / sd).powi(2)
     });
     shooting.prior_weight * terms.sum::<f64>()
@@ -184,7 +190,7 @@ pub(crate) fn change_of_unknowns(
     }
     let mut rows = DMatrix::zeros(2 * count, count + 1);
     for (column, unknown) in shooting.unknowns.iter().enumerate() {
-        if let Some((mean, sd)) = unknown.prior {
+        if let Some(NormalPrior { mean, sd }) = unknown.prior {
             let weight = shooting.prior_weight.sqrt() / sd;
             rows[(column, column)] = weight;
             rows[(column, count)] = (present.theta[column] - mean) * weight;
@@ -194,13 +200,8 @@ pub(crate) fn change_of_unknowns(
     let factor = triangular_factor(&factor, &rows);
     let a = factor.columns(0, count).into_owned();
     let b = -factor.column(count).into_owned();
-    let bounds: Vec<(f64, f64)> = (shooting.unknowns.iter().zip(&present.theta))
-        .map(|(unknown, value)| {
-            (
-                (unknown.bounds.0 - value).min(0.0),
-                (unknown.bounds.1 - value).max(0.0),
-            )
-        })
+    let bounds: Vec<Interval> = (shooting.unknowns.iter().zip(&present.theta))
+        .map(|(unknown, value)| unknown.bounds.relative_to(*value).with_zero())
         .collect();
     least_squares(&a, &b, &bounds)
 }

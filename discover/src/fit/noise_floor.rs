@@ -12,6 +12,8 @@ use crate::fit::shooting::Shooting;
 use crate::model::problem::EstimationProblem;
 use eomgen_records::record::Record;
 use eomgen_records::windows::Windows;
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// What a right model would leave.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +61,7 @@ fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Vec
     let theta = &fit.train.estimate.theta;
     let sensors = shooting.sensors(theta);
     let mut simulation = fit.model.simulation(&shooting.values(theta)).ok()?;
-    let mut draw = Normal(seed ^ 0x9e37_79b9_7f4a_7c15);
+    let mut draw = Normal::new(seed ^ 0x9e37_79b9_7f4a_7c15);
     let mut replicas = Vec::new();
     for record in &problem.dataset.train {
         let first = problem.first_state(&fit.model, record);
@@ -81,20 +83,18 @@ fn replicas(problem: &EstimationProblem<'_>, fit: &Fit, seed: u64) -> Option<Vec
     Some(replicas)
 }
 
-/// Normal numbers from a seed: sums of twelve uniform ones (splitmix64), less six. Their
-/// tails end at six, which no sum of squares notices.
-struct Normal(u64);
+/// Normal numbers from a seed: sums of twelve uniform ones, less six. Their tails end at six,
+/// which no sum of squares notices.
+struct Normal(SplitMix64);
 
 impl Normal {
+    fn new(seed: u64) -> Self {
+        Self(SplitMix64::seed_from_u64(seed))
+    }
+
     fn next(&mut self) -> f64 {
-        let uniform = |state: &mut u64| {
-            *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut z = *state;
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-        };
-        (0..12).map(|_| uniform(&mut self.0)).sum::<f64>() - 6.0
+        let uniform = (0..12).map(|_| (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64);
+        uniform.sum::<f64>() - 6.0
     }
 }
 
@@ -102,7 +102,7 @@ impl Normal {
 mod tests {
     #[test]
     fn the_noise_is_normal_in_mean_and_variance() {
-        let mut draw = super::Normal(1);
+        let mut draw = super::Normal::new(1);
         let values: Vec<f64> = (0..20_000).map(|_| draw.next()).collect();
         let mean = values.iter().sum::<f64>() / 2e4;
         let variance = values.iter().map(|v| v * v).sum::<f64>() / 2e4;

@@ -4,6 +4,7 @@ use crate::error::{DiscoverError, Unfollowed};
 use crate::fit::fitted::Fit;
 use crate::fit::full;
 use crate::fit::preliminary::{self, WarmStart};
+use crate::interval::Interval;
 use crate::model::problem::EstimationProblem;
 use crate::model::specification_texts::SpecificationTexts;
 use crate::model::unknowns::{Unknown, What, of_null_model};
@@ -28,7 +29,7 @@ pub fn null_fit(problem: &EstimationProblem<'_>, text: &str) -> Result<Fit, Disc
     let held = |unknown: &Unknown| match unknown.what {
         What::Parameter(_) | What::Inverse(_) => unknown.clone(),
         What::Gain(_) | What::Bias(_) | What::Delay(_) => Unknown {
-            bounds: (unknown.start, unknown.start),
+            bounds: Interval::new(unknown.start, unknown.start),
             ..unknown.clone()
         },
     };

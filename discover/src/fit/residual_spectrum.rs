@@ -1,9 +1,9 @@
 //! The frequency at which a fit's residuals are largest.
 
-use crate::ids::ChannelId;
-use realfft::RealFftPlanner;
+use eomgen_analysis::spectrum::{PowerSpectrum, periodogram};
 
 use crate::fit::fitted::Fit;
+use crate::ids::ChannelId;
 use crate::model::problem::EstimationProblem;
 use eomgen_records::samples::typical_step;
 
@@ -23,26 +23,16 @@ pub fn frequency(problem: &EstimationProblem<'_>, fit: &Fit, channel: ChannelId)
     if length < 8 || step <= 0.0 {
         return None;
     }
-    let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
-    let mut sum = vec![0.0; length / 2 + 1];
-    for residual in fit
-        .train
-        .residuals
-        .iter()
-        .filter(|r| r.len() / count == length)
-    {
-        let mut signal: Vec<f64> = residual
-            .iter()
-            .skip(channel.index())
-            .step_by(count)
-            .copied()
-            .collect();
-        let mut spectrum = transform.make_output_vec();
-        transform.process(&mut signal, &mut spectrum).ok()?;
-        sum.iter_mut()
-            .zip(&spectrum)
-            .for_each(|(s, c)| *s += c.norm_sqr());
-    }
-    let peak = (1..sum.len()).max_by(|a, b| sum[*a].total_cmp(&sum[*b]))?;
-    Some(peak as f64 / (length as f64 * step))
+    let whole = (fit.train.residuals.iter()).filter(|r| r.len() / count == length);
+    let spectra: Vec<PowerSpectrum> = whole
+        .map(|residual| {
+            let samples = residual.iter().skip(channel.index()).step_by(count);
+            periodogram(&samples.copied().collect::<Vec<f64>>(), step)
+        })
+        .collect::<Result<_, _>>()
+        .ok()?;
+    let sum = |k: usize| spectra.iter().map(|of| of.density[k]).sum::<f64>();
+    let frequencies = &spectra.first()?.frequency;
+    let peak = (1..frequencies.len()).max_by(|a, b| sum(*a).total_cmp(&sum(*b)))?;
+    Some(frequencies[peak])
 }

@@ -379,7 +379,7 @@ pub fn linearised(
 /// The step of a parameter's difference quotient; away from a bound that is near.
 fn quotient_step(unknown: &Unknown, value: f64) -> f64 {
     let step = thresholds::PARAMETER_QUOTIENT * unknown.scale;
-    if value + step > unknown.bounds.1 {
+    if value + step > unknown.bounds.high {
         -step
     } else {
         step

@@ -2,6 +2,7 @@
 //! sensors differ from what they measure, each with its prior and its bounds.
 
 use crate::ids::ChannelId;
+use crate::interval::Interval;
 use eomgen_model_spec::model::{Model, Parameter};
 
 use crate::thresholds;
@@ -35,6 +36,15 @@ impl What {
     }
 }
 
+/// What is known of a value before: a normal distribution, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NormalPrior {
+    /// Its mean.
+    pub mean: f64,
+    /// Its standard deviation.
+    pub sd: f64,
+}
+
 /// Something to be estimated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unknown {
@@ -44,12 +54,12 @@ pub struct Unknown {
     pub label: String,
     /// Where the estimate begins, SI.
     pub start: f64,
-    /// Mean and standard deviation of what is known before, SI.
-    pub prior: Option<(f64, f64)>,
-    /// The smallest and the largest admissible value, SI.
-    pub bounds: (f64, f64),
+    /// What is known of it before.
+    pub prior: Option<NormalPrior>,
+    /// The admissible values, SI.
+    pub bounds: Interval,
     /// The same where it need not be what was declared.
-    pub limits: (f64, f64),
+    pub limits: Interval,
     /// A change that matters, SI.
     pub scale: f64,
 }
@@ -57,7 +67,7 @@ pub struct Unknown {
 impl Unknown {
     /// A value moved into the bounds.
     pub fn admissible(&self, value: f64) -> f64 {
-        value.clamp(self.bounds.0, self.bounds.1)
+        self.bounds.clamp(value)
     }
 
     /// The same without what was declared of it.
@@ -71,14 +81,15 @@ impl Unknown {
 
     /// One of the null model: within so many standard deviations of what was declared, because
     /// beyond it is an effect.
-    fn declared((what, label): (What, String), (mean, sd): (f64, f64), limits: (f64, f64)) -> Self {
+    fn declared((what, label): (What, String), prior: NormalPrior, limits: Interval) -> Self {
+        let NormalPrior { mean, sd } = prior;
         let reach = thresholds::SHIFTED * sd;
         Self {
             what,
             label,
             start: mean,
-            prior: Some((mean, sd)),
-            bounds: (limits.0.max(mean - reach), limits.1.min(mean + reach)),
+            prior: Some(prior),
+            bounds: limits.intersection(Interval::new(mean - reach, mean + reach)),
             limits,
             scale: sd,
         }
@@ -99,7 +110,8 @@ pub fn of_null_model(dataset: &Dataset, model: &Model, values: &[(String, f64)])
         let name = &uncertain.name;
         let what = (What::Parameter(name.clone()), format!("`{name}`"));
         let limits = sign_bounds(parameter, *value);
-        unknowns.push(Unknown::declared(what, (*value, sd), limits));
+        let prior = NormalPrior { mean: *value, sd };
+        unknowns.push(Unknown::declared(what, prior, limits));
     }
     let step = dataset
         .train
@@ -117,29 +129,30 @@ pub fn of_sensor(id: ChannelId, channel: &Channel, step: f64) -> [Unknown; 3] {
     let gain = thresholds::GAIN_PRIOR;
     let bias = thresholds::BIAS_PRIOR * channel.noise;
     let delay = thresholds::DELAY_PRIOR * step;
-    let free = (f64::NEG_INFINITY, f64::INFINITY);
-    let late = (-LONGEST_LEAD * step, LONGEST_DELAY * step);
+    let free = Interval::ALL;
+    let late = Interval::new(-LONGEST_LEAD * step, LONGEST_DELAY * step);
+    let prior = |mean: f64, sd: f64| NormalPrior { mean, sd };
     let called = |what: What, fault: &str| (what, format!("the {fault} of `{}`", channel.name));
     [
-        Unknown::declared(called(What::Gain(id), "gain"), (1.0, gain), free),
-        Unknown::declared(called(What::Bias(id), "bias"), (0.0, bias), free),
+        Unknown::declared(called(What::Gain(id), "gain"), prior(1.0, gain), free),
+        Unknown::declared(called(What::Bias(id), "bias"), prior(0.0, bias), free),
         // What no prior holds is late: no sensor sees ahead.
         Unknown {
-            limits: (0.0, late.1),
-            ..Unknown::declared(called(What::Delay(id), "delay"), (0.0, delay), late)
+            limits: Interval::new(0.0, late.high),
+            ..Unknown::declared(called(What::Delay(id), "delay"), prior(0.0, delay), late)
         },
     ]
 }
 
 /// A parameter keeps its sign, and the bounds of the specification.
-pub fn sign_bounds(parameter: &Parameter, value: f64) -> (f64, f64) {
-    let (low, high) = match value {
-        v if v > 0.0 => (0.0, f64::INFINITY),
-        v if v < 0.0 => (f64::NEG_INFINITY, 0.0),
-        _ => (f64::NEG_INFINITY, f64::INFINITY),
+pub fn sign_bounds(parameter: &Parameter, value: f64) -> Interval {
+    let of_sign = match value {
+        v if v > 0.0 => Interval::new(0.0, f64::INFINITY),
+        v if v < 0.0 => Interval::new(f64::NEG_INFINITY, 0.0),
+        _ => Interval::ALL,
     };
-    (
-        parameter.min.map_or(low, |min| min.max(low)),
-        parameter.max.map_or(high, |max| max.min(high)),
-    )
+    of_sign.intersection(Interval::new(
+        parameter.min.unwrap_or(f64::NEG_INFINITY),
+        parameter.max.unwrap_or(f64::INFINITY),
+    ))
 }

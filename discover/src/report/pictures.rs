@@ -1,5 +1,6 @@
 //! Pictures for a page: residuals of the test record, and the residual force.
 
+use eomgen_analysis::spectrum::{PowerSpectrum, periodogram};
 use eomgen_page::{Figure, figure, table};
 use eomgen_plot::{FrequencyAxis, Panel, Series, Spectrum, TimeHistory, spectrum, time_history};
 use maud::{Markup, html};
@@ -113,7 +114,7 @@ pub(crate) fn figures(
     };
     let over_time = time_history(&history).unwrap_or_default();
     let step = eomgen_records::samples::typical_step(&times);
-    let spectra: Vec<Vec<(&str, Density)>> = columns
+    let spectra: Vec<Vec<(&str, PowerSpectrum)>> = columns
         .iter()
         .map(|series| {
             series
@@ -134,10 +135,10 @@ pub(crate) fn figures(
                 unit: format!("({unit})^2/Hz"),
                 series: series
                     .iter()
-                    .map(|(label, (f, d))| Series {
+                    .map(|(label, spectrum)| Series {
                         label: (*label).to_owned(),
-                        abscissa: f,
-                        values: d,
+                        abscissa: &spectrum.frequency,
+                        values: &spectrum.density,
                     })
                     .collect(),
                 references: Vec::new(),
@@ -150,31 +151,16 @@ pub(crate) fn figures(
     }
 }
 
-/// Frequencies in Hz, and the density at each.
-type Density = (Vec<f64>, Vec<f64>);
-
-/// The power spectral density of a residual, missing samples as 0; frequencies in Hz.
-fn density(values: &[f64], step: f64) -> Density {
-    let mut signal: Vec<f64> = values
-        .iter()
-        .map(|v| if v.is_finite() { *v } else { 0.0 })
-        .collect();
-    let length = signal.len();
-    if length < 2 {
-        return (Vec::new(), Vec::new());
+/// The power spectral density of a residual, missing samples as 0, without the one at 0 Hz; empty
+/// if the record is too short for any.
+fn density(values: &[f64], step: f64) -> PowerSpectrum {
+    let signal = (values.iter()).map(|v| if v.is_finite() { *v } else { 0.0 });
+    match periodogram(&signal.collect::<Vec<f64>>(), step) {
+        Ok(mut spectrum) => {
+            spectrum.frequency.remove(0);
+            spectrum.density.remove(0);
+            spectrum
+        }
+        Err(_) => PowerSpectrum::default(),
     }
-    let transform = realfft::RealFftPlanner::<f64>::new().plan_fft_forward(length);
-    let mut spectrum = transform.make_output_vec();
-    if transform.process(&mut signal, &mut spectrum).is_err() {
-        return (Vec::new(), Vec::new());
-    }
-    let rate = 1.0 / (length as f64 * step);
-    (1..spectrum.len())
-        .map(|k| {
-            (
-                k as f64 * rate,
-                2.0 * step / length as f64 * spectrum[k].norm_sqr(),
-            )
-        })
-        .unzip()
 }

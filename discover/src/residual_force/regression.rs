@@ -4,6 +4,7 @@
 //! decided elsewhere.
 
 use crate::ids::BasisFunctionId;
+use crate::model::unknowns::NormalPrior;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use crate::fit::fitted::Fit;
@@ -89,7 +90,7 @@ impl Regression {
         }
         let held = products[(n + count, n + count)];
         for (id, unknown) in fit.unknowns() {
-            if let Some((mean, sd)) = unknown.prior {
+            if let Some(NormalPrior { mean, sd }) = unknown.prior {
                 let prior = PriorTerm {
                     weight: fit.prior_weight / (sd * sd),
                     deviation: theta[id] - mean,

@@ -147,7 +147,7 @@ fn at_bound(fit: &Fit, own: &[EffectUnknown]) -> Option<Rejection> {
 pub fn is_held(fit: &Fit, own: &EffectUnknown) -> bool {
     let unknown = &fit.unknowns[own.unknown];
     let value = fit.train.estimate.theta[own.unknown];
-    value <= unknown.bounds.0 || value >= unknown.bounds.1
+    value <= unknown.bounds.low || value >= unknown.bounds.high
 }
 
 /// An unknown that gave up its prior and is within it still, and how far it is off.

@@ -4,8 +4,9 @@
 use crate::error::DiscoverError;
 use crate::fit::preliminary::{self, PreliminaryFit, WarmStart};
 use crate::ids::{EffectId, ResponseId, UnknownId};
+use crate::interval::Interval;
 use crate::model::specification_texts::SpecificationTexts;
-use crate::model::unknowns::Unknown;
+use crate::model::unknowns::{NormalPrior, Unknown};
 use crate::search::acceptance::EffectUnknown;
 use crate::search::pool::Pool;
 
@@ -34,7 +35,7 @@ pub fn own_unknowns(pool: &Pool<'_>, hypothesis: &Hypothesis) -> Vec<EffectUnkno
     for (effect, response) in effects.zip(&hypothesis.responses) {
         let response = &pool.screening.responses[*response];
         if let Some(unknown) = response.dropped_prior
-            && let Some((mean, sd)) = pool.context.fit.unknowns[unknown].prior
+            && let Some(NormalPrior { mean, sd }) = pool.context.fit.unknowns[unknown].prior
         {
             own.push(EffectUnknown {
                 unknown,
@@ -165,7 +166,7 @@ fn unknowns_with(pool: &Pool<'_>, hypothesis: &Hypothesis, part: f64) -> Extende
     let mut unknowns = fit.unknowns.clone();
     let mut theta = fit.restarted();
     if let Some(deleted) = hypothesis.deleted {
-        unknowns[deleted].bounds = (0.0, 0.0);
+        unknowns[deleted].bounds = Interval::ZERO;
         theta[deleted] = 0.0;
     }
     let mut sizes = hypothesis.sizes.iter().map(|size| part * size);

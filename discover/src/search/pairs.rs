@@ -104,7 +104,7 @@ fn best_pairs(pool: &Pool<'_>, ranking: &[ResponseId], at_limit: &[ResponseId]) 
         let value = pool.context.fit.train.estimate.theta[id];
         let near = unknown
             .prior
-            .is_some_and(|(mean, sd)| mean.abs() < thresholds::PRIOR_REACH * sd);
+            .is_some_and(|prior| prior.mean.abs() < thresholds::PRIOR_REACH * prior.sd);
         if matches!(unknown.what, What::Parameter(_))
             && near
             && let Some(screening) = screening.without(id, value)

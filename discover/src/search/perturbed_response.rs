@@ -173,11 +173,11 @@ fn changes<'b>(
 /// The size of a parameter that moves the outputs as wanted; none if none does.
 fn trial_size(start: f64, level: f64, moved: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     let wanted = thresholds::RESPONSE_MOVES * level;
-    let near = thresholds::RESPONSE_NEAR;
+    let near = thresholds::RESPONSE_NEAR.times(wanted);
     let mut size = start;
     for _ in 0..thresholds::SIZE_ATTEMPTS {
         let factor = match moved(size) {
-            Some(change) if change > near.0 * wanted && change < near.1 * wanted => {
+            Some(change) if change > near.low && change < near.high => {
                 return Some(size);
             }
             Some(change) if change.is_finite() && change > 0.0 => wanted / change,

@@ -4,6 +4,8 @@
 //! passes is fitted in full elsewhere.
 
 use crate::ids::{CandidateId, ResponseId, UnknownId};
+use crate::interval::Interval;
+use crate::model::unknowns::NormalPrior;
 use std::borrow::Cow;
 
 use nalgebra::{DMatrix, DVector};
@@ -71,9 +73,9 @@ pub struct Screening {
     nuisances: usize,
     /// What the prior of each nuisance adds to the products.
     priors: Vec<PriorTerm>,
-    bounds: Vec<(f64, f64)>,
+    bounds: Vec<Interval>,
     /// The bounds of each nuisance once its prior is dropped.
-    limits: Vec<(f64, f64)>,
+    limits: Vec<Interval>,
     /// The candidates that do something, in their order.
     pub responses: Vec<ScreenedResponse>,
     /// The candidates that do nothing that could be seen, with why.
@@ -139,9 +141,9 @@ pub fn screening(
     let (mut bounds, mut limits, mut priors) = (Vec::new(), Vec::new(), Vec::new());
     for (id, unknown) in fit.unknowns() {
         let value = estimate.theta[id];
-        bounds.push((unknown.bounds.0 - value, unknown.bounds.1 - value));
-        limits.push((unknown.limits.0 - value, unknown.limits.1 - value));
-        let prior = unknown.prior.map(|(mean, sd)| PriorTerm {
+        bounds.push(unknown.bounds.relative_to(value));
+        limits.push(unknown.limits.relative_to(value));
+        let prior = unknown.prior.map(|NormalPrior { mean, sd }| PriorTerm {
             weight: fit.prior_weight / (sd * sd),
             deviation: value - mean,
         });
@@ -155,8 +157,8 @@ pub fn screening(
             .iter()
             .filter(|candidate_unknown| !candidate_unknown.is_shape);
         bounds.extend(scaling.map(|candidate_unknown| {
-            let (low, high) = candidate_unknown.unknown.bounds;
-            (low - candidate_unknown.base, high - candidate_unknown.base)
+            let bounds = candidate_unknown.unknown.bounds;
+            bounds.relative_to(candidate_unknown.base)
         }));
     }
     let mut screening = Screening {
@@ -243,14 +245,14 @@ impl Screening {
         let products = &dropped.products;
         let last = products.ncols() - 1;
         let LeastSquares { a, b } = least_squares_of(products, &columns);
-        let bounds: Vec<(f64, f64)> = columns
+        let bounds: Vec<Interval> = columns
             .iter()
             .map(|column| {
-                let (low, high) = match dropped.nuisances.contains(&UnknownId::new(*column)) {
+                let interval = match dropped.nuisances.contains(&UnknownId::new(*column)) {
                     true => self.limits[*column],
                     false => self.bounds[*column],
                 };
-                (low.min(0.0), high.max(0.0))
+                interval.with_zero()
             })
             .collect();
         let x = least_squares(&a, &b, &bounds);
@@ -274,7 +276,7 @@ impl Screening {
     /// The same with a parameter of the model set to 0, its term deleted; none where that is
     /// not admissible.
     pub fn without(&self, nuisance: UnknownId, value: f64) -> Option<Self> {
-        let (low, high) = self.bounds[nuisance];
+        let Interval { low, high } = self.bounds[nuisance];
         if value == 0.0 || !(low..=high).contains(&-value) {
             return None;
         }
@@ -287,7 +289,7 @@ impl Screening {
         let mut residual = products.row_mut(last);
         residual += row;
         let mut bounds = self.bounds.clone();
-        bounds[nuisance] = (0.0, 0.0);
+        bounds[nuisance] = Interval::ZERO;
         Some(Self {
             products,
             bounds,
@@ -302,7 +304,7 @@ impl Screening {
 
     /// The same with a nuisance held where it is.
     pub fn held(mut self, nuisance: UnknownId) -> Self {
-        self.bounds[nuisance] = (0.0, 0.0);
+        self.bounds[nuisance] = Interval::ZERO;
         self
     }
 

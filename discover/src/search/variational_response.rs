@@ -220,6 +220,7 @@ fn ready(
 
 /// The size of a parameter that changes accelerations by a small part; none if none does.
 fn small(model: &EstimationModel, at: &dyn Fn(f64) -> Vec<f64>, points: &Points) -> Option<f64> {
+    let small = thresholds::SMALL_NEAR.times(thresholds::SMALL_CHANGE);
     let mut size = 1.0;
     for _ in 0..thresholds::SIZE_ATTEMPTS {
         let mut evaluator = model.evaluator(&at(size));
@@ -228,9 +229,7 @@ fn small(model: &EstimationModel, at: &dyn Fn(f64) -> Vec<f64>, points: &Points)
             thresholds::SIZE_FACTOR
         } else if !change.is_finite() {
             1e-3
-        } else if change > thresholds::SMALL_NEAR.0 * thresholds::SMALL_CHANGE
-            && change < thresholds::SMALL_NEAR.1 * thresholds::SMALL_CHANGE
-        {
+        } else if change > small.low && change < small.high {
             return Some(size);
         } else {
             thresholds::SMALL_CHANGE / change

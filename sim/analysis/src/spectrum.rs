@@ -1,4 +1,5 @@
-//! Power spectral densities by Welch's method, and how much of the power lies in lines.
+//! Power spectral densities, by Welch's method or of a whole series, and how much of the power
+//! lies in lines.
 //!
 //! P. D. Welch, "The use of fast Fourier transform for the estimation of power spectra",
 //! IEEE Trans. Audio Electroacoust. 15 (1967) 70-73.
@@ -8,7 +9,7 @@ use realfft::RealFftPlanner;
 use super::error::{AnalysisError, check, check_positive};
 
 /// A one-sided power spectral density.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct PowerSpectrum {
     /// Frequencies from 0 to half the sampling rate, evenly spaced, Hz.
     pub frequency: Vec<f64>,
@@ -76,42 +77,69 @@ pub fn welch(
     }
     let window = hann(segment);
     let weight: f64 = window.iter().map(|weight| weight * weight).sum();
-    let factor = 2.0 * interval / weight;
-    let mut density = mean_power(values, &window, trend);
-    let last = density.len() - 1;
-    for (k, value) in density.iter_mut().enumerate() {
-        let is_alone = k == 0 || (k == last && segment.is_multiple_of(2));
-        *value *= if is_alone { 0.5 * factor } else { factor };
-    }
-    let step = 1.0 / (segment as f64 * interval);
-    Ok(PowerSpectrum {
-        frequency: (0..density.len()).map(|k| k as f64 * step).collect(),
-        density,
-    })
+    let pieces = values.windows(segment).step_by(segment / 2);
+    let windowed = pieces.map(|piece| {
+        let mut windowed = without_trend(piece, trend);
+        for (value, weight) in windowed.iter_mut().zip(&window) {
+            *value *= weight;
+        }
+        windowed
+    });
+    Ok(one_sided(windowed, segment, interval, weight))
 }
 
-/// The mean of |X_k|^2 over half-overlapping segments as long as the window.
-fn mean_power(values: &[f64], window: &[f64], trend: Trend) -> Vec<f64> {
-    let length = window.len();
+/// The density of the whole of `values`, sampled every `interval` s, neither windowed nor with
+/// a trend removed: [`welch`]'s S_k of one segment with w_n = 1.
+///
+/// # Errors
+///
+/// Fewer than 8 values, values that are not finite, an interval that is not positive.
+pub fn periodogram(values: &[f64], interval: f64) -> Result<PowerSpectrum, AnalysisError> {
+    check_positive(interval, "the sampling interval")?;
+    check(values, 8)?;
+    let length = values.len();
+    let whole = std::iter::once(values.to_vec());
+    Ok(one_sided(whole, length, interval, length as f64))
+}
+
+/// The mean density of segments of `length` samples, whose window's squares sum to `weight`.
+fn one_sided(
+    segments: impl Iterator<Item = Vec<f64>>,
+    length: usize,
+    interval: f64,
+    weight: f64,
+) -> PowerSpectrum {
+    let factor = 2.0 * interval / weight;
+    let mut density = mean_power(segments, length);
+    let last = density.len() - 1;
+    for (k, value) in density.iter_mut().enumerate() {
+        let is_alone = k == 0 || (k == last && length.is_multiple_of(2));
+        *value *= if is_alone { 0.5 * factor } else { factor };
+    }
+    let step = 1.0 / (length as f64 * interval);
+    PowerSpectrum {
+        frequency: (0..density.len()).map(|k| k as f64 * step).collect(),
+        density,
+    }
+}
+
+/// The mean of |X_k|^2 over segments of `length` samples.
+fn mean_power(segments: impl Iterator<Item = Vec<f64>>, length: usize) -> Vec<f64> {
     let transform = RealFftPlanner::<f64>::new().plan_fft_forward(length);
     let mut transformed = transform.make_output_vec();
     let mut scratch = transform.make_scratch_vec();
     let mut power = vec![0.0; transformed.len()];
-    let mut segments = 0_u32;
-    for piece in values.windows(length).step_by(length / 2) {
-        let mut windowed = without_trend(piece, trend);
-        for (value, weight) in windowed.iter_mut().zip(window) {
-            *value *= weight;
-        }
+    let mut count = 0_u32;
+    for mut segment in segments {
         // Fails only for buffers of wrong lengths, and these are the plan's own.
-        let _ = transform.process_with_scratch(&mut windowed, &mut transformed, &mut scratch);
+        let _ = transform.process_with_scratch(&mut segment, &mut transformed, &mut scratch);
         for (sum, value) in power.iter_mut().zip(&transformed) {
             *sum += value.norm_sqr();
         }
-        segments += 1;
+        count += 1;
     }
     for sum in &mut power {
-        *sum /= f64::from(segments);
+        *sum /= f64::from(count);
     }
     power
 }
@@ -261,6 +289,19 @@ mod tests {
             );
             assert!(spectrum.line_share().unwrap() > 0.99);
         }
+        Ok(())
+    }
+
+    #[test]
+    fn a_periodogram_holds_the_mean_square() -> Result<(), AnalysisError> {
+        for count in [8, 999, 1000] {
+            let values = noise(count);
+            let mean_square = values.iter().map(|x| x * x).sum::<f64>() / count as f64;
+            let spectrum = periodogram(&values, 1e-2)?;
+            assert!((spectrum.power() / mean_square - 1.0).abs() < 1e-12);
+        }
+        assert!(periodogram(&[0.0; 7], 1e-2).is_err());
+        assert!(periodogram(&[0.0; 8], 0.0).is_err());
         Ok(())
     }
 

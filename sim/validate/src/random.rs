@@ -1,30 +1,23 @@
-//! The pseudo-random numbers of the validation: SplitMix64, so that a certificate is the
-//! same on every machine. For tests of equations, not for statistics or secrets.
+//! The pseudo-random numbers of the validation, SplitMix64 (Steele, Lea and Flood 2014), so that
+//! a certificate is the same on every machine. For tests of equations, not for statistics or
+//! secrets.
+
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// A deterministic sequence.
 #[derive(Clone, Debug)]
-pub struct Random {
-    state: u64,
-}
+pub struct Random(SplitMix64);
 
 impl Random {
     /// The sequence of `seed`.
     pub fn new(seed: u64) -> Self {
-        Self { state: seed }
-    }
-
-    /// The next 64 bits (Steele, Lea and Flood 2014).
-    fn bits(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = self.state;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
+        Self(SplitMix64::seed_from_u64(seed))
     }
 
     /// Uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 * (0.5_f64).powi(53)
+        (self.0.next_u64() >> 11) as f64 * (0.5_f64).powi(53)
     }
 
     /// Uniform in [-1, 1).
@@ -50,7 +43,10 @@ mod tests {
 
     #[test]
     fn the_first_number_is_the_published_one() {
-        assert_eq!(Random::new(1_234_567).bits(), 6_457_827_717_110_365_317);
+        assert_eq!(
+            Random::new(1_234_567).0.next_u64(),
+            6_457_827_717_110_365_317
+        );
     }
 
     #[test]

@@ -1,0 +1,11 @@
+//! The example of the library that README.md shows, compiled and run in the project's folder.
+
+use eomgen_tests::models::project;
+
+include!("../../examples/with_library/main.rs");
+
+#[test]
+fn the_example_runs() {
+    std::env::set_current_dir(project()).expect("the project's folder");
+    main().expect("three motions");
+}
