@@ -10,7 +10,7 @@ use eomgen_model_spec::check;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::{Settings, SolveError, Trajectory, simulate};
+use eomgen_sim::ode::{Method, Settings, SolveError, Trajectory, simulate};
 use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear, Propagator};
 
 use crate::models::variant;
@@ -161,14 +161,26 @@ impl Subject {
         Driven::new(RefCell::new(evaluator), &self.inputs)
     }
 
-    /// The motion by the general solver.
+    /// The motion by the general solver's steps of Runge and Kutta.
     pub fn general(
         &self,
         span: (f64, f64),
         times: &[f64],
         tolerance: f64,
     ) -> Result<Trajectory, SolveError> {
+        self.general_by(Method::DormandPrince853, span, times, tolerance)
+    }
+
+    /// The motion by one of the general solver's methods.
+    pub fn general_by(
+        &self,
+        method: Method,
+        span: (f64, f64),
+        times: &[f64],
+        tolerance: f64,
+    ) -> Result<Trajectory, SolveError> {
         let settings = Settings {
+            method,
             max_steps: 20_000,
             ..Settings::with_tolerance(tolerance)
         };

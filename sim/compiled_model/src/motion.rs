@@ -1,5 +1,7 @@
 //! A simulated motion, the solver it comes from, and why it is that one.
 
+use std::fmt;
+
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
 
@@ -29,6 +31,12 @@ impl Solver {
             Self::Rk => "rk",
             Self::Adams => "adams",
         }
+    }
+}
+
+impl fmt::Display for Solver {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
     }
 }
 
