@@ -226,8 +226,18 @@ fn the_macro_needs_no_program_and_no_simulation() {
     for package in ["eomgen", "eomgen-build"] {
         let packages = tree(package, "normal");
         let has = |name: &str| packages.iter().any(|package| package.starts_with(name));
-        assert!(has("codegen") && has("model_spec"), "{packages:?}");
-        for heavy in ["clap", "cranelift", "parquet", "sim", "rayon", "nalgebra"] {
+        assert!(
+            has("eomgen_codegen") && has("eomgen_model_spec"),
+            "{packages:?}"
+        );
+        for heavy in [
+            "clap",
+            "cranelift",
+            "parquet",
+            "eomgen_sim",
+            "rayon",
+            "nalgebra",
+        ] {
             assert!(!has(heavy), "{package} builds {heavy}");
         }
     }
