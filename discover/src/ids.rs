@@ -2,62 +2,6 @@
 //! none is taken for another. Lists are indexed by them; only where rows and columns of matrices are
 //! meant is [`index`](ChannelId::index) asked for.
 
-use std::ops::{Index, IndexMut};
-
-/// Defines ids, each of one kind of thing.
-macro_rules! ids {
-    ($($(#[$documentation:meta])* $id:ident;)*) => {$(
-        $(#[$documentation])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        pub struct $id(usize);
-
-        impl $id {
-            /// The one that stands there, from 0.
-            pub fn new(index: usize) -> Self {
-                Self(index)
-            }
-
-            /// Where it stands, from 0.
-            pub fn index(self) -> usize {
-                self.0
-            }
-
-            /// So many, in order.
-            pub fn first(count: usize) -> impl DoubleEndedIterator<Item = Self> + Clone {
-                (0..count).map(Self)
-            }
-        }
-
-        impl<T> Index<$id> for [T] {
-            type Output = T;
-
-            fn index(&self, id: $id) -> &T {
-                &self[id.0]
-            }
-        }
-
-        impl<T> IndexMut<$id> for [T] {
-            fn index_mut(&mut self, id: $id) -> &mut T {
-                &mut self[id.0]
-            }
-        }
-
-        impl<T> Index<$id> for Vec<T> {
-            type Output = T;
-
-            fn index(&self, id: $id) -> &T {
-                &self[id.0]
-            }
-        }
-
-        impl<T> IndexMut<$id> for Vec<T> {
-            fn index_mut(&mut self, id: $id) -> &mut T {
-                &mut self[id.0]
-            }
-        }
-    )*};
-}
-
 /// Windows that stand together.
 pub type WindowRange = std::iter::Map<std::ops::Range<usize>, fn(usize) -> WindowId>;
 
@@ -68,7 +12,7 @@ impl WindowId {
     }
 }
 
-ids! {
+eomgen_model_spec::ids! {
     /// A channel of a dataset.
     ChannelId;
     /// A window of training or test records.

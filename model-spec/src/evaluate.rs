@@ -11,7 +11,7 @@ pub fn evaluate(expr: &Expr, parameters: &[f64]) -> f64 {
     match &expr.kind {
         ExprKind::Number(value) => *value,
         ExprKind::Pi => std::f64::consts::PI,
-        ExprKind::Parameter(index) => parameters.get(*index).copied().unwrap_or(f64::NAN),
+        ExprKind::Parameter(index) => parameters.get(index.index()).copied().unwrap_or(f64::NAN),
         ExprKind::Negate(operand) => -evaluate(operand, parameters),
         ExprKind::Binary(operator, left, right) => {
             let (left, right) = (evaluate(left, parameters), evaluate(right, parameters));

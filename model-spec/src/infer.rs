@@ -63,7 +63,7 @@ impl Inference<'_> {
             ExprKind::Coordinate(index) => Ok(Some(model.coordinates[*index].unit.dimension)),
             ExprKind::Input(index) => Ok(Some(model.inputs[*index].unit.dimension)),
             ExprKind::Definition(index) => Ok(Some(self.definitions[*index])),
-            ExprKind::Coefficient(index) => Ok(self.coefficients.get(*index).copied()),
+            ExprKind::Coefficient(index) => Ok(self.coefficients.get(index.index()).copied()),
             ExprKind::Field(field) | ExprKind::ModeCoordinate(field) => {
                 Ok(Some(model.fields[*field].unit.dimension))
             }

@@ -26,7 +26,7 @@
 //! The pipeline, one file each: `source` (text and places), [`lexer`], [`parser`] (tokens
 //! to [`ast`]), `document` (TOML tables to raw entries), `names`, `expression` and `resolve` (names),
 //! `motion` (what may stand where), `units_check` and `infer` (units of every expression), `checks`,
-//! [`model`] (the result). [`load()`] and [`check`] go all the way. What is wrong is said by
+//! [`model`] (the result; [`mod@ids`] say which entry of its lists is meant). [`load()`] and [`check`] go all the way. What is wrong is said by
 //! [`diagnostic`]; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers.
 //! [`toml_file`] and [`mod@table`] read other files of TOML with their places as well. [`models`] are
 //! the specifications shipped. Nothing here knows how
@@ -42,6 +42,7 @@ mod entries;
 pub mod evaluate;
 mod expression;
 mod functions;
+pub mod ids;
 mod infer;
 mod keys;
 pub mod lexer;

@@ -6,6 +6,7 @@
 //! rates of all these in the same order.
 
 use crate::ast::BinaryOperator;
+use crate::ids::{CoefficientId, CoordinateId, DefinitionId, FieldId, InputId, ParameterId};
 use crate::source::Source;
 use crate::span::Span;
 use crate::unit::Unit;
@@ -49,10 +50,10 @@ pub struct Model {
     pub coefficients: Vec<Coefficient>,
     /// How measured channels differ from the quantities of the model.
     pub sensors: Vec<Sensor>,
-    /// Indices into `parameters` such that each comes after those it refers to.
-    pub parameter_order: Vec<usize>,
-    /// Indices into `definitions` such that each comes after those it refers to.
-    pub definition_order: Vec<usize>,
+    /// The parameters in an order such that each comes after those it refers to.
+    pub parameter_order: Vec<ParameterId>,
+    /// The definitions in an order such that each comes after those it refers to.
+    pub definition_order: Vec<DefinitionId>,
 }
 
 /// A parameter of the model.
@@ -242,7 +243,7 @@ pub struct Coefficient {
     pub kind: CoefficientKind,
     /// The field for each of whose modes it is given, if its specification says so
     /// (`each = "w[i]"`); `phi[i]` then stands outside any sum.
-    pub each: Option<usize>,
+    pub each: Option<FieldId>,
     /// What it is.
     pub doc: String,
     /// Where its name stands.
@@ -332,7 +333,7 @@ impl Expr {
     }
 }
 
-/// The forms of a checked expression. Indices refer to the lists of [`Model`].
+/// The forms of a checked expression.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ExprKind {
     /// A number (literals carry no unit; in SI).
@@ -342,24 +343,24 @@ pub enum ExprKind {
     /// The time t, in s.
     Time,
     /// The position along a field, inside that field's functions only.
-    Position(usize),
+    Position(FieldId),
     /// A parameter.
-    Parameter(usize),
+    Parameter(ParameterId),
     /// A generalised coordinate (not a mode).
-    Coordinate(usize),
+    Coordinate(CoordinateId),
     /// An input.
-    Input(usize),
+    Input(InputId),
     /// A definition.
-    Definition(usize),
+    Definition(DefinitionId),
     /// An earlier entry of [`Model::coefficients`], inside coefficients only.
-    Coefficient(usize),
+    Coefficient(CoefficientId),
     /// A field w(x, t), inside that field's `integral`, `at` or `diff` only.
-    Field(usize),
+    Field(FieldId),
     /// A field's mode coordinate `q[i]`, i the index of the innermost enclosing sum
     /// over that field.
-    ModeCoordinate(usize),
+    ModeCoordinate(FieldId),
     /// A field's mode shape `phi[i]`, a function of the position, i as above.
-    ModeShape(usize),
+    ModeShape(FieldId),
     /// The time derivative of a coordinate, definition, field or mode coordinate.
     Dot(Box<Expr>),
     /// The derivative of an expression in the field (`w`, `dot(w)` or `phi[i]`) by the
@@ -369,7 +370,7 @@ pub enum ExprKind {
     /// evaluated at `position` (parameters only).
     At {
         /// The field whose position is replaced.
-        field: usize,
+        field: FieldId,
         /// The function of the position.
         value: Box<Expr>,
         /// Where to evaluate it.
@@ -378,14 +379,14 @@ pub enum ExprKind {
     /// The integral of an expression over the field's domain.
     Integral {
         /// The field whose domain is meant.
-        field: usize,
+        field: FieldId,
         /// The integrand, a function of the position.
         integrand: Box<Expr>,
     },
     /// The sum over the field's modes; 0 at order 0.
     Sum {
         /// The field whose modes are meant.
-        field: usize,
+        field: FieldId,
         /// The summand, with `q[i]` and `phi[i]`.
         summand: Box<Expr>,
     },

@@ -5,6 +5,7 @@
 use std::collections::BTreeSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::ids::{CoordinateId, FieldId};
 use crate::model::{Expr, ExprKind, Model, Term};
 use crate::span::Span;
 
@@ -14,8 +15,8 @@ pub const MAX_EXPANDED_DEPTH: usize = 600;
 /// Something with a rate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Moving {
-    Coordinate(usize),
-    Field(usize),
+    Coordinate(CoordinateId),
+    Field(FieldId),
 }
 
 /// What an expression depends on.
@@ -108,12 +109,12 @@ impl Checker<'_, '_> {
             );
         };
         for (index, coordinate) in self.model.coordinates.iter().enumerate() {
-            if !inertial.contains(&Moving::Coordinate(index)) {
+            if !inertial.contains(&Moving::Coordinate(CoordinateId::new(index))) {
                 refuse(&coordinate.name, "coordinate", coordinate.span);
             }
         }
         for (index, field) in self.model.fields.iter().enumerate() {
-            if !inertial.contains(&Moving::Field(index)) {
+            if !inertial.contains(&Moving::Field(FieldId::new(index))) {
                 refuse(&field.name, "field", field.span);
             }
         }
@@ -171,7 +172,7 @@ impl Checker<'_, '_> {
                 motion.values.insert(Moving::Field(*field));
             }
             ExprKind::Definition(index) => {
-                if let Some(known) = self.definitions.get(*index) {
+                if let Some(known) = self.definitions.get(index.index()) {
                     motion.include(known, expr.span, depth);
                 }
             }

@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::functions::reserved;
+use crate::ids::{CoefficientId, CoordinateId, DefinitionId, FieldId, InputId, ParameterId};
 use crate::raw::Document;
 use crate::span::Span;
 use crate::table::Name;
@@ -12,25 +13,25 @@ use crate::table::Name;
 /// The longest name accepted.
 pub const MAX_NAME: usize = 64;
 
-/// What a name in an expression stands for; indices as in [`crate::model::Model`].
+/// What a name in an expression stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Symbol {
     /// A parameter.
-    Parameter(usize),
+    Parameter(ParameterId),
     /// A coordinate.
-    Coordinate(usize),
+    Coordinate(CoordinateId),
     /// An input.
-    Input(usize),
+    Input(InputId),
     /// A field.
-    Field(usize),
+    Field(FieldId),
     /// The mode coordinates of a field.
-    Modes(usize),
+    Modes(FieldId),
     /// The position along one or more fields.
     Position,
     /// A definition.
-    Definition(usize),
+    Definition(DefinitionId),
     /// A coefficient.
-    Coefficient(usize),
+    Coefficient(CoefficientId),
 }
 
 impl Symbol {
@@ -79,10 +80,18 @@ impl Names {
         names.declare_quantities(document, found);
         names.declare_fields(document, found);
         for (index, definition) in document.definitions.iter().enumerate() {
-            names.add(&definition.name, Symbol::Definition(index), found);
+            names.add(
+                &definition.name,
+                Symbol::Definition(DefinitionId::new(index)),
+                found,
+            );
         }
         for (index, coefficient) in document.coefficients.iter().enumerate() {
-            names.add(&coefficient.name, Symbol::Coefficient(index), found);
+            names.add(
+                &coefficient.name,
+                Symbol::Coefficient(CoefficientId::new(index)),
+                found,
+            );
         }
         names.check_terms(document, found);
         names.check_observables(document, found);
@@ -107,20 +116,32 @@ impl Names {
 
     fn declare_quantities(&mut self, document: &Document, found: &mut Diagnostics) {
         for (index, parameter) in document.parameters.iter().enumerate() {
-            self.add(&parameter.name, Symbol::Parameter(index), found);
+            self.add(
+                &parameter.name,
+                Symbol::Parameter(ParameterId::new(index)),
+                found,
+            );
         }
         for (index, coordinate) in document.coordinates.iter().enumerate() {
-            self.add(&coordinate.name, Symbol::Coordinate(index), found);
+            self.add(
+                &coordinate.name,
+                Symbol::Coordinate(CoordinateId::new(index)),
+                found,
+            );
         }
         for (index, input) in document.inputs.iter().enumerate() {
-            self.add(&input.name, Symbol::Input(index), found);
+            self.add(&input.name, Symbol::Input(InputId::new(index)), found);
         }
     }
 
     fn declare_fields(&mut self, document: &Document, found: &mut Diagnostics) {
         for (index, field) in document.fields.iter().enumerate() {
-            self.add(&field.name, Symbol::Field(index), found);
-            self.add(&field.coordinates, Symbol::Modes(index), found);
+            self.add(&field.name, Symbol::Field(FieldId::new(index)), found);
+            self.add(
+                &field.coordinates,
+                Symbol::Modes(FieldId::new(index)),
+                found,
+            );
             // Fields may share the name of their positions.
             if self.get(&field.along.text) != Some(Symbol::Position) {
                 self.add(&field.along, Symbol::Position, found);

@@ -2,6 +2,7 @@
 
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Severity;
+use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::{CoefficientKind, ExprKind, MAX_ORDER, Model};
 use eomgen_model_spec::models;
 use eomgen_model_spec::source::Source;
@@ -275,10 +276,10 @@ fn parameters_near_to_a_name_are_suggested() {
 #[test]
 fn coefficients_know_the_modes_they_are_given_for() {
     let model = checked(BEAM).model;
-    assert_eq!(model.coefficients[0].each, Some(0));
+    assert_eq!(model.coefficients[0].each, Some(FieldId::new(0)));
     assert!(matches!(
         &model.coefficients[2].kind,
-        CoefficientKind::Factor { of, times: Some(_), .. } if of.kind == ExprKind::ModeCoordinate(0)
+        CoefficientKind::Factor { of, times: Some(_), .. } if of.kind == ExprKind::ModeCoordinate(FieldId::new(0))
     ));
     let outside = refused(&BEAM.replace("\"sum(i, w, h^2)\"", "\"h^2\""));
     assert!(outside.contains("one for each mode of `w`"), "{outside}");

@@ -14,6 +14,7 @@ use cranelift_frontend::{FuncInstBuilder, FunctionBuilder};
 use eomgen_codegen::program::evaluator::{Places, Stage};
 use eomgen_codegen::program::{Extent, Op, Program, RowValues, ValueId};
 use eomgen_elementary::{Function as Elementary, Kernel};
+use eomgen_model_spec::ids::FieldId;
 
 use crate::branches::Branches;
 use crate::constants::Constants;
@@ -197,9 +198,12 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         let (base, start) = match value.op {
             Op::Constant(number) => return Some(self.literal(number, Lanes::One)),
             Op::Time => return Some(self.call.t),
-            Op::Coordinate(index) => (self.call.state, index),
-            Op::Rate(index) => (self.call.state, program.degrees_of_freedom() + index),
-            Op::Input(index) => (self.call.memory, self.shared.inputs() + index),
+            Op::Coordinate(index) => (self.call.state, index.index()),
+            Op::Rate(index) => (
+                self.call.state,
+                program.degrees_of_freedom() + index.index(),
+            ),
+            Op::Input(index) => (self.call.memory, self.shared.inputs() + index.index()),
             Op::Parameter(_) | Op::Argument(..) => {
                 (self.call.memory, self.shared.places.offset(id))
             }
@@ -359,7 +363,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             out.start = degrees + row;
             self.store(number, out, At::one(0));
         }
-        for (field, id) in modal.iter().enumerate() {
+        for (field, id) in FieldId::first(modal.len()).zip(modal) {
             out.start = degrees + self.program.mode_offset(field);
             self.each(self.program.fields[field].order, |writer, at| {
                 let value = writer.element(*id, at);

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use eomgen_codegen::program::{Extent, Op};
 use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::ids::CoordinateId;
 
 #[test]
 fn a_leaf_that_is_asked_for_by_elements_is_refused() {
@@ -26,10 +27,10 @@ fn a_leaf_that_is_asked_for_by_elements_is_refused() {
             && matches!(value.op, Op::Multiply(..) | Op::Subtract(..))
     });
     let vector = vector.expect("a vector that is computed per call");
-    program.values[vector.index()].op = Op::Coordinate(0);
+    program.values[vector.index()].op = Op::Coordinate(CoordinateId::new(0));
     let refused = eomgen_jit::compile(&program)
         .map(|_| ())
         .expect_err("a misplaced leaf");
     let message = refused.to_string();
-    assert!(message.contains("Coordinate(0)"), "{message}");
+    assert!(message.contains("CoordinateId(0)"), "{message}");
 }

@@ -4,6 +4,7 @@
 
 use std::collections::HashMap;
 
+use eomgen_model_spec::ids::{CoordinateId, FieldId};
 use eomgen_model_spec::model::{Coefficient, CoefficientKind, Expr, ExprKind};
 
 use crate::mechanics::solve::Accelerations;
@@ -39,9 +40,9 @@ pub struct Factor {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EquationRow {
     /// A coordinate's.
-    Coordinate(usize),
+    Coordinate(CoordinateId),
     /// Every mode of a field.
-    Modes(usize),
+    Modes(FieldId),
 }
 
 /// The named coefficients in the order of the specification.

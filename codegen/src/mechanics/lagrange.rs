@@ -1,6 +1,7 @@
 //! The rows of Lagrange's equations: gradients by coordinates and rates, the mass matrix and
 //! the velocity terms of a kinetic energy.
 
+use eomgen_model_spec::ids::{CoordinateId, FieldId};
 use eomgen_model_spec::model::Model;
 
 use crate::mechanics::mass_matrix::MassMatrix;
@@ -33,7 +34,7 @@ impl Variables {
 
     /// The gradient of a scalar by coordinates or by rates.
     pub(crate) fn gradient(&self, graph: &mut Graph, scalar: NodeId, kind: GradientBy) -> RowNodes {
-        let scalars = (0..self.coordinates)
+        let scalars = CoordinateId::first(self.coordinates)
             .map(|index| {
                 let variable = graph.intern(match kind {
                     GradientBy::Coordinates => Operation::Coordinate(index),
@@ -42,7 +43,7 @@ impl Variables {
                 by_scalar(graph, scalar, variable)
             })
             .collect();
-        let modal = (0..self.fields)
+        let modal = FieldId::first(self.fields)
             .map(|field| match self.modal(graph, field, &kind) {
                 Some(mut derivative) => derivative.gradient(graph, scalar),
                 None => graph.zero(),
@@ -51,7 +52,12 @@ impl Variables {
         RowNodes { scalars, modal }
     }
 
-    fn modal(&self, graph: &mut Graph, field: usize, kind: &GradientBy) -> Option<ModalDerivative> {
+    fn modal(
+        &self,
+        graph: &mut Graph,
+        field: FieldId,
+        kind: &GradientBy,
+    ) -> Option<ModalDerivative> {
         let variable = graph.intern(match kind {
             GradientBy::Coordinates => Operation::ModeCoordinates(field),
             GradientBy::Rates => Operation::ModeRates(field),
@@ -60,7 +66,7 @@ impl Variables {
     }
 
     pub(crate) fn mass_matrix(&self, graph: &mut Graph, momenta: &RowNodes) -> MassMatrix {
-        let rates: Vec<NodeId> = (0..self.coordinates)
+        let rates: Vec<NodeId> = CoordinateId::first(self.coordinates)
             .map(|index| graph.intern(Operation::Rate(index)))
             .collect();
         // By symmetry an entry comes from the momentum of the smaller index.
@@ -75,14 +81,14 @@ impl Variables {
         }
         let mut coupling = vec![Vec::new(); self.coordinates];
         let mut modal = vec![Vec::new(); self.fields];
-        for field in 0..self.fields {
+        for field in FieldId::first(self.fields) {
             let Some(mut derivative) = self.modal(graph, field, &GradientBy::Rates) else {
                 continue;
             };
             for (row, entries) in coupling.iter_mut().enumerate() {
                 entries.push(derivative.gradient(graph, momenta.scalars[row]));
             }
-            for (row, blocks) in modal.iter_mut().enumerate() {
+            for (row, blocks) in FieldId::first(self.fields).zip(&mut modal) {
                 let rows = Space::Modes(row);
                 let momentum = momenta.modal[row];
                 blocks.push(derivative.of_elements(graph, momentum, rows));
@@ -158,11 +164,11 @@ impl Variables {
     /// The sum over all rows of a row times its rate.
     pub(crate) fn dot_rates(&self, graph: &mut Graph, rows: &RowNodes) -> NodeId {
         let mut terms = Vec::new();
-        for (index, &row) in rows.scalars.iter().enumerate() {
+        for (index, &row) in CoordinateId::first(rows.scalars.len()).zip(&rows.scalars) {
             let rate = graph.intern(Operation::Rate(index));
             terms.push((1.0, graph.multiply(row, rate)));
         }
-        for (field, &row) in rows.modal.iter().enumerate() {
+        for (field, &row) in FieldId::first(rows.modal.len()).zip(&rows.modal) {
             let rates = graph.intern(Operation::ModeRates(field));
             let product = graph.multiply(row, rates);
             terms.push((1.0, graph.total_over(Space::Modes(field), product)));

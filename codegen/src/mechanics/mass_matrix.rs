@@ -2,6 +2,7 @@
 
 use crate::symbolic::graph::{Graph, NodeId};
 use crate::symbolic::matrix::StructuredMatrix;
+use eomgen_model_spec::ids::FieldId;
 
 /// The mass matrix by blocks.
 #[derive(Clone, Debug)]
@@ -18,9 +19,9 @@ pub struct MassMatrix {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModalMassBlock {
     /// The field of the rows.
-    pub rows: usize,
+    pub rows: FieldId,
     /// The field of the columns.
-    pub columns: usize,
+    pub columns: FieldId,
     /// Modes of the one times modes of the other.
     pub matrix: NodeId,
 }
@@ -29,8 +30,9 @@ impl MassMatrix {
     /// The blocks over modes on and above the diagonal that are not 0.
     pub(crate) fn assembled_blocks(&self, graph: &mut Graph) -> Vec<ModalMassBlock> {
         let mut blocks = Vec::new();
-        for (row, columns) in self.modal.iter().enumerate() {
-            for (column, block) in columns.iter().enumerate().skip(row) {
+        let fields = FieldId::first(self.modal.len());
+        for (row, columns) in fields.clone().zip(&self.modal) {
+            for (column, block) in fields.clone().zip(columns).skip(row.index()) {
                 if !block.is_zero() {
                     blocks.push(ModalMassBlock {
                         rows: row,

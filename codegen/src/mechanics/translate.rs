@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::diagnostic::Diagnostic;
+use eomgen_model_spec::ids::{DefinitionId, FieldId};
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 use eomgen_model_spec::span::Span;
 
@@ -52,7 +53,7 @@ pub struct Translator<'m> {
     pub model: &'m Model,
     /// The graph that grows.
     pub graph: Graph,
-    definitions: HashMap<usize, NodeId>,
+    definitions: HashMap<DefinitionId, NodeId>,
     coefficients: Vec<NodeId>,
 }
 
@@ -81,7 +82,7 @@ impl<'m> Translator<'m> {
 
     /// The node of each definition that was used so far.
     pub fn definition_nodes(&self) -> Vec<Option<NodeId>> {
-        (0..self.model.definitions.len())
+        DefinitionId::first(self.model.definitions.len())
             .map(|index| self.definitions.get(&index).copied())
             .collect()
     }
@@ -96,7 +97,7 @@ impl<'m> Translator<'m> {
             ExprKind::Coordinate(index) => Ok(self.graph.intern(Operation::Coordinate(*index))),
             ExprKind::Input(index) => Ok(self.graph.intern(Operation::Input(*index))),
             ExprKind::Definition(index) => self.definition(*index),
-            ExprKind::Coefficient(index) => match self.coefficients.get(*index) {
+            ExprKind::Coefficient(index) => match self.coefficients.get(index.index()) {
                 Some(&node) => Ok(node),
                 None => Err(error(expr, "this coefficient is not known yet")),
             },
@@ -152,7 +153,7 @@ impl<'m> Translator<'m> {
         }
     }
 
-    fn definition(&mut self, index: usize) -> Derived<NodeId> {
+    fn definition(&mut self, index: DefinitionId) -> Derived<NodeId> {
         if let Some(&known) = self.definitions.get(&index) {
             return Ok(known);
         }
@@ -198,7 +199,7 @@ impl<'m> Translator<'m> {
         }
     }
 
-    fn at(&mut self, field: usize, value: &Expr, position: &Expr) -> Derived<NodeId> {
+    fn at(&mut self, field: FieldId, value: &Expr, position: &Expr) -> Derived<NodeId> {
         let function = self.field_function(field, value)?;
         let position = self.node(position)?;
         let domain = self.domain(field)?;
@@ -207,7 +208,7 @@ impl<'m> Translator<'m> {
             .map_err(|m| error(value, m))
     }
 
-    fn integral(&mut self, field: usize, integrand: &Expr) -> Derived<NodeId> {
+    fn integral(&mut self, field: FieldId, integrand: &Expr) -> Derived<NodeId> {
         let function = self.field_function(field, integrand)?;
         let domain = self.domain(field)?;
         function
@@ -216,7 +217,7 @@ impl<'m> Translator<'m> {
     }
 
     /// The domain of a field.
-    fn domain(&mut self, field: usize) -> Derived<Domain> {
+    fn domain(&mut self, field: FieldId) -> Derived<Domain> {
         let spec = &self.model.fields[field];
         let from = self.node(&spec.from)?;
         let to = self.node(&spec.to)?;
@@ -231,7 +232,7 @@ impl<'m> Translator<'m> {
     }
 
     /// An expression of a field's position.
-    fn field_function(&mut self, field: usize, expr: &Expr) -> Derived<FieldFunction> {
+    fn field_function(&mut self, field: FieldId, expr: &Expr) -> Derived<FieldFunction> {
         match &expr.kind {
             ExprKind::Position(_) => {
                 let domain = self.domain(field)?;

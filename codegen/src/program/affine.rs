@@ -1,5 +1,6 @@
 //! The numbers of a piecewise-linear model: matrices for given parameters and sides.
 
+use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::Function;
 
 use crate::program::evaluator::Evaluator;
@@ -171,7 +172,7 @@ impl AffineEvaluator {
         for (row, values) in self.layout.scalars.iter().enumerate() {
             self.fill(&mut rows, degrees + row, values, 0);
         }
-        for (field, values) in self.layout.modal.iter().enumerate() {
+        for (field, values) in FieldId::first(self.layout.modal.len()).zip(&self.layout.modal) {
             let first = degrees + program.mode_offset(field);
             for mode in 0..program.fields[field].order {
                 self.fill(&mut rows, first + mode, values, mode);
@@ -214,7 +215,7 @@ impl AffineEvaluator {
             for (slot, id) in half.iter_mut().zip(scalars) {
                 *slot = self.element(*id, element);
             }
-            for (field, id) in modes.iter().enumerate() {
+            for (field, id) in FieldId::first(modes.len()).zip(modes) {
                 let first = program.mode_offset(field);
                 for mode in 0..program.fields[field].order {
                     half[first + mode] = self.pair(*id, element, mode);

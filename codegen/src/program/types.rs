@@ -3,6 +3,7 @@
 use super::value::{Extent, Op, Value, ValueId};
 use crate::mechanics::outputs::Outputs;
 use crate::symbolic::graph::Variable;
+use eomgen_model_spec::ids::FieldId;
 
 /// A named quantity with its unit.
 #[derive(Clone, Debug)]
@@ -168,16 +169,21 @@ impl Program {
     }
 
     /// Place in the state of a field's first mode coordinate.
-    pub fn mode_offset(&self, field: usize) -> usize {
-        self.coordinates.len() + self.fields[..field].iter().map(|f| f.order).sum::<usize>()
+    pub fn mode_offset(&self, field: FieldId) -> usize {
+        self.coordinates.len()
+            + self.fields[..field.index()]
+                .iter()
+                .map(|f| f.order)
+                .sum::<usize>()
     }
 
     /// Place of a variable, or of the first of a field's, in the state, or among the inputs.
     pub fn variable_place(&self, variable: Variable) -> usize {
         match variable {
-            Variable::Coordinate(index) | Variable::Input(index) => index,
+            Variable::Coordinate(index) => index.index(),
+            Variable::Input(index) => index.index(),
             Variable::ModeCoordinates(field) => self.mode_offset(field),
-            Variable::Rate(index) => self.degrees_of_freedom() + index,
+            Variable::Rate(index) => self.degrees_of_freedom() + index.index(),
             Variable::ModeRates(field) => self.degrees_of_freedom() + self.mode_offset(field),
         }
     }

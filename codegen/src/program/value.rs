@@ -1,5 +1,6 @@
 //! The values of a program: what each holds, how it is computed, and from which.
 
+use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId};
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
@@ -60,15 +61,15 @@ pub enum Op {
     /// An independent parameter, by its place in [`Program::parameters`](super::Program::parameters).
     Parameter(usize),
     /// A coordinate of the state.
-    Coordinate(usize),
+    Coordinate(CoordinateId),
     /// The rate of a coordinate.
-    Rate(usize),
+    Rate(CoordinateId),
     /// A field's mode coordinates.
-    ModeCoordinates(usize),
+    ModeCoordinates(FieldId),
     /// The rates of a field's mode coordinates.
-    ModeRates(usize),
+    ModeRates(FieldId),
     /// An input.
-    Input(usize),
+    Input(InputId),
     /// The time.
     Time,
     /// What an argument holds for a variable.

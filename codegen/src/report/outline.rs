@@ -1,6 +1,7 @@
 //! Which nodes the report shows, under which names: what is chosen before any formula is
 //! written, because formulas share lines.
 
+use eomgen_model_spec::ids::{CoordinateId, FieldId};
 use eomgen_model_spec::model::{Model, Term};
 
 use crate::mechanics::coefficients::EquationRow;
@@ -118,8 +119,8 @@ impl<'a> Outline<'a> {
     }
 
     fn rows(&self, rows: &RowNodes) -> Vec<Shown> {
-        let scalars = rows.scalars.iter().enumerate();
-        let modal = rows.modal.iter().enumerate();
+        let scalars = CoordinateId::first(rows.scalars.len()).zip(&rows.scalars);
+        let modal = FieldId::first(rows.modal.len()).zip(&rows.modal);
         scalars
             .map(|(index, id)| (EquationRow::Coordinate(index), *id))
             .chain(modal.map(|(field, id)| (EquationRow::Modes(field), *id)))
@@ -137,15 +138,17 @@ impl<'a> Outline<'a> {
                 entries.push((row, column, id));
             }
         };
-        for (row, values) in mass.scalars.iter().enumerate() {
-            for (column, id) in values.iter().enumerate().skip(row) {
+        let coordinates = CoordinateId::first(mass.scalars.len());
+        for (row, values) in coordinates.clone().zip(&mass.scalars) {
+            for (column, id) in coordinates.clone().zip(values).skip(row.index()) {
                 push(
                     EquationRow::Coordinate(row),
                     EquationRow::Coordinate(column),
                     *id,
                 );
             }
-            for (field, id) in mass.coupling[row].iter().enumerate() {
+            let coupling = &mass.coupling[row];
+            for (field, id) in FieldId::first(coupling.len()).zip(coupling) {
                 push(EquationRow::Coordinate(row), EquationRow::Modes(field), *id);
             }
         }

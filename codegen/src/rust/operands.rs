@@ -168,10 +168,11 @@ impl<'a> Body<'a> {
     pub(super) fn leaf(&self, id: ValueId) -> Emitted<Expression> {
         let program = self.program;
         Ok(match program.value(id).op {
-            Op::Coordinate(index) => Expression::atom(format!("state[{index}]")),
-            Op::Rate(index) => {
-                Expression::atom(format!("state[{}]", program.degrees_of_freedom() + index))
-            }
+            Op::Coordinate(index) => Expression::atom(format!("state[{}]", index.index())),
+            Op::Rate(index) => Expression::atom(format!(
+                "state[{}]",
+                program.degrees_of_freedom() + index.index()
+            )),
             Op::Input(index) => {
                 Expression::field("inputs", identifier(&program.inputs[index].name)?)
             }

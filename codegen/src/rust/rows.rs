@@ -5,6 +5,7 @@ use super::emit_error::Emitted;
 use super::expression::{assignment, infix};
 use super::file::File;
 use crate::program::RowValues;
+use eomgen_model_spec::ids::FieldId;
 
 /// Rows into `target` from a place on.
 pub(super) fn write_row_values(
@@ -18,7 +19,7 @@ pub(super) fn write_row_values(
         let value = body.scalar(*id)?;
         body.push(&assignment(&format!("{target}[{}]", first + place), value));
     }
-    for (field, id) in rows.modal.iter().enumerate() {
+    for (field, id) in FieldId::first(rows.modal.len()).zip(&rows.modal) {
         let order = file.program.fields[field].order;
         if order > 0 {
             let value = body.element(*id)?;

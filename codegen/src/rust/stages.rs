@@ -10,6 +10,7 @@ use super::roots::mass_roots;
 use super::rows::write_row_values;
 use super::signature::{ORDER, Signature, stage, stage_with};
 use crate::program::{Extent, Op, ValueId};
+use eomgen_model_spec::ids::FieldId;
 
 /// Of a mass matrix that varies with the state.
 const NOT_DEFINITE: &str = "///\n\
@@ -229,7 +230,7 @@ pub(super) fn mass_matrix(file: &File<'_>, needed: &mut Needed) -> Emitted<Strin
 fn write_coupling(file: &File<'_>, body: &mut Body<'_>) -> Emitted<()> {
     let program = file.program;
     for (row, entries) in program.mass.coupling.iter().enumerate() {
-        for (field, id) in entries.iter().enumerate() {
+        for (field, id) in FieldId::first(entries.len()).zip(entries) {
             let order = program.fields[field].order;
             if order == 0 || matches!(program.value(*id).op, Op::Constant(0.0)) {
                 continue;
@@ -247,8 +248,9 @@ fn write_coupling(file: &File<'_>, body: &mut Body<'_>) -> Emitted<()> {
 
 fn write_modal_blocks(file: &File<'_>, body: &mut Body<'_>) -> Emitted<()> {
     let program = file.program;
-    for (row, blocks) in program.mass.modal.iter().enumerate() {
-        for (column, block) in blocks.iter().enumerate() {
+    let fields = FieldId::first(program.fields.len());
+    for (row, blocks) in fields.clone().zip(&program.mass.modal) {
+        for (column, block) in fields.clone().zip(blocks) {
             let Some(id) = block else { continue };
             let (rows, columns) = (program.fields[row].order, program.fields[column].order);
             if rows == 0 || columns == 0 {

@@ -9,6 +9,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::Function;
 
 pub use crate::symbolic::operation::{
@@ -158,7 +159,7 @@ impl Graph {
     /// The node of a table of constants.
     pub fn constants(
         &mut self,
-        field: usize,
+        field: FieldId,
         kind: TableKind,
         values: impl FnOnce() -> Vec<f64>,
     ) -> NodeId {

@@ -1,5 +1,6 @@
 //! What the nodes of the graph compute, their shapes, and what they depend on.
 
+use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId};
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
@@ -12,9 +13,9 @@ pub struct NodeId(pub(crate) u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Space {
     /// The modes of a field.
-    Modes(usize),
+    Modes(FieldId),
     /// The quadrature nodes along a field.
-    Nodes(usize),
+    Nodes(FieldId),
 }
 
 /// The shape of a node.
@@ -48,15 +49,15 @@ impl Bits {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Variable {
     /// A generalised coordinate.
-    Coordinate(usize),
+    Coordinate(CoordinateId),
     /// A field's mode coordinates.
-    ModeCoordinates(usize),
+    ModeCoordinates(FieldId),
     /// The rate of a generalised coordinate.
-    Rate(usize),
+    Rate(CoordinateId),
     /// The rates of a field's mode coordinates.
-    ModeRates(usize),
+    ModeRates(FieldId),
     /// An input.
-    Input(usize),
+    Input(InputId),
 }
 
 /// What some outputs are called with besides state and inputs: a number for each
@@ -77,19 +78,19 @@ pub enum Operation {
     /// A number.
     Constant(Bits),
     /// A parameter, independent or derived.
-    Parameter(usize),
+    Parameter(ParameterId),
     /// A generalised coordinate.
-    Coordinate(usize),
+    Coordinate(CoordinateId),
     /// The rate of a generalised coordinate.
-    Rate(usize),
+    Rate(CoordinateId),
     /// A signal supplied at run time.
-    Input(usize),
+    Input(InputId),
     /// The time.
     Time,
     /// A field's mode coordinates, a vector.
-    ModeCoordinates(usize),
+    ModeCoordinates(FieldId),
     /// The rates of a field's mode coordinates, a vector.
-    ModeRates(usize),
+    ModeRates(FieldId),
     /// What an argument holds for a variable.
     Argument(Argument, Variable),
     /// A table of constants: a vector or a matrix.

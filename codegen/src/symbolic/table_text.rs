@@ -160,9 +160,9 @@ pub fn constant_name(table: &Table) -> String {
         TableKind::NodeWeight => "WEIGHTS".to_owned(),
         TableKind::ShapeAtNodes(d) => format!("PHI{}_AT_NODES", derivative(d)),
     };
-    if table.field == 0 {
+    if table.field.index() == 0 {
         name
     } else {
-        format!("{name}_{}", table.field + 1)
+        format!("{name}_{}", table.field.index() + 1)
     }
 }

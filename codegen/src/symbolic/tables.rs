@@ -3,6 +3,7 @@
 //! order; what the numbers are is computed in `modes` and `quadrature`.
 
 use crate::symbolic::graph::{Shape, Space};
+use eomgen_model_spec::ids::FieldId;
 
 /// What a table holds; s = (x - from)/(to - from) runs from 0 to 1, phi_r^(a) is the
 /// a-th derivative by s.
@@ -55,7 +56,7 @@ pub enum TableKind {
 #[derive(Clone, Debug)]
 pub struct Table {
     /// The field it belongs to.
-    pub field: usize,
+    pub field: FieldId,
     /// What it holds.
     pub kind: TableKind,
     /// Its numbers; a matrix row by row.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::edit::Section;
+use eomgen_model_spec::ids::{CoordinateId, FieldId};
 use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
 
 use crate::catalogue::effect::SiteKind;
@@ -40,14 +41,14 @@ pub fn sites(model: &Model) -> Vec<Site> {
 /// What an expression is made of, definitions written out.
 #[derive(Default)]
 struct Parts {
-    coordinates: Vec<usize>,
+    coordinates: Vec<CoordinateId>,
     other: bool,
 }
 
 fn parts(model: &Model, expr: &Expr, into: &mut Parts) {
     expr.visit(&mut |part| match part.kind {
-        ExprKind::Coordinate(place) => into.coordinates.push(place),
-        ExprKind::Definition(place) => parts(model, &model.definitions[place].value, into),
+        ExprKind::Coordinate(id) => into.coordinates.push(id),
+        ExprKind::Definition(id) => parts(model, &model.definitions[id].value, into),
         ExprKind::Dot(_)
         | ExprKind::Field(_)
         | ExprKind::ModeCoordinate(_)
@@ -59,13 +60,13 @@ fn parts(model: &Model, expr: &Expr, into: &mut Parts) {
     });
 }
 
-fn axes(model: &Model, meshes: &[usize]) -> Vec<Site> {
+fn axes(model: &Model, meshes: &[CoordinateId]) -> Vec<Site> {
     let mut found = Vec::new();
     let mut shown = Vec::new();
     for observable in &model.observables {
         let on = match observable.value.kind {
-            ExprKind::Definition(place) => &model.definitions[place].name,
-            ExprKind::Coordinate(place) => &model.coordinates[place].name,
+            ExprKind::Definition(id) => &model.definitions[id].name,
+            ExprKind::Coordinate(id) => &model.coordinates[id].name,
             _ => continue,
         };
         let mut of = Parts::default();
@@ -77,14 +78,14 @@ fn axes(model: &Model, meshes: &[usize]) -> Vec<Site> {
             continue;
         }
         if let Some(site) = axis(&observable.name, on, &observable.unit.text) {
-            if let [place] = of.coordinates[..] {
-                shown.push(place);
+            if let [only] = of.coordinates[..] {
+                shown.push(only);
             }
             found.push(site);
         }
     }
-    for (place, coordinate) in model.coordinates.iter().enumerate() {
-        if !meshes.contains(&place) && !shown.contains(&place) {
+    for (id, coordinate) in CoordinateId::first(model.coordinates.len()).zip(&model.coordinates) {
+        if !meshes.contains(&id) && !shown.contains(&id) {
             found.extend(axis(
                 &coordinate.name,
                 &coordinate.name,
@@ -111,15 +112,15 @@ fn axis(name: &str, on: &str, unit: &str) -> Option<Site> {
 }
 
 /// The coordinates that are deflections with play.
-fn mesh_coordinates(model: &Model) -> Vec<usize> {
+fn mesh_coordinates(model: &Model) -> Vec<CoordinateId> {
     let mut found = Vec::new();
     for (_, _, value) in values(model) {
         value.visit(&mut |part| {
             if let ExprKind::Call(Function::Deadzone, arguments) = &part.kind
-                && let ExprKind::Coordinate(place) = arguments[0].kind
-                && !found.contains(&place)
+                && let ExprKind::Coordinate(id) = arguments[0].kind
+                && !found.contains(&id)
             {
-                found.push(place);
+                found.push(id);
             }
         });
     }
@@ -153,7 +154,7 @@ fn values(model: &Model) -> Vec<(Section, &str, &Expr)> {
 }
 
 /// Whether an expression holds a function with play of a coordinate.
-fn has_play(expr: &Expr, coordinate: usize) -> bool {
+fn has_play(expr: &Expr, coordinate: CoordinateId) -> bool {
     let mut found = false;
     expr.visit(&mut |part| {
         if let ExprKind::Call(Function::Deadzone | Function::Contact, arguments) = &part.kind {
@@ -169,9 +170,9 @@ pub fn plays(model: &Model) -> Vec<String> {
     for (_, _, value) in values(model) {
         value.visit(&mut |part| {
             if let ExprKind::Call(Function::Deadzone | Function::Contact, arguments) = &part.kind
-                && let Some(ExprKind::Parameter(place)) = arguments.get(1).map(|arg| &arg.kind)
+                && let Some(ExprKind::Parameter(id)) = arguments.get(1).map(|arg| &arg.kind)
             {
-                found.push(model.parameters[*place].name.clone());
+                found.push(model.parameters[*id].name.clone());
             }
         });
     }
@@ -180,7 +181,7 @@ pub fn plays(model: &Model) -> Vec<String> {
     found
 }
 
-fn mesh(model: &Model, coordinate: usize) -> Option<Site> {
+fn mesh(model: &Model, coordinate: CoordinateId) -> Option<Site> {
     let mut terms: Vec<(Section, Vec<String>)> = Vec::new();
     let mut stiffness = None;
     for (section, name, value) in values(model) {
@@ -189,10 +190,10 @@ fn mesh(model: &Model, coordinate: usize) -> Option<Site> {
         }
         if section == Section::Potential {
             value.visit(&mut |part| {
-                if let ExprKind::Parameter(place) = part.kind
+                if let ExprKind::Parameter(id) = part.kind
                     && stiffness.is_none()
                 {
-                    stiffness = Some(model.parameters[place].name.clone());
+                    stiffness = Some(model.parameters[id].name.clone());
                 }
             });
         }
@@ -214,7 +215,7 @@ fn mesh(model: &Model, coordinate: usize) -> Option<Site> {
 }
 
 /// The half-play of a coordinate, as the specification writes it.
-fn half_play(model: &Model, coordinate: usize) -> Option<String> {
+fn half_play(model: &Model, coordinate: CoordinateId) -> Option<String> {
     let mut play = None;
     for (_, _, value) in values(model) {
         value.visit(&mut |part| {
@@ -237,8 +238,8 @@ fn spring(model: &Model, term: &Term) -> Option<Site> {
     let factor = factor_of_square(&term.value, &moves)?;
     let (mut parameters, mut powers, mut is_plain) = (Vec::new(), 0, true);
     factor.visit(&mut |part| {
-        if let ExprKind::Parameter(place) = part.kind {
-            parameters.push(place);
+        if let ExprKind::Parameter(id) = part.kind {
+            parameters.push(id);
         }
     });
     term.value.visit(&mut |part| match &part.kind {
@@ -278,7 +279,7 @@ fn arms(model: &Model) -> Vec<Site> {
         velocity.visit(&mut |part| {
             if let ExprKind::Dot(of) = &part.kind {
                 match of.kind {
-                    ExprKind::Field(place) => field = Some(place),
+                    ExprKind::Field(id) => field = Some(id),
                     ExprKind::Definition(_) | ExprKind::Coordinate(_) => {
                         root = Some(text(model, of))
                     }
@@ -330,7 +331,7 @@ fn spread(expr: &Expr) -> Option<&Expr> {
 }
 
 /// Whether an expression holds a field.
-fn holds_field(expr: &Expr, field: usize) -> bool {
+fn holds_field(expr: &Expr, field: FieldId) -> bool {
     let mut found = false;
     expr.visit(&mut |part| found |= part.kind == ExprKind::Field(field));
     found

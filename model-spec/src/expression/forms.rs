@@ -4,6 +4,7 @@
 use super::{ResolvedKind, Resolver, Scope, wrong_count};
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, quoted};
+use crate::ids::FieldId;
 use crate::model::{Expr, ExprKind};
 use crate::names::Symbol;
 use crate::span::Span;
@@ -127,7 +128,7 @@ impl Resolver<'_> {
     }
 
     /// An expression in which the position along `field` has a meaning.
-    fn within(&mut self, field: usize, syntax: &Syntax) -> Result<Box<Expr>, Diagnostic> {
+    fn within(&mut self, field: FieldId, syntax: &Syntax) -> Result<Box<Expr>, Diagnostic> {
         self.domains.push(field);
         let resolved = self.resolve(syntax);
         self.domains.pop();
@@ -160,7 +161,7 @@ impl Resolver<'_> {
         })
     }
 
-    fn field_named(&self, syntax: &Syntax) -> Result<usize, Diagnostic> {
+    fn field_named(&self, syntax: &Syntax) -> Result<FieldId, Diagnostic> {
         if let SyntaxKind::Name(name) = &syntax.kind
             && let Some(Symbol::Field(field)) = self.names.get(name)
         {
@@ -178,7 +179,7 @@ impl Resolver<'_> {
     }
 
     /// The one field an expression of the position belongs to.
-    fn field_in(&self, syntax: &Syntax) -> Result<usize, Diagnostic> {
+    fn field_in(&self, syntax: &Syntax) -> Result<FieldId, Diagnostic> {
         let mut named = Vec::new();
         let mut positions = Vec::new();
         self.fields_of(syntax, &mut named, &mut positions);
@@ -197,7 +198,7 @@ impl Resolver<'_> {
     }
 
     /// Fields named in an expression, and fields along whose position it uses.
-    fn fields_of(&self, syntax: &Syntax, named: &mut Vec<usize>, positions: &mut Vec<usize>) {
+    fn fields_of(&self, syntax: &Syntax, named: &mut Vec<FieldId>, positions: &mut Vec<FieldId>) {
         match &syntax.kind {
             SyntaxKind::Number(_) => {}
             SyntaxKind::Name(name) => match self.names.get(name) {
@@ -205,7 +206,7 @@ impl Resolver<'_> {
                 Some(Symbol::Position) => {
                     let fields = self.names.fields.iter().enumerate();
                     let along = fields.filter(|(_, names)| names.along == *name);
-                    positions.extend(along.map(|(field, _)| field));
+                    positions.extend(along.map(|(field, _)| FieldId::new(field)));
                 }
                 _ => {}
             },
@@ -236,7 +237,7 @@ impl Resolver<'_> {
 }
 
 /// The field of `w`, `dot(w)`, `phi[i]` and their derivatives.
-fn field_of(expr: &Expr) -> Option<usize> {
+fn field_of(expr: &Expr) -> Option<FieldId> {
     match &expr.kind {
         ExprKind::Field(field) | ExprKind::ModeShape(field) => Some(*field),
         ExprKind::Dot(inner) | ExprKind::Diff(inner, _) => field_of(inner),
@@ -246,7 +247,7 @@ fn field_of(expr: &Expr) -> Option<usize> {
 
 /// The rate of what a field is at a place: dot(at(w, l)) = at(dot(w), l), because the place is
 /// fixed. Of anything but the field or its derivative it stays the rate of the whole.
-fn rate_at(field: usize, value: Expr, position: Box<Expr>, span: Span) -> ExprKind {
+fn rate_at(field: FieldId, value: Expr, position: Box<Expr>, span: Span) -> ExprKind {
     let expr = |kind| Box::new(Expr { kind, span });
     let at = |value| ExprKind::At {
         field,

@@ -7,6 +7,7 @@ mod forms;
 use crate::ast::{Syntax, SyntaxKind};
 use crate::diagnostic::{Diagnostic, quoted};
 use crate::functions::{FORMS, callable};
+use crate::ids::{CoefficientId, FieldId};
 use crate::model::{Expr, ExprKind, Function};
 use crate::names::{Names, Symbol};
 use crate::span::Span;
@@ -20,7 +21,7 @@ pub enum Scope {
     /// Anything but coefficients: definitions, energies, forces, observables.
     Motion,
     /// Parameters, integrals of them, and coefficients before this one.
-    Coefficient(usize),
+    Coefficient(CoefficientId),
     /// What a coefficient multiplies: as `Motion`, and mode coordinates without an index.
     Factor,
 }
@@ -30,11 +31,11 @@ pub struct Resolver<'n> {
     names: &'n Names,
     scope: Scope,
     /// Fields whose position may be used, innermost last.
-    domains: Vec<usize>,
+    domains: Vec<FieldId>,
     /// Indices of the enclosing sums and their fields, innermost last.
-    sums: Vec<(String, usize)>,
+    sums: Vec<(String, FieldId)>,
     /// Of each earlier coefficient, the fields for whose modes it is given.
-    per_mode: &'n [Vec<usize>],
+    per_mode: &'n [Vec<FieldId>],
 }
 
 type ResolvedKind = Result<ExprKind, Diagnostic>;
@@ -52,13 +53,13 @@ impl<'n> Resolver<'n> {
     }
 
     /// The same with what is known of earlier coefficients.
-    pub fn knowing(mut self, per_mode: &'n [Vec<usize>]) -> Self {
+    pub fn knowing(mut self, per_mode: &'n [Vec<FieldId>]) -> Self {
         self.per_mode = per_mode;
         self
     }
 
     /// The same for an expression that is given for each mode of a field, by its index.
-    pub fn for_each(mut self, each: Option<(String, usize)>) -> Self {
+    pub fn for_each(mut self, each: Option<(String, FieldId)>) -> Self {
         self.sums.extend(each);
         self
     }
@@ -134,11 +135,14 @@ impl<'n> Resolver<'n> {
         }
     }
 
-    fn coefficient(&self, index: usize, name: &str, span: Span) -> ResolvedKind {
+    fn coefficient(&self, index: CoefficientId, name: &str, span: Span) -> ResolvedKind {
         match self.scope {
             Scope::Coefficient(own) if index < own => {
-                let fields = self.per_mode.get(index).map_or(&[][..], Vec::as_slice);
-                let summed = |field: &usize| self.sums.iter().any(|(_, known)| known == field);
+                let fields = self
+                    .per_mode
+                    .get(index.index())
+                    .map_or(&[][..], Vec::as_slice);
+                let summed = |field: &FieldId| self.sums.iter().any(|(_, known)| known == field);
                 match fields.iter().find(|field| !summed(field)) {
                     None => Ok(ExprKind::Coefficient(index)),
                     Some(field) => Err(self.one_per_mode(*field, name, span)),
@@ -153,7 +157,7 @@ impl<'n> Resolver<'n> {
         }
     }
 
-    fn one_per_mode(&self, field: usize, name: &str, span: Span) -> Diagnostic {
+    fn one_per_mode(&self, field: FieldId, name: &str, span: Span) -> Diagnostic {
         let field = &self.names.fields[field].field;
         Diagnostic::error(format!(
             "the coefficient `{name}` is one for each mode of `{field}`"
@@ -180,7 +184,7 @@ impl<'n> Resolver<'n> {
             .help(rule)
     }
 
-    fn field(&self, field: usize, name: &str, span: Span) -> ResolvedKind {
+    fn field(&self, field: FieldId, name: &str, span: Span) -> ResolvedKind {
         if self.domains.last() == Some(&field) {
             return Ok(ExprKind::Field(field));
         }

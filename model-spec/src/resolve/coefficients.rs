@@ -5,6 +5,7 @@ use super::Builder;
 use crate::ast::SyntaxKind;
 use crate::diagnostic::Diagnostic;
 use crate::expression::{Resolver, Scope};
+use crate::ids::{CoefficientId, FieldId};
 use crate::model::{Coefficient, CoefficientKind, Expr, ExprKind};
 use crate::names::Symbol;
 use crate::raw::{RawCoefficient, RawCoefficientKind};
@@ -24,19 +25,19 @@ impl Builder {
     }
 
     /// One coefficient, given for the modes of which fields those before it are.
-    fn coefficient(&mut self, raw: RawCoefficient, before: &[Vec<usize>]) -> Option<Coefficient> {
+    fn coefficient(&mut self, raw: RawCoefficient, before: &[Vec<FieldId>]) -> Option<Coefficient> {
         let each = match &raw.each {
             Some(written) => Some(self.each(written)?),
             None => None,
         };
         let field = each.as_ref().map(|(_, field)| *field);
-        let resolved = |quantity: &Quantity, scope: Scope, each: Option<(String, usize)>| {
+        let resolved = |quantity: &Quantity, scope: Scope, each: Option<(String, FieldId)>| {
             let resolver = Resolver::new(&self.names, scope).for_each(each);
             quantity
                 .syntax()
                 .and_then(|syntax| resolver.knowing(before).resolve(&syntax))
         };
-        let known = Scope::Coefficient(before.len());
+        let known = Scope::Coefficient(CoefficientId::new(before.len()));
         let kind = match &raw.kind {
             RawCoefficientKind::Value(value) => {
                 resolved(value, known, each).map(CoefficientKind::Value)
@@ -64,7 +65,7 @@ impl Builder {
     }
 
     /// The index and field of `each = "w[i]"`.
-    fn each(&mut self, written: &Written) -> Option<(String, usize)> {
+    fn each(&mut self, written: &Written) -> Option<(String, FieldId)> {
         let syntax = self.found.keep(written.syntax())?;
         if let SyntaxKind::Element { name, index, .. } = syntax.kind
             && let Some(Symbol::Field(field)) = self.names.get(&name)
@@ -93,7 +94,7 @@ fn moving_quantity(of: Expr) -> Result<Expr, Diagnostic> {
 }
 
 /// The field whose modes an expression names.
-fn rows_of(expr: &Expr) -> Option<usize> {
+fn rows_of(expr: &Expr) -> Option<FieldId> {
     match &expr.kind {
         ExprKind::ModeCoordinate(field) => Some(*field),
         ExprKind::Dot(inner) => rows_of(inner),
@@ -102,8 +103,8 @@ fn rows_of(expr: &Expr) -> Option<usize> {
 }
 
 /// The fields for each of whose modes a coefficient is given.
-fn modes_of(coefficient: &Coefficient) -> Vec<usize> {
-    let mut fields: Vec<usize> = coefficient.each.into_iter().collect();
+fn modes_of(coefficient: &Coefficient) -> Vec<FieldId> {
+    let mut fields: Vec<FieldId> = coefficient.each.into_iter().collect();
     if let CoefficientKind::Factor { of, by, .. } = &coefficient.kind {
         fields.extend(rows_of(of));
         fields.extend(rows_of(by));

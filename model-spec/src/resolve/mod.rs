@@ -7,6 +7,7 @@ mod coefficients;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
 use crate::expression::{Resolver, Scope};
+use crate::ids::{DefinitionId, ParameterId};
 use crate::model::{
     Coordinate, Definition, Expr, ExprKind, Field, Force, Input, MAX_ORDER, Model, Observable,
     Parameter, ParameterValue, Range, Sensor, Term,
@@ -100,7 +101,9 @@ impl Builder {
         let references: Vec<_> = model.parameters.iter().map(parameter_references).collect();
         let named = |index: usize| model.parameters[index].name.as_str();
         match order(&references) {
-            Ok(sorted) => model.parameter_order = sorted,
+            Ok(sorted) => {
+                model.parameter_order = sorted.into_iter().map(ParameterId::new).collect()
+            }
             Err(circle) => self.found.push(circular("parameter", &circle, named)),
         }
         let references: Vec<_> = model
@@ -110,7 +113,9 @@ impl Builder {
             .collect();
         let named = |index: usize| model.definitions[index].name.as_str();
         match order(&references) {
-            Ok(sorted) => model.definition_order = sorted,
+            Ok(sorted) => {
+                model.definition_order = sorted.into_iter().map(DefinitionId::new).collect()
+            }
             Err(circle) => self.found.push(circular("definition", &circle, named)),
         }
     }
@@ -352,7 +357,7 @@ fn parameter_references(parameter: &Parameter) -> Vec<Reference> {
     if let ParameterValue::Expression(expr) = &parameter.value {
         expr.visit(&mut |part| {
             if let ExprKind::Parameter(index) = part.kind {
-                list.push((index, part.span));
+                list.push((index.index(), part.span));
             }
         });
     }
@@ -363,7 +368,7 @@ fn definition_references(definition: &Definition) -> Vec<Reference> {
     let mut list = Vec::new();
     definition.value.visit(&mut |part| {
         if let ExprKind::Definition(index) = part.kind {
-            list.push((index, part.span));
+            list.push((index.index(), part.span));
         }
     });
     list

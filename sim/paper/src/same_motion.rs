@@ -93,14 +93,14 @@ impl Pair<'_> {
     fn same(&self, left: &Expr, right: &Expr) -> bool {
         use ExprKind as K;
         if let K::Definition(index) = left.kind {
-            let definition = self.model.definitions.get(index);
+            let definition = self.model.definitions.get(index.index());
             return definition.is_some_and(|own| self.same(&own.value, right));
         }
         let right = self.written_out(right);
         match (&left.kind, &right.kind) {
             (K::Parameter(own), K::Parameter(known)) => {
-                self.model.parameters.get(*own).map(|p| &p.name)
-                    == self.known.parameters.get(*known).map(|p| &p.name)
+                self.model.parameters.get(own.index()).map(|p| &p.name)
+                    == self.known.parameters.get(known.index()).map(|p| &p.name)
             }
             (K::Dot(left), K::Dot(right)) | (K::Negate(left), K::Negate(right)) => {
                 self.same(left, right)
@@ -161,7 +161,7 @@ impl Pair<'_> {
     /// What stands behind the names of the known model's definitions.
     fn written_out<'e>(&'e self, mut expression: &'e Expr) -> &'e Expr {
         while let ExprKind::Definition(index) = expression.kind {
-            let Some(definition) = self.known.definitions.get(index) else {
+            let Some(definition) = self.known.definitions.get(index.index()) else {
                 break;
             };
             expression = &definition.value;

@@ -16,6 +16,7 @@ mod sides;
 
 use std::collections::HashMap;
 
+use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::Function;
 
 use crate::mechanics::equations::Equations;
@@ -88,7 +89,7 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
     let inputs = input_count(graph, &moving);
     let mut reader = rows::Reader::new(&accelerations, graph, &sinusoids, inputs);
     let scalars = read(&mut reader, graph, &accelerations.scalars);
-    let modal = accelerations.modal.iter().enumerate();
+    let modal = FieldId::first(accelerations.modal.len()).zip(&accelerations.modal);
     let modal: Vec<AffineRow> = modal
         .map(|(field, id)| reader.row(graph, *id, Some(Space::Modes(field))))
         .collect();
@@ -168,7 +169,7 @@ fn input_count(graph: &Graph, nodes: &[NodeId]) -> usize {
         .reachable(nodes)
         .into_iter()
         .filter_map(|id| match graph.operation(id) {
-            Operation::Input(index) => Some(index + 1),
+            Operation::Input(index) => Some(index.index() + 1),
             _ => None,
         });
     inputs.max().unwrap_or(0)

@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 
+use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId};
 use eomgen_model_spec::model::Function;
 
 use crate::mechanics::rows::RowNodes;
@@ -93,9 +94,9 @@ impl<'a> Reader<'a> {
         sinusoids: &'a Sinusoids,
         inputs: usize,
     ) -> Self {
-        let scalars = 0..rows.scalars.len();
-        let fields = 0..rows.modal.len();
-        let mut modal = |operation: fn(usize) -> Operation| -> Vec<ModalDerivative> {
+        let scalars = CoordinateId::first(rows.scalars.len());
+        let fields = FieldId::first(rows.modal.len());
+        let mut modal = |operation: fn(FieldId) -> Operation| -> Vec<ModalDerivative> {
             fields
                 .clone()
                 .filter_map(|field| {
@@ -108,14 +109,17 @@ impl<'a> Reader<'a> {
             modal(Operation::ModeCoordinates),
             modal(Operation::ModeRates),
         );
-        let mut leaves = |range: std::ops::Range<usize>, operation: fn(usize) -> Operation| {
-            range.map(|i| graph.intern(operation(i))).collect()
+        let mut leaves = |operations: Vec<Operation>| {
+            operations
+                .into_iter()
+                .map(|leaf| graph.intern(leaf))
+                .collect()
         };
         Self {
             sinusoids,
-            coordinates: leaves(scalars.clone(), Operation::Coordinate),
-            rates: leaves(scalars, Operation::Rate),
-            inputs: leaves(0..inputs, Operation::Input),
+            coordinates: leaves(scalars.clone().map(Operation::Coordinate).collect()),
+            rates: leaves(scalars.map(Operation::Rate).collect()),
+            inputs: leaves(InputId::first(inputs).map(Operation::Input).collect()),
             modes,
             mode_rates,
             at_rest: HashMap::new(),

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use eomgen_model_spec::ids::ParameterId;
 use eomgen_model_spec::model::Function;
 
 use crate::mechanics::equations::Equations;
@@ -35,7 +36,7 @@ impl Sides {
             }
             let parameter = |graph: &mut Graph, surface: NodeId| {
                 let index = values.iter().position(|value| *value == surface)?;
-                Some(graph.intern(Operation::Parameter(first_side + index)))
+                Some(graph.intern(Operation::Parameter(ParameterId::new(first_side + index))))
             };
             if let Some(replacement) = sides.replacement(graph, id, &parameter) {
                 sides.known.insert(id, replacement);

@@ -1,5 +1,6 @@
 //! The domain of a field, as nodes of the graph.
 
+use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::Basis;
 
 use super::modes;
@@ -9,7 +10,7 @@ use crate::symbolic::tables::TableKind;
 /// The domain of a field, as nodes.
 pub struct Domain {
     /// The field.
-    pub field: usize,
+    pub field: FieldId,
     /// Its mode shapes.
     pub basis: Basis,
     /// Where it starts.

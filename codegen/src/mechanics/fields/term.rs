@@ -1,6 +1,7 @@
 //! A term of an integrand: powers of the position, a weight, and field atoms.
 
 use crate::symbolic::graph::{Graph, NodeId, Operation};
+use eomgen_model_spec::ids::FieldId;
 
 /// A field, its rate or a mode shape, with the number of derivatives by the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -30,7 +31,7 @@ impl Atom {
     }
 
     /// The vector over the modes that multiplies the shapes; `None` for a bare shape.
-    pub(crate) fn amplitudes(self, graph: &mut Graph, field: usize) -> Option<NodeId> {
+    pub(crate) fn amplitudes(self, graph: &mut Graph, field: FieldId) -> Option<NodeId> {
         match self {
             Self::Coordinates(_) => Some(graph.intern(Operation::ModeCoordinates(field))),
             Self::Rates(_) => Some(graph.intern(Operation::ModeRates(field))),

@@ -3,6 +3,7 @@
 //! vector is summed over its elements, what a sum hands down stands for every element.
 //! What comes through a branch is chosen where it leaves the branch, not where it enters.
 
+use eomgen_model_spec::ids::ParameterId;
 use std::collections::HashMap;
 
 use super::matrix_derivatives::holds_matrix_of_parameters;
@@ -64,10 +65,10 @@ fn depends_on_parameters(graph: &Graph, id: NodeId) -> bool {
 }
 
 /// The derived parameters, each before those that its expression reads.
-fn outermost_first(graph: &Graph, derived: &[Option<NodeId>]) -> Vec<usize> {
+fn outermost_first(graph: &Graph, derived: &[Option<NodeId>]) -> Vec<ParameterId> {
     let mut order = Vec::new();
     let mut known = vec![false; derived.len()];
-    for index in 0..derived.len() {
+    for index in ParameterId::first(derived.len()) {
         after_what_is_read(graph, derived, index, &mut known, &mut order);
     }
     order.reverse();
@@ -77,9 +78,9 @@ fn outermost_first(graph: &Graph, derived: &[Option<NodeId>]) -> Vec<usize> {
 fn after_what_is_read(
     graph: &Graph,
     derived: &[Option<NodeId>],
-    index: usize,
+    index: ParameterId,
     known: &mut [bool],
-    order: &mut Vec<usize>,
+    order: &mut Vec<ParameterId>,
 ) {
     let (Some(expression), false) = (derived[index], known[index]) else {
         return;

@@ -16,6 +16,7 @@ use crate::mechanics::translate::along_motion;
 use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Argument, Graph, NodeId, Operation, Space, Variable};
 use crate::symbolic::matrix::StructuredMatrix;
+use eomgen_model_spec::ids::{CoordinateId, FieldId};
 
 /// Derives these outputs.
 ///
@@ -88,10 +89,10 @@ fn inverse_dynamics(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
     let argument = |graph: &mut Graph, variable| {
         graph.intern(Operation::Argument(Argument::Accelerations, variable))
     };
-    let scalars: Vec<NodeId> = (0..bias.scalars.len())
+    let scalars: Vec<NodeId> = CoordinateId::first(bias.scalars.len())
         .map(|index| argument(graph, Variable::Coordinate(index)))
         .collect();
-    let modal: Vec<NodeId> = (0..bias.modal.len())
+    let modal: Vec<NodeId> = FieldId::first(bias.modal.len())
         .map(|field| argument(graph, Variable::ModeCoordinates(field)))
         .collect();
     let mut rows = bias.clone();
@@ -100,7 +101,7 @@ fn inverse_dynamics(equations: &mut Equations, bias: &RowNodes) -> RowNodes {
         for (entry, a) in mass.scalars[row].iter().zip(&scalars) {
             terms.push((1.0, graph.multiply(*entry, *a)));
         }
-        for (field, entry) in mass.coupling[row].iter().enumerate() {
+        for (field, entry) in FieldId::first(modal.len()).zip(&mass.coupling[row]) {
             let product = graph.multiply(*entry, modal[field]);
             terms.push((1.0, graph.total_over(Space::Modes(field), product)));
         }
@@ -167,10 +168,10 @@ fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
         modal: derivatives(graph, &mut direction, &rows.modal),
     };
     let mut weighted = Vec::new();
-    for (index, row) in rows.scalars.iter().enumerate() {
+    for (index, row) in CoordinateId::first(rows.scalars.len()).zip(&rows.scalars) {
         weighted.push((weight(graph, Variable::Rate(index)), *row));
     }
-    for (field, row) in rows.modal.iter().enumerate() {
+    for (field, row) in FieldId::first(rows.modal.len()).zip(&rows.modal) {
         weighted.push((weight(graph, Variable::ModeRates(field)), *row));
     }
     let gradient = adjoint::gradient(graph, &weighted);
@@ -207,11 +208,11 @@ fn weighted_by_parameters(
 /// The sum of weights times accelerations, the rows of the rates that hold parameters.
 fn weighted_sum(graph: &mut Graph, rows: &RowNodes) -> NodeId {
     let mut terms = Vec::new();
-    for (index, row) in rows.scalars.iter().enumerate() {
+    for (index, row) in CoordinateId::first(rows.scalars.len()).zip(&rows.scalars) {
         let weight = weight(graph, Variable::Rate(index));
         terms.push((1.0, graph.multiply(weight, *row)));
     }
-    for (field, row) in rows.modal.iter().enumerate() {
+    for (field, row) in FieldId::first(rows.modal.len()).zip(&rows.modal) {
         let weight = weight(graph, Variable::ModeRates(field));
         let product = graph.multiply(weight, *row);
         terms.push((1.0, graph.total_over(Space::Modes(field), product)));

@@ -8,6 +8,7 @@ use crate::mechanics::equations::Equations;
 use crate::symbolic::differentiate::{Direction, ModalDerivative};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space, Variable};
 use crate::symbolic::matrix::StructuredMatrix;
+use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId};
 
 /// The rows of a Jacobian: nodes, and the diagonal block of ones if there is one.
 pub(crate) struct JacobianRows {
@@ -24,7 +25,7 @@ struct EquationRow {
     count: usize,
     node: NodeId,
     /// The field whose modes the rows are.
-    field: Option<usize>,
+    field: Option<FieldId>,
 }
 
 impl JacobianRows {
@@ -59,7 +60,7 @@ pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
             field: None,
         })
         .collect();
-    for (field, node) in accelerations.modal.iter().enumerate() {
+    for (field, node) in FieldId::first(accelerations.modal.len()).zip(&accelerations.modal) {
         rows.push(EquationRow {
             first: degrees + mode_offset(equations, field),
             count: equations.graph.orders()[field],
@@ -103,7 +104,9 @@ pub(crate) fn by_variables(
     inputs: bool,
 ) -> Jacobian<NodeId> {
     let variables = if inputs {
-        (0..equations.inputs).map(Variable::Input).collect()
+        InputId::first(equations.inputs)
+            .map(Variable::Input)
+            .collect()
     } else {
         state_variables(equations)
     };
@@ -121,7 +124,7 @@ pub(crate) fn by_parameters(
     rows: &JacobianRows,
     name: &'static str,
 ) -> Jacobian<NodeId> {
-    let independent: Vec<usize> = (0..equations.parameter_names.len())
+    let independent: Vec<ParameterId> = ParameterId::first(equations.parameter_names.len())
         .filter(|index| equations.derived_parameters[*index].is_none())
         .collect();
     let mut blocks = Blocks::new(&mut equations.graph, rows, true);
@@ -154,21 +157,21 @@ pub(crate) fn one_row(graph: &Graph, name: &'static str, row: &[NodeId]) -> Jaco
 }
 
 fn degrees_of_freedom(equations: &Equations) -> usize {
-    mode_offset(equations, equations.graph.orders().len())
+    mode_offset(equations, FieldId::new(equations.graph.orders().len()))
 }
 
-fn mode_offset(equations: &Equations, field: usize) -> usize {
-    let modes: usize = equations.graph.orders()[..field].iter().sum();
+fn mode_offset(equations: &Equations, field: FieldId) -> usize {
+    let modes: usize = equations.graph.orders()[..field.index()].iter().sum();
     equations.forces.scalars.len() + modes
 }
 
 fn state_variables(equations: &Equations) -> Vec<Variable> {
     let (coordinates, fields) = (equations.forces.scalars.len(), equations.forces.modal.len());
-    (0..coordinates)
+    CoordinateId::first(coordinates)
         .map(Variable::Coordinate)
-        .chain((0..fields).map(Variable::ModeCoordinates))
-        .chain((0..coordinates).map(Variable::Rate))
-        .chain((0..fields).map(Variable::ModeRates))
+        .chain(FieldId::first(fields).map(Variable::ModeCoordinates))
+        .chain(CoordinateId::first(coordinates).map(Variable::Rate))
+        .chain(FieldId::first(fields).map(Variable::ModeRates))
         .collect()
 }
 
@@ -227,12 +230,12 @@ impl<'a> Blocks<'a> {
         1
     }
 
-    fn by_parameter(&mut self, derived: &[Option<NodeId>], parameter: usize, column: usize) {
+    fn by_parameter(&mut self, derived: &[Option<NodeId>], parameter: ParameterId, column: usize) {
         let mut direction = Direction::default();
         let leaf = self.graph.intern(Operation::Parameter(parameter));
         direction.seed(leaf, self.graph.one());
         let mut seeded = vec![false; derived.len()];
-        for index in 0..derived.len() {
+        for index in ParameterId::first(derived.len()) {
             seed_derived(self.graph, derived, index, &mut direction, &mut seeded);
         }
         self.along(&mut direction, column);
@@ -302,7 +305,7 @@ impl<'a> Blocks<'a> {
 fn seed_derived(
     graph: &mut Graph,
     derived: &[Option<NodeId>],
-    index: usize,
+    index: ParameterId,
     direction: &mut Direction<'_>,
     seeded: &mut [bool],
 ) {

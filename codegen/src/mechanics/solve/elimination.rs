@@ -2,6 +2,7 @@
 //! products over the modes of a field.
 
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
+use eomgen_model_spec::ids::FieldId;
 
 /// The reciprocal of a pivot. One of parameters alone that is a plain product cancels
 /// against the row it divides (it is checked where the coefficients are prepared); any
@@ -20,7 +21,7 @@ pub(super) fn pivot_reciprocal(graph: &mut Graph, pivot: NodeId) -> NodeId {
 }
 
 /// a . b over the modes of a field.
-pub(super) fn inner_product(graph: &mut Graph, field: usize, a: NodeId, b: NodeId) -> NodeId {
+pub(super) fn inner_product(graph: &mut Graph, field: FieldId, a: NodeId, b: NodeId) -> NodeId {
     if graph.is_zero(a) || graph.is_zero(b) {
         return graph.zero();
     }

@@ -6,6 +6,7 @@ use super::separation::{SeparatedTerm, separate};
 use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
+use eomgen_model_spec::ids::FieldId;
 
 /// How the modes of one field are solved for.
 pub(super) enum ModalInverse {
@@ -19,7 +20,7 @@ pub(super) enum ModalInverse {
 }
 
 impl ModalInverse {
-    pub(super) fn new(graph: &mut Graph, mass: &MassMatrix, field: usize) -> Self {
+    pub(super) fn new(graph: &mut Graph, mass: &MassMatrix, field: FieldId) -> Self {
         let block = &mass.modal[field][field];
         // Without a diagonal, fewer outer products than modes make a singular block.
         let full_rank = block.outer.len() >= graph.size(Space::Modes(field));
@@ -68,7 +69,7 @@ impl ModalInverse {
 
 /// A vector over one field's modes through which outer products act.
 pub(super) struct Interface {
-    pub(super) field: usize,
+    pub(super) field: FieldId,
     pub(super) shape: NodeId,
     /// D^-1 shape
     pub(super) solved: NodeId,
@@ -99,7 +100,7 @@ pub(super) struct ModalBlock {
 impl ModalBlock {
     pub(super) fn new(graph: &mut Graph, mass: &MassMatrix, right: &RowNodes) -> Self {
         let fields = mass.modal.len();
-        let inverses = (0..fields)
+        let inverses = FieldId::first(fields)
             .map(|field| {
                 let occupied = graph.size(Space::Modes(field)) > 0;
                 occupied.then(|| ModalInverse::new(graph, mass, field))
@@ -115,8 +116,8 @@ impl ModalBlock {
             direct_forces: right.modal.clone(),
             through_interfaces: vec![false; fields],
         };
-        for row in 0..fields {
-            for column in 0..fields {
+        for row in FieldId::first(fields) {
+            for column in FieldId::first(fields) {
                 let dense = block.inverses[row]
                     .as_ref()
                     .is_some_and(ModalInverse::is_dense);
@@ -128,11 +129,11 @@ impl ModalBlock {
                 }
             }
         }
-        for field in 0..fields {
+        for field in FieldId::first(fields) {
             block.couple_through_interfaces(graph, field);
         }
         if !block.weights_are_diagonal(graph) {
-            for field in 0..fields {
+            for field in FieldId::first(fields) {
                 block.orthogonalise(graph, field);
             }
         }
@@ -142,7 +143,7 @@ impl ModalBlock {
     /// Where a field's coupling turns with the state, as a link's does with the angle of the
     /// next: its shapes become interfaces, so that only scalars turn. The shapes themselves
     /// must not, or the interfaces would cost more than they spare.
-    fn couple_through_interfaces(&mut self, graph: &mut Graph, field: usize) {
+    fn couple_through_interfaces(&mut self, graph: &mut Graph, field: FieldId) {
         if !matches!(
             self.inverses[field],
             Some(ModalInverse::Diagonal { reciprocal, .. }) if graph.dependence(reciprocal).is_parameter_only()
@@ -206,7 +207,7 @@ impl ModalBlock {
     /// diagonal these are the minors of the symmetric I + K^1/2 G K^1/2, all positive if
     /// the modal block is positive definite. With any other K they need not be: for a mass
     /// on a lever between two points of a beam the first can be negative.
-    fn orthogonalise(&mut self, graph: &mut Graph, field: usize) {
+    fn orthogonalise(&mut self, graph: &mut Graph, field: FieldId) {
         let places: Vec<usize> = (0..self.interfaces.len())
             .filter(|place| self.interfaces[*place].field == field)
             .collect();
@@ -255,7 +256,7 @@ impl ModalBlock {
     }
 
     /// Separates u v^T into interfaces: scalar factors go into the weights.
-    fn add_outer(&mut self, graph: &mut Graph, u: (usize, NodeId), v: (usize, NodeId)) {
+    fn add_outer(&mut self, graph: &mut Graph, u: (FieldId, NodeId), v: (FieldId, NodeId)) {
         let (rows, columns) = (separate(graph, u.1), separate(graph, v.1));
         for u_part in &rows {
             for v_part in &columns {
@@ -270,7 +271,7 @@ impl ModalBlock {
         }
     }
 
-    fn interface(&mut self, graph: &mut Graph, field: usize, shape: NodeId) -> Option<usize> {
+    fn interface(&mut self, graph: &mut Graph, field: FieldId, shape: NodeId) -> Option<usize> {
         let known = self
             .interfaces
             .iter()
@@ -295,7 +296,7 @@ impl ModalBlock {
         Some(self.interfaces.len() - 1)
     }
 
-    pub(super) fn solve_field(&self, graph: &mut Graph, field: usize, vector: NodeId) -> NodeId {
+    pub(super) fn solve_field(&self, graph: &mut Graph, field: FieldId, vector: NodeId) -> NodeId {
         match &self.inverses[field] {
             Some(inverse) if !graph.is_zero(vector) => inverse.apply(graph, vector),
             _ => graph.zero(),

@@ -6,6 +6,7 @@ use super::modal::ModalBlock;
 use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::symbolic::graph::{Graph, NodeId, Space};
+use eomgen_model_spec::ids::FieldId;
 
 /// The system left when the modes are eliminated: interface forces, then coordinates.
 pub(super) struct SmallSystem {
@@ -36,7 +37,7 @@ impl SmallSystem {
         modal: &ModalBlock,
     ) -> Self {
         let mut solved = |vectors: &[NodeId]| -> Vec<NodeId> {
-            let fields = vectors.iter().enumerate();
+            let fields = FieldId::first(vectors.len()).zip(vectors);
             fields
                 .map(|(field, vector)| modal.solve_field(graph, field, *vector))
                 .collect()
@@ -151,13 +152,13 @@ impl SmallSystem {
             .collect();
         for (column, solved) in self.solved_coupling.iter().enumerate() {
             let mut terms = vec![(1.0, mass.scalars[row][column])];
-            for (field, h) in direct.iter().enumerate() {
+            for (field, h) in FieldId::first(direct.len()).zip(direct) {
                 terms.push((-1.0, inner_product(graph, field, *h, solved[field])));
             }
             entries.push(graph.combine(&terms));
         }
         let mut terms = vec![(1.0, force)];
-        for (field, h) in direct.iter().enumerate() {
+        for (field, h) in FieldId::first(direct.len()).zip(direct) {
             terms.push((
                 -1.0,
                 inner_product(graph, field, *h, self.free_modes[field]),
@@ -239,7 +240,7 @@ impl SmallSystem {
         unknowns: &[NodeId],
     ) -> RowNodes {
         let (forces, coordinates) = unknowns.split_at(modal.interfaces.len());
-        let by_field = (0..modal.inverses.len())
+        let by_field = FieldId::first(modal.inverses.len())
             .map(|field| {
                 let mut terms = vec![(1.0, self.free_modes[field])];
                 for (interface, &force) in modal.interfaces.iter().zip(forces) {

@@ -11,6 +11,7 @@ mod places;
 mod point;
 mod step;
 
+use eomgen_model_spec::ids::FieldId;
 use std::sync::Arc;
 
 use crate::program::{Extent, Op, Program, ValueId};
@@ -170,7 +171,7 @@ impl Evaluator {
             for column in 0..scalars {
                 out[row * size + column] = self.slice(self.program.mass.scalars[row][column])[0];
             }
-            for field in 0..self.program.fields.len() {
+            for field in FieldId::first(self.program.fields.len()) {
                 let offset = self.program.mode_offset(field);
                 for mode in 0..self.program.fields[field].order {
                     let value = self.element(self.program.mass.coupling[row][field], mode);
@@ -179,8 +180,9 @@ impl Evaluator {
                 }
             }
         }
-        for (row, blocks) in self.program.mass.modal.iter().enumerate() {
-            for (column, block) in blocks.iter().enumerate() {
+        let fields = FieldId::first(self.program.fields.len());
+        for (row, blocks) in fields.clone().zip(&self.program.mass.modal) {
+            for (column, block) in fields.clone().zip(blocks) {
                 let Some(block) = block else { continue };
                 let (first_row, first_column) = (
                     self.program.mode_offset(row),
@@ -228,7 +230,7 @@ impl Evaluator {
         for (place, id) in scalars.iter().enumerate() {
             out[place] = self.memory[self.places.offset(*id)];
         }
-        for (field, id) in modal.iter().enumerate() {
+        for (field, id) in FieldId::first(modal.len()).zip(modal) {
             let offset = self.program.mode_offset(field);
             for mode in 0..self.program.fields[field].order {
                 out[offset + mode] = self.element(*id, mode);

@@ -31,7 +31,7 @@ pub(super) fn step(
         Op::Table(place) => out.copy_from_slice(&program.tables[*place].values),
         Op::Parameter(_) | Op::Argument(..) => {}
         Op::Coordinate(index) => out[0] = point.state[*index],
-        Op::Rate(index) => out[0] = point.state[degrees + index],
+        Op::Rate(index) => out[0] = point.state[degrees + index.index()],
         Op::ModeCoordinates(field) => {
             let start = program.mode_offset(*field);
             out.copy_from_slice(&point.state[start..start + out.len()]);
@@ -40,7 +40,7 @@ pub(super) fn step(
             let start = degrees + program.mode_offset(*field);
             out.copy_from_slice(&point.state[start..start + out.len()]);
         }
-        Op::Input(index) => out[0] = point.inputs.get(*index).copied().unwrap_or(0.0),
+        Op::Input(index) => out[0] = point.inputs.get(index.index()).copied().unwrap_or(0.0),
         Op::Time => out[0] = point.t,
         Op::Negate(a) => unary(out, &operands, *a, |a| -a),
         Op::PivotReciprocal(a) => unary(out, &operands, *a, pivot_reciprocal),

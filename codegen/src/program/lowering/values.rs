@@ -1,5 +1,6 @@
 //! The values of a program, node by node, each once.
 
+use eomgen_model_spec::ids::ParameterId;
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 
@@ -33,13 +34,10 @@ impl Hash for Computation {
         std::mem::discriminant(&self.op).hash(state);
         match &self.op {
             Op::Constant(number) => number.to_bits().hash(state),
-            Op::Table(place)
-            | Op::Parameter(place)
-            | Op::Coordinate(place)
-            | Op::Rate(place)
-            | Op::ModeCoordinates(place)
-            | Op::ModeRates(place)
-            | Op::Input(place) => place.hash(state),
+            Op::Table(place) | Op::Parameter(place) => place.hash(state),
+            Op::Coordinate(coordinate) | Op::Rate(coordinate) => coordinate.hash(state),
+            Op::ModeCoordinates(field) | Op::ModeRates(field) => field.hash(state),
+            Op::Input(input) => input.hash(state),
             Op::Argument(argument, variable) => (argument, variable).hash(state),
             op => op.operands().hash(state),
         }
@@ -290,7 +288,7 @@ impl<'g> Lowering<'g> {
         self.emit(op, extent)
     }
 
-    fn parameter(&mut self, index: usize) -> ValueId {
+    fn parameter(&mut self, index: ParameterId) -> ValueId {
         let value = match self.derived[index] {
             Some(expression) => self.value(expression),
             None => {

@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::Model;
 
 use super::shared::{Shared, is_leaf, own_length};
@@ -186,7 +187,7 @@ impl<'a> Reader<'a> {
     /// The symbol of something that moves or drives.
     fn variable(&self, variable: Variable) -> Symbol {
         let model = self.model;
-        let modes = |field: usize| {
+        let modes = |field: FieldId| {
             Symbol::plain(&model.fields[field].coordinates).with_indices(&[Index::I])
         };
         match variable {

@@ -51,7 +51,7 @@ impl<'m> Lowering<'m> {
             .system
             .dependences
             .resize_with(count, Default::default);
-        for &index in &model.definition_order {
+        for index in model.definition_order.iter().map(|id| id.index()) {
             let Some(definition) = model.definitions.get(index) else {
                 continue;
             };
@@ -119,9 +119,9 @@ impl<'m> Lowering<'m> {
                 field,
                 value,
                 position,
-            } => self.at(*field, value, position)?,
-            ExprKind::Integral { field, integrand } => self.integral(*field, integrand)?,
-            ExprKind::Sum { field, summand } => self.sum(*field, summand, set)?,
+            } => self.at(field.index(), value, position)?,
+            ExprKind::Integral { field, integrand } => self.integral(field.index(), integrand)?,
+            ExprKind::Sum { field, summand } => self.sum(field.index(), summand, set)?,
             ExprKind::Negate(operand) => folded(Tree::Negate(self.lower(operand, set)?.into())),
             ExprKind::Binary(operator, left, right) => {
                 let (left, right) = (self.lower(left, set)?, self.lower(right, set)?);
@@ -145,20 +145,25 @@ impl<'m> Lowering<'m> {
             ExprKind::Pi => Tree::Constant(std::f64::consts::PI),
             ExprKind::Time => Tree::Time,
             ExprKind::Position(field) => Tree::Position {
-                set: self.set_of(*field, set)?,
+                set: self.set_of(field.index(), set)?,
             },
-            ExprKind::Parameter(index) => {
-                Tree::Constant(self.parameters.get(*index).copied().unwrap_or(f64::NAN))
-            }
-            ExprKind::Coordinate(index) => Tree::Coordinate(*index),
-            ExprKind::Input(index) => Tree::Input(*index),
-            ExprKind::Definition(index) => match self.system.definitions.get(*index) {
+            ExprKind::Parameter(index) => Tree::Constant(
+                self.parameters
+                    .get(index.index())
+                    .copied()
+                    .unwrap_or(f64::NAN),
+            ),
+            ExprKind::Coordinate(index) => Tree::Coordinate(index.index()),
+            ExprKind::Input(index) => Tree::Input(index.index()),
+            ExprKind::Definition(index) => match self.system.definitions.get(index.index()) {
                 Some(Tree::Constant(value)) => Tree::Constant(*value),
-                _ => Tree::Definition(*index),
+                _ => Tree::Definition(index.index()),
             },
-            ExprKind::Field(field) => self.leaf(*field, 0, set)?,
-            ExprKind::ModeCoordinate(field) => Tree::Mode { field: *field },
-            ExprKind::ModeShape(field) => self.shape(*field, 0, set)?,
+            ExprKind::Field(field) => self.leaf(field.index(), 0, set)?,
+            ExprKind::ModeCoordinate(field) => Tree::Mode {
+                field: field.index(),
+            },
+            ExprKind::ModeShape(field) => self.shape(field.index(), 0, set)?,
             _ => return Err(self.misplaced()),
         })
     }
@@ -223,8 +228,8 @@ impl<'m> Lowering<'m> {
     /// Derivatives by the position of a field, its rate, a shape, or such a derivative.
     fn diff(&mut self, operand: &Expr, times: u8, set: Option<usize>) -> Result<Tree, OracleError> {
         match &operand.kind {
-            ExprKind::Field(field) => self.leaf(*field, times, set),
-            ExprKind::ModeShape(field) => self.shape(*field, times, set),
+            ExprKind::Field(field) => self.leaf(field.index(), times, set),
+            ExprKind::ModeShape(field) => self.shape(field.index(), times, set),
             ExprKind::Dot(inner) => Ok(Tree::Dot(self.diff(inner, times, set)?.into())),
             ExprKind::Diff(inner, more) => self.diff(inner, times.saturating_add(*more), set),
             _ => Err(self.misplaced()),

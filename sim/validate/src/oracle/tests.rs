@@ -4,6 +4,7 @@
 use super::super::sampler::Sampler;
 use super::super::test_models::{BEAM, DOUBLE_PENDULUM, SPRING, model};
 use super::{Equations, Oracle, OracleError, Side};
+use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId};
 use eomgen_model_spec::model::{Expr, ExprKind};
 use eomgen_model_spec::span::Span;
 
@@ -263,17 +264,19 @@ fn what_would_have_to_be_guessed_is_refused() {
         kind,
         span: Span::default(),
     };
-    let input = of(ExprKind::Input(0));
+    let input = of(ExprKind::Input(InputId::new(0)));
     assert_eq!(refuse(&input), OracleError::InputRate("mass".into()));
     let rate = of(ExprKind::Dot(input.into()));
     assert_eq!(refuse(&rate), OracleError::InputRate("mass".into()));
-    let rate = of(ExprKind::Dot(of(ExprKind::Coordinate(0)).into()));
+    let rate = of(ExprKind::Dot(
+        of(ExprKind::Coordinate(CoordinateId::new(0))).into(),
+    ));
     let acceleration = of(ExprKind::Dot(rate.into()));
     assert_eq!(
         refuse(&acceleration),
         OracleError::Acceleration("mass".into())
     );
-    let field = of(ExprKind::Field(0));
+    let field = of(ExprKind::Field(FieldId::new(0)));
     assert_eq!(refuse(&field), OracleError::Misplaced("mass".into()));
 }
 
