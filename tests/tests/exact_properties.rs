@@ -3,8 +3,8 @@
 //!
 //! What the general solver knows of a motion is how much it changes when its tolerance or its
 //! method does; the exact one may differ by as much, and by what rounding does. The other method
-//! takes other steps: a contact that begins and ends between two states that one of them sees is
-//! missed at either tolerance.
+//! takes other steps: what happens in much less than a step and stays hidden from one of them may
+//! be seen by the other.
 
 use std::time::{Duration, Instant};
 

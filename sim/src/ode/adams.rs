@@ -87,6 +87,10 @@ impl Stepper for Adams {
         &self.now.point
     }
 
+    fn last(&self) -> &Point {
+        &self.before.point
+    }
+
     fn step(&self) -> f64 {
         self.step
     }
@@ -160,16 +164,30 @@ impl Stepper for Adams {
         }
     }
 
+    fn middle(&mut self) -> Option<Vec<f64>> {
+        let (before, now) = (self.before.point.t, self.now.point.t);
+        self.interpolated(before + 0.5 * (now - before))
+    }
+
     fn inside<S: System + ?Sized>(
         &mut self,
         watched: &Watched<'_, S>,
         t: f64,
     ) -> Result<Vec<f64>, SolveError> {
+        if let Some(state) = self.interpolated(t) {
+            return Ok(state);
+        }
+        // The driver stepped over a surface; what is remembered says nothing of that.
+        let start = &self.before.point;
+        Ok(single_step(watched, start, t - start.t)?.y)
+    }
+}
+
+impl Adams {
+    /// The state at time `t` (s) inside the last step, if this method made it.
+    fn interpolated(&self, t: f64) -> Option<Vec<f64>> {
         let Stand { point, history, .. } = &self.before;
-        let Some(last) = &self.last else {
-            // The driver stepped over a surface; what is remembered says nothing of that.
-            return Ok(single_step(watched, point, t - point.t)?.y);
-        };
+        let last = self.last.as_ref()?;
         let weights = history.weights(t - point.t);
         let mut y = point.y.clone();
         history.predict(&weights, last.order, &mut y);
@@ -177,11 +195,9 @@ impl Stepper for Adams {
         for (y, surprise) in y.iter_mut().zip(&last.surprise) {
             *y += factor * surprise;
         }
-        Ok(y)
+        Some(y)
     }
-}
 
-impl Adams {
     /// Evaluates the rates at a start and shortens the step to what they allow.
     fn begin<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>) -> Result<(), SolveError> {
         if self.now.history.points() > 0 {

@@ -2,6 +2,7 @@
 //! Differential Equations I", section II.5), with and without control of the error.
 
 use differential_equations::error::Error;
+use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
 use differential_equations::ode::OrdinaryNumericalMethod;
 use differential_equations::status::Status;
@@ -46,6 +47,10 @@ impl Stepper for DormandPrince853 {
 
     fn here(&self) -> &Point {
         &self.here
+    }
+
+    fn last(&self) -> &Point {
+        &self.last
     }
 
     fn step(&self) -> f64 {
@@ -126,6 +131,12 @@ impl Stepper for DormandPrince853 {
         length: f64,
     ) -> Result<Point, SolveError> {
         single_step(watched, &self.here, length)
+    }
+
+    fn middle(&mut self) -> Option<Vec<f64>> {
+        let (before, now) = (self.method.t_prev(), self.method.t());
+        let at = before + 0.5 * (now - before);
+        self.method.interpolate(at).ok()
     }
 
     fn inside<S: System + ?Sized>(

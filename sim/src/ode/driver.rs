@@ -6,6 +6,7 @@ use super::adams::Adams;
 use super::crossing::{approach, over};
 use super::dormand_prince::{DormandPrince853, single_step};
 use super::error::SolveError;
+use super::grazing::{leapt_over, passed_over};
 use super::request;
 use super::settings::{Method, Settings};
 use super::stepper::{Outcome, Point, Stepper, refusal};
@@ -16,6 +17,10 @@ use super::watch::Watched;
 
 /// The first step, relative to the span; the error estimate corrects it at once.
 const FIRST_STEP: f64 = 1e-6;
+
+/// How short a stay beyond a surface is searched for in the step over it, relative to the step
+/// that ran into it: well above where rounding makes a switching function change its sign.
+const SHORTEST_CONTACT: f64 = 1e-9;
 
 /// Over this many switches their rate is averaged.
 const SWITCHES_AVERAGED: usize = 256;
@@ -147,7 +152,10 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 return self.cross(outcome.length);
             }
             if outcome.is_accepted {
-                return self.accept(begin);
+                return match self.taken_back()? {
+                    Some(length) => self.cross(length),
+                    None => self.accept(begin),
+                };
             }
         }
     }
@@ -161,6 +169,17 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.trajectory.work.rejected += 1;
         }
         Ok(outcome)
+    }
+
+    /// Takes an accepted step back that passed over a surface, and says how far from its start (s)
+    /// the motion is beyond it.
+    fn taken_back(&mut self) -> Result<Option<f64>, SolveError> {
+        let trials = &mut self.trajectory.work.trials;
+        let beyond = passed_over(self.watched, &mut self.stepper, trials)?;
+        if beyond.is_some() {
+            self.stepper.take_back();
+        }
+        Ok(beyond)
     }
 
     /// Goes to the surface that may lie within `length` of here, and over it.
@@ -178,6 +197,11 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
                 if !self.controlled_step(f64::INFINITY)?.is_accepted {
                     // Not the surface alone: shorter steps, and then again.
                     return Ok(());
+                }
+                if let Some(length) = self.taken_back()? {
+                    window = length.min(0.5 * found.length);
+                    beyond = Vec::new();
+                    continue;
                 }
                 self.accept(begin)?;
             }
@@ -199,6 +223,14 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             if self.is_beyond(&point) {
                 self.stepper.restart(point, length);
                 return self.accept(start.t);
+            }
+            if window > SHORTEST_CONTACT * length {
+                let trials = &mut self.trajectory.work.trials;
+                if let Some(ahead) = leapt_over(self.watched, &start, &point, trials)? {
+                    // Too short for this step: let shorter ones find it.
+                    self.stepper.restart(start, 0.25 * ahead);
+                    return Ok(());
+                }
             }
             window *= 4.0;
         }

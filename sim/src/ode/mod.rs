@@ -4,7 +4,8 @@
 //! leaves the regime the step began in; a `stepper` makes single steps, those of the
 //! Dormand-Prince method of order 8 (`dormand_prince`) or of Adams' method of variable
 //! order (`adams`, of `attempt`s that continue a `history`); `crossing` approaches a switching
-//! surface by steps that stay on one side and then steps over it; `driver` strings these
+//! surface by steps that stay on one side and then steps over it, and `grazing` finds what a step
+//! passed over; `driver` strings these
 //! together into a [`Trajectory`], `stiffness` being asked whether there will be an end; an
 //! `error` says why there is none, with `names`. A step therefore never averages over a kink or a jump
 //! of the right-hand side, which is what ruins the order of a method applied blindly.
@@ -32,6 +33,7 @@ mod crossing;
 mod dormand_prince;
 mod driver;
 mod error;
+mod grazing;
 mod history;
 mod magnitudes;
 mod names;

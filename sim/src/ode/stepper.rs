@@ -31,6 +31,9 @@ pub trait Stepper: Sized {
     /// Where the next step begins.
     fn here(&self) -> &Point;
 
+    /// Where the last step began.
+    fn last(&self) -> &Point;
+
     /// The length of the next step, s.
     fn step(&self) -> f64;
 
@@ -58,6 +61,10 @@ pub trait Stepper: Sized {
         watched: &Watched<'_, S>,
         length: f64,
     ) -> Result<Point, SolveError>;
+
+    /// The state in the middle of the last step by interpolation, without an evaluation and less
+    /// accurate than the step; `None` if none was made yet.
+    fn middle(&mut self) -> Option<Vec<f64>>;
 
     /// The state at time `t` (s) inside the last step, with the accuracy of the step.
     fn inside<S: System + ?Sized>(

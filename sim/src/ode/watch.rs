@@ -92,6 +92,16 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
             .set(sides.position(|(guard, side)| side * guard < 0.0));
     }
 
+    /// Whether there are switching surfaces at all.
+    pub fn has_guards(&self) -> bool {
+        !self.guards.borrow().is_empty()
+    }
+
+    /// The side of the surface `guard` in the present regime: -1, 1, or 0 where it is not known.
+    pub fn side(&self, guard: usize) -> f64 {
+        self.regime.borrow().get(guard).copied().unwrap_or(0.0)
+    }
+
     /// The switching functions at `t` and `y`.
     pub fn guards_at(&self, t: f64, y: &[f64]) -> Vec<f64> {
         let mut guards = vec![0.0; self.system.guard_count()];
@@ -101,10 +111,7 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
 
     /// Whether switching function `guard` with value `value` is beyond its surface.
     pub fn is_beyond(&self, guard: usize, value: f64) -> bool {
-        self.regime
-            .borrow()
-            .get(guard)
-            .is_some_and(|side| side * value < 0.0)
+        self.side(guard) * value < 0.0
     }
 
     /// Makes the regime that of `t` and `y`, and returns the functions that changed
@@ -137,10 +144,7 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
 
     /// Whether the switching function `guard` is positive in the present regime.
     pub fn is_positive(&self, guard: usize) -> bool {
-        self.regime
-            .borrow()
-            .get(guard)
-            .is_some_and(|side| *side > 0.0)
+        self.side(guard) > 0.0
     }
 }
 

@@ -1,0 +1,218 @@
+//! What an accepted step may have passed over: a switching function that changes sign and changes
+//! back between the places where the step was evaluated.
+//!
+//! The switching functions at both ends and in the middle of the step give a parabola each. Where
+//! one comes close to zero in between, or beyond, the motion itself is asked there, and again
+//! beside the lowest value found until nothing lower is to be expected. This is the search for
+//! turning points of the event functions that Shampine and Thompson recommend ("Event location
+//! for ordinary differential equations", Computers and Mathematics with Applications 39, 2000),
+//! with a parabola in place of the interpolant's polynomial. What it cannot see is a function that turns more
+//! than once within a step.
+
+use super::dormand_prince::single_step;
+use super::error::SolveError;
+use super::stepper::{Point, Stepper};
+use super::system::System;
+use super::watch::Watched;
+
+/// The motion is asked where a parabola promises less than this part of the lowest value known.
+const WORTH_A_LOOK: f64 = 0.5;
+
+/// Negative values up to this part of the highest one in a step may be rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// States looked at for one switching function in one step. The search converges in two or three.
+const MOST_LOOKS: u32 = 8;
+
+/// A time within a step as a part of its length, and a switching function there, positive on the
+/// side that the step began on.
+#[derive(Clone, Copy)]
+struct Sample {
+    at: f64,
+    value: f64,
+}
+
+/// How far from its start (s) the last step of `stepper`, which was accepted, was beyond a surface
+/// that it neither began nor ended beyond; `None` if it was not. `trials` counts the states that
+/// the stepper computes for it.
+///
+/// # Errors
+///
+/// If a state inside the step cannot be computed.
+pub fn passed_over<S: System + ?Sized, M: Stepper>(
+    watched: &Watched<'_, S>,
+    stepper: &mut M,
+    trials: &mut u64,
+) -> Result<Option<f64>, SolveError> {
+    let Some(middle) = watched.has_guards().then(|| stepper.middle()).flatten() else {
+        return Ok(None);
+    };
+    let (start, end) = (stepper.last().clone(), stepper.here().clone());
+    let middle = Point {
+        t: start.t + 0.5 * (end.t - start.t),
+        y: middle,
+    };
+    let begin = start.t;
+    search(watched, &[start, middle, end], &mut |at| {
+        *trials += 1;
+        let t = begin + at;
+        let y = stepper.inside(watched, t)?;
+        Ok(Point { t, y })
+    })
+}
+
+/// The same for one step of the Runge-Kutta method from `start` to `end`, whatever its error.
+///
+/// # Errors
+///
+/// As for [`passed_over`].
+pub fn leapt_over<S: System + ?Sized>(
+    watched: &Watched<'_, S>,
+    start: &Point,
+    end: &Point,
+    trials: &mut u64,
+) -> Result<Option<f64>, SolveError> {
+    let mut after = |length: f64| {
+        *trials += 1;
+        single_step(watched, start, length)
+    };
+    let middle = after(0.5 * (end.t - start.t))?;
+    search(watched, &[start.clone(), middle, end.clone()], &mut after)
+}
+
+/// How far from its start (s) a motion through three `points`, the second of which halves the
+/// time, is beyond a surface; `after` computes the point so far from the start.
+fn search<S: System + ?Sized>(
+    watched: &Watched<'_, S>,
+    points: &[Point; 3],
+    after: &mut impl FnMut(f64) -> Result<Point, SolveError>,
+) -> Result<Option<f64>, SolveError> {
+    let length = points[2].t - points[0].t;
+    let guards = points
+        .each_ref()
+        .map(|point| watched.guards_at(point.t, &point.y));
+    for guard in 0..guards[0].len() {
+        let side = watched.side(guard);
+        let sample = |at, values: &[f64]| Sample {
+            at,
+            value: side * values[guard],
+        };
+        let samples = [
+            sample(0.0, &guards[0]),
+            sample(0.5, &guards[1]),
+            sample(1.0, &guards[2]),
+        ];
+        let highest = samples
+            .map(|sample| sample.value)
+            .into_iter()
+            .fold(0.0, f64::max);
+        let negligible = ROUNDING * highest;
+        let mut look = |at: f64| {
+            watched.reset();
+            let point = after(at * length)?;
+            let value = side * watched.guards_at(point.t, &point.y)[guard];
+            // A trial state beyond a surface counts too: rates from there may have thrown the
+            // motion back already.
+            let is_beyond = value < -negligible || watched.crossed().is_some();
+            Ok((!is_beyond).then_some(value))
+        };
+        if let Some(at) = beyond(samples, &mut look)? {
+            return Ok(Some(at * length));
+        }
+    }
+    Ok(None)
+}
+
+/// Where the function of `samples` is beyond the surface, if anywhere; `look` gives its value, or
+/// `None` where it is beyond.
+fn beyond(
+    mut samples: [Sample; 3],
+    look: &mut impl FnMut(f64) -> Result<Option<f64>, SolveError>,
+) -> Result<Option<f64>, SolveError> {
+    for _ in 0..MOST_LOOKS {
+        let Some(at) = next_look(&samples) else {
+            return Ok(None);
+        };
+        let Some(value) = look(at)? else {
+            return Ok(Some(at));
+        };
+        samples = around(samples, Sample { at, value });
+    }
+    Ok(None)
+}
+
+/// Where within three samples to look for something negative, if anywhere.
+fn next_look(samples: &[Sample; 3]) -> Option<f64> {
+    let [a, b, c] = *samples;
+    let lowest = a.value.min(b.value).min(c.value);
+    if lowest < 0.0 {
+        // Only an interpolated state can be, the middle one at first: is the motion there as well?
+        return Some(b.at);
+    }
+    let before = (b.value - a.value) / (b.at - a.at);
+    let after = (c.value - b.value) / (c.at - b.at);
+    let curvature = (after - before) / (c.at - a.at);
+    if curvature <= 0.0 {
+        return None;
+    }
+    let at = 0.5 * (a.at + b.at - before / curvature);
+    let is_inside = a.at < at && at < c.at && at != b.at;
+    let value = a.value + (at - a.at) * (before + (at - b.at) * curvature);
+    (is_inside && value < WORTH_A_LOOK * lowest).then_some(at)
+}
+
+/// The three of four samples that stand around the lowest.
+fn around(samples: [Sample; 3], new: Sample) -> [Sample; 3] {
+    let [a, b, c] = samples;
+    if new.at == b.at {
+        return [a, new, c];
+    }
+    let (left, right) = if new.at < b.at { (new, b) } else { (b, new) };
+    if left.value < right.value {
+        [a, left, right]
+    } else {
+        [left, right, c]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where a function on 0..1 is found to be negative, and after how many looks.
+    fn search(function: impl Fn(f64) -> f64) -> (Option<f64>, u32) {
+        let mut looks = 0;
+        let samples = [0.0, 0.5, 1.0].map(|at| Sample {
+            at,
+            value: function(at),
+        });
+        let found = beyond(samples, &mut |at| {
+            looks += 1;
+            Ok(Some(function(at)).filter(|value| *value >= 0.0))
+        });
+        (found.expect("a search"), looks)
+    }
+
+    #[test]
+    fn a_dip_below_zero_is_found_however_shallow() {
+        for depth in [1e-3, 1e-6, 1e-9] {
+            for lowest in [0.1, 0.37, 0.5, 0.8] {
+                let (found, looks) = search(|at| 1.0 - (at - lowest).cos() - depth);
+                let at = found.unwrap_or_else(|| panic!("{depth:e} at {lowest}"));
+                assert!((at - lowest).abs() < 2.0 * depth.sqrt() && looks <= 4);
+            }
+        }
+    }
+
+    #[test]
+    fn what_turns_well_before_zero_costs_no_look() {
+        let (found, looks) = search(|at| 0.5 + (at - 0.4) * (at - 0.4));
+        assert_eq!((found, looks), (None, 0));
+    }
+
+    #[test]
+    fn what_starts_on_the_surface_and_leaves_it_is_not_beyond() {
+        let (found, _) = search(|at| at * at * at);
+        assert_eq!(found, None);
+    }
+}

@@ -1,0 +1,87 @@
+//! Contacts much shorter than a step: an oscillator that touches a stiff wall with the very end of
+//! its swing. Its period is known in closed form, with the contact and without.
+
+use std::f64::consts::PI;
+
+use eomgen_sim::ode::{Method, Settings, System, Trajectory, simulate};
+
+/// x'' = -x - k max(x - wall, 0).
+struct Oscillator {
+    wall: f64,
+    stiffness: f64,
+}
+
+impl System for Oscillator {
+    fn states(&self) -> usize {
+        2
+    }
+
+    fn rates(&self, _: f64, y: &[f64], out: &mut [f64]) {
+        let depth = (y[0] - self.wall).max(0.0);
+        out.copy_from_slice(&[y[1], -y[0] - self.stiffness * depth]);
+    }
+
+    fn guard_count(&self) -> usize {
+        1
+    }
+
+    fn guards(&self, _: f64, y: &[f64], out: &mut [f64]) {
+        out[0] = y[0] - self.wall;
+    }
+}
+
+/// The period of a swing of amplitude 1: a flight of frequency 1 and a contact of frequency
+/// sqrt(1 + k).
+fn period(wall: f64, stiffness: f64) -> f64 {
+    let speed = ((1.0 - wall) * (1.0 + wall)).sqrt();
+    let flight = 2.0 * PI - 2.0 * speed.atan2(wall);
+    let frequency = (1.0 + stiffness).sqrt();
+    let contact = 2.0 * (speed / frequency).atan2(wall / (1.0 + stiffness)) / frequency;
+    flight + contact
+}
+
+fn swing(method: Method, tolerance: f64, wall: f64, stiffness: f64, until: f64) -> Trajectory {
+    let settings = Settings {
+        method,
+        ..Settings::with_tolerance(tolerance)
+    };
+    let system = Oscillator { wall, stiffness };
+    let span = (0.0, until);
+    simulate(&system, &[0.0, 1.0], span, &[], &settings, &mut |_| {}).expect("a motion")
+}
+
+#[test]
+fn a_contact_much_shorter_than_a_step_is_seen() {
+    const SWINGS: u32 = 20;
+    let stiffness = 1e6;
+    for method in [Method::DormandPrince853, Method::Adams] {
+        // Depths that errors of the amplitude do not hide.
+        let depths = [(1e-6, 1e-3), (1e-9, 1e-3), (1e-9, 1e-5)];
+        let tight = [1e-3, 1e-5, 1e-7].map(|depth| (1e-12, depth));
+        for (tolerance, depth) in depths.into_iter().chain(tight) {
+            let wall = 1.0 - depth;
+            let until = f64::from(SWINGS) * period(wall, stiffness);
+            let motion = swing(method, tolerance, wall, stiffness, until);
+            let case = format!("{method:?} at {tolerance:e}, {depth:e} beyond the wall");
+            assert_eq!(motion.switches.len(), 2 * SWINGS as usize, "{case}");
+            let off = motion.last[0].abs();
+            assert!(tolerance > 1e-12 || off < 1e-6, "{case}: {off:e}");
+        }
+    }
+}
+
+#[test]
+fn a_swing_that_stays_before_the_wall_has_no_contact() {
+    for method in [Method::DormandPrince853, Method::Adams] {
+        let until = 20.0 * 2.0 * PI;
+        let free = swing(method, 1e-9, 2.0, 1e6, until);
+        for gap in [1e-2, 1e-4, 1e-6] {
+            let motion = swing(method, 1e-9, 1.0 + gap, 1e6, until);
+            let case = format!("{method:?}, {gap:e} before the wall");
+            assert!(motion.switches.is_empty(), "{case}");
+            assert!((motion.last[0] - free.last[0]).abs() < 1e-7, "{case}");
+        }
+        let far = swing(method, 1e-9, 1.01, 1e6, until);
+        assert_eq!(far.work.evaluations, free.work.evaluations, "{method:?}");
+    }
+}
