@@ -44,14 +44,15 @@
 //! # }
 //! ```
 //!
-//! Four stages, one folder each; a stage reads those above it and no other:
+//! Five stages, one folder each; a stage reads those above it and no other:
 //!
 //! 1. [`symbolic`]: expressions as nodes of one hash-consed graph, their simplification,
 //!    derivatives and formulas;
 //! 2. [`mechanics`]: from a model to its equations of motion, [`mechanics::equations::derive`];
 //! 3. [`program`]: from equations to a list of values in static single assignment,
 //!    [`program::lowering::lower`], and its evaluation;
-//! 4. [`rust`] (the emitted source) and [`report`] (equations for people).
+//! 4. [`statements`]: from a program to the statements of its functions, with loops and names;
+//! 5. [`rust`] (the emitted source) and [`report`] (equations for people).
 //!
 //! [`variant`] goes from a model to its program in one call.
 
@@ -59,5 +60,6 @@ pub mod mechanics;
 pub mod program;
 pub mod report;
 pub mod rust;
+pub mod statements;
 pub mod symbolic;
 pub mod variant;

@@ -1,7 +1,7 @@
 //! The constants of an emitted file: sizes, and the names of what arrays hold, in their order.
 
 use super::expression::array;
-use super::file::File;
+use crate::statements::File;
 
 /// Sizes and names of what the file computes with, and where it comes from.
 pub(super) fn constants(file: &File<'_>) -> String {

@@ -4,20 +4,22 @@
 use std::collections::BTreeSet;
 
 use super::constants;
-use super::emit_error::{EmitError, Emitted};
-use super::expression::array;
-use super::file::File;
-use super::functions::Needed;
+use super::expression::{Writer, array};
 use super::functions::items;
+use super::generics::for_lanes;
+use super::jacobians;
 use super::layout;
-use super::literals::{block, doc, file_doc, identifier, number};
-use super::outputs;
+use super::literals::{block, doc, file_doc, number};
 use super::regimes;
-use super::roots::stage_roots;
 use super::scalar::{COEFFICIENT, SCALAR};
 use super::stages;
 use super::types;
+use super::words::WORDS;
 use crate::program::{Extent, Op, Program};
+use crate::statements::{
+    EmitError, Emitted, File, Needed, Stage, guards, mass_matrix, observables, rates, requested,
+    stage_roots,
+};
 
 /// What the emitted file is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,30 +42,42 @@ pub const ITEMS_MODULE: &str = "eomgen_emitted";
 /// # Errors
 /// If a name of the program is no Rust identifier.
 pub fn emit(program: &Program, packaging: Packaging) -> Result<String, EmitError> {
-    let file = File::new(program)?;
+    let file = File::new(program, &WORDS)?;
     Ok(layout::source(&marked(&file, packaging)?))
 }
 
 /// The file as marked text.
 fn marked(file: &File<'_>, packaging: Packaging) -> Emitted<String> {
     let mut needed = Needed::default();
-    let items = [
+    let mut writer = Writer {
+        lanes: for_lanes(file),
+        ..Writer::default()
+    };
+    let head = [
         constants::constants(file),
         types::parameters(file)?,
         types::inputs(file)?,
-        types::coefficients(file, &mut needed)?,
-        stages::rates(file, &mut needed)?,
-        stages::observables(file, &mut needed)?,
-        stages::guards(file, &mut needed)?,
-        stages::mass_matrix(file, &mut needed)?,
-        regimes::regimes(file, &mut needed)?,
-        outputs::outputs(file, &mut needed)?,
-        tables(file)?,
-        SCALAR.to_owned(),
-        if file.for_lanes() { COEFFICIENT } else { "" }.to_owned(),
-        items(&needed),
-    ]
-    .concat();
+        types::coefficients(file, &mut needed, &mut writer)?,
+    ];
+    let mut text = head.concat();
+    let function = |stage: Stage, writer: &mut Writer| stages::function(file, &stage, writer);
+    text += &stages::rates(file, &rates(file, &mut needed)?, &mut writer);
+    for stage in observables(file, &mut needed)? {
+        text += &function(stage, &mut writer);
+    }
+    text += &function(guards(file, &mut needed)?, &mut writer);
+    text += &function(mass_matrix(file, &mut needed)?, &mut writer);
+    text += &regimes::regimes(file, &mut needed, &mut writer)?;
+    for stage in requested(file, &mut needed)? {
+        text += &function(stage, &mut writer);
+    }
+    text += &jacobians::jacobians(file, &mut needed, &mut writer)?;
+    text += &tables(file)?;
+    text += SCALAR;
+    if for_lanes(file) {
+        text += COEFFICIENT;
+    }
+    let items = text + &items(&needed, writer.conversions);
     let documentation = documentation(file);
     let allowed = "#![allow(non_snake_case)]\n#![allow(clippy::all)]\n#![forbid(unsafe_code)]\n";
     Ok(match packaging {
@@ -122,7 +136,7 @@ fn tables(file: &File<'_>) -> Emitted<String> {
         .collect();
     for place in used {
         let table = &program.tables[place];
-        let name = identifier(&table.name)?;
+        let name = file.words.identifier(&table.name)?;
         let values: Vec<String> = table.values.iter().map(|v| number(*v)).collect();
         let (extent, content) = match table.extent {
             Extent::Matrix(rows, columns) => {

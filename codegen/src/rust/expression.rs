@@ -1,10 +1,13 @@
-//! Emitted expressions with their precedence, so that parentheses stand only where the
-//! order of evaluation needs them, marked for their layout.
+//! Expressions and statements as marked text of Rust, with parentheses only where the order of
+//! evaluation needs them.
 
 use super::layout::{
     BLOCK, BLOCK_OUT, BRACE, BRACE_OUT, CLOSE, COMMA_OUT, FIRM, FLOW, FLOW_EVEN, FLOW_OUT, SPACE,
     SPACE_OUT, ZERO,
 };
+use super::literals::{block, number};
+use crate::program::{Extent, PARTIAL_SUMS};
+use crate::statements::{Array, Expression, Index, Operator, Place, Statement, Structure};
 
 /// How tightly an expression holds together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -16,180 +19,295 @@ enum Level {
     Atom,
 }
 
-/// An emitted expression.
-#[derive(Clone, Debug)]
-pub struct Expression {
-    text: String,
-    level: Level,
-    /// How many operations stand in it.
-    pub size: usize,
+/// Which conversions of whole arrays the text calls.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Conversions {
+    /// Vectors of another type.
+    pub(super) converted: bool,
+    /// Matrices of another type.
+    pub(super) converted_matrix: bool,
+    /// Vectors of coefficients as a whole.
+    pub(super) read_array: bool,
+    /// Matrices of coefficients as a whole.
+    pub(super) read_matrix: bool,
 }
 
-impl std::fmt::Display for Expression {
+/// Writes expressions and statements.
+#[derive(Debug, Default)]
+pub(super) struct Writer {
+    /// Whether coefficients are read for lanes.
+    pub(super) lanes: bool,
+    /// What has been called so far.
+    pub(super) conversions: Conversions,
+}
+
+impl Writer {
+    /// The statements, a line each or more.
+    pub(super) fn statements(&mut self, statements: &[Statement]) -> String {
+        statements.iter().map(|one| self.statement(one)).collect()
+    }
+
+    fn statement(&mut self, statement: &Statement) -> String {
+        match statement {
+            Statement::Let(name, value) => self.bound(name, value),
+            Statement::Zeros(name, lengths) => {
+                let lengths: Vec<String> = lengths.iter().map(usize::to_string).collect();
+                zeros(name, &lengths)
+            }
+            Statement::Flag(name) => format!("let mut {name} = true;\n"),
+            Statement::Assign(place, value) => {
+                assignment(&place_text(place), self.expression(value)) + "\n"
+            }
+            Statement::Loop {
+                index,
+                length,
+                lines,
+            } => looped(index, *length, &self.statements(lines)),
+            Statement::Sum {
+                name,
+                length,
+                element,
+            } => {
+                let function = if *length > PARTIAL_SUMS {
+                    "sum"
+                } else {
+                    "sum_of_few"
+                };
+                let sum = self.sum(function, *length, element);
+                assignment(&format!("let {name}"), sum) + "\n"
+            }
+            Statement::Cholesky { name, matrix, .. } => {
+                let matrix = reference(self.array(matrix));
+                let factor = call("cholesky", &[matrix]);
+                assignment(&format!("let {name}"), factor) + "\n"
+            }
+            Statement::CholeskySolve {
+                name,
+                factor,
+                right,
+                columns,
+                ..
+            } => {
+                let function = match columns {
+                    Some(_) => "cholesky_solve_matrix",
+                    None => "cholesky_solve",
+                };
+                let operands = [factor, right].map(|array| reference(self.array(array)));
+                let solution = call(function, &operands);
+                assignment(&format!("let {name}"), solution) + "\n"
+            }
+        }
+    }
+
+    /// A named number.
+    pub(super) fn bound(&mut self, name: &str, value: &Expression) -> String {
+        assignment(&format!("let {name}"), self.expression(value)) + "\n"
+    }
+
     /// Without parentheses around it.
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.text)
+    pub(super) fn expression(&mut self, expression: &Expression) -> String {
+        self.leveled(expression).0
     }
-}
 
-/// An expression with the parentheses that its place needs.
-struct At<'a>(&'a Expression, Level);
+    /// These expressions.
+    pub(super) fn expressions(&mut self, expressions: &[Expression]) -> Vec<String> {
+        expressions.iter().map(|e| self.expression(e)).collect()
+    }
 
-impl std::fmt::Display for At<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self(expression, level) = *self;
-        if expression.level < level {
-            write!(f, "({expression})")
+    fn at(&mut self, expression: &Expression, level: Level) -> String {
+        let (text, own) = self.leveled(expression);
+        if own < level {
+            format!("({text})")
         } else {
-            write!(f, "{expression}")
-        }
-    }
-}
-
-impl Expression {
-    /// A name, an element, a call or a literal without sign.
-    pub fn atom(text: impl Into<String>) -> Self {
-        Self {
-            text: text.into(),
-            level: Level::Atom,
-            size: 0,
+            text
         }
     }
 
-    /// A number of the scalar type.
-    pub fn number(value: f64) -> Self {
-        Self::converted(super::literals::number(value))
+    fn leveled(&mut self, expression: &Expression) -> (String, Level) {
+        let text = match expression {
+            Expression::Number(value) => converted(&number(*value)),
+            Expression::Name(name) => name.clone(),
+            Expression::Element(array, indices) => self.element(array, indices),
+            Expression::Field(structure, name) => field(structure_name(*structure), name),
+            Expression::Shared(coefficient) => call("C::read", &[self.expression(coefficient)]),
+            Expression::Binary(operator, a, b) => return self.binary(*operator, a, b),
+            Expression::Negate(a) => {
+                return (format!("-{}", self.at(a, Level::Atom)), Level::Negation);
+            }
+            Expression::Call(name, arguments) => call(name, &self.expressions(arguments)),
+            Expression::Select(parts) => call("T::select_greater", &self.expressions(&**parts)),
+            Expression::Primitive(name, arguments) => {
+                call(&format!("T::{name}"), &self.expressions(arguments))
+            }
+            Expression::Positive(place) => {
+                call("positive", &["REGIME".to_owned(), place.to_string()])
+            }
+            Expression::Greater(parts) => call("T::all_greater", &self.expressions(&**parts)),
+            Expression::And(parts) => {
+                let [a, b] = &**parts;
+                let text = infix("&&", self.at(a, Level::And), self.at(b, Level::Atom));
+                return (text, Level::And);
+            }
+            Expression::True => "true".to_owned(),
+        };
+        (text, Level::Atom)
     }
 
-    /// An `f64`, a literal or the entry of a table, as a number of the scalar type.
-    pub fn converted(number: impl Into<String>) -> Self {
-        Self {
-            size: 0,
-            ..Self::call("T::number", &[Self::atom(number)])
+    fn binary(&mut self, operator: Operator, a: &Expression, b: &Expression) -> (String, Level) {
+        let (sign, level, right) = match operator {
+            Operator::Add => ("+", Level::Sum, Level::Product),
+            Operator::Subtract => ("-", Level::Sum, Level::Product),
+            Operator::Multiply => ("*", Level::Product, Level::Negation),
+            Operator::Divide => ("/", Level::Product, Level::Negation),
+        };
+        let (a, b) = (self.at(a, level), self.at(b, right));
+        (infix(sign, a, b), level)
+    }
+
+    /// An entry of a table becomes a number of the scalar type.
+    fn element(&mut self, array: &Array, indices: &[Index]) -> String {
+        let brackets: Vec<String> = indices.iter().map(index_text).collect();
+        let brackets = brackets.join("][");
+        match array {
+            Array::Table(name, _) => converted(&format!("{name}[{brackets}]")),
+            Array::Coefficient(name, _) => {
+                format!("{}[{brackets}]", field("coefficients", name))
+            }
+            Array::Local(name) => format!("{name}[{brackets}]"),
+            Array::Filled(value, _) => self.expression(value),
         }
     }
 
-    /// Element `index` of an array.
-    pub fn element(array: &str, index: &str) -> Self {
-        Self::atom(format!("{array}[{index}]"))
-    }
-
-    /// A field of a struct.
-    pub fn field(of: &str, name: &str) -> Self {
-        Self::atom(format!("{BLOCK}{BLOCK_OUT}{of}{CLOSE}{ZERO}.{name}{CLOSE}"))
-    }
-
-    fn new(text: String, level: Level, parts: &[&Self]) -> Self {
-        Self {
-            text,
-            level,
-            size: 1 + parts.iter().map(|part| part.size).sum::<usize>(),
+    /// An array as a whole.
+    pub(super) fn array(&mut self, array: &Array) -> String {
+        match array {
+            Array::Local(name) => name.clone(),
+            Array::Filled(value, length) => format!("[{}; {length}]", self.expression(value)),
+            Array::Table(name, extent) => {
+                let function = if matches!(extent, Extent::Vector(_)) {
+                    self.conversions.converted = true;
+                    "converted"
+                } else {
+                    self.conversions.converted_matrix = true;
+                    "converted_matrix"
+                };
+                format!("{function}(&{name})")
+            }
+            Array::Coefficient(name, extent) => {
+                let field = field("coefficients", name);
+                if !self.lanes {
+                    return field;
+                }
+                let function = if matches!(extent, Extent::Matrix(..)) {
+                    self.conversions.read_matrix = true;
+                    "read_matrix"
+                } else {
+                    self.conversions.read_array = true;
+                    "read_array"
+                };
+                call(function, &[reference(field)])
+            }
         }
-    }
-
-    fn binary(
-        operator: &str,
-        level: Level,
-        (a, left): (&Self, Level),
-        (b, right): (&Self, Level),
-    ) -> Self {
-        let text = infix(operator, At(a, left), At(b, right));
-        Self::new(text, level, &[a, b])
-    }
-
-    /// a + b
-    pub fn add(a: &Self, b: &Self) -> Self {
-        Self::binary("+", Level::Sum, (a, Level::Sum), (b, Level::Product))
-    }
-
-    /// a - b
-    pub fn subtract(a: &Self, b: &Self) -> Self {
-        Self::binary("-", Level::Sum, (a, Level::Sum), (b, Level::Product))
-    }
-
-    /// a b
-    pub fn multiply(a: &Self, b: &Self) -> Self {
-        Self::binary(
-            "*",
-            Level::Product,
-            (a, Level::Product),
-            (b, Level::Negation),
-        )
-    }
-
-    /// a / b
-    pub fn divide(a: &Self, b: &Self) -> Self {
-        Self::binary(
-            "/",
-            Level::Product,
-            (a, Level::Product),
-            (b, Level::Negation),
-        )
-    }
-
-    /// `a && b`
-    pub fn and(a: &Self, b: &Self) -> Self {
-        Self::binary("&&", Level::And, (a, Level::And), (b, Level::Atom))
-    }
-
-    /// -a
-    pub fn negate(a: &Self) -> Self {
-        Self::new(format!("-{}", At(a, Level::Atom)), Level::Negation, &[a])
-    }
-
-    /// A call of a function.
-    pub fn call(name: &str, arguments: &[Self]) -> Self {
-        let parts: Vec<&Self> = arguments.iter().collect();
-        let text = format!(
-            "{name}({BLOCK}{ZERO}{}{COMMA_OUT}{CLOSE})",
-            listed(arguments)
-        );
-        Self::new(text, Level::Atom, &parts)
     }
 
     /// The call of a function that sums this many elements i. The number goes in the type of
     /// an array, where the function knows it as a constant.
-    pub fn sum(function: &str, length: usize, element: &Self) -> Self {
-        let body = if element.is_call() {
-            element.text.clone()
+    fn sum(&mut self, function: &str, length: usize, element: &Expression) -> String {
+        let (element, level) = self.leveled(element);
+        let body = if level == Level::Atom && element.ends_with(')') {
+            element
         } else {
             format!("{BLOCK}{BRACE}{element}{BRACE_OUT}{CLOSE}")
         };
         let closure = format!("{FLOW_EVEN}{BLOCK}|{ZERO}i|{SPACE_OUT}{CLOSE}{FIRM}{body}{CLOSE}");
-        let count = Self::atom(format!("[(); {length}]"));
-        Self::call(function, &[count, Self::atom(closure)])
-    }
-
-    fn is_call(&self) -> bool {
-        self.level == Level::Atom && self.text.ends_with(')')
+        call(function, &[format!("[(); {length}]"), closure])
     }
 }
 
+/// An array of zeros of this name.
+pub(super) fn zeros(name: &str, lengths: &[String]) -> String {
+    let zero = "T::number(0.0)".to_owned();
+    let value = lengths
+        .iter()
+        .rev()
+        .fold(zero, |inner, length| format!("[{inner}; {length}]"));
+    format!("let mut {name} = {value};\n")
+}
+
+/// An `f64`, a literal or the entry of a table, as a number of the scalar type.
+fn converted(number: &str) -> String {
+    call("T::number", &[number.to_owned()])
+}
+
+/// A field of a struct.
+fn field(of: &str, name: &str) -> String {
+    format!("{BLOCK}{BLOCK_OUT}{of}{CLOSE}{ZERO}.{name}{CLOSE}")
+}
+
+fn structure_name(structure: Structure) -> &'static str {
+    match structure {
+        Structure::Coefficients => "coefficients",
+        Structure::Parameters => "parameters",
+        Structure::Inputs => "inputs",
+        Structure::InputDirection => "input_direction",
+    }
+}
+
+fn place_text(place: &Place) -> String {
+    let mut text = place.name.clone();
+    for index in &place.indices {
+        text.push_str(&format!("[{}]", index_text(index)));
+    }
+    text
+}
+
+fn index_text(index: &Index) -> String {
+    match index {
+        Index::Number(number) => number.to_string(),
+        Index::Variable(name) => (*name).to_owned(),
+        Index::Sum(a, b) => infix("+", index_text(a), index_text(b)),
+        Index::Product(a, b) => infix("*", index_text(a), index_text(b)),
+    }
+}
+
+/// A call of a function.
+pub(super) fn call(name: &str, arguments: &[String]) -> String {
+    format!(
+        "{name}({BLOCK}{ZERO}{}{COMMA_OUT}{CLOSE})",
+        listed(arguments)
+    )
+}
+
+/// A loop of these lines.
+pub(super) fn looped(index: &str, length: usize, lines: &str) -> String {
+    block(&format!("for {index} in 0..{length} {{"), lines, "}")
+}
+
 /// Two operands with an operator between them, broken before the operator.
-pub fn infix(operator: &str, a: impl std::fmt::Display, b: impl std::fmt::Display) -> String {
+fn infix(operator: &str, a: impl std::fmt::Display, b: impl std::fmt::Display) -> String {
     format!("{FLOW}{FLOW_OUT}{a}{CLOSE}{SPACE}{operator} {b}{CLOSE}")
 }
 
 /// An assignment to `target`, which may declare it.
-pub fn assignment(target: &str, value: impl std::fmt::Display) -> String {
+pub(super) fn assignment(target: &str, value: impl std::fmt::Display) -> String {
     format!("{target} = {FIRM}{value};")
 }
 
 /// Elements of an array or of a call, each on a line of its own if they do not fit on one.
-pub fn listed<T: std::fmt::Display>(items: &[T]) -> String {
+fn listed(items: &[String]) -> String {
     let mut text = String::new();
     for (place, item) in items.iter().enumerate() {
         if place > 0 {
             text.push(',');
             text.push(SPACE);
         }
-        text.push_str(&item.to_string());
+        text.push_str(item);
     }
     text
 }
 
 /// An array of these elements.
-pub fn array<T: std::fmt::Display>(items: &[T]) -> String {
+pub(super) fn array(items: &[String]) -> String {
     if items.is_empty() {
         return "[]".to_owned();
     }
@@ -197,6 +315,6 @@ pub fn array<T: std::fmt::Display>(items: &[T]) -> String {
 }
 
 /// A reference to an array.
-pub fn reference(array: String) -> Expression {
-    Expression::atom(format!("&{array}"))
+pub(super) fn reference(array: String) -> String {
+    format!("&{array}")
 }

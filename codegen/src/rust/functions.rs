@@ -1,56 +1,17 @@
 //! The functions that an emitted file has besides its stages: which of them a file needs, and
 //! the small ones as text. Elementary functions are in `kernels`.
 
-use std::collections::BTreeSet;
-
+use super::expression::Conversions;
 use super::kernels::elementary_function;
 use super::piecewise::{
     ABOVE, CHOSEN, CONTACT, DEADZONE, DEADZONE_ON_SIDE, EITHER, POSITIVE, TOUCHING,
 };
 use super::slopes;
+use crate::statements::Needed;
 use eomgen_elementary::Function as Elementary;
 
-/// What a file needs besides the operators.
-#[derive(Clone, Debug, Default)]
-pub struct Needed {
-    /// Elementary functions.
-    pub elementary: BTreeSet<Elementary>,
-    /// f_k of Eq. (7).
-    pub deadzone: bool,
-    /// The indicator of Eq. (8).
-    pub contact: bool,
-    /// The indicator of one side.
-    pub above: bool,
-    /// f_k where the side is known.
-    pub deadzone_on_side: bool,
-    /// Whether there is contact where the side is known.
-    pub touching: bool,
-    /// Whether a function is on either side of where it rests.
-    pub either: bool,
-    /// One of two by what is known.
-    pub chosen: bool,
-    /// Reciprocals of pivots.
-    pub pivot_reciprocal: bool,
-    /// Cholesky factors and their solutions.
-    pub cholesky: bool,
-    /// Solutions for the columns of a matrix.
-    pub cholesky_of_matrix: bool,
-    /// Vectors of another type.
-    pub converted: bool,
-    /// Matrices of another type.
-    pub converted_matrix: bool,
-    /// Vectors of coefficients as a whole.
-    pub read_array: bool,
-    /// Matrices of coefficients as a whole.
-    pub read_matrix: bool,
-    /// Sums of more elements than there are partial sums.
-    pub sum: bool,
-    /// Sums of no more.
-    pub sum_of_few: bool,
-}
-
 /// The items of every function needed.
-pub fn items(needed: &Needed) -> String {
+pub fn items(needed: &Needed, conversions: Conversions) -> String {
     let mut text = String::new();
     for (needed, item) in [
         (needed.deadzone, DEADZONE),
@@ -67,10 +28,16 @@ pub fn items(needed: &Needed) -> String {
         (needed.pivot_reciprocal, PIVOT_RECIPROCAL),
         (needed.cholesky || needed.cholesky_of_matrix, CHOLESKY),
         (needed.cholesky_of_matrix, CHOLESKY_OF_MATRIX),
-        (needed.converted || needed.converted_matrix, CONVERTED),
-        (needed.converted_matrix, CONVERTED_MATRIX),
-        (needed.read_array || needed.read_matrix, READ_ARRAY),
-        (needed.read_matrix, READ_MATRIX),
+        (
+            conversions.converted || conversions.converted_matrix,
+            CONVERTED,
+        ),
+        (conversions.converted_matrix, CONVERTED_MATRIX),
+        (
+            conversions.read_array || conversions.read_matrix,
+            READ_ARRAY,
+        ),
+        (conversions.read_matrix, READ_MATRIX),
         (needed.sum || needed.sum_of_few, PAIRED),
         (needed.sum_of_few, SUM_OF_FEW),
         (needed.sum, SUM),

@@ -2,18 +2,19 @@
 //! which the places of all are made at compile time, and a function that returns the
 //! nonzeros, row by row. The linearisation puts them into dense matrices.
 
-use super::body::Body;
-use super::emit_error::Emitted;
-use super::expression::{Expression, array, assignment, infix};
-use super::file::File;
-use super::functions::Needed;
-use super::roots::entry_roots;
-use super::signature::stage;
+use super::expression::{Writer, array, assignment, call, reference};
+use super::literals::linked_doc;
+use super::signature::{Signature, stage_with};
+use super::stages::{function, passed_on};
 use super::types::literal;
-use crate::program::BlockPlace;
-use crate::program::{Extent, Jacobian, JacobianBlock, Output, ValueId};
+use crate::program::{Jacobian, Output, ValueId};
+use crate::statements::{Emitted, File, Needed, nonzeros};
 
-pub(super) fn jacobians(file: &File<'_>, needed: &mut Needed) -> Emitted<String> {
+pub(super) fn jacobians(
+    file: &File<'_>,
+    needed: &mut Needed,
+    writer: &mut Writer,
+) -> Emitted<String> {
     let outputs = &file.program.outputs;
     if outputs.jacobians.is_empty() {
         return Ok(String::new());
@@ -21,24 +22,19 @@ pub(super) fn jacobians(file: &File<'_>, needed: &mut Needed) -> Emitted<String>
     let mut text = String::new();
     for jacobian in &outputs.jacobians {
         text += &pattern(jacobian);
-        text += &nonzeros(file, jacobian, needed)?;
+        text += &function(file, &nonzeros(file, jacobian, needed)?, writer);
     }
     if outputs.kinds.contains(&Output::Linearisation) {
         text += LINEARISATION;
-        text += &stage(
-            file,
-            "/// The linearisation about a point.\n",
-            "linearise",
-            "Linearisation<T>",
-            &linearise(file),
-        );
+        let head = linked_doc("The linearisation about a point.");
+        let signature = Signature::of("linearise", "Linearisation<T>");
+        text += &stage_with(file, &head, &signature, &linearise(file));
     }
     Ok(text + PATTERN)
 }
 
 /// The statements of the linearisation: every part from its own function.
 fn linearise(file: &File<'_>) -> String {
-    let arguments = ["t", "state", "inputs", "coefficients"].map(Expression::atom);
     let parts = [
         "rates",
         "observables",
@@ -47,8 +43,8 @@ fn linearise(file: &File<'_>) -> String {
         "observables_by_state",
         "observables_by_inputs",
     ];
-    let call = |part: &str| Expression::call(&format!("{}{part}", file.inlined()), &arguments);
-    let computed = parts.map(|part| assignment(&format!("let {part}"), call(part)) + "\n");
+    let computed =
+        parts.map(|part| assignment(&format!("let {part}"), passed_on(file, part)) + "\n");
     let fields = ["A", "B", "C", "D"].iter().zip(&parts[2..]);
     let dense =
         fields.map(|(field, part)| format!("{field}: {}.dense(&{part})", part.to_uppercase()));
@@ -74,7 +70,7 @@ fn pattern(jacobian: &Jacobian<ValueId>) -> String {
         })
         .collect();
     let nonzeros = jacobian.nonzeros();
-    let blocks = Expression::atom(format!("&{}", array(&blocks)));
+    let blocks = reference(array(&blocks));
     format!(
         "/// Structural nonzeros of [`{}`].\n\
          pub const {name}_NONZEROS: usize = {nonzeros};\n\
@@ -83,76 +79,8 @@ fn pattern(jacobian: &Jacobian<ValueId>) -> String {
         jacobian.name,
         jacobian.rows,
         jacobian.columns,
-        Expression::call("pattern", &[blocks])
+        call("pattern", &[blocks])
     )
-}
-
-fn nonzeros(file: &File<'_>, jacobian: &Jacobian<ValueId>, needed: &mut Needed) -> Emitted<String> {
-    let roots = entry_roots(file.program, jacobian);
-    let mut body = file.body(&roots, needed)?;
-    let constant = format!("{}_NONZEROS", jacobian.name.to_uppercase());
-    body.push(&format!("let mut values = [T::number(0.0); {constant}];"));
-    for (entry, BlockPlace { start, width }) in jacobian.entries.iter().zip(jacobian.places()) {
-        write_entry(&mut body, entry, start, width)?;
-    }
-    body.push("values");
-    let (what, by) = jacobian
-        .name
-        .split_once("_by_")
-        .unwrap_or((jacobian.name, "state"));
-    let head = format!(
-        "/// The Jacobian of the {what} by the {by}: its structural nonzeros, row by row, at the\n\
-         /// places of [`{}`].\n\
-         #[allow(unused_variables, unused_mut)]\n",
-        jacobian.name.to_uppercase()
-    );
-    let result = format!("[T; {constant}]");
-    Ok(stage(
-        file,
-        &head,
-        jacobian.name,
-        &result,
-        &body.statements(),
-    ))
-}
-
-/// The loop or statement of a block: `start` is the place of its first nonzero, `width` the
-/// distance from one row to the next.
-fn write_entry(
-    body: &mut Body<'_>,
-    entry: &JacobianBlock<ValueId>,
-    start: usize,
-    width: usize,
-) -> Emitted<()> {
-    let extent = body.program.value(entry.value).extent;
-    if let (Extent::Matrix(..), false) = (extent, entry.diagonal) {
-        let op = body.program.value(entry.value).op.clone();
-        let place = |i: &str, j: &str| {
-            let row = infix("+", start, infix("*", width, i));
-            format!("values[{}]", infix("+", row, j))
-        };
-        let loops = body.block_loops(&op, (entry.rows, entry.columns), &place)?;
-        body.push(loops.trim_end());
-        return Ok(());
-    }
-    let (count, stride) = if entry.columns > 1 && !entry.diagonal {
-        (entry.columns, 1)
-    } else {
-        (entry.rows, width)
-    };
-    let value = body.element(entry.value)?;
-    if count == 1 && extent == Extent::Scalar {
-        body.push(&assignment(&format!("values[{start}]"), value));
-        return Ok(());
-    }
-    let step = if stride == 1 {
-        "i".to_owned()
-    } else {
-        infix("*", stride, "i")
-    };
-    let place = format!("values[{}]", infix("+", start, step));
-    body.push_loop("i", count, &assignment(&place, value));
-    Ok(())
 }
 
 const PATTERN: &str = "\

@@ -1,7 +1,6 @@
 //! Numbers, names and documentation as source. Text from a specification passes through
-//! here and nowhere else: names are checked to be identifiers, prose becomes comments.
+//! here and nowhere else: names are checked to be identifiers where statements are made, prose becomes comments.
 
-use super::emit_error::EmitError;
 use super::layout::{DEEPER, SHALLOWER};
 
 /// A number with all its bits, in the shorter of the two usual notations.
@@ -25,34 +24,18 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// Words that are no names in some edition of Rust.
-const KEYWORDS: &[&str] = &[
-    "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue",
-    "crate", "do", "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "if", "impl",
-    "in", "let", "loop", "macro", "match", "mod", "move", "mut", "override", "priv", "pub", "ref",
-    "return", "Self", "self", "static", "struct", "super", "trait", "true", "try", "type",
-    "typeof", "unsafe", "unsized", "use", "virtual", "where", "while", "yield", "gen",
-];
-
-/// The name, if it is an identifier.
-pub fn identifier(name: &str) -> Result<&str, EmitError> {
-    let mut letters = name.bytes();
-    let starts = letters
-        .next()
-        .is_some_and(|b| b.is_ascii_alphabetic() || b == b'_');
-    if starts
-        && letters.all(|b| b.is_ascii_alphanumeric() || b == b'_')
-        && !KEYWORDS.contains(&name)
-    {
-        Ok(name)
-    } else {
-        Err(EmitError::Name(name.to_owned()))
-    }
-}
-
 /// Documentation of the item that follows, a comment per line.
 pub fn doc(lines: &[String]) -> String {
     comments("///", lines)
+}
+
+/// Documentation of the item that follows: the generator's own lines, with links in brackets.
+pub fn linked_doc(lines: &str) -> String {
+    let line = |line: &str| match line {
+        "" => "///\n".to_owned(),
+        line => format!("/// {line}\n"),
+    };
+    lines.split('\n').map(line).collect()
 }
 
 /// Documentation of the file.

@@ -1,12 +1,10 @@
 //! What every emitted function that is called with prepared coefficients looks like.
 
-use super::expression::Expression;
-use super::file::File;
+use super::expression::call;
+use super::generics::{for_lanes, generic, inlined};
 use super::layout::{DEEPER, SHALLOWER};
 use super::literals::block;
-
-/// What arguments and results of the rates are.
-pub(super) const ORDER: &str = "`t` in s; `state` and the rates in the order of [`STATE_NAMES`].";
+use crate::statements::File;
 
 /// What an emitted function is called with and returns, beside what all are called with.
 pub(super) struct Signature<'a> {
@@ -32,17 +30,6 @@ impl<'a> Signature<'a> {
 }
 
 /// A function that is called with prepared coefficients.
-pub(super) fn stage(
-    file: &File<'_>,
-    head: &str,
-    name: &str,
-    result: &str,
-    statements: &str,
-) -> String {
-    stage_with(file, head, &Signature::of(name, result), statements)
-}
-
-/// The same with more than a name and a result.
 pub(super) fn stage_with(
     file: &File<'_>,
     head: &str,
@@ -68,12 +55,12 @@ pub(super) fn stage_with(
              inputs: &{},\n\
              coefficients: &{coefficients},\n\
              {arguments}{SHALLOWER}){returned} {{",
-            file.generic("Inputs"),
+            generic(file, "Inputs"),
         )
     };
-    let coefficients = file.generic("Coefficients");
+    let coefficients = generic(file, "Coefficients");
     let whole = format!("{head}{}", signature(name, "T: Scalar", &coefficients));
-    if !file.for_lanes() {
+    if !for_lanes(file) {
         return block(&whole, statements, "}");
     }
     let further: Vec<&str> = arguments
@@ -85,10 +72,9 @@ pub(super) fn stage_with(
         further.as_slice(),
     ]
     .concat();
-    let passed: Vec<Expression> = passed.into_iter().map(Expression::atom).collect();
-    let inlined = format!("{}{name}", file.inlined());
-    let call = Expression::call(&format!("{inlined}{}", given(file, constant)), &passed);
-    let call = format!("{call}\n");
+    let passed: Vec<String> = passed.into_iter().map(str::to_owned).collect();
+    let inlined = format!("{}{name}", inlined(file));
+    let call = call(&format!("{inlined}{}", given(file, constant)), &passed) + "\n";
     let allowed = head.lines().filter(|line| line.starts_with("#["));
     let allowed: String = allowed.map(|line| format!("{line}\n")).collect();
     let inlined_head = format!(

@@ -1,14 +1,12 @@
 //! The emitted types: parameters, inputs, and the coefficients with their preparation.
 
-use super::body::{Access, Body};
-use super::emit_error::Emitted;
-use super::expression::{Expression, assignment};
-use super::file::{File, quantity_line};
-use super::functions::Needed;
+use super::expression::Writer;
+use super::generics::generic;
 use super::layout::{CLOSE, FLOW_EVEN, SPACE};
-use super::literals::{block, doc, identifier, number};
+use super::literals::{block, doc, number};
 use crate::program::describe::describe_value;
-use crate::program::{Extent, Quantity, ValueId};
+use crate::program::{Extent, Quantity};
+use crate::statements::{Emitted, File, Needed, Prepared, preparation, quantity_line};
 
 /// The most characters of a struct's literal that is written on one line.
 const LITERAL_WIDTH: usize = 34;
@@ -17,7 +15,7 @@ pub(super) fn parameters(file: &File<'_>) -> Emitted<String> {
     let mut fields = String::new();
     let (mut defaults, mut casts) = (Vec::new(), Vec::new());
     for parameter in &file.program.parameters {
-        fields.push_str(&field(&parameter.quantity, &parameter.origin)?);
+        fields.push_str(&field(file, &parameter.quantity, &parameter.origin)?);
         let name = &parameter.quantity.name;
         defaults.push(format!("{name}: {}", number(parameter.value)));
         casts.push(format!("{name}: T::number(self.{name})"));
@@ -39,7 +37,7 @@ pub(super) fn inputs(file: &File<'_>) -> Emitted<String> {
     let mut fields = String::new();
     let mut zeros = Vec::new();
     for input in &file.program.inputs {
-        fields.push_str(&field(input, "")?);
+        fields.push_str(&field(file, input, "")?);
         zeros.push(format!("{}: T::number(0.0)", input.name));
     }
     let derived = if zeros.is_empty() { "Default, " } else { "" };
@@ -72,38 +70,37 @@ fn array_conversion(file: &File<'_>, name: &str, count: &str) -> String {
     let argument = if values.is_empty() { "_" } else { "numbers" };
     let opening = format!("fn from({argument}: [T; {count}]) -> Self {{");
     let body = block(&opening, &literal("Self", &values), "}");
-    let whole = file.generic(name);
+    let whole = generic(file, name);
     let head = format!("impl<T: Copy> From<[T; {count}]> for {whole} {{");
     block(&head, &body, "}")
 }
 
-pub(super) fn coefficients(file: &File<'_>, needed: &mut Needed) -> Emitted<String> {
-    let mut body = Body::new(
-        file.program,
-        Access::Prepare,
-        &preparation_roots(file),
-        needed,
-    )?;
+pub(super) fn coefficients(
+    file: &File<'_>,
+    needed: &mut Needed,
+    writer: &mut Writer,
+) -> Emitted<String> {
+    let prepared = preparation(file, needed)?;
+    let statements = writer.statements(&prepared.computed);
     let mut fields = String::new();
     let (mut values, mut casts) = (Vec::new(), Vec::new());
-    for id in &file.fields {
+    for (id, coefficient) in file.fields.iter().zip(&prepared.coefficients) {
         let name = &file.field_names[id];
         fields.push_str(&doc(&[describe_value(file.program, *id)]));
-        let (field_type, value, converted) = match file.program.value(*id).extent {
-            Extent::Scalar => {
-                let value = body.scalar(*id)?.to_string();
-                ("T".to_owned(), value, format!("T::number(self.{name})"))
-            }
+        let value = match coefficient {
+            Prepared::Number(value) => writer.expression(value),
+            Prepared::Numbers(array) => writer.array(array),
+        };
+        let (field_type, converted) = match file.program.value(*id).extent {
+            Extent::Scalar => ("T".to_owned(), format!("T::number(self.{name})")),
             Extent::Vector(n) => {
-                body.needed.converted = true;
-                let converted = format!("converted(&self.{name})");
-                (format!("[T; {n}]"), body.numbers(*id)?, converted)
+                writer.conversions.converted = true;
+                (format!("[T; {n}]"), format!("converted(&self.{name})"))
             }
             Extent::Matrix(rows, columns) => {
-                body.needed.converted_matrix = true;
-                let converted = format!("converted_matrix(&self.{name})");
+                writer.conversions.converted_matrix = true;
                 let matrix = format!("[[T; {columns}]; {rows}]");
-                (matrix, body.numbers(*id)?, converted)
+                (matrix, format!("converted_matrix(&self.{name})"))
             }
         };
         casts.push(format!("{name}: {converted}"));
@@ -121,7 +118,7 @@ pub(super) fn coefficients(file: &File<'_>, needed: &mut Needed) -> Emitted<Stri
         );
     }
     fields.push_str("pub positive_definite: bool,\n");
-    let check = pivot_check(file, &mut body)?;
+    let check = writer.expression(&prepared.positive_definite);
     values.push(format!("positive_definite: {FLOW_EVEN}{check}{CLOSE}"));
     let numbers = !casts.is_empty();
     let head = format!(
@@ -131,7 +128,7 @@ pub(super) fn coefficients(file: &File<'_>, needed: &mut Needed) -> Emitted<Stri
         declared(numbers)
     );
     casts.push("positive_definite: self.positive_definite".to_owned());
-    let prepare = preparation(file, &(body.statements() + &literal("Self", &values)));
+    let prepare = prepare(file, &(statements + &literal("Self", &values)));
     let generic = if numbers {
         "impl<T: Scalar> Coefficients<T> {"
     } else {
@@ -147,8 +144,8 @@ pub(super) fn coefficients(file: &File<'_>, needed: &mut Needed) -> Emitted<Stri
 
 /// The function that prepares the coefficients by these statements. Where no coefficient is a
 /// number, the parameters alone say of which type the numbers are, or nobody does.
-fn preparation(file: &File<'_>, statements: &str) -> String {
-    let parameters = file.generic("Parameters");
+fn prepare(file: &File<'_>, statements: &str) -> String {
+    let parameters = generic(file, "Parameters");
     let (with_coefficients, with_parameters) =
         (!file.fields.is_empty(), !file.program.parameters.is_empty());
     let unused = if statements.contains("parameters") {
@@ -170,61 +167,11 @@ fn preparation(file: &File<'_>, statements: &str) -> String {
     block(&opening, &format!("{declared}{statements}"), "}")
 }
 
-fn preparation_roots(file: &File<'_>) -> Vec<ValueId> {
-    file.fields
-        .iter()
-        .chain(&file.program.pivots)
-        .copied()
-        .collect()
-}
-
-fn pivot_check(file: &File<'_>, body: &mut Body<'_>) -> Emitted<Expression> {
-    let mut check: Option<Expression> = None;
-    for (place, id) in file.program.pivots.iter().enumerate() {
-        let conditions = match file.program.value(*id).extent {
-            Extent::Scalar => is_positive(&body.scalar(*id)?).to_vec(),
-            extent => {
-                let name = format!("positive_{}", place + 1);
-                let (element, length) = match extent {
-                    Extent::Matrix(rows, _) => {
-                        (Expression::element(&body.numbers(*id)?, "i][i"), rows)
-                    }
-                    other => (body.element(*id)?, other.length()),
-                };
-                let [above, below] = is_positive(&element);
-                let flag = Expression::atom(name.as_str());
-                let all = Expression::and(&Expression::and(&flag, &above), &below);
-                body.push(&format!("let mut {name} = true;"));
-                body.push_loop("i", length, &assignment(&name, all));
-                vec![flag]
-            }
-        };
-        for condition in conditions {
-            check = Some(match check {
-                Some(check) => Expression::and(&check, &condition),
-                None => condition,
-            });
-        }
-    }
-    Ok(check.unwrap_or_else(|| Expression::atom("true")))
-}
-
 /// A documented field of a struct.
-fn field(quantity: &Quantity, origin: &str) -> Emitted<String> {
-    let name = identifier(&quantity.name)?;
+fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> Emitted<String> {
+    let name = file.words.identifier(&quantity.name)?;
     let docs = doc(&[quantity_line(&quantity.doc, &quantity.unit, origin)]);
     Ok(format!("{docs}pub {name}: T,\n"))
-}
-
-/// Whether a pivot is positive and finite.
-fn is_positive(pivot: &Expression) -> [Expression; 2] {
-    let greater = |a: &Expression, b: &Expression| {
-        Expression::call("T::all_greater", &[a.clone(), b.clone()])
-    };
-    [
-        greater(pivot, &Expression::number(0.0)),
-        greater(&Expression::number(f64::INFINITY), pivot),
-    ]
 }
 
 /// The type parameter of a struct that holds numbers.

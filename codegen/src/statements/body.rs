@@ -7,11 +7,12 @@
 use std::collections::{HashMap, HashSet};
 
 use super::emit_error::Emitted;
-use super::expression::{Expression, assignment, reference};
-use super::functions::Needed;
-use super::literals::block;
-use super::names::Names;
+use super::expression::{Array, Expression};
+use super::index::Index;
+use super::names::{Names, Words};
+use super::needed::Needed;
 use super::sides::Switches;
+use super::statement::{Place, Statement};
 use crate::program::{Extent, Op, PARTIAL_SUMS, Program, ValueId};
 
 /// The most operations in one emitted expression.
@@ -27,14 +28,15 @@ pub enum Access<'a> {
 
 /// Writes one stage.
 pub struct Body<'a> {
-    pub(super) program: &'a Program,
+    pub program: &'a Program,
     pub(super) access: Access<'a>,
     pub(super) names: Names,
     uses: HashMap<ValueId, usize>,
     in_loops: HashMap<ValueId, bool>,
     pub(super) bound: HashMap<ValueId, String>,
-    pub(super) statements: String,
-    pub(super) needed: &'a mut Needed,
+    statements: Vec<Statement>,
+    /// The functions that the statements call.
+    pub needed: &'a mut Needed,
     /// Vectors that the caller reads as arrays.
     arrays: HashSet<ValueId>,
     /// What is decided by the regime that the stage is for.
@@ -42,19 +44,14 @@ pub struct Body<'a> {
 }
 
 impl<'a> Body<'a> {
-    /// A stage that computes `roots`; its values are bound where several need them.
+    /// A stage that computes `roots`, whose names keep to `words` and in which a regime decides
+    /// about some values; what several need is bound.
+    ///
+    /// # Errors
+    /// If a name is none in the language of `words`.
     pub fn new(
         program: &'a Program,
-        access: Access<'a>,
-        roots: &[ValueId],
-        needed: &'a mut Needed,
-    ) -> Emitted<Self> {
-        Self::in_regime(program, access, roots, needed, Switches::new())
-    }
-
-    /// The same for a stage in which a regime decides about these values.
-    pub fn in_regime(
-        program: &'a Program,
+        words: &'static Words,
         access: Access<'a>,
         roots: &[ValueId],
         needed: &'a mut Needed,
@@ -63,11 +60,11 @@ impl<'a> Body<'a> {
         let mut body = Self {
             program,
             access,
-            names: Names::new(program),
+            names: Names::new(program, words),
             uses: HashMap::new(),
             in_loops: HashMap::new(),
             bound: HashMap::new(),
-            statements: String::new(),
+            statements: Vec::new(),
             needed,
             arrays: HashSet::new(),
             switches,
@@ -107,33 +104,36 @@ impl<'a> Body<'a> {
         }
     }
 
-    /// The statements so far, a line each.
-    pub fn statements(self) -> String {
-        self.statements
+    /// The statements since they were taken last.
+    pub fn take(&mut self) -> Vec<Statement> {
+        std::mem::take(&mut self.statements)
     }
 
     /// Adds a statement of the caller's.
-    pub fn push(&mut self, statement: &str) {
-        self.statements.push_str(statement);
-        self.statements.push('\n');
+    pub fn push(&mut self, statement: Statement) {
+        self.statements.push(statement);
     }
 
-    /// Adds a loop over `index` with one statement in it.
-    pub fn push_loop(&mut self, index: &str, length: usize, statement: &str) {
-        self.statements
-            .push_str(&looped(index, length, &format!("{statement}\n")));
+    /// Puts a value where the caller wants it.
+    pub fn assign(&mut self, place: Place, value: Expression) {
+        self.push(Statement::Assign(place, value));
+    }
+
+    /// Puts elements i of a vector where the caller wants them.
+    pub fn assign_each(&mut self, length: usize, place: Place, element: Expression) {
+        self.push(Statement::each(length, Statement::Assign(place, element)));
     }
 
     /// Adds a vector filled element by element.
-    fn push_filled(&mut self, name: &str, length: usize, statement: &str) {
-        self.push(&format!("let mut {name} = [T::number(0.0); {length}];"));
-        self.push_loop("i", length, statement);
+    fn push_filled(&mut self, name: &str, length: usize, statement: Statement) {
+        self.push(Statement::Zeros(name.to_owned(), vec![length]));
+        self.push(Statement::each(length, statement));
     }
 
     /// Prefers a name for a value of this stage.
-    fn bind(&mut self, id: ValueId, expression: &Expression) -> Emitted<()> {
+    fn bind(&mut self, id: ValueId, expression: Expression) -> Emitted<()> {
         let name = self.names.of(self.program, id, "s")?;
-        self.push(&assignment(&format!("let {name}"), expression));
+        self.push(Statement::Let(name.clone(), expression));
         self.bound.insert(id, name);
         Ok(())
     }
@@ -162,7 +162,7 @@ impl<'a> Body<'a> {
                 let expression = self.leaf(id)?;
                 let name = self.leaf_name(id);
                 let name = self.names.assign(id, &name, "s")?;
-                self.push(&assignment(&format!("let {name}"), expression));
+                self.push(Statement::Let(name.clone(), expression));
                 self.bound.insert(id, name);
                 Ok(())
             }
@@ -190,8 +190,8 @@ impl<'a> Body<'a> {
         }
         let expression = self.own_expression(id, None)?;
         let looped = self.in_loops.get(&id).copied().unwrap_or(false);
-        if uses > 1 || value.name.is_some() || looped || expression.size > EXPRESSION_SIZE {
-            self.bind(id, &expression)
+        if uses > 1 || value.name.is_some() || looped || expression.size() > EXPRESSION_SIZE {
+            self.bind(id, expression)
         } else {
             Ok(())
         }
@@ -201,15 +201,16 @@ impl<'a> Body<'a> {
         let name = self.names.of(self.program, id, "s")?;
         let length = self.program.value(vector).extent.length();
         let element = self.element(vector)?;
-        let function = if length > PARTIAL_SUMS {
+        if length > PARTIAL_SUMS {
             self.needed.sum = true;
-            "sum"
         } else {
             self.needed.sum_of_few = true;
-            "sum_of_few"
-        };
-        let sum = Expression::sum(function, length, &element);
-        self.push(&assignment(&format!("let {name}"), sum));
+        }
+        self.push(Statement::Sum {
+            name: name.clone(),
+            length,
+            element,
+        });
         self.bound.insert(id, name);
         Ok(())
     }
@@ -219,29 +220,35 @@ impl<'a> Body<'a> {
         let as_array = self.arrays.contains(&id) || self.is_operand_of_matrix(id);
         if elementwise && uses <= 1 && !as_array {
             let expression = self.own_expression(id, Some("i"))?;
-            if expression.size <= EXPRESSION_SIZE {
+            if expression.size() <= EXPRESSION_SIZE {
                 return Ok(());
             }
         }
         if let Op::CholeskySolve(factor, vector) = self.program.value(id).op {
             self.needed.cholesky = true;
             let name = self.names.of(self.program, id, "s")?;
-            let factor = reference(self.numbers(factor)?);
-            let vector = reference(self.vector_array(vector, length)?);
-            let solution = Expression::call("cholesky_solve", &[factor, vector]);
-            self.push(&assignment(&format!("let {name}"), solution));
+            let factor = self.numbers(factor)?;
+            let right = self.vector_array(vector, length)?;
+            self.push(Statement::CholeskySolve {
+                name: name.clone(),
+                factor,
+                right,
+                rows: length,
+                columns: None,
+            });
             self.bound.insert(id, name);
             return Ok(());
         }
         if elementwise {
             let element = self.element(id)?;
             let name = self.names.of(self.program, id, "s")?;
-            self.push_filled(&name, length, &assignment(&format!("{name}[i]"), element));
+            let place = Place::new(&*name, [Index::Variable("i")]);
+            self.push_filled(&name, length, Statement::Assign(place, element));
             self.bound.insert(id, name);
             return Ok(());
         }
         let (statement, name) = self.summed_element(id)?;
-        self.push_filled(&name, length, statement.trim_end());
+        self.push_filled(&name, length, statement);
         self.bound.insert(id, name);
         Ok(())
     }
@@ -256,24 +263,19 @@ impl<'a> Body<'a> {
     }
 
     /// A vector as a whole array, copied where it is none; a scalar stands for every element.
-    fn vector_array(&mut self, id: ValueId, length: usize) -> Emitted<String> {
+    fn vector_array(&mut self, id: ValueId, length: usize) -> Emitted<Array> {
         if self.program.value(id).extent == Extent::Scalar {
-            let value = self.scalar(id)?;
-            return Ok(format!("[{value}; {length}]"));
+            return Ok(Array::Filled(Box::new(self.scalar(id)?), length));
         }
         if let Ok(array) = self.numbers(id) {
             return Ok(array);
         }
         let element = self.element(id)?;
         let name = self.names.of(self.program, id, "s")?;
-        self.push_filled(&name, length, &assignment(&format!("{name}[i]"), element));
-        Ok(name)
+        let place = Place::new(&*name, [Index::Variable("i")]);
+        self.push_filled(&name, length, Statement::Assign(place, element));
+        Ok(Array::Local(name))
     }
-}
-
-/// A loop of these lines.
-pub(super) fn looped(index: &str, length: usize, lines: &str) -> String {
-    block(&format!("for {index} in 0..{length} {{"), lines, "}")
 }
 
 /// Whether each element depends on the operands' elements of the same index alone.

@@ -17,7 +17,7 @@ pub(super) fn mass_roots(program: &Program) -> Vec<ValueId> {
 }
 
 /// What the stages that are called with coefficients return.
-pub(super) fn stage_roots(program: &Program) -> Vec<ValueId> {
+pub fn stage_roots(program: &Program) -> Vec<ValueId> {
     let mut roots = program.accelerations.all();
     roots.extend(&program.observable_values);
     roots.extend(program.guards.iter().map(|g| g.value));

@@ -1,15 +1,17 @@
 //! Statements for matrices: products, Gram matrices, assembled blocks and Cholesky factors,
 //! as loops in the order that the program defines.
 
-use super::body::{Body, looped};
+use super::body::Body;
 use super::emit_error::{EmitError, Emitted};
-use super::expression::{Expression, assignment, reference};
+use super::expression::Expression;
+use super::index::Index;
+use super::statement::{Place, Statement};
 use crate::program::{Extent, Op, ValueId};
 
 impl Body<'_> {
     /// The loop that sums an element of a matrix-vector product or of the diagonal of a Gram
     /// matrix, and the name of the vector.
-    pub(super) fn summed_element(&mut self, id: ValueId) -> Emitted<(String, String)> {
+    pub(super) fn summed_element(&mut self, id: ValueId) -> Emitted<(Statement, String)> {
         let name = self.names.of(self.program, id, "s")?;
         let (summand, length) = match self.program.value(id).op.clone() {
             Op::Apply {
@@ -18,12 +20,12 @@ impl Body<'_> {
                 vector,
             } => {
                 let (rows, columns) = self.matrix_size(matrix);
-                let (index, length) = if transposed {
-                    ("k][i", rows)
+                let (indices, length) = if transposed {
+                    (["k", "i"], rows)
                 } else {
-                    ("i][k", columns)
+                    (["i", "k"], columns)
                 };
-                let entry = self.entry(matrix, index)?;
+                let entry = self.entry(matrix, indices)?;
                 let vector = self.element_at(vector, "k")?;
                 (Expression::multiply(&entry, &vector), length)
             }
@@ -33,15 +35,18 @@ impl Body<'_> {
                 right,
             } => {
                 let (nodes, _) = self.matrix_size(left);
-                let (left, right) = (self.entry(left, "k][i")?, self.entry(right, "k][i")?);
+                let (left, right) = (
+                    self.entry(left, ["k", "i"])?,
+                    self.entry(right, ["k", "i"])?,
+                );
                 let weight = self.element_at(weight, "k")?;
                 let weighted = Expression::multiply(&left, &weight);
                 (Expression::multiply(&weighted, &right), nodes)
             }
             _ => return Err(EmitError::misplaced(id, "is no sum of products")),
         };
-        let added = add_to(&format!("{name}[i]"), &summand);
-        Ok((looped("k", length, &format!("{added}\n")), name))
+        let added = Statement::add_to(Place::new(&*name, [Index::Variable("i")]), &summand);
+        Ok((Statement::looped("k", length, vec![added]), name))
     }
 
     pub(super) fn matrix_size(&self, id: ValueId) -> (usize, usize) {
@@ -56,9 +61,12 @@ impl Body<'_> {
         match self.program.value(id).op.clone() {
             Op::Cholesky(matrix) => {
                 self.needed.cholesky = true;
-                let matrix = reference(self.numbers(matrix)?);
-                let factor = Expression::call("cholesky", &[matrix]);
-                self.push(&assignment(&format!("let {name}"), factor));
+                let matrix = self.numbers(matrix)?;
+                self.push(Statement::Cholesky {
+                    name: name.clone(),
+                    matrix,
+                    rows,
+                });
             }
             Op::Gram {
                 left,
@@ -66,31 +74,39 @@ impl Body<'_> {
                 right,
             } => {
                 let nodes = self.matrix_size(left).0;
-                let (left, right) = (self.entry(left, "k][i")?, self.entry(right, "k][j")?);
+                let (left, right) = (
+                    self.entry(left, ["k", "i"])?,
+                    self.entry(right, ["k", "j"])?,
+                );
                 let weight = self.element_at(weight, "k")?;
                 let weighted = Expression::multiply(&left, &weight);
                 let summand = Expression::multiply(&weighted, &right);
-                let added = add_to(&format!("{name}[i][j]"), &summand);
-                let inner = looped("k", nodes, &format!("{added}\n"));
-                self.push(&format!(
-                    "let mut {name} = [[T::number(0.0); {columns}]; {rows}];"
-                ));
-                self.push(looped("i", rows, &looped("j", columns, &inner)).trim_end());
+                let place = Place::new(&*name, ["i", "j"].map(Index::Variable));
+                let added = Statement::add_to(place, &summand);
+                let inner = Statement::looped("k", nodes, vec![added]);
+                self.push(Statement::Zeros(name.clone(), vec![rows, columns]));
+                let row = Statement::looped("j", columns, vec![inner]);
+                self.push(Statement::each(rows, row));
             }
             Op::CholeskySolve(factor, right) => {
                 self.needed.cholesky_of_matrix = true;
-                let factor = reference(self.numbers(factor)?);
-                let right = reference(self.numbers(right)?);
-                let solution = Expression::call("cholesky_solve_matrix", &[factor, right]);
-                self.push(&assignment(&format!("let {name}"), solution));
+                let factor = self.numbers(factor)?;
+                let right = self.numbers(right)?;
+                self.push(Statement::CholeskySolve {
+                    name: name.clone(),
+                    factor,
+                    right,
+                    rows,
+                    columns: Some(columns),
+                });
             }
             block => {
-                self.push(&format!(
-                    "let mut {name} = [[T::number(0.0); {columns}]; {rows}];"
-                ));
-                let place = |i: &str, j: &str| format!("{name}[{i}][{j}]");
+                self.push(Statement::Zeros(name.clone(), vec![rows, columns]));
+                let place = |i: &'static str, j: &'static str| {
+                    Place::new(&*name, [i, j].map(Index::Variable))
+                };
                 let loops = self.block_loops(&block, (rows, columns), &place)?;
-                self.push(loops.trim_end());
+                self.push(loops);
             }
         }
         self.bound.insert(id, name);
@@ -102,8 +118,8 @@ impl Body<'_> {
         &mut self,
         block: &Op,
         (rows, columns): (usize, usize),
-        place: &dyn Fn(&str, &str) -> String,
-    ) -> Emitted<String> {
+        place: &dyn Fn(&'static str, &'static str) -> Place,
+    ) -> Emitted<Statement> {
         let Op::Assemble {
             diagonal,
             outer,
@@ -114,39 +130,35 @@ impl Body<'_> {
                 "{block:?} is no block of a matrix"
             )));
         };
-        let mut statements = String::new();
+        let mut statements = Vec::new();
         if let Some(diagonal) = diagonal {
             let element = self.element(*diagonal)?;
-            statements.push_str(&add_to(&place("i", "i"), &element));
-            statements.push('\n');
+            statements.push(Statement::add_to(place("i", "i"), &element));
         }
-        let mut entries = String::new();
+        let mut entries = Vec::new();
         for (u, v) in outer {
             let (u, v) = (self.element_at(*u, "i")?, self.element_at(*v, "j")?);
             let product = Expression::multiply(&u, &v);
-            entries.push_str(&add_to(&place("i", "j"), &product));
-            entries.push('\n');
+            entries.push(Statement::add_to(place("i", "j"), &product));
         }
         for scaled in matrices {
-            let index = if scaled.transposed { "j][i" } else { "i][j" };
-            let element = self.entry(scaled.matrix, index)?;
+            let indices = if scaled.transposed {
+                ["j", "i"]
+            } else {
+                ["i", "j"]
+            };
+            let element = self.entry(scaled.matrix, indices)?;
             let (row, column) = (
                 self.element_at(scaled.row, "i")?,
                 self.element_at(scaled.column, "j")?,
             );
             let scaled_row = Expression::multiply(&row, &element);
             let product = Expression::multiply(&scaled_row, &column);
-            entries.push_str(&add_to(&place("i", "j"), &product));
-            entries.push('\n');
+            entries.push(Statement::add_to(place("i", "j"), &product));
         }
         if !entries.is_empty() {
-            statements.push_str(&looped("j", columns, &entries));
+            statements.push(Statement::looped("j", columns, entries));
         }
-        Ok(looped("i", rows, &statements))
+        Ok(Statement::looped("i", rows, statements))
     }
-}
-
-/// An addition to what stands at `place`.
-pub(super) fn add_to(place: &str, summand: &Expression) -> String {
-    assignment(place, Expression::add(&Expression::atom(place), summand))
 }

@@ -3,8 +3,8 @@
 
 use super::body::{Access, Body};
 use super::emit_error::{EmitError, Emitted};
-use super::expression::{Expression, infix, reference};
-use super::literals::identifier;
+use super::expression::{Array, Expression, Structure};
+use super::index::Index;
 use super::sides::of_side;
 use crate::program::evaluator::{Law, law};
 use crate::program::{Argument, Extent, Op, Output, ValueId, Variable};
@@ -23,16 +23,16 @@ impl<'a> Body<'a> {
     }
 
     /// Element `index` of a vector, or a scalar.
-    pub(super) fn element_at(&mut self, id: ValueId, index: &str) -> Emitted<Expression> {
+    pub(super) fn element_at(&mut self, id: ValueId, index: &'static str) -> Emitted<Expression> {
         let scalar = self.program.value(id).extent == Extent::Scalar;
         self.expression(id, (!scalar).then_some(index))
     }
 
     /// A scalar, or the element of a vector: by its name if it has one by now.
-    fn expression(&mut self, id: ValueId, index: Option<&str>) -> Emitted<Expression> {
+    fn expression(&mut self, id: ValueId, index: Option<&'static str>) -> Emitted<Expression> {
         match (self.bound.get(&id), index) {
-            (Some(name), Some(index)) => Ok(Expression::element(name, index)),
-            (Some(name), None) => Ok(Expression::atom(name)),
+            (Some(name), Some(index)) => Ok(Expression::element(&**name, [index.into()])),
+            (Some(name), None) => Ok(Expression::name(name)),
             (None, _) => self.own_expression(id, index),
         }
     }
@@ -41,7 +41,7 @@ impl<'a> Body<'a> {
     pub(super) fn own_expression(
         &mut self,
         id: ValueId,
-        index: Option<&str>,
+        index: Option<&'static str>,
     ) -> Emitted<Expression> {
         if let Some(leaf) = self.leaf_or_coefficient(id, index)? {
             return Ok(leaf);
@@ -71,13 +71,16 @@ impl<'a> Body<'a> {
             (Op::Divide(..), [a, b]) => Expression::divide(a, b),
             (Op::Power(..), _) => {
                 self.needed.elementary.insert(Elementary::Pow);
-                Expression::call("pow", operands)
+                Expression::Call("pow", operands.to_vec())
             }
             (Op::PivotReciprocal(_), _) => {
                 self.needed.pivot_reciprocal = true;
-                Expression::call("pivot_reciprocal", operands)
+                Expression::Call("pivot_reciprocal", operands.to_vec())
             }
-            (Op::Select { .. }, _) => Expression::call("T::select_greater", operands),
+            (Op::Select { .. }, [a, b, then, otherwise]) => {
+                let parts = [a, b, then, otherwise].map(Expression::clone);
+                Expression::Select(Box::new(parts))
+            }
             (Op::Call(function, _), _) => self.call(*function, operands),
             _ => return Err(EmitError::misplaced(id, "is no operation of elements")),
         })
@@ -102,35 +105,35 @@ impl<'a> Body<'a> {
                 "above"
             }
         };
-        Expression::call(name, arguments)
+        Expression::Call(name, arguments.to_vec())
     }
 
     /// Constants, tables, state, and what was prepared before this stage.
-    fn leaf_or_coefficient(&self, id: ValueId, index: Option<&str>) -> Emitted<Option<Expression>> {
+    fn leaf_or_coefficient(
+        &self,
+        id: ValueId,
+        index: Option<&'static str>,
+    ) -> Emitted<Option<Expression>> {
         let value = self.program.value(id);
         let program = self.program;
-        let place = |offset: usize| {
-            let place = index.map_or_else(String::new, |index| infix("+", offset, index));
-            Expression::element("state", &place)
+        let of = |array: &str, first: usize| {
+            let index = index.ok_or_else(|| EmitError::misplaced(id, "is a vector"))?;
+            Ok(Expression::element(array, [Index::after(first, index)]))
         };
         Ok(Some(match value.op {
-            Op::Constant(value) => Expression::number(value),
-            Op::Time => Expression::atom("t"),
+            Op::Constant(value) => Expression::Number(value),
+            Op::Time => Expression::name("t"),
             Op::Table(table) => {
-                let name = identifier(&program.tables[table].name)?;
-                Expression::converted(format!("{name}[{}]", index.unwrap_or_default()))
+                let index = index.ok_or_else(|| EmitError::misplaced(id, "is a table"))?;
+                Expression::Element(self.table(table)?, vec![index.into()])
             }
-            Op::ModeCoordinates(field) => place(program.mode_offset(field)),
+            Op::ModeCoordinates(field) => of("state", program.mode_offset(field))?,
             Op::ModeRates(field) => {
-                place(program.degrees_of_freedom() + program.mode_offset(field))
+                let first = program.degrees_of_freedom() + program.mode_offset(field);
+                of("state", first)?
             }
             Op::Argument(argument, variable) if value.extent != Extent::Scalar => {
-                let place = infix(
-                    "+",
-                    program.variable_place(variable),
-                    index.unwrap_or_default(),
-                );
-                Expression::element(argument_name(argument), &place)
+                of(argument_name(argument), program.variable_place(variable))?
             }
             _ => match &self.access {
                 Access::Coefficients(fields) if value.parameter_only => {
@@ -140,67 +143,72 @@ impl<'a> Body<'a> {
                             id.index()
                         )));
                     };
-                    self.coefficient(name, index)
+                    self.shared(match index {
+                        Some(index) => {
+                            let array = Array::Coefficient(name.clone(), value.extent);
+                            Expression::Element(array, vec![index.into()])
+                        }
+                        None => Expression::Field(Structure::Coefficients, name.clone()),
+                    })
                 }
                 _ => return Ok(None),
             },
         }))
     }
 
-    /// A coefficient, or the entry of one; lanes share it.
-    fn coefficient(&self, name: &str, index: Option<&str>) -> Expression {
-        let field = Expression::field("coefficients", name);
-        let number = match index {
-            Some(index) => Expression::element(&field.to_string(), index),
-            None => field,
-        };
-        if self.for_lanes() {
-            Expression::call("C::read", &[number])
+    /// A coefficient as a stage reads it; lanes share it.
+    fn shared(&self, coefficient: Expression) -> Expression {
+        if self.program.outputs.kinds.contains(&Output::Lanes) {
+            Expression::Shared(Box::new(coefficient))
         } else {
-            number
+            coefficient
         }
-    }
-
-    fn for_lanes(&self) -> bool {
-        self.program.outputs.kinds.contains(&Output::Lanes)
     }
 
     pub(super) fn leaf(&self, id: ValueId) -> Emitted<Expression> {
         let program = self.program;
+        let at = |array: &str, place: usize| Expression::element(array, [Index::Number(place)]);
+        let field = |of: Structure, name: &str| {
+            let name = self.names.identifier(name)?.to_owned();
+            Ok(Expression::Field(of, name))
+        };
         Ok(match program.value(id).op {
-            Op::Coordinate(index) => Expression::atom(format!("state[{}]", index.index())),
-            Op::Rate(index) => Expression::atom(format!(
-                "state[{}]",
-                program.degrees_of_freedom() + index.index()
-            )),
-            Op::Input(index) => {
-                Expression::field("inputs", identifier(&program.inputs[index].name)?)
-            }
+            Op::Coordinate(index) => at("state", index.index()),
+            Op::Rate(index) => at("state", program.degrees_of_freedom() + index.index()),
+            Op::Input(index) => field(Structure::Inputs, &program.inputs[index].name)?,
             Op::Parameter(place) => {
-                let name = identifier(&program.parameters[place].quantity.name)?;
-                Expression::field("parameters", name)
+                let name = &program.parameters[place].quantity.name;
+                field(Structure::Parameters, name)?
             }
             Op::Argument(_, Variable::Input(index)) => {
-                Expression::field("input_direction", identifier(&program.inputs[index].name)?)
+                field(Structure::InputDirection, &program.inputs[index].name)?
             }
             Op::Argument(argument, variable) => {
-                let place = program.variable_place(variable);
-                Expression::atom(format!("{}[{place}]", argument_name(argument)))
+                at(argument_name(argument), program.variable_place(variable))
             }
             _ => return Err(EmitError::misplaced(id, "is nothing that is given")),
         })
     }
 
-    /// An entry of a matrix or of a vector, `index` being all that stands in the brackets.
-    pub(super) fn entry(&mut self, id: ValueId, index: &str) -> Emitted<Expression> {
-        if let Op::Table(place) = self.program.value(id).op {
-            let name = identifier(&self.program.tables[place].name)?;
-            return Ok(Expression::converted(format!("{name}[{index}]")));
-        }
-        if let Some(name) = self.coefficient_name(id) {
-            return Ok(self.coefficient(name, Some(index)));
-        }
-        Ok(Expression::element(&self.numbers(id)?, index))
+    /// An entry of a matrix or of a vector.
+    pub fn entry<const N: usize>(
+        &mut self,
+        id: ValueId,
+        indices: [&'static str; N],
+    ) -> Emitted<Expression> {
+        let array = match self.program.value(id).op {
+            Op::Table(place) => self.table(place)?,
+            _ => self.numbers(id)?,
+        };
+        let prepared = matches!(array, Array::Coefficient(..));
+        let entry = Expression::Element(array, indices.map(Index::Variable).to_vec());
+        Ok(if prepared { self.shared(entry) } else { entry })
+    }
+
+    fn table(&self, place: usize) -> Emitted<Array> {
+        let table = &self.program.tables[place];
+        let name = self.names.identifier(&table.name)?;
+        Ok(Array::Table(name.to_owned(), table.extent))
     }
 
     /// The name of a value among the coefficients that this stage reads.
@@ -212,21 +220,12 @@ impl<'a> Body<'a> {
     }
 
     /// A vector or matrix as a whole.
-    pub fn numbers(&mut self, id: ValueId) -> Emitted<String> {
+    pub fn numbers(&mut self, id: ValueId) -> Emitted<Array> {
         if let Some(name) = self.bound.get(&id) {
-            return Ok(name.clone());
+            return Ok(Array::local(name));
         }
         if let Op::Table(place) = self.program.value(id).op {
-            let name = identifier(&self.program.tables[place].name)?;
-            let vector = matches!(self.program.value(id).extent, Extent::Vector(_));
-            self.needed.converted |= vector;
-            self.needed.converted_matrix |= !vector;
-            let function = if vector {
-                "converted"
-            } else {
-                "converted_matrix"
-            };
-            return Ok(format!("{function}(&{name})"));
+            return self.table(place);
         }
         let Some(name) = self.coefficient_name(id) else {
             return Err(EmitError::Value(format!(
@@ -234,15 +233,10 @@ impl<'a> Body<'a> {
                 id.index()
             )));
         };
-        let field = Expression::field("coefficients", name);
-        if !self.for_lanes() {
-            return Ok(field.to_string());
-        }
-        let matrix = matches!(self.program.value(id).extent, Extent::Matrix(..));
-        self.needed.read_array |= !matrix;
-        self.needed.read_matrix |= matrix;
-        let function = if matrix { "read_matrix" } else { "read_array" };
-        Ok(Expression::call(function, &[reference(field.to_string())]).to_string())
+        Ok(Array::Coefficient(
+            name.to_owned(),
+            self.program.value(id).extent,
+        ))
     }
 }
 

@@ -4,74 +4,49 @@
 use std::collections::{HashMap, HashSet};
 
 use super::emit_error::EmitError;
-use super::literals::identifier;
 use crate::program::{Program, ValueId};
 
-/// Names that emitted functions use for themselves: variables, helpers, constants, fields,
-/// and what Rust's prelude gives a value of.
-const TAKEN: [&str; 58] = [
-    "t",
-    "state",
-    "inputs",
-    "coefficients",
-    "parameters",
-    "rates",
-    "values",
-    "total",
-    "i",
-    "j",
-    "k",
-    "row",
-    "column",
-    "rest",
-    "sum",
-    "sum_of_few",
-    "paired",
-    "pow",
-    "exp_minus_one",
-    "cholesky",
-    "cholesky_solve",
-    "cholesky_solve_matrix",
-    "converted",
-    "converted_matrix",
-    "read_array",
-    "read_matrix",
-    "accelerations",
-    "direction",
-    "input_direction",
-    "weights",
-    "product",
-    "input_product",
-    "pattern",
-    "INPUTS",
-    "INPUT_NAMES",
-    "PARAMETERS",
-    "PARAMETER_NAMES",
-    "guards",
-    "deadzone_on_side",
-    "touching",
-    "either",
-    "chosen",
-    "positive",
-    "pivot_reciprocal",
-    "positive_definite",
-    "ORDERS",
-    "DEGREES_OF_FREEDOM",
-    "STATES",
-    "STATE_NAMES",
-    "OBSERVABLES",
-    "OBSERVABLE_NAMES",
-    "GUARDS",
-    "SPECIFICATION_SHA256",
-    "GENERATOR_VERSION",
-    "Some",
-    "None",
-    "Ok",
-    "Err",
-];
+/// Which names a language leaves to a model.
+#[derive(Debug)]
+pub struct Words {
+    /// The language, for messages.
+    pub language: &'static str,
+    /// Words that are no names.
+    pub keywords: &'static [&'static str],
+    /// Names that emitted functions use for themselves.
+    pub taken: &'static [&'static str],
+    /// Whether the names of functions and constants begin with the model's and `_`.
+    pub prefixed: bool,
+}
+
+impl Words {
+    /// The name, if it is an identifier.
+    ///
+    /// # Errors
+    /// If it is none.
+    pub fn identifier<'n>(&self, name: &'n str) -> Result<&'n str, EmitError> {
+        let mut letters = name.bytes();
+        let starts = letters
+            .next()
+            .is_some_and(|b| b.is_ascii_alphabetic() || b == b'_');
+        if starts
+            && letters.all(|b| b.is_ascii_alphanumeric() || b == b'_')
+            && !self.keywords.contains(&name)
+        {
+            Ok(name)
+        } else {
+            Err(EmitError::Name {
+                name: name.to_owned(),
+                language: self.language,
+            })
+        }
+    }
+}
 
 /// A supply of names, each handed out once.
 pub struct Names {
+    words: &'static Words,
+    prefix: Option<String>,
     used: HashSet<String>,
     given: HashMap<ValueId, String>,
     next: HashMap<&'static str, usize>,
@@ -80,15 +55,17 @@ pub struct Names {
 impl Names {
     /// A supply that avoids the names emitted functions use for themselves, those of the
     /// tables and of the flags `positive_1` and so on, one per pivot.
-    pub fn new(program: &Program) -> Self {
+    pub fn new(program: &Program, words: &'static Words) -> Self {
         let tables = program.tables.iter().map(|table| table.name.clone());
         let flags = (1..=program.pivots.len()).map(|number| format!("positive_{number}"));
         let patterns = program.outputs.jacobians.iter().flat_map(|jacobian| {
             let name = jacobian.name.to_uppercase();
             [format!("{name}_NONZEROS"), name]
         });
-        let taken = TAKEN.iter().map(|name| (*name).to_owned());
+        let taken = words.taken.iter().map(|name| (*name).to_owned());
         Self {
+            words,
+            prefix: words.prefixed.then(|| format!("{}_", program.name)),
             used: taken.chain(tables).chain(flags).chain(patterns).collect(),
             given: HashMap::new(),
             next: HashMap::new(),
@@ -107,11 +84,11 @@ impl Names {
         }
         let preferred = program.value(id).name.clone();
         let name = match preferred {
-            Some(name) if !self.used.contains(&name) => name,
+            Some(name) if self.is_free(&name) => name,
             _ => self.numbered(stem),
         };
         self.used.insert(name.clone());
-        let name = identifier(&name)?.to_owned();
+        let name = self.identifier(&name)?.to_owned();
         self.given.insert(id, name.clone());
         Ok(name)
     }
@@ -123,23 +100,33 @@ impl Names {
         name: &str,
         stem: &'static str,
     ) -> Result<String, EmitError> {
-        let name = if self.used.contains(name) {
-            self.numbered(stem)
-        } else {
+        let name = if self.is_free(name) {
             name.to_owned()
+        } else {
+            self.numbered(stem)
         };
         self.used.insert(name.clone());
-        let name = identifier(&name)?.to_owned();
+        let name = self.identifier(&name)?.to_owned();
         self.given.insert(id, name.clone());
         Ok(name)
     }
 
+    /// The name, if it is an identifier in the language of the names.
+    pub fn identifier<'n>(&self, name: &'n str) -> Result<&'n str, EmitError> {
+        self.words.identifier(name)
+    }
+
+    fn is_free(&self, name: &str) -> bool {
+        let prefixed = |prefix: &String| name.starts_with(prefix.as_str());
+        !self.used.contains(name) && !self.prefix.as_ref().is_some_and(prefixed)
+    }
+
     fn numbered(&mut self, stem: &'static str) -> String {
-        let next = self.next.entry(stem).or_insert(0);
         loop {
+            let next = self.next.entry(stem).or_insert(0);
             *next += 1;
             let name = format!("{stem}_{next}");
-            if !self.used.contains(&name) {
+            if self.is_free(&name) {
                 return name;
             }
         }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use eomgen_model_spec::model::Function;
 
 use super::expression::Expression;
-use super::functions::Needed;
+use super::needed::Needed;
 use crate::program::{Decided, Op, Program, ValueId};
 
 /// Values whose branch a regime decides.
@@ -28,30 +28,30 @@ pub(super) fn of_side(
         return Some(chosen(touching, then, otherwise, needed));
     }
     let decided = *switches.get(&id)?;
-    let one = || Expression::number(1.0);
+    let one = || Expression::Number(1.0);
     Some(match (op, operands, decided) {
         (Op::Call(Function::Deadzone, _), [p, b], Decided::Between { above, beyond }) => {
             needed.deadzone_on_side = true;
             let sides = [positive(above), positive(beyond), p.clone(), b.clone()];
-            Expression::call("deadzone_on_side", &sides)
+            Expression::Call("deadzone_on_side", sides.to_vec())
         }
         (Op::Call(Function::Contact, _), _, _) => {
             let touching = touching(decided, needed)?;
-            chosen(touching, &one(), &Expression::number(0.0), needed)
+            chosen(touching, &one(), &Expression::Number(0.0), needed)
         }
         (Op::Call(Function::Sign, _), _, Decided::Outside { above, below }) => {
-            let (zero, minus_one) = (Expression::number(0.0), Expression::number(-1.0));
+            let (zero, minus_one) = (Expression::Number(0.0), Expression::Number(-1.0));
             let otherwise = chosen(positive(below), &minus_one, &zero, needed);
             chosen(positive(above), &one(), &otherwise, needed)
         }
         (Op::Call(Function::Sign, _), _, Decided::By(place)) => {
-            chosen(positive(place), &one(), &Expression::number(-1.0), needed)
+            chosen(positive(place), &one(), &Expression::Number(-1.0), needed)
         }
         (Op::Call(Function::Above, _), _, Decided::By(place)) => {
-            chosen(positive(place), &one(), &Expression::number(0.0), needed)
+            chosen(positive(place), &one(), &Expression::Number(0.0), needed)
         }
         (Op::Call(Function::Above, _), _, Decided::Turned(place)) => {
-            chosen(positive(place), &Expression::number(0.0), &one(), needed)
+            chosen(positive(place), &Expression::Number(0.0), &one(), needed)
         }
         (Op::Call(Function::Abs, _), [a], Decided::By(place)) => {
             chosen(positive(place), a, &Expression::negate(a), needed)
@@ -73,11 +73,7 @@ pub(super) fn of_side(
 }
 
 fn positive(place: usize) -> Expression {
-    let arguments = [
-        Expression::atom("REGIME"),
-        Expression::atom(place.to_string()),
-    ];
-    Expression::call("positive", &arguments)
+    Expression::Positive(place)
 }
 
 fn touching(decided: Decided, needed: &mut Needed) -> Option<Expression> {
@@ -92,7 +88,7 @@ fn touching(decided: Decided, needed: &mut Needed) -> Option<Expression> {
         }
         Decided::By(_) | Decided::Turned(_) => return None,
     };
-    Some(Expression::call(name, &sides.map(positive)))
+    Some(Expression::Call(name, sides.map(positive).to_vec()))
 }
 
 fn chosen(
@@ -102,5 +98,5 @@ fn chosen(
     needed: &mut Needed,
 ) -> Expression {
     needed.chosen = true;
-    Expression::call("chosen", &[first, then.clone(), otherwise.clone()])
+    Expression::Call("chosen", vec![first, then.clone(), otherwise.clone()])
 }

@@ -5,8 +5,13 @@ use crate::program::ValueId;
 /// Why a program could not be emitted.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EmitError {
-    /// A name is no Rust identifier.
-    Name(String),
+    /// A name is no identifier in the language of the emitted source.
+    Name {
+        /// The name.
+        name: String,
+        /// The language.
+        language: &'static str,
+    },
     /// A value does not stand where a stage needs it: a defect of the generator.
     Value(String),
 }
@@ -21,7 +26,7 @@ impl EmitError {
 impl std::fmt::Display for EmitError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Name(name) => write!(f, "`{name}` is no Rust identifier"),
+            Self::Name { name, language } => write!(f, "`{name}` is no {language} identifier"),
             Self::Value(message) => write!(f, "the program cannot be emitted: {message}"),
         }
     }
@@ -30,4 +35,4 @@ impl std::fmt::Display for EmitError {
 impl std::error::Error for EmitError {}
 
 /// What comes of writing a part of the file.
-pub(super) type Emitted<T> = Result<T, EmitError>;
+pub(crate) type Emitted<T> = Result<T, EmitError>;

@@ -1,0 +1,115 @@
+//! The elementary functions as statements: their kernels, operation by operation.
+
+use super::expression::Expression;
+use super::statement::Statement;
+use eomgen_elementary::{Function as Elementary, Kernel, Operation};
+
+/// What an elementary function is, for people.
+pub fn describe_elementary(function: Elementary) -> &'static str {
+    match function {
+        Elementary::Abs => "Absolute value.",
+        Elementary::Sign => "Sign, with sign(0) = 0.",
+        Elementary::Min => "The smaller of two, NaN if either is.",
+        Elementary::Max => "The larger of two, NaN if either is.",
+        Elementary::Sqrt => "Square root.",
+        Elementary::Exp => "Exponential function.",
+        Elementary::ExpMinusOne => "exp(x) - 1.",
+        Elementary::Ln => "Natural logarithm.",
+        Elementary::Sinh => "Hyperbolic sine.",
+        Elementary::Cosh => "Hyperbolic cosine.",
+        Elementary::Tanh => "Hyperbolic tangent.",
+        Elementary::Sin => "Sine for |x| up to 1e9, NaN beyond.",
+        Elementary::Cos => "Cosine for |x| up to 1e9, NaN beyond.",
+        Elementary::Tan => "Tangent for |x| up to 1e9, NaN beyond.",
+        Elementary::Asin => "Inverse sine.",
+        Elementary::Acos => "Inverse cosine.",
+        Elementary::Atan => "Inverse tangent.",
+        Elementary::Atan2 => "Angle of the point (x, y).",
+        Elementary::Pow => "x to the power y.",
+    }
+}
+
+/// The most operations in one emitted expression of a kernel.
+const EXPRESSION_SIZE: usize = 6;
+
+/// The statements of a kernel, and its value. Operations used once stand inside the expression
+/// that uses them, up to a size, the others get a name.
+pub struct KernelStatements {
+    /// The named operations.
+    pub computed: Vec<Statement>,
+    /// The value.
+    pub value: Option<Expression>,
+}
+
+impl KernelStatements {
+    /// Of a function with these names for its arguments.
+    pub fn new(function: Elementary, arguments: &[&str]) -> Self {
+        let kernel = function.kernel();
+        let uses = uses(&kernel);
+        let mut expressions: Vec<Expression> = Vec::new();
+        let mut computed = Vec::new();
+        for (index, operation) in kernel.operations.iter().enumerate() {
+            let expression = expression(*operation, arguments, &expressions);
+            let single = uses[index] <= 1 && expression.size() <= EXPRESSION_SIZE;
+            if !operation.is_computed() || single {
+                expressions.push(expression);
+            } else {
+                let name = format!("v{index}");
+                computed.push(Statement::Let(name.clone(), expression));
+                expressions.push(Expression::Name(name));
+            }
+        }
+        let output = kernel.outputs.first();
+        Self {
+            computed,
+            value: output.map(|output| expressions[*output].clone()),
+        }
+    }
+}
+
+fn uses(kernel: &Kernel) -> Vec<usize> {
+    let mut uses = vec![0; kernel.operations.len()];
+    for operation in &kernel.operations {
+        operation.map_operands(|operand| {
+            uses[operand] += 1;
+            operand
+        });
+    }
+    uses
+}
+
+fn expression(operation: Operation, arguments: &[&str], operands: &[Expression]) -> Expression {
+    let o = |index: usize| &operands[index];
+    let call = |name: &'static str, arguments: &[usize]| {
+        Expression::Primitive(name, arguments.iter().map(|a| o(*a).clone()).collect())
+    };
+    match operation {
+        Operation::Input(index) => Expression::name(arguments[index.min(arguments.len() - 1)]),
+        Operation::Constant(value) => Expression::Number(value),
+        Operation::Add(a, b) => Expression::add(o(a), o(b)),
+        Operation::Sub(a, b) => Expression::subtract(o(a), o(b)),
+        Operation::Mul(a, b) => Expression::multiply(o(a), o(b)),
+        Operation::Div(a, b) => Expression::divide(o(a), o(b)),
+        Operation::Neg(a) => Expression::negate(o(a)),
+        Operation::Abs(a) => call("magnitude", &[a]),
+        Operation::CopySign { magnitude, sign } => call("copy_sign", &[magnitude, sign]),
+        Operation::SelectLess {
+            left,
+            right,
+            then,
+            otherwise,
+        } => {
+            let parts = [right, left, then, otherwise].map(|part| o(part).clone());
+            Expression::Select(Box::new(parts))
+        }
+        Operation::SelectEqual {
+            left,
+            right,
+            then,
+            otherwise,
+        } => call("select_equal", &[left, right, then, otherwise]),
+        Operation::PowerOfTwo(a) => call("power_of_two", &[a]),
+        Operation::Exponent(a) => call("exponent", &[a]),
+        Operation::Significand(a) => call("significand", &[a]),
+    }
+}

@@ -1,0 +1,93 @@
+//! The preparation of the coefficients: what depends on the parameters alone.
+
+use super::body::{Access, Body};
+use super::emit_error::Emitted;
+use super::expression::{Array, Expression};
+use super::file::File;
+use super::index::Index;
+use super::needed::Needed;
+use super::sides::Switches;
+use super::statement::{Place, Statement};
+use crate::program::{Extent, ValueId};
+
+/// A coefficient.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Prepared {
+    /// A number.
+    Number(Expression),
+    /// A vector or a matrix.
+    Numbers(Array),
+}
+
+/// How the coefficients are prepared.
+#[derive(Clone, Debug)]
+pub struct Preparation {
+    /// What is computed.
+    pub computed: Vec<Statement>,
+    /// The coefficients, in the order of [`File::fields`].
+    pub coefficients: Vec<Prepared>,
+    /// Whether all prepared pivots are positive and finite.
+    pub positive_definite: Expression,
+}
+
+/// How the coefficients of a file are prepared.
+pub fn preparation(file: &File<'_>, needed: &mut Needed) -> Emitted<Preparation> {
+    let roots = file.fields.iter().chain(&file.program.pivots);
+    let roots: Vec<ValueId> = roots.copied().collect();
+    let access = Access::Prepare;
+    let none = Switches::new();
+    let mut body = Body::new(file.program, file.words, access, &roots, needed, none)?;
+    let mut coefficients = Vec::new();
+    for id in &file.fields {
+        coefficients.push(match file.program.value(*id).extent {
+            Extent::Scalar => Prepared::Number(body.scalar(*id)?),
+            _ => Prepared::Numbers(body.numbers(*id)?),
+        });
+    }
+    let positive_definite = pivot_check(file, &mut body)?;
+    Ok(Preparation {
+        computed: body.take(),
+        coefficients,
+        positive_definite,
+    })
+}
+
+fn pivot_check(file: &File<'_>, body: &mut Body<'_>) -> Emitted<Expression> {
+    let mut check: Option<Expression> = None;
+    for (place, id) in file.program.pivots.iter().enumerate() {
+        let conditions = match file.program.value(*id).extent {
+            Extent::Scalar => is_positive(&body.scalar(*id)?).to_vec(),
+            extent => {
+                let name = format!("positive_{}", place + 1);
+                let (element, length) = match extent {
+                    Extent::Matrix(rows, _) => {
+                        let diagonal = ["i", "i"].map(Index::Variable).to_vec();
+                        (Expression::Element(body.numbers(*id)?, diagonal), rows)
+                    }
+                    other => (body.element(*id)?, other.length()),
+                };
+                let [above, below] = is_positive(&element);
+                let flag = Expression::name(&*name);
+                let all = Expression::and(Expression::and(flag.clone(), above), below);
+                body.push(Statement::Flag(name.clone()));
+                body.assign_each(length, Place::new(name, []), all);
+                vec![flag]
+            }
+        };
+        for condition in conditions {
+            check = Some(match check {
+                Some(check) => Expression::and(check, condition),
+                None => condition,
+            });
+        }
+    }
+    Ok(check.unwrap_or(Expression::True))
+}
+
+/// Whether a pivot is positive and finite.
+fn is_positive(pivot: &Expression) -> [Expression; 2] {
+    [
+        Expression::greater(pivot.clone(), Expression::Number(0.0)),
+        Expression::greater(Expression::Number(f64::INFINITY), pivot.clone()),
+    ]
+}

@@ -1,0 +1,265 @@
+//! The stages on request: bias forces, inverse dynamics, rates of the guards, products with the
+//! Jacobian, Jacobians, the rates in a regime.
+
+use super::body::Body;
+use super::emit_error::Emitted;
+use super::expression::Expression;
+use super::file::File;
+use super::index::Index;
+use super::needed::Needed;
+use super::roots::entry_roots;
+use super::rows::write_row_values;
+use super::stage::{Argument, Outcome, Size, Stage};
+use super::stages::{ORDER, guard_values, rates_of, where_not_definite};
+use super::statement::{Place, Statement};
+use crate::program::{
+    BlockPlace, Extent, Jacobian, JacobianBlock, Products, RowValues, ValueId, Variable,
+};
+
+/// All but the Jacobians and what knows regimes.
+pub fn requested(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
+    let outputs = &file.program.outputs;
+    let mut stages = Vec::new();
+    if let Some(rows) = &outputs.bias_forces {
+        let doc = "Bias forces c - f of M q'' + c = f, in the order of the first half of\n\
+                   [`STATE_NAMES`]: the forces missing for no acceleration.";
+        stages.push(forces(file, "bias_forces", doc, rows, needed)?);
+    }
+    if let Some(rows) = &outputs.inverse_dynamics {
+        let doc = "Inverse dynamics M a + c - f: the generalised forces that have to act besides\n\
+                   those of the model for the accelerations a, in the order of the first half of\n\
+                   [`STATE_NAMES`].";
+        stages.push(Stage {
+            arguments: vec![Argument::Accelerations],
+            ..forces(file, "inverse_dynamics", doc, rows, needed)?
+        });
+    }
+    if let Some(rates) = &outputs.guard_rates {
+        let line = "Rates of the switching surfaces along the motion, the inputs held.";
+        stages.push(guard_values(file, "guard_rates", line, rates, needed)?);
+    }
+    if let Some(products) = &outputs.products {
+        stages.push(jacobian_vector_product(file, products, needed)?);
+        stages.push(vector_jacobian_product(file, products, needed)?);
+        stages.push(product_by_parameters(file, products, needed)?);
+    }
+    Ok(stages)
+}
+
+/// A number per degree of freedom.
+fn forces(
+    file: &File<'_>,
+    name: &'static str,
+    doc: &str,
+    rows: &RowValues,
+    needed: &mut Needed,
+) -> Emitted<Stage> {
+    let mut body = file.body(&rows.all(), needed)?;
+    let computed = body.take();
+    write_row_values(&mut body, "values", 0, rows)?;
+    Ok(Stage {
+        name,
+        doc: doc.to_owned(),
+        list: Vec::new(),
+        arguments: Vec::new(),
+        outcome: Outcome::Array("values", Size::DegreesOfFreedom),
+        computed,
+        written: body.take(),
+    })
+}
+
+fn jacobian_vector_product(
+    file: &File<'_>,
+    products: &Products<ValueId, RowValues>,
+    needed: &mut Needed,
+) -> Emitted<Stage> {
+    let degrees = file.program.degrees_of_freedom();
+    let mut body = file.body(&products.forward.all(), needed)?;
+    let computed = body.take();
+    let rate = Expression::element("direction", [Index::after(degrees, "i")]);
+    body.assign_each(degrees, Place::new("product", ["i".into()]), rate);
+    write_row_values(&mut body, "product", degrees, &products.forward)?;
+    Ok(Stage {
+        name: "jacobian_vector_product",
+        doc: "Product of the Jacobian of the rates by state and inputs with a direction: how the\n\
+              rates change along it."
+            .to_owned(),
+        list: Vec::new(),
+        arguments: vec![Argument::Direction, Argument::InputDirection],
+        outcome: Outcome::Array("product", Size::States),
+        computed,
+        written: body.take(),
+    })
+}
+
+fn vector_jacobian_product(
+    file: &File<'_>,
+    products: &Products<ValueId, RowValues>,
+    needed: &mut Needed,
+) -> Emitted<Stage> {
+    let program = file.program;
+    let degrees = program.degrees_of_freedom();
+    let roots: Vec<ValueId> = products.reverse.iter().map(|(_, id)| *id).collect();
+    let mut body = file.body(&roots, needed)?;
+    let computed = body.take();
+    let weight = Expression::element("weights", ["i".into()]);
+    let place = Place::new("product", [Index::after(degrees, "i")]);
+    body.assign_each(degrees, place, weight);
+    let mut inputs = vec![Expression::Number(0.0); program.inputs.len()];
+    for (variable, id) in &products.reverse {
+        let place = program.variable_place(*variable);
+        let at = || Place::new("product", [Index::Number(place)]);
+        let each = || Place::new("product", [Index::after(place, "i")]);
+        match variable {
+            Variable::Input(index) => inputs[*index] = body.scalar(*id)?,
+            Variable::Coordinate(_) => {
+                let value = body.scalar(*id)?;
+                body.assign(at(), value);
+            }
+            Variable::Rate(_) => {
+                let value = body.scalar(*id)?;
+                body.push(Statement::add_to(at(), &value));
+            }
+            Variable::ModeCoordinates(field) => {
+                let value = body.element(*id)?;
+                body.assign_each(program.fields[*field].order, each(), value);
+            }
+            Variable::ModeRates(field) => {
+                let value = body.element(*id)?;
+                let line = Statement::add_to(each(), &value);
+                body.push(Statement::each(program.fields[*field].order, line));
+            }
+        }
+    }
+    let mut named = Vec::new();
+    for (input, value) in program.inputs.iter().zip(inputs) {
+        named.push((file.words.identifier(&input.name)?.to_owned(), value));
+    }
+    Ok(Stage {
+        name: "vector_jacobian_product",
+        doc: "Product of weights with the Jacobian of the rates by state and inputs: the gradient of\n\
+              the weighted sum of the rates."
+            .to_owned(),
+        list: Vec::new(),
+        arguments: vec![Argument::Weights],
+        outcome: Outcome::ArrayAndInputs(named),
+        computed,
+        written: body.take(),
+    })
+}
+
+fn product_by_parameters(
+    file: &File<'_>,
+    products: &Products<ValueId, RowValues>,
+    needed: &mut Needed,
+) -> Emitted<Stage> {
+    let entries = &products.by_parameters.entries;
+    let roots: Vec<ValueId> = entries.iter().map(|entry| entry.value).collect();
+    let mut body = file.body(&roots, needed)?;
+    let computed = body.take();
+    for entry in entries {
+        let value = body.scalar(entry.value)?;
+        body.assign(Place::new("product", [Index::Number(entry.column)]), value);
+    }
+    Ok(Stage {
+        name: "vector_jacobian_product_by_parameters",
+        doc:
+            "Product of weights with the Jacobian of the rates by the parameters, in the order of\n\
+              [`PARAMETER_NAMES`]: the gradient of the weighted sum of the rates."
+                .to_owned(),
+        list: Vec::new(),
+        arguments: vec![Argument::Weights],
+        outcome: Outcome::Array("product", Size::Parameters),
+        computed,
+        written: body.take(),
+    })
+}
+
+/// The structural nonzeros of a Jacobian, row by row.
+pub fn nonzeros(
+    file: &File<'_>,
+    jacobian: &Jacobian<ValueId>,
+    needed: &mut Needed,
+) -> Emitted<Stage> {
+    let mut body = file.body(&entry_roots(file.program, jacobian), needed)?;
+    let computed = body.take();
+    for (entry, BlockPlace { start, width }) in jacobian.entries.iter().zip(jacobian.places()) {
+        write_entry(&mut body, entry, start, width)?;
+    }
+    let (what, by) = jacobian
+        .name
+        .split_once("_by_")
+        .unwrap_or((jacobian.name, "state"));
+    Ok(Stage {
+        name: jacobian.name,
+        doc: format!(
+            "The Jacobian of the {what} by the {by}: its structural nonzeros, row by row, at the\n\
+             places of [`{}`].",
+            jacobian.name.to_uppercase()
+        ),
+        list: Vec::new(),
+        arguments: Vec::new(),
+        outcome: Outcome::Array("values", Size::Nonzeros(jacobian.name)),
+        computed,
+        written: body.take(),
+    })
+}
+
+/// The loop or statement of a block: `start` is the place of its first nonzero, `width` the
+/// distance from one row to the next.
+fn write_entry(
+    body: &mut Body<'_>,
+    entry: &JacobianBlock<ValueId>,
+    start: usize,
+    width: usize,
+) -> Emitted<()> {
+    let extent = body.program.value(entry.value).extent;
+    if let (Extent::Matrix(..), false) = (extent, entry.diagonal) {
+        let op = body.program.value(entry.value).op.clone();
+        let place = |i: &'static str, j: &'static str| {
+            let row = Index::after(start, Index::times(width, i));
+            Place::new("values", [row.plus(j)])
+        };
+        let loops = body.block_loops(&op, (entry.rows, entry.columns), &place)?;
+        body.push(loops);
+        return Ok(());
+    }
+    let (count, stride) = if entry.columns > 1 && !entry.diagonal {
+        (entry.columns, 1)
+    } else {
+        (entry.rows, width)
+    };
+    let value = body.element(entry.value)?;
+    if count == 1 && extent == Extent::Scalar {
+        body.assign(Place::new("values", [Index::Number(start)]), value);
+        return Ok(());
+    }
+    let step = if stride == 1 {
+        Index::Variable("i")
+    } else {
+        Index::times(stride, "i")
+    };
+    let place = Place::new("values", [Index::after(start, step)]);
+    body.assign_each(count, place, value);
+    Ok(())
+}
+
+/// The rates in a regime, if they are asked for.
+pub fn rates_in_regime(file: &File<'_>, needed: &mut Needed) -> Emitted<Option<Stage>> {
+    let Some(switches) = &file.program.outputs.regimes else {
+        return Ok(None);
+    };
+    let switches = switches.iter().map(|switch| (switch.value, switch.decided));
+    let roots = file.program.accelerations.all();
+    let body = file.body_in_regime(&roots, needed, switches.collect())?;
+    let doc = format!(
+        "Rates of the state within a regime, written to `rates`: those of [`rates_into`] where\n\
+         [`regime`] is `REGIME`, for half-widths that are not negative. Beyond the regime they go\n\
+         on as they are within, and on its surfaces they are those of its side.\n\n{ORDER}{}",
+        where_not_definite(file)
+    );
+    Ok(Some(Stage {
+        arguments: vec![Argument::Regime],
+        ..rates_of(body, "rates_in_regime_into", doc)?
+    }))
+}

@@ -1,0 +1,260 @@
+//! The stages that every file has: rates, observables, guards, mass matrix.
+
+use super::body::Body;
+use super::emit_error::Emitted;
+use super::expression::Expression;
+use super::file::{File, quantity_line};
+use super::index::Index;
+use super::needed::Needed;
+use super::roots::mass_roots;
+use super::rows::write_row_values;
+use super::stage::{Outcome, Size, Stage};
+use super::statement::{Place, Statement};
+use crate::program::{Extent, Op, ValueId};
+use eomgen_model_spec::ids::FieldId;
+
+/// What arguments and results of the rates are.
+pub const ORDER: &str = "`t` in s; `state` and the rates in the order of [`STATE_NAMES`].";
+
+/// Of a mass matrix that varies with the state.
+const NOT_DEFINITE: &str = "\n\n\
+    The mass matrix varies with the state. Where it is not positive definite, rates of velocities \
+    are\nNaN, though [`Coefficients::positive_definite`], which knows the parameters alone, is true.";
+
+/// The most numbers whose copy every compiler writes out: one cache line.
+const COPIED_AT_ONCE: usize = 8;
+
+/// The rates.
+pub fn rates(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
+    let body = file.body(&file.program.accelerations.all(), needed)?;
+    rates_of(
+        body,
+        "rates_into",
+        format!(
+            "Rates of the state, written to `rates`.\n\n{ORDER}{}",
+            where_not_definite(file)
+        ),
+    )
+}
+
+/// What is said of rates where the mass matrix may lose its definiteness.
+pub fn where_not_definite(file: &File<'_>) -> &'static str {
+    if file.program.may_lose_definiteness() {
+        NOT_DEFINITE
+    } else {
+        ""
+    }
+}
+
+/// A stage that writes the rates out of a body that has their values.
+pub(super) fn rates_of(mut body: Body<'_>, name: &'static str, doc: String) -> Emitted<Stage> {
+    let degrees = body.program.degrees_of_freedom();
+    let computed = body.take();
+    write_rates_of_positions(&mut body, degrees);
+    let accelerations = &body.program.accelerations;
+    write_row_values(&mut body, "rates", degrees, accelerations)?;
+    Ok(Stage {
+        name,
+        doc,
+        list: Vec::new(),
+        arguments: Vec::new(),
+        outcome: Outcome::Rates,
+        computed,
+        written: body.take(),
+    })
+}
+
+/// The first half of the rates stands in the state. Many numbers are copied two in a turn:
+/// one by one the compiler takes the loop for a copy of memory and calls a function for
+/// it, which costs more than the copy. For few it writes the copy out.
+fn write_rates_of_positions(body: &mut Body<'_>, degrees: usize) {
+    let copy = |to: Index, from: Index| {
+        let rate = Expression::element("state", [from]);
+        Statement::Assign(Place::new("rates", [to]), rate)
+    };
+    if degrees <= COPIED_AT_ONCE {
+        let line = copy("i".into(), Index::after(degrees, "i"));
+        body.push(Statement::each(degrees, line));
+        return;
+    }
+    let twice = || Index::times(2, "k");
+    let lines = vec![
+        copy(twice(), Index::after(degrees, twice())),
+        copy(twice().plus(1), Index::after(degrees + 1, twice())),
+    ];
+    body.push(Statement::looped("k", degrees / 2, lines));
+    if degrees % 2 == 1 {
+        let last = degrees - 1;
+        body.push(copy(last.into(), (degrees + last).into()));
+    }
+}
+
+/// The observables, then energy and power by themselves.
+pub fn observables(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
+    let program = file.program;
+    let ids = &program.observable_values;
+    let mut body = file.body(ids, needed)?;
+    let values = ids.iter().map(|id| body.scalar(*id));
+    let values = values.collect::<Emitted<Vec<_>>>()?;
+    let lines = program.observables.iter().map(|observable| {
+        let line = quantity_line(&observable.doc, &observable.unit, "");
+        format!("- `{}`: {line}", observable.name)
+    });
+    let all = Stage {
+        name: "observables",
+        doc: "The observables, in the order of [`OBSERVABLE_NAMES`]:\n".to_owned(),
+        list: lines.collect(),
+        arguments: Vec::new(),
+        outcome: Outcome::Observables(values),
+        computed: body.take(),
+        written: Vec::new(),
+    };
+    let (energy, power) = (ids[ids.len() - 2], ids[ids.len() - 1]);
+    let energy_line = "Kinetic plus potential energy, in J.";
+    let power_line = "Power of all non-conservative forces, in W: the rate of the energy.";
+    Ok(vec![
+        all,
+        number(file, "energy", energy_line, energy, needed)?,
+        number(file, "power", power_line, power, needed)?,
+    ])
+}
+
+fn number(
+    file: &File<'_>,
+    name: &'static str,
+    line: &str,
+    id: ValueId,
+    needed: &mut Needed,
+) -> Emitted<Stage> {
+    let mut body = file.body(&[id], needed)?;
+    let value = body.scalar(id)?;
+    Ok(Stage {
+        name,
+        doc: line.to_owned(),
+        list: Vec::new(),
+        arguments: Vec::new(),
+        outcome: Outcome::Number(value),
+        computed: body.take(),
+        written: Vec::new(),
+    })
+}
+
+/// The switching functions.
+pub fn guards(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
+    let ids: Vec<ValueId> = file.program.guards.iter().map(|g| g.value).collect();
+    let line = "Switching surfaces: the equations change where one of these changes sign.";
+    guard_values(file, "guards", line, &ids, needed)
+}
+
+/// A stage that gives a value for each guard.
+pub(super) fn guard_values(
+    file: &File<'_>,
+    name: &'static str,
+    line: &str,
+    ids: &[ValueId],
+    needed: &mut Needed,
+) -> Emitted<Stage> {
+    let program = file.program;
+    let mut body = file.body(ids, needed)?;
+    let computed = body.take();
+    let mut place = 0;
+    let mut list = Vec::new();
+    for (guard, id) in program.guards.iter().zip(ids) {
+        match program.value(guard.value).extent {
+            Extent::Vector(length) => {
+                let value = body.element(*id)?;
+                let at = Place::new("values", [Index::after(place, "i")]);
+                body.assign_each(length, at, value);
+                place += length;
+            }
+            _ => {
+                let value = body.scalar(*id)?;
+                body.assign(Place::new("values", [Index::Number(place)]), value);
+                place += 1;
+            }
+        }
+        list.push(format!("- `{}`", guard.formula));
+    }
+    Ok(Stage {
+        name,
+        doc: format!("{line}\n"),
+        list,
+        arguments: Vec::new(),
+        outcome: Outcome::Array("values", Size::Guards),
+        computed,
+        written: body.take(),
+    })
+}
+
+/// The mass matrix.
+pub fn mass_matrix(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
+    let program = file.program;
+    let mut body = file.body(&mass_roots(program), needed)?;
+    let computed = body.take();
+    for (row, entries) in program.mass.scalars.iter().enumerate() {
+        for (column, id) in entries.iter().enumerate() {
+            if matches!(program.value(*id).op, Op::Constant(0.0)) {
+                continue;
+            }
+            let value = body.scalar(*id)?;
+            body.assign(entry(row, column), value);
+        }
+    }
+    write_coupling(file, &mut body)?;
+    write_modal_blocks(file, &mut body)?;
+    Ok(Stage {
+        name: "mass_matrix",
+        doc: "The mass matrix, in the order of the first half of [`STATE_NAMES`].".to_owned(),
+        list: Vec::new(),
+        arguments: Vec::new(),
+        outcome: Outcome::MassMatrix,
+        computed,
+        written: body.take(),
+    })
+}
+
+/// An entry of the mass matrix.
+fn entry(row: impl Into<Index>, column: impl Into<Index>) -> Place {
+    Place::new("values", [row.into(), column.into()])
+}
+
+fn write_coupling(file: &File<'_>, body: &mut Body<'_>) -> Emitted<()> {
+    let program = file.program;
+    for (row, entries) in program.mass.coupling.iter().enumerate() {
+        for (field, id) in FieldId::first(entries.len()).zip(entries) {
+            let order = program.fields[field].order;
+            if order == 0 || matches!(program.value(*id).op, Op::Constant(0.0)) {
+                continue;
+            }
+            let value = body.element(*id)?;
+            let place = || Index::after(program.mode_offset(field), "i");
+            let upper = entry(row, place());
+            let lower = Statement::Assign(entry(place(), row), upper.value());
+            let lines = vec![Statement::Assign(upper, value), lower];
+            body.push(Statement::looped("i", order, lines));
+        }
+    }
+    Ok(())
+}
+
+fn write_modal_blocks(file: &File<'_>, body: &mut Body<'_>) -> Emitted<()> {
+    let program = file.program;
+    let fields = FieldId::first(program.fields.len());
+    for (row, blocks) in fields.clone().zip(&program.mass.modal) {
+        for (column, block) in fields.clone().zip(blocks) {
+            let Some(id) = block else { continue };
+            let (rows, columns) = (program.fields[row].order, program.fields[column].order);
+            if rows == 0 || columns == 0 {
+                continue;
+            }
+            let first_row = program.mode_offset(row);
+            let first_column = program.mode_offset(column);
+            let place = |i: &'static str, j: &'static str| {
+                entry(Index::after(first_row, i), Index::after(first_column, j))
+            };
+            let loops = body.block_loops(&program.value(*id).op, (rows, columns), &place)?;
+            body.push(loops);
+        }
+    }
+    Ok(())
+}
