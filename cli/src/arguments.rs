@@ -175,8 +175,11 @@ pub struct Derive {
 /// What source is emitted.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Target {
-    /// Rust, `no_std`, without dependencies.
+    /// Rust, `no_std`, without dependencies: `lib.rs`.
     Rust,
+    /// C99 that is C++ as well, without allocation or library: `NAME.h` and `NAME.c`, by the
+    /// model's name.
+    C99,
 }
 
 /// What `generate` leaves besides.
@@ -230,7 +233,7 @@ pub struct Generate {
     /// The language.
     #[arg(long, value_enum, default_value = "rust")]
     pub target: Target,
-    /// The folder to write `lib.rs` to.
+    /// The folder to write to.
     #[arg(long, required_unless_present = "all")]
     pub out: Option<PathBuf>,
     /// Leave `certificate.json` beside the source, as `validate` writes it; exit status 1 if

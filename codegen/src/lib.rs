@@ -56,6 +56,7 @@
 //!
 //! [`variant`] goes from a model to its program in one call.
 
+pub mod c;
 pub mod mechanics;
 pub mod program;
 pub mod report;

@@ -8,14 +8,15 @@ use super::expression::{Writer, array};
 use super::functions::items;
 use super::generics::for_lanes;
 use super::jacobians;
-use super::layout;
-use super::literals::{block, doc, file_doc, number};
+use super::literals::{doc, file_doc, number};
 use super::regimes;
 use super::scalar::{COEFFICIENT, SCALAR};
 use super::stages;
 use super::types;
 use super::words::WORDS;
 use crate::program::{Extent, Op, Program};
+use crate::statements::layout;
+use crate::statements::layout::block;
 use crate::statements::{
     EmitError, Emitted, File, Needed, Stage, guards, mass_matrix, observables, rates, requested,
     stage_roots,

@@ -1,12 +1,13 @@
 //! Expressions and statements as marked text of Rust, with parentheses only where the order of
 //! evaluation needs them.
 
-use super::layout::{
+use super::literals::number;
+use crate::program::{Extent, PARTIAL_SUMS};
+use crate::statements::layout::block;
+use crate::statements::layout::{
     BLOCK, BLOCK_OUT, BRACE, BRACE_OUT, CLOSE, COMMA_OUT, FIRM, FLOW, FLOW_EVEN, FLOW_OUT, SPACE,
     SPACE_OUT, ZERO,
 };
-use super::literals::{block, number};
-use crate::program::{Extent, PARTIAL_SUMS};
 use crate::statements::{Array, Expression, Index, Operator, Place, Statement, Structure};
 
 /// How tightly an expression holds together.

@@ -2,9 +2,9 @@
 //! Their derivatives are in `slopes`.
 
 use super::expression::Writer;
-use super::layout::{DEEPER, SHALLOWER};
-use super::literals::block;
 use super::slopes;
+use crate::statements::layout::block;
+use crate::statements::layout::{DEEPER, SHALLOWER};
 use crate::statements::{KernelStatements, describe_elementary};
 use eomgen_elementary::Function as Elementary;
 

@@ -1,8 +1,6 @@
 //! Numbers, names and documentation as source. Text from a specification passes through
 //! here and nowhere else: names are checked to be identifiers where statements are made, prose becomes comments.
 
-use super::layout::{DEEPER, SHALLOWER};
-
 /// A number with all its bits, in the shorter of the two usual notations.
 pub fn number(value: f64) -> String {
     if value.is_nan() {
@@ -48,14 +46,6 @@ fn comments(opening: &str, lines: &[String]) -> String {
         .iter()
         .map(|line| format!("{opening}{}\n", single_line(line)))
         .collect()
-}
-
-/// Lines one level deeper, between a line that opens a block and one that closes it.
-pub fn block(opening: &str, lines: &str, closing: &str) -> String {
-    if lines.is_empty() {
-        return format!("{opening}{closing}\n");
-    }
-    format!("{opening}\n{DEEPER}{lines}{SHALLOWER}{closing}\n")
 }
 
 /// Without control characters and without those that turn the direction of the text, which

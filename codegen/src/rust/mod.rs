@@ -15,7 +15,6 @@ mod functions;
 mod generics;
 mod jacobians;
 mod kernels;
-mod layout;
 mod literals;
 mod piecewise;
 mod regimes;

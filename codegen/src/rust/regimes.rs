@@ -3,10 +3,11 @@
 //! text serves all regimes, so that the source does not grow with their number.
 
 use super::expression::{Writer, assignment, looped};
-use super::literals::{block, linked_doc};
+use super::literals::linked_doc;
 use super::signature::{Signature, stage_with};
 use super::stages::{function, passed_on};
 use crate::program::SURFACES_OF_A_REGIME;
+use crate::statements::layout::block;
 use crate::statements::{Emitted, File, Needed, rates_in_regime};
 
 /// The number of a state's regime, and the rates in a regime.

@@ -2,9 +2,9 @@
 
 use super::expression::call;
 use super::generics::{for_lanes, generic, inlined};
-use super::layout::{DEEPER, SHALLOWER};
-use super::literals::block;
 use crate::statements::File;
+use crate::statements::layout::block;
+use crate::statements::layout::{DEEPER, SHALLOWER};
 
 /// What an emitted function is called with and returns, beside what all are called with.
 pub(super) struct Signature<'a> {

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeSet;
 
-use super::literals::block;
+use crate::statements::layout::block;
 use eomgen_elementary::Function as Elementary;
 
 /// The emitted type that stands for a function.

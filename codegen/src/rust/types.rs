@@ -2,10 +2,11 @@
 
 use super::expression::Writer;
 use super::generics::generic;
-use super::layout::{CLOSE, FLOW_EVEN, SPACE};
-use super::literals::{block, doc, number};
+use super::literals::{doc, number};
 use crate::program::describe::describe_value;
 use crate::program::{Extent, Quantity};
+use crate::statements::layout::block;
+use crate::statements::layout::{CLOSE, FLOW_EVEN, SPACE};
 use crate::statements::{Emitted, File, Needed, Prepared, preparation, quantity_line};
 
 /// The most characters of a struct's literal that is written on one line.

@@ -32,6 +32,8 @@ pub const CLOSE: char = '\u{7}';
 pub const SPACE: char = '\u{8}';
 /// A space, or the end of a line after which the group's indentation ends.
 pub const SPACE_OUT: char = '\u{11}';
+/// Nothing, or the end of a line after which the group's indentation ends.
+pub const ZERO_OUT: char = '\u{16}';
 /// Nothing, or the end of a line.
 pub const ZERO: char = '\u{12}';
 /// Nothing, or a comma and the end of a line after which the group's indentation ends.
@@ -49,6 +51,14 @@ pub const DEEPER: char = '\u{f}';
 /// At the start of a line: this line and those after it stand one level less deep.
 pub const SHALLOWER: char = '\u{10}';
 
+/// Lines one level deeper, between a line that opens a block and one that closes it.
+pub fn block(opening: &str, lines: &str, closing: &str) -> String {
+    if lines.is_empty() {
+        return format!("{opening}{closing}\n");
+    }
+    format!("{opening}\n{DEEPER}{lines}{SHALLOWER}{closing}\n")
+}
+
 /// The source that marked text stands for, with an empty line before every documented
 /// item, as a person would set it.
 pub fn source(marked: &str) -> String {
@@ -56,7 +66,7 @@ pub fn source(marked: &str) -> String {
     let mut documented = true;
     for line in marked.lines() {
         let line = printer.indentation(line);
-        let doc = printer.level == 0 && line.starts_with("///");
+        let doc = printer.level == 0 && (line.starts_with("///") || line.starts_with("/**"));
         let header = line.starts_with("#![") || line.starts_with("//!");
         if (doc && !documented) || (!header && printer.in_header) {
             printer.out.push('\n');
@@ -281,6 +291,7 @@ impl Token<'_> {
             SPACE => ends(1, 0, [""; 2]),
             SPACE_OUT => ends(1, -INDENT, [""; 2]),
             ZERO => ends(0, 0, [""; 2]),
+            ZERO_OUT => ends(0, -INDENT, [""; 2]),
             COMMA_OUT => ends(0, -INDENT, [",", ""]),
             BRACE => ends(0, 0, ["{", ""]),
             BRACE_OUT => ends(0, -INDENT, ["", "}"]),

@@ -1,0 +1,157 @@
+//! The header and the source of a program.
+
+use std::collections::BTreeSet;
+
+use super::comments::comment;
+use super::expression::{initialiser, number};
+use super::functions::functions;
+use super::header::{documentation, header, lists};
+use super::jacobians;
+use super::names::{WORDS, named};
+use super::stages::{GIVEN, definition, head, passed_on};
+use super::types::filling;
+use crate::program::{Extent, Op, Program, SURFACES_OF_A_REGIME};
+use crate::statements::layout::{self, block};
+use crate::statements::{
+    EmitError, Emitted, File, Needed, Stage, guards, mass_matrix, nonzeros, observables, rates,
+    rates_in_regime, requested, stage_roots,
+};
+
+/// A program as C.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Files {
+    /// `NAME.h`
+    pub header: String,
+    /// `NAME.c`
+    pub source: String,
+}
+
+/// A program as C99 that is C++ as well.
+///
+/// # Errors
+/// If a name of the program is a word of C or C++.
+pub fn emit(program: &Program) -> Result<Files, EmitError> {
+    let file = File::new(program, &WORDS)?;
+    let mut needed = Needed::default();
+    let filling = filling(&file, &mut needed)?;
+    let stages = stages(&file, &mut needed)?;
+    let header = header(&file, &stages)?;
+    let mut text = comment(&documentation(program));
+    text += &opening(program);
+    text += &tables(&file)?;
+    text += &functions(program, &needed);
+    for (head, elements, _) in lists(program) {
+        text += &format!("{head} = {};\n", initialiser(&elements));
+    }
+    text += &filling;
+    for stage in stages {
+        text += &definition(program, stage);
+    }
+    text += &regime(&file);
+    text += &jacobians::definitions(program);
+    text += "#undef R\n";
+    Ok(Files {
+        header: layout::source(&header),
+        source: layout::source(&text),
+    })
+}
+
+fn stages(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
+    let mut stages = vec![rates(file, needed)?];
+    stages.extend(observables(file, needed)?);
+    stages.push(guards(file, needed)?);
+    stages.push(mass_matrix(file, needed)?);
+    stages.extend(rates_in_regime(file, needed)?);
+    stages.extend(requested(file, needed)?);
+    for jacobian in &file.program.outputs.jacobians {
+        stages.push(nonzeros(file, jacobian, needed)?);
+    }
+    Ok(stages)
+}
+
+/// What comes before all else. Clang contracts unless told otherwise; gcc is told by its options.
+fn opening(program: &Program) -> String {
+    named(
+        program,
+        &"#include \"HEADER\"\n#include <math.h>\n\
+         #if defined(__clang__)\n#pragma STDC FP_CONTRACT OFF\n\
+         #elif defined(_MSC_VER)\n#pragma fp_contract(off)\n#endif\n\
+         /** What a function writes to does not overlap what it reads. */\n\
+         #if defined(__cplusplus) || defined(_MSC_VER)\n#define NAME_RESTRICT __restrict\n\
+         #else\n#define NAME_RESTRICT restrict\n#endif\n\
+         /** A number of the type that is computed with. */\n\
+         #define R(number) ((NAME_real)(number))\n"
+            .replace("HEADER", &format!("{}.h", program.name)),
+    )
+}
+
+/// The tables that some stage reads.
+fn tables(file: &File<'_>) -> Emitted<String> {
+    let program = file.program;
+    let mut roots = stage_roots(program);
+    roots.extend(&program.pivots);
+    let reached = program.reachable(&roots);
+    let used: BTreeSet<usize> = reached
+        .iter()
+        .filter_map(|id| match program.value(*id).op {
+            Op::Table(place) => Some(place),
+            _ => None,
+        })
+        .collect();
+    let mut text = String::new();
+    for place in used {
+        let table = &program.tables[place];
+        let name = file.words.identifier(&table.name)?;
+        let values: Vec<String> = table
+            .values
+            .iter()
+            .map(|value| format!("R({})", number(*value)))
+            .collect();
+        let (extents, content) = match table.extent {
+            Extent::Matrix(rows, columns) => {
+                let lines = values.chunks(columns.max(1)).map(initialiser);
+                let lines: Vec<String> = lines.collect();
+                (format!("[{rows}][{columns}]"), initialiser(&lines))
+            }
+            other => (format!("[{}]", other.length()), initialiser(&values)),
+        };
+        text += &comment(std::slice::from_ref(&table.doc));
+        let head = named(
+            program,
+            &format!("static const NAME_real NAME_{name}{extents}"),
+        );
+        text += &format!("{head} = {content};\n");
+    }
+    Ok(text)
+}
+
+/// The head of the function that gives the number of a regime.
+pub(super) fn regime_head(program: &Program, definition: bool) -> String {
+    head(program, ("uint32_t ", "regime"), &GIVEN, definition)
+}
+
+fn regime(file: &File<'_>) -> String {
+    let program = file.program;
+    if program.outputs.regimes.is_none() {
+        return String::new();
+    }
+    let bits = file.guard_count().min(SURFACES_OF_A_REGIME);
+    let head = format!("{} {{", regime_head(program, true));
+    if bits == 0 {
+        let unused = GIVEN.map(|(_, name)| format!("(void){name};\n")).concat();
+        return block(&head, &(unused + "return 0;\n"), "}");
+    }
+    let declared = named(
+        program,
+        "NAME_real guards[NAME_GUARDS];\nuint32_t regime = 0;\n",
+    );
+    let set = format!(
+        "for (int k = 0; k < {bits}; ++k) {{\n    if (guards[k] > R(0.0)) {{\n        \
+         regime |= (uint32_t)1 << k;\n    }}\n}}\nreturn regime;\n"
+    );
+    block(
+        &head,
+        &(declared + &passed_on(program, "guards", "guards") + &set),
+        "}",
+    )
+}

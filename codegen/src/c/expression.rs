@@ -1,0 +1,390 @@
+//! Expressions and statements as marked text of C, with parentheses only where the order of
+//! evaluation needs them.
+
+use crate::program::{PARTIAL_SUMS, Program};
+use crate::statements::layout::{BLOCK, CLOSE, COMMA_OUT, FLOW, FLOW_OUT, SPACE, ZERO, block};
+use crate::statements::{Array, Expression, Index, Operator, Place, Statement, Structure};
+
+/// How tightly an expression holds together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Level {
+    And,
+    Comparison,
+    Sum,
+    Product,
+    Negation,
+    Atom,
+}
+
+/// Writes expressions and statements.
+pub(super) struct Writer {
+    /// What names of functions, types and tables begin with.
+    prefix: String,
+    /// The type of numbers.
+    pub(super) real: String,
+    /// Whether that type may be narrower than literals, which then are converted.
+    narrow: bool,
+}
+
+impl Writer {
+    /// For the stages of a program.
+    pub(super) fn new(program: &Program) -> Self {
+        Self {
+            prefix: format!("{}_", program.name),
+            real: format!("{}_real", program.name),
+            narrow: true,
+        }
+    }
+
+    /// For functions that compute in double precision.
+    pub(super) fn double(program: &Program) -> Self {
+        Self {
+            real: "double".to_owned(),
+            narrow: false,
+            ..Self::new(program)
+        }
+    }
+
+    /// The statements, a line each or more.
+    pub(super) fn statements(&self, statements: &[Statement]) -> String {
+        statements.iter().map(|one| self.statement(one)).collect()
+    }
+
+    fn statement(&self, statement: &Statement) -> String {
+        let real = &self.real;
+        match statement {
+            Statement::Let(name, value) => self.bound(name, value),
+            Statement::Zeros(name, lengths) => self.zeros(name, lengths),
+            Statement::Flag(name) => format!("int {name} = 1;\n"),
+            Statement::Assign(place, value) => {
+                assignment(&place_text(place), &self.expression(value))
+            }
+            Statement::Loop {
+                index,
+                length,
+                lines,
+            } => looped(index, *length, &self.statements(lines)),
+            Statement::Sum {
+                name,
+                length,
+                element,
+            } => self.sum(name, *length, element),
+            Statement::Cholesky { name, matrix, rows } => {
+                let declared = format!("{real} {name}[{rows}][{rows}];\n");
+                let matrix = self.matrix(matrix);
+                declared + &self.called("cholesky", &[rows.to_string(), matrix, first_entry(name)])
+            }
+            Statement::CholeskySolve {
+                name,
+                factor,
+                right,
+                rows,
+                columns,
+            } => self.solution(name, factor, right, (*rows, *columns)),
+        }
+    }
+
+    /// A named number.
+    pub(super) fn bound(&self, name: &str, value: &Expression) -> String {
+        let value = self.expression(value);
+        assignment(&format!("const {} {name}", self.real), &value)
+    }
+
+    fn zeros(&self, name: &str, lengths: &[usize]) -> String {
+        let extents: String = lengths.iter().map(|length| format!("[{length}]")).collect();
+        let (open, close) = ("{".repeat(lengths.len()), "}".repeat(lengths.len()));
+        format!("{} {name}{extents} = {open}0{close};\n", self.real)
+    }
+
+    /// A sum: the first elements each begin a partial sum, every eighth element from there on is
+    /// added in order, then neighbours are added in pairs.
+    fn sum(&self, name: &str, length: usize, element: &Expression) -> String {
+        let real = &self.real;
+        let element = self.expression(element);
+        if length == 0 {
+            return format!("const {real} {name} = 0;\n");
+        }
+        let parts = format!("{name}_parts");
+        let count = length.min(PARTIAL_SUMS);
+        let mut text = format!("{real} {parts}[{count}];\n");
+        text += &looped("i", count, &assignment(&format!("{parts}[i]"), &element));
+        let blocks = length / PARTIAL_SUMS;
+        let added = |first: &str, part: &str| {
+            let at = format!("const int i = {first};\n");
+            at + &assignment(
+                &format!("{parts}[{part}]"),
+                &format!("{parts}[{part}] + {element}"),
+            )
+        };
+        if blocks > 1 {
+            let inner = looped("k", PARTIAL_SUMS, &added("first + k", "k"));
+            let head = format!(
+                "for (int first = {PARTIAL_SUMS}; first < {}; first += {PARTIAL_SUMS}) {{",
+                blocks * PARTIAL_SUMS
+            );
+            text += &block(&head, &inner, "}");
+        }
+        let rest = length - blocks * PARTIAL_SUMS;
+        if blocks > 0 && rest > 0 {
+            let first = format!("{} + k", blocks * PARTIAL_SUMS);
+            text += &looped("k", rest, &added(&first, "k"));
+        }
+        let terms = (0..count).map(|place| format!("{parts}[{place}]"));
+        text + &assignment(&format!("const {real} {name}"), &in_pairs(terms.collect()))
+    }
+
+    fn solution(
+        &self,
+        name: &str,
+        factor: &Array,
+        right: &Array,
+        (rows, columns): (usize, Option<usize>),
+    ) -> String {
+        let real = &self.real;
+        let factor = self.matrix(factor);
+        let count = columns.unwrap_or(1);
+        let (declared, solution) = match columns {
+            Some(columns) => (
+                format!("{real} {name}[{rows}][{columns}];\n"),
+                first_entry(name),
+            ),
+            None => (format!("{real} {name}[{rows}];\n"), name.to_owned()),
+        };
+        let (filled, right) = match (right, columns) {
+            (Array::Filled(value, length), _) => {
+                let line = assignment(&format!("{name}[i]"), &self.expression(value));
+                (looped("i", *length, &line), name.to_owned())
+            }
+            (matrix, Some(_)) => (String::new(), self.matrix(matrix)),
+            (vector, None) => (String::new(), self.array(vector)),
+        };
+        let arguments = [rows.to_string(), count.to_string(), factor, right, solution];
+        declared + &filled + &self.called("cholesky_solve", &arguments)
+    }
+
+    fn called(&self, function: &str, arguments: &[String]) -> String {
+        call(&format!("{}{function}", self.prefix), arguments) + ";\n"
+    }
+
+    /// Without parentheses around it.
+    pub(super) fn expression(&self, expression: &Expression) -> String {
+        self.leveled(expression).0
+    }
+
+    fn expressions(&self, expressions: &[Expression]) -> Vec<String> {
+        expressions.iter().map(|e| self.expression(e)).collect()
+    }
+
+    fn at(&self, expression: &Expression, level: Level) -> String {
+        let (text, own) = self.leveled(expression);
+        if own < level {
+            format!("({text})")
+        } else {
+            text
+        }
+    }
+
+    fn leveled(&self, expression: &Expression) -> (String, Level) {
+        let text = match expression {
+            Expression::Number(value) => return self.number(*value),
+            Expression::Name(name) => name.clone(),
+            Expression::Element(Array::Filled(value, _), _) => return self.leveled(value),
+            Expression::Element(array, indices) => self.array(array) + &brackets(indices),
+            Expression::Field(structure, name) => field(*structure, name),
+            Expression::Shared(coefficient) => return self.leveled(coefficient),
+            Expression::Binary(operator, a, b) => return self.binary(*operator, a, b),
+            Expression::Negate(a) => {
+                return (format!("-{}", self.at(a, Level::Atom)), Level::Negation);
+            }
+            Expression::Call("chosen", parts) => self.conditional(parts),
+            Expression::Call(name, parts) => self.function(name, parts),
+            Expression::Primitive("select_equal", parts) => self.choice("==", parts),
+            Expression::Primitive(name, parts) => self.function(name, parts),
+            Expression::Select(parts) => self.choice(">", &**parts),
+            Expression::Positive(place) => format!("((regime >> {place}) & 1)"),
+            Expression::Greater(parts) => {
+                let [a, b] = &**parts;
+                let text = infix(">", self.at(a, Level::Sum), self.at(b, Level::Sum));
+                return (text, Level::Comparison);
+            }
+            Expression::And(parts) => {
+                let [a, b] = &**parts;
+                let text = infix("&&", self.at(a, Level::And), self.at(b, Level::Comparison));
+                return (text, Level::And);
+            }
+            Expression::True => "1".to_owned(),
+        };
+        (text, Level::Atom)
+    }
+
+    fn function(&self, name: &str, arguments: &[Expression]) -> String {
+        call(
+            &format!("{}{name}", self.prefix),
+            &self.expressions(arguments),
+        )
+    }
+
+    fn binary(&self, operator: Operator, a: &Expression, b: &Expression) -> (String, Level) {
+        let (sign, level, right) = match operator {
+            Operator::Add => ("+", Level::Sum, Level::Product),
+            Operator::Subtract => ("-", Level::Sum, Level::Product),
+            Operator::Multiply => ("*", Level::Product, Level::Negation),
+            Operator::Divide => ("/", Level::Product, Level::Negation),
+        };
+        (infix(sign, self.at(a, level), self.at(b, right)), level)
+    }
+
+    /// The third of four where the first compares so with the second, else the fourth.
+    fn choice(&self, comparison: &str, parts: &[Expression]) -> String {
+        match parts {
+            [a, b, then, otherwise] => {
+                let condition = infix(comparison, self.at(a, Level::Sum), self.at(b, Level::Sum));
+                ternary(
+                    &condition,
+                    &self.expression(then),
+                    &self.expression(otherwise),
+                )
+            }
+            _ => String::new(),
+        }
+    }
+
+    /// The second of three where the first holds, else the third.
+    fn conditional(&self, parts: &[Expression]) -> String {
+        match parts {
+            [first, then, otherwise] => ternary(
+                &self.expression(first),
+                &self.expression(then),
+                &self.expression(otherwise),
+            ),
+            _ => String::new(),
+        }
+    }
+
+    fn number(&self, value: f64) -> (String, Level) {
+        let literal = number(value);
+        if self.narrow {
+            (format!("R({literal})"), Level::Atom)
+        } else if value.is_sign_negative() {
+            (literal, Level::Negation)
+        } else {
+            (literal, Level::Atom)
+        }
+    }
+
+    /// An array by its name.
+    pub(super) fn array(&self, array: &Array) -> String {
+        match array {
+            Array::Local(name) => name.clone(),
+            Array::Coefficient(name, _) => field(Structure::Coefficients, name),
+            Array::Table(name, _) => format!("{}{name}", self.prefix),
+            Array::Filled(value, _) => self.expression(value),
+        }
+    }
+
+    /// The first entry of a matrix, by its address.
+    fn matrix(&self, array: &Array) -> String {
+        first_entry(&self.array(array))
+    }
+}
+
+fn first_entry(matrix: &str) -> String {
+    format!("&{matrix}[0][0]")
+}
+
+/// A number with all its bits.
+pub(super) fn number(value: f64) -> String {
+    if value.is_nan() {
+        return "NAN".to_owned();
+    }
+    if value.is_infinite() {
+        return if value > 0.0 { "INFINITY" } else { "-INFINITY" }.to_owned();
+    }
+    let magnitude = value.abs();
+    if magnitude == 0.0 || (1e-4..1e7).contains(&magnitude) {
+        format!("{value:?}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// Neighbours added in pairs until one is left; of an odd count the last passes on.
+fn in_pairs(mut terms: Vec<String>) -> String {
+    while terms.len() > 1 {
+        let last = terms.len() <= 2;
+        terms = terms
+            .chunks(2)
+            .map(|pair| match pair {
+                [a, b] if last => infix("+", a, b),
+                [a, b] => format!("({})", infix("+", a, b)),
+                rest => rest.concat(),
+            })
+            .collect();
+    }
+    terms.concat()
+}
+
+fn ternary(condition: &str, then: &str, otherwise: &str) -> String {
+    format!("({FLOW}{condition}{SPACE}? {then}{SPACE}: {otherwise}{CLOSE})")
+}
+
+fn field(structure: Structure, name: &str) -> String {
+    let of = match structure {
+        Structure::Coefficients => "coefficients",
+        Structure::Parameters => "parameters",
+        Structure::Inputs => "inputs",
+        Structure::InputDirection => "input_direction",
+    };
+    format!("{of}->{name}")
+}
+
+pub(super) fn place_text(place: &Place) -> String {
+    place.name.clone() + &brackets(&place.indices)
+}
+
+fn brackets(indices: &[Index]) -> String {
+    let brackets = indices
+        .iter()
+        .map(|index| format!("[{}]", index_text(index)));
+    brackets.collect()
+}
+
+fn index_text(index: &Index) -> String {
+    match index {
+        Index::Number(number) => number.to_string(),
+        Index::Variable(name) => (*name).to_owned(),
+        Index::Sum(a, b) => format!("{} + {}", index_text(a), index_text(b)),
+        Index::Product(a, b) => format!("{} * {}", index_text(a), index_text(b)),
+    }
+}
+
+/// A call of a function.
+pub(super) fn call(name: &str, arguments: &[String]) -> String {
+    let separator = format!(",{SPACE}");
+    format!("{name}({FLOW}{ZERO}{}{CLOSE})", arguments.join(&separator))
+}
+
+/// A loop of these lines.
+pub(super) fn looped(index: &str, length: usize, lines: &str) -> String {
+    let head = format!("for (int {index} = 0; {index} < {length}; ++{index}) {{");
+    block(&head, lines, "}")
+}
+
+/// An assignment to `target`, which may declare it.
+pub(super) fn assignment(target: &str, value: &str) -> String {
+    format!("{target} = {value};\n")
+}
+
+/// Two operands with an operator between them, broken before the operator.
+fn infix(operator: &str, a: impl std::fmt::Display, b: impl std::fmt::Display) -> String {
+    format!("{FLOW}{FLOW_OUT}{a}{CLOSE}{SPACE}{operator} {b}{CLOSE}")
+}
+
+/// An initialiser of these elements, each on a line of its own if they do not fit on one.
+pub(super) fn initialiser(items: &[String]) -> String {
+    let separator = format!(",{SPACE}");
+    format!(
+        "{{{BLOCK}{ZERO}{}{COMMA_OUT}{CLOSE}}}",
+        items.join(&separator)
+    )
+}

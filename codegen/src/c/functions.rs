@@ -1,0 +1,262 @@
+//! What emitted stages call: helpers as text, elementary functions from their kernels.
+
+use super::comments::comment;
+use super::expression::Writer;
+use super::names::named;
+use crate::program::Program;
+use crate::statements::layout::block;
+use crate::statements::{KernelStatements, Needed, describe_elementary};
+use eomgen_elementary::Function as Elementary;
+
+/// The functions that statements call, before these.
+pub(super) fn functions(program: &Program, needed: &Needed) -> String {
+    let mut elementary = needed.elementary.clone();
+    if needed.cholesky || needed.cholesky_of_matrix {
+        elementary.insert(Elementary::Sqrt);
+    }
+    let kernels: String = elementary
+        .into_iter()
+        .map(|function| elementary_function(program, function))
+        .collect();
+    let mut text = String::new();
+    for (name, item) in PRIMITIVES {
+        if kernels.contains(&named(program, &format!("NAME_{name}("))) {
+            text += &named(program, item);
+        }
+    }
+    if !text.is_empty() {
+        text = named(program, BITS) + &text;
+    }
+    text += &kernels;
+    for (needed, item) in [
+        (needed.deadzone, DEADZONE),
+        (needed.contact, CONTACT),
+        (needed.above, ABOVE),
+        (needed.deadzone_on_side, DEADZONE_ON_SIDE),
+        (needed.touching, TOUCHING),
+        (needed.either, EITHER),
+        (needed.pivot_reciprocal, PIVOT_RECIPROCAL),
+        (needed.cholesky || needed.cholesky_of_matrix, CHOLESKY),
+    ] {
+        if needed {
+            text += &named(program, item);
+        }
+    }
+    text
+}
+
+/// An elementary function: in double precision whatever numbers are, then rounded.
+fn elementary_function(program: &Program, function: Elementary) -> String {
+    let arguments: &[&str] = match (function, function.arity()) {
+        (Elementary::Atan2, _) => &["y", "x"],
+        (_, 2) => &["x", "y"],
+        _ => &["x"],
+    };
+    let typed = |what: &str| {
+        let typed: Vec<String> = arguments
+            .iter()
+            .map(|name| format!("{what} {name}"))
+            .collect();
+        typed.join(", ")
+    };
+    let name = function.name();
+    let kernel = KernelStatements::new(function, arguments);
+    let writer = Writer::double(program);
+    let mut lines = writer.statements(&kernel.computed);
+    if let Some(value) = &kernel.value {
+        lines += &format!("return {};\n", writer.expression(value));
+    }
+    let head = format!(
+        "static double NAME_{name}_in_double({}) {{",
+        typed("double")
+    );
+    let passed: Vec<String> = arguments
+        .iter()
+        .map(|name| format!("(double){name}"))
+        .collect();
+    let rounded = format!(
+        "return (NAME_real)NAME_{name}_in_double({});\n",
+        passed.join(", ")
+    );
+    let outer = format!("static NAME_real NAME_{name}({}) {{", typed("NAME_real"));
+    comment(&[describe_elementary(function).to_owned()])
+        + &block(&named(program, &head), &lines, "}")
+        + &block(&named(program, &outer), &named(program, &rounded), "}")
+}
+
+/// Numbers as bits and back.
+const BITS: &str = "\
+/** A number and its bits. */
+typedef union {
+    double number;
+    uint64_t bits;
+} NAME_bits;
+";
+
+/// What kernels call, by name.
+const PRIMITIVES: [(&str, &str); 5] = [
+    (
+        "magnitude",
+        "\
+/** The sign bit cleared. */
+static double NAME_magnitude(double x) {
+    NAME_bits value;
+    value.number = x;
+    value.bits &= ~((uint64_t)1 << 63);
+    return value.number;
+}
+",
+    ),
+    (
+        "copy_sign",
+        "\
+/** The magnitude of one number with the sign bit of another. */
+static double NAME_copy_sign(double x, double sign) {
+    const uint64_t top = (uint64_t)1 << 63;
+    NAME_bits value, other;
+    value.number = x;
+    other.number = sign;
+    value.bits = (value.bits & ~top) | (other.bits & top);
+    return value.number;
+}
+",
+    ),
+    (
+        "power_of_two",
+        "\
+/** 2^k for an integral k: 2^52 + 1023 brings it to the place of the exponent. */
+static double NAME_power_of_two(double k) {
+    NAME_bits value;
+    value.number = k + 4503599627371519.0;
+    value.bits <<= 52;
+    return value.number;
+}
+",
+    ),
+    (
+        "exponent",
+        "\
+/** The unbiased exponent field. */
+static double NAME_exponent(double x) {
+    NAME_bits value;
+    value.number = x;
+    return (double)((value.bits >> 52) & 0x7ff) - 1023.0;
+}
+",
+    ),
+    (
+        "significand",
+        "\
+/** The mantissa under the exponent of 1. */
+static double NAME_significand(double x) {
+    NAME_bits value;
+    value.number = x;
+    value.bits = (value.bits & (((uint64_t)1 << 52) - 1)) | ((uint64_t)0x3ff << 52);
+    return value.number;
+}
+",
+    ),
+];
+
+/// f_k of Eq. (7).
+const DEADZONE: &str = "\
+/** Deflection beyond the backlash: f_k of Eq. (7). */
+static NAME_real NAME_deadzone(NAME_real p, NAME_real b) {
+    const NAME_real held = p > b ? b : p;
+    return p - (-b > held ? -b : held);
+}
+";
+
+/// The indicator of Eq. (8).
+const CONTACT: &str = "\
+/** 1 where |p| > b and 0 elsewhere: the contact of Eq. (8). */
+static NAME_real NAME_contact(NAME_real p, NAME_real b) {
+    return p > b ? R(1.0) : -b > p ? R(1.0) : R(0.0);
+}
+";
+
+/// The indicator of one side.
+const ABOVE: &str = "\
+/** 1 where p > 0 and 0 elsewhere. */
+static NAME_real NAME_above(NAME_real p) {
+    return p > R(0.0) ? R(1.0) : R(0.0);
+}
+";
+
+/// f_k on a side of its dead zone.
+const DEADZONE_ON_SIDE: &str = "\
+/** Deflection beyond the backlash on a known side of it: f_k of Eq. (7). */
+static NAME_real NAME_deadzone_on_side(int above, int beyond, NAME_real p, NAME_real b) {
+    return above ? p - b : beyond ? R(0.0) : p + b;
+}
+";
+
+/// The indicator on a side of its dead zone.
+const TOUCHING: &str = "\
+/** Whether there is contact on a known side of the backlash. */
+static int NAME_touching(int above, int beyond) {
+    return above || !beyond;
+}
+";
+
+/// The indicator outside of what may be a whole region.
+const EITHER: &str = "\
+/** Whether a switching function is on either side of where it rests. */
+static int NAME_either(int above, int below) {
+    return above || below;
+}
+";
+
+/// The reciprocal that is NaN where a pivot is not positive.
+const PIVOT_RECIPROCAL: &str = "\
+/** 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite. */
+static NAME_real NAME_pivot_reciprocal(NAME_real pivot) {
+    const NAME_real reciprocal = R(1.0) / pivot;
+    return pivot > R(0.0) ? reciprocal : R(NAN);
+}
+";
+
+/// Cholesky factors and their solutions.
+const CHOLESKY: &str = "\
+/** Lower factor L of a symmetric matrix L L^T of n rows; NaN where it is not positive definite. */
+static void NAME_cholesky(int n, const NAME_real *matrix, NAME_real *factor) {
+    for (int i = 0; i < n * n; ++i) {
+        factor[i] = 0;
+    }
+    for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < i + 1; ++j) {
+            NAME_real rest = matrix[i * n + j];
+            for (int k = 0; k < j; ++k) {
+                rest = rest - factor[i * n + k] * factor[j * n + k];
+            }
+            if (i == j) {
+                const NAME_real root = NAME_sqrt(rest);
+                factor[i * n + j] = rest > R(0.0) ? root : R(NAN);
+            } else {
+                factor[i * n + j] = rest / factor[j * n + j];
+            }
+        }
+    }
+}
+/** Solution of L L^T X = right, of n rows, for each of m columns. */
+static void NAME_cholesky_solve(
+    int n, int m, const NAME_real *factor, const NAME_real *right, NAME_real *x
+) {
+    for (int c = 0; c < m; ++c) {
+        for (int i = 0; i < n; ++i) {
+            NAME_real rest = right[i * m + c];
+            for (int k = 0; k < i; ++k) {
+                rest = rest - factor[i * n + k] * x[k * m + c];
+            }
+            x[i * m + c] = rest / factor[i * n + i];
+        }
+        for (int i = n - 1; i >= 0; --i) {
+            NAME_real rest = x[i * m + c];
+            for (int k = i + 1; k < n; ++k) {
+                rest = rest - factor[k * n + i] * x[k * m + c];
+            }
+            x[i * m + c] = rest / factor[i * n + i];
+        }
+    }
+}
+";

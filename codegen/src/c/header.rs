@@ -1,0 +1,186 @@
+//! The header: sizes, names, structures, declarations.
+
+use super::comments::{comment, linked};
+use super::jacobians;
+use super::names::named;
+use super::stages::declaration;
+use super::types;
+use super::types::structures;
+use crate::program::Program;
+use crate::statements::{Emitted, File, Stage};
+
+/// What a file is, by lines.
+pub(super) fn documentation(program: &Program) -> Vec<String> {
+    let orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
+    let order = if orders.is_empty() {
+        "rigid".to_owned()
+    } else {
+        format!("modal truncation order {}", orders.join(", "))
+    };
+    vec![
+        format!(
+            "{}: equations of motion, {order}.",
+            program.title.trim_end_matches('.')
+        ),
+        String::new(),
+        format!(
+            "Emitted by eomgen {} from the specification `{}` (SHA-256 {}).",
+            env!("CARGO_PKG_VERSION"),
+            program.name,
+            program.spec_hash
+        ),
+        "Do not edit: change the specification and generate again.".to_owned(),
+    ]
+}
+
+/// What a caller has to know.
+fn notes(program: &Program) -> Vec<String> {
+    let mut lines = documentation(program);
+    lines.extend([
+        String::new(),
+        format!("State: {}.", program.state_names().join(", ")),
+        "All quantities are in SI units. Nothing here allocates or calls a library. Functions".to_owned(),
+        "keep no state: threads may call them. What a function writes to must not overlap what".to_owned(),
+        "it reads.".to_owned(),
+        String::new(),
+        named(program, "Compile NAME.c as C99 or C++. Every compiler gives the same bits that contracts no"),
+        "products and sums: `-std=c99`, or `-ffp-contract=off`. With `-DNAME_REAL=float` numbers are"
+            .replace("NAME", &program.name),
+        "in single precision, for this file and all that include it.".to_owned(),
+    ]);
+    for line in &mut lines {
+        *line = line.replace(
+            &format!("Compile {}_.c", program.name),
+            &format!("Compile {}.c", program.name),
+        );
+    }
+    lines
+}
+
+/// The header.
+pub(super) fn header(file: &File<'_>, stages: &[Stage]) -> Emitted<String> {
+    let program = file.program;
+    let mut text = comment(&notes(program));
+    text += &named(
+        program,
+        "#ifndef NAME_H\n#define NAME_H\n#include <stdint.h>\n\
+         #ifdef __cplusplus\nextern \"C\" {\n#endif\n\
+         /** The type of all numbers. */\n\
+         #ifndef NAME_REAL\n#define NAME_REAL double\n#endif\n\
+         typedef NAME_REAL NAME_real;\n",
+    );
+    text += &sizes(file);
+    text += &jacobians::sizes(program);
+    text += &structures(file)?;
+    text += &types::declarations(program);
+    for stage in stages {
+        text += &declaration(program, stage);
+    }
+    if program.outputs.regimes.is_some() {
+        text += &comment(&linked(program, REGIME));
+        text += &format!("{};\n", super::emit::regime_head(program, false));
+    }
+    text += &jacobians::declarations(program);
+    Ok(text + "#ifdef __cplusplus\n}\n#endif\n#endif\n")
+}
+
+const REGIME: &str = "The regime that a state is in: bit k is set where number k of [`guards`] is positive,\n\
+                      for up to 32 of them. Crossing one flips its bit.";
+
+fn sizes(file: &File<'_>) -> String {
+    let program = file.program;
+    let mut text = String::new();
+    for (name, count, doc) in [
+        (
+            "DEGREES_OF_FREEDOM",
+            program.degrees_of_freedom(),
+            "Coordinates and modes.",
+        ),
+        (
+            "STATES",
+            program.states(),
+            "Numbers in the state: coordinates, modes, and the rates of both.",
+        ),
+        ("OBSERVABLES", program.observables.len(), "Observables."),
+        ("GUARDS", file.guard_count(), "Switching surfaces."),
+        ("INPUTS", program.inputs.len(), "Inputs."),
+        ("PARAMETERS", program.parameters.len(), "Parameters."),
+        ("FIELDS", program.fields.len(), "Flexible fields."),
+    ] {
+        text += &comment(&[doc.to_owned()]);
+        text += &named(program, &format!("#define NAME_{name} {count}\n"));
+    }
+    for (name, value, doc) in [
+        (
+            "SPECIFICATION_SHA256",
+            program.spec_hash.as_str(),
+            "SHA-256 of the specification.",
+        ),
+        (
+            "GENERATOR_VERSION",
+            env!("CARGO_PKG_VERSION"),
+            "Version of the generator.",
+        ),
+    ] {
+        text += &comment(&[doc.to_owned()]);
+        text += &named(program, &format!("#define NAME_{name} \"{value}\"\n"));
+    }
+    for (head, _, doc) in lists(program) {
+        text += &comment(&[doc.to_owned()]);
+        text += &format!("extern {head};\n");
+    }
+    text
+}
+
+/// Arrays of names and orders: head, elements, documentation. C has no array without elements: one
+/// null pointer, or 0, stands for none.
+pub(super) fn lists(program: &Program) -> Vec<(String, Vec<String>, &'static str)> {
+    let quoted = |names: Vec<String>| -> Vec<String> {
+        names
+            .into_iter()
+            .map(|name| format!("\"{name}\""))
+            .collect()
+    };
+    let states = program.state_names();
+    let observables = program.observables.iter().map(|o| o.name.clone()).collect();
+    let inputs = program.inputs.iter().map(|i| i.name.clone()).collect();
+    let parameters = program
+        .parameters
+        .iter()
+        .map(|p| p.quantity.name.clone())
+        .collect();
+    let mut lists = Vec::new();
+    for (name, elements, doc) in [
+        ("state_names", states, "Names of the state, in its order."),
+        (
+            "observable_names",
+            observables,
+            "Names of the observables, in their order.",
+        ),
+        (
+            "input_names",
+            inputs,
+            "Names of the inputs, in their order.",
+        ),
+        (
+            "parameter_names",
+            parameters,
+            "Names of the parameters, in their order.",
+        ),
+    ] {
+        let mut elements = quoted(elements);
+        if elements.is_empty() {
+            elements.push("0".to_owned());
+        }
+        let head = format!("const char *const NAME_{name}[{}]", elements.len());
+        lists.push((named(program, &head), elements, doc));
+    }
+    let mut orders: Vec<String> = program.fields.iter().map(|f| f.order.to_string()).collect();
+    if orders.is_empty() {
+        orders.push("0".to_owned());
+    }
+    let head = format!("const int NAME_orders[{}]", orders.len());
+    let doc = "Modal truncation order of each field.";
+    lists.push((named(program, &head), orders, doc));
+    lists
+}

@@ -1,0 +1,210 @@
+//! Jacobians beside their stages: where the structural nonzeros stand, and the linearisation,
+//! which puts them into dense matrices.
+
+use super::comments::comment;
+use super::expression::initialiser;
+use super::names::named;
+use super::stages::{GIVEN, head, nested, passed_on};
+use crate::program::{Jacobian, Output, Program, ValueId};
+use crate::statements::layout::block;
+
+/// What the header says of them.
+pub(super) fn declarations(program: &Program) -> String {
+    let mut text = String::new();
+    for jacobian in &program.outputs.jacobians {
+        let lines = [format!(
+            "Where the nonzeros of `{}_{}` stand in the matrix of {} x {}: `rows` and `columns` \
+             have room for {} each.",
+            program.name,
+            jacobian.name,
+            jacobian.rows,
+            jacobian.columns,
+            jacobian.nonzeros()
+        )];
+        text += &format!("{}{};\n", comment(&lines), places_head(program, jacobian));
+    }
+    if has_linearisation(program) {
+        text += &named(program, LINEARISATION);
+        text += &comment(&["The linearisation about a point.".to_owned()]);
+        text += &format!("{};\n", linearise_head(program, false));
+    }
+    text
+}
+
+/// Numbers of structural nonzeros, as macros.
+pub(super) fn sizes(program: &Program) -> String {
+    let size = |jacobian: &Jacobian<ValueId>| {
+        let line = format!(
+            "Structural nonzeros of `{}_{}`.",
+            program.name, jacobian.name
+        );
+        let name = jacobian.name.to_uppercase();
+        let macro_line = format!("#define NAME_{name}_NONZEROS {}\n", jacobian.nonzeros());
+        comment(&[line]) + &named(program, &macro_line)
+    };
+    program.outputs.jacobians.iter().map(size).collect()
+}
+
+fn has_linearisation(program: &Program) -> bool {
+    program.outputs.kinds.contains(&Output::Linearisation)
+}
+
+fn places_head(program: &Program, jacobian: &Jacobian<ValueId>) -> String {
+    named(
+        program,
+        &format!(
+            "void NAME_{}_places(int *rows, int *columns)",
+            jacobian.name
+        ),
+    )
+}
+
+fn linearise_head(program: &Program, definition: bool) -> String {
+    let mut arguments = GIVEN.to_vec();
+    arguments.push(("NAME_linearisation *", "about"));
+    head(program, ("void ", "linearise"), &arguments, definition)
+}
+
+/// The definitions.
+pub(super) fn definitions(program: &Program) -> String {
+    if program.outputs.jacobians.is_empty() {
+        return String::new();
+    }
+    let mut text = named(program, PLACES);
+    for jacobian in &program.outputs.jacobians {
+        text += &blocks(program, jacobian);
+        let call = format!(
+            "NAME_places(NAME_{0}_blocks, {1}, rows, columns);\n",
+            jacobian.name,
+            jacobian.entries.len()
+        );
+        let head = places_head(program, jacobian);
+        text += &block(&format!("{head} {{"), &named(program, &call), "}");
+    }
+    if has_linearisation(program) {
+        text += &named(program, DENSE);
+        let head = linearise_head(program, true);
+        text += &block(&format!("{head} {{"), &linearise(program), "}");
+    }
+    text
+}
+
+/// The blocks of nonzeros. C has no array without elements.
+fn blocks(program: &Program, jacobian: &Jacobian<ValueId>) -> String {
+    let mut blocks: Vec<String> = Vec::new();
+    for e in &jacobian.entries {
+        let diagonal = usize::from(e.diagonal);
+        blocks.push(format!(
+            "{{{}, {}, {}, {}, {diagonal}}}",
+            e.row, e.rows, e.column, e.columns
+        ));
+    }
+    if blocks.is_empty() {
+        blocks.push("{0, 0, 0, 0, 0}".to_owned());
+    }
+    let head = format!(
+        "static const int NAME_{}_blocks[{}][5]",
+        jacobian.name,
+        blocks.len()
+    );
+    format!("{} = {};\n", named(program, &head), initialiser(&blocks))
+}
+
+fn linearise(program: &Program) -> String {
+    let mut lines = passed_on(program, "rates_into", "about->rates");
+    lines += &passed_on(program, "observables", "about->observables");
+    for (matrix, name) in [
+        ("A", "rates_by_state"),
+        ("B", "rates_by_inputs"),
+        ("C", "observables_by_state"),
+        ("D", "observables_by_inputs"),
+    ] {
+        let found = program.outputs.jacobians.iter().find(|j| j.name == name);
+        let Some(jacobian) = found else { continue };
+        let room = jacobian.nonzeros().max(1);
+        let none = if jacobian.nonzeros() == 0 { " = {0}" } else { "" };
+        let mut inner = named(program, &format!("NAME_real nonzeros[{room}]{none};\n"));
+        inner += &passed_on(program, name, "nonzeros");
+        inner += &named(
+            program,
+            &format!(
+                "NAME_dense(NAME_{name}_blocks, {}, nonzeros, {}, {}, &about->{matrix}[0][0]);\n",
+                jacobian.entries.len(),
+                jacobian.rows,
+                jacobian.columns.max(1)
+            ),
+        );
+        lines += &nested("{", &inner, "}");
+    }
+    lines
+}
+
+const PLACES: &str = "\
+/** The places of blocks: first row, rows, first column, columns, and whether only the diagonal is \
+filled. Blocks of the same rows stand together. */
+static void NAME_places(const int (*blocks)[5], int count, int *rows, int *columns) {
+    int next = 0;
+    for (int first = 0, last = 0; first < count; first = last) {
+        while (last < count && blocks[last][0] == blocks[first][0]) {
+            ++last;
+        }
+        for (int i = 0; i < blocks[first][1]; ++i) {
+            for (int b = first; b < last; ++b) {
+                const int diagonal = blocks[b][4];
+                for (int j = 0; j < (diagonal ? 1 : blocks[b][3]); ++j) {
+                    rows[next] = blocks[b][0] + i;
+                    columns[next] = blocks[b][2] + (diagonal ? i : j);
+                    ++next;
+                }
+            }
+        }
+    }
+}
+";
+
+const DENSE: &str = "\
+/** The matrix with these nonzeros in blocks, row by row. */
+static void NAME_dense(
+    const int (*blocks)[5], int count, const NAME_real *nonzeros, int rows, int width,
+    NAME_real *matrix
+) {
+    int next = 0;
+    for (int i = 0; i < rows * width; ++i) {
+        matrix[i] = 0;
+    }
+    for (int first = 0, last = 0; first < count; first = last) {
+        while (last < count && blocks[last][0] == blocks[first][0]) {
+            ++last;
+        }
+        for (int i = 0; i < blocks[first][1]; ++i) {
+            for (int b = first; b < last; ++b) {
+                const int diagonal = blocks[b][4];
+                for (int j = 0; j < (diagonal ? 1 : blocks[b][3]); ++j) {
+                    const int column = blocks[b][2] + (diagonal ? i : j);
+                    matrix[(blocks[b][0] + i) * width + column] = nonzeros[next];
+                    ++next;
+                }
+            }
+        }
+    }
+}
+";
+
+const LINEARISATION: &str = "\
+/** The linearisation about a point: rates + A dx + B du, observables + C dx + D du. Without \
+inputs B and D have a column of zeros. */
+typedef struct {
+    /** The rates at the point. */
+    NAME_real rates[NAME_STATES];
+    /** The observables at the point. */
+    NAME_real observables[NAME_OBSERVABLES];
+    /** The rates by the state. */
+    NAME_real A[NAME_STATES][NAME_STATES];
+    /** The rates by the inputs. */
+    NAME_real B[NAME_STATES][NAME_INPUTS + !NAME_INPUTS];
+    /** The observables by the state. */
+    NAME_real C[NAME_OBSERVABLES][NAME_STATES];
+    /** The observables by the inputs. */
+    NAME_real D[NAME_OBSERVABLES][NAME_INPUTS + !NAME_INPUTS];
+} NAME_linearisation;
+";

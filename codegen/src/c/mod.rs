@@ -1,0 +1,20 @@
+//! The C backend: a header and one source file per variant, C99 that is C++ as well, without
+//! allocation or library, with the bits of the emitted Rust.
+//!
+//! `emit` lays both files out: `header` declares, `types` prepares the coefficients, `stages` are
+//! the functions, `jacobians` where their nonzeros stand, `functions` what they call. `expression`
+//! writes the statements, `comments` the documentation, `names` every name. What is computed in
+//! which order comes from [`statements`](crate::statements).
+
+mod comments;
+mod emit;
+mod expression;
+mod functions;
+mod header;
+mod jacobians;
+mod names;
+mod stages;
+mod types;
+
+pub use crate::statements::EmitError;
+pub use emit::{Files, emit};

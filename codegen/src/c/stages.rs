@@ -1,0 +1,170 @@
+//! Stages as functions: their declarations for the header, their definitions for the source.
+
+use super::comments::{comment, linked};
+use super::expression::{Writer, assignment, call, looped, place_text};
+use super::names::{named, of_item};
+use crate::program::Program;
+use crate::statements::layout::{BLOCK, CLOSE, DEEPER, SHALLOWER, SPACE, ZERO, ZERO_OUT, block};
+use crate::statements::{Argument, Expression, Index, Outcome, Place, Size, Stage, Used};
+
+/// What a stage is called with: type and name of each, arrays by their first element.
+fn arguments(stage: &Stage) -> Vec<(&'static str, &'static str)> {
+    let mut all = GIVEN.to_vec();
+    all.extend(stage.arguments.iter().map(|argument| match argument {
+        Argument::Regime => ("uint32_t ", "regime"),
+        Argument::Accelerations => ("const NAME_real *", "accelerations"),
+        Argument::Direction => ("const NAME_real *", "direction"),
+        Argument::InputDirection => ("const NAME_inputs *", "input_direction"),
+        Argument::Weights => ("const NAME_real *", "weights"),
+    }));
+    match &stage.outcome {
+        Outcome::Rates => all.push(("NAME_real *", "rates")),
+        Outcome::Observables(_) => all.push(("NAME_real *", "observables")),
+        Outcome::Array(name, _) => all.push(("NAME_real *", name)),
+        Outcome::MassMatrix => all.push(MATRIX),
+        Outcome::ArrayAndInputs(_) => {
+            all.extend([
+                ("NAME_real *", "product"),
+                ("NAME_inputs *", "input_product"),
+            ]);
+        }
+        Outcome::Number(_) => {}
+    }
+    all
+}
+
+/// What every stage is called with.
+pub(super) const GIVEN: [(&str, &str); 4] = [
+    ("NAME_real ", "t"),
+    ("const NAME_real *", "state"),
+    ("const NAME_inputs *", "inputs"),
+    ("const NAME_coefficients *", "coefficients"),
+];
+
+/// A square matrix.
+const MATRIX: (&str, &str) = ("NAME_real (*", "values)[NAME_DEGREES_OF_FREEDOM]");
+
+/// The head of a function. In a definition what is pointed to is declared not to overlap.
+pub(super) fn head(
+    program: &Program,
+    (result, name): (&str, &str),
+    arguments: &[(&str, &str)],
+    definition: bool,
+) -> String {
+    let typed = arguments.iter().map(|(of, name)| {
+        let restricted = if definition && of.ends_with('*') {
+            "NAME_RESTRICT "
+        } else {
+            ""
+        };
+        named(program, &format!("{of}{restricted}{name}"))
+    });
+    let typed: Vec<String> = typed.collect();
+    let separator = format!(",{SPACE}");
+    format!(
+        "{}({BLOCK}{ZERO}{}{ZERO_OUT}{CLOSE})",
+        named(program, result) + &of_item(program, name),
+        typed.join(&separator)
+    )
+}
+
+/// What comes of a stage as the type of its function.
+fn result(stage: &Stage) -> &'static str {
+    match stage.outcome {
+        Outcome::Number(_) => "NAME_real ",
+        _ => "void ",
+    }
+}
+
+/// The documented declaration.
+pub(super) fn declaration(program: &Program, stage: &Stage) -> String {
+    let mut lines = linked(program, &stage.doc);
+    lines.extend(stage.list.iter().cloned());
+    let result = (result(stage), stage.name);
+    comment(&lines) + &head(program, result, &arguments(stage), false) + ";\n"
+}
+
+/// The definition.
+pub(super) fn definition(program: &Program, stage: Stage) -> String {
+    let arguments = arguments(&stage);
+    let head = head(program, (result(&stage), stage.name), &arguments, true);
+    let writer = Writer::new(program);
+    let mut used = Used::by(&stage.outcome);
+    let written = used.retain(stage.written);
+    let computed = used.retain(stage.computed);
+    let mut lines = String::new();
+    for (_, name) in &arguments {
+        let name = name.split(')').next().unwrap_or(name);
+        let result = matches!(name, "rates" | "values" | "product" | "observables");
+        let given = !matches!(name, "input_product") || !program.inputs.is_empty();
+        if !used.contains(name) && !result && (name != "input_product" || !given) {
+            lines += &format!("(void){name};\n");
+        }
+    }
+    lines += &writer.statements(&computed);
+    lines += &match &stage.outcome {
+        Outcome::Rates => String::new(),
+        Outcome::Number(value) => format!("return {};\n", writer.expression(value)),
+        Outcome::Observables(values) => {
+            let places = values.iter().enumerate();
+            let put = |(place, value): (usize, &Expression)| {
+                assignment(&format!("observables[{place}]"), &writer.expression(value))
+            };
+            places.map(put).collect()
+        }
+        Outcome::Array(name, size) => zeroed(program, name, size),
+        Outcome::MassMatrix => {
+            let degrees = program.degrees_of_freedom();
+            let entry = Place::new("values", ["i", "j"].map(Index::Variable));
+            let zero = assignment(&place_text(&entry), "0");
+            looped("i", degrees, &looped("j", degrees, &zero))
+        }
+        Outcome::ArrayAndInputs(_) => zeroed(program, "product", &Size::States),
+    };
+    lines += &writer.statements(&written);
+    if let Outcome::ArrayAndInputs(values) = &stage.outcome {
+        for (name, value) in values {
+            lines += &assignment(&format!("input_product->{name}"), &writer.expression(value));
+        }
+    }
+    block(&format!("{head} {{"), &lines, "}")
+}
+
+fn zeroed(program: &Program, name: &str, size: &Size) -> String {
+    let length = length(program, size);
+    if length == 0 {
+        return format!("(void){name};\n");
+    }
+    looped("i", length, &assignment(&format!("{name}[i]"), "0"))
+}
+
+fn length(program: &Program, size: &Size) -> usize {
+    match size {
+        Size::States => program.states(),
+        Size::DegreesOfFreedom => program.degrees_of_freedom(),
+        Size::Guards => {
+            let guards = program.guards.iter();
+            guards
+                .map(|guard| program.value(guard.value).extent.length())
+                .sum()
+        }
+        Size::Parameters => program.parameters.len(),
+        Size::Nonzeros(name) => {
+            let mut jacobians = program.outputs.jacobians.iter();
+            let jacobian = jacobians.find(|jacobian| jacobian.name == *name);
+            jacobian.map_or(0, |jacobian| jacobian.nonzeros())
+        }
+    }
+}
+
+/// The call of another stage with what this one is called with, and what is written to.
+pub(super) fn passed_on(program: &Program, stage: &str, written: &str) -> String {
+    let given = GIVEN.iter().map(|(_, name)| *name).chain([written]);
+    let arguments: Vec<String> = given.map(str::to_owned).collect();
+    call(&of_item(program, stage), &arguments) + ";\n"
+}
+
+/// Lines between an opening and a closing one.
+pub(super) fn nested(opening: &str, lines: &str, closing: &str) -> String {
+    format!("{opening}\n{DEEPER}{lines}{SHALLOWER}{closing}\n")
+}

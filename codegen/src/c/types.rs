@@ -1,0 +1,185 @@
+//! Structures, with units, and the functions that fill them.
+
+use super::comments::comment;
+use super::expression::{Writer, assignment, looped, number};
+use super::names::named;
+use super::stages::{head, nested};
+use crate::program::describe::describe_value;
+use crate::program::{Extent, Program, Quantity};
+use crate::statements::layout::block;
+use crate::statements::{Emitted, File, Needed, Prepared, Used, preparation, quantity_line};
+
+/// The structures.
+pub(super) fn structures(file: &File<'_>) -> Emitted<String> {
+    let program = file.program;
+    let mut fields = String::new();
+    for parameter in &program.parameters {
+        fields += &field(file, &parameter.quantity, &parameter.origin)?;
+    }
+    let mut text = structure(file, "Parameters of the model.", "parameters", fields);
+    let mut fields = String::new();
+    for input in &program.inputs {
+        fields += &field(file, input, "")?;
+    }
+    text += &structure(file, "Signals supplied at run time.", "inputs", fields);
+    let mut fields = String::new();
+    for id in &file.fields {
+        let extents = match program.value(*id).extent {
+            Extent::Scalar => String::new(),
+            Extent::Vector(length) => format!("[{length}]"),
+            Extent::Matrix(rows, columns) => format!("[{rows}][{columns}]"),
+        };
+        let name = &file.field_names[id];
+        fields += &comment(&[describe_value(program, *id)]);
+        fields += &named(program, &format!("NAME_real {name}{extents};\n"));
+    }
+    let mut lines = vec![
+        "Whether all prepared pivots of the mass matrix are positive and finite: 1 or 0. If not,"
+            .to_owned(),
+        "the mass matrix is not positive definite and the rates are not to be used.".to_owned(),
+    ];
+    if program.may_lose_definiteness() {
+        lines.extend([
+            "The mass matrix varies with the state too, of which this says nothing: where it is not"
+                .to_owned(),
+            "positive definite, rates are NaN.".to_owned(),
+        ]);
+    }
+    fields += &comment(&lines);
+    fields += "int positive_definite;\n";
+    let doc = "What depends on the parameters alone: prepare once, use in every call.";
+    Ok(text + &structure(file, doc, "coefficients", fields))
+}
+
+fn structure(file: &File<'_>, doc: &str, name: &str, fields: String) -> String {
+    let fields = if fields.is_empty() {
+        comment(&["There are none; C wants a member.".to_owned()]) + "char none;\n"
+    } else {
+        fields
+    };
+    let closing = named(file.program, &format!("}} NAME_{name};"));
+    comment(&[doc.to_owned()]) + &nested("typedef struct {", &fields, &closing)
+}
+
+/// A documented member.
+fn field(file: &File<'_>, quantity: &Quantity, origin: &str) -> Emitted<String> {
+    let name = file.words.identifier(&quantity.name)?;
+    let doc = comment(&[quantity_line(&quantity.doc, &quantity.unit, origin)]);
+    Ok(doc + &named(file.program, &format!("NAME_real {name};\n")))
+}
+
+/// Functions that fill structures: name, arguments by type and name, documentation.
+type Filling = (
+    &'static str,
+    &'static [(&'static str, &'static str)],
+    &'static str,
+);
+
+/// All of them.
+const FILLING: [Filling; 4] = [
+    (
+        "default_parameters",
+        &[("NAME_parameters *", "parameters")],
+        "The specification's values.",
+    ),
+    (
+        "parameters_from_array",
+        &[
+            ("const NAME_real *", "numbers"),
+            ("NAME_parameters *", "parameters"),
+        ],
+        "Parameters from `NAME_PARAMETERS` numbers in the order of `NAME_parameter_names`.",
+    ),
+    (
+        "inputs_from_array",
+        &[
+            ("const NAME_real *", "numbers"),
+            ("NAME_inputs *", "inputs"),
+        ],
+        "Inputs from `NAME_INPUTS` numbers in the order of `NAME_input_names`.",
+    ),
+    (
+        "prepare",
+        &[
+            ("const NAME_parameters *", "parameters"),
+            ("NAME_coefficients *", "coefficients"),
+        ],
+        "The coefficients of these parameters.",
+    ),
+];
+
+/// The declarations of these functions.
+pub(super) fn declarations(program: &Program) -> String {
+    let declared = FILLING.map(|(name, arguments, doc)| {
+        let head = head(program, ("void ", name), arguments, false);
+        comment(&[named(program, doc)]) + &format!("{head};\n")
+    });
+    declared.concat()
+}
+
+/// The definitions of these functions.
+pub(super) fn filling(file: &File<'_>, needed: &mut Needed) -> Emitted<String> {
+    let program = file.program;
+    let [defaults, parameters, inputs, prepare] =
+        FILLING.map(|(name, arguments, _)| head(program, ("void ", name), arguments, true));
+    let mut lines = String::new();
+    for parameter in &program.parameters {
+        let target = format!("parameters->{}", parameter.quantity.name);
+        lines += &assignment(&target, &format!("R({})", number(parameter.value)));
+    }
+    let mut text = filled(&defaults, "parameters->none = 0;\n", lines);
+    let names = program.parameters.iter().map(|p| p.quantity.name.as_str());
+    text += &from_array(&parameters, "parameters", names);
+    let names = program.inputs.iter().map(|input| input.name.as_str());
+    text += &from_array(&inputs, "inputs", names);
+    Ok(text + &prepared(file, &prepare, needed)?)
+}
+
+fn from_array<'n>(head: &str, of: &str, names: impl Iterator<Item = &'n str>) -> String {
+    let lines = names
+        .enumerate()
+        .map(|(place, name)| assignment(&format!("{of}->{name}"), &format!("numbers[{place}]")));
+    let none = format!("(void)numbers;\n{of}->none = 0;\n");
+    filled(head, &none, lines.collect())
+}
+
+fn filled(head: &str, none: &str, lines: String) -> String {
+    let lines = if lines.is_empty() {
+        none.to_owned()
+    } else {
+        lines
+    };
+    block(&format!("{head} {{"), &lines, "}")
+}
+
+fn prepared(file: &File<'_>, head: &str, needed: &mut Needed) -> Emitted<String> {
+    let program = file.program;
+    let prepared = preparation(file, needed)?;
+    let mut used = Used::by_preparation(&prepared);
+    let writer = Writer::new(program);
+    let computed = used.retain(prepared.computed);
+    let mut lines = String::new();
+    if !used.contains("parameters") {
+        lines += "(void)parameters;\n";
+    }
+    lines += &writer.statements(&computed);
+    for (id, coefficient) in file.fields.iter().zip(&prepared.coefficients) {
+        let target = format!("coefficients->{}", file.field_names[id]);
+        lines += &match (coefficient, program.value(*id).extent) {
+            (Prepared::Number(value), _) => assignment(&target, &writer.expression(value)),
+            (Prepared::Numbers(array), Extent::Matrix(rows, columns)) => {
+                let from = writer.array(array);
+                let copy = assignment(&format!("{target}[i][j]"), &format!("{from}[i][j]"));
+                looped("i", rows, &looped("j", columns, &copy))
+            }
+            (Prepared::Numbers(array), extent) => {
+                let from = writer.array(array);
+                let copy = assignment(&format!("{target}[i]"), &format!("{from}[i]"));
+                looped("i", extent.length(), &copy)
+            }
+        };
+    }
+    let check = writer.expression(&prepared.positive_definite);
+    lines += &assignment("coefficients->positive_definite", &check);
+    Ok(block(&format!("{head} {{"), &lines, "}"))
+}

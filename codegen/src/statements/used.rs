@@ -1,0 +1,141 @@
+//! Statements without those whose result nothing reads: a regime decides branches away, and
+//! what they alone read is left over.
+
+use std::collections::HashSet;
+
+use super::expression::{Array, Expression, Structure};
+use super::preparation::{Preparation, Prepared};
+use super::stage::Outcome;
+use super::statement::Statement;
+
+/// Names that statements read.
+#[derive(Debug, Default)]
+pub struct Used {
+    names: HashSet<String>,
+}
+
+impl Used {
+    /// What an outcome reads, and the names that it is written to by.
+    pub fn by(outcome: &Outcome) -> Self {
+        let mut used = Self::default();
+        for name in ["rates", "values", "product"] {
+            used.names.insert(name.to_owned());
+        }
+        match outcome {
+            Outcome::Number(value) => used.expression(value),
+            Outcome::Observables(values) => values.iter().for_each(|value| used.expression(value)),
+            Outcome::ArrayAndInputs(values) => {
+                values.iter().for_each(|(_, value)| used.expression(value));
+            }
+            Outcome::Rates | Outcome::Array(..) | Outcome::MassMatrix => {}
+        }
+        used
+    }
+
+    /// What the coefficients read.
+    pub fn by_preparation(prepared: &Preparation) -> Self {
+        let mut used = Self::default();
+        for coefficient in &prepared.coefficients {
+            match coefficient {
+                Prepared::Number(value) => used.expression(value),
+                Prepared::Numbers(array) => used.array(array),
+            }
+        }
+        used.expression(&prepared.positive_definite);
+        used
+    }
+
+    /// Whether something of this name is read.
+    pub fn contains(&self, name: &str) -> bool {
+        self.names.contains(name)
+    }
+
+    /// The statements whose results are read, by what follows them or by each other.
+    pub fn retain(&mut self, statements: Vec<Statement>) -> Vec<Statement> {
+        let kept = statements.into_iter().rev();
+        let mut kept: Vec<Statement> = kept.filter_map(|one| self.keep(one)).collect();
+        kept.reverse();
+        kept
+    }
+
+    fn keep(&mut self, statement: Statement) -> Option<Statement> {
+        let written = match &statement {
+            Statement::Let(name, _)
+            | Statement::Zeros(name, _)
+            | Statement::Flag(name)
+            | Statement::Sum { name, .. }
+            | Statement::Cholesky { name, .. }
+            | Statement::CholeskySolve { name, .. } => name,
+            Statement::Assign(place, _) => &place.name,
+            Statement::Loop { .. } => return self.keep_loop(statement),
+        };
+        if !self.names.contains(written) {
+            return None;
+        }
+        match &statement {
+            Statement::Let(_, value) | Statement::Assign(_, value) => self.expression(value),
+            Statement::Sum { element, .. } => self.expression(element),
+            Statement::Cholesky { matrix, .. } => self.array(matrix),
+            Statement::CholeskySolve { factor, right, .. } => {
+                self.array(factor);
+                self.array(right);
+            }
+            Statement::Zeros(..) | Statement::Flag(_) | Statement::Loop { .. } => {}
+        }
+        Some(statement)
+    }
+
+    fn keep_loop(&mut self, statement: Statement) -> Option<Statement> {
+        let Statement::Loop {
+            index,
+            length,
+            lines,
+        } = statement
+        else {
+            return Some(statement);
+        };
+        let lines = self.retain(lines);
+        (!lines.is_empty() && length > 0).then(|| Statement::looped(index, length, lines))
+    }
+
+    fn expression(&mut self, expression: &Expression) {
+        let all = |used: &mut Self, parts: &[Expression]| {
+            parts.iter().for_each(|part| used.expression(part));
+        };
+        match expression {
+            Expression::Name(name) => self.name(name),
+            Expression::Element(array, _) => self.array(array),
+            Expression::Field(structure, _) => self.name(match structure {
+                Structure::Coefficients => "coefficients",
+                Structure::Parameters => "parameters",
+                Structure::Inputs => "inputs",
+                Structure::InputDirection => "input_direction",
+            }),
+            Expression::Shared(part) | Expression::Negate(part) => self.expression(part),
+            Expression::Binary(_, a, b) => {
+                self.expression(a);
+                self.expression(b);
+            }
+            Expression::Call(_, parts) | Expression::Primitive(_, parts) => all(self, parts),
+            Expression::Select(parts) => all(self, &**parts),
+            Expression::Greater(parts) | Expression::And(parts) => all(self, &**parts),
+            Expression::Positive(_) => self.name("regime"),
+            Expression::Number(_) | Expression::True => {}
+        }
+    }
+
+    fn array(&mut self, array: &Array) {
+        match array {
+            Array::Local(name) => self.name(name),
+            Array::Coefficient(..) => self.name("coefficients"),
+            Array::Filled(value, _) => self.expression(value),
+            Array::Table(name, _) => self.name(name),
+        }
+    }
+
+    fn name(&mut self, name: &str) {
+        if !self.names.contains(name) {
+            self.names.insert(name.to_owned());
+        }
+    }
+}
