@@ -1,4 +1,4 @@
-//! Whether a record can be believed: what makes an answer impossible is refused, what only
+//! Whether a record can be used: what makes an answer impossible is refused, what only
 //! weakens it is noted. Units are checked where they are read, in [`crate::dataset`].
 
 use crate::description::Description;
@@ -12,9 +12,9 @@ use crate::samples::typical_step;
 /// A channel of which more than this part is missing is refused.
 const MOST_MISSING: f64 = 0.5;
 
-/// A channel that spans more noises has a wrong unit or a wrong noise: no sensor resolves so
-/// much.
-const MOST_NOISES: f64 = 1e10;
+/// A channel that spans more standard deviations of its noise has a wrong unit or a wrong noise:
+/// no sensor resolves so much.
+const MOST_STANDARD_DEVIATIONS: f64 = 1e10;
 
 /// Steps that differ from the usual one by more than this part of it are jitter.
 const JITTER: f64 = 0.1;
@@ -23,17 +23,17 @@ const JITTER: f64 = 0.1;
 /// than once in a row, is clipped.
 const CLIPPED: f64 = 0.02;
 
-/// Records that differ by less than this many noises (root mean square) are one record: two
-/// measurements of the same motion differ by the square root of two.
+/// Records that differ by less than this many standard deviations of the noise (root mean square)
+/// are one record: two measurements of the same motion differ by the square root of two.
 const SAME: f64 = 0.3;
 
-/// A channel that spans fewer noises cannot tell records apart.
+/// A channel that spans fewer standard deviations cannot tell records apart.
 const MOVES: f64 = 20.0;
 
 /// Samples that are compared first when records are laid on each other.
 const PROBES: usize = 16;
 
-/// Looks at all records; returns what is worth a remark.
+/// Checks all records; returns what is worth a remark.
 ///
 /// # Errors
 /// The first thing that makes an answer impossible.
@@ -109,7 +109,7 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
              expected one that moves, or a dataset without it"
         ));
     }
-    if (high - low) / noise >= MOST_NOISES {
+    if (high - low) / noise >= MOST_STANDARD_DEVIATIONS {
         return refuse(format!(
             "channel `{name}` goes from {low:.3e} to {high:.3e} with a noise of {noise:.1e}, in SI; \
              expected its unit and its noise to be right"
@@ -117,7 +117,7 @@ fn values(record: &Record, name: &str, noise: f64, column: &[f64]) -> Result<Vec
     }
     if high - low < STILL * noise {
         notes.push(format!(
-            "{}: `{name}` moves by less than two noises",
+            "{}: `{name}` moves by less than two standard deviations of its noise",
             record.name
         ));
     }
@@ -171,13 +171,13 @@ fn different_records(dataset: &Dataset, train: &Record, test: &Record) -> Result
         ));
     }
     // The channel that moves most tells records apart best.
-    let in_noises = |place: usize| span(&train.channels[place]) / dataset.channels[place].noise;
+    let deviations = |place: usize| span(&train.channels[place]) / dataset.channels[place].noise;
     let Some(channel) =
-        (0..dataset.channels.len()).max_by(|a, b| in_noises(*a).total_cmp(&in_noises(*b)))
+        (0..dataset.channels.len()).max_by(|a, b| deviations(*a).total_cmp(&deviations(*b)))
     else {
         return Ok(());
     };
-    if in_noises(channel) < MOVES {
+    if deviations(channel) < MOVES {
         return Ok(());
     }
     let (a, b) = (&train.channels[channel], &test.channels[channel]);

@@ -17,10 +17,10 @@ const FEWEST_IN_WINDOW: f64 = 4.0;
 /// A channel of which fewer samples are compared in all windows of a set is not compared.
 const FEWEST_COMPARED: usize = 10;
 
-/// A channel that spans fewer noises shows noise alone.
+/// A channel that spans fewer standard deviations of its noise shows noise alone.
 pub(crate) const STILL: f64 = 2.0;
 
-/// Looks at both sets of records; returns what is worth a remark.
+/// Checks both sets of records; returns what is worth a remark.
 ///
 /// # Errors
 /// Why a set compares nothing.
@@ -146,27 +146,27 @@ fn moving(
     set: &str,
     records: &[Record],
 ) -> Result<(), Diagnostic> {
-    let noises = |place: usize| {
+    let deviations = |place: usize| {
         let noise = dataset.channels[place].noise;
         let spans = records
             .iter()
             .map(|record| span(&record.channels[place]) / noise);
         spans.fold(0.0, f64::max)
     };
-    let most = (0..dataset.channels.len()).max_by(|a, b| noises(*a).total_cmp(&noises(*b)));
-    let Some(place) = most.filter(|place| noises(*place) < STILL) else {
+    let most = (0..dataset.channels.len()).max_by(|a, b| deviations(*a).total_cmp(&deviations(*b)));
+    let Some(place) = most.filter(|place| deviations(*place) < STILL) else {
         return Ok(());
     };
     let entry = &description.channels[place];
     Err(Diagnostic::error(format!(
-        "the {set} records show nothing but noise: no channel moves by {STILL} noises"
+        "the {set} records show nothing but noise: no channel moves by {STILL} standard deviations of its noise"
     ))
     .at(
         entry.noise.span,
         format!(
             "`{}` moves by {:.1e} of these",
             entry.name.text,
-            noises(place)
+            deviations(place)
         ),
     )
     .help("expected one standard deviation of the sensor's noise, in the column's unit"))

@@ -1,5 +1,5 @@
 //! Measured records: what a dataset file says of them, their columns, and whether they can be
-//! believed.
+//! used.
 //!
 //! The pipeline: a [`description`] is the dataset file by itself, `bound` its names and units
 //! looked up in a model; `files` and `columns` (CSV, and Parquet by `parquet_file`) bring the
