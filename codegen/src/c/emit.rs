@@ -36,19 +36,20 @@ pub fn emit(program: &Program) -> Result<Files, EmitError> {
     let filling = filling(&file, &mut needed)?;
     let stages = stages(&file, &mut needed)?;
     let header = header(&file, &stages)?;
+    let mut defined = filling;
+    for stage in stages {
+        defined += &definition(program, stage);
+    }
+    defined += &regime(&file);
+    defined += &jacobians::definitions(program);
     let mut text = comment(&documentation(program));
     text += &opening(program);
     text += &tables(&file)?;
-    text += &functions(program, &needed);
+    text += &functions(program, &needed, &defined);
     for (head, elements, _) in lists(program) {
         text += &format!("{head} = {};\n", initialiser(&elements));
     }
-    text += &filling;
-    for stage in stages {
-        text += &definition(program, stage);
-    }
-    text += &regime(&file);
-    text += &jacobians::definitions(program);
+    text += &defined;
     text += "#undef R\n";
     Ok(Files {
         header: layout::source(&header),
@@ -73,7 +74,7 @@ fn stages(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
 fn opening(program: &Program) -> String {
     named(
         program,
-        &"#include \"HEADER\"\n#include <math.h>\n\
+        &"#include \"HEADER\"\n\
          #if defined(__clang__)\n#pragma STDC FP_CONTRACT OFF\n\
          #elif defined(_MSC_VER)\n#pragma fp_contract(off)\n#endif\n\
          /** What a function writes to does not overlap what it reads. */\n\

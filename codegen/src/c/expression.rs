@@ -262,7 +262,14 @@ impl Writer {
     }
 
     fn number(&self, value: f64) -> (String, Level) {
-        let literal = number(value);
+        let literal = if value.is_nan() {
+            format!("{}nan()", self.prefix)
+        } else if value.is_infinite() {
+            let sign = if value > 0.0 { "" } else { "-" };
+            format!("{sign}{}infinity()", self.prefix)
+        } else {
+            number(value)
+        };
         if self.narrow {
             (format!("R({literal})"), Level::Atom)
         } else if value.is_sign_negative() {
@@ -292,14 +299,8 @@ fn first_entry(matrix: &str) -> String {
     format!("&{matrix}[0][0]")
 }
 
-/// A number with all its bits.
+/// A finite number with all its bits.
 pub(super) fn number(value: f64) -> String {
-    if value.is_nan() {
-        return "NAN".to_owned();
-    }
-    if value.is_infinite() {
-        return if value > 0.0 { "INFINITY" } else { "-INFINITY" }.to_owned();
-    }
     let magnitude = value.abs();
     if magnitude == 0.0 || (1e-4..1e7).contains(&magnitude) {
         format!("{value:?}")

@@ -8,8 +8,8 @@ use crate::statements::layout::block;
 use crate::statements::{KernelStatements, Needed, describe_elementary};
 use eomgen_elementary::Function as Elementary;
 
-/// The functions that statements call, before these.
-pub(super) fn functions(program: &Program, needed: &Needed) -> String {
+/// The functions that `stages` call, before these.
+pub(super) fn functions(program: &Program, needed: &Needed, stages: &str) -> String {
     let mut elementary = needed.elementary.clone();
     if needed.cholesky || needed.cholesky_of_matrix {
         elementary.insert(Elementary::Sqrt);
@@ -18,16 +18,7 @@ pub(super) fn functions(program: &Program, needed: &Needed) -> String {
         .into_iter()
         .map(|function| elementary_function(program, function))
         .collect();
-    let mut text = String::new();
-    for (name, item) in PRIMITIVES {
-        if kernels.contains(&named(program, &format!("NAME_{name}("))) {
-            text += &named(program, item);
-        }
-    }
-    if !text.is_empty() {
-        text = named(program, BITS) + &text;
-    }
-    text += &kernels;
+    let mut text = kernels;
     for (needed, item) in [
         (needed.deadzone, DEADZONE),
         (needed.contact, CONTACT),
@@ -42,7 +33,17 @@ pub(super) fn functions(program: &Program, needed: &Needed) -> String {
             text += &named(program, item);
         }
     }
-    text
+    let mut primitives = String::new();
+    for (name, item) in PRIMITIVES {
+        let call = named(program, &format!("NAME_{name}("));
+        if text.contains(&call) || stages.contains(&call) {
+            primitives += &named(program, item);
+        }
+    }
+    if primitives.is_empty() {
+        return text;
+    }
+    named(program, BITS) + &primitives + &text
 }
 
 /// An elementary function: in double precision whatever numbers are, then rounded.
@@ -93,8 +94,30 @@ typedef union {
 } NAME_bits;
 ";
 
-/// What kernels call, by name.
-const PRIMITIVES: [(&str, &str); 5] = [
+/// What kernels call and what has no literal, by name.
+const PRIMITIVES: [(&str, &str); 7] = [
+    (
+        "nan",
+        "\
+/** What is no number. */
+static double NAME_nan(void) {
+    NAME_bits value;
+    value.bits = (uint64_t)0x7ff8 << 48;
+    return value.number;
+}
+",
+    ),
+    (
+        "infinity",
+        "\
+/** What is larger than every number. */
+static double NAME_infinity(void) {
+    NAME_bits value;
+    value.bits = (uint64_t)0x7ff0 << 48;
+    return value.number;
+}
+",
+    ),
     (
         "magnitude",
         "\
@@ -212,7 +235,7 @@ const PIVOT_RECIPROCAL: &str = "\
 /** 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite. */
 static NAME_real NAME_pivot_reciprocal(NAME_real pivot) {
     const NAME_real reciprocal = R(1.0) / pivot;
-    return pivot > R(0.0) ? reciprocal : R(NAN);
+    return pivot > R(0.0) ? reciprocal : R(NAME_nan());
 }
 ";
 
@@ -231,7 +254,7 @@ static void NAME_cholesky(int n, const NAME_real *matrix, NAME_real *factor) {
             }
             if (i == j) {
                 const NAME_real root = NAME_sqrt(rest);
-                factor[i * n + j] = rest > R(0.0) ? root : R(NAN);
+                factor[i * n + j] = rest > R(0.0) ? root : R(NAME_nan());
             } else {
                 factor[i * n + j] = rest / factor[j * n + j];
             }

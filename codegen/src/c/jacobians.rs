@@ -122,7 +122,11 @@ fn linearise(program: &Program) -> String {
         let found = program.outputs.jacobians.iter().find(|j| j.name == name);
         let Some(jacobian) = found else { continue };
         let room = jacobian.nonzeros().max(1);
-        let none = if jacobian.nonzeros() == 0 { " = {0}" } else { "" };
+        let none = if jacobian.nonzeros() == 0 {
+            " = {0}"
+        } else {
+            ""
+        };
         let mut inner = named(program, &format!("NAME_real nonzeros[{room}]{none};\n"));
         inner += &passed_on(program, name, "nonzeros");
         inner += &named(

@@ -26,7 +26,10 @@ impl EmitError {
 impl std::fmt::Display for EmitError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Name { name, language } => write!(f, "`{name}` is no {language} identifier"),
+            Self::Name { name, language } => write!(
+                f,
+                "`{name}` is no {language} identifier: the specification has to call it otherwise"
+            ),
             Self::Value(message) => write!(f, "the program cannot be emitted: {message}"),
         }
     }

@@ -1,0 +1,283 @@
+//! The emitted C against the emitted Rust, both compiled: the same bits of every output at the
+//! same states, of every shipped model, of models for every feature of the language, and of names
+//! and texts that mean something to C. Skipped, and said so, without a C compiler.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use eomgen_codegen::c;
+use eomgen_codegen::program::{Output, Program};
+use eomgen_codegen::rust::{self, Packaging};
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
+use eomgen_tests::models::{project, shipped};
+
+mod hostile;
+
+/// What every compiler of the emitted C is asked for.
+const WARNINGS: [&str; 4] = ["-pedantic", "-Wall", "-Wextra", "-Werror"];
+
+/// What is requested besides what is always there: all but what C has no way to say.
+fn requested() -> Vec<Output> {
+    let mut all = Output::ALL.to_vec();
+    all.retain(|output| *output != Output::Lanes);
+    all
+}
+
+/// Whether there are compilers for C and C++; says so if not.
+fn compilers() -> bool {
+    let works = |program: &str| Command::new(program).arg("--version").output().is_ok();
+    let there = works("cc") && works("c++");
+    if !there {
+        skips::skip("the emitted C was not compiled, for want of cc and c++ (Debian: g++)");
+    }
+    there
+}
+
+/// Runs a command; what it prints.
+fn run(command: &mut Command) -> String {
+    let output = command.output().expect("the command starts");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{command:?}\n{said}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// The model of a text.
+fn model(text: &str) -> Model {
+    match eomgen_model_spec::check(Source::new("model.toml", text)) {
+        Ok(checked) => checked.model,
+        Err(found) => panic!("{found}"),
+    }
+}
+
+/// The program of a text at one order.
+fn program(text: &str, order: usize, outputs: &[Output]) -> Program {
+    let model = model(text);
+    let orders = vec![order; model.fields.len()];
+    let variant = Variant::derive_with(&model, &orders, outputs);
+    variant.expect("the model can be derived").program
+}
+
+/// Writes the emitted C to a folder and compiles it as C++, in these precisions.
+fn compiled_as_cpp(program: &Program, precisions: &[&str], folder: &Path) {
+    let files = c::emit(program).expect("emitted");
+    let name = &program.name;
+    std::fs::write(folder.join(format!("{name}.h")), files.header).expect("written");
+    std::fs::write(folder.join(format!("{name}.c")), files.source).expect("written");
+    for real in precisions {
+        run(Command::new("c++")
+            .args(["-x", "c++", "-std=c++11", "-O0", "-c"])
+            .args(WARNINGS)
+            .arg(format!("-D{name}_REAL={real}"))
+            .arg(folder.join(format!("{name}.c")))
+            .arg("-o")
+            .arg(folder.join("cpp.o")));
+    }
+}
+
+/// What the driver in C prints.
+fn printed_by_c(program: &Program, real: &str, folder: &Path) -> String {
+    let name = &program.name;
+    let mut defaults: Vec<String> = program
+        .default_parameters()
+        .iter()
+        .map(|value| format!("{value:e}"))
+        .collect();
+    if defaults.is_empty() {
+        defaults.push("0".to_owned());
+    }
+    let defaults = format!(
+        "static const double defaults[] = {{{}}};\n",
+        defaults.join(", ")
+    );
+    let driver = include_str!("driver.c")
+        .replace("#define POINTS", &format!("{defaults}#define POINTS"))
+        .replace("NAME", name);
+    let path = folder.join("driver.c");
+    std::fs::write(&path, driver).expect("written");
+    let executable = folder.join(format!("driver_{real}"));
+    let mut command = Command::new("cc");
+    command.args(["-std=c99", "-O1"]).args(WARNINGS);
+    for (name, requested) in ["-DREQUESTED", "-DDERIVATIVES"]
+        .iter()
+        .zip(requests(program))
+    {
+        if requested {
+            command.arg(name);
+        }
+    }
+    run(command
+        .arg(format!("-D{name}_REAL={real}"))
+        .arg(path)
+        .arg(folder.join(format!("{name}.c")))
+        .arg("-o")
+        .arg(&executable));
+    run(&mut Command::new(executable))
+}
+
+/// Compiles the driver in Rust, for these precisions, knowing the regimes that the one in C was in.
+fn driver_in_rust(
+    program: &Program,
+    precisions: &[&str],
+    by_c: &[String],
+    folder: &Path,
+) -> PathBuf {
+    let source = rust::emit(program, Packaging::Module).expect("emitted");
+    std::fs::write(folder.join("lib.rs"), source).expect("written");
+    let regimes: BTreeSet<&str> = by_c
+        .iter()
+        .flat_map(|text| text.lines())
+        .filter_map(|line| line.strip_prefix("regime "))
+        .collect();
+    let arms: String = regimes
+        .iter()
+        .map(|regime| {
+            format!(
+                "{regime} => rates_in_regime_into::<{regime}, _>\
+                 (t, &state, &inputs, &coefficients, &mut rates),\n"
+            )
+        })
+        .collect();
+    let inputs: Vec<String> = program
+        .inputs
+        .iter()
+        .map(|input| format!("input_product.{}", input.name))
+        .collect();
+    let [requested, derivatives] = requests(program);
+    let requested = requested.then(|| include_str!("requested.rs.txt").replace("//REGIMES", &arms));
+    let derivatives = derivatives.then(|| {
+        let inputs = format!("[{}]", inputs.join(", "));
+        include_str!("derivatives.rs.txt").replace("OF_INPUTS", &inputs)
+    });
+    let defaults: Vec<String> = program
+        .default_parameters()
+        .iter()
+        .map(|value| format!("{value:?}"))
+        .collect();
+    let precision = include_str!("driver.rs.txt")
+        .replace("//REQUESTED", &requested.unwrap_or_default())
+        .replace("//DERIVATIVES", &derivatives.unwrap_or_default());
+    let mut driver = format!(
+        "#[path = \"lib.rs\"]\nmod model;\n\
+         const DEFAULTS: [f64; model::PARAMETERS] = [{}];\n",
+        defaults.join(", ")
+    );
+    let mut arms = String::new();
+    for real in precisions {
+        let number = if *real == "float" { "f32" } else { "f64" };
+        let module = precision.replace("REAL", number);
+        driver += &format!("mod {real} {{\n{module}}}\n");
+        arms += &format!("Some(\"{real}\") => {real}::run(),\n");
+    }
+    driver += &format!(
+        "fn main() {{\nmatch std::env::args().nth(1).as_deref() {{\n{arms}_ => {{}}\n}}\n}}\n"
+    );
+    let path = folder.join("driver.rs");
+    std::fs::write(&path, driver).expect("written");
+    let executable = folder.join("rust");
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    run(Command::new(rustc)
+        .args(["--edition", "2021", "-A", "warnings"])
+        .arg(path)
+        .arg("-o")
+        .arg(&executable));
+    executable
+}
+
+/// Whether forces and regimes, and whether derivatives were requested.
+fn requests(program: &Program) -> [bool; 2] {
+    let kinds = &program.outputs.kinds;
+    [Output::Regimes, Output::Products].map(|output| kinds.contains(&output))
+}
+
+/// Compares both in both precisions.
+fn compare(program: &Program) {
+    compare_in(program, &["double", "float"]);
+}
+
+/// Compares both in these precisions.
+fn compare_in(program: &Program, precisions: &[&str]) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let folder = folder.path();
+    compiled_as_cpp(program, precisions, folder);
+    let by_c = precisions
+        .iter()
+        .map(|real| printed_by_c(program, real, folder));
+    let by_c: Vec<String> = by_c.collect();
+    let in_rust = driver_in_rust(program, precisions, &by_c, folder);
+    for (real, by_c) in precisions.iter().zip(&by_c) {
+        let by_rust = run(Command::new(&in_rust).arg(real));
+        assert!(by_c.lines().count() > 24 * 2 * program.states());
+        let numbers = by_c.lines().filter(|line| !line.ends_with("nan")).count();
+        assert!(2 * numbers > by_c.lines().count(), "most numbers are none");
+        let mut last = "";
+        for (c, rust) in by_c.lines().zip(by_rust.lines()) {
+            if c.starts_with("point") {
+                last = c;
+            }
+            assert_eq!(c, rust, "{} in {real}, {last}", program.name);
+        }
+        assert_eq!(by_c.lines().count(), by_rust.lines().count());
+    }
+}
+
+/// A specification by its path: at one order with all that can be requested of it, in these
+/// precisions; without at others.
+fn compare_file(path: PathBuf, with: usize, without: &[usize], precisions: &[&str]) {
+    let text = std::fs::read_to_string(&path).expect("a readable specification");
+    println!("{}", path.display());
+    let rigid = !text.contains("[fields.");
+    let model = model(&text);
+    let derived = |outputs: &[Output]| {
+        let orders = vec![with; model.fields.len()];
+        Variant::derive_with(&model, &orders, outputs)
+    };
+    // A modal mass matrix that is dense and moves has no derivatives.
+    let forces = [
+        Output::BiasForces,
+        Output::InverseDynamics,
+        Output::GuardRates,
+        Output::Regimes,
+    ];
+    let variant = derived(&requested()).or_else(|_| derived(&forces));
+    let variant = variant.expect("the model can be derived");
+    compare_in(&variant.program, precisions);
+    for order in without {
+        if !rigid {
+            compare_in(&program(&text, *order, &[]), &["double"]);
+        }
+    }
+}
+
+#[test]
+fn shipped_models_have_the_bits_of_rust() {
+    if compilers() {
+        for path in shipped() {
+            compare_file(path, 4, &[0, 1, 9], &["double", "float"]);
+        }
+    }
+}
+
+#[test]
+fn every_feature_of_the_language_has_the_bits_of_rust() {
+    if !compilers() {
+        return;
+    }
+    let folder = project().join("tests/tests/features");
+    let entries = std::fs::read_dir(folder).expect("the folder of features");
+    let mut paths: Vec<PathBuf> = entries
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
+    paths.sort();
+    assert!(paths.len() > 20, "features are missing");
+    for path in paths {
+        let order = match path.file_stem().and_then(|name| name.to_str()) {
+            Some("massless_beam" | "massless_beam_by_sum") => 1,
+            _ => 2,
+        };
+        compare_file(path, order, &[], &["double"]);
+    }
+}
