@@ -68,7 +68,7 @@ fn commands_and_options_that_do_not_exist_are_refused() {
     assert!(refused(&["fly"]).contains("fly"));
     assert!(refused(&["check", &spec("pendulum"), "--fly"]).contains("--fly"));
     assert!(refused(&["derive", &spec("pendulum"), "--format", "word"]).contains("latex"));
-    assert!(refused(&["generate", &spec("pendulum"), "--target", "ada"]).contains("rust"));
+    assert!(refused(&["generate", &spec("pendulum"), "--target", "ada"]).contains("rust, c99"));
     let unknown = refused(&["generate", &spec("pendulum"), "--with", "jacobian"]);
     assert!(unknown.contains("`jacobian` is not known"), "{unknown}");
     assert!(unknown.contains("jacobians, products"), "{unknown}");

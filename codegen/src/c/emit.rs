@@ -8,10 +8,11 @@ use super::functions::functions;
 use super::header::{documentation, header, lists};
 use super::jacobians;
 use super::names::{WORDS, named};
-use super::stages::{GIVEN, definition, head, passed_on};
+use super::regimes::regime;
+use super::stages::definition;
 use super::types::filling;
-use crate::program::{Extent, Op, Program, SURFACES_OF_A_REGIME};
-use crate::statements::layout::{self, block};
+use crate::program::{Extent, Op, Program};
+use crate::statements::layout;
 use crate::statements::{
     EmitError, Emitted, File, Needed, Stage, guards, mass_matrix, nonzeros, observables, rates,
     rates_in_regime, requested, stage_roots,
@@ -124,35 +125,4 @@ fn tables(file: &File<'_>) -> Emitted<String> {
         text += &format!("{head} = {content};\n");
     }
     Ok(text)
-}
-
-/// The head of the function that gives the number of a regime.
-pub(super) fn regime_head(program: &Program, definition: bool) -> String {
-    head(program, ("uint32_t ", "regime"), &GIVEN, definition)
-}
-
-fn regime(file: &File<'_>) -> String {
-    let program = file.program;
-    if program.outputs.regimes.is_none() {
-        return String::new();
-    }
-    let bits = file.guard_count().min(SURFACES_OF_A_REGIME);
-    let head = format!("{} {{", regime_head(program, true));
-    if bits == 0 {
-        let unused = GIVEN.map(|(_, name)| format!("(void){name};\n")).concat();
-        return block(&head, &(unused + "return 0;\n"), "}");
-    }
-    let declared = named(
-        program,
-        "NAME_real guards[NAME_GUARDS];\nuint32_t regime = 0;\n",
-    );
-    let set = format!(
-        "for (int k = 0; k < {bits}; ++k) {{\n    if (guards[k] > R(0.0)) {{\n        \
-         regime |= (uint32_t)1 << k;\n    }}\n}}\nreturn regime;\n"
-    );
-    block(
-        &head,
-        &(declared + &passed_on(program, "guards", "guards") + &set),
-        "}",
-    )
 }

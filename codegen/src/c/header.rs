@@ -3,6 +3,7 @@
 use super::comments::{comment, linked};
 use super::jacobians;
 use super::names::named;
+use super::regimes::{REGIME, regime_head};
 use super::stages::declaration;
 use super::types;
 use super::types::structures;
@@ -36,24 +37,19 @@ pub(super) fn documentation(program: &Program) -> Vec<String> {
 /// What a caller has to know.
 fn notes(program: &Program) -> Vec<String> {
     let mut lines = documentation(program);
-    lines.extend([
-        String::new(),
-        format!("State: {}.", program.state_names().join(", ")),
-        "All quantities are in SI units. Nothing here allocates or calls a library. Functions".to_owned(),
-        "keep no state: threads may call them. What a function writes to must not overlap what".to_owned(),
-        "it reads.".to_owned(),
-        String::new(),
-        named(program, "Compile NAME.c as C99 or C++. Every compiler gives the same bits that contracts no"),
-        "products and sums: `-std=c99`, or `-ffp-contract=off`. With `-DNAME_REAL=float` numbers are"
-            .replace("NAME", &program.name),
-        "in single precision, for this file and all that include it.".to_owned(),
-    ]);
-    for line in &mut lines {
-        *line = line.replace(
-            &format!("Compile {}_.c", program.name),
-            &format!("Compile {}.c", program.name),
-        );
-    }
+    let state = program.state_names().join(", ");
+    let name = &program.name;
+    let text = format!(
+        "\nState: {state}.\n\
+         All quantities are in SI units. Nothing here allocates or calls a library. Functions keep\n\
+         no state, so that threads may call them. What a function writes to must not overlap what\n\
+         it reads.\n\
+         \n\
+         Compile {name}.c as C99 or C++. All compilers that contract no products and sums give the\n\
+         same bits: -std=c99, or -ffp-contract=off. With -D{name}_REAL=float, here and in all that\n\
+         includes this file, numbers are in single precision."
+    );
+    lines.extend(text.split('\n').map(str::to_owned));
     lines
 }
 
@@ -78,14 +74,11 @@ pub(super) fn header(file: &File<'_>, stages: &[Stage]) -> Emitted<String> {
     }
     if program.outputs.regimes.is_some() {
         text += &comment(&linked(program, REGIME));
-        text += &format!("{};\n", super::emit::regime_head(program, false));
+        text += &format!("{};\n", regime_head(program, false));
     }
     text += &jacobians::declarations(program);
     Ok(text + "#ifdef __cplusplus\n}\n#endif\n#endif\n")
 }
-
-const REGIME: &str = "The regime that a state is in: bit k is set where number k of [`guards`] is positive,\n\
-                      for up to 32 of them. Crossing one flips its bit.";
 
 fn sizes(file: &File<'_>) -> String {
     let program = file.program;

@@ -2,9 +2,9 @@
 //! allocation or library, with the bits of the emitted Rust.
 //!
 //! `emit` lays both files out: `header` declares, `types` prepares the coefficients, `stages` are
-//! the functions, `jacobians` where their nonzeros stand, `functions` what they call. `expression`
-//! writes the statements, `comments` the documentation, `names` every name. What is computed in
-//! which order comes from [`statements`](crate::statements).
+//! the functions (`regimes` and `jacobians` more of those on request), `functions` what they call.
+//! `expression` writes the statements, `comments` the documentation, `names` every name. What is
+//! computed in which order comes from [`statements`](crate::statements).
 
 mod comments;
 mod emit;
@@ -13,6 +13,7 @@ mod functions;
 mod header;
 mod jacobians;
 mod names;
+mod regimes;
 mod stages;
 mod types;
 

@@ -14,6 +14,7 @@ use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 use eomgen_tests::models::{project, shipped};
 
+mod command;
 mod hostile;
 
 /// What every compiler of the emitted C is asked for.

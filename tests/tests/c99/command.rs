@@ -1,0 +1,94 @@
+//! `eomgen generate --target c99`: what it leaves, what it refuses, and the example of the pages.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use eomgen_tests::models::{path, project};
+use eomgen_tests::program::eomgen;
+
+use super::{WARNINGS, compilers, run};
+
+/// `eomgen generate` of the arm in C, with further options.
+fn generate(out: &Path, options: &[&str]) -> Output {
+    eomgen()
+        .arg("generate")
+        .arg(path("planetary_arm"))
+        .args(["--target", "c99", "--out"])
+        .arg(out)
+        .args(options)
+        .output()
+        .expect("the program can be run")
+}
+
+#[test]
+fn the_example_prints_what_the_pages_say() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arm = folder.path().join("arm4");
+    let output = generate(&arm, &["--order", "4"]);
+    assert!(output.status.success(), "{output:?}");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    for file in ["planetary_arm.c", "planetary_arm.h"] {
+        assert!(said.contains(file) && arm.join(file).is_file(), "{said}");
+    }
+    if !compilers() {
+        return;
+    }
+    let executable = folder.path().join("controller");
+    run(Command::new("cc")
+        .args(["-std=c99", "-O3", "-I"])
+        .arg(&arm)
+        .args(WARNINGS)
+        .arg(project().join("examples/with_c/controller.c"))
+        .arg(arm.join("planetary_arm.c"))
+        .arg("-o")
+        .arg(&executable));
+    let printed = run(&mut Command::new(executable));
+    assert_eq!(printed, "x_c = 0.000437 m after 10 ms\n");
+    for page in ["README.md", "docs/embedding.md"] {
+        let text = std::fs::read_to_string(project().join(page)).expect("a page");
+        assert!(
+            text.contains(&format!("./controller\n{printed}```")),
+            "{page}"
+        );
+    }
+}
+
+#[test]
+fn what_goes_with_rust_alone_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out");
+    for (options, reason) in [
+        (
+            ["--certify", "--json"].as_slice(),
+            "a certificate is of the emitted Rust",
+        ),
+        (&["--with", "bench"], "the benchmark is a crate"),
+        (
+            &["--with", "jacobians,lanes"],
+            "generic in the type of numbers",
+        ),
+    ] {
+        let output = generate(&out, options);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(
+            said.contains(reason) && said.contains("--target rust"),
+            "{said}"
+        );
+        assert!(!out.exists(), "{options:?} left something");
+    }
+}
+
+#[test]
+fn json_names_the_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = generate(folder.path(), &["--json"]);
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let files: Vec<&str> = document["files"]
+        .as_array()
+        .expect("files")
+        .iter()
+        .filter_map(|file| Path::new(file.as_str()?).file_name()?.to_str())
+        .collect();
+    assert_eq!(files, ["planetary_arm.c", "planetary_arm.h"]);
+}
