@@ -243,7 +243,7 @@ fn form(command: &str) -> Form<'_> {
             Form::Program(command.trim_start_matches("cargo run --release -- "))
         }
         ["eomgen", ..] => Form::Program(command.trim_start_matches("eomgen ")),
-        ["rustc", ..] => Form::Compilers,
+        ["rustc" | "cc", ..] => Form::Compilers,
         ["cargo", "test", "--release", ref rest @ ..] => match rest {
             ["--workspace"] => Form::Tests(""),
             ["-p", _, ..] => Form::Tests(command),
