@@ -180,6 +180,9 @@ pub enum Target {
     /// C99 that is C++ as well, without allocation or library: `NAME.h` and `NAME.c`, by the
     /// model's name.
     C99,
+    /// The functions `rates` and `jac_rates` of (t, x, u, p) for CasADi's `external`:
+    /// `NAME_casadi.c`, for one `cc -shared -fPIC`.
+    Casadi,
 }
 
 /// What `generate` leaves besides.

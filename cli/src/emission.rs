@@ -1,11 +1,66 @@
-//! Emitted source.
+//! Emitted source in the languages that `generate` knows: what has to be derived for it, what
+//! cannot be asked of it, and its files.
 
-use eomgen_codegen::program::Program;
-use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_codegen::c;
+use eomgen_codegen::program::{Output, Program};
+use eomgen_codegen::rust::{self, EmitError, Packaging};
 
+use crate::arguments::{Extra, Generate, Target};
 use crate::error::{Error, Result};
 
-/// The emitted source of a program.
+/// The emitted Rust of a program.
 pub fn source(program: &Program, packaging: Packaging) -> Result<String> {
-    emit(program, packaging).map_err(|error| Error::input(error.to_string()))
+    rust::emit(program, packaging).map_err(refused)
+}
+
+/// Names and texts of the emitted files, the one with the equations first.
+pub fn files(program: &Program, target: Target) -> Result<Vec<(String, String)>> {
+    let name = &program.name;
+    match target {
+        Target::Rust => Ok(vec![(
+            "lib.rs".to_owned(),
+            source(program, Packaging::Crate)?,
+        )]),
+        Target::C99 => {
+            let c::Files { source, header } = c::emit(program).map_err(refused)?;
+            Ok(vec![
+                (format!("{name}.c"), source),
+                (format!("{name}.h"), header),
+            ])
+        }
+        Target::Casadi => {
+            let text = c::emit_casadi(program).map_err(refused)?;
+            Ok(vec![(format!("{name}_casadi.c"), text)])
+        }
+    }
+}
+
+/// What has to be derived for what is asked for.
+///
+/// # Errors
+/// If that does not go with the language.
+pub fn outputs(options: &Generate) -> Result<Vec<Output>> {
+    let has = |extra: Extra| options.with.contains(&extra);
+    let reason = match options.target {
+        Target::Rust => return Ok(Extra::outputs(&options.with)),
+        _ if options.certify => {
+            "--certify goes with --target rust: a certificate is of the emitted Rust, whose bits the \
+             C gives as well"
+        }
+        _ if has(Extra::Bench) => "--with bench goes with --target rust: the benchmark is a crate",
+        _ if has(Extra::Output(Output::Lanes)) => {
+            "--with lanes goes with --target rust: its functions are generic in the type of numbers, \
+             which C has no way to say"
+        }
+        Target::C99 => return Ok(Extra::outputs(&options.with)),
+        Target::Casadi if options.with.is_empty() => return Ok(c::CASADI_OUTPUTS.to_vec()),
+        Target::Casadi => {
+            "--with does not go with --target casadi: its functions are rates and jac_rates"
+        }
+    };
+    Err(Error::input(reason))
+}
+
+fn refused(error: EmitError) -> Error {
+    Error::input(error.to_string())
 }

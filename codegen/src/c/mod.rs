@@ -3,9 +3,10 @@
 //!
 //! `emit` lays both files out: `header` declares, `types` prepares the coefficients, `stages` are
 //! the functions (`regimes` and `jacobians` more of those on request), `functions` what they call.
-//! `expression` writes the statements, `comments` the documentation, `names` every name. What is
+//! `casadi` is a second interface to them. `expression` writes the statements, `comments` the documentation, `names` every name. What is
 //! computed in which order comes from [`statements`](crate::statements).
 
+mod casadi;
 mod comments;
 mod emit;
 mod expression;
@@ -18,4 +19,5 @@ mod stages;
 mod types;
 
 pub use crate::statements::EmitError;
+pub use casadi::{CASADI_OUTPUTS, emit_casadi};
 pub use emit::{Files, emit};

@@ -4,7 +4,7 @@
 
 use super::adjoint;
 use super::jacobian::{
-    JacobianRows, by_parameters, by_variables, observable_rows, one_row, rate_rows,
+    JacobianRows, by_parameters, by_time, by_variables, observable_rows, one_row, rate_rows,
 };
 use super::matrix_derivatives::holds_moving_matrix;
 use super::output::Output;
@@ -32,8 +32,10 @@ pub fn derive_outputs(
         ..Outputs::default()
     };
     let has = |output| outputs.contains(&output);
-    let differentiated =
-        has(Output::Jacobians) || has(Output::Products) || has(Output::Linearisation);
+    let differentiated = has(Output::Jacobians)
+        || has(Output::Products)
+        || has(Output::Linearisation)
+        || has(Output::TimeDerivatives);
     if differentiated {
         let mut roots = equations.accelerations.rows.nodes();
         roots.extend(&equations.observables);
@@ -51,6 +53,12 @@ pub fn derive_outputs(
     result.guard_rates = has(Output::GuardRates).then(|| guard_rates(equations));
     if has(Output::Jacobians) || has(Output::Linearisation) {
         result.jacobians = jacobians(equations);
+    }
+    if has(Output::TimeDerivatives) {
+        let rows = rate_rows(equations);
+        result
+            .jacobians
+            .push(by_time(equations, &rows, "rates_by_time"));
     }
     result.products = has(Output::Products).then(|| products(equations));
     result.regimes = has(Output::Regimes).then(|| switches(equations));

@@ -134,6 +134,21 @@ pub(crate) fn by_parameters(
     blocks.jacobian(name, independent.len())
 }
 
+/// The derivative by the time, state and inputs held: a Jacobian of one column.
+pub(crate) fn by_time(
+    equations: &mut Equations,
+    rows: &JacobianRows,
+    name: &'static str,
+) -> Jacobian<NodeId> {
+    let graph = &mut equations.graph;
+    let mut direction = Direction::default();
+    let time = graph.intern(Operation::Time);
+    direction.seed(time, graph.one());
+    let mut blocks = Blocks::new(graph, rows, true);
+    blocks.along(&mut direction, 0);
+    blocks.jacobian(name, 1)
+}
+
 /// A Jacobian of one row.
 pub(crate) fn one_row(graph: &Graph, name: &'static str, row: &[NodeId]) -> Jacobian<NodeId> {
     let nonzeros = row

@@ -18,13 +18,16 @@ pub enum Output {
     Linearisation,
     /// The number of a state's regime, and the rates in a regime with every branch decided.
     Regimes,
+    /// The derivative of the rates by the time. Not asked for by name: it is the column that
+    /// what calls from elsewhere misses in the Jacobians.
+    TimeDerivatives,
     /// Every function a second time as `inlined_...`, for lanes: to be compiled with the code
     /// around it for registers that are known at run time.
     Lanes,
 }
 
 impl Output {
-    /// Every output.
+    /// Every output that is asked for by name.
     pub const ALL: [Self; 8] = [
         Self::BiasForces,
         Self::InverseDynamics,
@@ -46,6 +49,7 @@ impl Output {
             Self::Products => "products",
             Self::Linearisation => "linearisation",
             Self::Regimes => "regimes",
+            Self::TimeDerivatives => "time_derivatives",
             Self::Lanes => "lanes",
         }
     }

@@ -1,0 +1,116 @@
+//! The functions emitted for CasADi, called by CasADi: the rates to the bit, the Jacobians against
+//! differences. Skipped, and said so, where there is no CasADi.
+
+use std::path::Path;
+use std::process::Command;
+
+use eomgen_codegen::c::{CASADI_OUTPUTS, emit_casadi};
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::variant::Variant;
+use eomgen_tests::models::load;
+use eomgen_tests::program::refused;
+
+/// The program that runs Python, if it knows CasADi.
+fn python() -> Option<&'static str> {
+    let found = Command::new("python3")
+        .args(["-c", "import casadi, numpy"])
+        .output();
+    let there = found.is_ok_and(|output| output.status.success());
+    if !there {
+        skips::skip(
+            "CasADi did not call the emitted functions, for want of python3 with casadi and numpy (pip install casadi)",
+        );
+    }
+    there.then_some("python3")
+}
+
+fn check(name: &str, order: usize, folder: &Path) {
+    let model = load(name);
+    let orders = vec![order; model.fields.len()];
+    let variant = Variant::derive_with(&model, &orders, &CASADI_OUTPUTS).expect("derived");
+    let text = emit_casadi(&variant.program).expect("emitted");
+    let source = folder.join(format!("{name}_casadi.c"));
+    let library = folder.join(format!("{name}.so"));
+    std::fs::write(&source, text).expect("written");
+    let compiled = Command::new("cc")
+        .args([
+            "-std=c99",
+            "-pedantic",
+            "-Wall",
+            "-Wextra",
+            "-Werror",
+            "-O1",
+        ])
+        .args(["-shared", "-fPIC"])
+        .arg(&source)
+        .arg("-o")
+        .arg(&library)
+        .output()
+        .expect("cc can be run");
+    assert!(
+        compiled.status.success(),
+        "{}",
+        String::from_utf8_lossy(&compiled.stderr)
+    );
+    let Some(python) = python() else { return };
+    let program = variant.program;
+    let states = program.states();
+    let sign = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let state: Vec<f64> = (0..states)
+        .map(|i| 0.02 * (1 + i) as f64 * sign(i))
+        .collect();
+    let inputs: Vec<f64> = (0..program.inputs.len())
+        .map(|i| 0.5 + 0.1 * i as f64)
+        .collect();
+    let mut rates = vec![0.0; states];
+    let point = Point {
+        t: 0.3,
+        state: &state,
+        inputs: &inputs,
+    };
+    Evaluator::new(program.clone()).rates(point, &mut rates);
+    let output = Command::new(python)
+        .arg(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/tests/casadi/check.py"
+        ))
+        .arg(&library)
+        .arg(program.state_names().join(","))
+        .args([program.inputs.len(), program.parameters.len()].map(|count| count.to_string()))
+        .args(rates.iter().map(|rate| format!("{rate:e}")))
+        .output()
+        .expect("python can be run");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{name}: {said}");
+}
+
+#[test]
+fn casadi_calls_the_emitted_functions() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, order) in [
+        ("pendulum", 0),
+        ("furuta_pendulum", 0),
+        ("emps", 0),
+        ("planetary_arm", 3),
+        ("hub_beam_tip_mass", 2),
+    ] {
+        check(name, order, folder.path());
+    }
+}
+
+#[test]
+fn requests_do_not_go_with_casadi() {
+    let spec = eomgen_tests::models::path("pendulum");
+    let spec = spec.to_string_lossy();
+    for (with, reason) in [
+        ("jacobians", "its functions are rates and jac_rates"),
+        ("lanes", "goes with --target rust"),
+        ("bench", "goes with --target rust"),
+    ] {
+        let arguments = [
+            "generate", &spec, "--target", "casadi", "--with", with, "--out", "x",
+        ];
+        let said = refused(&arguments);
+        assert!(said.contains(reason), "{said}");
+    }
+}
