@@ -10,6 +10,9 @@ use eomgen_records::windows::Windows;
 use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
 
+/// What is said where somebody asked to stop.
+const STOPPED: &str = "stopped as asked";
+
 /// What can go wrong on the way from a specification and records to a result.
 #[derive(Clone, Debug)]
 pub enum DiscoverError {
@@ -36,6 +39,8 @@ pub enum DiscoverError {
     CandidateUnfollowed,
     /// A candidate that changes no output.
     NotExcited,
+    /// Somebody asked to stop.
+    Stopped,
 }
 
 /// The windows through which a model's motion cannot be followed.
@@ -77,6 +82,8 @@ pub enum SimulationError {
     Solver(SolveError),
     /// The motion grows beyond all bounds.
     Unbounded,
+    /// Somebody asked to stop.
+    Stopped,
 }
 
 impl fmt::Display for SimulationError {
@@ -87,6 +94,7 @@ impl fmt::Display for SimulationError {
             Self::Integrator(reason) => f.write_str(reason),
             Self::Solver(error) => error.fmt(f),
             Self::Unbounded => f.write_str("the motion grows beyond all bounds"),
+            Self::Stopped => f.write_str(STOPPED),
         }
     }
 }
@@ -121,6 +129,7 @@ impl fmt::Display for DiscoverError {
             Self::NotExcited => {
                 f.write_str("nothing in the record would show it: it does not change the outputs")
             }
+            Self::Stopped => f.write_str(STOPPED),
         }
     }
 }

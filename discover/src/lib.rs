@@ -51,5 +51,6 @@ pub mod residual_force;
 pub mod search;
 pub mod thresholds;
 
+pub use model::stop::Stop;
 pub use report::result::{Comparison, Discovery};
-pub use report::run::{Specification, compare, discover};
+pub use report::run::{Specification, compare, discover, discover_until};

@@ -56,6 +56,7 @@ pub fn complete(
     problem: &EstimationProblem<'_>,
     preliminary: PreliminaryFit,
 ) -> Result<Fit, DiscoverError> {
+    problem.stop.check()?;
     let mut all = Shooting::new(
         problem,
         &preliminary.model,

@@ -13,6 +13,7 @@ use crate::model::linear_outputs::LinearOutputs;
 use crate::model::measured_outputs::MeasuredOutputs;
 use crate::model::nonlinear_remainder::NonlinearRemainder;
 use crate::model::simulation::Simulation;
+use crate::model::stop::Stop;
 use crate::thresholds;
 use eomgen_records::dataset::Channel;
 use eomgen_records::record::Record;
@@ -41,6 +42,8 @@ pub struct EstimationModel {
     /// shorter where the linear part is not all.
     sample: f64,
     refinement: f64,
+    /// By which its simulations can be told to stop.
+    pub(crate) stop: Stop,
 }
 
 /// What of a model is linear between switches.
@@ -113,6 +116,7 @@ impl EstimationModel {
             steps: None,
             sample: 0.0,
             refinement: 1.0,
+            stop: Stop::default(),
             compiled,
         })
     }
@@ -226,14 +230,18 @@ impl EstimationModel {
     /// The model at these values of the independent parameters, ready to run.
     ///
     /// # Errors
-    /// Values at which there is no motion.
+    /// Values at which there is no motion; [`SimulationError::Stopped`].
     pub fn simulation(&self, values: &[f64]) -> Result<Simulation<'_>, SimulationError> {
+        if self.stop.is_requested() {
+            return Err(SimulationError::Stopped);
+        }
         let mut evaluator = self.compiled.evaluator(values);
         if !evaluator.pivots_are_positive() {
             return Err(SimulationError::MassMatrix);
         }
         let linear_outputs = LinearOutputs::of(&self.measured, &mut evaluator);
         let mut simulation = Simulation::new(&self.measured, evaluator, linear_outputs, self.steps);
+        simulation.stop = self.stop.clone();
         let (linear, own) = match &self.linear {
             None => return Ok(simulation),
             Some(LinearPart::Whole) => (&self.compiled, values.to_vec()),

@@ -2,7 +2,7 @@
 //! outputs ([`estimation_model`], [`simulation`]), records cut into
 //! [`windows`](eomgen_records::windows), the [`unknowns`] with their priors, and the estimation
 //! [`problem`] that all fits to one dataset share. [`channel_checks`] compares columns with what the
-//! model expects of them; [`smoothing`] has no delay.
+//! model expects of them; [`smoothing`] has no delay; [`stop`] ends all of it early.
 
 pub mod channel_checks;
 pub mod estimation_model;
@@ -14,5 +14,6 @@ pub mod problem;
 pub mod simulation;
 pub mod smoothing;
 pub mod specification_texts;
+pub mod stop;
 pub mod unknowns;
 pub mod usual_rates;

@@ -6,6 +6,7 @@ use eomgen_model_spec::source::Source;
 use crate::error::DiscoverError;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::first_state;
+use crate::model::stop::Stop;
 use crate::thresholds;
 use eomgen_records::dataset::{Dataset, Start};
 use eomgen_records::record::Record;
@@ -27,6 +28,8 @@ pub struct EstimationProblem<'d> {
     pub path: String,
     /// The states of the specification's own model; others are candidates'.
     pub states: Vec<String>,
+    /// By which all of it can be told to stop.
+    pub stop: Stop,
 }
 
 impl<'d> EstimationProblem<'d> {
@@ -51,6 +54,7 @@ impl<'d> EstimationProblem<'d> {
             test: Windows::cut(&dataset.test, dataset.window),
             order,
             path: path.to_owned(),
+            stop: Stop::default(),
         }
     }
 
@@ -58,14 +62,16 @@ impl<'d> EstimationProblem<'d> {
     /// that are not linear between switches, where there are such.
     ///
     /// # Errors
-    /// What is wrong with the text.
+    /// What is wrong with the text; [`DiscoverError::Stopped`].
     pub fn model(
         &self,
         text: &str,
         linear: Option<&str>,
     ) -> Result<EstimationModel, DiscoverError> {
+        self.stop.check()?;
         let channels = &self.dataset.channels;
         let mut model = EstimationModel::of(text, linear, &self.path, self.order, channels)?;
+        model.stop = self.stop.clone();
         let record = &self.dataset.train[0];
         let first = self.first_state(&model, record);
         model.choose_steps(record, &first, &self.noise);

@@ -15,6 +15,7 @@ use crate::error::SimulationError;
 use crate::model::linear_outputs::LinearOutputs;
 use crate::model::measured_outputs::MeasuredOutputs;
 use crate::model::nonlinear_remainder::NonlinearRemainder;
+use crate::model::stop::Stop;
 use crate::thresholds;
 use eomgen_sim::exponential::{Drives, ExponentialIntegrator, Force, Options, Tangents};
 use eomgen_sim::ode::runge_kutta::RungeKutta;
@@ -30,6 +31,8 @@ pub struct Simulation<'m> {
     integrator: Option<ExponentialIntegrator>,
     remainder: Option<NonlinearRemainder>,
     propagator: Option<Propagator>,
+    /// Whether to follow no motion any more.
+    pub(crate) stop: Stop,
 }
 
 /// What drives neighbouring motions: so many differences of the accelerations.
@@ -88,6 +91,7 @@ impl<'m> Simulation<'m> {
             integrator: None,
             remainder: None,
             propagator: None,
+            stop: Stop::default(),
         }
     }
 
@@ -132,6 +136,7 @@ impl<'m> Simulation<'m> {
         by_state: bool,
         driven: NeighbourDrives<'_>,
     ) -> Option<LinearisedMotion> {
+        self.stop.check().ok()?;
         let linear_outputs = self.linear_outputs.as_ref()?;
         let integrator = self.integrator.as_mut()?;
         let n = initial.len();
@@ -181,6 +186,9 @@ impl<'m> Simulation<'m> {
             return Ok(Vec::new());
         };
         let span = (*begin, *end);
+        if self.stop.is_requested() {
+            return Err(SimulationError::Stopped);
+        }
         if let Some(integrator) = &mut self.integrator {
             let mut states = Vec::with_capacity(samples.len());
             let options = Options {
@@ -277,6 +285,7 @@ impl<'m> Simulation<'m> {
         inputs: &HeldInputs,
         steps: &[f64],
     ) -> Option<OutputTangents> {
+        self.stop.check().ok()?;
         let span = (*samples.first()?, *samples.last()?);
         let count = initial.len();
         let unit = |state: usize| {

@@ -11,6 +11,7 @@ use crate::fit::noise_floor::{NoiseFloor, noise_floor};
 use crate::fit::null_model::null_fit;
 use crate::model::channel_checks;
 use crate::model::problem::EstimationProblem;
+use crate::model::stop::Stop;
 use crate::report::discovery::{closure, effects, gap, refitted, rejected, sensors, steps};
 use crate::report::location::located;
 use crate::report::pictures::{figures, force_section};
@@ -86,10 +87,26 @@ pub fn compare(
 /// not leave a specification.
 pub fn discover(
     specification: Specification<'_>,
+    dataset: Dataset,
+    catalogue: &[Effect],
+    seed: u64,
+    progress: &Progress<'_>,
+) -> Result<Discovery, DiscoverError> {
+    let stop = Stop::default();
+    discover_until(specification, dataset, catalogue, seed, progress, &stop)
+}
+
+/// The same, until somebody asks to stop.
+///
+/// # Errors
+/// As [`discover`]; [`DiscoverError::Stopped`].
+pub fn discover_until(
+    specification: Specification<'_>,
     mut dataset: Dataset,
     catalogue: &[Effect],
     seed: u64,
     progress: &Progress<'_>,
+    stop: &Stop,
 ) -> Result<Discovery, DiscoverError> {
     let Specification { path, text, order } = specification;
     let without_site = user_effects::check(catalogue, path, text)?;
@@ -97,15 +114,22 @@ pub fn discover(
         progress(&format!("note: {note}"));
     }
     dataset.notes.extend(without_site);
-    let problem = EstimationProblem::new(&dataset, order, path, text);
+    let mut problem = EstimationProblem::new(&dataset, order, path, text);
+    problem.stop = stop.clone();
+    let null = null(&problem, text, seed, progress);
+    // What failed because somebody asked to stop says nothing of the records.
+    stop.check()?;
     let Null {
         fit,
         floor: before,
         force,
-    } = null(&problem, text, seed, progress)?;
+    } = null?;
     let mut location = located(&problem, &fit, force.as_ref());
-    let mut found = search(&problem, fit, catalogue, before.rms, progress)?;
+    let found = search(&problem, fit, catalogue, before.rms, progress);
+    stop.check()?;
+    let mut found = found?;
     unnamed(&problem, &mut found, before.rms, progress);
+    stop.check()?;
     let floor = match found.accepted.is_empty() {
         true => before,
         false => noise_floor(&problem, found.best(), seed),
@@ -117,6 +141,7 @@ pub fn discover(
     if let Some(after) = &after {
         location += &format!(" {}", described_after(after));
     }
+    stop.check()?;
     let extended = extended(&problem, text, best, &found.accepted)?;
     let pictures = Pictures {
         residuals: figures(&problem, null, found.last.as_ref()),

@@ -65,6 +65,7 @@ pub fn preliminary(
     hypothesis: &Hypothesis,
 ) -> Result<PreliminaryFit, DiscoverError> {
     let (problem, fit) = (pool.context.problem, pool.context.fit);
+    problem.stop.check()?;
     let Extended { unknowns, theta } = unknowns_with(pool, hypothesis, pool.parts[0]);
     let texts = texts(pool, hypothesis, &unknowns, &theta)?;
     // What swings in coordinates of its own is far from the fit however little it does.

@@ -55,7 +55,7 @@ use crate::thresholds;
 /// deviations. `progress` is told what is being done.
 ///
 /// # Errors
-/// Why no motion can be followed.
+/// Why no motion can be followed; [`DiscoverError::Stopped`].
 pub fn search(
     problem: &EstimationProblem<'_>,
     null: Fit,
@@ -70,6 +70,7 @@ pub fn search(
         rejected: Vec::new(),
     };
     while found.accepted.len() < thresholds::MOST_EFFECTS {
+        problem.stop.check()?;
         let fit = found.last.as_ref().unwrap_or(&found.null);
         if fit.is_at_floor(floor) {
             break;

@@ -118,8 +118,9 @@ impl Round<'_> {
 
     /// Candidates screened in an excitation window and fitted one by one: what repeats with an
     /// angle only if the others promise little, or come to little. None if the model has no play to
-    /// be closed.
+    /// be closed, or somebody asked to stop.
     pub(crate) fn tested_in(&self, window: ExcitationWindow) -> Option<TestedPool> {
+        self.context.problem.stop.check().ok()?;
         let closed = match window {
             ExcitationWindow::BacklashRemoved => {
                 Some(without_play(self.context.problem, self.context.fit)?)

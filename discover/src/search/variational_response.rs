@@ -163,6 +163,9 @@ fn ready(
     id: CandidateId,
     points: &Points,
 ) -> Option<Result<Ready, DiscoverError>> {
+    if let Err(stopped) = problem.stop.check() {
+        return Some(Err(stopped));
+    }
     let candidate = &candidates[id];
     let start: Vec<f64> = candidate
         .parameters
