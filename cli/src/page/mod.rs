@@ -5,14 +5,13 @@
 //! The page has no script and refers to nothing outside itself; nothing in a specification
 //! becomes markup.
 
-mod equations;
 mod steps;
 
 #[cfg(test)]
 mod tests;
 
 use eomgen_codegen::report::Report;
-use eomgen_page::{Figure, document};
+use eomgen_page::{Figure, document, equations};
 use maud::{Markup, html};
 
 /// Everything on the page.
@@ -169,7 +168,7 @@ impl Tour<'_> {
             step(
                 "equations",
                 "The equations are derived",
-                equations::content(self.equations),
+                equations(self.equations),
             ),
             step("source", "Rust is emitted", steps::source(&self.source)),
             step(

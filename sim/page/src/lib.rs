@@ -13,14 +13,17 @@
 //! ```
 //!
 //! The files: `document` (head, style sheet, body), `parts` (sections, tables, figures, files
-//! behind a summary), `number`, [`mod@formula`] (formulas as MathML, from their trees).
+//! behind a summary), `number`, [`mod@formula`] (formulas as MathML, from their trees), `equations`
+//! (a report's formulas with what they are).
 
 mod document;
+mod equations;
 pub mod formula;
 mod number;
 mod parts;
 
 pub use document::document;
+pub use equations::equations;
 pub use formula::formula;
 pub use number::number;
 pub use parts::{Figure, figure, folded, section, table};

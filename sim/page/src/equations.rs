@@ -1,16 +1,19 @@
-//! The step that shows the derived equations: definitions, energies, M q'' + c = f entry by
+//! The derived equations as a part of a page: definitions, energies, M q'' + c = f entry by
 //! entry, the named coefficients with their values, the accelerations, what switches.
 
 use eomgen_codegen::report::{CoefficientLine, Line, MassMatrixEntry, Report, Sentence, Solution};
 use eomgen_codegen::symbolic::formula::{Formula, Symbol};
-use eomgen_page::{formula, number, table};
 use maud::{Markup, html};
+
+use crate::formula::formula;
+use crate::number::number;
+use crate::parts::table;
 
 /// At most so many values of a coefficient are shown.
 const SHOWN_VALUES: usize = 8;
 
-/// The content of the step.
-pub(super) fn content(report: &Report) -> Markup {
+/// The equations that a report holds, their formulas as MathML.
+pub fn equations(report: &Report) -> Markup {
     let has_modes = report.orders.iter().any(|order| *order > 0);
     let terms = html! {
         "Terms of the energies " i { "T" } " and " i { "V" } ", of the dissipation, and forces"
@@ -96,7 +99,7 @@ fn row(left: &Markup, right: &Formula) -> Markup {
 }
 
 /// Equations under a heading.
-fn equations(heading: &Markup, rows: &Markup) -> Markup {
+fn under(heading: &Markup, rows: &Markup) -> Markup {
     html! {
         h3 { (heading) }
         div.wide { table.equations { tbody { (rows) } } }
@@ -108,7 +111,7 @@ fn lines(heading: &Markup, lines: &[Line], name: impl Fn(&Formula) -> Markup) ->
         return html! {};
     }
     let rows = html! { @for line in lines { (row(&name(&line.name), &line.formula)) } };
-    equations(heading, &rows)
+    under(heading, &rows)
 }
 
 fn energies(report: &Report) -> Markup {
@@ -116,7 +119,7 @@ fn energies(report: &Report) -> Markup {
         (row(&html! { i { "T" } }, &report.kinetic))
         (row(&html! { i { "V" } }, &report.potential))
     };
-    equations(&html! { "Kinetic and potential energy" }, &rows)
+    under(&html! { "Kinetic and potential energy" }, &rows)
 }
 
 fn mass_matrix(entries: &[MassMatrixEntry]) -> Markup {
@@ -126,7 +129,7 @@ fn mass_matrix(entries: &[MassMatrixEntry]) -> Markup {
         }
     };
     let heading = html! { "Mass matrix " b { "M" } ": symmetric, its nonzero entries" };
-    equations(&heading, &rows)
+    under(&heading, &rows)
 }
 
 fn coefficients(lines: &[CoefficientLine]) -> Markup {
