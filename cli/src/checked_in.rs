@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use eomgen_codegen::rust::Packaging;
 use eomgen_model_spec::model::Model;
+use eomgen_paper::certification::certify_source;
 use eomgen_validate::of_model::unchecked;
 use serde_json::{Value, json};
 
-use crate::certification::{certify_source, document};
+use crate::certification::document;
 use crate::emission::source;
 use crate::error::{Error, Result, say, warn};
 use crate::model::{derive, load};

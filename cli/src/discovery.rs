@@ -7,13 +7,13 @@ use std::time::Instant;
 use eomgen_discover::report::result::Validation;
 use eomgen_discover::{Specification, catalogue};
 use eomgen_model_spec::source::Source;
+use eomgen_paper::certification::certify;
 use eomgen_records::dataset::Dataset;
 use eomgen_records::read_dataset;
 use eomgen_validate::certificate::Check;
 use serde_json::{Value, json};
 
 use crate::arguments;
-use crate::certification::certify;
 use crate::error::{Error, Result, warn};
 use crate::model::{load, orders};
 use crate::output::write_file;

@@ -4,12 +4,13 @@
 use std::path::Path;
 
 use eomgen_codegen::variant::Variant;
+use eomgen_paper::certification::certify_source;
 use eomgen_validate::certificate::Certificate;
 use serde_json::json;
 
 use crate::arguments::{Extra, Generate};
 use crate::bench_files;
-use crate::certification::{certify_source, document};
+use crate::certification::document;
 use crate::checked_in;
 use crate::emission;
 use crate::error::{Error, Result, say, warn};

@@ -1,7 +1,9 @@
 //! `eomgen validate`: the certificate of a variant.
 
+use eomgen_paper::certification::certify;
+
 use crate::arguments::{Extra, Validate};
-use crate::certification::{certify, document, summary};
+use crate::certification::{document, summary};
 use crate::error::{Error, Result, say};
 use crate::model::{load, orders};
 use crate::output::Destination;

@@ -13,10 +13,10 @@ use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
 use eomgen_model_spec::models;
 use eomgen_model_spec::source::Source;
 use eomgen_page::Figure;
+use eomgen_paper::certification::certify;
 use eomgen_plot::{Panel, Reference, Series, TimeHistory, time_history};
 use eomgen_validate::certificate::Certificate;
 
-use crate::certification::certify;
 use crate::emission::source;
 use crate::error::{Error, Result};
 use crate::model::derive;

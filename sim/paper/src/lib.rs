@@ -1,7 +1,7 @@
 //! The paper's machine, a flexible arm behind a planetary gear reducer with backlash.
 //!
 //! [`mod@reference`] holds equations written by hand, the errata among them; [`reference_equations`] says
-//! which belong to which model, by [`same_motion`]; [`studies`] repeat the paper's figures and
+//! which belong to which model, by [`same_motion`], and [`certification`] brings them into certificates; [`studies`] repeat the paper's figures and
 //! judge its claims.
 //!
 //! The equations that were written by hand for a model, beside those that are derived:
@@ -21,6 +21,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod certification;
 pub mod reference;
 pub mod reference_equations;
 pub mod same_motion;
