@@ -39,9 +39,11 @@
 //! # Ok::<(), eomgen_compiled_model::Error>(())
 //! ```
 
+mod differentiated;
 mod driven;
 mod error;
 mod instance;
+mod jacobians;
 mod model;
 mod motion;
 mod simulate;
@@ -49,6 +51,7 @@ mod simulate;
 pub use driven::Driven;
 pub use error::Error;
 pub use instance::Instance;
+pub use jacobians::{Jacobian, JacobianEvaluator, Linearisation};
 pub use model::{CompiledModel, Orders};
 pub use motion::{Choice, Motion, Solver, Stopped};
 pub use simulate::{DEFAULT_TOLERANCE, Request};

@@ -9,10 +9,12 @@ use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, MachineCode};
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::Checked;
+use eomgen_model_spec::diagnostic::Diagnostics;
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 use eomgen_sim::piecewise_linear::{ExactError, PiecewiseLinear};
 
+use crate::differentiated::Differentiated;
 use crate::error::Error;
 
 /// The modal truncation orders that a model is derived at.
@@ -66,6 +68,7 @@ pub struct CompiledModel {
     program: Program,
     code: OnceLock<Option<Arc<dyn MachineCode>>>,
     piecewise_linear: OnceLock<Result<PiecewiseLinear, ExactError>>,
+    differentiated: OnceLock<Result<Differentiated, Diagnostics>>,
 }
 
 impl CompiledModel {
@@ -118,6 +121,7 @@ impl CompiledModel {
             program: derived.program,
             code: OnceLock::new(),
             piecewise_linear: OnceLock::new(),
+            differentiated: OnceLock::new(),
         }
     }
 
@@ -165,13 +169,15 @@ impl CompiledModel {
     /// code where this kind of machine is known, interpreted elsewhere, with the same numbers.
     pub fn evaluator(&self, parameters: &[f64]) -> Evaluator {
         let code = self.code.get_or_init(|| eomgen_jit::code(&self.program));
-        let program = self.program.clone();
-        let mut evaluator = match code {
-            Some(code) => Evaluator::with_code(program, code.clone()),
-            None => Evaluator::new(program),
-        };
-        evaluator.prepare(parameters);
-        evaluator
+        evaluator(&self.program, code.as_ref(), parameters)
+    }
+
+    /// The program with Jacobians.
+    pub(crate) fn differentiated(&self) -> Result<&Differentiated, Error> {
+        let made = self
+            .differentiated
+            .get_or_init(|| Differentiated::of(self.model(), self.orders()));
+        made.as_ref().map_err(|found| found.clone().into())
     }
 
     /// The model's form that is linear between its switches.
@@ -184,4 +190,20 @@ impl CompiledModel {
             .get_or_init(|| PiecewiseLinear::of(&self.model, &self.orders));
         made.as_ref()
     }
+}
+
+/// An evaluator of a program, by its machine code if there is some, prepared at these values of
+/// the independent parameters, SI.
+pub(crate) fn evaluator(
+    program: &Program,
+    code: Option<&Arc<dyn MachineCode>>,
+    parameters: &[f64],
+) -> Evaluator {
+    let program = program.clone();
+    let mut evaluator = match code {
+        Some(code) => Evaluator::with_code(program, code.clone()),
+        None => Evaluator::new(program),
+    };
+    evaluator.prepare(parameters);
+    evaluator
 }

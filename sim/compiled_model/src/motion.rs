@@ -23,6 +23,9 @@ pub enum Solver {
 }
 
 impl Solver {
+    /// Every solver.
+    pub const ALL: [Self; 4] = [Self::Auto, Self::Exact, Self::Rk, Self::Adams];
+
     /// Its name on the command line and in files.
     pub fn name(self) -> &'static str {
         match self {

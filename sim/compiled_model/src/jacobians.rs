@@ -1,0 +1,243 @@
+//! Jacobians of a compiled model, computed as dense matrices. How they are derived is the business
+//! of `codegen`.
+
+use eomgen_codegen::program::Program;
+use eomgen_codegen::program::evaluator::{Evaluator, Point};
+
+use crate::differentiated::Differentiated;
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::model::evaluator;
+
+/// Which Jacobian: of what, by what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Jacobian {
+    /// Of the rates by the state.
+    RatesByState,
+    /// Of the rates by the inputs.
+    RatesByInputs,
+    /// Of the rates by the independent parameters, SI.
+    RatesByParameters,
+    /// Of the rates by the time, with state and inputs held: one column.
+    RatesByTime,
+    /// Of the observables by the state.
+    ObservablesByState,
+    /// Of the observables by the inputs.
+    ObservablesByInputs,
+    /// Of the observables by the independent parameters, SI.
+    ObservablesByParameters,
+}
+
+impl Jacobian {
+    /// Every Jacobian.
+    pub const ALL: [Self; 7] = [
+        Self::RatesByState,
+        Self::RatesByInputs,
+        Self::RatesByParameters,
+        Self::RatesByTime,
+        Self::ObservablesByState,
+        Self::ObservablesByInputs,
+        Self::ObservablesByParameters,
+    ];
+
+    /// Its name, as in emitted code.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::RatesByState => "rates_by_state",
+            Self::RatesByInputs => "rates_by_inputs",
+            Self::RatesByParameters => "rates_by_parameters",
+            Self::RatesByTime => "rates_by_time",
+            Self::ObservablesByState => "observables_by_state",
+            Self::ObservablesByInputs => "observables_by_inputs",
+            Self::ObservablesByParameters => "observables_by_parameters",
+        }
+    }
+}
+
+/// Where the structural nonzeros of one Jacobian stand.
+struct Layout {
+    /// Its place among those of the program.
+    place: usize,
+    rows: usize,
+    columns: usize,
+    /// For each nonzero its place in the dense matrix, row by row.
+    dense: Vec<usize>,
+    nonzeros: Vec<f64>,
+}
+
+/// Computes Jacobians at one set of parameter values.
+pub struct JacobianEvaluator {
+    evaluator: Evaluator,
+    /// In the order of [`Jacobian::ALL`].
+    layouts: Vec<Layout>,
+}
+
+impl JacobianEvaluator {
+    /// Rows and columns.
+    pub fn shape(&self, of: Jacobian) -> (usize, usize) {
+        let layout = &self.layouts[of as usize];
+        (layout.rows, layout.columns)
+    }
+
+    /// The dense matrix at a point, row by row; `out` has rows times columns numbers. Of the regime
+    /// that the point is in; on a switching surface one-sided.
+    pub fn evaluate(&mut self, of: Jacobian, point: Point<'_>, out: &mut [f64]) {
+        let layout = &mut self.layouts[of as usize];
+        self.evaluator
+            .jacobian(layout.place, point, &mut layout.nonzeros);
+        out.fill(0.0);
+        for (place, value) in layout.dense.iter().zip(&layout.nonzeros) {
+            out[*place] = *value;
+        }
+    }
+}
+
+/// A model linearised about a point: with dx, du, dy the differences from there,
+/// d(dx)/dt = f + A dx + B du and dy = C dx + D du. Matrices are given row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Linearisation {
+    /// Rates by states.
+    pub a: Vec<f64>,
+    /// Rates by inputs.
+    pub b: Vec<f64>,
+    /// Observables by states.
+    pub c: Vec<f64>,
+    /// Observables by inputs.
+    pub d: Vec<f64>,
+    /// The rates at the point, f: zero in an equilibrium.
+    pub rates: Vec<f64>,
+    /// The observables at the point.
+    pub observables: Vec<f64>,
+}
+
+impl Instance<'_> {
+    /// Computes Jacobians at these parameters.
+    ///
+    /// # Errors
+    /// What cannot be differentiated, and a mass matrix that is not positive definite.
+    pub fn jacobian_evaluator(&self) -> Result<JacobianEvaluator, Error> {
+        self.evaluator()?;
+        let Differentiated { program, code } = self.model().differentiated()?;
+        let layouts = Jacobian::ALL.iter().filter_map(|of| layout(program, *of));
+        Ok(JacobianEvaluator {
+            layouts: layouts.collect(),
+            evaluator: evaluator(program, code.as_ref(), self.parameters()),
+        })
+    }
+
+    /// The model linearised at a time (s) about a state and inputs, SI.
+    ///
+    /// # Errors
+    /// As [`Instance::jacobian_evaluator`].
+    pub fn linearise(&self, point: Point<'_>) -> Result<Linearisation, Error> {
+        let mut jacobians = self.jacobian_evaluator()?;
+        let mut dense = |of| {
+            let (rows, columns) = jacobians.shape(of);
+            let mut matrix = vec![0.0; rows * columns];
+            jacobians.evaluate(of, point, &mut matrix);
+            matrix
+        };
+        let (a, b) = (
+            dense(Jacobian::RatesByState),
+            dense(Jacobian::RatesByInputs),
+        );
+        let (c, d) = (
+            dense(Jacobian::ObservablesByState),
+            dense(Jacobian::ObservablesByInputs),
+        );
+        let mut evaluator = self.evaluator()?;
+        let mut rates = vec![0.0; evaluator.program().states()];
+        evaluator.rates(point, &mut rates);
+        let mut observables = vec![0.0; evaluator.program().observables.len()];
+        evaluator.observables(point, &mut observables);
+        Ok(Linearisation {
+            a,
+            b,
+            c,
+            d,
+            rates,
+            observables,
+        })
+    }
+}
+
+/// Where a Jacobian's nonzeros stand; every program with Jacobians has all of them.
+fn layout(program: &Program, of: Jacobian) -> Option<Layout> {
+    let jacobians = &program.outputs.jacobians;
+    let place = jacobians.iter().position(|known| known.name == of.name())?;
+    let jacobian = &jacobians[place];
+    let mut dense = vec![0; jacobian.nonzeros()];
+    for (entry, block) in jacobian.entries.iter().zip(jacobian.places()) {
+        for row in 0..entry.rows {
+            for column in 0..entry.width() {
+                let of_matrix = entry.column + if entry.diagonal { row } else { column };
+                dense[block.start + block.width * row + column] =
+                    (entry.row + row) * jacobian.columns + of_matrix;
+            }
+        }
+    }
+    Some(Layout {
+        place,
+        rows: jacobian.rows,
+        columns: jacobian.columns,
+        nonzeros: vec![0.0; dense.len()],
+        dense,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{CompiledModel, Orders};
+
+    const DRIVEN: &str = r#"
+[model]
+name = "driven"
+[parameters]
+m = { value = 2, unit = "kg" }
+k = { value = 8, unit = "N/m" }
+c = { value = 3, unit = "N s/m" }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[potential]
+spring = "1/2*k*x^2"
+[dissipation]
+damper = "1/2*c*dot(x)^2"
+[forces]
+motor = { on = "x", value = "u" }
+[observables]
+pull = { value = "k*x + u", unit = "N" }
+"#;
+
+    #[test]
+    fn a_linear_model_is_its_own_linearisation() {
+        let model = CompiledModel::of_text("driven.toml", DRIVEN, Orders::Declared);
+        let model = model.expect("a model");
+        let run = model.with(&[("k", 18.0)]).expect("an instance");
+        let (state, inputs) = ([0.1, 0.3], [4.0]);
+        let point = Point {
+            t: 0.0,
+            state: &state,
+            inputs: &inputs,
+        };
+        let found = run.linearise(point).expect("a linearisation");
+        assert_eq!(found.a, [0.0, 1.0, -9.0, -1.5]);
+        assert_eq!(found.b, [0.0, 0.5]);
+        // pull, energy and its rate by the damper and the motor.
+        assert_eq!(found.c[..2], [18.0, 0.0]);
+        assert_eq!(found.d[..2], [1.0, 0.0]);
+        for (value, right) in found.rates.iter().zip([0.3, 2.0 - 0.9 - 0.45]) {
+            assert!((value - right).abs() < 1e-15);
+        }
+        assert!((found.observables[0] - 5.8).abs() < 1e-15);
+        let mut by_parameters = [0.0; 6];
+        let mut jacobians = run.jacobian_evaluator().expect("Jacobians");
+        jacobians.evaluate(Jacobian::RatesByParameters, point, &mut by_parameters);
+        assert_eq!(by_parameters[..3], [0.0; 3]);
+        assert!((by_parameters[4] + 0.05).abs() < 1e-16); // d(-k x/m)/dk
+    }
+}
