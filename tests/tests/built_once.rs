@@ -1,6 +1,6 @@
-//! The program has its dependencies with the features that the tests and benches ask of them:
-//! `cargo run` and `cargo test --workspace`, one after the other as in `.ci/run`, then compile
-//! nothing twice.
+//! The program and the Python package have their dependencies with the features that the tests and
+//! benches ask of them: `cargo run`, `cargo test --workspace` and `pip install ./python`, one after
+//! the other as in `.ci/run`, then compile nothing twice.
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -29,11 +29,16 @@ fn what_the_program_needs_is_built_as_the_tests_need_it() {
     let hosts = ["--exclude", "eomgen-macros", "--exclude", "eomgen-build"];
     let whole = ["--workspace", "--edges", "normal,dev,no-proc-macro"];
     let whole = packages(&[&whole[..], &hosts].concat());
-    let program = packages(&["--package", "eomgen-cli", "--edges", "normal,no-proc-macro"]);
-    let twice: Vec<_> = program.difference(&whole).collect();
-    assert!(
-        twice.is_empty(),
-        "compiled for the program and again for the tests; cli/Cargo.toml can ask for the \
-         features that the tests do: {twice:#?}"
-    );
+    for (package, manifest) in [
+        ("eomgen-cli", "cli/Cargo.toml"),
+        ("eomgen-python", "python/Cargo.toml"),
+    ] {
+        let alone = packages(&["--package", package, "--edges", "normal,no-proc-macro"]);
+        let twice: Vec<_> = alone.difference(&whole).collect();
+        assert!(
+            twice.is_empty(),
+            "compiled for {package} and again for the tests; {manifest} can ask for the \
+             features that the tests do: {twice:#?}"
+        );
+    }
 }

@@ -31,8 +31,11 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// What another test runs, with the file that does.
-const ELSEWHERE: [(&str, &str); 10] = [
+const ELSEWHERE: [(&str, &str); 12] = [
     ("cargo install --path cli", "tests/tests/installed.rs"),
+    // The same commands, as the package's own page has them.
+    ("python3 -m venv .venv", "tests/tests/python.rs"),
+    ("pip install ./python", "tests/tests/python.rs"),
     // What it would bring into a project.
     ("cargo add eomgen", "tests/tests/packages.rs"),
     // The bench of a small machine, built and run.

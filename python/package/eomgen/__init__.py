@@ -1,0 +1,29 @@
+"""Equations of motion from a specification: derived, compiled, simulated, compared with records.
+
+    >>> import eomgen
+    >>> m = eomgen.load("pendulum.toml")
+    >>> m.rates(0.0, [0.1, 0.0])
+    >>> r = m.simulate(until=2, sample=1e-3)
+    >>> r["theta"]
+
+All numbers are in SI units, but parameters, which are in the units that the specification declares.
+"""
+
+from ._native import DiscoveryError, SimulationError, SpecificationError
+from .discovery import Discovery, discover
+from .linearisation import Linearisation
+from .model import Model, SpecificationWarning, load
+from .trajectory import Trajectory
+
+__all__ = [
+    "Discovery",
+    "DiscoveryError",
+    "Linearisation",
+    "Model",
+    "SimulationError",
+    "SpecificationError",
+    "SpecificationWarning",
+    "Trajectory",
+    "discover",
+    "load",
+]

@@ -1,0 +1,94 @@
+"""How far work is, shown where somebody looks: a line in a terminal, a display in a notebook."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Any, Callable, Optional
+
+# Work shorter than this shows nothing, s.
+PATIENCE = 2.0
+
+
+class _Line:
+    """One line that replaces itself."""
+
+    def __init__(self) -> None:
+        self._begin = time.monotonic()
+        self._display: Any = None
+        self._length = 0
+
+    def show(self, text: str) -> None:
+        if time.monotonic() - self._begin < PATIENCE:
+            return
+        if _in_notebook():
+            self._in_notebook(text)
+        elif sys.stderr is not None and sys.stderr.isatty():
+            sys.stderr.write("\r" + text.ljust(self._length))
+            sys.stderr.flush()
+            self._length = len(text)
+
+    def clear(self) -> None:
+        if self._display is not None:
+            self._in_notebook("")
+        elif self._length:
+            sys.stderr.write("\r" + " " * self._length + "\r")
+            sys.stderr.flush()
+
+    def _in_notebook(self, text: str) -> None:
+        from IPython import display
+
+        content = {"text/plain": text}
+        if self._display is None:
+            show: Any = display.display
+            self._display = show(content, raw=True, display_id=True)
+        else:
+            self._display.update(content, raw=True)
+
+
+def _in_notebook() -> bool:
+    # Only who has loaded IPython can be in a notebook.
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython is not None else None
+    return shell is not None and hasattr(shell, "kernel")
+
+
+class Fraction:
+    """How much of a whole is done: to `progress` as a part from 0 to 1, or on a line."""
+
+    def __init__(self, what: str, whole: float, progress: Optional[Callable[[float], object]]):
+        self._what, self._whole, self._progress = what, whole, progress
+        self._line = _Line()
+
+    def __enter__(self) -> "Fraction":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._line.clear()
+
+    def tell(self, done: float) -> None:
+        part = min(max(done / self._whole, 0.0), 1.0)
+        if self._progress is not None:
+            self._progress(part)
+        else:
+            self._line.show(f"{self._what}: {100 * part:.0f} %")
+
+
+class Lines:
+    """What is being done, line by line: to `progress`, or the last one on a line of its own."""
+
+    def __init__(self, progress: Optional[Callable[[str], object]]):
+        self._progress = progress
+        self._line = _Line()
+
+    def __enter__(self) -> "Lines":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._line.clear()
+
+    def tell(self, line: str) -> None:
+        if self._progress is not None:
+            self._progress(line)
+        else:
+            self._line.show(line)

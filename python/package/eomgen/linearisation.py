@@ -1,0 +1,49 @@
+"""A model linearised about a point."""
+
+from __future__ import annotations
+
+from typing import Iterator, Sequence, Tuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Linearisation:
+    """d(dx)/dt = rates + A dx + B du, dy = C dx + D du, with dx, du and dy the differences from the
+    point. It unpacks: `A, B, C, D = m.linearise()`.
+
+    A: (states, states). B: (states, inputs). C: (outputs, states). D: (outputs, inputs). Outputs
+    are the observables. states, inputs, outputs: their names. x: (states,) and u: (inputs,), the
+    point. rates: (states,), 0 in an equilibrium. y: (outputs,), the observables there. All SI.
+    """
+
+    def __init__(
+        self,
+        states: Tuple[str, ...],
+        inputs: Tuple[str, ...],
+        outputs: Tuple[str, ...],
+        x: Array,
+        u: Array,
+        a: Sequence[float],
+        b: Sequence[float],
+        c: Sequence[float],
+        d: Sequence[float],
+        rates: Sequence[float],
+        observables: Sequence[float],
+    ):
+        self.states, self.inputs, self.outputs = states, inputs, outputs
+        self.x, self.u = x.copy(), u.copy()
+        self.A = np.array(a).reshape(len(states), len(states))
+        self.B = np.array(b).reshape(len(states), len(inputs))
+        self.C = np.array(c).reshape(len(outputs), len(states))
+        self.D = np.array(d).reshape(len(outputs), len(inputs))
+        self.rates, self.y = np.array(rates), np.array(observables)
+
+    def __iter__(self) -> Iterator[Array]:
+        return iter((self.A, self.B, self.C, self.D))
+
+    def __repr__(self) -> str:
+        sizes = f"{len(self.states)} states, {len(self.inputs)} inputs, {len(self.outputs)} outputs"
+        return f"<eomgen.Linearisation: {sizes}>"

@@ -1,0 +1,88 @@
+//! What a model lacks of what records show.
+
+use std::path::Path;
+
+use eomgen_compiled_model::{Error, Orders};
+use eomgen_discover::report::result::{Discovery, Validation};
+use eomgen_discover::{Specification, catalogue, discover_until};
+use eomgen_model_spec::source::Source;
+use eomgen_paper::certification::certify;
+use eomgen_records::read_dataset;
+use eomgen_validate::certificate::Check;
+use pyo3::prelude::*;
+
+use crate::error;
+use crate::interruption::{Line, interruptible};
+use crate::model::Model;
+
+/// The document `discovery.json`, the extended specification and the page.
+type Found = (String, String, String);
+
+/// Searches for what the model lacks of what a dataset's records show. `progress` is called with
+/// each line on what is being done.
+#[pyfunction]
+pub fn discover(
+    py: Python<'_>,
+    model: &Model,
+    dataset: &str,
+    seed: u64,
+    progress: Py<PyAny>,
+) -> PyResult<Found> {
+    let text = model.specification()?;
+    let hear = |py: Python<'_>, line: String| progress.call1(py, (line,)).map(drop);
+    let found = interruptible(py, hear, |line| {
+        found(model, &text, Path::new(dataset), seed, line)
+    })??;
+    Ok((
+        found.to_json().to_string(),
+        found.extended.clone(),
+        found.page(),
+    ))
+}
+
+fn found(
+    model: &Model,
+    text: &str,
+    dataset: &Path,
+    seed: u64,
+    line: &Line<'_, String>,
+) -> PyResult<Discovery> {
+    let declared = model.compiled().model();
+    let dataset = read_dataset(dataset, declared).map_err(error::records)?;
+    for note in &dataset.notes {
+        line.say(format!("note: {note}"));
+    }
+    let effects = catalogue::effects(None).map_err(|found| error::specification(&found))?;
+    let specification = Specification {
+        path: &declared.source.path,
+        text,
+        order: model.order(),
+    };
+    let progress = |said: &str| line.say(said.to_owned());
+    let found = discover_until(specification, dataset, &effects, seed, &progress, line.stop);
+    let mut found = found.map_err(error::discovery)?;
+    line.check();
+    let extended = Source::new(declared.source.path.clone(), found.extended.as_str());
+    found.validation = validated(extended, model.order()).map_err(error::model)?;
+    Ok(found)
+}
+
+/// What the checks of `eomgen validate` say of the specification that was written. None where
+/// fields have different orders, for which there are no such checks.
+fn validated(extended: Source, order: Option<usize>) -> Result<Option<Validation>, Error> {
+    let model = eomgen_model_spec::check(extended)?.model;
+    let orders = order.map_or(Orders::Declared, Orders::All).of(&model)?;
+    if orders.windows(2).any(|pair| pair[0] != pair[1]) {
+        return Ok(None);
+    }
+    let certificate = certify(&model, &orders, &[])?;
+    let names = |wanted: fn(&Check) -> bool| {
+        let checks = certificate.checks.iter().filter(|check| wanted(check));
+        checks.map(|check| check.name.clone()).collect()
+    };
+    Ok(Some(Validation {
+        passed: certificate.passed,
+        checks: names(|check| !check.skipped),
+        failed: names(|check| !check.passed && !check.skipped),
+    }))
+}

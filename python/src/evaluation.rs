@@ -1,0 +1,167 @@
+//! Rates, observables and Jacobians, a row of an array for each state: read from the arrays' own
+//! memory and written to it, with the interpreter free for other threads.
+
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_compiled_model::Jacobian;
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::error;
+use crate::model::Model;
+
+/// Times, states and inputs of many calls. One time, or one row of inputs, may serve all.
+struct Rows<'a> {
+    t: &'a [f64],
+    x: &'a [f64],
+    u: &'a [f64],
+    states: usize,
+    inputs: usize,
+}
+
+impl<'a> Rows<'a> {
+    /// The rows of contiguous arrays whose shapes fit the model.
+    fn of(
+        model: &Model,
+        t: &'a PyReadonlyArray1<'_, f64>,
+        x: &'a PyReadonlyArray2<'_, f64>,
+        u: &'a PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Self> {
+        let program = model.compiled().program();
+        let (states, inputs) = (program.states(), program.inputs.len());
+        let count = x.as_array().nrows();
+        let of_one = |rows: usize| rows == 1 || rows == count;
+        let fits = x.as_array().ncols() == states
+            && of_one(t.as_array().len())
+            && u.as_array().ncols() == inputs
+            && of_one(u.as_array().nrows());
+        if !fits {
+            return Err(PyValueError::new_err(format!(
+                "t {:?}, x {:?} and u {:?} do not fit {states} states and {inputs} inputs",
+                t.as_array().shape(),
+                x.as_array().shape(),
+                u.as_array().shape()
+            )));
+        }
+        Ok(Self {
+            t: t.as_slice()?,
+            x: x.as_slice()?,
+            u: u.as_slice()?,
+            states,
+            inputs,
+        })
+    }
+
+    /// Calls `compute` with every point and its row of `out`, `width` numbers.
+    #[inline]
+    fn each(&self, out: &mut [f64], width: usize, mut compute: impl FnMut(Point<'_>, &mut [f64])) {
+        let rows = self
+            .x
+            .chunks_exact(self.states)
+            .zip(out.chunks_exact_mut(width));
+        if let ([t], true) = (self.t, self.u.len() == self.inputs) {
+            // The usual call, in which nothing but the state is to be looked up.
+            let (t, inputs) = (*t, self.u);
+            rows.for_each(|(state, out)| compute(Point { t, state, inputs }, out));
+            return;
+        }
+        let last = (self.t.len() - 1, self.u.len() - self.inputs);
+        for (row, (state, out)) in rows.enumerate() {
+            let from = (row * self.inputs).min(last.1);
+            let point = Point {
+                t: self.t[row.min(last.0)],
+                state,
+                inputs: &self.u[from..from + self.inputs],
+            };
+            compute(point, out);
+        }
+    }
+}
+
+/// The numbers of an array that results are written to, `width` for each of the rows.
+fn written<'a>(
+    out: &'a mut PyReadwriteArray2<'_, f64>,
+    rows: &Rows<'_>,
+    width: usize,
+) -> PyResult<&'a mut [f64]> {
+    let expected = [rows.x.len() / rows.states, width];
+    if out.as_array().shape() != expected {
+        return Err(PyValueError::new_err(format!(
+            "the results have the shape {:?}, expected {expected:?}",
+            out.as_array().shape()
+        )));
+    }
+    Ok(out.as_slice_mut()?)
+}
+
+/// The rates of every state.
+#[pyfunction]
+pub fn rates(
+    py: Python<'_>,
+    model: &Model,
+    t: PyReadonlyArray1<'_, f64>,
+    x: PyReadonlyArray2<'_, f64>,
+    u: PyReadonlyArray2<'_, f64>,
+    mut out: PyReadwriteArray2<'_, f64>,
+) -> PyResult<()> {
+    let rows = Rows::of(model, &t, &x, &u)?;
+    let width = rows.states;
+    let out = written(&mut out, &rows, width)?;
+    let compute = || {
+        model.evaluate(|evaluator| {
+            rows.each(out, width, |point, out| evaluator.rates(point, out));
+        })
+    };
+    py.detach(compute).map_err(error::model)
+}
+
+/// The observables at every state, `energy` and `power` last.
+#[pyfunction]
+pub fn observables(
+    py: Python<'_>,
+    model: &Model,
+    t: PyReadonlyArray1<'_, f64>,
+    x: PyReadonlyArray2<'_, f64>,
+    u: PyReadonlyArray2<'_, f64>,
+    mut out: PyReadwriteArray2<'_, f64>,
+) -> PyResult<()> {
+    let rows = Rows::of(model, &t, &x, &u)?;
+    let width = model.compiled().program().observables.len();
+    let out = written(&mut out, &rows, width)?;
+    let compute = || {
+        model.evaluate(|evaluator| {
+            rows.each(out, width, |point, out| evaluator.observables(point, out));
+        })
+    };
+    py.detach(compute).map_err(error::model)
+}
+
+/// A Jacobian at every state, each matrix row by row.
+#[pyfunction]
+pub fn jacobian(
+    py: Python<'_>,
+    model: &Model,
+    name: &str,
+    t: PyReadonlyArray1<'_, f64>,
+    x: PyReadonlyArray2<'_, f64>,
+    u: PyReadonlyArray2<'_, f64>,
+    mut out: PyReadwriteArray2<'_, f64>,
+) -> PyResult<()> {
+    let known = Jacobian::ALL.into_iter().find(|of| of.name() == name);
+    let of = known.ok_or_else(|| PyValueError::new_err(format!("no Jacobian `{name}`")))?;
+    let rows = Rows::of(model, &t, &x, &u)?;
+    let shape = py.detach(|| model.differentiate(|jacobians| jacobians.shape(of)));
+    let (height, columns) = shape.map_err(error::model)?;
+    let out = written(&mut out, &rows, height * columns)?;
+    if out.is_empty() {
+        return Ok(());
+    }
+    let compute = || {
+        model.differentiate(|jacobians| {
+            rows.each(out, height * columns, |point, out| {
+                jacobians.evaluate(of, point, out);
+            });
+        })
+    };
+    py.detach(compute).map_err(error::model)
+}

@@ -1,0 +1,43 @@
+//! A model linearised about a point.
+
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_compiled_model::Linearisation;
+use numpy::PyReadonlyArray1;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::error;
+use crate::model::Model;
+
+/// A, B, C, D, each row by row, then the rates and the observables at the point.
+type Found = (Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>, Vec<f64>);
+
+/// A, B, C and D at a time about a state and inputs, with the rates and observables there.
+#[pyfunction]
+pub fn linearise(
+    py: Python<'_>,
+    model: &Model,
+    t: f64,
+    x: PyReadonlyArray1<'_, f64>,
+    u: PyReadonlyArray1<'_, f64>,
+) -> PyResult<Found> {
+    let point = Point {
+        t,
+        state: x.as_slice()?,
+        inputs: u.as_slice()?,
+    };
+    let program = model.compiled().program();
+    if point.state.len() != program.states() || point.inputs.len() != program.inputs.len() {
+        return Err(PyValueError::new_err("a point of another model"));
+    }
+    let found = py.detach(|| model.instance()?.linearise(point));
+    let Linearisation {
+        a,
+        b,
+        c,
+        d,
+        rates,
+        observables,
+    } = found.map_err(error::model)?;
+    Ok((a, b, c, d, rates, observables))
+}

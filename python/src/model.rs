@@ -1,0 +1,258 @@
+//! A compiled model at its parameter values, as Python holds it.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use eomgen_codegen::program::evaluator::Evaluator;
+use eomgen_compiled_model::{CompiledModel, Error, Instance, JacobianEvaluator, Orders};
+use eomgen_model_spec::Checked;
+use eomgen_model_spec::edit::{Edit, SetParameter, apply};
+use eomgen_model_spec::model::ParameterValue;
+use eomgen_model_spec::source::Source;
+use eomgen_model_spec::suggest;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::error;
+use crate::evaluators::Waiting;
+
+/// A compiled model at one set of parameter values. Threads may share it.
+#[pyclass(frozen, module = "eomgen._native")]
+pub struct Model {
+    compiled: Arc<CompiledModel>,
+    /// The order that was asked for; none for the specification's own.
+    order: Option<usize>,
+    /// What was set, in declared units.
+    settings: Vec<(String, f64)>,
+    /// The warnings about the specification.
+    warnings: Option<String>,
+    evaluators: Waiting<Evaluator>,
+    jacobians: Waiting<JacobianEvaluator>,
+}
+
+impl Model {
+    fn derived(checked: Checked, order: Option<usize>) -> Result<Self, Error> {
+        let Checked { model, warnings } = checked;
+        let orders = order.map_or(Orders::Declared, Orders::All);
+        let compiled = CompiledModel::derive(model, orders)?;
+        let warnings = (!warnings.is_empty()).then(|| warnings.render(false));
+        Ok(Self::at(Arc::new(compiled), order, Vec::new(), warnings))
+    }
+
+    fn at(
+        compiled: Arc<CompiledModel>,
+        order: Option<usize>,
+        settings: Vec<(String, f64)>,
+        warnings: Option<String>,
+    ) -> Self {
+        Self {
+            compiled,
+            order,
+            settings,
+            warnings,
+            evaluators: Waiting::default(),
+            jacobians: Waiting::default(),
+        }
+    }
+
+    /// The compiled model.
+    pub fn compiled(&self) -> &CompiledModel {
+        &self.compiled
+    }
+
+    /// The compiled model at its parameter values.
+    pub fn instance(&self) -> Result<Instance<'_>, Error> {
+        let settings = self.settings.iter().map(|(name, v)| (name.as_str(), *v));
+        self.compiled.with(&settings.collect::<Vec<_>>())
+    }
+
+    /// Computes with an evaluator at the parameter values.
+    pub fn evaluate<T>(&self, compute: impl FnOnce(&mut Evaluator) -> T) -> Result<T, Error> {
+        let new = || self.instance()?.evaluator();
+        self.evaluators.with(new, compute)
+    }
+
+    /// Computes with an evaluator of the Jacobians at the parameter values.
+    pub fn differentiate<T>(
+        &self,
+        compute: impl FnOnce(&mut JacobianEvaluator) -> T,
+    ) -> Result<T, Error> {
+        let new = || self.instance()?.jacobian_evaluator();
+        self.jacobians.with(new, compute)
+    }
+
+    /// The specification's text with the parameter values that were set.
+    pub fn specification(&self) -> PyResult<String> {
+        let set = |(name, value): &(String, f64)| {
+            Edit::SetParameter(SetParameter {
+                name: name.clone(),
+                value: *value,
+                source: String::new(),
+            })
+        };
+        let edits: Vec<Edit> = self.settings.iter().map(set).collect();
+        let source = &self.compiled.model().source;
+        match edits.is_empty() {
+            true => Ok(source.text.to_string()),
+            false => {
+                apply(source, &edits).map_err(|error| PyValueError::new_err(error.to_string()))
+            }
+        }
+    }
+}
+
+#[pymethods]
+impl Model {
+    /// The model of a specification's text; `name` stands for its file in messages.
+    #[staticmethod]
+    fn of_text(py: Python<'_>, name: &str, text: &str, order: Option<usize>) -> PyResult<Self> {
+        let derived = || {
+            let checked = eomgen_model_spec::check(Source::new(name, text))?;
+            Self::derived(checked, order)
+        };
+        py.detach(derived).map_err(error::model)
+    }
+
+    /// The model of a specification's file.
+    #[staticmethod]
+    fn of_file(py: Python<'_>, path: &str, order: Option<usize>) -> PyResult<Self> {
+        let derived = || {
+            let checked = eomgen_model_spec::load(Path::new(path))?;
+            Self::derived(checked, order)
+        };
+        py.detach(derived).map_err(error::model)
+    }
+
+    /// The model with these parameters set, each in its declared unit. What the specification gives
+    /// by an expression is part of the equations: these are then derived anew.
+    fn with_parameters(&self, py: Python<'_>, settings: Vec<(String, f64)>) -> PyResult<Self> {
+        let mut all = self.settings.clone();
+        all.retain(|(name, _)| settings.iter().all(|(new, _)| new != name));
+        all.extend(settings);
+        let set = || {
+            let declared = self.compiled.model();
+            let settings: Vec<_> = all.iter().map(|(name, v)| (name.as_str(), *v)).collect();
+            let is_expression = |(name, _): &(&str, f64)| {
+                let mut parameters = declared.parameters.iter();
+                let known = parameters.find(|known| known.name == *name);
+                known.is_some_and(|known| matches!(known.value, ParameterValue::Expression(_)))
+            };
+            let compiled = match settings.iter().any(is_expression) {
+                false => self.compiled.clone(),
+                true => {
+                    let model = declared.with_parameters(&settings);
+                    let model = model.map_err(|error| error.diagnostic());
+                    let model = model.map_err(|wrong| {
+                        let source = declared.source.clone();
+                        eomgen_model_spec::diagnostic::Diagnostics::one(source, wrong)
+                    })?;
+                    let orders = Orders::Each(self.compiled.orders());
+                    Arc::new(CompiledModel::derive(model, orders)?)
+                }
+            };
+            // Judged here, where the values are given, and not at the first call.
+            compiled.with(&settings)?.evaluator()?;
+            Ok(compiled)
+        };
+        let compiled = py.detach(set).map_err(error::model)?;
+        Ok(Self::at(compiled, self.order, all, self.warnings.clone()))
+    }
+
+    /// The model's name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.compiled.model().name
+    }
+
+    /// One line for people; empty if there is none.
+    #[getter]
+    fn title(&self) -> &str {
+        &self.compiled.model().title
+    }
+
+    /// The order that was asked for; none for the specification's own.
+    #[getter]
+    pub fn order(&self) -> Option<usize> {
+        self.order
+    }
+
+    /// The order of each field.
+    #[getter]
+    fn orders(&self) -> Vec<usize> {
+        self.compiled.orders().to_vec()
+    }
+
+    /// What may not be as it was meant in the specification, if anything.
+    #[getter]
+    fn warnings(&self) -> Option<&str> {
+        self.warnings.as_deref()
+    }
+
+    /// The specification's text with the parameter values that were set.
+    #[getter]
+    fn text(&self) -> PyResult<String> {
+        self.specification()
+    }
+
+    /// The states' names and units.
+    #[getter]
+    fn states(&self) -> Vec<(String, String)> {
+        let model = self.compiled.model();
+        let mut units: Vec<&str> = model.coordinates.iter().map(|c| &*c.unit.text).collect();
+        for (field, order) in model.fields.iter().zip(self.compiled.orders()) {
+            units.extend(std::iter::repeat_n(&*field.unit.text, *order));
+        }
+        let rates = units.iter().map(|unit| format!("{unit}/s"));
+        let units = units.iter().map(|unit| (*unit).to_owned()).chain(rates);
+        self.compiled.state_names().into_iter().zip(units).collect()
+    }
+
+    /// The inputs' names and units.
+    #[getter]
+    fn inputs(&self) -> Vec<(&str, &str)> {
+        let inputs = self.compiled.model().inputs.iter();
+        inputs
+            .map(|input| (&*input.name, &*input.unit.text))
+            .collect()
+    }
+
+    /// The observables' names and units, `energy` and `power` last.
+    #[getter]
+    fn observables(&self) -> Vec<(&str, &str)> {
+        let observables = self.compiled.program().observables.iter();
+        observables
+            .map(|known| (&*known.name, &*known.unit))
+            .collect()
+    }
+
+    /// The parameters' names, values and units, these as declared.
+    #[getter]
+    fn parameters(&self) -> PyResult<Vec<(&str, f64, &str)>> {
+        let instance = self.instance().map_err(error::model)?;
+        let parameters = self.compiled.model().parameters.iter();
+        let value = |name: &str| instance.value(name).unwrap_or(f64::NAN);
+        Ok(parameters
+            .map(|p| (&*p.name, p.unit.from_si(value(&p.name)), &*p.unit.text))
+            .collect())
+    }
+
+    /// The names of the independent parameters, by which there are Jacobians.
+    #[getter]
+    fn independent_parameters(&self) -> Vec<String> {
+        self.compiled.parameter_names()
+    }
+
+    /// The initial state that the specification gives, SI.
+    #[getter]
+    fn initial(&self) -> PyResult<Vec<f64>> {
+        let instance = self.instance().map_err(error::model)?;
+        Ok(instance.initial().to_vec())
+    }
+}
+
+/// The nearest of the known names to one that is not known, if one is near enough.
+#[pyfunction]
+pub fn nearest(wrong: &str, known: Vec<String>) -> Option<String> {
+    let known = known.iter().map(String::as_str);
+    suggest::nearest(wrong, known).map(str::to_owned)
+}

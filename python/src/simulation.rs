@@ -1,0 +1,133 @@
+//! A simulated motion.
+
+use std::time::{Duration, Instant};
+
+use eomgen_compiled_model::{Choice, Error, Motion, Request, Solver};
+use eomgen_sim::inputs::HeldInputs;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::error;
+use crate::interruption::{Line, interruptible};
+use crate::model::Model;
+
+/// How often Python is told how far a motion is.
+const REPORT: Duration = Duration::from_millis(100);
+
+/// What Python gets of a motion: its solver and why it is that one; when and why it stopped, if it
+/// did not come to the end; times, states and observables, a row for each sample; how many
+/// switches it passed.
+type Found<'py> = (
+    &'static str,
+    Option<String>,
+    Option<(Option<f64>, String)>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    usize,
+);
+
+/// Simulates from an initial state over ascending times (s), driven by inputs that are held from
+/// each of their times to the next. `progress` is called with the time of the motion, s.
+#[pyfunction]
+#[pyo3(signature = (model, initial, times, input_times, input_values, solver, tolerance, progress))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the arguments of a function of Python"
+)]
+pub fn simulate<'py>(
+    py: Python<'py>,
+    model: &Model,
+    initial: PyReadonlyArray1<'py, f64>,
+    times: PyReadonlyArray1<'py, f64>,
+    input_times: PyReadonlyArray1<'py, f64>,
+    input_values: PyReadonlyArray2<'py, f64>,
+    solver: &str,
+    tolerance: f64,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Found<'py>> {
+    let count = model.compiled().model().inputs.len();
+    let inputs = (input_values.as_array().ncols() == count).then(|| {
+        let values = input_values.as_slice().ok()?.to_vec();
+        HeldInputs::new(input_times.as_slice().ok()?.to_vec(), values, count)
+    });
+    let inputs = inputs.flatten();
+    let inputs = inputs.ok_or_else(|| PyValueError::new_err("inputs of another model"))?;
+    let request = Request {
+        initial: initial.as_slice()?,
+        times: times.as_slice()?,
+        inputs: &inputs,
+        solver: named(solver)?,
+        tolerance,
+    };
+    if request.initial.len() != model.compiled().program().states() {
+        return Err(PyValueError::new_err("an initial state of another model"));
+    }
+    let hear = |py: Python<'_>, t: f64| {
+        let told = progress.as_ref().map(|progress| progress.call1(py, (t,)));
+        told.transpose().map(drop)
+    };
+    let found = interruptible(py, hear, |line| followed(model, &request, line))?;
+    let (motion, observables) = found.map_err(error::model)?;
+    let trajectory = &motion.trajectory;
+    let rows = trajectory.times.len();
+    let states: Vec<f64> = trajectory.states.concat();
+    let width = observables.len() / rows.max(1);
+    let choice = motion.choice.as_ref().map(in_words);
+    let stopped = motion.stopped.map(|stopped| (stopped.t, stopped.reason));
+    Ok((
+        motion.solver.name(),
+        choice,
+        stopped,
+        trajectory.times.to_pyarray(py),
+        states
+            .to_pyarray(py)
+            .reshape([rows, request.initial.len()])?,
+        observables.to_pyarray(py).reshape([rows, width])?,
+        trajectory.switches.len(),
+    ))
+}
+
+/// A solver by its name.
+fn named(name: &str) -> PyResult<Solver> {
+    let known = Solver::ALL.into_iter().find(|known| known.name() == name);
+    known.ok_or_else(|| {
+        let names = Solver::ALL.map(|known| format!("\"{}\"", known.name()));
+        PyValueError::new_err(format!(
+            "solver = \"{name}\": expected one of {}",
+            names.join(", ")
+        ))
+    })
+}
+
+/// The motion with its observables, row by row.
+fn followed(
+    model: &Model,
+    request: &Request<'_>,
+    line: &Line<'_, f64>,
+) -> Result<(Motion, Vec<f64>), Error> {
+    let instance = model.instance()?;
+    let mut told = Instant::now();
+    let motion = instance.follow(request, &mut |t| {
+        line.check();
+        if told.elapsed() > REPORT {
+            told = Instant::now();
+            line.say(t);
+        }
+    })?;
+    let mut observables = Vec::new();
+    instance.observe(&motion, |_, _, row| observables.extend_from_slice(row))?;
+    Ok((motion, observables))
+}
+
+/// Why a solver was taken.
+fn in_words(choice: &Choice) -> String {
+    match choice {
+        Choice::PiecewiseLinear => "the model is linear between its switches".to_owned(),
+        Choice::NotLinear(term) => format!("the model is not linear between its switches: {term}"),
+        Choice::NotFollowed(reason) => {
+            format!("the exact solver does not follow this motion: {reason}")
+        }
+    }
+}

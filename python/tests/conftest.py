@@ -1,0 +1,140 @@
+"""Models that several tests share, and the shipped specifications."""
+
+import _thread
+import contextlib
+import os
+import shutil
+import signal
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eomgen
+
+PROJECT = Path(__file__).resolve().parents[2]
+SPECIFICATIONS = PROJECT / "model-spec" / "models"
+
+# A stage whose specification says nothing of its dry friction.
+STAGE = SPECIFICATIONS / "emps.toml"
+
+# Lines that hide a friction of 12 N in the stage, smooth unlike the jump that is looked for.
+HIDDEN = (
+    '[parameters]\nlevel = { value = 12, unit = "N" }\nspeed = { value = 2e-4, unit = "m/s" }\n',
+    '[forces]\nhidden = { on = "q", value = "-level*dot(q)/sqrt(dot(q)^2 + speed^2)" }\n',
+)
+
+
+@pytest.fixture(scope="session")
+def arm():
+    """The planetary arm with its four modes."""
+    return eomgen.load(SPECIFICATIONS / "planetary_arm_rig.toml")
+
+
+@pytest.fixture(scope="session")
+def pendulum():
+    return eomgen.load(SPECIFICATIONS / "pendulum.toml")
+
+
+@pytest.fixture(scope="session")
+def cart():
+    """A cart with two arms, driven by a force: not linear."""
+    return eomgen.load(SPECIFICATIONS / "cart_two_arms.toml")
+
+
+@pytest.fixture(scope="session")
+def program():
+    """The program of the command line, of the same version."""
+    found = os.environ.get("EOMGEN_PROGRAM") or shutil.which("eomgen")
+    if found is None:
+        pytest.skip("no program `eomgen`: EOMGEN_PROGRAM names it")
+    return found
+
+
+@pytest.fixture
+def states():
+    """Random states of a model: a row each."""
+
+    def of(model, count, size=1e-3):
+        return size * np.random.default_rng(1).standard_normal((count, len(model.states)))
+
+    return of
+
+
+@pytest.fixture
+def interrupt():
+    """Ctrl-C while what follows runs, which must end within a second of it."""
+
+    @contextlib.contextmanager
+    def pressed(after):
+        sent = []
+
+        def press():
+            sent.append(time.monotonic())
+            _thread.interrupt_main(signal.SIGINT)
+
+        timer = threading.Timer(after, press)
+        timer.start()
+        try:
+            yield
+        finally:
+            timer.cancel()
+            lasted = time.monotonic() - sent[0] if sent else -1.0
+            assert 0.0 <= lasted < 1.0, f"stopped {lasted:.2f} s after Ctrl-C"
+
+    return pressed
+
+
+def with_hidden_friction(text):
+    """The text of the stage with its hidden friction."""
+    parameters, forces = HIDDEN
+    return text.replace("[parameters]\n", parameters).replace("[forces]\n", forces)
+
+
+def write_record(path, turn, samples=750, step=0.002, noise=2e-6):
+    """A record of the stage with its friction; `turn` makes another one."""
+    truth = eomgen.load(with_hidden_friction(STAGE.read_text(encoding="utf-8")))
+    t = np.arange(samples) * step
+    force = 300 * np.cos(5 * t + turn) - 150 * np.sin(13 * t * (1 + 0.3 * turn))
+    r = truth.simulate(until=t[-1], sample=step, solver="rk", inputs={"force": force})
+    random = np.random.default_rng(int(turn) + 7)
+    q = r["q"] + noise * random.standard_normal(samples)
+    table = np.column_stack([r.t, force, q])
+    np.savetxt(path, table, delimiter=",", header="t,force,q", comments="")
+
+
+DESCRIPTION = """
+title = "A simulated stage in which a friction is hidden"
+[records]
+train = ["train.csv"]
+test = ["test.csv"]
+[time]
+column = "t"
+unit = "s"
+[inputs.force]
+column = "force"
+unit = "N"
+hold = "zero-order"
+[channels.q]
+column = "q"
+unit = "m"
+noise = 2e-6
+[initial]
+state = "rest"
+[uncertain]
+F_v = { relative = 0.05 }
+[windows]
+length = 0.25
+"""
+
+
+@pytest.fixture(scope="session")
+def dataset(tmp_path_factory):
+    """The path of a dataset in which a friction is hidden."""
+    folder = tmp_path_factory.mktemp("records")
+    write_record(folder / "train.csv", 0.0)
+    write_record(folder / "test.csv", 1.0)
+    (folder / "dataset.toml").write_text(DESCRIPTION, encoding="utf-8")
+    return folder / "dataset.toml"

@@ -1,0 +1,186 @@
+"""Loading, parameters, linearisation, and what is said of what is wrong."""
+
+import pickle
+import subprocess
+import warnings
+
+import numpy as np
+import pytest
+
+import eomgen
+
+from conftest import SPECIFICATIONS
+
+OSCILLATOR = """
+[model]
+name = "class"
+title = "An oscillator with <hostile> & names"
+[parameters]
+m = { value = 200, unit = "g", min = 0 }
+k = { value = 8, unit = "N/m" }
+lambda = { value = "2*k", unit = "N/m" }
+[coordinates]
+x = { unit = "m", initial = 0.1 }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[potential]
+spring = "1/2*lambda*x^2"
+[forces]
+motor = { on = "x", value = "u" }
+"""
+
+
+@pytest.mark.parametrize("path", sorted(SPECIFICATIONS.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_shipped_specification_loads(path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", eomgen.SpecificationWarning)
+        m = eomgen.load(path)
+    assert m.rates(0.0, m.initial).shape == (len(m.states),)
+    assert m.observable_names[-2:] == ("energy", "power")
+    assert "<math>" in m._repr_html_()
+
+
+def test_a_text_and_its_file_are_one_model(tmp_path):
+    path = tmp_path / "oscillator.toml"
+    path.write_text(OSCILLATOR, encoding="utf-8")
+    for m in (eomgen.load(OSCILLATOR), eomgen.load(path), eomgen.load(str(path))):
+        assert (m.name, m.states, m.inputs) == ("class", ("x", "x_dot"), ("u",))
+        assert np.allclose(m.rates(0.0, [0.1, 0.0], [3.0]), [0.0, (3 - 1.6) / 0.2])
+
+
+def test_parameters_are_in_declared_units_and_cannot_be_written():
+    m = eomgen.load(OSCILLATOR)
+    assert dict(m.parameters) == {"m": 200.0, "k": 8.0, "lambda": 16.0}
+    assert m.units["m"] == "g"
+    with pytest.raises(TypeError):
+        m.parameters["m"] = 3.0
+
+
+def test_what_depends_on_a_parameter_follows_and_expressions_can_be_replaced():
+    m = eomgen.load(OSCILLATOR)
+    softer = m.with_parameters(k=4)
+    assert softer.parameters["lambda"] == 8.0
+    set_apart = softer.with_parameters(**{"lambda": 5.0})
+    assert dict(set_apart.parameters) == {"m": 200.0, "k": 4.0, "lambda": 5.0}
+    assert np.allclose(set_apart.rates(0.0, [1.0, 0.0]), [0.0, -25.0])
+    assert np.allclose(eomgen.load(set_apart.text).rates(0.0, [1.0, 0.0]), [0.0, -25.0])
+    assert dict(m.parameters) == {"m": 200.0, "k": 8.0, "lambda": 16.0}
+
+
+@pytest.mark.parametrize(
+    "values, said",
+    [
+        ({"mm": 1.0}, "did you mean `m`?"),
+        ({"m": -1.0}, "m"),
+        ({"m": float("nan")}, "cannot be NaN"),
+        ({"k": float("inf")}, "give a finite number"),
+    ],
+)
+def test_wrong_parameters_are_refused(values, said):
+    with pytest.raises(eomgen.SpecificationError) as raised:
+        eomgen.load(OSCILLATOR).with_parameters(**values)
+    assert said in str(raised.value)
+
+
+def test_values_that_are_no_numbers_are_refused():
+    m = eomgen.load(OSCILLATOR)
+    for value in ("1", None, [1.0, 2.0], 1j):
+        with pytest.raises(TypeError):
+            m.with_parameters(m=value)
+
+
+def test_the_largest_numbers_do_not_break_anything():
+    m = eomgen.load(OSCILLATOR).with_parameters(k=1e308 / 4)
+    assert np.isfinite(m.rates(0.0, [0.0, 1.0])).all()
+    with pytest.raises(eomgen.SpecificationError):
+        eomgen.load(OSCILLATOR).with_parameters(k=1e308)
+
+
+def test_a_wrong_specification_says_what_the_command_line_says(tmp_path, program):
+    wrong = OSCILLATOR.replace("1/2*lambda*x^2", "1/2*lambda*x").replace('"g"', '"gg"')
+    path = tmp_path / "wrong.toml"
+    path.write_text(wrong, encoding="utf-8")
+    with pytest.raises(eomgen.SpecificationError) as raised:
+        eomgen.load(path)
+    run = subprocess.run([program, "check", str(path)], capture_output=True, text=True)
+    assert run.returncode == 2
+    assert str(raised.value).strip() == run.stderr.strip()
+    assert "^^" in str(raised.value)
+    assert isinstance(raised.value, ValueError)
+
+
+@pytest.mark.parametrize(
+    "given, said",
+    [
+        ("no/such/file.toml", "cannot be read"),
+        ("", "cannot be read"),
+        ("[model", "cannot be read"),
+        ("this is\nno TOML", "<text>:1"),
+        ("\x00\n", "<text>"),
+        (SPECIFICATIONS, "is not a file"),
+    ],
+)
+def test_what_is_no_specification_is_refused(given, said):
+    with pytest.raises(eomgen.SpecificationError) as raised:
+        eomgen.load(given)
+    assert said in str(raised.value)
+
+
+def test_wrong_kinds_of_arguments_are_refused():
+    for given in (None, 3, b"bytes\n", ["a"]):
+        with pytest.raises(TypeError):
+            eomgen.load(given)
+    path = SPECIFICATIONS / "planetary_arm.toml"
+    for order, error in [
+        (-1, ValueError),
+        (10**30, ValueError),
+        (1.5, TypeError),
+        ("4", TypeError),
+        (True, TypeError),
+    ]:
+        with pytest.raises(error, match="expected a whole number from 0 to 128"):
+            eomgen.load(path, order)
+    with pytest.raises(eomgen.SpecificationError, match="no field"):
+        eomgen.load(OSCILLATOR, 3)
+
+
+def test_warnings_are_warnings():
+    with pytest.warns(eomgen.SpecificationWarning, match="spare"):
+        eomgen.load(OSCILLATOR.replace("[coordinates]", "spare = { value = 1 }\n[coordinates]"))
+
+
+def test_a_linearisation_holds_the_jacobians(cart, states):
+    x, u = cart.initial + states(cart, 1, 0.1)[0], [0.5]
+    found = cart.linearise(0.0, x, u)
+    a, b, c, d = found
+    assert np.array_equal(a, cart.jacobian(0.0, x, u))
+    assert np.array_equal(b, cart.jacobian(0.0, x, u, by="inputs"))
+    assert np.array_equal(found.rates, cart.rates(0.0, x, u))
+    assert np.array_equal(found.y, cart.observables(0.0, x, u))
+    assert c.shape == (len(found.outputs), len(found.states)) and d.shape == (len(found.outputs), 1)
+    for column, h in enumerate(1e-6 * np.eye(len(x))):
+        difference = (cart.observables(0.0, x + h, u) - cart.observables(0.0, x - h, u)) / 2e-6
+        assert np.allclose(c[:, column], difference, rtol=1e-5, atol=1e-5)
+
+
+def test_the_point_of_a_linearisation_has_names(cart):
+    name = cart.states[1]
+    at = cart.linearise(x={name: 0.3})
+    assert at.x[1] == 0.3 and np.array_equal(np.delete(at.x, 1), np.delete(cart.initial, 1))
+    with pytest.raises(ValueError, match=f"did you mean `{name}`"):
+        cart.linearise(x={name + "x": 0.3})
+
+
+def test_a_model_goes_to_other_processes():
+    m = eomgen.load(SPECIFICATIONS / "planetary_arm_rig.toml", 2).with_parameters(b_sp=30e-6)
+    again = pickle.loads(pickle.dumps(m))
+    x = np.full(len(m.states), 1e-4)
+    assert np.array_equal(again.rates(0.0, x), m.rates(0.0, x))
+    assert dict(again.parameters) == dict(m.parameters) and again.orders == (2,)
+
+
+def test_names_become_no_markup():
+    shown = eomgen.load(OSCILLATOR)._repr_html_()
+    assert "<math>" in shown and "<hostile>" not in shown

@@ -1,0 +1,86 @@
+"""The ways to other libraries, as docs/python.md writes them; each where it is installed."""
+
+import numpy as np
+import pytest
+
+import eomgen
+
+from conftest import PROJECT, SPECIFICATIONS
+
+
+def written(section, **names):
+    """The names that the code of a section of the page makes, given others."""
+    page = (PROJECT / "docs" / "python.md").read_text(encoding="utf-8")
+    text = page.split(f"## {section}\n", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
+    exec(compile(text, f"docs/python.md, {section}", "exec"), names)
+    return names
+
+
+def test_the_lines_of_the_project_s_first_page_run(monkeypatch, capsys):
+    page = (PROJECT / "README.md").read_text(encoding="utf-8")
+    text = page.split("## From Python\n", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
+    monkeypatch.chdir(PROJECT)
+    exec(compile(text, "README.md", "exec"), {})
+    tip, *shape = capsys.readouterr().out.split(maxsplit=1)
+    assert abs(float(tip)) < 1 and shape == ["(14, 14)\n"]
+
+
+def test_the_page_s_lines_on_scipy_run(pendulum):
+    pytest.importorskip("scipy")
+    found = written("SciPy", m=pendulum)["found"]
+    assert found.success and np.allclose(found.t[-1], 2)
+
+
+def test_the_page_s_lines_on_casadi_run(cart):
+    pytest.importorskip("casadi")
+    names = written("CasADi", m=cart)
+    x = cart.initial
+    assert np.allclose(np.array(names["step"](x, 0.3)).ravel(), x + 0.01 * cart.rates(0, x, [0.3]))
+
+
+def test_solve_ivp_takes_rates_and_jacobian(pendulum):
+    scipy = pytest.importorskip("scipy.integrate")
+    r = pendulum.simulate(until=2, sample=0.01)
+    for method in ("Radau", "LSODA"):
+        found = scipy.solve_ivp(
+            pendulum.rates, (0, 2), pendulum.initial, method, r.t,
+            jac=pendulum.jacobian, rtol=1e-9, atol=1e-11,
+        )
+        assert np.allclose(found.y.T, r.states, atol=1e-6), method
+
+
+def test_casadi_has_values_and_jacobians(cart, states):
+    casadi = pytest.importorskip("casadi")
+    f = cart.to_casadi()
+    x, u = cart.initial + states(cart, 1, 0.1)[0], [0.7]
+    assert np.array_equal(np.array(f(0.0, x, u)).ravel(), cart.rates(0.0, x, u))
+    t, xs, us = casadi.MX.sym("t"), casadi.MX.sym("x", 6), casadi.MX.sym("u", 1)
+    rates = f(t, xs, us)
+    by = casadi.Function("by", [t, xs, us], [casadi.jacobian(rates, v) for v in (t, xs, us)])
+    by_t, by_x, by_u = by(0.0, x, u)
+    assert not np.array(by_t).any()
+    assert np.array_equal(np.array(by_x), cart.jacobian(0.0, x, u))
+    assert np.array_equal(np.array(by_u), cart.jacobian(0.0, x, u, by="inputs"))
+
+
+def test_casadi_has_the_derivative_by_the_time(states):
+    casadi = pytest.importorskip("casadi")
+    m = eomgen.load(SPECIFICATIONS / "planetary_arm.toml")
+    f, x = m.to_casadi(), states(m, 1)[0]
+    t = casadi.MX.sym("t")
+    by_t = casadi.Function("by", [t], [casadi.jacobian(f(t, x, []), t)])(0.3)
+    difference = (m.rates(0.3 + 1e-5, x) - m.rates(0.3 - 1e-5, x)) / 2e-5
+    assert np.abs(difference).max() > 1
+    assert np.allclose(np.array(by_t).ravel(), difference, rtol=1e-6, atol=1e-6)
+
+
+def test_jax_differentiates(cart, states):
+    jax = pytest.importorskip("jax")
+    rates = written("JAX")["jax_rates"](cart)
+    t, x, u = 0.0, cart.initial + states(cart, 1, 0.1)[0], np.array([0.7])
+    assert np.allclose(rates(t, x, u), cart.rates(0.0, x, u), rtol=1e-14)
+    by_x = jax.jit(jax.jacfwd(rates, argnums=1))(t, x, u)
+    assert np.allclose(by_x, cart.jacobian(0.0, x, u), rtol=1e-12)
+    weights = np.arange(1.0, 7.0)
+    gradient = jax.grad(lambda x: weights @ rates(t, x, u))(x)
+    assert np.allclose(gradient, weights @ cart.jacobian(0.0, x, u), rtol=1e-12)

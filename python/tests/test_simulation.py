@@ -1,0 +1,193 @@
+"""Trajectories: against the command line, by name, as tables; what is refused; Ctrl-C."""
+
+import subprocess
+import threading
+
+import numpy as np
+import pytest
+
+import eomgen
+
+from conftest import SPECIFICATIONS
+
+
+@pytest.mark.parametrize(
+    "name, solver", [("planetary_arm", "auto"), ("double_pendulum", "rk"), ("pendulum", "adams")]
+)
+def test_a_motion_is_that_of_the_command_line(tmp_path, program, name, solver):
+    path, out = SPECIFICATIONS / f"{name}.toml", tmp_path / "motion.csv"
+    command = [program, "simulate", path, "--until", "0.7", "--sample", "1e-3"]
+    subprocess.run([*command, "--solver", solver, "--out", out], check=True, capture_output=True)
+    with open(out, encoding="utf-8") as file:
+        header = file.readline().strip().split(",")
+    table = np.loadtxt(out, delimiter=",", skiprows=1)
+    r = eomgen.load(path).simulate(until=0.7, sample=1e-3, solver=solver)
+    assert header == ["t", *r.names]
+    assert np.array_equal(np.column_stack([r.t, r.states, r.observables]), table)
+
+
+def test_the_paper_s_arm_with_other_play_runs_as_documented(arm):
+    m = eomgen.load(SPECIFICATIONS / "planetary_arm.toml").with_parameters(b_sp=50e-6)
+    r = m.simulate(until=2, sample=1e-3)
+    assert (r.solver, len(r)) == ("exact", 2001)
+    assert r["tip"].shape == r.t.shape and r.switches > 0
+    assert "linear between its switches" in r.reason
+
+
+def test_samples_are_as_many_as_asked_for(pendulum):
+    assert len(pendulum.simulate(until=1)) == 1001
+    assert pendulum.simulate(until=1, sample=0.3).t.tolist() == pytest.approx([0, 0.3, 0.6, 0.9])
+    assert pendulum.simulate(until=0.3, sample=0.1).t[-1] == pytest.approx(0.3)
+
+
+def test_an_initial_state_is_given_by_names_or_whole(pendulum):
+    named = pendulum.simulate(until=1, initial={"theta_dot": 2.0})
+    whole = pendulum.simulate(until=1, initial=[pendulum.initial[0], 2.0])
+    assert np.array_equal(named.states, whole.states)
+    assert named["theta_dot"][0] == 2.0
+
+
+def test_inputs_are_numbers_samples_or_functions(cart):
+    name = cart.inputs[0]
+    t = np.arange(101) * 0.01
+    of = lambda force: cart.simulate(until=1, sample=0.01, inputs={name: force})
+    held = of(np.sin(t))
+    assert np.array_equal(held.states, of(lambda t: np.sin(t)).states)
+    assert np.allclose(of(0.5).states, of(np.full(101, 0.5)).states, rtol=1e-7, atol=1e-9)
+    # From sample to sample the force is what it was at the first of them.
+    step = eomgen.load(cart.text).simulate(
+        until=0.01, sample=0.005, initial=held.states[50], inputs={name: np.sin(t[50])}
+    )
+    assert np.allclose(step.states[-1], held.states[51], rtol=1e-7, atol=1e-9)
+
+
+def test_an_input_that_nothing_gives_is_said_to_be_0(cart):
+    with pytest.warns(UserWarning, match=f"nothing gives the input {cart.inputs[0]}: it is 0"):
+        r = cart.simulate(until=0.01)
+    assert np.array_equal(r.states, cart.simulate(until=0.01, inputs={cart.inputs[0]: 0}).states)
+
+
+def test_tables_and_plots_have_the_columns(pendulum):
+    pandas = pytest.importorskip("pandas")
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    r = pendulum.simulate(until=1, sample=0.1)
+    table = r.to_pandas()
+    assert isinstance(table, pandas.DataFrame)
+    assert list(table.columns) == list(r.names) and table.index.name == "t"
+    assert np.array_equal(table["theta"].to_numpy(), r["theta"])
+    axes = r.plot("theta", "energy")
+    assert [axis.get_ylabel() for axis in axes] == ["theta (rad)", "energy (J)"]
+    assert len(r.plot()) == 1
+
+
+@pytest.mark.parametrize(
+    "arguments, error, said",
+    [
+        ({"until": 0}, ValueError, "expected a time in s after 0"),
+        ({"until": -1}, ValueError, "expected a time in s after 0"),
+        ({"until": float("nan")}, ValueError, "until = nan"),
+        ({"until": float("inf")}, ValueError, "until = inf"),
+        ({"until": "2"}, TypeError, "until"),
+        ({"until": 1, "sample": 0}, ValueError, "sample = 0.0"),
+        ({"until": 1, "sample": 2}, ValueError, "at most 1.0"),
+        ({"until": 1e9, "sample": 1e-9}, ValueError, "too many samples"),
+        ({"until": 1, "solver": "euler"}, ValueError, 'expected one of "auto", "exact", "rk"'),
+        ({"until": 1, "solver": None}, TypeError, "solver"),
+        ({"until": 1, "tolerance": 0}, ValueError, "tolerance"),
+        ({"until": 1, "initial": {"thetta": 1}}, ValueError, "did you mean `theta`"),
+        ({"until": 1, "initial": [1.0]}, ValueError, "expected (2,)"),
+        ({"until": 1, "initial": [float("nan"), 0]}, ValueError, "not finite: theta"),
+        ({"until": 1, "inputs": {"u": 1.0}}, ValueError, "the model has no input `u`"),
+        ({"until": 1, "inputs": 3}, TypeError, "inputs"),
+        ({"until": 1, "solver": "exact"}, ValueError, "sin"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(pendulum, arguments, error, said):
+    with pytest.raises(error) as raised:
+        pendulum.simulate(**arguments)
+    assert said in str(raised.value)
+
+
+def test_wrong_inputs_are_refused(cart):
+    name = cart.inputs[0]
+    for force, said in [
+        (np.zeros(7), "expected a number, or 101 numbers"),
+        (np.full(101, np.nan), "not finite"),
+        (lambda t: float("nan"), "expected a finite number"),
+    ]:
+        with pytest.raises(ValueError, match=said):
+            cart.simulate(until=1, sample=0.01, inputs={name: force})
+    with pytest.raises(ZeroDivisionError):
+        cart.simulate(until=1, inputs={name: lambda t: 1 / 0})
+
+
+def test_an_unknown_column_is_refused(pendulum):
+    with pytest.raises(KeyError, match="did you mean `theta`"):
+        pendulum.simulate(until=0.1)["thetha"]
+
+
+def test_a_motion_that_cannot_go_on_leaves_what_there_is():
+    runaway = """
+[model]
+name = "runaway"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 1, unit = "N/m^2" }
+[coordinates]
+x = { unit = "m", initial = 1 }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[forces]
+away = { on = "x", value = "k*x^2" }
+"""
+    with pytest.raises(eomgen.SimulationError) as raised:
+        eomgen.load(runaway).simulate(until=100, sample=0.01)
+    so_far = raised.value.trajectory
+    assert 100 < len(so_far) < 2000 and so_far["x"][-1] > 1.0
+    assert np.isfinite(so_far.states).all()
+
+
+@pytest.fixture(scope="module")
+def endless():
+    """A model that moves for ever, and takes hours for it."""
+    m = eomgen.load(SPECIFICATIONS / "double_pendulum.toml")
+    return lambda **options: m.simulate(until=1e7, sample=1e4, solver="rk", **options)
+
+
+def test_progress_is_told_and_may_raise(endless):
+    told = []
+
+    def enough(part):
+        told.append(part)
+        if len(told) == 3:
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        endless(progress=enough)
+    assert told == sorted(told) and all(0 < part < 1 for part in told)
+
+
+def test_ctrl_c_stops_a_simulation_within_a_second(endless, interrupt):
+    with pytest.raises(KeyboardInterrupt):
+        with interrupt(after=0.7):
+            endless()
+
+
+def test_other_threads_run_while_one_simulates(endless):
+    worked, turns = [], 0
+
+    def enough(part):
+        if part > 0 and turns > 1000:
+            raise RuntimeError("enough")
+
+    def work():
+        with pytest.raises(RuntimeError, match="enough"):
+            endless(progress=enough)
+        worked.append(turns)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    while thread.is_alive():
+        turns += 1
+    assert worked[0] > 1000

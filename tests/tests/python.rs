@@ -1,0 +1,81 @@
+//! The Python package as its README has it: installed by the two commands into a virtual environment of
+//! its own, then its tests, the notebook among them. Skipped, loudly, where Python or the packages
+//! cannot be had; a machine that has them may not fail.
+//!
+//! The commands are for the shells of Unix.
+#![cfg(unix)]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use eomgen_tests::models::project;
+use eomgen_tests::program::{self, target, text};
+
+/// The folder of the virtual environment in the README's commands.
+const ENVIRONMENT: &str = ".venv";
+
+/// Commands of a shell in the project's folder, which share what the tests have built.
+fn shell(commands: &str) -> Output {
+    Command::new("bash")
+        .args(["-e", "-c", commands])
+        .current_dir(project())
+        .env("CARGO_TARGET_DIR", target().0)
+        .env("EOMGEN_PROGRAM", program::path())
+        .env("PIP_DISABLE_PIP_VERSION_CHECK", "1")
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .output()
+        .expect("bash")
+}
+
+/// What keeps the package from being installed here, if anything does.
+fn missing(folder: &Path) -> Option<&'static str> {
+    let works = |commands: &str| shell(commands).status.success();
+    let folder = folder.display();
+    if !works(&format!("python3 -m venv {folder}/tried")) {
+        return Some("python3 with venv (Debian: apt-get install python3-venv)");
+    }
+    let registry = format!("{folder}/tried/bin/pip download --no-deps -d {folder} maturin numpy");
+    (!works(&registry)).then_some("a registry of Python packages")
+}
+
+/// The commands of the README's first console block, on an environment in `folder`.
+fn installation(folder: &Path) -> Vec<String> {
+    let page = std::fs::read_to_string(project().join("python/README.md")).expect("a page");
+    let (_, rest) = page.split_once("```console\n").expect("a block");
+    let block = rest.split("```").next().unwrap_or_default();
+    let commands = block.lines().map(|line| {
+        let command = line.strip_prefix("$ ").expect("a command on each line");
+        command.replace(ENVIRONMENT, &folder.join("venv").display().to_string())
+    });
+    commands.collect()
+}
+
+#[test]
+fn the_package_is_installed_by_two_commands_and_passes_its_tests() {
+    let folder = tempfile::tempdir().expect("a folder");
+    if let Some(missing) = missing(folder.path()) {
+        skips::skip(&format!(
+            "the Python package was not installed, for want of {missing}"
+        ));
+        return;
+    }
+    let commands = installation(folder.path());
+    assert_eq!(commands.len(), 2, "{commands:?}");
+    let installed = commands.join("\n");
+    // From another folder, so that it is the package that was installed.
+    let imported = "cd / && python -c 'import eomgen; print(eomgen.load.__doc__)'";
+    let output = shell(&format!("{installed}\n{imported}"));
+    let shown = |output: &Output| text(&output.stdout) + &text(&output.stderr);
+    assert!(output.status.success(), "{}", shown(&output));
+    let activate = commands[0].rsplit("&& ").next().expect("a last part");
+    let tests = "pip install --quiet './python[test]'\npytest python -p no:cacheprovider -q -rs";
+    let output = shell(&format!("{activate}\n{tests}"));
+    let report = text(&output.stdout);
+    assert!(output.status.success(), "{}", shown(&output));
+    assert!(report.contains(" passed"), "{report}");
+    for line in report.lines() {
+        if let Some(skipped) = line.strip_prefix("SKIPPED ") {
+            skips::skip(&format!("a test of the Python package: {skipped}"));
+        }
+    }
+}
