@@ -209,11 +209,13 @@ impl std::str::FromStr for Extra {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        if name == "bench" {
-            return Ok(Self::Bench);
+        match name {
+            "bench" => return Ok(Self::Bench),
+            "hessians" => return Ok(Self::Output(Output::Hessians)),
+            _ => {}
         }
         let output = name.parse().map(Self::Output);
-        output.map_err(|error: UnknownOutput| format!("{error}, bench"))
+        output.map_err(|error: UnknownOutput| format!("{error}, hessians, bench"))
     }
 }
 
@@ -229,8 +231,8 @@ pub struct Generate {
     /// What to emit besides rates, observables, energy, power, guards and mass matrix:
     /// bias_forces, inverse_dynamics, guard_rates, jacobians, products (of the Jacobian with
     /// vectors), linearisation, regimes (rates with every contact
-    /// decided), lanes (every function inlined once more), bench (a benchmark beside the
-    /// source).
+    /// decided), lanes (every function inlined once more), hessians (of the weighted rates, for
+    /// CasADi), bench (a benchmark beside the source).
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub with: Vec<Extra>,
     /// The language.

@@ -40,8 +40,10 @@ pub fn files(program: &Program, target: Target) -> Result<Vec<(String, String)>>
 /// # Errors
 /// If that does not go with the language.
 pub fn outputs(options: &Generate) -> Result<Vec<Output>> {
+    let hessians = Extra::Output(Output::Hessians);
     let has = |extra: Extra| options.with.contains(&extra);
     let reason = match options.target {
+        Target::Rust | Target::C99 if has(hessians) => "--with hessians goes with --target casadi",
         Target::Rust => return Ok(Extra::outputs(&options.with)),
         _ if options.certify => {
             "--certify goes with --target rust: a certificate is of the emitted Rust, whose bits the \
@@ -53,9 +55,14 @@ pub fn outputs(options: &Generate) -> Result<Vec<Output>> {
              which C has no way to say"
         }
         Target::C99 => return Ok(Extra::outputs(&options.with)),
-        Target::Casadi if options.with.is_empty() => return Ok(c::CASADI_OUTPUTS.to_vec()),
+        Target::Casadi if options.with.iter().all(|extra| *extra == hessians) => {
+            let mut outputs = c::CASADI_OUTPUTS.to_vec();
+            outputs.extend(Extra::outputs(&options.with));
+            return Ok(outputs);
+        }
         Target::Casadi => {
-            "--with does not go with --target casadi: its functions are rates and jac_rates"
+            "--with does not go with --target casadi but for hessians: its functions are rates and \
+             jac_rates"
         }
     };
     Err(Error::input(reason))

@@ -15,6 +15,7 @@ fn arguments(stage: &Stage) -> Vec<(&'static str, &'static str)> {
         Argument::Accelerations => ("const NAME_real *", "accelerations"),
         Argument::Direction => ("const NAME_real *", "direction"),
         Argument::InputDirection => ("const NAME_inputs *", "input_direction"),
+        Argument::PointDirection => ("const NAME_real *", "direction"),
         Argument::Weights => ("const NAME_real *", "weights"),
     }));
     match &stage.outcome {
@@ -149,6 +150,7 @@ fn length(program: &Program, size: &Size) -> usize {
                 .sum()
         }
         Size::Parameters => program.parameters.len(),
+        Size::Point => program.point_length(),
         Size::Nonzeros(name) => {
             let mut jacobians = program.outputs.jacobians.iter();
             let jacobian = jacobians.find(|jacobian| jacobian.name == *name);

@@ -21,8 +21,8 @@ mod types;
 mod value;
 
 pub use crate::mechanics::outputs::{
-    BlockPlace, Decided, Jacobian, JacobianBlock, Output, Outputs, Products, SURFACES_OF_A_REGIME,
-    Switch,
+    BlockPlace, Decided, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Output, Outputs,
+    Products, SURFACES_OF_A_REGIME, Switch,
 };
 pub use crate::symbolic::arguments::Arguments;
 pub use crate::symbolic::graph::{Argument, Variable};

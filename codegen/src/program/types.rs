@@ -177,11 +177,30 @@ impl Program {
                 .sum::<usize>()
     }
 
-    /// Place of a variable, or of the first of a field's, in the state, or among the inputs.
+    /// How many numbers a point has: time, state, inputs and independent parameters.
+    pub fn point_length(&self) -> usize {
+        1 + self.states() + self.inputs.len() + self.parameters.len()
+    }
+
+    /// Place of a variable, or of the first of a field's, in a point.
+    pub fn point_place(&self, variable: Variable) -> usize {
+        let before = match variable {
+            Variable::Time => 0,
+            Variable::Input(_) => 1 + self.states(),
+            Variable::Parameter(_) => 1 + self.states() + self.inputs.len(),
+            _ => 1,
+        };
+        before + self.variable_place(variable)
+    }
+
+    /// Place of a variable, or of the first of a field's, in the state, among the inputs, or
+    /// among the independent parameters.
     pub fn variable_place(&self, variable: Variable) -> usize {
         match variable {
             Variable::Coordinate(index) => index.index(),
             Variable::Input(index) => index.index(),
+            Variable::Parameter(index) => index.index(),
+            Variable::Time => 0,
             Variable::ModeCoordinates(field) => self.mode_offset(field),
             Variable::Rate(index) => self.degrees_of_freedom() + index.index(),
             Variable::ModeRates(field) => self.degrees_of_freedom() + self.mode_offset(field),

@@ -41,8 +41,14 @@ pub const ITEMS_MODULE: &str = "eomgen_emitted";
 /// The source of a program as Rust.
 ///
 /// # Errors
-/// If a name of the program is no Rust identifier.
+/// If a name of the program is no Rust identifier, or if it was derived with Hessians, which are
+/// written in C alone.
 pub fn emit(program: &Program, packaging: Packaging) -> Result<String, EmitError> {
+    if program.outputs.gradient_derivative.is_some() {
+        return Err(EmitError::Value(
+            "Hessians are written in C alone".to_owned(),
+        ));
+    }
     let file = File::new(program, &WORDS)?;
     Ok(layout::source(&marked(&file, packaging)?))
 }

@@ -51,6 +51,7 @@ pub(super) fn function(file: &File<'_>, stage: &Stage, writer: &mut Writer) -> S
             Argument::InputDirection => {
                 arguments += &format!("input_direction: &{},\n", generic(file, "Inputs"));
             }
+            Argument::PointDirection => arguments += "direction: &[T; POINT],\n",
             Argument::Weights => arguments += "weights: &[T; STATES],\n",
         }
     }
@@ -114,6 +115,7 @@ fn length(size: &Size) -> String {
         Size::DegreesOfFreedom => "DEGREES_OF_FREEDOM".to_owned(),
         Size::Guards => "GUARDS".to_owned(),
         Size::Parameters => "PARAMETERS".to_owned(),
+        Size::Point => "POINT".to_owned(),
         Size::Nonzeros(jacobian) => format!("{}_NONZEROS", jacobian.to_uppercase()),
     }
 }

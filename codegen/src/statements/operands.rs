@@ -7,7 +7,7 @@ use super::expression::{Array, Expression, Structure};
 use super::index::Index;
 use super::sides::of_side;
 use crate::program::evaluator::{Law, law};
-use crate::program::{Argument, Extent, Op, Output, ValueId, Variable};
+use crate::program::{Argument, Extent, Op, Output, Program, ValueId, Variable};
 use eomgen_elementary::Function as Elementary;
 use eomgen_model_spec::model::Function;
 
@@ -132,9 +132,10 @@ impl<'a> Body<'a> {
                 let first = program.degrees_of_freedom() + program.mode_offset(field);
                 of("state", first)?
             }
-            Op::Argument(argument, variable) if value.extent != Extent::Scalar => {
-                of(argument_name(argument), program.variable_place(variable))?
-            }
+            Op::Argument(argument, variable) if value.extent != Extent::Scalar => of(
+                argument_name(argument),
+                argument_place(program, argument, variable),
+            )?,
             _ => match &self.access {
                 Access::Coefficients(fields) if value.parameter_only => {
                     let Some(name) = fields.get(&id) else {
@@ -180,12 +181,13 @@ impl<'a> Body<'a> {
                 let name = &program.parameters[place].quantity.name;
                 field(Structure::Parameters, name)?
             }
-            Op::Argument(_, Variable::Input(index)) => {
+            Op::Argument(Argument::Direction, Variable::Input(index)) => {
                 field(Structure::InputDirection, &program.inputs[index].name)?
             }
-            Op::Argument(argument, variable) => {
-                at(argument_name(argument), program.variable_place(variable))
-            }
+            Op::Argument(argument, variable) => at(
+                argument_name(argument),
+                argument_place(program, argument, variable),
+            ),
             _ => return Err(EmitError::misplaced(id, "is nothing that is given")),
         })
     }
@@ -240,11 +242,19 @@ impl<'a> Body<'a> {
     }
 }
 
+/// Where the number of a variable, or the first of a field's, stands in an argument.
+fn argument_place(program: &Program, argument: Argument, variable: Variable) -> usize {
+    match argument {
+        Argument::PointDirection => program.point_place(variable),
+        _ => program.variable_place(variable),
+    }
+}
+
 /// The name under which a stage is given an argument.
 fn argument_name(argument: Argument) -> &'static str {
     match argument {
         Argument::Accelerations => "accelerations",
-        Argument::Direction => "direction",
+        Argument::Direction | Argument::PointDirection => "direction",
         Argument::Weights => "weights",
     }
 }

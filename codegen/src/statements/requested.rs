@@ -13,7 +13,8 @@ use super::stage::{Argument, Outcome, Size, Stage};
 use super::stages::{ORDER, guard_values, rates_of, where_not_definite};
 use super::statement::{Place, Statement};
 use crate::program::{
-    BlockPlace, Extent, Jacobian, JacobianBlock, Products, RowValues, ValueId, Variable,
+    BlockPlace, Extent, GradientDerivative, Jacobian, JacobianBlock, Products, RowValues, ValueId,
+    Variable,
 };
 
 /// All but the Jacobians and what knows regimes.
@@ -42,6 +43,9 @@ pub fn requested(file: &File<'_>, needed: &mut Needed) -> Emitted<Vec<Stage>> {
         stages.push(jacobian_vector_product(file, products, needed)?);
         stages.push(vector_jacobian_product(file, products, needed)?);
         stages.push(product_by_parameters(file, products, needed)?);
+    }
+    if let Some(derivative) = &outputs.gradient_derivative {
+        stages.push(gradient_derivative(file, derivative, needed)?);
     }
     Ok(stages)
 }
@@ -112,6 +116,8 @@ fn vector_jacobian_product(
         let each = || Place::new("product", [Index::after(place, "i")]);
         match variable {
             Variable::Input(index) => inputs[*index] = body.scalar(*id)?,
+            // The product is by state and inputs.
+            Variable::Parameter(_) | Variable::Time => {}
             Variable::Coordinate(_) => {
                 let value = body.scalar(*id)?;
                 body.assign(at(), value);
@@ -170,6 +176,37 @@ fn product_by_parameters(
         list: Vec::new(),
         arguments: vec![Argument::Weights],
         outcome: Outcome::Array("product", Size::Parameters),
+        computed,
+        written: body.take(),
+    })
+}
+
+fn gradient_derivative(
+    file: &File<'_>,
+    derivative: &GradientDerivative<ValueId>,
+    needed: &mut Needed,
+) -> Emitted<Stage> {
+    let roots: Vec<ValueId> = derivative.rows.iter().map(|row| row.value).collect();
+    let mut body = file.body(&roots, needed)?;
+    let computed = body.take();
+    for row in &derivative.rows {
+        let extent = body.program.value(row.value).extent;
+        let value = body.element(row.value)?;
+        if row.count == 1 && extent == Extent::Scalar {
+            body.assign(Place::new("product", [Index::Number(row.first)]), value);
+        } else {
+            let place = Place::new("product", [Index::after(row.first, "i")]);
+            body.assign_each(row.count, place, value);
+        }
+    }
+    Ok(Stage {
+        name: "gradient_derivative",
+        doc: "How the gradient of the weighted sum of the rates changes along a direction: the\n\
+              product of its Hessian with it, both by time, state, inputs and parameters in this order."
+            .to_owned(),
+        list: Vec::new(),
+        arguments: vec![Argument::Weights, Argument::PointDirection],
+        outcome: Outcome::Array("product", Size::Point),
         computed,
         written: body.take(),
     })

@@ -60,6 +60,9 @@ fn output_roots(program: &Program) -> Vec<ValueId> {
         roots.extend(products.reverse.iter().map(|(_, id)| *id));
         roots.extend(products.by_parameters.entries.iter().map(|e| e.value));
     }
+    if let Some(derivative) = &outputs.gradient_derivative {
+        roots.extend(derivative.rows.iter().map(|row| row.value));
+    }
     for jacobian in &outputs.jacobians {
         roots.extend(entry_roots(program, jacobian));
     }

@@ -14,6 +14,8 @@ pub enum Argument {
     Direction,
     /// A direction of the inputs.
     InputDirection,
+    /// A direction of time, state, inputs and parameters.
+    PointDirection,
     /// A weight for each rate.
     Weights,
 }
@@ -29,6 +31,8 @@ pub enum Size {
     Guards,
     /// As many as there are parameters.
     Parameters,
+    /// As many as time, state, inputs and parameters have.
+    Point,
     /// As many as the Jacobian of this name has structural nonzeros.
     Nonzeros(&'static str),
 }

@@ -317,6 +317,8 @@ impl Graph {
             Variable::Rate(index) => Operation::Rate(index),
             Variable::ModeRates(field) => Operation::ModeRates(field),
             Variable::Input(index) => Operation::Input(index),
+            Variable::Parameter(index) => Operation::Parameter(index),
+            Variable::Time => Operation::Time,
         })
     }
 

@@ -58,6 +58,10 @@ pub enum Variable {
     ModeRates(FieldId),
     /// An input.
     Input(InputId),
+    /// A parameter; in a program, a place among the independent ones.
+    Parameter(ParameterId),
+    /// The time.
+    Time,
 }
 
 /// What some outputs are called with besides state and inputs: a number for each
@@ -68,6 +72,8 @@ pub enum Argument {
     Accelerations,
     /// A direction in the space of states and inputs.
     Direction,
+    /// A direction in the space of time, state, inputs and independent parameters.
+    PointDirection,
     /// A weight for each rate of the state, in the order of the state.
     Weights,
 }

@@ -3,6 +3,7 @@
 //! `jacobian`. The structure they stand in is in `types`.
 
 use super::adjoint;
+use super::hessian::gradient_derivative;
 use super::jacobian::{
     JacobianRows, by_parameters, by_time, by_variables, observable_rows, one_row, rate_rows,
 };
@@ -35,7 +36,8 @@ pub fn derive_outputs(
     let differentiated = has(Output::Jacobians)
         || has(Output::Products)
         || has(Output::Linearisation)
-        || has(Output::TimeDerivatives);
+        || has(Output::TimeDerivatives)
+        || has(Output::Hessians);
     if differentiated {
         let mut roots = equations.accelerations.rows.nodes();
         roots.extend(&equations.observables);
@@ -60,7 +62,14 @@ pub fn derive_outputs(
             .jacobians
             .push(by_time(equations, &rows, "rates_by_time"));
     }
-    result.products = has(Output::Products).then(|| products(equations));
+    if has(Output::Products) || has(Output::Hessians) {
+        let products = products(equations);
+        if has(Output::Hessians) {
+            let derivative = gradient_derivative(equations, &products.by_parameters);
+            result.gradient_derivative = Some(derivative);
+        }
+        result.products = Some(products);
+    }
     result.regimes = has(Output::Regimes).then(|| switches(equations));
     Ok(result)
 }
@@ -175,13 +184,7 @@ fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
         scalars: derivatives(graph, &mut direction, &rows.scalars),
         modal: derivatives(graph, &mut direction, &rows.modal),
     };
-    let mut weighted = Vec::new();
-    for (index, row) in CoordinateId::first(rows.scalars.len()).zip(&rows.scalars) {
-        weighted.push((weight(graph, Variable::Rate(index)), *row));
-    }
-    for (field, row) in FieldId::first(rows.modal.len()).zip(&rows.modal) {
-        weighted.push((weight(graph, Variable::ModeRates(field)), *row));
-    }
+    let weighted = weighted(graph, &rows);
     let gradient = adjoint::gradient(graph, &weighted);
     let mut reverse: Vec<(Variable, NodeId)> = gradient
         .into_iter()
@@ -193,6 +196,18 @@ fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
         reverse,
         by_parameters: weighted_by_parameters(equations, &rows, &weighted),
     }
+}
+
+/// The weight of each acceleration, and the acceleration.
+pub(super) fn weighted(graph: &mut Graph, rows: &RowNodes) -> Vec<(NodeId, NodeId)> {
+    let mut weighted = Vec::new();
+    for (index, row) in CoordinateId::first(rows.scalars.len()).zip(&rows.scalars) {
+        weighted.push((weight(graph, Variable::Rate(index)), *row));
+    }
+    for (field, row) in FieldId::first(rows.modal.len()).zip(&rows.modal) {
+        weighted.push((weight(graph, Variable::ModeRates(field)), *row));
+    }
+    weighted
 }
 
 /// The gradient of the weighted rates by the independent parameters: backward where it can be,
@@ -239,7 +254,7 @@ fn weight(graph: &mut Graph, variable: Variable) -> NodeId {
     graph.intern(Operation::Argument(Argument::Weights, variable))
 }
 
-fn variable_of(graph: &Graph, leaf: NodeId) -> Option<Variable> {
+pub(super) fn variable_of(graph: &Graph, leaf: NodeId) -> Option<Variable> {
     Some(match *graph.operation(leaf) {
         Operation::Coordinate(index) => Variable::Coordinate(index),
         Operation::ModeCoordinates(field) => Variable::ModeCoordinates(field),

@@ -171,16 +171,16 @@ pub(crate) fn one_row(graph: &Graph, name: &'static str, row: &[NodeId]) -> Jaco
     }
 }
 
-fn degrees_of_freedom(equations: &Equations) -> usize {
+pub(super) fn degrees_of_freedom(equations: &Equations) -> usize {
     mode_offset(equations, FieldId::new(equations.graph.orders().len()))
 }
 
-fn mode_offset(equations: &Equations, field: FieldId) -> usize {
+pub(super) fn mode_offset(equations: &Equations, field: FieldId) -> usize {
     let modes: usize = equations.graph.orders()[..field.index()].iter().sum();
     equations.forces.scalars.len() + modes
 }
 
-fn state_variables(equations: &Equations) -> Vec<Variable> {
+pub(super) fn state_variables(equations: &Equations) -> Vec<Variable> {
     let (coordinates, fields) = (equations.forces.scalars.len(), equations.forces.modal.len());
     CoordinateId::first(coordinates)
         .map(Variable::Coordinate)
@@ -317,7 +317,7 @@ impl<'a> Blocks<'a> {
 
 /// Gives the leaf of a derived parameter its derivative along the direction, those that its
 /// expression reads first.
-fn seed_derived(
+pub(super) fn seed_derived(
     graph: &mut Graph,
     derived: &[Option<NodeId>],
     index: ParameterId,

@@ -2,11 +2,12 @@
 //!
 //! `output` (what can be asked for), `types` (the structure of what was derived), `derive` (its
 //! derivation), `jacobian` (columns by state, inputs and parameters), `adjoint` (products with
-//! weights, backward), `matrix_derivatives` (what differentiates a modal matrix), `regimes`
+//! weights, backward), `hessian` (second derivatives of the weighted rates), `matrix_derivatives` (what differentiates a modal matrix), `regimes`
 //! (which surfaces decide each branch).
 
 mod adjoint;
 mod derive;
+mod hessian;
 mod jacobian;
 mod matrix_derivatives;
 mod output;
@@ -16,4 +17,6 @@ mod types;
 pub use derive::derive_outputs;
 pub use output::{Output, UnknownOutput};
 pub use regimes::{Decided, SURFACES_OF_A_REGIME, Switch};
-pub use types::{BlockPlace, Jacobian, JacobianBlock, Outputs, Products};
+pub use types::{
+    BlockPlace, GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs, Products,
+};

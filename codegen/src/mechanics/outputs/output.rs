@@ -21,13 +21,16 @@ pub enum Output {
     /// The derivative of the rates by the time. Not asked for by name: it is the column that
     /// what calls from elsewhere misses in the Jacobians.
     TimeDerivatives,
+    /// The Jacobian of the gradient of the weighted rates by time, state, inputs and parameters:
+    /// the second derivatives that optimisers ask for. Brings the products with it.
+    Hessians,
     /// Every function a second time as `inlined_...`, for lanes: to be compiled with the code
     /// around it for registers that are known at run time.
     Lanes,
 }
 
 impl Output {
-    /// Every output that is asked for by name.
+    /// Every output that is emitted in every language.
     pub const ALL: [Self; 8] = [
         Self::BiasForces,
         Self::InverseDynamics,
@@ -50,6 +53,7 @@ impl Output {
             Self::Linearisation => "linearisation",
             Self::Regimes => "regimes",
             Self::TimeDerivatives => "time_derivatives",
+            Self::Hessians => "hessians",
             Self::Lanes => "lanes",
         }
     }

@@ -1,6 +1,8 @@
 //! What is derived on request, of nodes in the equations and of values in the program: the same
 //! structure for both.
 
+use std::ops::Range;
+
 use super::output::Output;
 use super::regimes::Switch;
 use crate::symbolic::graph::Variable;
@@ -20,6 +22,8 @@ pub struct Outputs<N, R> {
     pub jacobians: Vec<Jacobian<N>>,
     /// Products with the Jacobian of the rates.
     pub products: Option<Products<N, R>>,
+    /// The derivative of the gradient of the weighted rates along a direction.
+    pub gradient_derivative: Option<GradientDerivative<N>>,
     /// What a regime decides in the accelerations.
     pub regimes: Option<Vec<Switch<N>>>,
 }
@@ -33,6 +37,7 @@ impl<N, R> Default for Outputs<N, R> {
             guard_rates: None,
             jacobians: Vec::new(),
             products: None,
+            gradient_derivative: None,
             regimes: None,
         }
     }
@@ -49,6 +54,27 @@ pub struct Products<N, R> {
     pub reverse: Vec<(Variable, N)>,
     /// The product of the weights with the columns by parameters: a Jacobian of one row.
     pub by_parameters: Jacobian<N>,
+}
+
+/// How the gradient of the weighted rates changes along a direction: the product of their
+/// Hessian, by time, state, inputs and independent parameters in this order, with it.
+#[derive(Clone, Debug)]
+pub struct GradientDerivative<N> {
+    /// The rows that are not zero.
+    pub rows: Vec<GradientRow<N>>,
+}
+
+/// A row of the derivative of a gradient, or one for each mode of a field.
+#[derive(Clone, Debug)]
+pub struct GradientRow<N> {
+    /// Its place in the order of time, state, inputs and parameters.
+    pub first: usize,
+    /// How many rows.
+    pub count: usize,
+    /// Its derivative along the direction, a scalar or a vector over the modes.
+    pub value: N,
+    /// What it depends on, in the same order: where the Hessian may not be zero.
+    pub columns: Vec<Range<usize>>,
 }
 
 /// A Jacobian by its structural nonzeros.

@@ -2,7 +2,9 @@
 
 use super::values::Lowering;
 use crate::mechanics::outputs::Switch;
-use crate::mechanics::outputs::{Jacobian, JacobianBlock, Outputs, Products};
+use crate::mechanics::outputs::{
+    GradientDerivative, GradientRow, Jacobian, JacobianBlock, Outputs, Products,
+};
 use crate::mechanics::rows::RowNodes;
 use crate::program::{RowValues, ValueId};
 use crate::symbolic::graph::NodeId;
@@ -36,6 +38,18 @@ impl Lowering<'_> {
                     .map(|(variable, node)| (*variable, self.value(*node)))
                     .collect(),
                 by_parameters: self.jacobian(&products.by_parameters),
+            }),
+            gradient_derivative: outputs.gradient_derivative.as_ref().map(|derivative| {
+                let rows = derivative.rows.iter();
+                let rows = rows.map(|row| GradientRow {
+                    first: row.first,
+                    count: row.count,
+                    value: self.value(row.value),
+                    columns: row.columns.clone(),
+                });
+                GradientDerivative {
+                    rows: rows.collect(),
+                }
             }),
             regimes: outputs.regimes.as_ref().map(|switches| {
                 let switches = switches.iter();

@@ -9,7 +9,7 @@ use crate::mechanics::rows::RowNodes;
 use crate::program::{
     Extent, MassBlocks, Op, ProgramTable, RowValues, ScaledValue, Value, ValueId,
 };
-use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, Shape};
+use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, Shape, Variable};
 
 /// An operation and its extent, to be found again: numbers are compared by their bits.
 struct Computation {
@@ -209,6 +209,10 @@ impl<'g> Lowering<'g> {
             Operation::Rate(index) => Op::Rate(*index),
             Operation::Input(index) => Op::Input(*index),
             Operation::Time => Op::Time,
+            Operation::Argument(argument, Variable::Parameter(index)) => {
+                let place = ParameterId::new(self.independent[*index]);
+                Op::Argument(*argument, Variable::Parameter(place))
+            }
             Operation::Argument(argument, variable) => Op::Argument(*argument, *variable),
             Operation::ModeCoordinates(field) => Op::ModeCoordinates(*field),
             Operation::ModeRates(field) => Op::ModeRates(*field),

@@ -194,6 +194,8 @@ impl<'a> Reader<'a> {
             Variable::Coordinate(index) => Symbol::plain(&model.coordinates[index].name),
             Variable::Rate(index) => Symbol::plain(&model.coordinates[index].name).with_dots(1),
             Variable::Input(index) => Symbol::plain(&model.inputs[index].name),
+            Variable::Parameter(index) => Symbol::plain(&model.parameters[index].name),
+            Variable::Time => Symbol::plain("t"),
             Variable::ModeCoordinates(field) => modes(field),
             Variable::ModeRates(field) => modes(field).with_dots(1),
         }
@@ -285,7 +287,7 @@ impl<'a> Reader<'a> {
 fn argument_name(argument: Argument) -> &'static str {
     match argument {
         Argument::Accelerations => "acceleration",
-        Argument::Direction => "direction",
+        Argument::Direction | Argument::PointDirection => "direction",
         Argument::Weights => "weight",
     }
 }

@@ -1,0 +1,133 @@
+//! Matrices by their columns, as CasADi has them, of structural nonzeros that the emitted functions
+//! return row by row.
+
+use std::ops::Range;
+
+use super::super::expression::initialiser;
+use super::super::names::named;
+use crate::program::{GradientDerivative, Jacobian, Program, ValueId};
+
+/// A structural nonzero: where it stands, and its place among those row by row.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Nonzero {
+    column: usize,
+    row: usize,
+    place: usize,
+}
+
+/// A matrix by its columns.
+pub(super) struct Columns {
+    rows: usize,
+    columns: usize,
+    /// By columns, then by rows.
+    nonzeros: Vec<Nonzero>,
+}
+
+impl Columns {
+    fn new(rows: usize, columns: usize, mut nonzeros: Vec<Nonzero>) -> Self {
+        nonzeros.sort_unstable();
+        Self {
+            rows,
+            columns,
+            nonzeros,
+        }
+    }
+
+    /// A matrix of zeros.
+    pub(super) fn zero(rows: usize, columns: usize) -> Self {
+        Self::new(rows, columns, Vec::new())
+    }
+
+    /// A column without zeros.
+    pub(super) fn dense(rows: usize) -> Self {
+        let nonzero = |row| Nonzero {
+            column: 0,
+            row,
+            place: row,
+        };
+        Self::new(rows, 1, (0..rows).map(nonzero).collect())
+    }
+
+    /// The structural nonzeros of a Jacobian of so many columns.
+    pub(super) fn of(jacobian: &Jacobian<ValueId>, columns: usize) -> Self {
+        let mut nonzeros = Vec::new();
+        for (block, place) in jacobian.entries.iter().zip(jacobian.places()) {
+            for i in 0..block.rows {
+                for j in 0..block.width() {
+                    nonzeros.push(Nonzero {
+                        column: block.column + if block.diagonal { i } else { j },
+                        row: block.row + i,
+                        place: place.start + i * place.width + j,
+                    });
+                }
+            }
+        }
+        Self::new(jacobian.rows, columns, nonzeros)
+    }
+
+    /// The block of a Hessian with these rows and columns: what the rows depend on.
+    pub(super) fn where_not_zero(
+        derivative: &GradientDerivative<ValueId>,
+        rows: &Range<usize>,
+        columns: &Range<usize>,
+    ) -> Self {
+        let mut nonzeros = Vec::new();
+        for block in &derivative.rows {
+            for row in (block.first..block.first + block.count).filter(|row| rows.contains(row)) {
+                let depends = block.columns.iter().cloned().flatten();
+                for column in depends.filter(|column| columns.contains(column)) {
+                    nonzeros.push(Nonzero {
+                        column: column - columns.start,
+                        row: row - rows.start,
+                        place: row,
+                    });
+                }
+            }
+        }
+        nonzeros.sort_unstable();
+        nonzeros.dedup();
+        Self::new(rows.len(), columns.len(), nonzeros)
+    }
+
+    /// The transposed matrix.
+    pub(super) fn transposed(&self) -> Self {
+        let turned = self.nonzeros.iter().map(|nonzero| Nonzero {
+            column: nonzero.row,
+            row: nonzero.column,
+            ..*nonzero
+        });
+        Self::new(self.columns, self.rows, turned.collect())
+    }
+
+    /// How many structural nonzeros there are.
+    pub(super) fn count(&self) -> usize {
+        self.nonzeros.len()
+    }
+
+    /// The sparsity as CasADi wants it: rows, columns, where each column begins, the row of each
+    /// nonzero.
+    pub(super) fn sparsity(&self, program: &Program, name: &str) -> String {
+        let starts = (0..=self.columns)
+            .map(|column| self.nonzeros.partition_point(|known| known.column < column));
+        let numbers = [self.rows, self.columns].into_iter().chain(starts);
+        let numbers = numbers.chain(self.nonzeros.iter().map(|nonzero| nonzero.row));
+        list(program, "casadi_int", &format!("{name}_sparsity"), numbers)
+    }
+
+    /// Where the nonzeros by columns stand among those by rows.
+    pub(super) fn order(&self, program: &Program, name: &str) -> String {
+        let places = self.nonzeros.iter().map(|nonzero| nonzero.place);
+        list(program, "int", &format!("{name}_order"), places)
+    }
+}
+
+/// A constant list, sixteen numbers in a line. C has none without elements.
+fn list(program: &Program, of: &str, name: &str, numbers: impl Iterator<Item = usize>) -> String {
+    let mut numbers: Vec<String> = numbers.map(|number| number.to_string()).collect();
+    if numbers.is_empty() {
+        numbers.push("0".to_owned());
+    }
+    let lines: Vec<String> = numbers.chunks(16).map(|line| line.join(", ")).collect();
+    let head = format!("static const {of} NAME_{name}[{}]", numbers.len());
+    format!("{} = {};\n", named(program, &head), initialiser(&lines))
+}

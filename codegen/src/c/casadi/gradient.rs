@@ -1,0 +1,164 @@
+//! What an optimiser asks for beside the Jacobians: the gradient of the weighted rates,
+//! `adj1_rates`, and its Jacobian, `jac_adj1_rates`, whose blocks by (t, x, u, p) are second
+//! derivatives of the weighted rates and whose blocks by the weights are the Jacobians transposed.
+
+use super::super::names::named;
+use super::columns::Columns;
+use super::function::Function;
+use super::{Given, derived};
+use crate::program::{GradientDerivative, Program, ValueId};
+use crate::statements::Emitted;
+
+/// Both functions.
+pub(super) fn gradient(
+    program: &Program,
+    given: &[Given; 4],
+    derivative: &GradientDerivative<ValueId>,
+) -> Emitted<String> {
+    Ok(weighted(program, given)? + &second(program, given, derivative)?)
+}
+
+/// A function of the point, the rates there, which nothing reads, and the weights.
+fn of_weights(given: &[Given; 4], name: &'static str) -> Function {
+    let mut function = Function::of(given, name);
+    function.given("out_rates", "states");
+    function.given("adj_rates", "states");
+    function.statements = "const double *weights = arg[5] ? arg[5] : zeros;\n".to_owned();
+    function
+}
+
+fn weighted(program: &Program, given: &[Given; 4]) -> Emitted<String> {
+    let mut function = of_weights(given, "adj1_rates");
+    for argument in given {
+        function.result(format!("adj_{}", argument.name), argument.shape);
+    }
+    let by_time = derived(program, "rates_by_time")?.nonzeros();
+    function.need(by_time.max(program.states()));
+    let inputs = program
+        .inputs
+        .iter()
+        .enumerate()
+        .map(|(place, input)| format!("        res[2][{place}] = by_inputs.{};\n", input.name));
+    let text = WEIGHTED.replace("BY_TIME", &by_time.to_string());
+    function.statements += &text.replace("INPUTS\n", &inputs.collect::<String>());
+    Ok(function.text(program))
+}
+
+/// The Jacobian of the gradient, column by column: where its blocks may not be zero, and the
+/// function that computes them.
+fn second(
+    program: &Program,
+    given: &[Given; 4],
+    derivative: &GradientDerivative<ValueId>,
+) -> Emitted<String> {
+    let mut function = of_weights(given, "jac_adj1_rates");
+    let mut text = named(program, COLUMN);
+    for argument in given {
+        function.given(&format!("out_adj_{}", argument.name), argument.shape);
+    }
+    let mut places = Vec::new();
+    let mut first = 0;
+    for argument in given {
+        places.push(first..first + argument.count);
+        first += argument.count;
+    }
+    let results = given.len() + 2;
+    let mut by_weights = String::new();
+    for (row, of) in given.iter().enumerate() {
+        for (column, by) in given.iter().enumerate() {
+            let name = format!("adj_{}_{}", of.name, by.name);
+            let block = Columns::where_not_zero(derivative, &places[row], &places[column]);
+            text += &block.sparsity(program, &name);
+            function.result(format!("jac_{name}"), &name);
+        }
+        let name = format!("adj_{}_out", of.name);
+        text += &Columns::zero(of.count, program.states()).sparsity(program, &name);
+        function.result(format!("jac_adj_{}_out_rates", of.name), &name);
+        let turned = Columns::of(derived(program, of.jacobian)?, of.count).transposed();
+        let name = format!("adj_{}_weights", of.name);
+        text += &turned.sparsity(program, &name);
+        text += &turned.order(program, &name);
+        function.need(turned.count());
+        function.result(format!("jac_adj_{}_adj_rates", of.name), &name);
+        let place = results * row + given.len() + 1;
+        by_weights += &format!(
+            "if (res[{place}]) {{\n    NAME_{}(t, x, &inputs, &coefficients, w);\n    \
+             for (int i = 0; i < {}; ++i) {{\n        \
+             res[{place}][i] = w[NAME_{name}_order[i]];\n    }}\n}}\n",
+            of.jacobian,
+            turned.count()
+        );
+    }
+    function.statements += &named(program, DIRECTION).replace("LENGTH", &first.to_string());
+    for (column, by) in given.iter().enumerate() {
+        let asked = (0..given.len()).map(|row| format!("res[{}]", results * row + column));
+        let asked = asked.collect::<Vec<_>>().join(" || ");
+        let mut lines = BY_COLUMN.replace("FIRST", &places[column].start.to_string());
+        for (row, of) in given.iter().enumerate() {
+            lines += &format!(
+                "        NAME_column(NAME_adj_{}_{}_sparsity, k, product + {}, res[{}]);\n",
+                of.name,
+                by.name,
+                places[row].start,
+                results * row + column
+            );
+        }
+        function.statements += &format!(
+            "if ({asked}) {{\n    for (int k = 0; k < {}; ++k) {{\n{lines}    }}\n}}\n",
+            by.count
+        );
+    }
+    function.statements += &by_weights;
+    Ok(text + &function.text(program))
+}
+
+/// Writes a column of a block by its sparsity.
+const COLUMN: &str = "\
+static void NAME_column(
+    const casadi_int *sparsity, int k, const double *product, casadi_real *block
+) {
+    const casadi_int *rows = sparsity + 3 + sparsity[1];
+    if (block) {
+        for (casadi_int i = sparsity[2 + k]; i < sparsity[3 + k]; ++i) {
+            block[i] = product[rows[i]];
+        }
+    }
+}
+";
+
+const DIRECTION: &str = "\
+double direction[LENGTH] = {0};
+double product[LENGTH];
+";
+
+const BY_COLUMN: &str = "        \
+direction[FIRST + k] = 1;
+        NAME_gradient_derivative(
+            t, x, &inputs, &coefficients, weights, direction, product
+        );
+        direction[FIRST + k] = 0;
+";
+
+const WEIGHTED: &str = "\
+if (res[0]) {
+    NAME_rates_by_time(t, x, &inputs, &coefficients, w);
+    res[0][0] = 0;
+    for (int i = 0; i < BY_TIME; ++i) {
+        res[0][0] += w[NAME_rates_by_time_order[i]] * weights[NAME_rates_by_time_sparsity[4 + i]];
+    }
+}
+if (res[1] || res[2]) {
+    NAME_inputs by_inputs;
+    NAME_vector_jacobian_product(
+        t, x, &inputs, &coefficients, weights, res[1] ? res[1] : w, &by_inputs
+    );
+    if (res[2]) {
+INPUTS
+    }
+}
+if (res[3]) {
+    NAME_vector_jacobian_product_by_parameters(
+        t, x, &inputs, &coefficients, weights, res[3]
+    );
+}
+";

@@ -1,0 +1,197 @@
+//! A program as CasADi's external functions, in one file with the C that they call: `rates` and
+//! `jac_rates` of (t, x, u, p), by CasADi's interface of C functions, with the sparsities of their
+//! results in compressed columns, and `default_parameters`, the specification's p. With the Hessians
+//! `adj1_rates`, the gradient of the weighted rates, and its Jacobian `jac_adj1_rates` as well.
+//!
+//! u and p are the inputs and the parameters in SI, in the order of their names.
+//!
+//! `columns` (matrices by their columns), `function` (one function of the interface), `gradient`
+//! (what comes with the Hessians).
+
+mod columns;
+mod function;
+mod gradient;
+
+use columns::Columns;
+use function::Function;
+use gradient::gradient;
+
+use super::comments::comment;
+use super::emit::emit;
+use super::names::named;
+use crate::program::{Jacobian, Output, Program, ValueId};
+use crate::statements::layout;
+use crate::statements::{EmitError, Emitted};
+
+/// What a program has to be derived with.
+pub const CASADI_OUTPUTS: [Output; 2] = [Output::Jacobians, Output::TimeDerivatives];
+
+/// The file `NAME_casadi.c`, which compiles by itself.
+///
+/// # Errors
+/// If a name of the program is a word of C or C++, or if it was not derived with
+/// [`CASADI_OUTPUTS`].
+pub fn emit_casadi(program: &Program) -> Result<String, EmitError> {
+    let files = emit(program)?;
+    let include = format!("#include \"{}.h\"\n", program.name);
+    let double = named(program, "#undef NAME_REAL\n#define NAME_REAL double\n");
+    let functions = layout::source(&functions(program)?);
+    Ok([
+        double,
+        files.header,
+        files.source.replacen(&include, "", 1),
+        functions,
+    ]
+    .concat())
+}
+
+/// An argument of the rates: its name, the sparsity of a column of it, the Jacobian of the rates
+/// by it, how many numbers it has.
+#[derive(Clone, Copy)]
+struct Given {
+    name: &'static str,
+    shape: &'static str,
+    jacobian: &'static str,
+    count: usize,
+}
+
+/// What the rates are functions of.
+fn given(program: &Program) -> [Given; 4] {
+    let one = |name, shape, jacobian, count| Given {
+        name,
+        shape,
+        jacobian,
+        count,
+    };
+    [
+        one("t", "scalar", "rates_by_time", 1),
+        one("x", "states", "rates_by_state", program.states()),
+        one("u", "inputs", "rates_by_inputs", program.inputs.len()),
+        one(
+            "p",
+            "parameters",
+            "rates_by_parameters",
+            program.parameters.len(),
+        ),
+    ]
+}
+
+/// One of the Jacobians by its name.
+fn derived<'a>(program: &'a Program, name: &str) -> Emitted<&'a Jacobian<ValueId>> {
+    let mut jacobians = program.outputs.jacobians.iter();
+    let found = jacobians.find(|known| known.name == name);
+    found.ok_or_else(|| EmitError::Value(format!("{name} was not derived")))
+}
+
+fn functions(program: &Program) -> Emitted<String> {
+    let given = given(program);
+    let mut text = named(program, OPENING);
+    for argument in given {
+        text += &Columns::dense(argument.count).sparsity(program, argument.shape);
+    }
+    let mut jac_rates = Function::of(&given, "jac_rates");
+    jac_rates.given("out_rates", "states");
+    for (place, argument) in given.iter().enumerate() {
+        let name = argument.jacobian;
+        let compressed = Columns::of(derived(program, name)?, argument.count);
+        text += &compressed.sparsity(program, name);
+        text += &compressed.order(program, name);
+        jac_rates.result(format!("jac_rates_{}", argument.name), name);
+        jac_rates.need(compressed.count());
+        jac_rates.statements += &format!(
+            "if (res[{place}]) {{\n    NAME_{name}(t, x, &inputs, &coefficients, w);\n    \
+             for (int i = 0; i < {}; ++i) {{\n        \
+             res[{place}][i] = w[NAME_{name}_order[i]];\n    }}\n}}\n",
+            compressed.count()
+        );
+    }
+    text += &named(program, INTERFACE);
+    let mut rates = Function::of(&given, "rates");
+    rates.result("rates".to_owned(), "states");
+    rates.statements =
+        "if (res[0]) {\n    NAME_rates(t, x, &inputs, &coefficients, res[0]);\n}\n".to_owned();
+    text += &rates.text(program);
+    text += &jac_rates.text(program);
+    if let Some(derivative) = &program.outputs.gradient_derivative {
+        text += &gradient(program, &given, derivative)?;
+    }
+    text += &defaults(program);
+    Ok(text + "#ifdef __cplusplus\n}\n#endif\n")
+}
+
+fn defaults(program: &Program) -> String {
+    let line = "The specification's parameters, in SI: a function of nothing.";
+    let filled = program
+        .parameters
+        .iter()
+        .enumerate()
+        .map(|(place, parameter)| {
+            let name = &parameter.quantity.name;
+            format!("        res[0][{place}] = parameters.{name};\n")
+        });
+    let text = DEFAULTS.replace("FILLED\n", &filled.collect::<String>());
+    comment(&[line.to_owned()]) + &named(program, &text)
+}
+
+const OPENING: &str = "\
+#include <stddef.h>
+#ifndef casadi_real
+#define casadi_real double
+#endif
+#ifndef casadi_int
+#define casadi_int long long int
+#endif
+#ifndef CASADI_SYMBOL_EXPORT
+#if defined(_WIN32)
+#define CASADI_SYMBOL_EXPORT __declspec(dllexport)
+#else
+#define CASADI_SYMBOL_EXPORT __attribute__((visibility(\"default\")))
+#endif
+#endif
+#ifdef __cplusplus
+extern \"C\" {
+#endif
+";
+
+const INTERFACE: &str = "\
+/** Coefficients and inputs from u and p; 0 stands for what is not given. */
+static void NAME_point(
+    const casadi_real *u, const casadi_real *p, NAME_inputs *inputs,
+    NAME_coefficients *coefficients
+) {
+    double none[NAME_INPUTS + NAME_PARAMETERS + 1] = {0};
+    NAME_parameters parameters;
+    NAME_inputs_from_array(u ? u : none, inputs);
+    NAME_parameters_from_array(p ? p : none, &parameters);
+    NAME_prepare(&parameters, coefficients);
+}
+";
+
+const DEFAULTS: &str = "\
+CASADI_SYMBOL_EXPORT casadi_int default_parameters_n_in(void) {
+    return 0;
+}
+CASADI_SYMBOL_EXPORT casadi_int default_parameters_n_out(void) {
+    return 1;
+}
+CASADI_SYMBOL_EXPORT const char *default_parameters_name_out(casadi_int i) {
+    return i == 0 ? \"p\" : NULL;
+}
+CASADI_SYMBOL_EXPORT const casadi_int *default_parameters_sparsity_out(casadi_int i) {
+    return i == 0 ? NAME_parameters_sparsity : NULL;
+}
+CASADI_SYMBOL_EXPORT int default_parameters(
+    const casadi_real **arg, casadi_real **res, casadi_int *iw, casadi_real *w, int mem
+) {
+    NAME_parameters parameters;
+    (void)arg;
+    (void)iw;
+    (void)w;
+    (void)mem;
+    NAME_default_parameters(&parameters);
+    if (res[0]) {
+FILLED
+    }
+    return 0;
+}
+";

@@ -1,0 +1,156 @@
+//! Second derivatives of the rates: the derivative of the gradient of their weighted sum along a
+//! direction, forward over backward. One function gives every column of the Hessian, so that what
+//! is emitted grows as the gradient does, and not with the number of variables.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use super::adjoint;
+use super::derive::weighted;
+use super::jacobian::{degrees_of_freedom, mode_offset, seed_derived, state_variables};
+use super::types::{GradientDerivative, GradientRow, Jacobian};
+use crate::mechanics::equations::Equations;
+use crate::symbolic::differentiate::Direction;
+use crate::symbolic::graph::{Argument, NodeId, Operation, Variable};
+use eomgen_model_spec::ids::{InputId, ParameterId};
+
+/// Every variable of the gradient with its place in the order of time, state, inputs and
+/// independent parameters.
+type Places = Vec<(Variable, Range<usize>)>;
+
+/// The derivative along a direction. `weighted_by_parameters` is the gradient by the parameters, a
+/// Jacobian of one row.
+pub(crate) fn gradient_derivative(
+    equations: &mut Equations,
+    weighted_by_parameters: &Jacobian<NodeId>,
+) -> GradientDerivative<NodeId> {
+    let places = places(equations);
+    let gradient = gradient(equations, &places, weighted_by_parameters);
+    let columns = columns(equations, &places);
+    let mut direction = Direction::default();
+    for (variable, _) in &places {
+        let leaf = equations.graph.variable(*variable);
+        let along = Operation::Argument(Argument::PointDirection, *variable);
+        direction.seed(leaf, equations.graph.intern(along));
+    }
+    let (graph, derived) = (&mut equations.graph, &equations.derived_parameters);
+    let mut seeded = vec![false; derived.len()];
+    for index in ParameterId::first(derived.len()) {
+        seed_derived(graph, derived, index, &mut direction, &mut seeded);
+    }
+    let mut rows = Vec::new();
+    for (place, node) in gradient {
+        let value = direction.derivative(graph, node);
+        if graph.is_zero(value) {
+            continue;
+        }
+        let reached = graph.reachable(&[node]).into_iter();
+        let mut depends: Vec<Range<usize>> = reached
+            .filter_map(|leaf| columns.get(&leaf))
+            .flatten()
+            .cloned()
+            .collect();
+        depends.sort_by_key(|range| range.start);
+        depends.dedup();
+        rows.push(GradientRow {
+            first: place.start,
+            count: place.len(),
+            value,
+            columns: depends,
+        });
+    }
+    GradientDerivative { rows }
+}
+
+fn places(equations: &Equations) -> Places {
+    let degrees = degrees_of_freedom(equations);
+    let before_parameters = 1 + 2 * degrees + equations.inputs;
+    let one = |first: usize| first..first + 1;
+    let mut places = vec![(Variable::Time, one(0))];
+    for variable in state_variables(equations) {
+        let modes = |field, before: usize| {
+            let first = 1 + before + mode_offset(equations, field);
+            first..first + equations.graph.orders()[field]
+        };
+        let place = match variable {
+            Variable::Coordinate(index) => one(1 + index.index()),
+            Variable::Rate(index) => one(1 + degrees + index.index()),
+            Variable::ModeCoordinates(field) => modes(field, 0),
+            Variable::ModeRates(field) => modes(field, degrees),
+            Variable::Input(_) | Variable::Parameter(_) | Variable::Time => continue,
+        };
+        places.push((variable, place));
+    }
+    for index in InputId::first(equations.inputs) {
+        let place = one(1 + 2 * degrees + index.index());
+        places.push((Variable::Input(index), place));
+    }
+    for (place, index) in independent(equations).enumerate() {
+        places.push((Variable::Parameter(index), one(before_parameters + place)));
+    }
+    places
+}
+
+/// The independent parameters, in their order.
+fn independent(equations: &Equations) -> impl Iterator<Item = ParameterId> {
+    let derived = &equations.derived_parameters;
+    ParameterId::first(derived.len()).filter(|index| derived[*index].is_none())
+}
+
+/// The gradient, without what the weights of the coordinates' rates add to it: that is constant.
+fn gradient(
+    equations: &mut Equations,
+    places: &Places,
+    weighted_by_parameters: &Jacobian<NodeId>,
+) -> Vec<(Range<usize>, NodeId)> {
+    let accelerations = equations.accelerations.rows.clone();
+    let graph = &mut equations.graph;
+    let weighted = weighted(graph, &accelerations);
+    let by_leaf = adjoint::gradient(graph, &weighted);
+    let mut rows = Vec::new();
+    for (variable, place) in places {
+        let leaf = graph.variable(*variable);
+        if let Some(node) = by_leaf.get(&leaf) {
+            rows.push((place.clone(), *node));
+        }
+    }
+    let before = places
+        .iter()
+        .find(|(variable, _)| matches!(variable, Variable::Parameter(_)))
+        .map_or(0, |(_, place)| place.start);
+    for entry in &weighted_by_parameters.entries {
+        let first = before + entry.column;
+        rows.push((first..first + 1, entry.value));
+    }
+    rows
+}
+
+/// The columns that each leaf stands for: its own, and those of what a derived parameter is
+/// computed from.
+fn columns(equations: &mut Equations, places: &Places) -> HashMap<NodeId, Vec<Range<usize>>> {
+    let mut columns = HashMap::new();
+    for (variable, place) in places {
+        let leaf = equations.graph.variable(*variable);
+        columns.insert(leaf, vec![place.clone()]);
+    }
+    for index in ParameterId::first(equations.derived_parameters.len()) {
+        let graph = &mut equations.graph;
+        let leaf = graph.intern(Operation::Parameter(index));
+        // Expressions read other derived parameters: all that is reached in the end.
+        let mut pending = vec![leaf];
+        let mut reached = Vec::new();
+        while let Some(of) = pending.pop() {
+            let Operation::Parameter(read) = *graph.operation(of) else {
+                continue;
+            };
+            match equations.derived_parameters[read] {
+                Some(expression) => pending.extend(graph.reachable(&[expression])),
+                None => reached.extend(columns.get(&of).into_iter().flatten().cloned()),
+            }
+        }
+        if equations.derived_parameters[index].is_some() {
+            columns.insert(leaf, reached);
+        }
+    }
+    columns
+}
