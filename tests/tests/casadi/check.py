@@ -5,6 +5,7 @@ parameters, and the rates that the emitted C gives at the point made below, as t
 them.
 """
 
+import ctypes
 import sys
 
 import casadi
@@ -47,7 +48,41 @@ for argument, symbol in enumerate(symbols):
             ends.append(numpy.array(rates(*moved)).ravel())
         differences[:, column] = (ends[0] - ends[1]) / (2 * step)
         # What rounding leaves of a difference of rates of this size.
-        rest = 1e-9 * numpy.abs(found).max() / step * 1e-6 + 1e-6 * numpy.abs(exact[:, column]).max()
+        rest = 1e-14 * numpy.abs(found).max() / step + 1e-6 * numpy.abs(exact[:, column]).max()
         worst = numpy.abs(differences[:, column] - exact[:, column]).max()
         assert worst <= rest, (argument, column, worst, rest)
-print("passed", value.sparsity().nnz())
+
+# Second derivatives of the rates, weighted, against differences of the gradient.
+if hasattr(ctypes.CDLL(library), "adj1_rates"):
+    weights = numpy.array([0.3 + 0.2 * i * (-1) ** i for i in range(states)])
+    weighted = casadi.dot(casadi.DM(weights), value)
+    whole = casadi.vertcat(*symbols)
+    together = casadi.MX.sym("z", whole.shape[0])
+    parts = casadi.vertsplit(together, [0, *numpy.cumsum([part.size for part in point])])
+    weighted = casadi.Function("weighted", symbols, [weighted])(*parts)
+    hessian, gradient = casadi.hessian(weighted, together)
+    hessian = casadi.Function("hessian", [together], [hessian])
+    gradient = casadi.Function("gradient", [together], [gradient])
+    z = numpy.concatenate(point)
+    first = numpy.array(gradient(z)).ravel()
+    blocks = [casadi.Function("jacobian", symbols, [casadi.jacobian(value, s)]) for s in symbols]
+    right = numpy.concatenate([weights @ numpy.array(block(*point)) for block in blocks])
+    assert numpy.allclose(first, right, rtol=1e-11, atol=1e-11 * numpy.abs(right).max())
+    exact = numpy.array(hessian(z))
+    assert numpy.allclose(exact, exact.T, rtol=1e-9, atol=1e-12 * numpy.abs(exact).max())
+    assert numpy.abs(exact).max() > 0
+    for column in range(z.size):
+        step = 1e-5 * (abs(z[column]) or 1.0)
+        ends = []
+        for sign in (1, -1):
+            moved = z.copy()
+            moved[column] += sign * step
+            ends.append(numpy.array(gradient(moved)).ravel())
+        difference = (ends[0] - ends[1]) / (2 * step)
+        # Each row on the scale of its gradient: entries are in units of their own.
+        rest = 1e-10 * numpy.abs(first) / step + 1e-6 * numpy.abs(exact[:, column]) + 1e-12
+        assert (numpy.abs(difference - exact[:, column]) <= rest).all(), (
+            column,
+            difference,
+            exact[:, column],
+        )

@@ -1,10 +1,14 @@
 //! The functions emitted for CasADi, called by CasADi: the rates to the bit, the Jacobians against
 //! differences. Skipped, and said so, where there is no CasADi.
+//!
+//! Links are those of Unix.
+#![cfg(unix)]
 
 use std::path::Path;
 use std::process::Command;
 
 use eomgen_codegen::c::{CASADI_OUTPUTS, emit_casadi};
+use eomgen_codegen::program::Output;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::variant::Variant;
 use eomgen_tests::models::load;
@@ -24,13 +28,14 @@ fn python() -> Option<&'static str> {
     there.then_some("python3")
 }
 
-fn check(name: &str, order: usize, folder: &Path) {
+fn check(name: &str, order: usize, with: &[Output], folder: &Path) {
     let model = load(name);
     let orders = vec![order; model.fields.len()];
-    let variant = Variant::derive_with(&model, &orders, &CASADI_OUTPUTS).expect("derived");
+    let outputs = [&CASADI_OUTPUTS, with].concat();
+    let variant = Variant::derive_with(&model, &orders, &outputs).expect("derived");
     let text = emit_casadi(&variant.program).expect("emitted");
-    let source = folder.join(format!("{name}_casadi.c"));
-    let library = folder.join(format!("{name}.so"));
+    let source = folder.join(format!("{name}_{}_casadi.c", with.len()));
+    let library = folder.join(format!("{name}_{}.so", with.len()));
     std::fs::write(&source, text).expect("written");
     let compiled = Command::new("cc")
         .args([
@@ -94,8 +99,10 @@ fn casadi_calls_the_emitted_functions() {
         ("planetary_arm", 3),
         ("hub_beam_tip_mass", 2),
     ] {
-        check(name, order, folder.path());
+        check(name, order, &[], folder.path());
+        check(name, order, &[Output::Hessians], folder.path());
     }
+    check("two_link_arm", 1, &[Output::Hessians], folder.path());
 }
 
 #[test]
@@ -104,6 +111,7 @@ fn requests_do_not_go_with_casadi() {
     let spec = spec.to_string_lossy();
     for (with, reason) in [
         ("jacobians", "its functions are rates and jac_rates"),
+        ("hessians,jacobians", "but for hessians"),
         ("lanes", "goes with --target rust"),
         ("bench", "goes with --target rust"),
     ] {
@@ -112,5 +120,58 @@ fn requests_do_not_go_with_casadi() {
         ];
         let said = refused(&arguments);
         assert!(said.contains(reason), "{said}");
+    }
+}
+
+/// Runs the commands that an example begins with, in a folder of its own; what the last prints.
+fn example(name: &str) -> String {
+    let project = eomgen_tests::models::project();
+    let page = std::fs::read_to_string(project.join("examples/with_casadi").join(name));
+    let page = page.expect("an example");
+    let head = page.split("\"\"\"").nth(1).expect("what it is");
+    let commands: Vec<&str> = head
+        .lines()
+        .filter_map(|l| l.strip_prefix("    "))
+        .collect();
+    assert!(commands.len() > 2, "{commands:?}");
+    let folder = tempfile::tempdir().expect("a folder");
+    for part in ["model-spec", "examples"] {
+        let link = std::os::unix::fs::symlink(project.join(part), folder.path().join(part));
+        link.expect("a link");
+    }
+    let program = eomgen_tests::program::path().display().to_string();
+    let mut printed = String::new();
+    for command in commands {
+        let command = command.replacen("eomgen ", &format!("{program} "), 1);
+        let output = Command::new("sh")
+            .args(["-c", &command.replacen("python ", "python3 ", 1)])
+            .current_dir(folder.path())
+            .env("PYTHONDONTWRITEBYTECODE", "1")
+            .output()
+            .expect("a shell");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{command}: {said}");
+        printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    }
+    print!("{printed}");
+    printed
+}
+
+#[test]
+fn the_pendulum_swings_up_from_a_plain_guess() {
+    if python().is_some() {
+        let printed = example("swing_up.py");
+        assert!(
+            printed.contains("time against CasADi's own symbols"),
+            "{printed}"
+        );
+    }
+}
+
+#[test]
+fn a_predictive_controller_moves_the_tip_faster_than_the_arm_bends() {
+    if python().is_some() {
+        let printed = example("track_tip.py");
+        assert!(printed.contains("per sample"), "{printed}");
     }
 }
