@@ -52,7 +52,8 @@
 //! 3. [`program`]: from equations to a list of values in static single assignment,
 //!    [`program::lowering::lower`], and its evaluation;
 //! 4. [`statements`]: from a program to the statements of its functions, with loops and names;
-//! 5. [`rust`] (the emitted source) and [`report`] (equations for people).
+//! 5. [`rust`] and [`c`] (the emitted source), [`wasm`] (a module for browsers) and [`report`]
+//!    (equations for people).
 //!
 //! [`variant`] goes from a model to its program in one call.
 
@@ -64,3 +65,4 @@ pub mod rust;
 pub mod statements;
 pub mod symbolic;
 pub mod variant;
+pub mod wasm;

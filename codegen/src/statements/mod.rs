@@ -36,7 +36,7 @@ pub(crate) use index::Index;
 pub(crate) use kernel::{KernelStatements, describe_elementary};
 pub(crate) use names::Words;
 pub(crate) use needed::Needed;
-pub(crate) use preparation::{Prepared, preparation};
+pub(crate) use preparation::{Preparation, Prepared, preparation};
 pub(crate) use requested::{nonzeros, rates_in_regime, requested};
 pub(crate) use roots::stage_roots;
 pub(crate) use stage::{Argument, Outcome, Size, Stage};

@@ -1,0 +1,118 @@
+//! Cholesky factors and solutions with them, operation by operation in the order of the other
+//! backends.
+
+use super::code::Code;
+use eomgen_elementary::Function as Elementary;
+
+use crate::program::Extent;
+use crate::statements::{Array, Emitted, Expression, Index, Place};
+
+/// A named solution with a Cholesky factor.
+pub(super) struct Solution<'s> {
+    pub(super) name: &'s str,
+    pub(super) factor: &'s Array,
+    pub(super) right: &'s Array,
+    pub(super) rows: usize,
+    /// Columns of the right side if it is a matrix.
+    pub(super) columns: Option<usize>,
+}
+
+/// What is left after the products so far. No name of a model has a space in it.
+const REST: &str = "the rest";
+
+/// Counts rows from the last.
+const FROM_THE_END: &str = "from the end";
+
+impl Code<'_> {
+    /// The named lower factor L of a symmetric matrix L L^T; NaN where it is not positive definite.
+    pub(super) fn cholesky(&mut self, name: &str, matrix: &Array, rows: usize) -> Emitted<()> {
+        let region = self.array(name, &[rows, rows])?;
+        self.zero(region, rows * rows)?;
+        let factor = Array::local(name);
+        let (i, j, k) = (
+            Index::Variable("i"),
+            Index::Variable("j"),
+            Index::Variable("k"),
+        );
+        let at = |row: &Index, column: &Index| {
+            Expression::Element(factor.clone(), vec![row.clone(), column.clone()])
+        };
+        let place = |row: &Index, column: &Index| Place::new(name, [row.clone(), column.clone()]);
+        self.counted("i", (0, rows), |code| {
+            let entry = |row: &Index, column: &Index| {
+                Expression::Element(matrix.clone(), vec![row.clone(), column.clone()])
+            };
+            code.counted_between("j", (&Index::Number(0), &i), |code| {
+                code.bind(REST, &entry(&i, &j))?;
+                code.less(&j, &Expression::multiply(&at(&i, &k), &at(&j, &k)))?;
+                let quotient = Expression::divide(&Expression::name(REST), &at(&j, &j));
+                code.assign(&place(&i, &j), &quotient)
+            })?;
+            code.bind(REST, &entry(&i, &i))?;
+            code.less(&i, &Expression::multiply(&at(&i, &k), &at(&i, &k)))?;
+            let rest = Expression::name(REST);
+            let root = Expression::Call(Elementary::Sqrt.name(), vec![rest.clone()]);
+            let parts = [
+                rest,
+                Expression::Number(0.0),
+                root,
+                Expression::Number(f64::NAN),
+            ];
+            code.assign(&place(&i, &i), &Expression::Select(Box::new(parts)))
+        })
+    }
+
+    /// The named solution of L L^T X = right.
+    pub(super) fn cholesky_solve(&mut self, solution: &Solution<'_>) -> Emitted<()> {
+        let Solution { name, rows, .. } = *solution;
+        let columns = solution.columns.unwrap_or(1);
+        let region = self.memory.allocate(Extent::Matrix(rows, columns))?;
+        self.name_array(name, region);
+        let last = rows.saturating_sub(1);
+        let at = |array: &Array, row: &Index, column: &Index| {
+            Expression::Element(array.clone(), vec![row.clone(), column.clone()])
+        };
+        let factor = |row: &Index, column: &Index| at(solution.factor, row, column);
+        let x = |row: &Index| at(&Array::local(name), row, &"j".into());
+        let place = |row: &Index| Place::new(name, [row.clone(), "j".into()]);
+        let rest = || Expression::name(REST);
+        let (i, k) = (Index::Variable("i"), Index::Variable("k"));
+        self.counted("j", (0, columns), |code| {
+            code.counted("i", (0, rows), |code| {
+                let right = match solution.columns {
+                    Some(_) => at(solution.right, &i, &"j".into()),
+                    None => Expression::Element(solution.right.clone(), vec![i.clone()]),
+                };
+                code.bind(REST, &right)?;
+                code.less(&i, &Expression::multiply(&factor(&i, &k), &x(&k)))?;
+                code.assign(&place(&i), &Expression::divide(&rest(), &factor(&i, &i)))
+            })?;
+            // Rows from the last to the first.
+            code.counted(FROM_THE_END, (0, rows), |code| {
+                let (down, row) = (code.named(FROM_THE_END)?, code.flag("i"));
+                let mut put = code.put();
+                put.i32_const(last as i32).local_get(down);
+                put.i32_sub().local_set(row);
+                code.bind(REST, &x(&i))?;
+                let product = Expression::multiply(&factor(&k, &i), &x(&k));
+                code.less_between((&i.clone().plus(1), &rows.into()), &product)?;
+                code.assign(&place(&i), &Expression::divide(&rest(), &factor(&i, &i)))
+            })
+        })
+    }
+
+    /// Takes products for k from 0 up to an index from the rest, one after the other.
+    fn less(&mut self, to: &Index, product: &Expression) -> Emitted<()> {
+        self.less_between((&Index::Number(0), to), product)
+    }
+
+    /// The same for k from one index up to another.
+    fn less_between(&mut self, range: (&Index, &Index), product: &Expression) -> Emitted<()> {
+        let rest = self.named(REST)?;
+        self.counted_between("k", range, |code| {
+            code.expression(&Expression::subtract(&Expression::name(REST), product))?;
+            code.put().local_set(rest);
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,254 @@
+//! One function being written: its instructions, its variables and the arrays it knows by name.
+
+use std::collections::HashMap;
+
+use wasm_encoder::{BlockType, Function, InstructionSink, MemArg, MemArgTarget, ValType};
+
+use super::functions::Indices;
+use super::memory::{Memory, NUMBER, Region, nowhere};
+use crate::program::{Extent, Program};
+use crate::statements::{EmitError, Emitted, Index};
+
+/// The binary logarithm of the bytes of a number: how numbers are aligned.
+const ALIGNMENT: u32 = NUMBER.trailing_zeros();
+
+/// A function being written.
+pub(super) struct Code<'m> {
+    pub(super) program: &'m Program,
+    pub(super) memory: &'m mut Memory,
+    pub(super) functions: &'m Indices,
+    bytes: Vec<u8>,
+    /// How many variables are arguments.
+    arguments: u32,
+    /// The types of the others.
+    types: Vec<ValType>,
+    variables: HashMap<String, u32>,
+    arrays: HashMap<String, Region>,
+}
+
+impl<'m> Code<'m> {
+    /// A function of these numbers.
+    pub(super) fn new(
+        program: &'m Program,
+        memory: &'m mut Memory,
+        functions: &'m Indices,
+        arguments: &[&str],
+    ) -> Self {
+        let names = (0..).zip(arguments);
+        Self {
+            program,
+            memory,
+            functions,
+            bytes: Vec::new(),
+            arguments: arguments.len() as u32,
+            types: Vec::new(),
+            variables: names.map(|(at, name)| ((*name).to_owned(), at)).collect(),
+            arrays: HashMap::new(),
+        }
+    }
+
+    /// Knows an array by a name.
+    pub(super) fn name_array(&mut self, name: &str, region: Region) {
+        self.arrays.insert(name.to_owned(), region);
+    }
+
+    /// The written function.
+    pub(super) fn finish(mut self) -> Function {
+        self.put().end();
+        let mut function = Function::new_with_locals_types(self.types);
+        function.raw(self.bytes);
+        function
+    }
+
+    /// Takes instructions.
+    pub(super) fn put(&mut self) -> InstructionSink<'_> {
+        InstructionSink::new(&mut self.bytes)
+    }
+
+    /// A new variable.
+    fn variable(&mut self, of: ValType) -> u32 {
+        let place = self.arguments + self.types.len() as u32;
+        self.types.push(of);
+        place
+    }
+
+    /// A new number of this name.
+    pub(super) fn number(&mut self, name: &str) -> u32 {
+        let variable = self.variable(ValType::F64);
+        self.variables.insert(name.to_owned(), variable);
+        variable
+    }
+
+    /// A new flag of this name.
+    pub(super) fn flag(&mut self, name: &str) -> u32 {
+        let variable = self.variable(ValType::I32);
+        self.variables.insert(name.to_owned(), variable);
+        variable
+    }
+
+    /// The variable of this name.
+    pub(super) fn named(&self, name: &str) -> Emitted<u32> {
+        let variable = self.variables.get(name).copied();
+        variable.ok_or_else(|| nowhere(name))
+    }
+
+    /// A new array of this name, of zeros or of what was left there.
+    pub(super) fn array(&mut self, name: &str, lengths: &[usize]) -> Emitted<Region> {
+        let extent = match *lengths {
+            [rows, columns] => Extent::Matrix(rows, columns),
+            _ => Extent::Vector(lengths.iter().product()),
+        };
+        let region = self.memory.allocate(extent)?;
+        self.name_array(name, region);
+        Ok(region)
+    }
+
+    /// The array of this name.
+    pub(super) fn region(&self, name: &str) -> Emitted<Region> {
+        let region = self.arrays.get(name).copied();
+        region.ok_or_else(|| nowhere(name))
+    }
+
+    /// Writes zeros to an array.
+    pub(super) fn zero(&mut self, region: Region, length: usize) -> Emitted<()> {
+        if length > 0 {
+            let (first, bytes) = (signed(region.first)?, signed(length as u32 * NUMBER)?);
+            let mut put = self.put();
+            put.i32_const(first)
+                .i32_const(0)
+                .i32_const(bytes)
+                .memory_fill(0);
+        }
+        Ok(())
+    }
+
+    /// The lines for every value of a variable from one number up to another.
+    pub(super) fn counted(
+        &mut self,
+        index: &'static str,
+        (from, to): (usize, usize),
+        lines: impl FnOnce(&mut Self) -> Emitted<()>,
+    ) -> Emitted<()> {
+        if from >= to {
+            return Ok(());
+        }
+        let (from, to) = (whole(from)?, whole(to)?);
+        let (variable, outer) = self.loop_variable(index);
+        self.put().i32_const(from).local_set(variable);
+        self.put().loop_(BlockType::Empty);
+        lines(self)?;
+        let mut put = self.put();
+        put.local_get(variable).i32_const(1).i32_add();
+        put.local_tee(variable).i32_const(to).i32_lt_s();
+        put.br_if(0).end();
+        self.restore(index, outer);
+        Ok(())
+    }
+
+    /// The lines for every value of a variable from one variable or 0 up to another.
+    pub(super) fn counted_between(
+        &mut self,
+        index: &'static str,
+        (from, to): (&Index, &Index),
+        lines: impl FnOnce(&mut Self) -> Emitted<()>,
+    ) -> Emitted<()> {
+        self.index(from)?;
+        let (variable, outer) = self.loop_variable(index);
+        let mut put = self.put();
+        put.local_set(variable).block(BlockType::Empty);
+        put.loop_(BlockType::Empty).local_get(variable);
+        self.index(to)?;
+        self.put().i32_ge_s().br_if(1);
+        lines(self)?;
+        let mut put = self.put();
+        put.local_get(variable).i32_const(1).i32_add();
+        put.local_set(variable).br(0).end().end();
+        self.restore(index, outer);
+        Ok(())
+    }
+
+    /// A new variable of a loop, and the one of the same name around it.
+    fn loop_variable(&mut self, index: &str) -> (u32, Option<u32>) {
+        let variable = self.variable(ValType::I32);
+        (variable, self.variables.insert(index.to_owned(), variable))
+    }
+
+    fn restore(&mut self, index: &str, outer: Option<u32>) {
+        match outer {
+            Some(outer) => self.variables.insert(index.to_owned(), outer),
+            None => self.variables.remove(index),
+        };
+    }
+
+    /// An index on the stack.
+    pub(super) fn index(&mut self, index: &Index) -> Emitted<()> {
+        match index {
+            Index::Number(number) => {
+                let number = whole(*number)?;
+                self.put().i32_const(number);
+            }
+            Index::Variable(name) => {
+                let variable = self.named(name)?;
+                self.put().local_get(variable);
+            }
+            Index::Sum(a, b) => {
+                self.index(a)?;
+                self.index(b)?;
+                self.put().i32_add();
+            }
+            Index::Product(a, b) => {
+                self.index(a)?;
+                self.index(b)?;
+                self.put().i32_mul();
+            }
+        }
+        Ok(())
+    }
+
+    /// On the stack the place of an element relative to what is returned: where a load or a store
+    /// starts to count.
+    pub(super) fn address(&mut self, region: Region, indices: &[Index]) -> Emitted<MemArg> {
+        let place = match indices {
+            [place] => place.clone(),
+            [row, column] => Index::times(region.columns, row.clone()).plus(column.clone()),
+            _ => return Err(EmitError::Value("an element has one or two indices".into())),
+        };
+        // A constant place is part of the instruction.
+        let from = if let Index::Number(number) = place {
+            self.put().i32_const(0);
+            region.at(number)
+        } else {
+            self.index(&place)?;
+            self.put().i32_const(ALIGNMENT as i32).i32_shl();
+            region.first
+        };
+        Ok(aligned(from))
+    }
+
+    /// The number at a fixed place, on the stack.
+    pub(super) fn load(&mut self, place: u32) {
+        self.put().i32_const(0).f64_load(aligned(place));
+    }
+}
+
+/// Numbers from a place on.
+fn aligned(from: u32) -> MemArg {
+    MemArg {
+        offset: u64::from(from),
+        align: ALIGNMENT,
+        target: MemArgTarget::Memory(0),
+        ordering: None,
+    }
+}
+
+fn whole(number: usize) -> Emitted<i32> {
+    i32::try_from(number).map_err(|_| too_large(number))
+}
+
+fn signed(number: u32) -> Emitted<i32> {
+    i32::try_from(number).map_err(|_| too_large(number as usize))
+}
+
+fn too_large(number: usize) -> EmitError {
+    EmitError::Value(format!("{number} is too large an index"))
+}

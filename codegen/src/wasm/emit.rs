@@ -1,0 +1,210 @@
+//! The module: its functions, its memory and what it exports.
+
+use wasm_encoder::{
+    CodeSection, ConstExpr, DataSection, ExportKind, ExportSection, Function, FunctionSection,
+    GlobalSection, GlobalType, MemorySection, MemoryType, Module, TypeSection, ValType,
+};
+
+use super::code::Code;
+use super::functions::{Helper, Indices, helpers};
+use super::memory::{Memory, Region};
+use super::names::WORDS;
+use crate::program::Program;
+use crate::statements::{
+    EmitError, Emitted, File, Index, Needed, Outcome, Place, Preparation, Prepared, Stage,
+    Statement, Used, guards, observables, preparation, rates,
+};
+
+/// A program as a module of WebAssembly that imports nothing.
+///
+/// It exports its `memory`, where numbers stand (`f64`), and the functions
+///
+/// * `prepare() -> i32`: coefficients from the parameters; whether all prepared pivots of the mass
+///   matrix are positive and finite. The parameters are the specification's until they are
+///   written to;
+/// * `rates(t)`: rates of the state, of what stands in state and inputs;
+/// * `observables(t)`, energy and power last;
+/// * `guards(t)` if there are any: the switching surfaces.
+///
+/// The constant globals `parameters_at`, `inputs_at`, `state_at`, `rates_at`, `observables_at` and
+/// `guards_at` are the places in bytes of what these read and write, in the order of the program.
+///
+/// # Errors
+/// If the memory of a module is too small.
+pub fn emit(program: &Program) -> Result<Vec<u8>, EmitError> {
+    let file = File::new(program, &WORDS)?;
+    let mut needed = Needed::default();
+    let prepared = preparation(&file, &mut needed)?;
+    let mut stages = vec![rates(&file, &mut needed)?];
+    stages.extend(observables(&file, &mut needed)?.into_iter().take(1));
+    if file.guard_count() > 0 {
+        stages.push(guards(&file, &mut needed)?);
+    }
+    let helpers = helpers(&needed);
+    let functions = Indices::new(&helpers);
+    let mut memory = Memory::new(&file)?;
+    let mut written = Vec::new();
+    for helper in &helpers {
+        written.push(helper.function(program, &mut memory, &functions)?);
+    }
+    written.push(preparing(&file, prepared, &mut memory, &functions)?);
+    let mut exported = vec!["prepare"];
+    for stage in stages {
+        exported.push(exported_name(&stage));
+        written.push(computing(program, stage, &mut memory, &functions)?);
+    }
+    Ok(module(&helpers, &exported, &written, &memory))
+}
+
+/// The name that a stage is called by.
+fn exported_name(stage: &Stage) -> &'static str {
+    match stage.outcome {
+        Outcome::Rates => "rates",
+        _ => stage.name,
+    }
+}
+
+/// The function that prepares the coefficients.
+fn preparing(
+    file: &File<'_>,
+    prepared: Preparation,
+    memory: &mut Memory,
+    functions: &Indices,
+) -> Emitted<Function> {
+    let program = file.program;
+    let mut used = Used::by_preparation(&prepared);
+    let computed = used.retain(prepared.computed);
+    let mut code = Code::new(program, memory, functions, &[]);
+    code.statements(&computed)?;
+    for (id, coefficient) in file.fields.iter().zip(&prepared.coefficients) {
+        // No name of a model has a space in it.
+        let (target, source) = ("the coefficient", "what was prepared");
+        let region = code.memory.coefficient(&file.field_names[id])?;
+        code.name_array(target, region);
+        match coefficient {
+            Prepared::Number(value) => {
+                code.assign(&Place::new(target, [Index::Number(0)]), value)?;
+            }
+            // Both are arrays of the same extent, so that they are copied number by number.
+            Prepared::Numbers(array) => {
+                let from = Region {
+                    columns: 1,
+                    ..code.region_of(array)?
+                };
+                let extent = program.value(*id).extent;
+                code.name_array(
+                    target,
+                    Region {
+                        columns: 1,
+                        ..region
+                    },
+                );
+                code.name_array(source, from);
+                let place = Place::new(source, [Index::Variable("i")]);
+                let copy = Statement::Assign(Place::new(target, ["i".into()]), place.value());
+                code.statements(&[Statement::each(extent.length(), copy)])?;
+            }
+        }
+    }
+    code.expression(&prepared.positive_definite)?;
+    Ok(code.finish())
+}
+
+/// The function of a stage.
+fn computing(
+    program: &Program,
+    stage: Stage,
+    memory: &mut Memory,
+    functions: &Indices,
+) -> Emitted<Function> {
+    let exchanged = memory.exchanged;
+    let mut used = Used::by(&stage.outcome);
+    let written = used.retain(stage.written);
+    let computed = used.retain(stage.computed);
+    let mut code = Code::new(program, memory, functions, &["t"]);
+    for (name, region) in [
+        ("state", exchanged.state),
+        ("rates", exchanged.rates),
+        ("observables", exchanged.observables),
+        ("values", exchanged.guards),
+    ] {
+        code.name_array(name, region);
+    }
+    code.statements(&computed)?;
+    if let Outcome::Observables(values) = &stage.outcome {
+        for (place, value) in values.iter().enumerate() {
+            code.assign(&Place::new("observables", [Index::Number(place)]), value)?;
+        }
+    }
+    code.statements(&written)?;
+    Ok(code.finish())
+}
+
+/// The sections of a module: helpers first among its functions, then what is exported.
+fn module(helpers: &[Helper], exported: &[&str], written: &[Function], memory: &Memory) -> Vec<u8> {
+    const NUMBER: ValType = ValType::F64;
+    let mut types = TypeSection::new();
+    types.ty().function([NUMBER], [NUMBER]);
+    types.ty().function([NUMBER, NUMBER], [NUMBER]);
+    types.ty().function([], [ValType::I32]);
+    types.ty().function([NUMBER], []);
+    let mut functions = FunctionSection::new();
+    for helper in helpers {
+        functions.function(u32::from(helper.arguments.len() > 1));
+    }
+    let mut exports = ExportSection::new();
+    exports.export("memory", ExportKind::Memory, 0);
+    for (name, index) in exported.iter().zip(helpers.len() as u32..) {
+        functions.function(if *name == "prepare" { 2 } else { 3 });
+        exports.export(name, ExportKind::Func, index);
+    }
+    let mut globals = GlobalSection::new();
+    for (index, (name, region)) in (0..).zip(places(memory)) {
+        let of = GlobalType {
+            val_type: ValType::I32,
+            mutable: false,
+            shared: false,
+        };
+        globals.global(of, &ConstExpr::i32_const(region.first as i32));
+        exports.export(name, ExportKind::Global, index);
+    }
+    let mut memories = MemorySection::new();
+    memories.memory(MemoryType {
+        minimum: memory.pages(),
+        maximum: Some(memory.pages()),
+        memory64: false,
+        shared: false,
+        page_size_log2: None,
+    });
+    let mut code = CodeSection::new();
+    for function in written {
+        code.function(function);
+    }
+    let mut data = DataSection::new();
+    for (region, numbers) in &memory.constants {
+        let bytes = numbers.iter().flat_map(|number| number.to_le_bytes());
+        let bytes: Vec<u8> = bytes.collect();
+        data.active(0, &ConstExpr::i32_const(region.first as i32), bytes);
+    }
+    let mut module = Module::new();
+    module
+        .section(&types)
+        .section(&functions)
+        .section(&memories);
+    module.section(&globals).section(&exports).section(&code);
+    module.section(&data);
+    module.finish()
+}
+
+/// What callers write to and read from, by the names of its globals.
+fn places(memory: &Memory) -> [(&'static str, Region); 6] {
+    let exchanged = memory.exchanged;
+    [
+        ("parameters_at", exchanged.parameters),
+        ("inputs_at", exchanged.inputs),
+        ("state_at", exchanged.state),
+        ("rates_at", exchanged.rates),
+        ("observables_at", exchanged.observables),
+        ("guards_at", exchanged.guards),
+    ]
+}

@@ -1,0 +1,139 @@
+//! Expressions as instructions that leave a number, or a condition, on the stack.
+
+use super::code::Code;
+use super::memory::{Region, nowhere};
+use crate::statements::{Array, EmitError, Emitted, Expression, Operator, Structure};
+
+impl Code<'_> {
+    /// The value of an expression, on the stack.
+    pub(super) fn expression(&mut self, expression: &Expression) -> Emitted<()> {
+        match expression {
+            Expression::Number(value) => {
+                self.put().f64_const((*value).into());
+            }
+            Expression::Name(name) => {
+                let variable = self.named(name)?;
+                self.put().local_get(variable);
+            }
+            Expression::Element(Array::Filled(value, _), _) => self.expression(value)?,
+            Expression::Element(array, indices) => {
+                let region = self.region_of(array)?;
+                let from = self.address(region, indices)?;
+                self.put().f64_load(from);
+            }
+            Expression::Field(structure, name) => self.field(*structure, name)?,
+            Expression::Shared(coefficient) => self.expression(coefficient)?,
+            Expression::Binary(operator, a, b) => {
+                self.expression(a)?;
+                self.expression(b)?;
+                self.operator(*operator);
+            }
+            Expression::Negate(a) => {
+                self.expression(a)?;
+                self.put().f64_neg();
+            }
+            Expression::Call(name, parts) => {
+                self.expressions(parts)?;
+                let function = self.functions.of(name)?;
+                self.put().call(function);
+            }
+            Expression::Primitive("select_equal", parts) => {
+                let [a, b, then, otherwise] = &parts[..] else {
+                    return Err(nowhere("select_equal"));
+                };
+                self.expressions([then, otherwise, a, b])?;
+                self.put().f64_eq().select();
+            }
+            Expression::Primitive(name, parts) => {
+                self.expressions(parts)?;
+                self.primitive(name)?;
+            }
+            // Both are computed, which leaves no trace of the one that is not taken.
+            Expression::Select(parts) => {
+                let [a, b, then, otherwise] = &**parts;
+                self.expressions([then, otherwise, a, b])?;
+                self.put().f64_gt().select();
+            }
+            Expression::Greater(parts) => {
+                self.expressions(&**parts)?;
+                self.put().f64_gt();
+            }
+            Expression::And(parts) => {
+                self.expressions(&**parts)?;
+                self.put().i32_and();
+            }
+            Expression::True => {
+                self.put().i32_const(1);
+            }
+            Expression::Positive(_) => {
+                return Err(EmitError::Value("no stage is within a regime".into()));
+            }
+        }
+        Ok(())
+    }
+
+    fn expressions<'e>(&mut self, all: impl IntoIterator<Item = &'e Expression>) -> Emitted<()> {
+        all.into_iter().try_for_each(|one| self.expression(one))
+    }
+
+    fn field(&mut self, structure: Structure, name: &str) -> Emitted<()> {
+        let place = match structure {
+            Structure::Coefficients => self.memory.coefficient(name)?.first,
+            Structure::Parameters => self.memory.parameter(name)?,
+            Structure::Inputs => self.memory.input(name)?,
+            Structure::InputDirection => return Err(nowhere(name)),
+        };
+        self.load(place);
+        Ok(())
+    }
+
+    /// Where an array stands.
+    pub(super) fn region_of(&mut self, array: &Array) -> Emitted<Region> {
+        match array {
+            Array::Local(name) => self.region(name),
+            Array::Coefficient(name, _) => self.memory.coefficient(name),
+            Array::Table(name, _) => self.memory.table(self.program, name),
+            Array::Filled(..) => Err(EmitError::Value("equal numbers are no array".into())),
+        }
+    }
+
+    fn operator(&mut self, operator: Operator) {
+        let mut put = self.put();
+        match operator {
+            Operator::Add => put.f64_add(),
+            Operator::Subtract => put.f64_sub(),
+            Operator::Multiply => put.f64_mul(),
+            Operator::Divide => put.f64_div(),
+        };
+    }
+
+    /// What the elementary functions do to the bits of a number: see `Real` of `eomgen-elementary`.
+    fn primitive(&mut self, name: &str) -> Emitted<()> {
+        const MANTISSA_BITS: i64 = 52;
+        let mut put = self.put();
+        match name {
+            "magnitude" => put.f64_abs(),
+            "copy_sign" => put.f64_copysign(),
+            "power_of_two" => {
+                let aligner = (1_u64 << MANTISSA_BITS) + 1023;
+                put.f64_const((aligner as f64).into())
+                    .f64_add()
+                    .i64_reinterpret_f64();
+                put.i64_const(MANTISSA_BITS).i64_shl().f64_reinterpret_i64()
+            }
+            "exponent" => {
+                put.i64_reinterpret_f64().i64_const(MANTISSA_BITS);
+                put.i64_shr_u().i64_const(0x7ff).i64_and();
+                put.f64_convert_i64_s().f64_const(1023.0.into()).f64_sub()
+            }
+            "significand" => {
+                put.i64_reinterpret_f64()
+                    .i64_const((1 << MANTISSA_BITS) - 1);
+                put.i64_and().i64_const(0x3ff << MANTISSA_BITS).i64_or();
+                put.f64_reinterpret_i64()
+            }
+            _ => return Err(nowhere(name)),
+        };
+        Ok(())
+    }
+}

@@ -1,0 +1,152 @@
+//! What stages call: helpers of piecewise functions and pivots, elementary functions from their
+//! kernels. Each is a function of numbers alone; none calls another.
+
+use std::collections::HashMap;
+
+use wasm_encoder::Function;
+
+use super::code::Code;
+use super::memory::{Memory, nowhere};
+use crate::program::Program;
+use crate::statements::{Emitted, Expression, KernelStatements, Needed, Statement};
+use eomgen_elementary::Function as Elementary;
+
+/// The functions of a module by the names that expressions call them by.
+#[derive(Debug, Default)]
+pub(super) struct Indices(HashMap<&'static str, u32>);
+
+impl Indices {
+    /// Those of these helpers, which come first in their module.
+    pub(super) fn new(helpers: &[Helper]) -> Self {
+        Self(helpers.iter().map(|helper| helper.name).zip(0..).collect())
+    }
+
+    /// The number of a function.
+    pub(super) fn of(&self, name: &str) -> Emitted<u32> {
+        self.0.get(name).copied().ok_or_else(|| nowhere(name))
+    }
+}
+
+/// A function of one number or two.
+#[derive(Debug)]
+pub(super) struct Helper {
+    pub(super) name: &'static str,
+    pub(super) arguments: &'static [&'static str],
+    computed: Vec<Statement>,
+    value: Expression,
+}
+
+impl Helper {
+    /// Written out.
+    pub(super) fn function(
+        &self,
+        program: &Program,
+        memory: &mut Memory,
+        functions: &Indices,
+    ) -> Emitted<Function> {
+        let mut code = Code::new(program, memory, functions, self.arguments);
+        code.statements(&self.computed)?;
+        code.expression(&self.value)?;
+        Ok(code.finish())
+    }
+}
+
+/// The helpers that are needed.
+pub(super) fn helpers(needed: &Needed) -> Vec<Helper> {
+    let mut elementary = needed.elementary.clone();
+    if needed.cholesky || needed.cholesky_of_matrix {
+        elementary.insert(Elementary::Sqrt);
+    }
+    let mut all: Vec<Helper> = elementary.into_iter().filter_map(of_kernel).collect();
+    for (needed, helper) in [
+        (needed.deadzone, deadzone as fn() -> Helper),
+        (needed.contact, contact),
+        (needed.above, above),
+        (needed.pivot_reciprocal, pivot_reciprocal),
+    ] {
+        if needed {
+            all.push(helper());
+        }
+    }
+    all
+}
+
+/// An elementary function.
+fn of_kernel(function: Elementary) -> Option<Helper> {
+    let arguments: &[&str] = match function.arity() {
+        2 => &["x", "y"],
+        _ => &["x"],
+    };
+    let kernel = KernelStatements::new(function, arguments);
+    Some(Helper {
+        name: function.name(),
+        arguments,
+        computed: kernel.computed,
+        value: kernel.value?,
+    })
+}
+
+/// `then` where a > b, `otherwise` elsewhere.
+fn select(a: &Expression, b: &Expression, then: Expression, otherwise: Expression) -> Expression {
+    Expression::Select(Box::new([a.clone(), b.clone(), then, otherwise]))
+}
+
+fn of_deflection(
+    name: &'static str,
+    computed: Vec<Statement>,
+    value: impl FnOnce(&Expression, &Expression) -> Expression,
+) -> Helper {
+    Helper {
+        name,
+        arguments: &["p", "b"],
+        computed,
+        value: value(&Expression::name("p"), &Expression::name("b")),
+    }
+}
+
+/// Deflection beyond the backlash: f_k of Eq. (7).
+fn deadzone() -> Helper {
+    let [p, b, held] = ["p", "b", "held"].map(Expression::name);
+    let within = select(&p, &b, b.clone(), p.clone());
+    of_deflection(
+        "deadzone",
+        vec![Statement::Let("held".to_owned(), within)],
+        |p, b| {
+            let least = Expression::negate(b);
+            Expression::subtract(p, &select(&least, &held, least.clone(), held.clone()))
+        },
+    )
+}
+
+/// 1 where |p| > b and 0 elsewhere: the contact of Eq. (8).
+fn contact() -> Helper {
+    let [zero, one] = [0.0, 1.0].map(Expression::Number);
+    of_deflection("contact", Vec::new(), |p, b| {
+        let beyond = select(&Expression::negate(b), p, one.clone(), zero);
+        select(p, b, one, beyond)
+    })
+}
+
+/// 1 where p > 0 and 0 elsewhere.
+fn above() -> Helper {
+    let [zero, one] = [0.0, 1.0].map(Expression::Number);
+    let p = Expression::name("p");
+    Helper {
+        name: "above",
+        arguments: &["p"],
+        computed: Vec::new(),
+        value: select(&p, &zero, one, zero.clone()),
+    }
+}
+
+/// 1/pivot of a positive pivot; NaN where the mass matrix is not positive definite.
+fn pivot_reciprocal() -> Helper {
+    let [zero, one, none] = [0.0, 1.0, f64::NAN].map(Expression::Number);
+    let pivot = Expression::name("pivot");
+    Helper {
+        name: "pivot_reciprocal",
+        arguments: &["pivot"],
+        computed: Vec::new(),
+        value: select(&pivot, &zero, Expression::divide(&one, &pivot), none),
+    }
+}

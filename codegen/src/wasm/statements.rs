@@ -1,0 +1,115 @@
+//! Statements as instructions.
+
+use super::cholesky::Solution;
+use super::code::Code;
+use crate::program::PARTIAL_SUMS;
+use crate::statements::{Emitted, Expression, Index, Place, Statement};
+
+impl Code<'_> {
+    /// The statements, one after the other.
+    pub(super) fn statements(&mut self, statements: &[Statement]) -> Emitted<()> {
+        statements.iter().try_for_each(|one| self.statement(one))
+    }
+
+    fn statement(&mut self, statement: &Statement) -> Emitted<()> {
+        match statement {
+            Statement::Let(name, value) => self.bind(name, value),
+            Statement::Zeros(name, lengths) => {
+                let region = self.array(name, lengths)?;
+                self.zero(region, lengths.iter().product())
+            }
+            Statement::Flag(name) => {
+                let flag = self.flag(name);
+                self.put().i32_const(1).local_set(flag);
+                Ok(())
+            }
+            Statement::Assign(place, value) => self.assign(place, value),
+            Statement::Loop {
+                index,
+                length,
+                lines,
+            } => self.counted(index, (0, *length), |code| code.statements(lines)),
+            Statement::Sum {
+                name,
+                length,
+                element,
+            } => self.sum(name, *length, element),
+            Statement::Cholesky { name, matrix, rows } => self.cholesky(name, matrix, *rows),
+            Statement::CholeskySolve {
+                name,
+                factor,
+                right,
+                rows,
+                columns,
+            } => self.cholesky_solve(&Solution {
+                name,
+                factor,
+                right,
+                rows: *rows,
+                columns: *columns,
+            }),
+        }
+    }
+
+    /// A number under a name.
+    pub(super) fn bind(&mut self, name: &str, value: &Expression) -> Emitted<()> {
+        self.expression(value)?;
+        let variable = self.number(name);
+        self.put().local_set(variable);
+        Ok(())
+    }
+
+    /// A number put where one stands, or a flag.
+    pub(super) fn assign(&mut self, place: &Place, value: &Expression) -> Emitted<()> {
+        if place.indices.is_empty() {
+            self.expression(value)?;
+            let flag = self.named(&place.name)?;
+            self.put().local_set(flag);
+            return Ok(());
+        }
+        let region = self.region(&place.name)?;
+        let to = self.address(region, &place.indices)?;
+        self.expression(value)?;
+        self.put().f64_store(to);
+        Ok(())
+    }
+
+    /// A sum: the first elements each begin a partial sum, every eighth element from there on is
+    /// added in order, then neighbours are added in pairs.
+    fn sum(&mut self, name: &str, length: usize, element: &Expression) -> Emitted<()> {
+        if length == 0 {
+            return self.bind(name, &Expression::Number(0.0));
+        }
+        // No name of a model has a space in it.
+        let parts = format!("parts of {name}");
+        let count = length.min(PARTIAL_SUMS);
+        self.array(&parts, &[count])?;
+        let part = |at: Index| Place::new(&*parts, [at]);
+        self.counted("i", (0, count), |code| {
+            code.assign(&part("i".into()), element)
+        })?;
+        // Element i belongs to the partial sum that its place within its block tells.
+        self.counted("i", (count, length), |code| {
+            let (i, k) = (code.named("i")?, code.flag("k"));
+            let mut put = code.put();
+            put.local_get(i).i32_const(PARTIAL_SUMS as i32);
+            put.i32_rem_u().local_set(k);
+            let sum = Expression::add(&part("k".into()).value(), element);
+            code.assign(&part("k".into()), &sum)
+        })?;
+        let terms = (0..count).map(|place| part(place.into()).value());
+        self.bind(name, &in_pairs(terms.collect()))
+    }
+}
+
+/// Neighbours added in pairs until one is left; of an odd count the last passes on.
+fn in_pairs(mut terms: Vec<Expression>) -> Expression {
+    while terms.len() > 1 {
+        let pairs = terms.chunks(2).map(|pair| match pair {
+            [a, b] => Expression::add(a, b),
+            rest => rest[0].clone(),
+        });
+        terms = pairs.collect();
+    }
+    terms.pop().unwrap_or(Expression::Number(0.0))
+}
