@@ -2,7 +2,9 @@
 //! are never used, and channels that do not exist.
 
 use crate::diagnostic::{Declared, Diagnostic, Diagnostics, quoted};
-use crate::model::{CoefficientKind, Expr, ExprKind, Model, ParameterValue};
+use crate::dimension::Dimension;
+use crate::infer::Words;
+use crate::model::{CoefficientKind, Expr, ExprKind, Model, Ordinate, ParameterValue};
 use crate::suggest::did_you_mean;
 
 /// Reports sensors on channels that the model does not have.
@@ -34,6 +36,36 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
                 Diagnostic::error(message)
                     .at(sensor.span, "not a channel of this model")
                     .help(near.unwrap_or_else(|| rule.to_owned())),
+            );
+        }
+    }
+}
+
+/// Reports points of a drawing that are placed by what is no length.
+pub fn check_drawing(model: &Model, found: &mut Diagnostics) {
+    let points = model.drawing.iter().flat_map(|drawing| &drawing.points);
+    let placed = points.flat_map(|point| {
+        let [x, y] = point.spans;
+        [(point.x, x), (point.y, y)]
+    });
+    for (ordinate, span) in placed {
+        let (name, unit) = match ordinate {
+            Ordinate::Number(_) => continue,
+            Ordinate::Coordinate(id) => {
+                let coordinate = &model.coordinates[id];
+                (&coordinate.name, &coordinate.unit)
+            }
+            Ordinate::Observable(id) => {
+                let observable = &model.observables[id];
+                (&observable.name, &observable.unit)
+            }
+        };
+        if unit.dimension != Dimension::LENGTH {
+            let is = Words(unit.dimension);
+            found.push(
+                Diagnostic::error(format!("`{name}` is {is}, but places a point, in m"))
+                    .at(span, is.to_string())
+                    .help("report the length that is meant in [observables]"),
             );
         }
     }

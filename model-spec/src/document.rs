@@ -6,10 +6,11 @@ use toml_edit::Document as Toml;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::entries::{
-    coefficient, coordinate, field, force, input, name_of, observable, parameter, sensor, term,
+    coefficient, coordinate, field, force, input, line, name_of, observable, parameter, point,
+    sensor, term,
 };
 use crate::keys;
-use crate::raw::Document;
+use crate::raw::{Document, RawDrawing};
 use crate::source::Source;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
@@ -69,6 +70,7 @@ impl<'d> Reader<'d> {
             observables: self.collect("observables", observable),
             coefficients: self.collect("coefficients", coefficient),
             sensors: self.collect("sensors", sensor),
+            drawing: self.drawing(),
             name: model.as_ref().map(|(name, _)| name.clone())?,
             title: model.map(|(_, title)| title).unwrap_or_default(),
         };
@@ -144,9 +146,37 @@ impl<'d> Reader<'d> {
         section: &str,
         read: impl Fn(&Entry<'d>, &mut Diagnostics) -> Option<T>,
     ) -> Vec<T> {
-        let Some(table) = self.section(section).cloned() else {
-            return Vec::new();
+        match self.section(section).cloned() {
+            Some(table) => self.entries(&table, section, read),
+            None => Vec::new(),
+        }
+    }
+
+    /// Points and lines, if there is a drawing.
+    fn drawing(&mut self) -> Option<RawDrawing> {
+        let entry = self.section("drawing").cloned()?;
+        let example = "{ } or [drawing.points]";
+        let record = entry.record(&keys::DRAWING, example, &mut self.found)?;
+        let mut drawing = RawDrawing {
+            points: Vec::new(),
+            lines: Vec::new(),
         };
+        if let Some(table) = record.get("points") {
+            drawing.points = self.entries(table, "drawing.points", point);
+        }
+        if let Some(table) = record.get("lines") {
+            drawing.lines = self.entries(table, "drawing.lines", line);
+        }
+        Some(drawing)
+    }
+
+    /// All entries of the table of a section.
+    fn entries<T>(
+        &mut self,
+        table: &Entry<'d>,
+        section: &str,
+        read: impl Fn(&Entry<'d>, &mut Diagnostics) -> Option<T>,
+    ) -> Vec<T> {
         let example = format!("{{ }} or [{section}]");
         let entries = self.found.keep(table.table(&example)).unwrap_or_default();
         if let Some(excess) = entries.get(MAX_ENTRIES) {

@@ -5,8 +5,8 @@ use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::keys;
 use crate::model::Basis;
 use crate::raw::{
-    RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawInput, RawParameter, RawRange,
-    RawSensor, RawTerm,
+    RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawInput, RawLine, RawParameter,
+    RawPoint, RawRange, RawSensor, RawTerm,
 };
 use crate::table::{Entry, Name, Quantity, Record, Written, unknown_key};
 
@@ -220,5 +220,41 @@ pub fn sensor(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawSensor> {
         gain: number("gain", 1.0),
         bias: number("bias", 0.0),
         delay: number("delay", 0.0),
+    })
+}
+
+/// An entry of `[drawing.points]`.
+pub fn point(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawPoint> {
+    let record = entry.record(&keys::POINT, "{ x = \"tip_x\", y = \"tip_y\" }", found)?;
+    let help = "a number in m, or the name of an observable or a coordinate that is a length";
+    let x = record.require("x", help, found).map(Entry::quantity);
+    let y = record.require("y", help, found).map(Entry::quantity);
+    let (x, y) = (x.and_then(|x| found.keep(x)), y.and_then(|y| found.keep(y)));
+    Some(RawPoint {
+        name: entry.name.clone(),
+        x: x?,
+        y: y?,
+    })
+}
+
+/// An entry of `[drawing.lines]`.
+pub fn line(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawLine> {
+    let points = found.keep(entry.list("[\"origin\", \"tip\"]"))?;
+    let count = points.len();
+    let points: Vec<Written> = points
+        .iter()
+        .filter_map(|point| found.keep(point.written()))
+        .collect();
+    if count < 2 {
+        let name = quoted(&entry.name.text);
+        found.push(
+            Diagnostic::error(format!("the line {name} goes nowhere"))
+                .at(entry.span(), "a line joins two points or more")
+                .help("for example [\"origin\", \"tip\"]"),
+        );
+    }
+    Some(RawLine {
+        name: entry.name.clone(),
+        points,
     })
 }

@@ -76,6 +76,10 @@ ids! {
     InputId;
     /// One of [`Model::fields`](crate::model::Model::fields).
     FieldId;
+    /// One of [`Model::observables`](crate::model::Model::observables).
+    ObservableId;
+    /// One of [`Drawing::points`](crate::model::Drawing::points).
+    PointId;
     /// One of [`Model::definitions`](crate::model::Model::definitions).
     DefinitionId;
     /// One of [`Model::coefficients`](crate::model::Model::coefficients).

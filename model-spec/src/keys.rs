@@ -33,8 +33,13 @@ pub const COEFFICIENT: [&str; 6] = ["value", "of", "by", "times", "each", "doc"]
 /// Keys of a `[sensors.CHANNEL]`.
 pub const SENSOR: [&str; 3] = ["gain", "bias", "delay"];
 
-/// The sections, each with the keys of its entries; of `[model]` its own.
-pub const SECTIONS: [(&str, &[&str]); 13] = [
+/// Keys of `[drawing]`.
+pub const DRAWING: [&str; 2] = ["points", "lines"];
+/// Keys of an entry of `[drawing.points]`.
+pub const POINT: [&str; 2] = ["x", "y"];
+
+/// The sections, each with the keys of its entries; of `[model]` and `[drawing]` their own.
+pub const SECTIONS: [(&str, &[&str]); 14] = [
     ("model", &MODEL),
     ("parameters", &PARAMETER),
     ("coordinates", &COORDINATE),
@@ -48,6 +53,7 @@ pub const SECTIONS: [(&str, &[&str]); 13] = [
     ("observables", &OBSERVABLE),
     ("coefficients", &COEFFICIENT),
     ("sensors", &SENSOR),
+    ("drawing", &DRAWING),
 ];
 
 /// The names of the sections.

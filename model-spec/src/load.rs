@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::checks::{check_sensors, warn_unused};
+use crate::checks::{check_drawing, check_sensors, warn_unused};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::document;
 use crate::model::Model;
@@ -64,6 +64,7 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     units_check::check(&mut resolved, &mut found);
     let model = resolved.model;
     check_sensors(&model, &mut found);
+    check_drawing(&model, &mut found);
     if found.is_empty() {
         found.keep(model.check_numbers().map_err(ModelError::diagnostic));
     }

@@ -6,7 +6,9 @@
 //! rates of all these in the same order.
 
 use crate::ast::BinaryOperator;
-use crate::ids::{CoefficientId, CoordinateId, DefinitionId, FieldId, InputId, ParameterId};
+use crate::ids::{
+    CoefficientId, CoordinateId, DefinitionId, FieldId, InputId, ObservableId, ParameterId, PointId,
+};
 use crate::source::Source;
 use crate::span::Span;
 use crate::unit::Unit;
@@ -50,10 +52,55 @@ pub struct Model {
     pub coefficients: Vec<Coefficient>,
     /// How measured channels differ from the quantities of the model.
     pub sensors: Vec<Sensor>,
+    /// How the machine is drawn, if the specification says so. Nothing that is derived or emitted
+    /// depends on it.
+    pub drawing: Option<Drawing>,
     /// The parameters in an order such that each comes after those it refers to.
     pub parameter_order: Vec<ParameterId>,
     /// The definitions in an order such that each comes after those it refers to.
     pub definition_order: Vec<DefinitionId>,
+}
+
+/// A drawing of the machine in a plane: points that move and lines between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    /// The points: `origin`, which is (0, 0), then those of the specification in its order.
+    pub points: Vec<DrawnPoint>,
+    /// The lines in the order of the specification.
+    pub lines: Vec<DrawnLine>,
+}
+
+/// A point of a drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnPoint {
+    /// Its name.
+    pub name: String,
+    /// To the right, in m.
+    pub x: Ordinate,
+    /// Upwards, in m.
+    pub y: Ordinate,
+    /// Where x and y stand.
+    pub spans: [Span; 2],
+}
+
+/// What places a point along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ordinate {
+    /// A number, in m.
+    Number(f64),
+    /// A coordinate that is a length.
+    Coordinate(CoordinateId),
+    /// An observable that is a length.
+    Observable(ObservableId),
+}
+
+/// A line of a drawing, from point to point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnLine {
+    /// Its name.
+    pub name: String,
+    /// Two points or more.
+    pub points: Vec<PointId>,
 }
 
 /// A parameter of the model.

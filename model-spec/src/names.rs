@@ -173,7 +173,8 @@ impl Names {
         self.symbols.insert(name.text.clone(), (symbol, name.span));
     }
 
-    /// Terms and forces have names of their own that no expression uses: any word will do.
+    /// Terms, forces and what is drawn have names of their own that no expression uses: any word
+    /// will do.
     fn check_terms(&self, document: &Document, found: &mut Diagnostics) {
         let terms = document.kinetic.iter();
         let terms = terms
@@ -181,6 +182,12 @@ impl Names {
             .chain(&document.dissipation);
         for term in terms.chain(document.forces.iter().map(|(term, _)| term)) {
             found.keep(word(&term.name));
+        }
+        if let Some(drawing) = &document.drawing {
+            let points = drawing.points.iter().map(|point| &point.name);
+            for name in points.chain(drawing.lines.iter().map(|line| &line.name)) {
+                found.keep(word(name));
+            }
         }
     }
 

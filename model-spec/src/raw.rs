@@ -37,6 +37,37 @@ pub struct Document {
     pub coefficients: Vec<RawCoefficient>,
     /// `[sensors.CHANNEL]`
     pub sensors: Vec<RawSensor>,
+    /// `[drawing]`
+    pub drawing: Option<RawDrawing>,
+}
+
+/// A `[drawing]`.
+#[derive(Debug)]
+pub struct RawDrawing {
+    /// `[drawing.points]`
+    pub points: Vec<RawPoint>,
+    /// `[drawing.lines]`
+    pub lines: Vec<RawLine>,
+}
+
+/// An entry of `[drawing.points]`.
+#[derive(Debug)]
+pub struct RawPoint {
+    /// Its key.
+    pub name: Name,
+    /// `x`
+    pub x: Quantity,
+    /// `y`
+    pub y: Quantity,
+}
+
+/// An entry of `[drawing.lines]`.
+#[derive(Debug)]
+pub struct RawLine {
+    /// Its key.
+    pub name: Name,
+    /// The names of its points.
+    pub points: Vec<Written>,
 }
 
 /// An entry of `[parameters]`.

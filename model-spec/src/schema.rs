@@ -54,7 +54,7 @@ mod tests {
         for (name, known) in keys::SECTIONS {
             let section = &sections[name];
             let entry = match name {
-                "model" => section,
+                "model" | "drawing" => section,
                 _ => &section["additionalProperties"],
             };
             let known: BTreeSet<&str> = known.iter().copied().collect();
@@ -107,9 +107,16 @@ mod tests {
         let schema = schema();
         let defined = &schema["$defs"];
         assert_eq!(defined["name"]["maxLength"], MAX_NAME);
-        for section in keys::sections().filter(|name| *name != "model") {
+        let of_entries = keys::sections().filter(|name| !["model", "drawing"].contains(name));
+        for section in of_entries {
             assert_eq!(schema["properties"][section]["maxProperties"], MAX_ENTRIES);
         }
+        let drawing = &schema["properties"]["drawing"]["properties"];
+        for part in keys::DRAWING {
+            assert_eq!(drawing[part]["maxProperties"], MAX_ENTRIES);
+        }
+        let point = keys_of(&schema, &drawing["points"]["additionalProperties"]);
+        assert_eq!(point, BTreeSet::from(keys::POINT));
         let field = &defined["field"]["properties"];
         assert_eq!(field["order"]["maximum"], MAX_ORDER);
         let bases: Vec<&str> = keys::BASES.iter().map(|(name, _)| *name).collect();

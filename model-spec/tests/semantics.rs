@@ -2,8 +2,8 @@
 
 use eomgen_model_spec::Checked;
 use eomgen_model_spec::diagnostic::Severity;
-use eomgen_model_spec::ids::FieldId;
-use eomgen_model_spec::model::{CoefficientKind, ExprKind, MAX_ORDER, Model};
+use eomgen_model_spec::ids::{CoordinateId, FieldId, ObservableId};
+use eomgen_model_spec::model::{CoefficientKind, ExprKind, MAX_ORDER, Model, Ordinate};
 use eomgen_model_spec::models;
 use eomgen_model_spec::source::Source;
 
@@ -415,4 +415,24 @@ fn a_parameter_that_moves_a_range_off_the_beginning_is_refused() {
         error.message.contains("comes out as 0 to -0.005"),
         "{error}"
     );
+}
+
+#[test]
+fn points_are_placed_by_numbers_coordinates_and_observables() {
+    let text = "[model]\nname = \"a\"\n[parameters]\nm = { value = 1, unit = \"kg\" }\n\
+        [coordinates]\nx = { unit = \"m\" }\n[kinetic]\nmass = \"1/2*m*dot(x)^2\"\n\
+        [observables]\nspeed = \"dot(x)\"\ntwice = \"2*x\"\n\
+        [drawing.lines]\nrope = [\"tip\", \"origin\", \"tip\"]\n\
+        [drawing.points]\ntip = { x = \"twice\", y = -0.5 }\nend = { x = \"x\", y = 0 }\n";
+    let drawing = checked(text).model.drawing.expect("a drawing");
+    let names: Vec<&str> = drawing.points.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["origin", "tip", "end"]);
+    let [tip, end] = [&drawing.points[1], &drawing.points[2]];
+    assert_eq!(tip.x, Ordinate::Observable(ObservableId::new(1)));
+    assert_eq!(tip.y, Ordinate::Number(-0.5));
+    assert_eq!(end.x, Ordinate::Coordinate(CoordinateId::new(0)));
+    let joined: Vec<usize> = drawing.lines[0].points.iter().map(|p| p.index()).collect();
+    assert_eq!(joined, [1, 0, 1]);
+    let (without, _) = text.split_once("[drawing").expect("a drawing");
+    assert!(checked(without).model.drawing.is_none());
 }

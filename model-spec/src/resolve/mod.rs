@@ -3,6 +3,7 @@
 //! `checks`.
 
 mod coefficients;
+mod drawing;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
@@ -54,6 +55,7 @@ struct Builder {
 
 impl Builder {
     fn model(&mut self, document: Document, source: &Source) -> Resolved {
+        let drawing = self.drawing(&document);
         let observables = self.all(document.observables, Self::observable);
         let (observables, declared) = observables.into_iter().unzip();
         let parameters = self.all(document.parameters, Self::parameter);
@@ -72,6 +74,7 @@ impl Builder {
             observables,
             coefficients: self.coefficients(document.coefficients),
             sensors: self.all(document.sensors, Self::sensor),
+            drawing,
             parameter_order: Vec::new(),
             definition_order: Vec::new(),
             parameters,

@@ -1,0 +1,118 @@
+//! The points and lines of a drawing: what places each point, and which points a line joins.
+//! Whether that is a length is checked when units are known, by `checks`.
+
+use super::Builder;
+use crate::diagnostic::{Diagnostic, quoted};
+use crate::ids::{CoordinateId, ObservableId, PointId};
+use crate::model::{Drawing, DrawnLine, DrawnPoint, Ordinate};
+use crate::raw::{Document, RawLine, RawPoint};
+use crate::span::Span;
+use crate::suggest::did_you_mean;
+use crate::table::{Quantity, Written};
+
+/// The point that every drawing has, at (0, 0).
+const ORIGIN: &str = "origin";
+
+/// What a point may be placed by.
+struct Known<'d> {
+    coordinates: Vec<&'d str>,
+    observables: Vec<&'d str>,
+}
+
+impl Known<'_> {
+    fn ordinate(&self, quantity: &Quantity) -> Result<Ordinate, Diagnostic> {
+        let written = match quantity {
+            Quantity::Number(number) => return Ok(Ordinate::Number(number.value)),
+            Quantity::Expression(written) => written,
+        };
+        let place = |names: &[&str]| names.iter().position(|name| *name == written.text);
+        if let Some(place) = place(&self.observables) {
+            return Ok(Ordinate::Observable(ObservableId::new(place)));
+        }
+        if let Some(place) = place(&self.coordinates) {
+            return Ok(Ordinate::Coordinate(CoordinateId::new(place)));
+        }
+        let names = self.observables.iter().chain(&self.coordinates).copied();
+        let help = "an expression goes into [observables], its name here";
+        let message = format!("unknown name {}", quoted(&written.text));
+        Err(Diagnostic::error(message)
+            .at(written.span, "neither an observable nor a coordinate")
+            .help(did_you_mean(&written.text, names).unwrap_or(help.to_owned())))
+    }
+}
+
+impl Builder {
+    /// The drawing of a document, if it has one.
+    pub(super) fn drawing(&mut self, document: &Document) -> Option<Drawing> {
+        let raw = document.drawing.as_ref()?;
+        let coordinates = document.coordinates.iter();
+        let observables = document.observables.iter();
+        let known = Known {
+            coordinates: coordinates.map(|c| c.name.text.as_str()).collect(),
+            observables: observables.map(|(o, _)| o.name.text.as_str()).collect(),
+        };
+        let mut points = vec![DrawnPoint {
+            name: ORIGIN.to_owned(),
+            x: Ordinate::Number(0.0),
+            y: Ordinate::Number(0.0),
+            spans: [Span::default(); 2],
+        }];
+        for point in &raw.points {
+            points.extend(self.point(point, &known));
+        }
+        let mut names = vec![ORIGIN];
+        names.extend(raw.points.iter().map(|point| point.name.text.as_str()));
+        let mut lines = Vec::new();
+        for line in &raw.lines {
+            lines.push(self.line(line, &names));
+        }
+        Some(Drawing { points, lines })
+    }
+
+    fn point(&mut self, raw: &RawPoint, known: &Known<'_>) -> Option<DrawnPoint> {
+        if raw.name.text == ORIGIN {
+            self.found.push(
+                Diagnostic::error(format!("the point `{ORIGIN}` is there already"))
+                    .at(raw.name.span, "it is (0, 0)")
+                    .help("choose another name"),
+            );
+        }
+        let x = self.found.keep(known.ordinate(&raw.x));
+        let y = self.found.keep(known.ordinate(&raw.y));
+        Some(DrawnPoint {
+            name: raw.name.text.clone(),
+            x: x?,
+            y: y?,
+            spans: [place(&raw.x), place(&raw.y)],
+        })
+    }
+
+    fn line(&mut self, raw: &RawLine, names: &[&str]) -> DrawnLine {
+        let points = raw.points.iter();
+        let points = points.filter_map(|point| self.found.keep(named(point, names)));
+        DrawnLine {
+            name: raw.name.text.clone(),
+            points: points.collect(),
+        }
+    }
+}
+
+/// Where a number or a name stands.
+fn place(quantity: &Quantity) -> Span {
+    match quantity {
+        Quantity::Number(number) => number.span,
+        Quantity::Expression(written) => written.span,
+    }
+}
+
+/// The point of this name.
+fn named(written: &Written, names: &[&str]) -> Result<PointId, Diagnostic> {
+    let place = names.iter().position(|name| *name == written.text);
+    place.map(PointId::new).ok_or_else(|| {
+        let listed = format!("the points are {}", names.join(", "));
+        let near = did_you_mean(&written.text, names.iter().copied());
+        Diagnostic::error(format!("unknown point {}", quoted(&written.text)))
+            .at(written.span, "not in [drawing.points]")
+            .help(near.unwrap_or(listed))
+    })
+}
