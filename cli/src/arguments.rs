@@ -68,6 +68,11 @@ pub enum Command {
     /// `study.json`.
     #[command(after_help = "Example:\n  eomgen study backlash --out studies/backlash")]
     Study(Study),
+    /// Write a page on which a model can be played with: one HTML file that needs nothing else.
+    #[command(
+        after_help = "Example:\n  eomgen page model-spec/models/double_pendulum.toml --out double_pendulum.html"
+    )]
+    Page(Page),
     /// The newcomer's walk: check, derive, generate, validate and simulate the paper's arm,
     /// find what a stage lacks, and leave one HTML page.
     #[command(after_help = "Example:\n  eomgen tour --out tour")]
@@ -430,6 +435,19 @@ pub struct StudySearch {
     /// Print one JSON document on what was found.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Options of `page`.
+#[derive(Args)]
+pub struct Page {
+    /// The specification.
+    pub spec: PathBuf,
+    /// Modal truncation order of every field, instead of the specification's.
+    #[arg(long, allow_negative_numbers = true)]
+    pub order: Option<String>,
+    /// The file to write, or `-` for stdout.
+    #[arg(long)]
+    pub out: PathBuf,
 }
 
 /// Options of `tour`.

@@ -4,6 +4,7 @@
 use eomgen_codegen::c;
 use eomgen_codegen::program::{Output, Program};
 use eomgen_codegen::rust::{self, EmitError, Packaging};
+use eomgen_codegen::wasm;
 
 use crate::arguments::{Extra, Generate, Target};
 use crate::error::{Error, Result};
@@ -11,6 +12,11 @@ use crate::error::{Error, Result};
 /// The emitted Rust of a program.
 pub fn source(program: &Program, packaging: Packaging) -> Result<String> {
     rust::emit(program, packaging).map_err(refused)
+}
+
+/// The emitted module of a program.
+pub fn module(program: &Program) -> Result<Vec<u8>> {
+    wasm::emit(program).map_err(refused)
 }
 
 /// Names and texts of the emitted files, the one with the equations first.

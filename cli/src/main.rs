@@ -49,6 +49,7 @@ fn main() -> ExitCode {
         Command::Merge(options) => commands::merge::run(&options),
         Command::StudySearch(options) => commands::study_search::run(&options),
         Command::Study(options) => commands::study::run(&options),
+        Command::Page(options) => commands::page::run(&options),
         Command::Tour(options) => commands::tour::run(&options),
         Command::Schema => commands::schema::run(),
         Command::Completions(options) => commands::completions::run(&options),

@@ -4,7 +4,9 @@ use eomgen_tests::models::path;
 use eomgen_tests::program::{accepted, eomgen, refused};
 
 /// Every command with the specification it is given.
-const COMMANDS: [&str; 5] = ["check", "derive", "generate", "validate", "simulate"];
+const COMMANDS: [&str; 6] = [
+    "check", "derive", "generate", "validate", "simulate", "page",
+];
 
 /// A shipped specification's path as an argument.
 fn spec(name: &str) -> String {
@@ -15,6 +17,7 @@ fn spec(name: &str) -> String {
 fn arguments(command: &'static str, name: &str, more: &[&str]) -> Vec<String> {
     let needed: &[&str] = match command {
         "generate" => &["--out", "never-made"],
+        "page" => &["--out", "never-made/a.html"],
         "simulate" => &["--out", "never-made/a.csv", "--until", "0.01"],
         _ => &[],
     };

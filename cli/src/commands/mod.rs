@@ -7,6 +7,7 @@ pub mod discover;
 pub mod generate;
 pub mod man;
 pub mod merge;
+pub mod page;
 pub mod schema;
 pub mod simulate;
 pub mod study;

@@ -2,13 +2,18 @@
 //! the emitted source, the certificate, a simulation and what is found in records. Only how these are shown; what they
 //! say is handed in.
 //!
-//! The page has no script and refers to nothing outside itself; nothing in a specification
+//! `play` is another page, on which one model can be played with.
+//!
+//! The tour's page has no script and refers to nothing outside itself; nothing in a specification
 //! becomes markup.
 
+mod play;
 mod steps;
 
 #[cfg(test)]
 mod tests;
+
+pub use play::playable;
 
 use eomgen_codegen::report::Report;
 use eomgen_page::{Figure, document, equations};

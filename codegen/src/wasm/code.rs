@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use wasm_encoder::{BlockType, Function, InstructionSink, MemArg, MemArgTarget, ValType};
 
-use super::functions::Indices;
+use super::indices::Indices;
 use super::memory::{Memory, NUMBER, Region, nowhere};
 use crate::program::{Extent, Program};
 use crate::statements::{EmitError, Emitted, Index};

@@ -6,7 +6,8 @@ use wasm_encoder::{
 };
 
 use super::code::Code;
-use super::functions::{Helper, Indices, helpers};
+use super::functions::{Helper, helpers};
+use super::indices::Indices;
 use super::memory::{Memory, Region};
 use super::names::WORDS;
 use crate::program::Program;
@@ -41,7 +42,7 @@ pub fn emit(program: &Program) -> Result<Vec<u8>, EmitError> {
         stages.push(guards(&file, &mut needed)?);
     }
     let helpers = helpers(&needed);
-    let functions = Indices::new(&helpers);
+    let functions = Indices::new(helpers.iter().map(|helper| helper.name));
     let mut memory = Memory::new(&file)?;
     let mut written = Vec::new();
     for helper in &helpers {

@@ -1,31 +1,14 @@
 //! What stages call: helpers of piecewise functions and pivots, elementary functions from their
 //! kernels. Each is a function of numbers alone; none calls another.
 
-use std::collections::HashMap;
-
 use wasm_encoder::Function;
 
 use super::code::Code;
-use super::memory::{Memory, nowhere};
+use super::indices::Indices;
+use super::memory::Memory;
 use crate::program::Program;
 use crate::statements::{Emitted, Expression, KernelStatements, Needed, Statement};
 use eomgen_elementary::Function as Elementary;
-
-/// The functions of a module by the names that expressions call them by.
-#[derive(Debug, Default)]
-pub(super) struct Indices(HashMap<&'static str, u32>);
-
-impl Indices {
-    /// Those of these helpers, which come first in their module.
-    pub(super) fn new(helpers: &[Helper]) -> Self {
-        Self(helpers.iter().map(|helper| helper.name).zip(0..).collect())
-    }
-
-    /// The number of a function.
-    pub(super) fn of(&self, name: &str) -> Emitted<u32> {
-        self.0.get(name).copied().ok_or_else(|| nowhere(name))
-    }
-}
 
 /// A function of one number or two.
 #[derive(Debug)]

@@ -1,5 +1,6 @@
 //! Pages that stand for themselves: one file of HTML, with its style sheet inside, light or dark
-//! as its reader likes, without script and without a reference to anything outside. What a page
+//! as its reader likes, without a reference to anything outside, and without script but where a
+//! program computes in it. What a page
 //! says is the caller's; its markup is written with [`maud`], which takes every text for nothing
 //! but text.
 //!
@@ -22,7 +23,7 @@ pub mod formula;
 mod number;
 mod parts;
 
-pub use document::document;
+pub use document::{ScriptedDocument, document, scripted_document};
 pub use equations::equations;
 pub use formula::formula;
 pub use number::number;

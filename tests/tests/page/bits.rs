@@ -12,7 +12,7 @@ use eomgen_model_spec::model::Model;
 use eomgen_tests::models::{project, samples, shipped, variant};
 
 /// Whether modules can be run; says so if not.
-fn node() -> bool {
+pub fn node() -> bool {
     let found = Command::new("node").arg("--version").output();
     let there = found.is_ok_and(|output| output.status.success());
     if !there {

@@ -1,0 +1,192 @@
+// The page: its controls, its clock and what is drawn in every frame.
+
+/** How long a frame may compute, in ms. */
+const BUDGET = 11;
+/** The longest time between frames that the clock follows, in s: a page may have been hidden. */
+const LONGEST_FRAME = 0.1;
+
+const model = JSON.parse(document.getElementById("model").textContent);
+const element = (id) => document.getElementById(id);
+const [drawingCanvas, curvesCanvas] = [element("drawing"), element("curves")];
+const status = element("status");
+
+/** The bytes of the module. */
+function moduleBytes() {
+  return Uint8Array.from(atob(model.module), (letter) => letter.charCodeAt(0));
+}
+
+/** A number as it is written into a field, of few digits. */
+function written(value) {
+  const size = Math.abs(value);
+  const digits = Number(value.toPrecision(6));
+  return size !== 0 && (size < 1e-4 || size >= 1e6) ? digits.toExponential() : String(digits);
+}
+
+/** Everything that changes while the page is open. */
+class Page {
+  constructor(exports) {
+    this.machine = new Machine(model, exports);
+    this.initial = Float64Array.from(model.state, (quantity) => quantity.initial);
+    this.motion = new Motion(this.machine, this.initial);
+    this.picture = model.drawing ? new Plane(model) : new Instruments(model);
+    this.record = new Record();
+    this.playing = !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    this.pace = 1;
+    this.last = null;
+    /** Whether something other than time has changed what is to be seen. */
+    this.stale = true;
+    this.listen();
+    this.remember();
+    this.label();
+    requestAnimationFrame((now) => this.frame(now));
+  }
+
+  get speed() {
+    return 10 ** Number(element("speed").value);
+  }
+
+  get span() {
+    return WINDOW * this.speed;
+  }
+
+  listen() {
+    element("play").addEventListener("click", () => {
+      this.playing = !this.playing;
+      this.label();
+    });
+    element("reset").addEventListener("click", () => this.restart());
+    element("defaults").addEventListener("click", () => {
+      for (const control of document.querySelectorAll("[data-kind]")) control.reset();
+      this.restart();
+    });
+    element("speed").addEventListener("input", () => this.label());
+    const stale = () => {
+      this.stale = true;
+    };
+    element("shown").addEventListener("change", stale);
+    addEventListener("resize", stale);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", stale);
+    for (const control of document.querySelectorAll("[data-kind]")) this.connect(control);
+  }
+
+  /** Joins a slider and its number: either changes the other and the model. */
+  connect(control) {
+    const [number, slider] = control.querySelectorAll("input");
+    const { kind, place, factor } = control.dataset;
+    const declared = number.value;
+    const apply = (text) => {
+      const value = Number(text);
+      const fits = text.trim() !== "" && Number.isFinite(value);
+      number.setCustomValidity(fits ? "" : "a number");
+      // What stands in the specification is taken as it is there, without a conversion.
+      if (fits) this.change(kind, Number(place), text === declared ? undefined : value * Number(factor));
+    };
+    slider.addEventListener("input", () => {
+      number.value = written(Number(slider.value));
+      apply(number.value);
+    });
+    number.addEventListener("input", () => {
+      slider.value = number.value;
+      apply(number.value);
+    });
+    control.reset = () => {
+      number.value = declared;
+      slider.value = declared;
+      apply(declared);
+    };
+  }
+
+  /** Sets a number of the model; without a value the specification's. */
+  change(kind, place, value) {
+    if (kind === "parameter") {
+      this.machine.parameters[place] = value ?? model.parameters[place];
+      this.machine.prepare();
+      this.motion.begin();
+      this.remember();
+    } else if (kind === "input") {
+      this.machine.inputs[place] = value ?? 0;
+      this.motion.begin();
+      this.remember();
+    } else {
+      this.initial[place] = value ?? model.state[place].initial;
+      this.restart();
+    }
+  }
+
+  restart() {
+    this.motion.restart(this.initial);
+    this.picture.clear();
+    this.record.clear();
+    this.remember();
+  }
+
+  /** Lets picture and curves know where the motion is. */
+  remember() {
+    this.stale = true;
+    const { t, state } = this.motion;
+    const observables = this.machine.observe(t, state);
+    this.picture.follow(state, observables);
+    this.record.add(t, Float64Array.of(...state, ...observables), this.span);
+  }
+
+  frame(now) {
+    const passed = this.last === null ? 0 : Math.min((now - this.last) / 1000, LONGEST_FRAME);
+    this.last = now;
+    if (this.playing && passed > 0) this.move(passed);
+    if (this.stale) this.draw();
+    requestAnimationFrame((next) => this.frame(next));
+  }
+
+  /** Moves on by what has passed, or as far as the time of a frame allows. */
+  move(passed) {
+    const { motion } = this;
+    const [start, end] = [motion.t, motion.t + passed * this.speed];
+    const deadline = performance.now() + BUDGET;
+    while (motion.t < end && !motion.failed && performance.now() < deadline) {
+      motion.advance(end);
+      this.remember();
+    }
+    const pace = (motion.t - start) / passed;
+    this.pace += 0.1 * (pace / this.speed - this.pace);
+  }
+
+  draw() {
+    this.stale = false;
+    this.picture.draw(drawingCanvas);
+    drawCurves(curvesCanvas, this.record, this.ticked(), this.motion.t, this.span);
+    element("clock").textContent = `${this.motion.t.toFixed(this.speed < 0.05 ? 5 : 2)} s`;
+    this.say(this.message());
+  }
+
+  ticked() {
+    const places = Array.from(document.querySelectorAll("#shown input:checked"), (box) => Number(box.value));
+    const all = [...model.state, ...model.observables];
+    return places.map((place) => ({ ...all[place], place, mark: place }));
+  }
+
+  message() {
+    if (!this.machine.usable) return "With these parameters the mass matrix is not positive definite: there is no motion.";
+    if (this.motion.failed) return "The motion ends here: its rates are no longer numbers, or change too fast to follow.";
+    if (this.playing && this.pace < 0.8) return `Slower than asked: ${shown(this.pace * this.speed, 2)} s in a second.`;
+    return this.motion.switches > 0 ? `Switching surfaces crossed: ${this.motion.switches}.` : "";
+  }
+
+  say(text) {
+    if (status.textContent !== text) status.textContent = text;
+  }
+
+  label() {
+    this.stale = true;
+    element("play").textContent = this.playing ? "Pause" : "Play";
+    const text = `${shown(this.speed, 2)} ×`;
+    element("speed-value").textContent = text;
+    element("speed").setAttribute("aria-valuetext", `${text} real time`);
+  }
+}
+
+WebAssembly.instantiate(moduleBytes(), {}).then(
+  ({ instance }) => new Page(instance.exports),
+  (error) => {
+    status.textContent = `This browser does not run the model: ${error.message}`;
+  },
+);

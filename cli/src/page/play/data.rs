@@ -1,0 +1,58 @@
+//! What the script is told of a model, as JSON.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use eomgen_compiled_model::CompiledModel;
+use eomgen_model_spec::model::{Drawing, Ordinate};
+use serde_json::{Value, json};
+
+use super::quantities::{Quantities, printed};
+use crate::error::{Error, Result};
+
+/// The data of a model that starts there, with its module.
+pub(super) fn json(
+    compiled: &CompiledModel,
+    quantities: &Quantities<'_>,
+    initial: &[f64],
+    module: &[u8],
+) -> Result<String> {
+    let program = compiled.program();
+    let names = compiled.state_names().into_iter();
+    let state = names.zip(&quantities.units).zip(initial);
+    let state: Vec<Value> = state
+        .map(|((name, unit), initial)| json!({ "name": name, "unit": printed(unit), "initial": initial }))
+        .collect();
+    let of = |quantity: &eomgen_codegen::program::Quantity| json!({ "name": quantity.name, "unit": printed(&quantity.unit) });
+    let evaluator = compiled.evaluator(&program.default_parameters());
+    let document = json!({
+        "module": STANDARD.encode(module),
+        "parameters": program.default_parameters(),
+        "state": state,
+        "inputs": program.inputs.iter().map(of).collect::<Vec<_>>(),
+        "observables": program.observables.iter().map(of).collect::<Vec<_>>(),
+        "guards": evaluator.guard_count(),
+        "drawing": compiled.model().drawing.as_ref().map(drawing),
+    });
+    serde_json::to_string(&document).map_err(|error| Error::input(error.to_string()))
+}
+
+/// Points with what places them, lines by the places of their points.
+fn drawing(drawing: &Drawing) -> Value {
+    let points = drawing.points.iter();
+    let points: Vec<Value> = points
+        .map(|point| json!({ "x": ordinate(point.x), "y": ordinate(point.y) }))
+        .collect();
+    let lines = drawing.lines.iter();
+    let lines: Vec<Vec<usize>> = lines
+        .map(|line| line.points.iter().map(|point| point.index()).collect())
+        .collect();
+    json!({ "points": points, "lines": lines })
+}
+
+fn ordinate(ordinate: Ordinate) -> Value {
+    match ordinate {
+        Ordinate::Number(number) => json!({ "number": number }),
+        Ordinate::Coordinate(id) => json!({ "state": id.index() }),
+        Ordinate::Observable(id) => json!({ "observable": id.index() }),
+    }
+}

@@ -1,0 +1,269 @@
+//! What can be moved on a page, and how far: as declared where the specification says, else as far
+//! as a person would try.
+
+use eomgen_compiled_model::CompiledModel;
+use eomgen_model_spec::model::{Model, Parameter};
+
+use crate::error::{Error, Result};
+
+/// The most modes of a field that have controls: higher ones hardly move.
+const MODES: usize = 4;
+
+/// The most curves that are shown at first.
+const SHOWN_AT_FIRST: usize = 4;
+
+/// A number that a page can change.
+#[derive(Debug)]
+pub(super) struct Movable<'m> {
+    pub(super) name: String,
+    /// The unit that it is shown in.
+    pub(super) unit: String,
+    pub(super) doc: &'m str,
+    /// Its place among parameters, states or inputs.
+    pub(super) place: usize,
+    /// How much one of its unit is in SI.
+    pub(super) factor: f64,
+    /// In its unit, as are the ends.
+    pub(super) value: f64,
+    pub(super) low: f64,
+    pub(super) high: f64,
+}
+
+/// A quantity that can be shown as a curve, by its place among states and observables.
+#[derive(Debug)]
+pub(super) struct Shown {
+    pub(super) name: String,
+    pub(super) unit: String,
+    pub(super) place: usize,
+    pub(super) at_first: bool,
+}
+
+/// All that a page has controls for.
+#[derive(Debug)]
+pub(super) struct Quantities<'m> {
+    pub(super) parameters: Vec<Movable<'m>>,
+    pub(super) initial: Vec<Movable<'m>>,
+    pub(super) inputs: Vec<Movable<'m>>,
+    pub(super) shown: Vec<Shown>,
+    /// Units of the state, in its order.
+    pub(super) units: Vec<String>,
+}
+
+impl<'m> Quantities<'m> {
+    /// Those of a model that starts there.
+    pub(super) fn of(compiled: &'m CompiledModel, initial: &[f64]) -> Result<Self> {
+        let model = compiled.model();
+        let units = state_units(compiled);
+        let refused = |error| Error::model(&model.source, error);
+        let ranges = model.coordinate_ranges().map_err(refused)?;
+        let input_ranges = model.input_ranges().map_err(refused)?;
+        let parameters = compiled.program().parameters.iter().enumerate();
+        let parameters = parameters.filter_map(|(place, independent)| {
+            let name = &independent.quantity.name;
+            let declared = model.parameters.iter().find(|p| p.name == *name)?;
+            Some(of_parameter(declared, place, independent.value))
+        });
+        let inputs = model.inputs.iter().zip(input_ranges).enumerate();
+        let inputs = inputs.map(|(place, (input, range))| {
+            let (low, high) = range.unwrap_or((-10.0, 10.0));
+            Movable {
+                name: input.name.clone(),
+                unit: printed(&input.unit.to_string()),
+                doc: &input.doc,
+                place,
+                factor: 1.0,
+                value: 0.0,
+                low: low.min(0.0),
+                high: high.max(0.0),
+            }
+        });
+        Ok(Self {
+            parameters: parameters.collect(),
+            initial: initial_state(compiled, &units, &ranges, initial),
+            inputs: inputs.collect(),
+            shown: shown(compiled, &units),
+            units,
+        })
+    }
+}
+
+/// A parameter in its declared unit. Without declared ends from 0 to twice its value.
+fn of_parameter(parameter: &Parameter, place: usize, value: f64) -> Movable<'_> {
+    let unit = &parameter.unit;
+    let value = unit.from_si(value);
+    let (low, high) = around(value);
+    let (min, max) = (parameter.min, parameter.max);
+    let low = min.map_or(low, |min| unit.from_si(min));
+    let high = max.map_or(high, |max| unit.from_si(max));
+    Movable {
+        name: parameter.name.clone(),
+        unit: printed(&unit.to_string()),
+        doc: &parameter.doc,
+        place,
+        factor: unit.to_si(1.0),
+        value,
+        low: low.min(value),
+        high: high.max(value),
+    }
+}
+
+/// From 0 to twice a value; around 0 where it is that. All finite.
+fn around(value: f64) -> (f64, f64) {
+    let twice = (2.0 * value).clamp(f64::MIN, f64::MAX);
+    if value > 0.0 {
+        (0.0, twice)
+    } else if value < 0.0 {
+        (twice, 0.0)
+    } else {
+        (-1.0, 1.0)
+    }
+}
+
+/// Units of coordinates and modes, then of their rates.
+fn state_units(compiled: &CompiledModel) -> Vec<String> {
+    let program = compiled.program();
+    let mut units: Vec<String> = program.coordinates.iter().map(|c| c.unit.clone()).collect();
+    for field in &program.fields {
+        units.extend((0..field.order).map(|_| field.unit.clone()));
+    }
+    let rates: Vec<String> = units.iter().map(|unit| per_second(unit)).collect();
+    units.extend(rates);
+    units
+}
+
+fn per_second(unit: &str) -> String {
+    match unit {
+        "1" | "" => "1/s".to_owned(),
+        unit if unit.contains('/') => format!("{unit} 1/s"),
+        unit => format!("{unit}/s"),
+    }
+}
+
+/// A unit with its exponents raised; those that are fractions stay as they are.
+pub(super) fn printed(unit: &str) -> String {
+    if unit.contains("^(") {
+        return unit.to_owned();
+    }
+    let mut raised = false;
+    let mut text = String::new();
+    for letter in unit.chars() {
+        raised = letter == '^' || raised && (letter == '-' || letter.is_ascii_digit());
+        match letter {
+            '^' => {}
+            '-' if raised => text.push('⁻'),
+            '0'..='9' if raised => {
+                let digit = letter as usize - '0' as usize;
+                text.extend("⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit));
+            }
+            other => text.push(other),
+        }
+    }
+    text
+}
+
+/// The places of coordinates and the first modes of every field.
+fn movable_places(model: &Model, orders: &[usize]) -> Vec<usize> {
+    let mut places: Vec<usize> = (0..model.coordinates.len()).collect();
+    let mut first = places.len();
+    for order in orders {
+        places.extend(first..first + order.min(&MODES));
+        first += order;
+    }
+    places
+}
+
+/// Coordinates and modes, then their rates.
+fn initial_state<'m>(
+    compiled: &'m CompiledModel,
+    units: &[String],
+    ranges: &[Option<(f64, f64)>],
+    initial: &[f64],
+) -> Vec<Movable<'m>> {
+    let model = compiled.model();
+    let names = compiled.state_names();
+    let degrees = names.len() / 2;
+    let places = movable_places(model, compiled.orders());
+    let rates = places.iter().map(|place| place + degrees);
+    let all = places.iter().copied().chain(rates);
+    let lengths = compiled.program().parameters.iter();
+    let size = lengths
+        .filter(|parameter| parameter.quantity.unit == "m")
+        .map(|parameter| parameter.value.abs())
+        .fold(0.0, f64::max);
+    let size = if size > 0.0 { size } else { 1.0 };
+    all.map(|place| {
+        let value = initial[place];
+        let declared = ranges.get(place).copied().flatten();
+        let (low, high) = declared.unwrap_or_else(|| {
+            let reach = reach(&units[place], size).max(1.5 * value.abs());
+            (-reach, reach)
+        });
+        let coordinate = model.coordinates.get(place);
+        Movable {
+            name: names[place].clone(),
+            unit: printed(&units[place]),
+            doc: coordinate.map_or("", |coordinate| &coordinate.doc),
+            place,
+            factor: 1.0,
+            value,
+            low: low.min(value),
+            high: high.max(value),
+        }
+    })
+    .collect()
+}
+
+/// How far something of a unit goes in a machine of this size: angles all around, lengths by half
+/// the size.
+fn reach(unit: &str, size: f64) -> f64 {
+    match unit {
+        "rad" => std::f64::consts::PI,
+        "rad/s" => 10.0,
+        "m" => 0.5 * size,
+        "m/s" => 2.0 * size,
+        _ => 1.0,
+    }
+}
+
+/// States and observables; shown at first are the coordinates and the energy.
+fn shown(compiled: &CompiledModel, units: &[String]) -> Vec<Shown> {
+    let states = compiled.state_names().into_iter().zip(units.to_vec());
+    let observables = &compiled.program().observables;
+    let observables = observables.iter().map(|o| (o.name.clone(), o.unit.clone()));
+    let degrees = units.len() / 2;
+    let all = states.chain(observables).enumerate();
+    all.map(|(place, (name, unit))| Shown {
+        at_first: place < degrees.min(SHOWN_AT_FIRST - 1) || name == "energy",
+        name,
+        unit: printed(&unit),
+        place,
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exponents_are_raised() {
+        for (unit, shown) in [
+            ("m/s^2", "m/s²"),
+            ("kg m^-10", "kg m⁻¹⁰"),
+            ("N m", "N m"),
+            ("1", "1"),
+            ("m^(1/2)", "m^(1/2)"),
+        ] {
+            assert_eq!(printed(unit), shown);
+        }
+    }
+
+    #[test]
+    fn a_slider_has_two_ends() {
+        for value in [0.0, 1.0, -2.0, 1.7e308, -1.7e308, 5e-324] {
+            let (low, high) = around(value);
+            assert!(low <= value && value <= high && low < high, "{value}");
+            assert!(low.is_finite() && high.is_finite(), "{value}");
+        }
+    }
+}

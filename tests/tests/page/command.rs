@@ -1,0 +1,68 @@
+//! What the command leaves, and what it refuses.
+
+use eomgen_tests::models::path;
+use eomgen_tests::program::{accepted, refused};
+
+use super::{drawn, page};
+
+#[test]
+fn a_page_needs_nothing_else() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for spec in [path("pendulum"), drawn("double_pendulum")] {
+        let text = std::fs::read_to_string(page(&spec, &[], folder.path())).expect("a page");
+        for forbidden in [
+            " src=", "http:", "https:", "url(", "@import", "fetch(", "import(",
+        ] {
+            assert!(!text.contains(forbidden), "{forbidden}");
+        }
+        assert!(text.contains("default-src 'none'"));
+        assert!(text.contains("<math>"), "no equations");
+        assert_eq!(text.matches("<script").count(), 2);
+    }
+}
+
+#[test]
+fn units_and_ends_are_those_of_the_specification() {
+    let text = accepted(&[
+        "page",
+        &drawn("double_pendulum").display().to_string(),
+        "--out",
+        "-",
+    ]);
+    let control = text
+        .split("<div class=\"control\"")
+        .find(|part| part.contains("upper rod</small>"));
+    let control = control.expect("the control of l_1");
+    for part in [
+        "data-factor=\"0.001\"",
+        ">mm<",
+        "min=\"100\"",
+        "max=\"1000\"",
+        "value=\"600\"",
+    ] {
+        assert!(control.contains(part), "{part}: {control}");
+    }
+}
+
+#[test]
+fn the_same_page_comes_twice() {
+    let spec = path("planetary_arm").display().to_string();
+    let page = || accepted(&["page", &spec, "--order", "1", "--out", "-"]);
+    assert_eq!(page(), page());
+}
+
+#[test]
+fn wrong_use_is_refused() {
+    let spec = path("planetary_arm").display().to_string();
+    let page = |options: &[&str]| refused(&[&["page", &spec], options].concat());
+    assert!(page(&[]).contains("--out"));
+    assert!(page(&["--out", "-", "--order", "129"]).contains("128"));
+    assert!(page(&["--out", "-", "--order", "x"]).contains("whole number"));
+    let folder = tempfile::tempdir().expect("a folder");
+    assert!(page(&["--out", &folder.path().display().to_string()]).contains("not a file"));
+    let file = folder.path().join("file");
+    std::fs::write(&file, "kept").expect("written");
+    let below = file.join("page.html").display().to_string();
+    assert!(page(&["--out", &below]).contains("error"));
+    assert_eq!(std::fs::read_to_string(&file).expect("a file"), "kept");
+}

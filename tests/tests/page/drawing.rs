@@ -1,0 +1,65 @@
+//! Specifications with a drawing: they fit the schema, and nothing that is derived or emitted knows
+//! what they draw.
+
+use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_codegen::variant::Variant;
+use eomgen_codegen::{c, wasm};
+use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
+use serde_json::Value;
+
+use super::drawn;
+
+/// The examples, and what they say.
+fn examples() -> Vec<String> {
+    let names = ["double_pendulum", "crane", "flexible_arm"];
+    let text = |name: &str| std::fs::read_to_string(drawn(name)).expect("a specification");
+    names.map(text).to_vec()
+}
+
+fn model(text: &str) -> Model {
+    let checked = eomgen_model_spec::check(Source::new("drawn.toml", text));
+    let checked = checked.unwrap_or_else(|found| panic!("{}", found.render(false)));
+    assert!(checked.warnings.is_empty());
+    checked.model
+}
+
+#[test]
+fn drawings_fit_the_schema() {
+    let schema: Value = serde_json::from_str(eomgen_model_spec::schema::SCHEMA).expect("JSON");
+    let validator = jsonschema::validator_for(&schema).expect("a schema");
+    for text in examples() {
+        let document: Value = toml_edit::de::from_str(&text).expect("TOML");
+        assert!(validator.is_valid(&document), "{text}");
+        for (place, wrong) in [
+            ("/drawing/points/extra", serde_json::json!({ "x": 0 })),
+            ("/drawing/lines/extra", serde_json::json!(["origin"])),
+            ("/drawing/shapes", serde_json::json!({})),
+        ] {
+            let mut other = document.clone();
+            let (table, key) = place.rsplit_once('/').expect("a place");
+            other.pointer_mut(table).expect("a table")[key] = wrong;
+            assert!(!validator.is_valid(&other), "{place}");
+        }
+    }
+}
+
+/// Everything that is emitted, without the hash of the specification.
+fn emitted(model: &Model) -> (String, c::Files, Vec<u8>) {
+    let orders = model.orders(None).expect("orders");
+    let mut program = Variant::derive(model, &orders).expect("derived").program;
+    program.spec_hash.clear();
+    let rust = emit(&program, Packaging::Crate).expect("emitted");
+    let module = wasm::emit(&program).expect("emitted");
+    (rust, c::emit(&program).expect("emitted"), module)
+}
+
+#[test]
+fn a_drawing_changes_nothing_that_is_emitted() {
+    for text in examples() {
+        let (without, _) = text.split_once("[drawing.points]").expect("a drawing");
+        let (with, without) = (model(&text), model(without));
+        assert!(with.drawing.is_some() && without.drawing.is_none());
+        assert_eq!(emitted(&with), emitted(&without));
+    }
+}

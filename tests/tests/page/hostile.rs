@@ -1,0 +1,95 @@
+//! Texts that would end a script or begin one, numbers that are too large, orders at their ends, and a
+//! model without a coordinate.
+
+use std::path::{Path, PathBuf};
+
+use eomgen_tests::models::path;
+use serde_json::Value;
+
+use super::browser::{WIDE, browser, probed};
+use super::page;
+
+/// A specification with these texts and this mass, in a file.
+fn pendulum(title: &str, doc: &str, mass: &str, folder: &Path) -> PathBuf {
+    let text = format!(
+        "[model]\nname = \"p\"\ntitle = '''{title}'''\n\
+         [parameters]\nm = {{ value = {mass}, unit = \"kg\", doc = '''{doc}''' }}\n\
+         l = {{ value = 0.3, unit = \"m\", doc = '''{doc}''' }}\n\
+         g = {{ value = 9.81, unit = \"m/s^2\" }}\n\
+         [coordinates]\ntheta = {{ unit = \"rad\", initial = 1, doc = '''{doc}''' }}\n\
+         [kinetic]\nbob = \"1/2*m*(l*dot(theta))^2\"\n\
+         [potential]\ngravity = \"-m*g*l*cos(theta)\"\n"
+    );
+    let spec = folder.join("p.toml");
+    std::fs::write(&spec, text).expect("written");
+    spec
+}
+
+/// Asserts that a page opens without an error; what the probe saw.
+fn opens(page: &Path) -> Option<Value> {
+    let seen = probed(browser()?, page, WIDE);
+    assert_eq!(seen["errors"], serde_json::json!([]), "{seen}");
+    assert_eq!(seen["excess"], 0, "{seen}");
+    Some(seen)
+}
+
+#[test]
+fn texts_stay_texts() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let hostile =
+        "</script></title><!--<script>\"'><img src=x onerror=\"alert(1)\">&quot; \u{2028}";
+    let spec = pendulum(hostile, hostile, "0.15", folder.path());
+    let page = page(&spec, &[], folder.path());
+    let text = std::fs::read_to_string(&page).expect("a page");
+    assert_eq!(text.matches("<script").count(), 2);
+    assert_eq!(text.matches("</script").count(), 2);
+    for forbidden in ["<img", "<!--", "onerror=\"", "\"alert"] {
+        assert!(!text.contains(forbidden), "{forbidden}");
+    }
+    if let Some(seen) = opens(&page) {
+        assert_eq!(
+            seen["zero"], true,
+            "no word on a pendulum without mass: {seen}"
+        );
+    }
+}
+
+#[test]
+fn numbers_may_be_large_or_small() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for mass in ["1e300", "1e-300", "1.7e308"] {
+        opens(&page(
+            &pendulum("a", "b", mass, folder.path()),
+            &[],
+            folder.path(),
+        ));
+    }
+}
+
+#[test]
+fn orders_at_their_ends_open() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for order in ["0", "1", "64"] {
+        opens(&page(
+            &path("hub_beam_tip_mass"),
+            &["--order", order],
+            folder.path(),
+        ));
+    }
+}
+
+#[test]
+fn a_model_may_be_a_field_alone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let spec = folder.path().join("beam.toml");
+    let text = "[model]\nname = \"beam\"\n\
+        [parameters]\nmu = { value = 0.3, unit = \"kg/m\" }\nEI = { value = 2, unit = \"N m^2\" }\n\
+        [fields.w]\nalong = \"s\"\nfrom = 0\nto = 1\nbasis = \"clamped_free\"\n\
+        coordinates = \"q\"\norder = 2\nunit = \"m\"\n\
+        [kinetic]\nbeam = \"1/2*integral(mu*dot(w)^2, w)\"\n\
+        [potential]\nbending = \"1/2*integral(EI*diff(w, s, 2)^2, w)\"\n";
+    std::fs::write(&spec, text).expect("written");
+    for order in ["0", "2"] {
+        opens(&page(&spec, &["--order", order], folder.path()));
+    }
+}
