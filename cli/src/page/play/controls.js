@@ -8,7 +8,6 @@ const LONGEST_FRAME = 0.1;
 const model = JSON.parse(document.getElementById("model").textContent);
 const element = (id) => document.getElementById(id);
 const [drawingCanvas, curvesCanvas] = [element("drawing"), element("curves")];
-const status = element("status");
 
 /** The bytes of the module. */
 function moduleBytes() {
@@ -20,6 +19,11 @@ function written(value) {
   const size = Math.abs(value);
   const digits = Number(value.toPrecision(6));
   return size !== 0 && (size < 1e-4 || size >= 1e6) ? digits.toExponential() : String(digits);
+}
+
+/** Writes a text where another one stands. */
+function say(id, text) {
+  if (element(id).textContent !== text) element(id).textContent = text;
 }
 
 /** Everything that changes while the page is open. */
@@ -155,7 +159,8 @@ class Page {
     this.picture.draw(drawingCanvas);
     drawCurves(curvesCanvas, this.record, this.ticked(), this.motion.t, this.span);
     element("clock").textContent = `${this.motion.t.toFixed(this.speed < 0.05 ? 5 : 2)} s`;
-    this.say(this.message());
+    say("status", this.obstacle());
+    say("note", this.note());
   }
 
   ticked() {
@@ -164,15 +169,17 @@ class Page {
     return places.map((place) => ({ ...all[place], place, mark: place }));
   }
 
-  message() {
+  /** Why there is no motion. */
+  obstacle() {
     if (!this.machine.usable) return "With these parameters the mass matrix is not positive definite: there is no motion.";
     if (this.motion.failed) return "The motion ends here: its rates are no longer numbers, or change too fast to follow.";
-    if (this.playing && this.pace < 0.8) return `Slower than asked: ${shown(this.pace * this.speed, 2)} s in a second.`;
-    return this.motion.switches > 0 ? `Switching surfaces crossed: ${this.motion.switches}.` : "";
+    return "";
   }
 
-  say(text) {
-    if (status.textContent !== text) status.textContent = text;
+  /** What there is to know of the motion. */
+  note() {
+    if (this.playing && this.pace < 0.8) return `Slower than asked: ${shown(this.pace * this.speed, 2)} s in a second.`;
+    return this.motion.switches > 0 ? `Switching surfaces crossed: ${this.motion.switches}.` : "";
   }
 
   label() {
@@ -187,6 +194,6 @@ class Page {
 WebAssembly.instantiate(moduleBytes(), {}).then(
   ({ instance }) => new Page(instance.exports),
   (error) => {
-    status.textContent = `This browser does not run the model: ${error.message}`;
+    say("status", `This browser does not run the model: ${error.message}`);
   },
 );

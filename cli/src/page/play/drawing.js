@@ -114,9 +114,11 @@ class Plane {
     }
     for (const [index, place] of this.places.entries()) {
       const [x, y] = onto(place);
+      const { x: across, y: up } = this.drawing.points[index];
+      const fixed = across.number !== undefined && up.number !== undefined;
       context.beginPath();
-      context.arc(x, y, index === 0 ? 4 : 7, 0, 2 * Math.PI);
-      context.fillStyle = index === 0 ? colour.soft : colour.marks[(index - 1) % colour.marks.length];
+      context.arc(x, y, fixed ? 4 : 7, 0, 2 * Math.PI);
+      context.fillStyle = fixed ? colour.soft : colour.marks[(index - 1) % colour.marks.length];
       context.fill();
     }
   }

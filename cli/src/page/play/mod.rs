@@ -100,7 +100,9 @@ fn drawing(title: &str) -> Markup {
                 }
                 output #clock aria-label="Time" { "0.00 s" }
             }
+            // Of the two only the first is read aloud: the other changes in every frame.
             p #status role="status" {}
+            p #note {}
         }
     }
 }

@@ -153,10 +153,11 @@ class Motion {
     this.state.set(this.next);
     this.inARow = crossed ? this.inARow + 1 : 0;
     if (crossed) {
-      this.switches += 1;
-      const step = this.step;
+      const [step, before] = [this.step, this.current];
       this.begin();
       this.step = Math.min(step, h);
+      // The cubic may see a crossing early: then the next step crosses.
+      if (before.some((side, place) => side !== this.current[place])) this.switches += 1;
     } else {
       // The last stage is the first of the next step.
       const [first, last] = [0, NODES.length - 1];
