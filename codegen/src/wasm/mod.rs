@@ -4,9 +4,9 @@
 //!
 //! `emit` makes the module: its functions, its memory and what it exports. `memory` says where every
 //! array stands, `functions` are the helpers that stages call, elementary functions from their
-//! kernels among them, and `indices` their numbers. `code` is one function being written, `expressions`, `statements` and
-//! `cholesky` write into it; `names` are the words that stages keep for themselves. What is computed
-//! in which order comes from [`statements`](crate::statements).
+//! kernels among them, and `indices` their numbers. `code` is one function being written,
+//! `expressions`, `statements` and `cholesky` write into it; `names` are the words that stages keep
+//! for themselves. What is computed in which order comes from [`statements`](crate::statements).
 
 mod cholesky;
 mod code;
