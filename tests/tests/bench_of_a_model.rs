@@ -75,5 +75,5 @@ fn an_unknown_name_is_refused_with_bench_among_those_that_are_known() {
     let spec = path("pendulum").display().to_string();
     let refused =
         eomgen_tests::program::refused(&["generate", &spec, "--with", "benchmark", "--out", "x"]);
-    assert!(refused.contains("lanes, bench"), "{refused}");
+    assert!(refused.contains("lanes, hessians, bench"), "{refused}");
 }
