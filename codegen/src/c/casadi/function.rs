@@ -2,7 +2,7 @@
 //! sparsities, the room that it works in, and the function itself.
 
 use super::super::names::named;
-use super::Given;
+use super::given::Given;
 use crate::program::Program;
 use crate::statements::layout::block;
 

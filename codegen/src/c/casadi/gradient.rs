@@ -5,7 +5,7 @@
 use super::super::names::named;
 use super::columns::Columns;
 use super::function::Function;
-use super::{Given, derived};
+use super::given::{Given, derived};
 use crate::program::{GradientDerivative, Program, ValueId};
 use crate::statements::Emitted;
 

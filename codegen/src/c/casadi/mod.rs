@@ -5,21 +5,23 @@
 //!
 //! u and p are the inputs and the parameters in SI, in the order of their names.
 //!
-//! `columns` (matrices by their columns), `function` (one function of the interface), `gradient`
+//! `given` (what the rates are functions of), `columns` (matrices by their columns), `function` (one function of the interface), `gradient`
 //! (what comes with the Hessians).
 
 mod columns;
 mod function;
+mod given;
 mod gradient;
 
 use columns::Columns;
 use function::Function;
+use given::{derived, given};
 use gradient::gradient;
 
 use super::comments::comment;
 use super::emit::emit;
 use super::names::named;
-use crate::program::{Jacobian, Output, Program, ValueId};
+use crate::program::{Output, Program};
 use crate::statements::layout;
 use crate::statements::{EmitError, Emitted};
 
@@ -43,44 +45,6 @@ pub fn emit_casadi(program: &Program) -> Result<String, EmitError> {
         functions,
     ]
     .concat())
-}
-
-/// An argument of the rates: its name, the sparsity of a column of it, the Jacobian of the rates
-/// by it, how many numbers it has.
-#[derive(Clone, Copy)]
-struct Given {
-    name: &'static str,
-    shape: &'static str,
-    jacobian: &'static str,
-    count: usize,
-}
-
-/// What the rates are functions of.
-fn given(program: &Program) -> [Given; 4] {
-    let one = |name, shape, jacobian, count| Given {
-        name,
-        shape,
-        jacobian,
-        count,
-    };
-    [
-        one("t", "scalar", "rates_by_time", 1),
-        one("x", "states", "rates_by_state", program.states()),
-        one("u", "inputs", "rates_by_inputs", program.inputs.len()),
-        one(
-            "p",
-            "parameters",
-            "rates_by_parameters",
-            program.parameters.len(),
-        ),
-    ]
-}
-
-/// One of the Jacobians by its name.
-fn derived<'a>(program: &'a Program, name: &str) -> Emitted<&'a Jacobian<ValueId>> {
-    let mut jacobians = program.outputs.jacobians.iter();
-    let found = jacobians.find(|known| known.name == name);
-    found.ok_or_else(|| EmitError::Value(format!("{name} was not derived")))
 }
 
 fn functions(program: &Program) -> Emitted<String> {

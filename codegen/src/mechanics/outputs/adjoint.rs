@@ -3,12 +3,32 @@
 //! vector is summed over its elements, what a sum hands down stands for every element.
 //! What comes through a branch is chosen where it leaves the branch, not where it enters.
 
-use eomgen_model_spec::ids::ParameterId;
+use eomgen_model_spec::ids::{CoordinateId, FieldId, ParameterId};
 use std::collections::HashMap;
 
 use super::matrix_derivatives::holds_matrix_of_parameters;
+use crate::mechanics::rows::RowNodes;
 use crate::symbolic::differentiate::{choice, partial_derivatives};
-use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Shape, Space};
+use crate::symbolic::graph::{
+    Argument, Dependence, Graph, NodeId, Operation, Shape, Space, Variable,
+};
+
+/// The leaf of the weight of a rate.
+pub fn weight(graph: &mut Graph, variable: Variable) -> NodeId {
+    graph.intern(Operation::Argument(Argument::Weights, variable))
+}
+
+/// The weight of each acceleration, and the acceleration.
+pub fn weighted(graph: &mut Graph, rows: &RowNodes) -> Vec<(NodeId, NodeId)> {
+    let mut weighted = Vec::new();
+    for (index, row) in CoordinateId::first(rows.scalars.len()).zip(&rows.scalars) {
+        weighted.push((weight(graph, Variable::Rate(index)), *row));
+    }
+    for (field, row) in FieldId::first(rows.modal.len()).zip(&rows.modal) {
+        weighted.push((weight(graph, Variable::ModeRates(field)), *row));
+    }
+    weighted
+}
 
 /// The gradient of the sum of weight times node, a vector's elements summed, by every leaf
 /// that is no parameter. Matrices that move are not followed; the caller sees to it that

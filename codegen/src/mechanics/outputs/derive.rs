@@ -2,7 +2,7 @@
 //! dynamics, guards' rates, products with the Jacobian. Jacobians themselves are in
 //! `jacobian`. The structure they stand in is in `types`.
 
-use super::adjoint;
+use super::adjoint::{self, weight, weighted};
 use super::hessian::gradient_derivative;
 use super::jacobian::{
     JacobianRows, by_parameters, by_time, by_variables, observable_rows, one_row, rate_rows,
@@ -198,18 +198,6 @@ fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
     }
 }
 
-/// The weight of each acceleration, and the acceleration.
-pub(super) fn weighted(graph: &mut Graph, rows: &RowNodes) -> Vec<(NodeId, NodeId)> {
-    let mut weighted = Vec::new();
-    for (index, row) in CoordinateId::first(rows.scalars.len()).zip(&rows.scalars) {
-        weighted.push((weight(graph, Variable::Rate(index)), *row));
-    }
-    for (field, row) in FieldId::first(rows.modal.len()).zip(&rows.modal) {
-        weighted.push((weight(graph, Variable::ModeRates(field)), *row));
-    }
-    weighted
-}
-
 /// The gradient of the weighted rates by the independent parameters: backward where it can be,
 /// one parameter after the other where matrices hold them.
 fn weighted_by_parameters(
@@ -250,11 +238,7 @@ fn derivatives(graph: &mut Graph, direction: &mut Direction<'_>, nodes: &[NodeId
         .collect()
 }
 
-fn weight(graph: &mut Graph, variable: Variable) -> NodeId {
-    graph.intern(Operation::Argument(Argument::Weights, variable))
-}
-
-pub(super) fn variable_of(graph: &Graph, leaf: NodeId) -> Option<Variable> {
+fn variable_of(graph: &Graph, leaf: NodeId) -> Option<Variable> {
     Some(match *graph.operation(leaf) {
         Operation::Coordinate(index) => Variable::Coordinate(index),
         Operation::ModeCoordinates(field) => Variable::ModeCoordinates(field),

@@ -5,8 +5,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use super::adjoint;
-use super::derive::weighted;
+use super::adjoint::{self, weighted};
 use super::jacobian::{degrees_of_freedom, mode_offset, seed_derived, state_variables};
 use super::types::{GradientDerivative, GradientRow, Jacobian};
 use crate::mechanics::equations::Equations;
