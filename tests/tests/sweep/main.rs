@@ -113,10 +113,16 @@ fn shards_in_folders_of_their_own_can_be_collected() {
     assert!(results(&place.at("whole")) == results(&first));
 }
 
+/// How many parts are whole: what a kill left unfinished is a file too, and is computed again.
+fn finished(folder: &Path) -> usize {
+    let parts = parts(folder);
+    parts.iter().filter(|name| name.ends_with(".part")).count()
+}
+
 /// Kills the program, without a chance to tidy up, once it has left some parts.
 fn kill_after(mut child: Child, folder: &Path, some: usize) {
     let deadline = Instant::now() + Duration::from_secs(60);
-    while parts(folder).len() < some {
+    while finished(folder) < some {
         assert!(Instant::now() < deadline, "no parts in a minute");
         let ended = child.try_wait().expect("a child");
         assert!(ended.is_none(), "it ended before it was killed: {ended:?}");
@@ -158,7 +164,7 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
         .next()
         .and_then(|n| n.parse().ok())
         .expect("a number");
-    assert!((1..=41).contains(&computed), "{text}");
+    assert!((1..=40).contains(&computed), "{text}");
     assert!(results(&place.at("whole")) == results(&killed));
     assert_eq!(
         parts(&killed),
