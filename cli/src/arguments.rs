@@ -188,6 +188,11 @@ pub enum Target {
     /// The functions `rates` and `jac_rates` of (t, x, u, p) for CasADi's `external`:
     /// `NAME_casadi.c`, for one `cc -shared -fPIC`.
     Casadi,
+    /// A functional mock-up unit by FMI 2.0, for model exchange and co-simulation: `NAME.fmu`, with
+    /// sources and, where there is a C compiler `cc`, a binary for this machine.
+    Fmu2,
+    /// The same by FMI 3.0.
+    Fmu3,
 }
 
 /// What `generate` leaves besides.

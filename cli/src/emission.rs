@@ -4,10 +4,13 @@
 use eomgen_codegen::c;
 use eomgen_codegen::program::{Output, Program};
 use eomgen_codegen::rust::{self, EmitError, Packaging};
+use eomgen_codegen::variant::Variant;
 use eomgen_codegen::wasm;
+use eomgen_model_spec::model::Model;
 
 use crate::arguments::{Extra, Generate, Target};
 use crate::error::{Error, Result};
+use crate::fmu::{self, Version};
 
 /// The emitted Rust of a program.
 pub fn source(program: &Program, packaging: Packaging) -> Result<String> {
@@ -19,25 +22,33 @@ pub fn module(program: &Program) -> Result<Vec<u8>> {
     wasm::emit(program).map_err(refused)
 }
 
-/// Names and texts of the emitted files, the one with the equations first.
-pub fn files(program: &Program, target: Target) -> Result<Vec<(String, String)>> {
+/// Names and contents of the emitted files, the one with the equations first.
+pub fn files(
+    model: &Model,
+    variant: &Variant,
+    options: &Generate,
+) -> Result<Vec<(String, Vec<u8>)>> {
+    let program = &variant.program;
     let name = &program.name;
-    match target {
-        Target::Rust => Ok(vec![(
-            "lib.rs".to_owned(),
-            source(program, Packaging::Crate)?,
-        )]),
+    let text = |name: String, text: String| (name, text.into_bytes());
+    match options.target {
+        Target::Rust => {
+            let source = source(program, Packaging::Crate)?;
+            Ok(vec![text("lib.rs".to_owned(), source)])
+        }
         Target::C99 => {
             let c::Files { source, header } = c::emit(program).map_err(refused)?;
             Ok(vec![
-                (format!("{name}.c"), source),
-                (format!("{name}.h"), header),
+                text(format!("{name}.c"), source),
+                text(format!("{name}.h"), header),
             ])
         }
         Target::Casadi => {
-            let text = c::emit_casadi(program).map_err(refused)?;
-            Ok(vec![(format!("{name}_casadi.c"), text)])
+            let source = c::emit_casadi(program).map_err(refused)?;
+            Ok(vec![text(format!("{name}_casadi.c"), source)])
         }
+        Target::Fmu2 => Ok(vec![fmu::file(model, variant, Version::Two)?]),
+        Target::Fmu3 => Ok(vec![fmu::file(model, variant, Version::Three)?]),
     }
 }
 
@@ -66,6 +77,10 @@ pub fn outputs(options: &Generate) -> Result<Vec<Output>> {
             outputs.extend(Extra::outputs(&options.with));
             return Ok(outputs);
         }
+        Target::Fmu2 | Target::Fmu3 if options.with.is_empty() => return Ok(fmu::OUTPUTS.to_vec()),
+        Target::Fmu2 | Target::Fmu3 => {
+            "--with does not go with a functional mock-up unit: its functions are those of the standard"
+        }
         Target::Casadi => {
             "--with does not go with --target casadi but for hessians: its functions are rates and \
              jac_rates"
@@ -74,6 +89,15 @@ pub fn outputs(options: &Generate) -> Result<Vec<Output>> {
     Err(Error::input(reason))
 }
 
-fn refused(error: EmitError) -> Error {
+/// How much the first file is, in words.
+pub fn size(target: Target, contents: &[u8]) -> String {
+    match target {
+        Target::Fmu2 | Target::Fmu3 => format!("{} bytes", contents.len()),
+        _ => format!("{} lines", contents.iter().filter(|b| **b == b'\n').count()),
+    }
+}
+
+/// An emission that the language does not allow.
+pub fn refused(error: EmitError) -> Error {
     Error::input(error.to_string())
 }

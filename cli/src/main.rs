@@ -14,6 +14,7 @@ mod discovery;
 mod emission;
 mod error;
 mod figures;
+mod fmu;
 mod model;
 mod motion;
 mod output;

@@ -75,6 +75,11 @@ impl Dimension {
         Self { exponents }
     }
 
+    /// The exponents of kg, m, s, A, K, mol and cd.
+    pub fn exponents(self) -> [Exponent; 7] {
+        self.exponents
+    }
+
     /// Whether this is a pure number's.
     pub fn is_none(self) -> bool {
         self == Self::NONE

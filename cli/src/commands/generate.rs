@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use eomgen_codegen::rust::Packaging;
 use eomgen_codegen::variant::Variant;
 use eomgen_paper::certification::certify_source;
 use eomgen_validate::certificate::Certificate;
@@ -30,17 +31,19 @@ fn one(options: &Generate, spec: &Path, out: &Path) -> Result {
     let model = load(spec)?.model;
     let orders = orders(&model, options.order.as_deref())?;
     let variant = Variant::derive_with(&model, &orders, &outputs).map_err(Error::Specification)?;
-    let emitted = emission::files(&variant.program, options.target)?;
-    let text = &emitted[0].1;
-    let certificate = match options.certify {
-        true => Some(certify_source(&model, &orders, &outputs, text.clone())?),
-        false => None,
+    let emitted = emission::files(&model, &variant, options)?;
+    let certificate = if options.certify {
+        let text = emission::source(&variant.program, Packaging::Crate)?;
+        Some(certify_source(&model, &orders, &outputs, text)?)
+    } else {
+        None
     };
     let mut files = Vec::new();
-    for (name, text) in &emitted {
+    for (name, contents) in &emitted {
         files.push(out.join(name));
-        write_file(&out.join(name), text.as_bytes())?;
+        write_file(&out.join(name), contents)?;
     }
+    let first = &emitted[0].1;
     if options.with.contains(&Extra::Bench) {
         files.extend(bench_files::leave(&model, &variant, &outputs, out)?);
     }
@@ -59,12 +62,13 @@ fn one(options: &Generate, spec: &Path, out: &Path) -> Result {
             "orders": variant.equations.graph.orders(),
             "file": files[0],
             "files": files,
-            "bytes": text.len(),
+            "bytes": first.len(),
             "certified": certificate.as_ref().map(|certificate| certificate.passed),
         });
         say(&format!("{document:#}\n"))?;
     } else {
-        say(&format!("{}: {} lines\n", files[0], text.lines().count()))?;
+        let size = emission::size(options.target, first);
+        say(&format!("{}: {size}\n", files[0]))?;
         for file in &files[1..] {
             say(&format!("{file}\n"))?;
         }

@@ -1,0 +1,28 @@
+//! One file out of many, with the same bytes for the same contents: every file bears the same time.
+
+use std::io::{Cursor, Write};
+
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
+
+use crate::error::{Error, Result};
+
+/// The bytes of an archive with these files.
+pub fn pack(files: Vec<(String, Vec<u8>)>) -> Result<Vec<u8>> {
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Deflated)
+        .last_modified_time(DateTime::default())
+        .unix_permissions(0o644);
+    let failed = |error: &dyn std::fmt::Display| Error::input(format!("cannot pack: {error}"));
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, contents) in files {
+        archive
+            .start_file(name, options)
+            .map_err(|error| failed(&error))?;
+        archive
+            .write_all(&contents)
+            .map_err(|error| failed(&error))?;
+    }
+    let archive = archive.finish().map_err(|error| failed(&error))?;
+    Ok(archive.into_inner())
+}

@@ -1,0 +1,182 @@
+//! What descriptions of both versions have alike.
+
+use std::io::{Cursor, Error as Failure};
+
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, Event};
+
+use super::variables::{Kind, Unit, Variable};
+use crate::error::{Error, Result};
+
+/// Where XML is written to.
+pub type Xml = Writer<Cursor<Vec<u8>>>;
+
+/// What writing comes to.
+pub type Written = std::result::Result<(), Failure>;
+
+/// An attribute.
+pub type Attribute = (&'static str, String);
+
+/// The tool that units are made with.
+pub const TOOL: &str = concat!("eomgen ", env!("CARGO_PKG_VERSION"));
+
+/// How the binary solves the equations.
+const SOLVER: &str = "Co-simulation solves the equations by the embedded Runge-Kutta method of orders 5 and 4 by \
+    Dormand and Prince, with error control and located switches.";
+
+/// A whole document.
+pub fn document(write: impl FnOnce(&mut Xml) -> Written) -> Result<Vec<u8>> {
+    let mut xml = Writer::new_with_indent(Cursor::new(Vec::new()), b' ', 2);
+    let declaration = BytesDecl::new("1.0", Some("UTF-8"), None);
+    xml.write_event(Event::Decl(declaration))
+        .and_then(|()| write(&mut xml))
+        .map_err(|error| Error::input(format!("cannot describe the unit: {error}")))?;
+    let mut bytes = xml.into_inner().into_inner();
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+/// An element with others in it.
+pub fn element(
+    xml: &mut Xml,
+    name: &str,
+    attributes: &[Attribute],
+    inner: impl FnOnce(&mut Xml) -> Written,
+) -> Written {
+    xml.create_element(name)
+        .with_attributes(pairs(attributes))
+        .write_inner_content(inner)?;
+    Ok(())
+}
+
+/// An element by itself.
+pub fn empty(xml: &mut Xml, name: &str, attributes: &[Attribute]) -> Written {
+    xml.create_element(name)
+        .with_attributes(pairs(attributes))
+        .write_empty()?;
+    Ok(())
+}
+
+fn pairs(attributes: &[Attribute]) -> impl Iterator<Item = (&str, &str)> {
+    attributes
+        .iter()
+        .map(|(name, value)| (*name, value.as_str()))
+}
+
+/// Text for people, without the characters that XML has no way to write.
+pub fn clean(text: &str) -> String {
+    let allowed = |c: char| {
+        if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') {
+            ' '
+        } else {
+            c
+        }
+    };
+    text.chars().map(allowed).collect()
+}
+
+/// A number.
+pub fn number(value: f64) -> String {
+    format!("{value:?}")
+}
+
+/// Whole numbers in an attribute.
+pub fn list(numbers: impl Iterator<Item = usize>) -> String {
+    let numbers: Vec<String> = numbers.map(|number| number.to_string()).collect();
+    numbers.join(" ")
+}
+
+/// What the whole is, and how it is solved.
+pub fn summary(unit: &Unit) -> String {
+    let title = clean(&unit.title);
+    format!("{}. {SOLVER}", title.trim_end_matches('.'))
+}
+
+/// The units of measurement.
+pub fn unit_definitions(xml: &mut Xml, unit: &Unit) -> Written {
+    element(xml, "UnitDefinitions", &[], |xml| {
+        for (name, definition) in &unit.units.definitions {
+            element(xml, "Unit", &[("name", name.clone())], |xml| {
+                if let Some(base) = &definition.base {
+                    let base: Vec<Attribute> = base
+                        .iter()
+                        .map(|(name, exponent)| (*name, exponent.to_string()))
+                        .collect();
+                    empty(xml, "BaseUnit", &base)?;
+                }
+                for (name, factor) in &definition.shown {
+                    let attributes = [("name", name.clone()), ("factor", number(*factor))];
+                    empty(xml, "DisplayUnit", &attributes)?;
+                }
+                Ok(())
+            })?;
+        }
+        Ok(())
+    })
+}
+
+/// The category of messages.
+pub fn log_categories(xml: &mut Xml) -> Written {
+    element(xml, "LogCategories", &[], |xml| {
+        let doc = "Why a call was refused".to_owned();
+        let attributes = [("name", "logStatusError".to_owned()), ("description", doc)];
+        empty(xml, "Category", &attributes)
+    })
+}
+
+/// What a simulation is by default.
+pub fn default_experiment(xml: &mut Xml) -> Written {
+    let attributes = [
+        ("startTime", number(0.0)),
+        ("stopTime", number(1.0)),
+        ("tolerance", number(super::sources::TOLERANCE)),
+    ];
+    empty(xml, "DefaultExperiment", &attributes)
+}
+
+/// Causality, variability and initial of a variable, as both versions have them.
+pub fn role(kind: Kind) -> Vec<Attribute> {
+    let (causality, variability, initial) = match kind {
+        Kind::Time => ("independent", "continuous", None),
+        Kind::State => ("output", "continuous", Some("exact")),
+        Kind::Rate(_) | Kind::Indicator => ("local", "continuous", Some("calculated")),
+        Kind::Input => ("input", "continuous", None),
+        Kind::Parameter => ("parameter", "tunable", Some("exact")),
+        Kind::Observable => ("output", "continuous", Some("calculated")),
+    };
+    let mut attributes = vec![
+        ("causality", causality.to_owned()),
+        ("variability", variability.to_owned()),
+    ];
+    attributes.extend(initial.map(|initial| ("initial", initial.to_owned())));
+    attributes
+}
+
+/// Name, value reference and description of a variable.
+pub fn identity(reference: usize, variable: &Variable) -> Vec<Attribute> {
+    let mut attributes = vec![
+        ("name", variable.name.clone()),
+        ("valueReference", reference.to_string()),
+    ];
+    if !variable.doc.is_empty() {
+        attributes.push(("description", clean(&variable.doc)));
+    }
+    attributes
+}
+
+/// Unit, bounds and start of a variable.
+pub fn quantity(variable: &Variable) -> Vec<Attribute> {
+    let mut attributes = Vec::new();
+    if let Some(measure) = &variable.measure {
+        attributes.push(("unit", measure.unit.clone()));
+        attributes.extend(measure.shown.clone().map(|shown| ("displayUnit", shown)));
+    }
+    for (name, value) in [
+        ("min", variable.min),
+        ("max", variable.max),
+        ("start", variable.start),
+    ] {
+        attributes.extend(value.map(|value| (name, number(value))));
+    }
+    attributes
+}

@@ -1,0 +1,106 @@
+//! The description of a unit in version 3.0, and how its sources are compiled. Variables refer to
+//! each other by value references.
+
+use super::description::{
+    Attribute, Written, Xml, clean, default_experiment, document, element, empty, identity, list,
+    log_categories, quantity, role, summary, unit_definitions,
+};
+use super::sources::MAIN;
+use super::variables::{Kind, Unit};
+use crate::error::Result;
+
+/// `modelDescription.xml`.
+pub fn description(unit: &Unit) -> Result<Vec<u8>> {
+    let root = [
+        ("fmiVersion", "3.0".to_owned()),
+        ("modelName", unit.name.clone()),
+        ("instantiationToken", unit.token.clone()),
+        ("description", summary(unit)),
+        ("generationTool", clean(super::description::TOOL)),
+        ("variableNamingConvention", "structured".to_owned()),
+    ];
+    document(|xml| {
+        element(xml, "fmiModelDescription", &root, |xml| {
+            interface(xml, unit, "ModelExchange", &[])?;
+            let steps = ("canHandleVariableCommunicationStepSize", "true".to_owned());
+            interface(xml, unit, "CoSimulation", &[steps])?;
+            unit_definitions(xml, unit)?;
+            log_categories(xml)?;
+            default_experiment(xml)?;
+            variables(xml, unit)?;
+            structure(xml, unit)
+        })
+    })
+}
+
+/// `sources/buildDescription.xml`.
+pub fn build_description(unit: &Unit) -> Result<Vec<u8>> {
+    document(|xml| {
+        let root = [("fmiVersion", "3.0".to_owned())];
+        element(xml, "fmiBuildDescription", &root, |xml| {
+            let identifier = [("modelIdentifier", unit.name.clone())];
+            element(xml, "BuildConfiguration", &identifier, |xml| {
+                let language = [("language", "C99".to_owned())];
+                element(xml, "SourceFileSet", &language, |xml| {
+                    empty(xml, "SourceFile", &[("name", MAIN.to_owned())])
+                })
+            })
+        })
+    })
+}
+
+fn interface(xml: &mut Xml, unit: &Unit, name: &str, more: &[Attribute]) -> Written {
+    let mut attributes = vec![("modelIdentifier", unit.name.clone())];
+    attributes.extend_from_slice(more);
+    for can in [
+        "canGetAndSetFMUState",
+        "canSerializeFMUState",
+        "providesDirectionalDerivatives",
+        "providesAdjointDerivatives",
+    ] {
+        attributes.push((can, "true".to_owned()));
+    }
+    empty(xml, name, &attributes)
+}
+
+fn variables(xml: &mut Xml, unit: &Unit) -> Written {
+    element(xml, "ModelVariables", &[], |xml| {
+        for (reference, variable) in unit.variables.iter().enumerate() {
+            let mut attributes = identity(reference, variable);
+            attributes.extend(role(variable.kind));
+            attributes.extend(quantity(variable));
+            if let Kind::Rate(state) = variable.kind {
+                attributes.push(("derivative", state.to_string()));
+            }
+            empty(xml, "Float64", &attributes)?;
+        }
+        Ok(())
+    })
+}
+
+fn structure(xml: &mut Xml, unit: &Unit) -> Written {
+    element(xml, "ModelStructure", &[], |xml| {
+        listed(xml, unit, "Output", |kind| {
+            matches!(kind, Kind::State | Kind::Observable)
+        })?;
+        listed(xml, unit, "ContinuousStateDerivative", |kind| {
+            matches!(kind, Kind::Rate(_))
+        })?;
+        listed(xml, unit, "InitialUnknown", |kind| {
+            matches!(kind, Kind::Rate(_) | Kind::Observable)
+        })?;
+        listed(xml, unit, "EventIndicator", |kind| kind == Kind::Indicator)
+    })
+}
+
+fn listed(xml: &mut Xml, unit: &Unit, name: &str, is: impl Fn(Kind) -> bool) -> Written {
+    for (reference, _) in unit.of_kind(is) {
+        let dependencies = unit.dependencies(reference, name == "InitialUnknown");
+        let attributes = [
+            ("valueReference", reference.to_string()),
+            ("dependencies", list(dependencies.into_iter())),
+        ];
+        empty(xml, name, &attributes)?;
+    }
+    Ok(())
+}

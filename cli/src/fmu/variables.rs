@@ -1,0 +1,243 @@
+//! The variables of a unit, in the order of their value references: the time, the state, its rates,
+//! inputs, parameters, observables, event indicators.
+
+use std::collections::HashSet;
+
+use eomgen_codegen::program::Op;
+use eomgen_codegen::variant::Variant;
+use eomgen_model_spec::model::{Model, ParameterValue};
+use eomgen_model_spec::unit::Unit as Measurement;
+
+use super::units::{Measure, Units};
+use crate::error::{Error, Result};
+
+/// What a variable is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The independent variable.
+    Time,
+    /// A number of the state.
+    State,
+    /// The derivative of the state with this value reference.
+    Rate(usize),
+    /// An input.
+    Input,
+    /// A tunable parameter.
+    Parameter,
+    /// An observable.
+    Observable,
+    /// A switching surface.
+    Indicator,
+}
+
+/// A variable; its value reference is its place.
+#[derive(Clone, Debug)]
+pub struct Variable {
+    /// A name that no other has.
+    pub name: String,
+    /// What it is.
+    pub kind: Kind,
+    /// The same for people.
+    pub doc: String,
+    /// How it is measured, if that is known.
+    pub measure: Option<Measure>,
+    /// Where it starts, in SI.
+    pub start: Option<f64>,
+    /// The smallest admissible value, in SI.
+    pub min: Option<f64>,
+    /// The largest.
+    pub max: Option<f64>,
+}
+
+/// What is said of a unit.
+#[derive(Clone, Debug)]
+pub struct Unit {
+    /// The model's name.
+    pub name: String,
+    /// One line for people.
+    pub title: String,
+    /// By which a description and its binary know each other.
+    pub token: String,
+    /// All variables, in the order of their value references.
+    pub variables: Vec<Variable>,
+    /// All units of measurement.
+    pub units: Units,
+    /// Whether the equations know the time.
+    depends_on_time: bool,
+}
+
+impl Unit {
+    /// The unit of a variant.
+    pub fn of(model: &Model, variant: &Variant) -> Result<Self> {
+        let program = &variant.program;
+        let orders: Vec<usize> = program.fields.iter().map(|field| field.order).collect();
+        let state = model
+            .initial_state(&orders)
+            .map_err(|error| Error::model(&model.source, error))?;
+        let mut list = List::default();
+        let seconds = Measurement::parse("s").ok();
+        list.add("time", Kind::Time, "Time", seconds.as_ref());
+        list.state(model, &program.state_names(), &state, &orders);
+        for input in &model.inputs {
+            let variable = list.add(&input.name, Kind::Input, &input.doc, Some(&input.unit));
+            variable.start = Some(0.0);
+        }
+        for (parameter, own) in model
+            .parameters
+            .iter()
+            .filter(|parameter| matches!(parameter.value, ParameterValue::Number(_)))
+            .zip(&program.parameters)
+        {
+            let (name, unit) = (&parameter.name, &parameter.unit);
+            let variable = list.add(name, Kind::Parameter, &parameter.doc, Some(unit));
+            variable.start = Some(own.value);
+            variable.min = parameter.min.filter(|value| value.is_finite());
+            variable.max = parameter.max.filter(|value| value.is_finite());
+        }
+        for observable in &program.observables {
+            let unit = Measurement::parse(&observable.unit).ok();
+            let (name, doc) = (&observable.name, &observable.doc);
+            list.add(name, Kind::Observable, doc, unit.as_ref());
+        }
+        for (place, guard) in program.guards.iter().enumerate() {
+            let name = format!("indicator[{}]", place + 1);
+            let doc = format!("Changes sign with {}", guard.formula);
+            list.add(&name, Kind::Indicator, &doc, None);
+        }
+        let orders: Vec<String> = orders.iter().map(usize::to_string).collect();
+        let version = env!("CARGO_PKG_VERSION");
+        Ok(Self {
+            name: program.name.clone(),
+            title: program.title.clone(),
+            token: format!("{}-{}-{version}", program.spec_hash, orders.join(",")),
+            variables: list.variables,
+            units: list.units,
+            depends_on_time: program.ids().any(|id| program.value(id).op == Op::Time),
+        })
+    }
+
+    /// What a variable is computed from, by value references: at the beginning, when parameters count
+    /// too, or later. Where a rate's derivative is zero it may still switch, so that all of the state
+    /// stands here and not the nonzeros of a Jacobian.
+    pub fn dependencies(&self, reference: usize, initially: bool) -> Vec<usize> {
+        let from_one = match self.variables[reference].kind {
+            Kind::State => Some(reference),
+            Kind::Rate(state) => self.velocity(state),
+            _ => None,
+        };
+        if let Some(only) = from_one {
+            return vec![only];
+        }
+        let known = self.of_kind(|kind| match kind {
+            Kind::State | Kind::Input => true,
+            Kind::Parameter => initially,
+            Kind::Time => self.depends_on_time,
+            _ => false,
+        });
+        known.map(|(reference, _)| reference).collect()
+    }
+
+    /// The state that is the rate of another, which is a coordinate.
+    fn velocity(&self, state: usize) -> Option<usize> {
+        let states = self.of_kind(|kind| kind == Kind::State).count();
+        (state <= states / 2).then_some(state + states / 2)
+    }
+
+    /// Variables of a kind, with their value references.
+    pub fn of_kind(&self, is: impl Fn(Kind) -> bool) -> impl Iterator<Item = (usize, &Variable)> {
+        let all = self.variables.iter().enumerate();
+        all.filter(move |(_, variable)| is(variable.kind))
+    }
+}
+
+/// Variables as they are collected.
+#[derive(Default)]
+struct List {
+    variables: Vec<Variable>,
+    names: HashSet<String>,
+    units: Units,
+}
+
+impl List {
+    fn add(
+        &mut self,
+        name: &str,
+        kind: Kind,
+        doc: &str,
+        unit: Option<&Measurement>,
+    ) -> &mut Variable {
+        let measure = unit.map(|unit| self.units.measure(unit));
+        self.push(name, kind, doc, measure)
+    }
+
+    fn push(
+        &mut self,
+        name: &str,
+        kind: Kind,
+        doc: &str,
+        measure: Option<Measure>,
+    ) -> &mut Variable {
+        let name = self.free(name, kind);
+        self.names.insert(name.clone());
+        self.variables.push(Variable {
+            name,
+            kind,
+            doc: doc.to_owned(),
+            measure,
+            start: None,
+            min: None,
+            max: None,
+        });
+        let last = self.variables.len() - 1;
+        &mut self.variables[last]
+    }
+
+    /// The name, or, where a variable before has it, the name behind what it is. A specification
+    /// has no name with a point, so that this one is free.
+    fn free(&self, name: &str, kind: Kind) -> String {
+        let group = match kind {
+            Kind::Time | Kind::State | Kind::Rate(_) => "state",
+            Kind::Input => "input",
+            Kind::Parameter => "parameter",
+            Kind::Observable => "observable",
+            Kind::Indicator => "event",
+        };
+        if self.names.contains(name) {
+            format!("{group}.{name}")
+        } else {
+            name.to_owned()
+        }
+    }
+
+    /// The state and its derivatives.
+    fn state(&mut self, model: &Model, names: &[String], initial: &[f64], orders: &[usize]) {
+        let mut rows: Vec<(String, &Measurement)> = Vec::new();
+        for coordinate in &model.coordinates {
+            rows.push((coordinate.doc.clone(), &coordinate.unit));
+        }
+        for (field, order) in model.fields.iter().zip(orders) {
+            for mode in 1..=*order {
+                rows.push((format!("{}, mode {mode}", field.doc), &field.unit));
+            }
+        }
+        let half = rows.len();
+        let first = self.variables.len();
+        for (place, name) in names.iter().enumerate() {
+            let (doc, unit) = &rows[place % half];
+            let is_rate = place >= half;
+            let doc = match is_rate {
+                true => format!("Rate of {}", names[place - half]),
+                false => doc.clone(),
+            };
+            let measure = self.units.rate(unit, u8::from(is_rate));
+            self.push(name, Kind::State, &doc, measure).start = Some(initial[place]);
+        }
+        for place in 0..names.len() {
+            let name = format!("der({})", self.variables[first + place].name);
+            let (_, unit) = &rows[place % half];
+            let measure = self.units.rate(unit, 1 + u8::from(place >= half));
+            let doc = format!("Derivative of {}", self.variables[first + place].name);
+            self.push(&name, Kind::Rate(first + place), &doc, measure);
+        }
+    }
+}
