@@ -97,7 +97,6 @@ pub fn size(target: Target, contents: &[u8]) -> String {
     }
 }
 
-/// An emission that the language does not allow.
-pub fn refused(error: EmitError) -> Error {
+fn refused(error: EmitError) -> Error {
     Error::input(error.to_string())
 }

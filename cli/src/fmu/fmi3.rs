@@ -49,6 +49,8 @@ pub fn build_description(unit: &Unit) -> Result<Vec<u8>> {
     })
 }
 
+/// Adjoint derivatives are given to who asks, and not announced: CasADi 3.7 would take its Jacobians
+/// from them, and puts rows in the wrong places.
 fn interface(xml: &mut Xml, unit: &Unit, name: &str, more: &[Attribute]) -> Written {
     let mut attributes = vec![("modelIdentifier", unit.name.clone())];
     attributes.extend_from_slice(more);
@@ -56,7 +58,6 @@ fn interface(xml: &mut Xml, unit: &Unit, name: &str, more: &[Attribute]) -> Writ
         "canGetAndSetFMUState",
         "canSerializeFMUState",
         "providesDirectionalDerivatives",
-        "providesAdjointDerivatives",
     ] {
         attributes.push((can, "true".to_owned()));
     }
@@ -95,7 +96,8 @@ fn structure(xml: &mut Xml, unit: &Unit) -> Written {
 
 fn listed(xml: &mut Xml, unit: &Unit, name: &str, is: impl Fn(Kind) -> bool) -> Written {
     for (reference, _) in unit.of_kind(is) {
-        let dependencies = unit.dependencies(reference, name == "InitialUnknown");
+        // On tunable parameters at any time: importers take what is not listed for no dependence.
+        let dependencies = unit.dependencies(reference, true);
         let attributes = [
             ("valueReference", reference.to_string()),
             ("dependencies", list(dependencies.into_iter())),

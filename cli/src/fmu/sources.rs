@@ -5,8 +5,7 @@ use eomgen_codegen::program::Program;
 
 use super::variables::{Kind, Unit};
 use super::version::Version;
-use crate::emission::refused;
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// The one file that is compiled; it includes the others, so that nothing but the functions of the
 /// standard is seen from outside.
@@ -29,7 +28,8 @@ const RUNTIME: [(&str, &str); 8] = [
 
 /// The files by name.
 pub fn files(program: &Program, unit: &Unit, version: Version) -> Result<Vec<(String, String)>> {
-    let c::Files { source, header } = c::emit(program).map_err(refused)?;
+    let c::Files { source, header } =
+        c::emit(program).map_err(|error| Error::input(error.to_string()))?;
     let name = &program.name;
     let interface = match version {
         Version::Two => ("fmi2.c", include_str!("runtime/fmi2.c")),

@@ -116,10 +116,9 @@ impl Unit {
         })
     }
 
-    /// What a variable is computed from, by value references: at the beginning, when parameters count
-    /// too, or later. Where a rate's derivative is zero it may still switch, so that all of the state
+    /// What a variable is computed from, by value references, with parameters or without them. Where a rate's derivative is zero it may still switch, so that all of the state
     /// stands here and not the nonzeros of a Jacobian.
-    pub fn dependencies(&self, reference: usize, initially: bool) -> Vec<usize> {
+    pub fn dependencies(&self, reference: usize, with_parameters: bool) -> Vec<usize> {
         let from_one = match self.variables[reference].kind {
             Kind::State => Some(reference),
             Kind::Rate(state) => self.velocity(state),
@@ -130,7 +129,7 @@ impl Unit {
         }
         let known = self.of_kind(|kind| match kind {
             Kind::State | Kind::Input => true,
-            Kind::Parameter => initially,
+            Kind::Parameter => with_parameters,
             Kind::Time => self.depends_on_time,
             _ => false,
         });

@@ -1,0 +1,205 @@
+//! Functional mock-up units: their sources compile without a warning, the same specification gives
+//! the same bytes, FMPy validates them and simulates both kinds as `simulate` does, CasADi's
+//! `DaeBuilder` differentiates them, and wrong calls get a status.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use eomgen_tests::models::path;
+use eomgen_tests::program::{accepted, eomgen, refused};
+
+const VERSIONS: [&str; 2] = ["fmu2", "fmu3"];
+
+/// Writes a unit and says where it is.
+fn unit(name: &str, order: Option<&str>, target: &str, folder: &Path) -> PathBuf {
+    let out = folder.join(target);
+    let mut command = eomgen();
+    command
+        .arg("generate")
+        .arg(path(name))
+        .arg("--out")
+        .arg(&out);
+    command.args(["--target", target]);
+    if let Some(order) = order {
+        command.args(["--order", order]);
+    }
+    let output = command.output().expect("the program can be run");
+    assert!(output.status.success(), "{output:?}");
+    out.join(format!("{name}.fmu"))
+}
+
+fn ends(command: &mut Command) -> bool {
+    command.output().is_ok_and(|output| output.status.success())
+}
+
+/// Whether there are a C compiler and a Python with these packages; says what is not tested.
+fn is_there(packages: &str, what: &str) -> bool {
+    let python = ends(Command::new("python3").args(["-c", &format!("import {packages}")]));
+    let compiler = ends(Command::new("cc").arg("--version"));
+    if !(python && compiler) {
+        skips::skip(&format!(
+            "{what}, for want of cc or of python3 with {packages} (pip install fmpy casadi numpy)"
+        ));
+    }
+    python && compiler
+}
+
+/// Runs a script of this folder.
+fn python(script: &str, arguments: &[&str]) {
+    let place = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fmi")).join(script);
+    let output = Command::new("python3")
+        .arg(place)
+        .args(arguments)
+        .output()
+        .expect("python can be run");
+    assert!(
+        output.status.success(),
+        "{script} {arguments:?}: {}\n{}\n{}",
+        output.status,
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
+#[test]
+fn sources_compile_without_a_warning() {
+    if !is_there(
+        "zipfile",
+        "the sources of functional mock-up units were not compiled",
+    ) {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, order) in [
+        ("pendulum", None),
+        ("emps", None),
+        ("planetary_arm", Some("1")),
+    ] {
+        for target in VERSIONS {
+            let unit = unit(name, order, target, folder.path());
+            let out = folder.path().join(format!("{target}_{name}"));
+            let arguments = ["-m", "zipfile", "-e"];
+            assert!(ends(
+                Command::new("python3").args(arguments).arg(&unit).arg(&out)
+            ));
+            let output = Command::new("cc")
+                .args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror"])
+                .args(["-O1", "-fPIC", "-c", "fmu.c", "-o", "fmu.o"])
+                .current_dir(out.join("sources"))
+                .output()
+                .expect("cc can be run");
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{name} {target}: {said}");
+        }
+    }
+}
+
+#[test]
+fn the_same_specification_gives_the_same_bytes() {
+    let folders = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
+    for target in VERSIONS {
+        let [one, other] = folders.each_ref().map(|folder| {
+            std::fs::read(unit("furuta_pendulum", None, target, folder.path())).expect("a unit")
+        });
+        assert!(one == other, "{target}");
+    }
+}
+
+#[test]
+fn both_kinds_move_as_simulate_says() {
+    let what = "functional mock-up units were not simulated";
+    if !is_there("fmpy, numpy", what) {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, order, until, tolerance, limit) in [
+        ("pendulum", None, "2", "1e-9", "1e-6"),
+        ("furuta_pendulum", None, "1", "1e-9", "1e-5"),
+        ("hub_beam_tip_mass", Some("2"), "0.05", "1e-10", "1e-4"),
+        // Lengths are of some micrometres, and the tolerance is of a metre too.
+        ("planetary_arm", Some("2"), "0.05", "1e-11", "1e-4"),
+    ] {
+        let table = folder.path().join(format!("{name}.csv"));
+        let (spec, out) = (path(name), table.to_string_lossy().into_owned());
+        let spec = spec.to_string_lossy();
+        let sample = until.parse::<f64>().expect("a time") / 100.0;
+        let sample = sample.to_string();
+        let mut arguments = vec!["simulate", &spec, "--until", until, "--out", &out];
+        arguments.extend(["--sample", &sample]);
+        if let Some(order) = order {
+            arguments.extend(["--order", order]);
+        }
+        accepted(&arguments);
+        for target in VERSIONS {
+            let unit = unit(name, order, target, folder.path());
+            let unit = unit.to_string_lossy();
+            python("motion.py", &[&unit, &out, tolerance, limit]);
+        }
+    }
+}
+
+#[test]
+fn casadi_differentiates_a_unit() {
+    let what = "CasADi did not import functional mock-up units";
+    if !is_there("casadi, numpy", what) {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, order) in [
+        ("furuta_pendulum", None),
+        ("emps", None),
+        ("planetary_arm", Some("1")),
+    ] {
+        for target in VERSIONS {
+            let unit = unit(name, order, target, folder.path());
+            python("derivatives.py", &[&unit.to_string_lossy()]);
+        }
+    }
+}
+
+#[test]
+fn wrong_calls_get_a_status() {
+    let what = "functional mock-up units were not called wrongly";
+    if !is_there("ctypes, zipfile", what) {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    for target in VERSIONS {
+        for (name, order) in [("furuta_pendulum", None), ("planetary_arm", Some("1"))] {
+            let unit = unit(name, order, target, folder.path());
+            python("hostile.py", &[&unit.to_string_lossy(), target]);
+        }
+    }
+}
+
+#[test]
+fn without_a_compiler_a_unit_holds_its_sources() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = eomgen()
+        .arg("generate")
+        .arg(path("pendulum"))
+        .args(["--target", "fmu3", "--out"])
+        .arg(folder.path())
+        .env("PATH", folder.path())
+        .output()
+        .expect("the program can be run");
+    assert!(output.status.success(), "{output:?}");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("holds sources and no binary"), "{said}");
+    assert!(folder.path().join("pendulum.fmu").is_file());
+}
+
+#[test]
+fn requests_do_not_go_with_a_unit() {
+    let spec = path("pendulum");
+    let spec = spec.to_string_lossy();
+    for (options, reason) in [
+        (["--with", "jacobians"], "those of the standard"),
+        (["--with", "lanes"], "goes with --target rust"),
+    ] {
+        let mut arguments = vec!["generate", &spec, "--target", "fmu2", "--out", "x"];
+        arguments.extend(options);
+        let said = refused(&arguments);
+        assert!(said.contains(reason), "{said}");
+    }
+}
