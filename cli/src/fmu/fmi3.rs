@@ -49,7 +49,7 @@ pub fn build_description(unit: &Unit) -> Result<Vec<u8>> {
     })
 }
 
-/// Adjoint derivatives are given to who asks, and not announced: CasADi 3.7 would take its Jacobians
+/// Adjoint derivatives are given to who asks, and not announced: CasADi 3.8 would take its Jacobians
 /// from them, and puts rows in the wrong places.
 fn interface(xml: &mut Xml, unit: &Unit, name: &str, more: &[Attribute]) -> Written {
     let mut attributes = vec![("modelIdentifier", unit.name.clone())];
