@@ -43,6 +43,21 @@ pub enum Command {
         after_help = "Example:\n  eomgen simulate model-spec/models/planetary_arm.toml --order 4 --until 2 --sample 0.001 --set b_sp=50e-6 --out arm.csv"
     )]
     Simulate(Simulate),
+    /// Print the matrices A, B, C, D of a model about a state.
+    #[command(
+        after_help = "Example:\n  eomgen linearise model-spec/models/furuta_pendulum.toml --at theta=3.141592653589793 --out upright.json"
+    )]
+    Linearise(Linearise),
+    /// Print natural frequencies, damping and shapes of a model about a state.
+    #[command(
+        after_help = "Example:\n  eomgen modes model-spec/models/hub_beam_tip_mass.toml --order 4"
+    )]
+    Modes(Modes),
+    /// Find an equilibrium.
+    #[command(
+        after_help = "Examples:\n  eomgen trim model-spec/models/pendulum.toml\n  eomgen trim model-spec/models/furuta_pendulum.toml --fix u=0 --fix phi=0.5\nCoordinates are free, inputs 0. Where coordinates are fixed, inputs that are not are free."
+    )]
+    Trim(Trim),
     /// Say where a model and its measurements disagree.
     #[command(
         after_help = "Example:\n  eomgen compare my_machine.toml dataset.toml --out compared"
@@ -347,11 +362,84 @@ pub struct Simulate {
     /// How to integrate.
     #[arg(long, value_enum, default_value = "auto")]
     pub solver: Solver,
+    /// What drives an input: an expression of `t` and of parameters. Numbers and `t` alone give it in its
+    /// unit, with t in s; `5*above(t - 1)` is a step (repeatable).
+    #[arg(long, value_name = "NAME=EXPRESSION")]
+    pub input: Vec<String>,
+    /// Where a coordinate, a mode or a rate (NAME_dot) begins, in SI, instead of where the specification
+    /// says (repeatable).
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub initial: Vec<String>,
+    /// An SVG file to draw coordinates and observables in.
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
     /// Relative tolerance of every state variable, 1e-9 by default; no effect on the exact
     /// solver.
     #[arg(long, allow_negative_numbers = true)]
     pub tolerance: Option<f64>,
     /// Print one JSON document on the work done.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `linearise`.
+#[derive(Args)]
+pub struct Linearise {
+    /// The specification.
+    pub spec: PathBuf,
+    /// Modal truncation order of every field, instead of the specification's.
+    #[arg(long, allow_negative_numbers = true)]
+    pub order: Option<String>,
+    /// Another value for a parameter, in the unit the specification declares (repeatable).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// A coordinate, a rate (NAME_dot), an input or `t` of the point, in SI; the initial state, inputs
+    /// of 0 and t = 0 where nothing is said (repeatable).
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub at: Vec<String>,
+    /// The JSON file to write, in place of stdout.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Print one JSON document, which is what is printed in any case.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `modes`.
+#[derive(Args)]
+pub struct Modes {
+    /// The specification.
+    pub spec: PathBuf,
+    /// Modal truncation order of every field, instead of the specification's.
+    #[arg(long, allow_negative_numbers = true)]
+    pub order: Option<String>,
+    /// Another value for a parameter, in the unit the specification declares (repeatable).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// A coordinate, a rate (NAME_dot), an input or `t` of the point, in SI; the initial state, inputs
+    /// of 0 and t = 0 where nothing is said (repeatable).
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub at: Vec<String>,
+    /// Print one JSON document.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `trim`.
+#[derive(Args)]
+pub struct Trim {
+    /// The specification.
+    pub spec: PathBuf,
+    /// Modal truncation order of every field, instead of the specification's.
+    #[arg(long, allow_negative_numbers = true)]
+    pub order: Option<String>,
+    /// Another value for a parameter, in the unit the specification declares (repeatable).
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// A coordinate or an input that keeps this value, in SI (repeatable).
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub fix: Vec<String>,
+    /// Print one JSON document, which is what is printed in any case.
     #[arg(long)]
     pub json: bool,
 }

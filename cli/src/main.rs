@@ -15,8 +15,10 @@ mod emission;
 mod error;
 mod figures;
 mod fmu;
+mod history;
 mod model;
 mod motion;
+mod operating_point;
 mod output;
 mod page;
 mod parquet_file;
@@ -44,6 +46,9 @@ fn main() -> ExitCode {
         Command::Generate(options) => commands::generate::run(&options),
         Command::Validate(options) => commands::validate::run(&options),
         Command::Simulate(options) => commands::simulate::run(&options),
+        Command::Linearise(options) => commands::linearise::run(&options),
+        Command::Modes(options) => commands::modes::run(&options),
+        Command::Trim(options) => commands::trim::run(&options),
         Command::Compare(options) => commands::discover::compare(&options),
         Command::Discover(options) => commands::discover::discover(&options),
         Command::Sweep(options) => commands::sweep::run(&options),

@@ -1,8 +1,12 @@
 //! Parameter values given as `NAME=VALUE`, and inputs that nothing gives.
 
+use eomgen_compiled_model::{Instance, Setting};
+use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
 use eomgen_model_spec::model::Model;
+use eomgen_model_spec::source::Source;
 
 use crate::error::{Error, Result, warn};
+use crate::operating_point::assignments;
 
 /// The model with every `NAME=VALUE`, values in the units that the specification declares.
 pub fn with_settings(model: Model, assignments: &[String]) -> Result<Model> {
@@ -27,6 +31,54 @@ pub fn setting(assignment: &str) -> Result<(&str, f64)> {
         .parse()
         .map_err(|_| Error::input(format!("--set {assignment}: \"{value}\" is no number")))?;
     Ok((name.trim(), number))
+}
+
+/// The model with every `NAME=EXPRESSION` in the place of an input.
+pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
+    for text in prescribed {
+        let wrong = |what: &str| Error::input(format!("--input {text}: {what}"));
+        let (name, value) = text
+            .split_once('=')
+            .ok_or_else(|| wrong("expected NAME=EXPRESSION, such as u=2*sin(3*t)"))?;
+        let edit = Edit::PrescribeInput(PrescribeInput {
+            name: name.trim().to_owned(),
+            value: value.trim().to_owned(),
+        });
+        let edited = edit::apply(&model.source, &[edit]).map_err(|error| wrong(&said(&error)))?;
+        let source = Source::new(model.source.path.clone(), edited);
+        let checked = eomgen_model_spec::check(source).map_err(Error::Specification)?;
+        model = checked.model;
+    }
+    Ok(model)
+}
+
+/// What is wrong with an edit, without the places of the edited text, which nobody has.
+fn said(error: &EditError) -> String {
+    match error {
+        EditError::Invalid(found) => {
+            let said = found.list().iter().map(|one| match &one.help {
+                Some(help) => format!("{} ({help})", one.message),
+                None => one.message.clone(),
+            });
+            let said: Vec<String> = said.collect();
+            said.join("; ")
+        }
+        EditError::MissingTerm { name, .. } => format!("the model has no input `{name}`"),
+        error => error.to_string(),
+    }
+}
+
+/// The initial state with every `NAME=VALUE`.
+pub fn with_initial(run: &Instance<'_>, assigned: &[String]) -> Result<Vec<f64>> {
+    let settings = assignments("--initial", assigned)?;
+    for (name, _) in &settings {
+        if !matches!(run.model().setting(name)?, Setting::State(_)) {
+            return Err(Error::input(format!(
+                "--initial {name}: expected a coordinate, a mode or a rate"
+            )));
+        }
+    }
+    Ok(run.operating_point(&settings)?.state)
 }
 
 /// Says which inputs are 0 where there is no record.

@@ -197,13 +197,7 @@ impl Model {
     /// The states' names and units.
     #[getter]
     fn states(&self) -> Vec<(String, String)> {
-        let model = self.compiled.model();
-        let mut units: Vec<&str> = model.coordinates.iter().map(|c| &*c.unit.text).collect();
-        for (field, order) in model.fields.iter().zip(self.compiled.orders()) {
-            units.extend(std::iter::repeat_n(&*field.unit.text, *order));
-        }
-        let rates = units.iter().map(|unit| format!("{unit}/s"));
-        let units = units.iter().map(|unit| (*unit).to_owned()).chain(rates);
+        let units = self.compiled.state_units();
         self.compiled.state_names().into_iter().zip(units).collect()
     }
 

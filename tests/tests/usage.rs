@@ -4,8 +4,16 @@ use eomgen_tests::models::path;
 use eomgen_tests::program::{accepted, eomgen, refused};
 
 /// Every command with the specification it is given.
-const COMMANDS: [&str; 6] = [
-    "check", "derive", "generate", "validate", "simulate", "page",
+const COMMANDS: [&str; 9] = [
+    "check",
+    "derive",
+    "generate",
+    "validate",
+    "simulate",
+    "page",
+    "linearise",
+    "modes",
+    "trim",
 ];
 
 /// A shipped specification's path as an argument.

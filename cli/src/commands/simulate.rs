@@ -5,18 +5,25 @@ use serde_json::json;
 
 use crate::arguments::{Simulate, Solver};
 use crate::error::{Error, Result, warn};
+use crate::history;
 use crate::model::{derive, load, orders};
 use crate::motion::{columns, follow, in_words, table};
 use crate::output::Destination;
 use crate::ranges::warn_of_ranges;
 use crate::samples::{check_size, inputs, times};
-use crate::settings::with_settings;
+use crate::settings::{with_initial, with_inputs, with_settings};
 use crate::table::Table;
 
 /// Runs the command.
 pub fn run(options: &Simulate) -> Result {
     let destination = Destination::of(&options.out, options.json)?;
-    let model = with_settings(load(&options.spec)?.model, &options.set)?;
+    let figure = options
+        .plot
+        .as_deref()
+        .map(|plot| Destination::of(plot, options.json));
+    let figure = figure.transpose()?;
+    let model = with_inputs(load(&options.spec)?.model, &options.input)?;
+    let model = with_settings(model, &options.set)?;
     let orders = orders(&model, options.order.as_deref())?;
     let compiled = derive(model, &orders)?;
     let inputs = inputs(options, compiled.model())?;
@@ -26,8 +33,9 @@ pub fn run(options: &Simulate) -> Result {
     }
     let run = compiled.at_declared()?;
     check_size(times.len(), columns(&run).len())?;
+    let initial = with_initial(&run, &options.initial)?;
     let request = Request {
-        initial: run.initial(),
+        initial: &initial,
         times: &times,
         inputs: &inputs,
         solver: options.solver.into(),
@@ -37,6 +45,9 @@ pub fn run(options: &Simulate) -> Result {
     warn_of_ranges(compiled.model(), &motion.trajectory, &inputs)?;
     let table = table(&run, &motion)?;
     destination.write(&table.encode(&options.out)?)?;
+    if let Some(figure) = figure {
+        figure.write(history::figure(&compiled, &table)?.as_bytes())?;
+    }
     destination.summarise(&summary(options, &table, &motion))?;
     match &motion.stopped {
         Some(stopped) => {

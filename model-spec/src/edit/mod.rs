@@ -3,6 +3,7 @@
 //! they are. What to change is decided elsewhere; the result is checked here.
 
 mod insert;
+mod prescribe;
 mod set;
 mod substitute;
 
@@ -69,6 +70,18 @@ pub enum Edit {
     SetParameter(SetParameter),
     /// Says what a sensor does to its channel.
     SetSensor(SetSensor),
+    /// Puts an expression in the place of an input.
+    PrescribeInput(PrescribeInput),
+}
+
+/// An input that follows an expression. One of numbers and `t` alone gives the input in its unit, with
+/// `t` in s; in any other the units have to agree, as everywhere in a specification.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PrescribeInput {
+    /// Its name; it is a definition afterwards.
+    pub name: String,
+    /// The expression.
+    pub value: String,
 }
 
 /// A parameter's new number, in its declared unit.
@@ -284,5 +297,6 @@ fn make(document: &mut DocumentMut, edit: &Edit) -> Result<(), EditError> {
         Edit::Substitute(substitution) => substitute::substitute(document, substitution),
         Edit::SetParameter(parameter) => set::parameter(document, parameter),
         Edit::SetSensor(sensor) => set::sensor(document, sensor),
+        Edit::PrescribeInput(input) => prescribe::prescribe(document, input),
     }
 }

@@ -18,6 +18,11 @@ pub fn substitute(document: &mut DocumentMut, edit: &Substitution) -> Result<(),
     Ok(())
 }
 
+/// An expression with every `find` in it replaced; none where there is none.
+pub fn replaced(text: &str, find: &str, replace: &str) -> Result<Option<String>, EditError> {
+    Replacement::new(find, replace)?.replaced(text)
+}
+
 /// One expression to be replaced by another.
 struct Replacement<'e> {
     find: &'e str,
@@ -124,7 +129,8 @@ fn expression_of(item: &mut Item) -> Option<(&mut Value, String)> {
     Some((value, text))
 }
 
-fn syntax(text: &str) -> Result<Syntax, EditError> {
+/// The syntax tree of an expression.
+pub fn syntax(text: &str) -> Result<Syntax, EditError> {
     let end = Span::new(text.len(), text.len());
     let parsed = tokens(text, Span::new).and_then(|tokens| parse(&tokens, end));
     parsed.map_err(|diagnostic| EditError::Expression {

@@ -29,6 +29,8 @@ pub enum AnalysisError {
         /// What it is.
         what: &'static str,
     },
+    /// Eigenvalues were not found within the steps allowed.
+    NotConverged,
     /// Natural frequencies do not ascend.
     NotAscending {
         /// Which frequency is not above the one before.
@@ -50,6 +52,9 @@ impl fmt::Display for AnalysisError {
                 write!(f, "a series has {given} values where {expected} belong")
             }
             Self::NotPositive { what } => write!(f, "{what} must be positive and finite"),
+            Self::NotConverged => {
+                f.write_str("the eigenvalues were not found: the matrix is too ill-conditioned")
+            }
             Self::NotAscending { index } => write!(
                 f,
                 "natural frequency {index} is not above the one before it"

@@ -13,12 +13,13 @@
 //! [`spectrum`] estimates power spectral densities, [`zero_one`] tests a series for chaos,
 //! [`poincare`] describes a stroboscopic section, [`exponent`] averages logarithmic growth,
 //! and [`classify`] weighs these against each other by a stated rule. [`modes`] says which
-//! mode of a flexible body carries the motion.
+//! mode of a flexible body carries the motion, [`natural_modes`] which modes a linearised machine has.
 
 pub mod classify;
 mod error;
 pub mod exponent;
 pub mod modes;
+pub mod natural_modes;
 pub mod poincare;
 pub mod spectrum;
 pub mod zero_one;

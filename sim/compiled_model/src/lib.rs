@@ -41,17 +41,21 @@
 
 mod differentiated;
 mod driven;
+mod equilibrium;
 mod error;
 mod instance;
 mod jacobians;
 mod model;
 mod motion;
+mod operating_point;
 mod simulate;
 
 pub use driven::Driven;
+pub use equilibrium::Equilibrium;
 pub use error::Error;
 pub use instance::Instance;
 pub use jacobians::{Jacobian, JacobianEvaluator, Linearisation};
 pub use model::{CompiledModel, Orders};
 pub use motion::{Choice, Motion, Solver, Stopped};
+pub use operating_point::{OperatingPoint, Setting};
 pub use simulate::{DEFAULT_TOLERANCE, Request};

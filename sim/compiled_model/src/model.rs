@@ -150,6 +150,18 @@ impl CompiledModel {
         self.program.state_names()
     }
 
+    /// The SI units of the states: those of coordinates and modes, then the same per second.
+    pub fn state_units(&self) -> Vec<String> {
+        let coordinates = self.model.coordinates.iter();
+        let mut units: Vec<String> = coordinates.map(|known| known.unit.to_string()).collect();
+        for (field, order) in self.model.fields.iter().zip(&self.orders) {
+            units.extend(std::iter::repeat_n(field.unit.to_string(), *order));
+        }
+        let rates: Vec<String> = units.iter().map(|unit| format!("{unit}/s")).collect();
+        units.extend(rates);
+        units
+    }
+
     /// The names of the observables, `energy` and `power` last.
     pub fn observable_names(&self) -> Vec<String> {
         let observables = self.program.observables.iter();

@@ -1,0 +1,75 @@
+//! `eomgen modes`: natural frequencies, damping and shapes of a model about a state.
+
+use eomgen_analysis::natural_modes::{NaturalMode, natural_modes};
+use eomgen_compiled_model::CompiledModel;
+use serde_json::{Value, json};
+
+use crate::arguments::Modes;
+use crate::error::{Error, Result, say};
+use crate::operating_point::{assignments, head, model, named};
+
+/// Runs the command.
+pub fn run(options: &Modes) -> Result {
+    let compiled = model(&options.spec, options.order.as_deref(), &options.set)?;
+    let run = compiled.at_declared()?;
+    let at = run.operating_point(&assignments("--at", &options.at)?)?;
+    let found = run.linearise(at.point())?;
+    let modes = natural_modes(&found.a).map_err(|error| Error::input(error.to_string()))?;
+    if !options.json {
+        return say(&table(&compiled, &modes));
+    }
+    let states = compiled.state_names();
+    let coordinates = &states[..states.len() / 2];
+    let mut document = head(&compiled);
+    document.insert("at".to_owned(), named(&compiled, &at));
+    document.insert("coordinates".to_owned(), json!(coordinates));
+    document.insert("modes".to_owned(), modes.iter().map(record).collect());
+    say(&format!("{:#}\n", Value::Object(document)))
+}
+
+fn record(mode: &NaturalMode) -> Value {
+    let real: Vec<f64> = mode.shape.iter().map(|value| value.re).collect();
+    let imaginary: Vec<f64> = mode.shape.iter().map(|value| value.im).collect();
+    json!({
+        "frequency": mode.frequency(),
+        "damping": mode.damping(),
+        "eigenvalue": [mode.eigenvalue.re, mode.eigenvalue.im],
+        "shape": real,
+        "shape_imaginary": imaginary,
+    })
+}
+
+/// The coordinates of a mode that a table names.
+const NAMED: usize = 3;
+
+fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
+    let mut text = "frequency, Hz   damping ratio   shape (its largest coordinates)\n".to_owned();
+    let names = compiled.state_names();
+    for mode in modes {
+        let mut parts: Vec<_> = names.iter().zip(&mode.shape).collect();
+        parts.sort_by(|a, b| b.1.norm().total_cmp(&a.1.norm()));
+        let parts = parts
+            .iter()
+            .take(NAMED)
+            .filter(|(_, value)| value.norm() > 1e-6);
+        let parts: Vec<String> = parts
+            .map(|(name, value)| part(name, value.re, value.im))
+            .collect();
+        let (frequency, damping) = (mode.frequency(), mode.damping());
+        text += &format!(
+            "{frequency:<13.6}   {damping:<13.6}   {}\n",
+            parts.join(", ")
+        );
+    }
+    text
+}
+
+/// A coordinate's amplitude, with its phase where it is not in step with the largest.
+fn part(name: &str, real: f64, imaginary: f64) -> String {
+    let phase = imaginary.atan2(real).to_degrees();
+    if imaginary.abs() <= 1e-3 * real.abs() {
+        format!("{name} {real:.4}")
+    } else {
+        format!("{name} {:.4} at {phase:.0} deg", real.hypot(imaginary))
+    }
+}

@@ -1,0 +1,77 @@
+//! A motion drawn over time: coordinates and observables as an SVG, what has one unit in one panel.
+
+use eomgen_compiled_model::CompiledModel;
+use eomgen_plot::{Panel, Series, TimeHistory, time_history};
+
+use crate::error::{Error, Result};
+use crate::table::Table;
+
+/// The most curves of a panel; more of one unit cannot be told apart.
+const MOST_CURVES: usize = 6;
+
+/// The most panels of a figure.
+const MOST_PANELS: usize = 10;
+
+/// Draws a table of states and observables. Rates are left out, as the slopes of what is drawn.
+pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
+    let times = table.column("t").unwrap_or_default();
+    let mut panels: Vec<Panel<'_>> = Vec::new();
+    for (names, what) in [
+        (coordinates(compiled), "Coordinates"),
+        (observables(compiled), "Observables"),
+    ] {
+        let first = panels.len();
+        for (name, unit) in names {
+            let Some(values) = table.column(&name) else {
+                continue;
+            };
+            let curve = Series {
+                label: name.clone(),
+                abscissa: times,
+                values,
+            };
+            let mut known = panels[first..].iter_mut();
+            match known.find(|panel| panel.unit == unit && panel.series.len() < MOST_CURVES) {
+                Some(panel) => panel.series.push(curve),
+                None => panels.push(Panel {
+                    title: what.to_owned(),
+                    quantity: String::new(),
+                    unit,
+                    series: vec![curve],
+                    references: Vec::new(),
+                }),
+            }
+        }
+    }
+    panels.truncate(MOST_PANELS);
+    for panel in &mut panels {
+        if let [only] = &panel.series[..] {
+            panel.quantity.clone_from(&only.label);
+        }
+    }
+    let history = TimeHistory {
+        title: compiled.model().title.clone(),
+        panels,
+    };
+    time_history(&history).map_err(|error| Error::input(format!("--plot: {error}")))
+}
+
+/// Names and units of coordinates and modes.
+fn coordinates(compiled: &CompiledModel) -> Vec<(String, String)> {
+    let names = compiled.state_names();
+    let half = names.len() / 2;
+    names
+        .into_iter()
+        .zip(compiled.state_units())
+        .take(half)
+        .collect()
+}
+
+/// Names and units of what is observed beside the state.
+fn observables(compiled: &CompiledModel) -> Vec<(String, String)> {
+    let states = compiled.state_names();
+    let all = compiled.program().observables.iter();
+    let own = all.filter(|known| !states.contains(&known.name));
+    own.map(|known| (known.name.clone(), known.unit.clone()))
+        .collect()
+}

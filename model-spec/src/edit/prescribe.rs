@@ -1,0 +1,87 @@
+//! An input prescribed by an expression: it becomes a definition of the same name, so that whatever
+//! used it goes on to.
+
+use toml_edit::{DocumentMut, Item};
+
+use super::insert::{parameter, term};
+use super::substitute::{replaced, syntax};
+use super::{EditError, NewParameter, NewTerm, NewValue, PrescribeInput, Section};
+use crate::ast::{Syntax, SyntaxKind};
+
+/// Prescribes an input.
+pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<(), EditError> {
+    let unit = remove(document, &edit.name).ok_or_else(|| EditError::MissingTerm {
+        section: "inputs".to_owned(),
+        name: edit.name.clone(),
+    })?;
+    let tree = syntax(&edit.value)?;
+    let value = if is_of_numbers(&tree) {
+        // Numbers have no unit, and a specification insists on them: a second and a unit of the
+        // input, of the value 1, stand in the expression for what was left out.
+        let (second, one) = (unused(document, "one_second"), unused(document, "one_unit"));
+        let timed = replaced(&edit.value, "t", &format!("t/{second}"))?;
+        if timed.is_some() {
+            parameter(document, &of_one(&second, "s"))?;
+        }
+        parameter(document, &of_one(&one, &unit))?;
+        format!("({})*{one}", timed.as_deref().unwrap_or(&edit.value))
+    } else {
+        edit.value.clone()
+    };
+    let definition = NewTerm {
+        section: Section::Definitions,
+        name: edit.name.clone(),
+        value,
+        doc: String::new(),
+        source: String::new(),
+    };
+    term(document, &definition)
+}
+
+/// Takes an input out of a document, and gives its unit.
+fn remove(document: &mut DocumentMut, name: &str) -> Option<String> {
+    let inputs = document
+        .get_mut("inputs")
+        .and_then(Item::as_table_like_mut)?;
+    let input = inputs.remove(name)?;
+    let unit = match input.as_str() {
+        Some(unit) => unit.to_owned(),
+        None => input.get("unit")?.as_str()?.to_owned(),
+    };
+    if inputs.is_empty() {
+        document.remove("inputs");
+    }
+    Some(unit)
+}
+
+/// Whether there is nothing with a unit in an expression but the time.
+fn is_of_numbers(tree: &Syntax) -> bool {
+    match &tree.kind {
+        SyntaxKind::Number(_) => true,
+        SyntaxKind::Name(name) => name == "t" || name == "pi",
+        SyntaxKind::Element { .. } => false,
+        SyntaxKind::Call { arguments, .. } => arguments.iter().all(is_of_numbers),
+        SyntaxKind::Negate(operand) => is_of_numbers(operand),
+        SyntaxKind::Binary(_, left, right) => is_of_numbers(left) && is_of_numbers(right),
+    }
+}
+
+/// A name that begins so and stands nowhere in a document.
+fn unused(document: &DocumentMut, name: &str) -> String {
+    let text = document.to_string();
+    let mut unused = name.to_owned();
+    while text.contains(&unused) {
+        unused.push('_');
+    }
+    unused
+}
+
+fn of_one(name: &str, unit: &str) -> NewParameter {
+    NewParameter {
+        name: name.to_owned(),
+        value: NewValue::Number(1.0),
+        unit: unit.to_owned(),
+        doc: String::new(),
+        source: String::new(),
+    }
+}

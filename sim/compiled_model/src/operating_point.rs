@@ -1,0 +1,105 @@
+//! A time, a state and inputs by name: where a model is linearised, and where it may rest.
+
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_model_spec::suggest::did_you_mean;
+
+use crate::error::Error;
+use crate::instance::Instance;
+use crate::model::CompiledModel;
+
+/// A time, a state and inputs, SI, in the order of the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OperatingPoint {
+    /// The time, s.
+    pub t: f64,
+    /// Coordinates and modes, then their rates.
+    pub state: Vec<f64>,
+    /// The inputs.
+    pub inputs: Vec<f64>,
+}
+
+impl OperatingPoint {
+    /// As evaluators take it.
+    pub fn point(&self) -> Point<'_> {
+        Point {
+            t: self.t,
+            state: &self.state,
+            inputs: &self.inputs,
+        }
+    }
+}
+
+/// What can be set of an operating point, by its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Setting {
+    /// The time.
+    Time,
+    /// A number of the state.
+    State(usize),
+    /// An input.
+    Input(usize),
+}
+
+impl CompiledModel {
+    /// What a name stands for in an operating point: a coordinate, a mode, a rate, an input, or `t`.
+    ///
+    /// # Errors
+    /// A name that none of them has.
+    pub fn setting(&self, name: &str) -> Result<Setting, Error> {
+        let states = self.state_names();
+        if let Some(place) = states.iter().position(|known| known == name) {
+            return Ok(Setting::State(place));
+        }
+        let mut inputs = self.model().inputs.iter();
+        if let Some(place) = inputs.position(|known| known.name == name) {
+            return Ok(Setting::Input(place));
+        }
+        if name == "t" {
+            return Ok(Setting::Time);
+        }
+        let inputs = self.model().inputs.iter().map(|input| &*input.name);
+        let known = states.iter().map(|name| &**name).chain(inputs);
+        let help = did_you_mean(name, known)
+            .unwrap_or_else(|| format!("there are {}", self.settable().join(", ")));
+        Err(Error::Request(format!(
+            "the model `{}` has no state and no input `{name}`: {help}",
+            self.model().name
+        )))
+    }
+
+    /// The names of the first states and all inputs, for a message.
+    fn settable(&self) -> Vec<String> {
+        let inputs = self.model().inputs.iter().map(|input| input.name.clone());
+        self.state_names()
+            .into_iter()
+            .take(20)
+            .chain(inputs)
+            .collect()
+    }
+}
+
+impl Instance<'_> {
+    /// The initial state of the specification at the time 0 with inputs of 0, some of them set, in SI.
+    ///
+    /// # Errors
+    /// An unknown name, a number that is not finite.
+    pub fn operating_point(&self, settings: &[(&str, f64)]) -> Result<OperatingPoint, Error> {
+        let mut point = OperatingPoint {
+            t: 0.0,
+            state: self.initial().to_vec(),
+            inputs: vec![0.0; self.model().model().inputs.len()],
+        };
+        for (name, value) in settings {
+            if !value.is_finite() {
+                let message = format!("{name} = {value}: expected a finite number");
+                return Err(Error::Request(message));
+            }
+            match self.model().setting(name)? {
+                Setting::Time => point.t = *value,
+                Setting::State(place) => point.state[place] = *value,
+                Setting::Input(place) => point.inputs[place] = *value,
+            }
+        }
+        Ok(point)
+    }
+}

@@ -1,0 +1,326 @@
+//! `linearise`, `modes`, `trim`, and what drives and starts `simulate`, against closed forms.
+
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
+use eomgen_tests::models::path;
+use eomgen_tests::program::{accepted, refused, run};
+use serde_json::Value;
+
+fn shipped(name: &str) -> String {
+    path(name).display().to_string()
+}
+
+/// Writes a specification.
+fn written(folder: &Path, text: &str) -> String {
+    let file = folder.join("model.toml");
+    std::fs::write(&file, text).expect("written");
+    file.display().to_string()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    serde_json::from_str(&accepted(arguments)).expect("JSON")
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    let list = value.as_array().expect("a list");
+    list.iter().map(|v| v.as_f64().expect("a number")).collect()
+}
+
+const OSCILLATOR: &str = r#"
+[model]
+name = "oscillator"
+[parameters]
+m = { value = 2, unit = "kg" }
+k = { value = 50, unit = "N/m" }
+F_0 = { value = 3, unit = "N" }
+w_0 = { value = 2, unit = "rad/s" }
+[coordinates]
+x = { unit = "m" }
+[inputs]
+u = { unit = "N" }
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[potential]
+spring = "1/2*k*x^2"
+[forces]
+motor = { on = "x", value = "u" }
+[observables]
+pull = { value = "k*x", unit = "N" }
+"#;
+
+/// A beam that nothing but its clamped end holds.
+const BEAM: &str = r#"
+[model]
+name = "beam"
+[parameters]
+mu = { value = 0.6, unit = "kg/m" }
+B = { value = 4, unit = "N m^2" }
+l = { value = 1.2, unit = "m" }
+[fields.w]
+along = "x"
+from = 0
+to = "l"
+basis = "clamped_free"
+coordinates = "q"
+order = 5
+unit = "m"
+[kinetic]
+beam = "1/2*integral(mu*dot(w)^2, w)"
+[potential]
+bending = "1/2*integral(B*diff(w, x, 2)^2, w)"
+"#;
+
+#[test]
+fn a_linearisation_has_the_matrices_of_the_closed_form() {
+    let at = format!("theta={PI}");
+    let found = json(&["linearise", &shipped("pendulum"), "--at", &at, "--json"]);
+    assert_eq!(found["schema"], 1);
+    assert_eq!(found["order"], 0);
+    let states: Vec<&str> = found["states"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .flat_map(Value::as_str)
+        .collect();
+    assert_eq!(states, ["theta", "theta_dot"]);
+    assert_eq!(found["at"]["theta"], PI);
+    assert_eq!(
+        found["units"]["states"],
+        serde_json::json!(["rad", "rad/s"])
+    );
+    let a: Vec<Vec<f64>> = found["A"]
+        .as_array()
+        .expect("rows")
+        .iter()
+        .map(numbers)
+        .collect();
+    assert_eq!(a[0], [0.0, 1.0]);
+    // Upright, the hanging frequency's square with the other sign.
+    let hanging = json(&["modes", &shipped("pendulum"), "--at", "theta=0", "--json"]);
+    let mode = &hanging["modes"][0];
+    let omega = TAU * mode["frequency"].as_f64().expect("Hz");
+    assert!(
+        (a[1][0] / omega.powi(2) - 1.0).abs() < 1e-9,
+        "{a:?} {omega}"
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = written(folder.path(), OSCILLATOR);
+    let found = json(&["linearise", &model, "--set", "k=18"]);
+    for (matrix, right) in [
+        ("A", serde_json::json!([[0.0, 1.0], [-9.0, 0.0]])),
+        ("B", serde_json::json!([[0.0], [0.5]])),
+    ] {
+        let same = found[matrix]
+            .as_array()
+            .expect("rows")
+            .iter()
+            .zip(right.as_array().expect("rows"));
+        for (row, right) in same {
+            assert_eq!(numbers(row), numbers(right), "{matrix}");
+        }
+    }
+    assert_eq!(numbers(&found["C"][0]), [18.0, 0.0]);
+    assert_eq!(numbers(&found["D"][0]), [0.0]);
+    let out = folder.path().join("linear.json").display().to_string();
+    let said = accepted(&["linearise", &model, "--set", "k=18", "--out", &out]);
+    assert!(said.contains("2 states, 1 inputs"), "{said}");
+    let file: Value = serde_json::from_slice(&std::fs::read(&out).expect("a file")).expect("JSON");
+    assert_eq!(file, found);
+}
+
+#[test]
+fn modes_are_those_of_textbooks() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let beam = written(folder.path(), BEAM);
+    let found = json(&["modes", &beam, "--json"]);
+    let modes = found["modes"].as_array().expect("modes");
+    assert_eq!(modes.len(), 5);
+    // The roots of cosh(b) cos(b) = -1 (Rao, Mechanical Vibrations, 8.5).
+    for (mode, root) in modes.iter().zip([
+        1.875_104_068_711_961,
+        4.694_091_132_974_175,
+        7.854_757_438_237_613,
+    ]) {
+        let right = (root / 1.2_f64).powi(2) * (4.0_f64 / 0.6).sqrt() / TAU;
+        let frequency = mode["frequency"].as_f64().expect("Hz");
+        assert!(
+            (frequency / right - 1.0).abs() < 1e-9,
+            "{frequency} {right}"
+        );
+        assert_eq!(mode["damping"], 0.0);
+    }
+    // A hub that turns freely, its friction aside: one rigid motion, then the beam.
+    let hub = json(&[
+        "modes",
+        &shipped("hub_beam_tip_mass"),
+        "--set",
+        "c=0",
+        "--json",
+    ]);
+    let frequencies: Vec<f64> = hub["modes"]
+        .as_array()
+        .expect("modes")
+        .iter()
+        .map(|mode| mode["frequency"].as_f64().expect("Hz"))
+        .collect();
+    assert_eq!(frequencies.len(), 4);
+    assert!(
+        frequencies[0] == 0.0 && frequencies[1] > 1.0,
+        "{frequencies:?}"
+    );
+    assert!(frequencies.is_sorted());
+    let rigid = numbers(&hub["modes"][0]["shape"]);
+    assert!(
+        rigid[0] == 1.0 && rigid[1..].iter().all(|q| q.abs() < 1e-9),
+        "{rigid:?}"
+    );
+    let table = accepted(&["modes", &beam, "--order", "2"]);
+    assert_eq!(table.lines().count(), 3, "{table}");
+}
+
+#[test]
+fn equilibria_are_those_of_the_closed_form() {
+    let hanging = json(&["trim", &shipped("pendulum"), "--json"]);
+    assert_eq!(
+        hanging["at"]["theta"]
+            .as_f64()
+            .map(|theta| theta.abs() < 1e-9),
+        Some(true),
+        "{hanging}"
+    );
+    assert_ne!(hanging["stability"], "unstable");
+    let spec = shipped("furuta_pendulum");
+    // It begins at 3 rad, next to standing upright.
+    let upright = json(&["trim", &spec]);
+    let theta = upright["at"]["theta"].as_f64().expect("an angle");
+    assert!((theta - PI).abs() < 1e-9);
+    assert_eq!(upright["stability"], "unstable");
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = written(folder.path(), OSCILLATOR);
+    let held = json(&["trim", &model, "--fix", "x=0.1"]);
+    assert!((held["at"]["u"].as_f64().expect("a force") - 5.0).abs() < 1e-12);
+    assert_eq!(held["stability"], "marginal");
+    let loaded = json(&["trim", &model, "--fix", "u=5"]);
+    assert!((loaded["at"]["x"].as_f64().expect("a place") - 0.1).abs() < 1e-13);
+    let none = run(&["trim", &spec, "--fix", "theta=1.5", "--fix", "u=0"]);
+    assert_eq!(none.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&none.stderr).into_owned();
+    assert!(said.contains("no equilibrium was found"), "{said}");
+}
+
+/// Rows of a CSV by the names of its columns.
+fn columns(file: &Path, names: &[&str]) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(file).expect("a file");
+    let mut lines = text.lines();
+    let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let places = names.iter().map(|name| {
+        header
+            .iter()
+            .position(|known| known == name)
+            .expect("a column")
+    });
+    let places: Vec<usize> = places.collect();
+    let row = |line: &str| -> Vec<f64> {
+        let cells: Vec<&str> = line.split(',').collect();
+        places
+            .iter()
+            .map(|place| cells[*place].parse().expect("a number"))
+            .collect()
+    };
+    lines.map(row).collect()
+}
+
+#[test]
+fn inputs_follow_expressions_and_motions_begin_where_they_are_told_to() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = written(folder.path(), OSCILLATOR);
+    let out = folder.path().join("motion.csv");
+    let figure = folder.path().join("motion.svg");
+    let simulate = |options: &[&str]| {
+        let (out, figure) = (out.display().to_string(), figure.display().to_string());
+        let given = [
+            "simulate", &model, "--until", "3", "--sample", "0.01", "--out", &out, "--plot",
+            &figure,
+        ];
+        accepted(&[&given, options].concat());
+        columns(Path::new(&out), &["t", "x", "pull"])
+    };
+    let omega = 5.0_f64;
+    for solver in ["auto", "rk"] {
+        // A step of 10 N after 0.5 s; x = (F/k)(1 - cos(omega (t - 0.5))).
+        for row in simulate(&["--input", "u=10*above(t - 0.5)", "--solver", solver]) {
+            let after = (row[0] - 0.5).max(0.0);
+            let right = 0.2 * (1.0 - (omega * after).cos());
+            assert!((row[1] - right).abs() < 2e-8, "{solver} {row:?} {right}");
+        }
+        // 3 sin(2 t), by numbers and by parameters: x = F/(k - m w^2) (sin(w t) - w/omega sin(omega t)).
+        for input in ["u=3*sin(2*t)", "u=F_0*sin(w_0*t)"] {
+            for row in simulate(&[
+                "--input",
+                input,
+                "--initial",
+                "x=0.1",
+                "--initial",
+                "x_dot=-0.5",
+                "--solver",
+                solver,
+            ]) {
+                let t = row[0];
+                let free = 0.1 * (omega * t).cos() - 0.1 * (omega * t).sin();
+                let forced = 3.0 / 42.0 * ((2.0 * t).sin() - 0.4 * (omega * t).sin());
+                assert!(
+                    (row[1] - free - forced).abs() < 2e-8,
+                    "{solver} {input} {row:?}"
+                );
+                assert!((row[2] - 50.0 * row[1]).abs() < 1e-12);
+            }
+        }
+    }
+    let svg = std::fs::read_to_string(&figure).expect("a figure");
+    assert!(
+        svg.starts_with("<svg") && svg.contains("pull"),
+        "{}",
+        &svg[..200]
+    );
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_with_what_would() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = written(folder.path(), OSCILLATOR);
+    let out = folder.path().join("none.csv").display().to_string();
+    let simulate = ["simulate", &model, "--until", "1", "--out", &out];
+    for (arguments, part) in [
+        (
+            &["linearise", &model, "--at", "xx=1"][..],
+            "did you mean `x`",
+        ),
+        (&["linearise", &model, "--at", "x"], "NAME=VALUE"),
+        (&["linearise", &model, "--at", "x=nan"], "finite"),
+        (&["modes", &model, "--at", "x=1 m"], "no number"),
+        (&["trim", &model, "--fix", "x_dot=1"], "all rates are 0"),
+        (
+            &["trim", &model, "--fix", "pull=1"],
+            "no state and no input",
+        ),
+    ] {
+        let said = refused(arguments);
+        assert!(said.contains(part), "{arguments:?}: {said}");
+    }
+    for (option, value, part) in [
+        ("--input", "v=1", "no input `v`"),
+        ("--input", "u", "NAME=EXPRESSION"),
+        ("--input", "u=3*sin(", "--input u=3*sin("),
+        ("--input", "u=k", "N"),
+        ("--input", "u=F_0*sin(3*t)", "--input u=F_0*sin(3*t)"),
+        ("--input", "u=x_0*t", "x_0"),
+        ("--input", "u=u", "--input u=u"),
+        ("--initial", "u=1", "expected a coordinate"),
+        ("--initial", "x=inf", "finite"),
+    ] {
+        let said = refused(&[&simulate[..], &[option, value]].concat());
+        assert!(said.contains(part), "{option} {value}: {said}");
+        assert!(!Path::new(&out).exists(), "{option} {value}");
+    }
+}
