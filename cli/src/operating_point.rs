@@ -1,9 +1,9 @@
-//! Operating points on the command line: a model of given orders and parameters, and where it is
-//! linearised, as JSON says it.
+//! Operating points on the command line: a model of given orders and parameters, where it is
+//! linearised or where a motion begins, and how JSON says it.
 
 use std::path::Path;
 
-use eomgen_compiled_model::{CompiledModel, OperatingPoint};
+use eomgen_compiled_model::{CompiledModel, Instance, OperatingPoint, Setting};
 use serde_json::{Map, Value, json};
 
 use crate::error::{Error, Result};
@@ -35,6 +35,19 @@ fn assignment<'a>(option: &str, text: &'a str) -> Result<(&'a str, f64)> {
         .parse()
         .map_err(|_| wrong(&format!("\"{value}\" is no number")))?;
     Ok((name.trim(), number))
+}
+
+/// The initial state with every `NAME=VALUE`.
+pub fn with_initial(run: &Instance<'_>, assigned: &[String]) -> Result<Vec<f64>> {
+    let settings = assignments("--initial", assigned)?;
+    for (name, _) in &settings {
+        if !matches!(run.model().setting(name)?, Setting::State(_)) {
+            return Err(Error::input(format!(
+                "--initial {name}: expected a coordinate, a mode or a rate"
+            )));
+        }
+    }
+    Ok(run.operating_point(&settings)?.state)
 }
 
 /// The head of a document: schema, model, order; with the names and SI units of what it is about.

@@ -1,12 +1,10 @@
 //! Parameter values given as `NAME=VALUE`, and inputs that nothing gives.
 
-use eomgen_compiled_model::{Instance, Setting};
 use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::Source;
 
 use crate::error::{Error, Result, warn};
-use crate::operating_point::assignments;
 
 /// The model with every `NAME=VALUE`, values in the units that the specification declares.
 pub fn with_settings(model: Model, assignments: &[String]) -> Result<Model> {
@@ -66,19 +64,6 @@ fn said(error: &EditError) -> String {
         EditError::MissingTerm { name, .. } => format!("the model has no input `{name}`"),
         error => error.to_string(),
     }
-}
-
-/// The initial state with every `NAME=VALUE`.
-pub fn with_initial(run: &Instance<'_>, assigned: &[String]) -> Result<Vec<f64>> {
-    let settings = assignments("--initial", assigned)?;
-    for (name, _) in &settings {
-        if !matches!(run.model().setting(name)?, Setting::State(_)) {
-            return Err(Error::input(format!(
-                "--initial {name}: expected a coordinate, a mode or a rate"
-            )));
-        }
-    }
-    Ok(run.operating_point(&settings)?.state)
 }
 
 /// Says which inputs are 0 where there is no record.

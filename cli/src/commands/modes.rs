@@ -42,6 +42,9 @@ fn record(mode: &NaturalMode) -> Value {
 /// The coordinates of a mode that a table names.
 const NAMED: usize = 3;
 
+/// A smaller amplitude reads as 0.
+const SHOWN: f64 = 5e-5;
+
 fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
     let mut text = "frequency, Hz   damping ratio   shape (its largest coordinates)\n".to_owned();
     let names = compiled.state_names();
@@ -51,7 +54,7 @@ fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
         let parts = parts
             .iter()
             .take(NAMED)
-            .filter(|(_, value)| value.norm() > 1e-6);
+            .filter(|(_, value)| value.norm() >= SHOWN);
         let parts: Vec<String> = parts
             .map(|(name, value)| part(name, value.re, value.im))
             .collect();
@@ -66,10 +69,13 @@ fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
 
 /// A coordinate's amplitude, with its phase where it is not in step with the largest.
 fn part(name: &str, real: f64, imaginary: f64) -> String {
-    let phase = imaginary.atan2(real).to_degrees();
-    if imaginary.abs() <= 1e-3 * real.abs() {
-        format!("{name} {real:.4}")
-    } else {
-        format!("{name} {:.4} at {phase:.0} deg", real.hypot(imaginary))
+    let (size, phase) = (
+        real.hypot(imaginary),
+        imaginary.atan2(real).to_degrees().round(),
+    );
+    match phase {
+        phase if phase.abs() >= 180.0 => format!("{name} -{size:.4}"),
+        0.0 => format!("{name} {size:.4}"),
+        phase => format!("{name} {size:.4} at {phase} deg"),
     }
 }

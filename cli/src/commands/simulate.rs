@@ -8,10 +8,11 @@ use crate::error::{Error, Result, warn};
 use crate::history;
 use crate::model::{derive, load, orders};
 use crate::motion::{columns, follow, in_words, table};
+use crate::operating_point::with_initial;
 use crate::output::Destination;
 use crate::ranges::warn_of_ranges;
 use crate::samples::{check_size, inputs, times};
-use crate::settings::{with_initial, with_inputs, with_settings};
+use crate::settings::{with_inputs, with_settings};
 use crate::table::Table;
 
 /// Runs the command.

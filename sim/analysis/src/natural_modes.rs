@@ -161,6 +161,12 @@ impl Pencil {
         let weights: Vec<f64> = rows
             .map(|size| if size > 0.0 { size } else { 1.0 })
             .collect();
+        if right.ncols() == 0 {
+            return Rigid {
+                shapes: Vec::new(),
+                multiplicity: 0,
+            };
+        }
         // Back from the equilibrated rows to those of the equations.
         let left = DMatrix::from_fn(left.nrows(), left.ncols(), |row, column| {
             left[(row, column)] / weights[row]
