@@ -303,6 +303,14 @@ fn what_makes_no_sense_is_refused_with_what_would() {
         (&["modes", &model, "--at", "x=1 m"], "no number"),
         (&["trim", &model, "--fix", "x_dot=1"], "all rates are 0"),
         (
+            &["linearise", &shipped("pendulum"), "--set", "g=1e308"],
+            "no finite number",
+        ),
+        (
+            &["modes", &shipped("pendulum"), "--at", "theta=1e300"],
+            "no finite number",
+        ),
+        (
             &["trim", &model, "--fix", "pull=1"],
             "no state and no input",
         ),

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::Linearise;
 use crate::error::{Result, say};
-use crate::operating_point::{assignments, head, inputs, model, named};
+use crate::operating_point::{assignments, head, inputs, linearised, model, named};
 use crate::output::Destination;
 
 /// Runs the command.
@@ -18,7 +18,7 @@ pub fn run(options: &Linearise) -> Result {
     let compiled = model(&options.spec, options.order.as_deref(), &options.set)?;
     let run = compiled.at_declared()?;
     let at = run.operating_point(&assignments("--at", &options.at)?)?;
-    let found = run.linearise(at.point())?;
+    let found = linearised(&run, &at)?;
     let text = format!("{:#}\n", document(&compiled, &at, &found));
     match destination {
         None => say(&text),

@@ -6,14 +6,14 @@ use serde_json::{Value, json};
 
 use crate::arguments::Modes;
 use crate::error::{Error, Result, say};
-use crate::operating_point::{assignments, head, model, named};
+use crate::operating_point::{assignments, head, linearised, model, named};
 
 /// Runs the command.
 pub fn run(options: &Modes) -> Result {
     let compiled = model(&options.spec, options.order.as_deref(), &options.set)?;
     let run = compiled.at_declared()?;
     let at = run.operating_point(&assignments("--at", &options.at)?)?;
-    let found = run.linearise(at.point())?;
+    let found = linearised(&run, &at)?;
     let modes = natural_modes(&found.a).map_err(|error| Error::input(error.to_string()))?;
     if !options.json {
         return say(&table(&compiled, &modes));
@@ -58,7 +58,9 @@ fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
         let parts: Vec<String> = parts
             .map(|(name, value)| part(name, value.re, value.im))
             .collect();
-        let (frequency, damping) = (mode.frequency(), mode.damping());
+        // As it is printed, and then not as -0.
+        let damping = (mode.damping() * 1e6).round() / 1e6 + 0.0;
+        let frequency = mode.frequency();
         text += &format!(
             "{frequency:<13.6}   {damping:<13.6}   {}\n",
             parts.join(", ")

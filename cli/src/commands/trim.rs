@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::Trim;
 use crate::error::{Error, Result, say, warn};
-use crate::operating_point::{assignments, head, inputs, model, named};
+use crate::operating_point::{assignments, head, inputs, linearised, model, named};
 
 /// A real part is 0 if it is this small beside the largest eigenvalue.
 const ZERO: f64 = 1e-9;
@@ -22,7 +22,7 @@ pub fn run(options: &Trim) -> Result {
         }
         other => other?,
     };
-    let linear = run.linearise(found.at.point())?;
+    let linear = linearised(&run, &found.at)?;
     let modes = natural_modes(&linear.a).map_err(|error| Error::input(error.to_string()))?;
     let largest = modes.iter().map(|mode| mode.eigenvalue.norm());
     let least = ZERO * largest.fold(0.0, f64::max);
