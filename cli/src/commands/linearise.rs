@@ -34,20 +34,10 @@ fn document(compiled: &CompiledModel, at: &OperatingPoint, found: &Linearisation
     let observables = &compiled.program().observables;
     let output_units: Vec<&str> = observables.iter().map(|known| &*known.unit).collect();
     let states = compiled.state_names();
-    let rows = |matrix: &[f64], columns: usize| -> Vec<Vec<f64>> {
-        let rows = if columns == 0 {
-            0
-        } else {
-            matrix.len() / columns
-        };
-        (0..rows)
-            .map(|row| matrix[row * columns..][..columns].to_vec())
-            .collect()
-    };
     // A matrix without columns still has its rows.
     let of = |matrix: &[f64], height: usize, columns: usize| match columns {
         0 => json!(vec![Vec::<f64>::new(); height]),
-        _ => json!(rows(matrix, columns)),
+        _ => matrix.chunks(columns).map(|row| json!(row)).collect(),
     };
     let (n, m, l) = (states.len(), inputs.len(), observables.len());
     let mut document = head(compiled);
