@@ -65,7 +65,11 @@ def states():
 
 @pytest.fixture
 def interrupt():
-    """Ctrl-C while what follows runs, which must end within a second of it."""
+    """Ctrl-C while what follows runs, which must end soon after it, on a busy machine too.
+
+    A process that was started in the background of a shell ignores it, and Python with it: hence the
+    handler.
+    """
 
     @contextlib.contextmanager
     def pressed(after):
@@ -76,13 +80,15 @@ def interrupt():
             _thread.interrupt_main(signal.SIGINT)
 
         timer = threading.Timer(after, press)
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
         timer.start()
         try:
             yield
         finally:
             timer.cancel()
+            signal.signal(signal.SIGINT, before)
             lasted = time.monotonic() - sent[0] if sent else -1.0
-            assert 0.0 <= lasted < 1.0, f"stopped {lasted:.2f} s after Ctrl-C"
+            assert 0.0 <= lasted < 3.0, f"stopped {lasted:.2f} s after Ctrl-C"
 
     return pressed
 
