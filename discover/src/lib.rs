@@ -52,5 +52,6 @@ pub mod search;
 pub mod thresholds;
 
 pub use model::stop::Stop;
+pub use report::origin::Specification;
 pub use report::result::{Comparison, Discovery};
-pub use report::run::{Specification, compare, discover, discover_until};
+pub use report::run::{compare, discover, discover_until};

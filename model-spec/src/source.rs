@@ -35,7 +35,7 @@ impl Source {
 
     /// SHA-256 of the text, 64 lower-case hexadecimal digits.
     pub fn hash(&self) -> String {
-        sha256(&self.text)
+        sha256(&*self.text)
     }
 
     /// The line and column of a byte offset; an offset past the end is the end, one
@@ -61,9 +61,9 @@ pub fn character_start(text: &str, offset: usize) -> usize {
     start
 }
 
-/// SHA-256 of a text's bytes, 64 lower-case hexadecimal digits.
-pub fn sha256(text: &str) -> String {
-    let digest = Sha256::digest(text.as_bytes());
+/// SHA-256 of the bytes of a text or a file, 64 lower-case hexadecimal digits.
+pub fn sha256(content: impl AsRef<[u8]>) -> String {
+    let digest = Sha256::digest(content);
     let mut digits = String::with_capacity(64);
     for byte in digest {
         // Writing to a String cannot fail.

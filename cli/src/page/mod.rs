@@ -4,8 +4,8 @@
 //!
 //! `play` is another page, on which one model can be played with.
 //!
-//! The tour's page has no script and refers to nothing outside itself; nothing in a specification
-//! becomes markup.
+//! The tour's page refers to nothing outside itself and has no script but that of the report of the search, in
+//! a frame of its own; nothing in a specification becomes markup.
 
 mod play;
 mod steps;

@@ -109,18 +109,19 @@ pub(super) fn simulation(simulation: &Simulation<'_>) -> Markup {
 /// What was found, with the whole pages of the comparison and the search.
 pub(super) fn hidden(hidden: &Hidden<'_>) -> Markup {
     let [before, after] = hidden.reports;
-    let page = |summary: &str, report: &str| {
+    // The report of the search computes; it is given nothing else of this page.
+    let page = |summary: &str, report: &str, is_open: bool| {
         html! {
-            details {
+            details open[is_open] {
                 summary { (summary) }
-                iframe title=(summary) sandbox srcdoc=(report) {}
+                iframe title=(summary) sandbox="allow-scripts" srcdoc=(report) {}
             }
         }
     };
     html! {
         p { (hidden.summary) " Records and results are in " code { (hidden.path) } "." }
-        (page("Read the report of the comparison, before", before))
-        (page("Read the report of the search, after", after))
+        (page("Read the report of the comparison, before", before, false))
+        (page("Read the report of the search, after", after, true))
         (folded("Read the specification with what was found", hidden.extended, false))
     }
 }

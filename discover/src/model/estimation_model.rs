@@ -2,6 +2,7 @@
 //! the measured quantities among its outputs, and steps that are short enough beside the sensors'
 //! noise. It runs in [`crate::model::simulation`]; what is estimated with it is decided elsewhere.
 
+use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::Evaluator;
 use eomgen_compiled_model::{CompiledModel, Error, Orders};
 use eomgen_model_spec::diagnostic::Diagnostics;
@@ -134,6 +135,11 @@ impl EstimationModel {
     /// The checked specification.
     pub fn specification(&self) -> &Model {
         self.compiled.model()
+    }
+
+    /// The program of its equations.
+    pub(crate) fn program(&self) -> &Program {
+        self.compiled.program()
     }
 
     /// The order of each field.

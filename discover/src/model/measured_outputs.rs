@@ -5,8 +5,10 @@ use eomgen_records::dataset::{Channel, Quantity};
 
 /// Where a channel's quantity is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Output {
+pub(crate) enum Output {
+    /// A state, by its place.
     State(usize),
+    /// An observable, by its place.
     Observable(usize),
 }
 
@@ -36,6 +38,11 @@ impl MeasuredOutputs {
     /// How many there are.
     pub fn count(&self) -> usize {
         self.outputs.len()
+    }
+
+    /// Where the quantity of each channel is found.
+    pub fn outputs(&self) -> &[Output] {
+        &self.outputs
     }
 
     /// A buffer for all observables of the model.

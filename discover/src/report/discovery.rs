@@ -1,6 +1,6 @@
 //! Results put together from fits and from what the search found.
 
-use crate::ids::ChannelId;
+use crate::ids::{ChannelId, UnknownId};
 use std::collections::BTreeMap;
 
 use eomgen_records::dataset::Channel;
@@ -9,10 +9,10 @@ use crate::empirical::EMPIRICAL;
 use crate::fit::fitted::Fit;
 use crate::fit::noise_floor::NoiseFloor;
 use crate::model::problem::EstimationProblem;
-use crate::model::unknowns::What;
+use crate::model::unknowns::{Unknown, What};
 use crate::report::result::{
-    ChannelGap, EffectAt, Estimated, FoundEffect, OnRecords, RejectedEffect, Sensor, ShaftOrder,
-    Status, Step,
+    ChannelGap, EffectAt, Estimated, FoundEffect, Nuisance, OnRecords, RejectedEffect, Sensor,
+    ShaftOrder, Status, Step,
 };
 use crate::search::found::{Accepted, Found, Rejected};
 
@@ -141,6 +141,7 @@ fn found_effect(problem: &EstimationProblem<'_>, fit: &Fit, effect: &Accepted) -
             effect: candidate.effect.clone(),
             on: candidate.on.clone(),
         },
+        says: candidate.says.clone(),
         status: match (candidate.effect.as_str(), has_equivalent) {
             (EMPIRICAL, _) => Status::Empirical,
             (_, false) => Status::Named,
@@ -156,6 +157,31 @@ fn found_effect(problem: &EstimationProblem<'_>, fit: &Fit, effect: &Accepted) -
             .map(|(angle, order)| ShaftOrder { angle, order }),
         experiment: has_equivalent.then(|| candidate.experiment.clone()),
     }
+}
+
+/// What was fitted beside the effects, with what was declared of it.
+pub(crate) fn nuisances(problem: &EstimationProblem<'_>, fit: &Fit) -> Vec<Nuisance> {
+    let of = |(id, unknown): (UnknownId, &Unknown)| {
+        let prior = unknown.prior?;
+        let (name, per_si, unit) = named(problem, fit, &unknown.what)?;
+        let (of, fault) = match &unknown.what {
+            What::Parameter(_) | What::Inverse(_) => (name, None),
+            What::Gain(at) => (problem.dataset.channels[*at].name.clone(), Some("gain")),
+            What::Bias(at) => (problem.dataset.channels[*at].name.clone(), Some("bias")),
+            What::Delay(at) => (problem.dataset.channels[*at].name.clone(), Some("delay")),
+        };
+        Some(Nuisance {
+            of,
+            fault,
+            declared: (per_si * prior.mean, per_si * prior.sd),
+            fitted: Estimated {
+                value: per_si * fit.train.estimate.theta[id],
+                sd: per_si * fit.sd[id],
+                unit,
+            },
+        })
+    };
+    fit.unknowns().filter_map(of).collect()
 }
 
 /// What an unknown of the null model is called, the number of its units that one SI unit is, and

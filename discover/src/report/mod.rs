@@ -1,13 +1,17 @@
-//! From records to a result: the whole way ([`run`]), the typed [`result`] put together in
-//! `discovery`, where model and records disagree ([`location`]), the specification with what was
-//! found ([`write_back`]) run again ([`mod@resimulation`]); documents (`json`) and the page
-//! (`page`) with its `pictures`.
+//! From records to a result: the whole way ([`run`]) from what is handed in ([`origin`]), the typed
+//! [`result`] put together in `discovery`, where model and records disagree ([`location`]), the
+//! specification with what was found ([`write_back`]) run again ([`mod@resimulation`]); documents
+//! (`json`) and the page (`page`) with its `pictures` and what was measured over what is simulated
+//! (`overlay`), and what was found, to be moved in the page (`playback`).
 
 mod discovery;
 mod json;
 pub mod location;
+pub mod origin;
+mod overlay;
 mod page;
 mod pictures;
+mod playback;
 pub mod resimulation;
 pub mod result;
 pub mod run;

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 
 use maud::Markup;
 
+use crate::report::origin::Origin;
+use crate::report::playback::Playback;
 use crate::report::resimulation::Resimulation;
 use crate::search::acceptance::TestStatistics;
 
@@ -67,13 +69,42 @@ pub struct Compared {
     pub location: String,
     /// What is worth a remark.
     pub notes: Vec<String>,
+    /// What was fitted beside what is sought, with what was declared of it.
+    pub nuisances: Vec<Nuisance>,
+    /// From what, and by which program, this came.
+    pub origin: Origin,
     /// Pictures for the page.
     pub(crate) pictures: Pictures,
+}
+
+/// Something fitted beside what is sought: what was declared of it, and what came out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Nuisance {
+    /// A parameter's name; of a sensor its channel's.
+    pub of: String,
+    /// `gain`, `bias` or `delay` of a sensor; none for a parameter.
+    pub fault: Option<&'static str>,
+    /// What was declared, and one standard deviation of it, in the estimate's unit.
+    pub declared: (f64, f64),
+    /// What came out.
+    pub fitted: Estimated,
+}
+
+impl Nuisance {
+    /// How far it is from what was declared, in standard deviations of that.
+    pub fn deviations(&self) -> f64 {
+        let (mean, sd) = self.declared;
+        (self.fitted.value - mean) / sd
+    }
 }
 
 /// Pictures, as parts of a page.
 #[derive(Clone, Debug)]
 pub(crate) struct Pictures {
+    /// What was found, to be moved.
+    pub playback: Playback,
+    /// What was measured and what is simulated, over each other.
+    pub overlay: Markup,
     /// Residuals over time, and their spectra.
     pub residuals: Markup,
     /// The equation whose residual force is shown, and that force.
@@ -183,6 +214,8 @@ pub struct ShaftOrder {
 pub struct FoundEffect {
     /// What and where.
     pub at: EffectAt,
+    /// What such an effect is, in words.
+    pub says: String,
     /// How sure its name is.
     pub status: Status,
     /// What the records do not distinguish from it.

@@ -12,9 +12,14 @@ use crate::fit::null_model::null_fit;
 use crate::model::channel_checks;
 use crate::model::problem::EstimationProblem;
 use crate::model::stop::Stop;
-use crate::report::discovery::{closure, effects, gap, refitted, rejected, sensors, steps};
+use crate::report::discovery::{
+    closure, effects, gap, nuisances, refitted, rejected, sensors, steps,
+};
 use crate::report::location::located;
+use crate::report::origin::{Origin, Specification};
+use crate::report::overlay::overlay;
 use crate::report::pictures::{figures, force_section};
+use crate::report::playback::Playback;
 use crate::report::resimulation::resimulated;
 use crate::report::result::{Compared, Comparison, Discovery, Pictures, Verdict};
 use crate::report::write_back::extended;
@@ -25,17 +30,6 @@ use crate::search::search;
 
 /// Is told, line by line, what is being done.
 pub type Progress<'p> = dyn Fn(&str) + Sync + 'p;
-
-/// A specification to be compared with records.
-#[derive(Clone, Copy, Debug)]
-pub struct Specification<'s> {
-    /// Its path, for messages.
-    pub path: &'s str,
-    /// Its text.
-    pub text: &'s str,
-    /// The order of its fields, if not their own.
-    pub order: Option<usize>,
-}
 
 /// A fit, the floor there, and the residual force.
 struct Null {
@@ -59,6 +53,8 @@ pub fn compare(
     let problem = EstimationProblem::new(dataset, order, path, text);
     let Null { fit, floor, force } = null(&problem, text, seed, progress)?;
     let pictures = Pictures {
+        playback: Playback::None,
+        overlay: overlay(&problem, &fit, None),
         residuals: figures(&problem, &fit, None),
         force: force.as_ref().map(|force| {
             let equation = force.profiled_equation().to_owned();
@@ -74,6 +70,8 @@ pub fn compare(
             sensors: sensors(&problem, &fit),
             location: located(&problem, &fit, force.as_ref()),
             notes: dataset.notes.clone(),
+            nuisances: nuisances(&problem, &fit),
+            origin: Origin::of(specification, dataset, seed),
             pictures,
         },
     })
@@ -144,6 +142,8 @@ pub fn discover_until(
     stop.check()?;
     let extended = extended(&problem, text, best, &found.accepted)?;
     let pictures = Pictures {
+        playback: Playback::of(&problem, (null, best), &found.accepted, &extended),
+        overlay: overlay(&problem, null, found.last.as_ref()),
         residuals: figures(&problem, null, found.last.as_ref()),
         force: force.as_ref().map(|force| {
             let equation = force.profiled_equation().to_owned();
@@ -172,6 +172,8 @@ pub fn discover_until(
             sensors: sensors(&problem, best),
             location,
             notes: problem.dataset.notes.clone(),
+            nuisances: nuisances(&problem, best),
+            origin: Origin::of(specification, problem.dataset, seed),
             pictures,
         },
     })

@@ -15,13 +15,14 @@
 //!
 //! The files: `document` (head, style sheet, body), `parts` (sections, tables, figures, files
 //! behind a summary), `number`, [`mod@formula`] (formulas as MathML, from their trees), `equations`
-//! (a report's formulas with what they are).
+//! (a report's formulas with what they are), [`mod@play`] (what pages that compute have in common).
 
 mod document;
 mod equations;
 pub mod formula;
 mod number;
 mod parts;
+pub mod play;
 
 pub use document::{ScriptedDocument, document, scripted_document};
 pub use equations::equations;

@@ -56,6 +56,7 @@ pub use error::PlotError;
 pub use figure::{FrequencyAxis, Panel, Reference, Series, Spectrum, TimeHistory};
 pub use map::{map_png, scatter_png};
 pub use plate::{Axes, Frame, Plate, plate};
+pub use quantity::scaled_unit;
 
 use axis::Scale;
 use layout::{Abscissa, Format, Layout};

@@ -49,19 +49,26 @@ impl Quantity {
 
     /// Ticks that run to between 1 and 1000, whatever the `largest` magnitude in SI.
     pub fn scaled(name: &str, unit: &str, largest: f64) -> Self {
-        let exponent = engineering_exponent(largest);
-        let unit = unit.trim();
-        let pretty = pretty_unit(unit);
-        let scale = 10f64.powi(exponent);
-        let unit = match prefix(unit, exponent) {
-            Some(prefix) => format!("{prefix}{pretty}"),
-            None => format!("10{} {pretty}", superscript(exponent)),
-        };
+        let (scale, unit) = scaled_unit(unit, largest);
         Self {
             scale,
             label: label(name, unit.trim_end()),
         }
     }
+}
+
+/// In which multiple of a unit a magnitude reads as a number between 1 and 1000: how much that
+/// multiple is in the unit, and how it is written, `µm` or, where a unit takes no prefix,
+/// `10⁻⁶ kg`; empty for a plain number.
+pub fn scaled_unit(unit: &str, largest: f64) -> (f64, String) {
+    let exponent = engineering_exponent(largest);
+    let unit = unit.trim();
+    let pretty = pretty_unit(unit);
+    let text = match prefix(unit, exponent) {
+        Some(prefix) => format!("{prefix}{pretty}"),
+        None => format!("10{} {pretty}", superscript(exponent)),
+    };
+    (10f64.powi(exponent), text.trim_end().to_owned())
 }
 
 fn label(name: &str, unit: &str) -> String {

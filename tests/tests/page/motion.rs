@@ -17,7 +17,7 @@ fn shown(spec: &Path, end: f64) -> Value {
     let output = Command::new("node")
         .arg(project().join("tests/tests/page/motion.mjs"))
         .arg(page(spec, &[], folder.path()))
-        .arg(project().join("cli/src/page/play/motion.js"))
+        .arg(project().join("sim/page/src/play/motion.js"))
         .arg(end.to_string())
         .output()
         .expect("node can be run");

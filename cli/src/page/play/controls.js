@@ -9,23 +9,6 @@ const model = JSON.parse(document.getElementById("model").textContent);
 const element = (id) => document.getElementById(id);
 const [drawingCanvas, curvesCanvas] = [element("drawing"), element("curves")];
 
-/** The bytes of the module. */
-function moduleBytes() {
-  return Uint8Array.from(atob(model.module), (letter) => letter.charCodeAt(0));
-}
-
-/** A number as it is written into a field, of few digits. */
-function written(value) {
-  const size = Math.abs(value);
-  const digits = Number(value.toPrecision(6));
-  return size !== 0 && (size < 1e-4 || size >= 1e6) ? digits.toExponential() : String(digits);
-}
-
-/** Writes a text where another one stands. */
-function say(id, text) {
-  if (element(id).textContent !== text) element(id).textContent = text;
-}
-
 /** Everything that changes while the page is open. */
 class Page {
   constructor(exports) {
@@ -73,31 +56,10 @@ class Page {
     for (const control of document.querySelectorAll("[data-kind]")) this.connect(control);
   }
 
-  /** Joins a slider and its number: either changes the other and the model. */
+  /** Lets a control change the model. */
   connect(control) {
-    const [number, slider] = control.querySelectorAll("input");
-    const { kind, place, factor } = control.dataset;
-    const declared = number.value;
-    const apply = (text) => {
-      const value = Number(text);
-      const fits = text.trim() !== "" && Number.isFinite(value);
-      number.setCustomValidity(fits ? "" : "a number");
-      // What stands in the specification is taken as it is there, without a conversion.
-      if (fits) this.change(kind, Number(place), text === declared ? undefined : value * Number(factor));
-    };
-    slider.addEventListener("input", () => {
-      number.value = written(Number(slider.value));
-      apply(number.value);
-    });
-    number.addEventListener("input", () => {
-      slider.value = number.value;
-      apply(number.value);
-    });
-    control.reset = () => {
-      number.value = declared;
-      slider.value = declared;
-      apply(declared);
-    };
+    const { kind, place } = control.dataset;
+    join(control, (value) => this.change(kind, Number(place), value));
   }
 
   /** Sets a number of the model; without a value the specification's. */
@@ -191,7 +153,7 @@ class Page {
   }
 }
 
-WebAssembly.instantiate(moduleBytes(), {}).then(
+WebAssembly.instantiate(bytes(model.module), {}).then(
   ({ instance }) => new Page(instance.exports),
   (error) => {
     say("status", `This browser does not run the model: ${error.message}`);

@@ -1,12 +1,11 @@
 //! What the script is told of a model, as JSON.
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use eomgen_compiled_model::CompiledModel;
 use eomgen_model_spec::model::{Drawing, Ordinate};
+use eomgen_page::play::{encoded, printed};
 use serde_json::{Value, json};
 
-use super::quantities::{Quantities, printed};
+use super::quantities::Quantities;
 use crate::error::{Error, Result};
 
 /// The data of a model that starts there, with its module.
@@ -25,7 +24,7 @@ pub(super) fn json(
     let of = |quantity: &eomgen_codegen::program::Quantity| json!({ "name": quantity.name, "unit": printed(&quantity.unit) });
     let evaluator = compiled.evaluator(&program.default_parameters());
     let document = json!({
-        "module": STANDARD.encode(module),
+        "module": encoded(module),
         "parameters": program.default_parameters(),
         "state": state,
         "inputs": program.inputs.iter().map(of).collect::<Vec<_>>(),

@@ -3,8 +3,8 @@
 //! itself.
 //!
 //! `quantities` says what can be moved and how far, `controls` is their markup, `data` what the
-//! script is told. The script is written in `motion.js` (module and integration), `drawing.js`,
-//! `curves.js` and `controls.js`, which the page holds one after the other.
+//! script is told. The script is what all pages that compute have, of `eomgen_page::play`, and here
+//! `drawing.js`, `curves.js` and `controls.js`, which the page holds one after the other.
 
 mod controls;
 mod data;
@@ -12,25 +12,22 @@ mod quantities;
 
 use eomgen_codegen::report::Report;
 use eomgen_compiled_model::CompiledModel;
-use eomgen_page::{ScriptedDocument, equations, scripted_document};
+use eomgen_page::{ScriptedDocument, equations, play, scripted_document};
 use maud::{Markup, html};
 
 use crate::emission::module;
 use crate::error::Result;
 use quantities::Quantities;
 
-/// What this page needs besides the style of all pages.
+/// What this page needs besides the style of all that compute.
 const STYLE: &str = include_str!("play.css");
 
-/// The script. In blocks of their own, so that no name of it is one of the window's.
-const SCRIPT: &str = concat!(
-    "\"use strict\";\n{\n",
-    include_str!("motion.js"),
+/// Its own part of the script.
+const SCRIPT: [&str; 3] = [
     include_str!("drawing.js"),
     include_str!("curves.js"),
     include_str!("controls.js"),
-    "}\n"
-);
+];
 
 /// The page of a model.
 ///
@@ -45,10 +42,10 @@ pub fn playable(compiled: &CompiledModel) -> Result<String> {
     let data = data::json(compiled, &quantities, instance.initial(), &module)?;
     Ok(scripted_document(&ScriptedDocument {
         title: &compiled.model().title,
-        style: STYLE,
+        style: &[play::STYLE, STYLE].concat(),
         body: &body(compiled, &quantities, &report),
         data: &data,
-        script: SCRIPT,
+        script: &play::script(&SCRIPT),
     }))
 }
 

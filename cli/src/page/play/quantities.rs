@@ -2,7 +2,8 @@
 //! as a person would try.
 
 use eomgen_compiled_model::CompiledModel;
-use eomgen_model_spec::model::{Model, Parameter};
+use eomgen_model_spec::model::Model;
+use eomgen_page::play::{Slider, printed};
 
 use crate::error::{Error, Result};
 
@@ -11,23 +12,6 @@ const MODES: usize = 4;
 
 /// The most curves that are shown at first.
 const SHOWN_AT_FIRST: usize = 4;
-
-/// A number that a page can change.
-#[derive(Debug)]
-pub(super) struct Movable<'m> {
-    pub(super) name: String,
-    /// The unit that it is shown in.
-    pub(super) unit: String,
-    pub(super) doc: &'m str,
-    /// Its place among parameters, states or inputs.
-    pub(super) place: usize,
-    /// How much one of its unit is in SI.
-    pub(super) factor: f64,
-    /// In its unit, as are the ends.
-    pub(super) value: f64,
-    pub(super) low: f64,
-    pub(super) high: f64,
-}
 
 /// A quantity that can be shown as a curve, by its place among states and observables.
 #[derive(Debug)]
@@ -41,9 +25,9 @@ pub(super) struct Shown {
 /// All that a page has controls for.
 #[derive(Debug)]
 pub(super) struct Quantities<'m> {
-    pub(super) parameters: Vec<Movable<'m>>,
-    pub(super) initial: Vec<Movable<'m>>,
-    pub(super) inputs: Vec<Movable<'m>>,
+    pub(super) parameters: Vec<Slider<'m>>,
+    pub(super) initial: Vec<Slider<'m>>,
+    pub(super) inputs: Vec<Slider<'m>>,
     pub(super) shown: Vec<Shown>,
     /// Units of the state, in its order.
     pub(super) units: Vec<String>,
@@ -61,12 +45,12 @@ impl<'m> Quantities<'m> {
         let parameters = parameters.filter_map(|(place, independent)| {
             let name = &independent.quantity.name;
             let declared = model.parameters.iter().find(|p| p.name == *name)?;
-            Some(of_parameter(declared, place, independent.value))
+            Some(Slider::of_parameter(declared, place, independent.value))
         });
         let inputs = model.inputs.iter().zip(input_ranges).enumerate();
         let inputs = inputs.map(|(place, (input, range))| {
             let (low, high) = range.unwrap_or((-10.0, 10.0));
-            Movable {
+            Slider {
                 name: input.name.clone(),
                 unit: printed(&input.unit.to_string()),
                 doc: &input.doc,
@@ -84,38 +68,6 @@ impl<'m> Quantities<'m> {
             shown: shown(compiled, &units),
             units,
         })
-    }
-}
-
-/// A parameter in its declared unit. Without declared ends from 0 to twice its value.
-fn of_parameter(parameter: &Parameter, place: usize, value: f64) -> Movable<'_> {
-    let unit = &parameter.unit;
-    let value = unit.from_si(value);
-    let (low, high) = around(value);
-    let (min, max) = (parameter.min, parameter.max);
-    let low = min.map_or(low, |min| unit.from_si(min));
-    let high = max.map_or(high, |max| unit.from_si(max));
-    Movable {
-        name: parameter.name.clone(),
-        unit: printed(&unit.to_string()),
-        doc: &parameter.doc,
-        place,
-        factor: unit.to_si(1.0),
-        value,
-        low: low.min(value),
-        high: high.max(value),
-    }
-}
-
-/// From 0 to twice a value; around 0 where it is that. All finite.
-fn around(value: f64) -> (f64, f64) {
-    let twice = (2.0 * value).clamp(f64::MIN, f64::MAX);
-    if value > 0.0 {
-        (0.0, twice)
-    } else if value < 0.0 {
-        (twice, 0.0)
-    } else {
-        (-1.0, 1.0)
     }
 }
 
@@ -139,28 +91,6 @@ fn per_second(unit: &str) -> String {
     }
 }
 
-/// A unit with its exponents raised; those that are fractions stay as they are.
-pub(super) fn printed(unit: &str) -> String {
-    if unit.contains("^(") {
-        return unit.to_owned();
-    }
-    let mut raised = false;
-    let mut text = String::new();
-    for letter in unit.chars() {
-        raised = letter == '^' || raised && (letter == '-' || letter.is_ascii_digit());
-        match letter {
-            '^' => {}
-            '-' if raised => text.push('⁻'),
-            '0'..='9' if raised => {
-                let digit = letter as usize - '0' as usize;
-                text.extend("⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit));
-            }
-            other => text.push(other),
-        }
-    }
-    text
-}
-
 /// The places of coordinates and the first modes of every field.
 fn movable_places(model: &Model, orders: &[usize]) -> Vec<usize> {
     let mut places: Vec<usize> = (0..model.coordinates.len()).collect();
@@ -178,7 +108,7 @@ fn initial_state<'m>(
     units: &[String],
     ranges: &[Option<(f64, f64)>],
     initial: &[f64],
-) -> Vec<Movable<'m>> {
+) -> Vec<Slider<'m>> {
     let model = compiled.model();
     let names = compiled.state_names();
     let degrees = names.len() / 2;
@@ -199,7 +129,7 @@ fn initial_state<'m>(
             (-reach, reach)
         });
         let coordinate = model.coordinates.get(place);
-        Movable {
+        Slider {
             name: names[place].clone(),
             unit: printed(&units[place]),
             doc: coordinate.map_or("", |coordinate| &coordinate.doc),
@@ -239,31 +169,4 @@ fn shown(compiled: &CompiledModel, units: &[String]) -> Vec<Shown> {
         place,
     })
     .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn exponents_are_raised() {
-        for (unit, shown) in [
-            ("m/s^2", "m/s²"),
-            ("kg m^-10", "kg m⁻¹⁰"),
-            ("N m", "N m"),
-            ("1", "1"),
-            ("m^(1/2)", "m^(1/2)"),
-        ] {
-            assert_eq!(printed(unit), shown);
-        }
-    }
-
-    #[test]
-    fn a_slider_has_two_ends() {
-        for value in [0.0, 1.0, -2.0, 1.7e308, -1.7e308, 5e-324] {
-            let (low, high) = around(value);
-            assert!(low <= value && value <= high && low < high, "{value}");
-            assert!(low.is_finite() && high.is_finite(), "{value}");
-        }
-    }
 }

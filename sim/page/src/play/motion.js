@@ -26,6 +26,11 @@ const SLIDING = 1e-4;
 /** How closely a crossing is located, as a fraction of a step. */
 const CROSSING = 1e-9;
 
+/** What is written in base 64: a module, or the numbers of an array. */
+function bytes(text) {
+  return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+}
+
 /** The module, with its arrays as they stand in its memory. */
 class Machine {
   constructor(model, exports) {
@@ -78,9 +83,9 @@ class Motion {
     this.restart(initial);
   }
 
-  /** Begins anew. */
-  restart(initial) {
-    this.t = 0;
+  /** Begins anew, at this time. */
+  restart(initial, t = 0) {
+    this.t = t;
     this.state.set(initial);
     this.switches = 0;
     this.inARow = 0;

@@ -1,0 +1,108 @@
+//! From what a result came: the specification and the records with their hashes, the seed, the
+//! program and the day.
+
+use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use eomgen_model_spec::source::sha256;
+use eomgen_records::dataset::Dataset;
+
+/// A specification to be compared with records.
+#[derive(Clone, Copy, Debug)]
+pub struct Specification<'s> {
+    /// Its path, for messages.
+    pub path: &'s str,
+    /// Its text.
+    pub text: &'s str,
+    /// The order of its fields, if not their own.
+    pub order: Option<usize>,
+}
+
+/// From what a result came.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Origin {
+    /// The program's version.
+    pub version: &'static str,
+    /// The day in universal time, `2026-11-23`.
+    pub date: String,
+    /// The seed of the bootstrap.
+    pub seed: u64,
+    /// The specification, then the dataset's file, then its records.
+    pub files: Vec<HashedFile>,
+}
+
+/// A file and its hash.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HashedFile {
+    /// What it was: `specification`, `dataset`, `train[0]`, ...
+    pub role: String,
+    /// Its path, as it was given.
+    pub path: String,
+    /// SHA-256, 64 hexadecimal digits; none where it can no longer be read.
+    pub sha256: Option<String>,
+}
+
+impl Origin {
+    /// Of a specification and records that are compared now.
+    pub(crate) fn of(specification: Specification<'_>, dataset: &Dataset, seed: u64) -> Self {
+        let hashed = |role: &str, path: &Path| HashedFile {
+            role: role.to_owned(),
+            path: path.display().to_string(),
+            sha256: std::fs::read(path).ok().map(sha256),
+        };
+        let mut files = vec![HashedFile {
+            role: "specification".to_owned(),
+            path: specification.path.to_owned(),
+            sha256: Some(sha256(specification.text)),
+        }];
+        files.push(hashed("dataset", &dataset.path));
+        let records = dataset.train.iter().chain(&dataset.test);
+        files.extend(records.map(|record| hashed(&record.name, &record.path)));
+        let now = SystemTime::now().duration_since(UNIX_EPOCH);
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            date: date(now.map_or(0, |since| since.as_secs()) / SECONDS_OF_A_DAY),
+            seed,
+            files,
+        }
+    }
+}
+
+const SECONDS_OF_A_DAY: u64 = 86_400;
+
+/// The date so many days after 1970-01-01, in the Gregorian calendar. Counted in eras of 400 years
+/// that begin in March, so that a leap day is the last of its year.
+fn date(days: u64) -> String {
+    let days = days + 719_468;
+    let (era, day) = (days / 146_097, days % 146_097);
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let day = day - (153 * month + 2) / 5 + 1;
+    let (month, next) = if month < 10 {
+        (month + 3, 0)
+    } else {
+        (month - 9, 1)
+    };
+    format!("{:04}-{month:02}-{day:02}", year + 400 * era + next)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::date;
+
+    #[test]
+    fn days_are_dates() {
+        for (days, expected) in [
+            (0, "1970-01-01"),
+            (11_016, "2000-02-29"),
+            (11_017, "2000-03-01"),
+            (19_782, "2024-02-29"),
+            (20_780, "2026-11-23"),
+            (47_540, "2100-02-28"),
+            (47_541, "2100-03-01"),
+        ] {
+            assert_eq!(date(days), expected);
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! What was tried and not taken, and what the records could not have shown: put together by reason,
+//! because most fail for the same one.
+
+use eomgen_page::{section, table};
+use maud::{Markup, html};
+
+use crate::report::page::quantity::readable;
+use crate::report::page::verdict::words;
+use crate::report::result::{EffectAt, RejectedEffect};
+
+/// More rows than this are folded.
+const SHOWN: usize = 8;
+
+/// Effects with something in common.
+struct Group<'a> {
+    effects: Vec<&'a EffectAt>,
+    reason: &'a str,
+    experiment: &'a str,
+}
+
+impl<'a> Group<'a> {
+    /// The effects in groups of the same `key`, in the order in which each comes first.
+    fn all<K: PartialEq>(
+        list: &'a [RejectedEffect],
+        key: impl Fn(&'a RejectedEffect) -> K,
+    ) -> Vec<Self> {
+        let mut groups: Vec<(K, Self)> = Vec::new();
+        for of in list {
+            let own = key(of);
+            match groups.iter_mut().find(|(known, _)| *known == own) {
+                Some((_, group)) if group.effects.contains(&&of.at) => {}
+                Some((_, group)) => group.effects.push(&of.at),
+                None => groups.push((
+                    own,
+                    Self {
+                        effects: vec![&of.at],
+                        reason: &of.reason,
+                        experiment: &of.experiment,
+                    },
+                )),
+            }
+        }
+        groups.into_iter().map(|(_, group)| group).collect()
+    }
+
+    /// The effects, places of the same one together.
+    fn names(&self) -> String {
+        let mut by_effect: Vec<(&str, Vec<&str>)> = Vec::new();
+        for at in &self.effects {
+            match by_effect
+                .iter_mut()
+                .find(|(effect, _)| *effect == at.effect)
+            {
+                Some((_, places)) => places.push(&at.on),
+                None => by_effect.push((&at.effect, vec![&at.on])),
+            }
+        }
+        let each = by_effect.iter().map(|(effect, places)| {
+            words(&EffectAt {
+                effect: (*effect).to_owned(),
+                on: places.join(", "),
+            })
+        });
+        each.collect::<Vec<String>>().join("; ")
+    }
+
+    /// Its reason: the first line, as a message of the compiler has more.
+    fn why(&self) -> String {
+        readable(self.reason.lines().next().unwrap_or_default())
+    }
+}
+
+/// What was tested and not taken: first what failed for a reason of its own.
+pub(super) fn rejected(list: &[RejectedEffect]) -> Markup {
+    if list.is_empty() {
+        return html! {};
+    }
+    let mut groups = Group::all(list, |of| &of.reason);
+    groups.sort_by_key(|group| group.effects.len());
+    let row = |group: &Group<'_>| html! { tr { td { (group.names()) } td { (group.why()) } } };
+    section(
+        "Alternatives that were rejected",
+        &html! {
+            p { (list.len()) " other effects and places were tried." }
+            (folded(&groups, &["effect", "why not"], row))
+        },
+    )
+}
+
+/// What these records could not have shown, by what would show it.
+pub(super) fn not_testable(list: &[RejectedEffect]) -> Markup {
+    if list.is_empty() {
+        return html! {};
+    }
+    let groups = Group::all(list, |of| (&of.at.effect, &of.experiment));
+    let row = |group: &Group<'_>| {
+        html! { tr { td { (group.names()) } td { (group.why()) } td { (group.experiment) } } }
+    };
+    section(
+        "What these records cannot tell",
+        &html! {
+            p { "These may be there or not: the records would look the same." }
+            (folded(&groups, &["effect", "why", "what would tell"], row))
+        },
+    )
+}
+
+/// A table of which a long rest is behind a summary.
+fn folded(groups: &[Group<'_>], headings: &[&str], row: impl Fn(&Group<'_>) -> Markup) -> Markup {
+    let (first, rest) = groups.split_at(groups.len().min(SHOWN));
+    let rows = |groups: &[Group<'_>]| html! { @for group in groups { (row(group)) } };
+    html! {
+        (table(headings, &rows(first)))
+        @if !rest.is_empty() {
+            details {
+                summary { (rest.len()) " more" }
+                (table(headings, &rows(rest)))
+            }
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! The effects that were found, how they were found, and what they change in the specification.
+
+use eomgen_page::{section, table};
+use maud::{Markup, html};
+
+use crate::report::page::quantity::{estimate, percent, plain};
+use crate::report::page::verdict::words;
+use crate::report::result::{Discovery, FoundEffect, Status, Step};
+
+/// The effects; nothing where there are none, as the verdict says so.
+pub(super) fn effects(effects: &[FoundEffect]) -> Markup {
+    if effects.is_empty() {
+        return html! {};
+    }
+    section(
+        "What was found",
+        &html! { @for found in effects { (effect(found)) } },
+    )
+}
+
+fn effect(effect: &FoundEffect) -> Markup {
+    let is_value = effect.parameters.keys().any(|name| {
+        let rest = effect.term.strip_prefix(name.as_str());
+        rest.is_some_and(|rest| rest.starts_with(" = "))
+    });
+    html! {
+        h3 { (words(&effect.at)) }
+        p {
+            @if !effect.says.is_empty() { (capitalised(&effect.says)) ". " }
+            @match effect.status {
+                Status::Named => { "Nothing else that was tried does the same." },
+                Status::Class => {
+                    "The records do not tell it from "
+                    (effect.equivalent.iter().map(words).collect::<Vec<String>>().join(", or from ")) "."
+                },
+                Status::Empirical => { "It fits what is left and says nothing of the cause." },
+            }
+            @if let Some(order) = &effect.order {
+                " It repeats " (order.order) " times per turn of " code { (order.angle) } "."
+            }
+            @if let Some(experiment) = &effect.experiment {
+                " To tell: " (experiment) "."
+            }
+        }
+        dl.values {
+            @for (name, of) in &effect.parameters {
+                dt { code { (name) } }
+                dd { (estimate(of.value, of.sd, &of.unit)) }
+            }
+            @if !effect.term.is_empty() && !is_value {
+                dt { "in the specification" }
+                dd { code { (effect.term) } }
+            }
+            dt { "evidence" }
+            dd {
+                "without it what is left of the held-out records grows by "
+                (percent(effect.statistics.held_out / (1.0 - effect.statistics.held_out)))
+                ", " (plain(effect.statistics.held_out_errors, 2)) " standard errors"
+            }
+        }
+    }
+}
+
+/// With a capital at its beginning.
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
+
+/// The test gap after each step, and whether the specification that was written is right.
+pub(super) fn steps(discovery: &Discovery) -> Markup {
+    let has_steps = discovery.steps.len() > 1;
+    if !has_steps && discovery.validation.is_none() {
+        return html! {};
+    }
+    let heading = match has_steps {
+        true => "Step by step",
+        false => "The specification",
+    };
+    section(
+        heading,
+        &html! {
+            @if has_steps { (step_table(&discovery.steps)) }
+            (validation_line(discovery))
+        },
+    )
+}
+
+fn step_table(steps: &[Step]) -> Markup {
+    let rows = html! {
+        @for step in steps {
+            tr {
+                td {
+                    @if step.added.is_empty() { "the model as it is" }
+                    @else { "with " (step.added.join(", ").replace('_', " ")) }
+                }
+                td.number { (plain(step.test_rms, 3)) }
+            }
+        }
+    };
+    let headings = [
+        "model",
+        "left of the held-out records, in standard deviations of the noise",
+    ];
+    table(&headings, &rows)
+}
+
+/// Whether the equations of the specification that was written are right.
+fn validation_line(discovery: &Discovery) -> Markup {
+    let Some(validation) = &discovery.validation else {
+        return html! {};
+    };
+    let left = |rms: f64| plain(rms, 3);
+    let written = "The specification that was written was derived anew; its equations ";
+    html! {
+        @if validation.passed {
+            p {
+                (written) "pass all " (validation.checks.len()) " checks of " code { "eomgen validate" }
+                ". Simulated on the records, it leaves " (left(discovery.resimulation.train))
+                " standard deviations of the noise where it was fitted and "
+                (left(discovery.resimulation.test)) " where it was not."
+            }
+        } @else {
+            p.warning { (written) "FAIL " (validation.failed.join(", ")) "." }
+        }
+    }
+}
+
+/// Lines of the specification that were added or changed, with those they replace.
+pub(super) fn change(before: &str, after: &str) -> Markup {
+    if before == after {
+        return html! {};
+    }
+    let old: Vec<&str> = before.lines().collect();
+    let new: Vec<&str> = after.lines().collect();
+    section(
+        "The specification, changed",
+        &html! {
+            pre {
+                @for line in old.iter().filter(|line| !new.contains(line)) {
+                    span.removed { "- " (line) } "\n"
+                }
+                @for line in new.iter().filter(|line| !old.contains(line)) {
+                    span.added { "+ " (line) } "\n"
+                }
+            }
+        },
+    )
+}

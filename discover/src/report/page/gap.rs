@@ -1,0 +1,56 @@
+//! What is left of each channel, before and after.
+
+use eomgen_page::table;
+use maud::{Markup, html};
+
+use crate::report::page::quantity::{plain, quantity};
+use crate::report::result::{ChannelGap, Compared, OnRecords};
+
+pub(super) fn table_of(compared: &Compared) -> Markup {
+    let has_after = compared.gap.values().any(|gap| gap.after.is_some());
+    let rows = html! {
+        @for (name, gap) in &compared.gap {
+            tr {
+                th scope="row" { code { (name) } }
+                td.number { (quantity(gap.floor, 3, &gap.unit)) }
+                (both(gap, has_after, |on| on.test))
+                (both(gap, has_after, |on| on.train))
+            }
+        }
+    };
+    let headings: &[&str] = match has_after {
+        true => &[
+            "channel",
+            "noise floor",
+            "held out, before",
+            "held out, after",
+            "fitted to, before",
+            "fitted to, after",
+        ],
+        false => &["channel", "noise floor", "held out", "fitted to"],
+    };
+    html! {
+        (table(headings, &rows))
+        p.note {
+            "Root mean squares of simulated minus measured. The noise floor is what a right model would "
+            "leave; how many floors something is stands behind it. Records that are held out "
+            "had no part in the fit."
+        }
+    }
+}
+
+/// Before and, if there is one, after.
+fn both(gap: &ChannelGap, has_after: bool, of: fn(OnRecords<f64>) -> f64) -> Markup {
+    let cell = |value: f64| {
+        html! {
+            td.number {
+                (quantity(value, 3, &gap.unit))
+                @if value.is_finite() { " " small { "(" (plain(value / gap.floor, 2)) ")" } }
+            }
+        }
+    };
+    html! {
+        (cell(of(gap.before)))
+        @if has_after { (cell(gap.after.map_or(f64::NAN, of))) }
+    }
+}

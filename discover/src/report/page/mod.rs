@@ -1,0 +1,133 @@
+//! A page that an engineer can hand on: a verdict in words, what was measured and simulated over each
+//! other before and after, what was found and what was not, what was fitted beside it, what changed in
+//! the specification, and from what all this came.
+//!
+//! `verdict` is its first sentence, `gap` what is left of each channel, `found` the effects and how
+//! they were found, `alternatives` what was not taken, `nuisances` what was declared beside what
+//! came out, `origin` files and hashes, `quantity` how numbers are written.
+
+mod alternatives;
+mod found;
+mod gap;
+mod nuisances;
+mod origin;
+mod quantity;
+mod verdict;
+
+#[cfg(test)]
+mod tests;
+
+use eomgen_page::{ScriptedDocument, document, scripted_document, section};
+use maud::{Markup, html};
+
+use crate::report::playback::Playback;
+use crate::report::result::{Compared, Comparison, Discovery};
+use quantity::readable;
+
+impl Comparison {
+    /// The page, a complete HTML document that refers to nothing outside.
+    pub fn page(&self) -> String {
+        let compared = &self.compared;
+        whole(
+            compared,
+            &html! {
+                (verdict::of_comparison(self))
+                (opening(compared))
+                (closing(compared))
+            },
+        )
+    }
+}
+
+impl Discovery {
+    /// The page, a complete HTML document that refers to nothing outside.
+    pub fn page(&self) -> String {
+        let compared = &self.compared;
+        whole(
+            compared,
+            &html! {
+                (verdict::of_discovery(self))
+                (found::effects(&self.effects))
+                (playback(compared))
+                (opening(compared))
+                (found::steps(self))
+                (alternatives::rejected(&self.rejected))
+                (alternatives::not_testable(&self.not_testable))
+                (closing(compared))
+                (found::change(&self.original, &self.extended))
+            },
+        )
+    }
+}
+
+/// A document around a body.
+fn whole(compared: &Compared, body: &Markup) -> String {
+    let title = match compared.title.as_str() {
+        "" => "Model and measurement",
+        title => title,
+    };
+    let origin = &compared.origin;
+    let body = html! {
+        header {
+            h1 { (title) }
+            p.note { "Model against measurement, " (origin.date) }
+        }
+        main { (body) }
+        footer { (origin::files(origin)) }
+    };
+    match &compared.pictures.playback {
+        Playback::Computed { data, .. } => scripted_document(&ScriptedDocument {
+            title,
+            style: &Playback::style(),
+            body: &body,
+            data,
+            script: &Playback::script(),
+        }),
+        Playback::Still(_) | Playback::None => document(title, &body),
+    }
+}
+
+/// What was found, to be moved.
+fn playback(compared: &Compared) -> Markup {
+    match &compared.pictures.playback {
+        Playback::Computed { body, .. } => section("Move what was found", body),
+        Playback::Still(why) => html! {
+            p.note { "There is nothing to move on this page: " (why) "." }
+        },
+        Playback::None => html! {},
+    }
+}
+
+/// What is seen of the gap.
+fn opening(compared: &Compared) -> Markup {
+    html! {
+        (section("Measured and simulated", &html! {
+            (compared.pictures.overlay)
+            (compared.pictures.residuals)
+        }))
+        (section("What is left", &gap::table_of(compared)))
+    }
+}
+
+/// Where the gap is, and what was fitted beside.
+fn closing(compared: &Compared) -> Markup {
+    let force = compared.pictures.force.as_ref();
+    let has_location = !compared.location.is_empty();
+    html! {
+        @if has_location || force.is_some() {
+            (section("Where the model and the records disagree", &html! {
+                @if has_location { p { (readable(&compared.location)) } }
+                @if let Some((equation, force)) = force {
+                    h3 { "The force that is missing on " code { (equation) } }
+                    (force)
+                }
+            }))
+        }
+        (nuisances::fitted(compared))
+        @if !compared.notes.is_empty() {
+            (section("Notes on the records", &html! {
+                ul { @for note in &compared.notes { li { (readable(note)) } } }
+            }))
+        }
+    }
+}

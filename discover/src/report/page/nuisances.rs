@@ -1,0 +1,61 @@
+//! What was fitted beside what is sought: what was declared of it, and what came out.
+
+use eomgen_page::{section, table};
+use maud::{Markup, html};
+
+use crate::report::page::quantity::estimate;
+use crate::report::result::{Compared, Nuisance};
+
+/// From so many standard deviations on something is worth a remark: three is the most that a fit
+/// allows.
+const REMARKABLE: f64 = 2.9;
+
+pub(super) fn fitted(compared: &Compared) -> Markup {
+    let all = &compared.nuisances;
+    if all.is_empty() {
+        return html! {};
+    }
+    let far = all.iter().filter(|of| is_far(of)).count();
+    let rows = html! { @for of in all { (row(of)) } };
+    section(
+        "What was fitted beside it",
+        &html! {
+            @if far > 0 {
+                p.warning {
+                    (far) " of these " @if far == 1 { "is" } @else { "are" }
+                    " as far from what was declared as the fit allows: a sign that something else "
+                    "is wrong, or that what was declared is too narrow."
+                }
+            }
+            (table(&["", "declared", "fitted", "off by"], &rows))
+            p.note {
+                "Declared is what the specification and the dataset say, with one standard deviation; how far "
+                "the fit is from it is counted in these."
+            }
+        },
+    )
+}
+
+fn is_far(of: &Nuisance) -> bool {
+    of.deviations().abs() >= REMARKABLE
+}
+
+fn row(of: &Nuisance) -> Markup {
+    let (mean, sd) = of.declared;
+    let unit = &of.fitted.unit;
+    let class = is_far(of).then_some("failed");
+    let off = of.deviations();
+    html! {
+        tr {
+            th scope="row" {
+                @if let Some(fault) = of.fault { (fault) " of " }
+                code { (of.of) }
+            }
+            td.number { (estimate(mean, sd, unit)) }
+            td.number { (estimate(of.fitted.value, of.fitted.sd, unit)) }
+            td class=[class] {
+                @if off.is_finite() { (format!("{:.1}", off).replace('-', "−")) } @else { "–" }
+            }
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! From what a page came.
+
+use maud::{Markup, html};
+
+use crate::report::origin::Origin;
+
+/// The program, the day, the seed and the files with their hashes.
+pub(super) fn files(origin: &Origin) -> Markup {
+    html! {
+        p {
+            "Written by eomgen " (origin.version) " on " (origin.date) " (UTC), seed " (origin.seed) "."
+        }
+        details {
+            summary { "Files and their SHA-256" }
+            dl.files {
+                @for file in &origin.files {
+                    dt { (file.role) ": " code { (file.path) } }
+                    dd {
+                        @match &file.sha256 {
+                            Some(hash) => code { (hash) },
+                            None => "not a file that can be read",
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

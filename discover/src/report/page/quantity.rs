@@ -1,0 +1,200 @@
+//! Quantities as engineers write them: as many digits as are known, in a multiple of the unit that
+//! reads well.
+
+use eomgen_plot::scaled_unit;
+
+/// The most digits after the first that are written.
+const MOST_DIGITS: i32 = 6;
+
+/// Magnitudes that are written in the unit as it is.
+const PLAIN: std::ops::Range<f64> = 0.1..1e4;
+
+/// The same for units that take no prefix.
+const PLAIN_WITHOUT_PREFIX: std::ops::Range<f64> = 1e-3..1e5;
+
+/// A value with one standard deviation: `12.03 ± 0.02 N`, the deviation with one digit, or two where
+/// the first is 1. A deviation that is not known is left out.
+pub(super) fn estimate(value: f64, sd: f64, unit: &str) -> String {
+    if !(sd.is_finite() && sd > 0.0) {
+        return quantity(value, 4, unit);
+    }
+    if !value.is_finite() {
+        return "not known".to_owned();
+    }
+    let base = unit;
+    let (scale, unit) = multiple(value.abs().max(sd), base);
+    let (value, sd) = (value / scale, sd / scale);
+    let last = exponent(sd) - i32::from(first_digit(sd) == 1);
+    if last < exponent(value.abs().max(sd)) - MOST_DIGITS {
+        // Known to more digits than anybody reads.
+        return quantity(value * scale, MOST_DIGITS, base);
+    }
+    let (value, sd) = (to_place(value, last), to_place(sd, last));
+    with_unit(&format!("{value} ± {sd}"), &unit, true)
+}
+
+/// A value with so many digits: `5.73 mm`.
+pub(super) fn quantity(value: f64, digits: i32, unit: &str) -> String {
+    if !value.is_finite() {
+        return "not known".to_owned();
+    }
+    let (scale, unit) = multiple(value.abs(), unit);
+    let value = value / scale;
+    let text = to_place(value, exponent(value.abs()) - digits + 1);
+    with_unit(&text, &unit, false)
+}
+
+/// A plain number with so many digits: `57300`, `1.02`.
+pub(super) fn plain(value: f64, digits: i32) -> String {
+    if !value.is_finite() {
+        return "not known".to_owned();
+    }
+    to_place(value, exponent(value.abs()) - digits + 1)
+}
+
+/// A part as percents; all but all is not called all.
+pub(super) fn percent(part: f64) -> String {
+    match 100.0 * part {
+        p if !p.is_finite() => "an unknown part".to_owned(),
+        p if p >= 99.95 => "all".to_owned(),
+        p if p >= 99.0 => format!("{p:.1} %"),
+        p => format!("{p:.0} %"),
+    }
+}
+
+/// In which multiple of its unit a magnitude is written.
+fn multiple(magnitude: f64, unit: &str) -> (f64, String) {
+    let (_, own) = scaled_unit(unit, 1.0);
+    if magnitude == 0.0 || PLAIN.contains(&magnitude) {
+        return (1.0, own);
+    }
+    let (scale, scaled) = scaled_unit(unit, magnitude);
+    let has_prefix = !scaled.starts_with("10");
+    if !has_prefix && PLAIN_WITHOUT_PREFIX.contains(&magnitude) {
+        return (1.0, own);
+    }
+    (scale, scaled)
+}
+
+/// A number and its unit; where that begins with a power of ten, a product.
+fn with_unit(number: &str, unit: &str, is_pair: bool) -> String {
+    match (unit.is_empty(), unit.starts_with("10"), is_pair) {
+        (true, ..) => number.to_owned(),
+        (false, false, _) => format!("{number} {unit}"),
+        (false, true, true) => format!("({number})·{unit}"),
+        (false, true, false) => format!("{number}·{unit}"),
+    }
+}
+
+/// The power of ten of the first digit.
+fn exponent(magnitude: f64) -> i32 {
+    let floor = magnitude.log10().floor();
+    // Next to nothing, or more than can be written, counts as 1.
+    if floor.is_finite() { floor as i32 } else { 0 }
+}
+
+fn first_digit(magnitude: f64) -> i32 {
+    (magnitude / 10f64.powi(exponent(magnitude))) as i32
+}
+
+/// Rounded to a place: 10 to this power.
+fn to_place(value: f64, place: i32) -> String {
+    let text = if place < 0 {
+        format!("{value:.*}", place.unsigned_abs() as usize)
+    } else {
+        let unit = 10f64.powi(place);
+        format!("{:.0}", (value / unit).round() * unit)
+    };
+    match text.strip_prefix('-') {
+        Some(digits) if digits.chars().any(|c| ('1'..='9').contains(&c)) => format!("−{digits}"),
+        Some(digits) => digits.to_owned(),
+        None => text,
+    }
+}
+
+/// A sentence of the documents with its numbers written for people: `±` and powers of ten.
+pub(super) fn readable(text: &str) -> String {
+    let words = text.split(' ').map(|word| match word {
+        "+-" => "±".to_owned(),
+        word => number_word(word).unwrap_or_else(|| word.to_owned()),
+    });
+    words.collect::<Vec<String>>().join(" ")
+}
+
+/// A word that is a number with an exponent, and what follows it, `1.2e-3,` say.
+fn number_word(word: &str) -> Option<String> {
+    let number = word.trim_end_matches([',', '.', ';', ':', ')']);
+    let (mantissa, exponent) = number.split_once('e')?;
+    let value: f64 = number.parse().ok()?;
+    let power: i32 = exponent.parse().ok()?;
+    let rest = &word[number.len()..];
+    let digits = mantissa.chars().filter(char::is_ascii_digit).count();
+    let digits = i32::try_from(digits).unwrap_or(MOST_DIGITS).min(4);
+    if (-3..5).contains(&power) {
+        return Some(plain(value, digits) + rest);
+    }
+    Some(
+        with_unit(
+            &plain(value / 10f64.powi(power), digits),
+            &scaled_power(power),
+            false,
+        ) + rest,
+    )
+}
+
+/// Ten to a power.
+fn scaled_power(power: i32) -> String {
+    let raised = |c: char| match c {
+        '-' => '⁻',
+        c => c
+            .to_digit(10)
+            .and_then(|d| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(d as usize))
+            .unwrap_or(c),
+    };
+    format!(
+        "10{}",
+        power.to_string().chars().map(raised).collect::<String>()
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_estimate_has_the_digits_that_are_known() {
+        for (value, sd, unit, expected) in [
+            (11.986, 0.0192, "N", "11.986 ± 0.019 N"),
+            (11.986, 0.0242, "N", "11.99 ± 0.02 N"),
+            (188.946, 5.387, "N s/m", "189 ± 5 N·s/m"),
+            (2503.73, 4.07, "N m", "2504 ± 4 N·m"),
+            (-39.58, 1.66, "N s/m", "−39.6 ± 1.7 N·s/m"),
+            (4.97e-2, 1.5e-4, "N m s", "49.70 ± 0.15 mN·m·s"),
+            (4.37e-9, 2e-6, "m", "0 ± 2 µm"),
+            (1.2e-5, 2e-7, "kg m^2", "(12.0 ± 0.2)·10⁻⁶ kg·m²"),
+            (0.9998, 0.0004, "1", "0.9998 ± 0.0004"),
+            (0.8, 1e-12, "N m", "0.800000 N·m"),
+            (3.0, f64::NAN, "N", "3.000 N"),
+            (f64::NAN, 1.0, "N", "not known"),
+            (0.0, 0.0, "m", "0.000 m"),
+        ] {
+            assert_eq!(estimate(value, sd, unit), expected, "{value} {sd} {unit}");
+        }
+    }
+
+    #[test]
+    fn numbers_in_sentences_are_for_people() {
+        assert_eq!(
+            readable("a force: 31 +- 2.2 N, 5.729e-3 m or 1.2e-9. done e5 x1e5"),
+            "a force: 31 ± 2.2 N, 0.005729 m or 1.2·10⁻⁹. done e5 x1e5"
+        );
+    }
+
+    #[test]
+    fn parts_are_percents() {
+        assert_eq!(percent(0.954), "95 %");
+        assert_eq!(percent(0.9949), "99.5 %");
+        assert_eq!(percent(0.99991), "all");
+        assert_eq!(percent(f64::NAN), "an unknown part");
+    }
+}

@@ -1,0 +1,89 @@
+//! Sliders for what was found: parameters of the specification that was written, and sensors.
+
+use eomgen_page::play::{Slider, printed};
+use maud::{Markup, html};
+
+use crate::fit::fitted::Fit;
+use crate::ids::UnknownId;
+use crate::model::estimation_model::EstimationModel;
+use crate::model::problem::EstimationProblem;
+use crate::model::unknowns::What;
+use crate::search::found::Accepted;
+
+/// How many digits of a value are shown: the script takes the specification's own number until
+/// somebody moves it.
+const DIGITS: i32 = 6;
+
+/// How far a sensor can be moved beyond what was found, in parts of that.
+const AROUND: f64 = 2.0;
+
+/// The sliders, and what sets them back.
+pub(super) fn controls(
+    problem: &EstimationProblem<'_>,
+    best: &Fit,
+    model: &EstimationModel,
+    accepted: &[Accepted],
+) -> Markup {
+    let unknowns = accepted.iter().flat_map(|effect| &effect.unknowns);
+    html! {
+        div.controls {
+            @for id in unknowns { (control(problem, best, model, *id)) }
+            p { button #defaults type="button" { "As found" } }
+        }
+    }
+}
+
+fn control(
+    problem: &EstimationProblem<'_>,
+    best: &Fit,
+    model: &EstimationModel,
+    id: UnknownId,
+) -> Markup {
+    let value = best.train.estimate.theta[id];
+    let of_sensor = |channel: usize, fault: &str, neutral: f64, unit: &str| {
+        let reach = (AROUND * (value - neutral).abs()).max(f64::MIN_POSITIVE);
+        Slider {
+            name: format!("{fault}_{}", problem.dataset.channels[channel].name),
+            unit: printed(unit),
+            doc: "",
+            place: channel,
+            factor: 1.0,
+            value: rounded(value),
+            low: neutral - reach,
+            high: neutral + reach,
+        }
+    };
+    match &best.unknowns[id].what {
+        What::Parameter(name) => parameter(model, name, false),
+        What::Inverse(name) => parameter(model, name, true),
+        What::Gain(at) => of_sensor(at.index(), "gain", 1.0, "1").control("gain"),
+        What::Bias(at) => {
+            let unit = &problem.dataset.channels[at.index()].unit;
+            of_sensor(at.index(), "bias", 0.0, unit).control("bias")
+        }
+        What::Delay(at) => of_sensor(at.index(), "delay", 0.0, "s").control("delay"),
+    }
+}
+
+/// A parameter of the specification. `is_inverse`: its effect is absent where it is infinite, and
+/// nothing moves where it is 0.
+fn parameter(model: &EstimationModel, name: &str, is_inverse: bool) -> Markup {
+    let declared = model.specification().parameters.iter();
+    let mut declared = declared.filter(|parameter| parameter.name == name);
+    let (Some(declared), Some(place)) = (declared.next(), model.parameter(name)) else {
+        return html! {};
+    };
+    let place = place.index();
+    let mut slider = Slider::of_parameter(declared, place, model.values[place]);
+    slider.value = rounded(slider.value);
+    if is_inverse {
+        (slider.low, slider.high) = (0.2 * slider.value, 5.0 * slider.value);
+    }
+    slider.control("parameter")
+}
+
+/// With few digits.
+fn rounded(value: f64) -> f64 {
+    let text = format!("{value:.*e}", DIGITS as usize - 1);
+    text.parse().unwrap_or(value)
+}

@@ -1,0 +1,85 @@
+//! What the script is told, as JSON; columns of numbers as their bytes, in base 64.
+
+use eomgen_page::play::{encoded, printed};
+use serde_json::{Value, json};
+
+use crate::fit::fitted::Fit;
+use crate::ids::ChannelId;
+use crate::model::estimation_model::EstimationModel;
+use crate::model::measured_outputs::Output;
+use crate::model::problem::EstimationProblem;
+use crate::report::playback::stretch::{Piece, Stretch};
+
+pub(super) fn json(
+    problem: &EstimationProblem<'_>,
+    best: &Fit,
+    model: &EstimationModel,
+    stretch: &Stretch,
+    module: &[u8],
+) -> String {
+    let program = model.program();
+    let inputs = &problem.dataset.test[0].inputs;
+    let rows = stretch.times.iter().flat_map(|t| inputs.at(*t)).copied();
+    let piece = |piece: &Piece| {
+        let start = best.mapped(model, &best.test.estimate.initial_states[piece.window]);
+        json!({
+            "first": piece.first,
+            "samples": piece.samples,
+            "judged": [piece.judged.start, piece.judged.end],
+            "initial": start,
+        })
+    };
+    let guards = model.evaluator(&model.values).guard_count();
+    let document = json!({
+        "module": encoded(module),
+        "parameters": model.values,
+        "state": vec![0; model.state_count()],
+        "inputs": vec![0; program.inputs.len()],
+        "observables": vec![0; program.observables.len()],
+        "guards": guards,
+        "times": doubles(stretch.times.iter().copied()),
+        "driven": doubles(rows),
+        "measured": doubles(stretch.measured.iter().copied()),
+        "before": doubles(stretch.before.iter().copied()),
+        "windows": stretch.windows.iter().map(piece).collect::<Vec<Value>>(),
+        "channels": channels(problem, best, model, stretch),
+    });
+    document.to_string()
+}
+
+/// The channels: where each is found, its sensor, and what is left of it.
+fn channels(
+    problem: &EstimationProblem<'_>,
+    best: &Fit,
+    model: &EstimationModel,
+    stretch: &Stretch,
+) -> Vec<Value> {
+    let shooting = best.shooting(problem);
+    let sensors = shooting.sensors(&best.train.estimate.theta);
+    let all = &problem.dataset.channels;
+    let channels = ChannelId::first(all.len())
+        .zip(all)
+        .zip(model.measured.outputs());
+    let of =
+        |((id, channel), output): ((ChannelId, &eomgen_records::dataset::Channel), &Output)| {
+            let from = match output {
+                Output::State(place) => json!({ "state": place }),
+                Output::Observable(place) => json!({ "observable": place }),
+            };
+            json!({
+                "name": channel.name,
+                "unit": printed(&channel.unit),
+                "from": from,
+                "gain": sensors.gain[id],
+                "bias": sensors.bias[id],
+                "delay": sensors.delay[id],
+                "left": stretch.left[id],
+            })
+        };
+    channels.map(of).collect()
+}
+
+/// Numbers as their bytes, the low ones first, as browsers read them on every machine of today.
+fn doubles(numbers: impl Iterator<Item = f64>) -> String {
+    encoded(&numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>())
+}

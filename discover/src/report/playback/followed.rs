@@ -1,0 +1,102 @@
+//! Whether a page can compute a motion: explicit steps with the page's tolerance must be few enough
+//! and leave what the fit leaves.
+
+use std::cell::RefCell;
+
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_compiled_model::Driven;
+use eomgen_sim::ode::{Settings, simulate};
+
+use crate::fit::fitted::Fit;
+use crate::model::estimation_model::EstimationModel;
+use crate::model::problem::EstimationProblem;
+use crate::report::playback::stretch::{Piece, Stretch};
+use crate::thresholds;
+
+/// The relative tolerance of `motion.js`.
+const TOLERANCE: f64 = 1e-7;
+
+/// The most steps in a window, and in all: some seconds of a browser's time.
+const MOST_STEPS: u64 = 400_000;
+
+/// How much more, or less, than the fit the page may leave, as a part of that. Both are right to a
+/// small part of the noise, by methods of their own, of which the fit's stops at `STEP_ERROR`; where
+/// impacts unfold that, no motion is the motion, and the page would contradict the report.
+const DIFFERENT: f64 = 0.05;
+
+/// Whether explicit steps leave what the fit leaves, at the numbers of the specification that was
+/// written.
+pub(super) fn as_fitted(
+    problem: &EstimationProblem<'_>,
+    best: &Fit,
+    model: &EstimationModel,
+    stretch: &Stretch,
+) -> bool {
+    let channels = problem.noise.len();
+    let mut sums = vec![0.0; channels];
+    let mut counts = vec![0.0; channels];
+    let mut steps = 0;
+    for piece in &stretch.windows {
+        let Some((seen, own)) = seen(problem, best, model, stretch, piece) else {
+            return false;
+        };
+        steps += own;
+        if steps > MOST_STEPS {
+            return false;
+        }
+        let measured = stretch.measured[piece.first * channels..].iter();
+        for (number, (seen, measured)) in seen.iter().zip(measured).enumerate() {
+            if !measured.is_finite() {
+                continue;
+            }
+            counts[number % channels] += 1.0;
+            if piece.judged.contains(&(number / channels)) {
+                sums[number % channels] += (seen - measured).powi(2);
+            }
+        }
+    }
+    let left = sums.iter().zip(&counts).zip(&stretch.left);
+    left.into_iter().all(|((sum, count), [_, fitted])| {
+        let left = f64::sqrt(sum / f64::max(*count, 1.0));
+        (left - fitted).abs() <= DIFFERENT * fitted
+    })
+}
+
+/// What the sensors show of a window, and how many steps it takes; none where it cannot be followed.
+fn seen(
+    problem: &EstimationProblem<'_>,
+    best: &Fit,
+    model: &EstimationModel,
+    stretch: &Stretch,
+    piece: &Piece,
+) -> Option<(Vec<f64>, u64)> {
+    let times = &stretch.times[piece.first..piece.first + piece.samples];
+    let evaluator = RefCell::new(model.evaluator(&model.values));
+    let inputs = &problem.dataset.test[0].inputs;
+    let settings = Settings {
+        max_steps: MOST_STEPS,
+        max_switch_rate: thresholds::FASTEST_SWITCHING,
+        ..Settings::with_tolerance(TOLERANCE)
+    };
+    let start = best.mapped(model, &best.test.estimate.initial_states[piece.window]);
+    let span = (*times.first()?, *times.last()?);
+    let driven = Driven::new(&evaluator, inputs);
+    let trajectory = simulate(&driven, &start, span, times, &settings, &mut |_| {}).ok()?;
+    let mut quantities = Vec::new();
+    let mut observables = model.measured.observables();
+    let mut evaluator = evaluator.borrow_mut();
+    for (t, state) in times.iter().zip(&trajectory.states) {
+        let point = Point {
+            t: *t,
+            state,
+            inputs: inputs.at(*t),
+        };
+        model
+            .measured
+            .append(&mut evaluator, point, &mut observables, &mut quantities);
+    }
+    let shooting = best.shooting(problem);
+    let sensors = shooting.sensors(&best.train.estimate.theta);
+    let work = trajectory.work.steps + trajectory.work.rejected;
+    Some((shooting.seen(times, &sensors, &quantities), work))
+}

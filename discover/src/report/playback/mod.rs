@@ -1,0 +1,122 @@
+//! What was found, to be moved: a part of the page that computes the motion of the test record anew
+//! for every value of the found parameters, with the emitted module, and draws it over what was
+//! measured.
+//!
+//! `stretch` is the part of the record that it holds, `followed` asks beforehand whether a page can
+//! compute it, `controls` has the sliders, `data` is what the script is told.
+
+mod controls;
+mod data;
+mod followed;
+mod stretch;
+
+use eomgen_codegen::wasm;
+use eomgen_page::play;
+use maud::{Markup, html};
+
+use crate::fit::fitted::Fit;
+use crate::model::estimation_model::EstimationModel;
+use crate::model::problem::EstimationProblem;
+use crate::report::playback::controls::controls;
+use crate::report::playback::stretch::Stretch;
+use crate::search::found::Accepted;
+
+/// What such a part needs besides the style of all that compute.
+const STYLE: &str = include_str!("playback.css");
+
+/// Its own part of the script.
+const SCRIPT: [&str; 2] = [include_str!("strips.js"), include_str!("playback.js")];
+
+/// A part of a page that computes, or why there is none.
+#[derive(Clone, Debug)]
+pub(crate) enum Playback {
+    /// What is shown, and the data of its script.
+    Computed { body: Markup, data: String },
+    /// There is something to move, but a page cannot compute it: why.
+    Still(&'static str),
+    /// There is nothing to move.
+    None,
+}
+
+impl Playback {
+    /// Of a specification with what was found, its text.
+    pub(crate) fn of(
+        problem: &EstimationProblem<'_>,
+        (null, best): (&Fit, &Fit),
+        accepted: &[Accepted],
+        text: &str,
+    ) -> Self {
+        let channels = &problem.dataset.channels;
+        let model = EstimationModel::equations(text, &problem.path, problem.order, channels);
+        let (Ok(model), false) = (model, accepted.is_empty()) else {
+            return Self::None;
+        };
+        let Ok(module) = wasm::emit(model.program()) else {
+            return Self::Still("its equations cannot be emitted as WebAssembly");
+        };
+        let Some(stretch) = Stretch::of(problem, null, best) else {
+            return Self::Still(
+                "the motion cannot be followed at the beginning of the test record",
+            );
+        };
+        if !followed::as_fitted(problem, best, &model, &stretch) {
+            return Self::Still(
+                "the steps that a page would need are too many, or lead elsewhere than the fit",
+            );
+        }
+        let controls = controls(problem, best, &model, accepted);
+        let data = data::json(problem, best, &model, &stretch, &module);
+        Self::Computed {
+            body: body(problem, &stretch, &controls),
+            data,
+        }
+    }
+
+    /// The style of a page with this part.
+    pub(crate) fn style() -> String {
+        [play::STYLE, STYLE].concat()
+    }
+
+    /// The script of a page with this part.
+    pub(crate) fn script() -> String {
+        play::script(&SCRIPT)
+    }
+}
+
+fn body(problem: &EstimationProblem<'_>, stretch: &Stretch, controls: &Markup) -> Markup {
+    let seconds = stretch.times.last().zip(stretch.times.first());
+    let seconds = seconds.map_or(0.0, |(last, first)| last - first);
+    let names = problem.dataset.channels.iter().map(|channel| &channel.name);
+    html! {
+        p {
+            "Move a slider: the model with what was found follows "
+            @if stretch.is_whole { "the test record" }
+            @else { "the beginning of the test record, " (format!("{seconds:.3}")) " s," }
+            " anew, driven by the recorded inputs and begun in every window where the fit begins it. "
+            "It is computed here, by the equations of the specification that was written."
+        }
+        noscript { p { "Without its script this page shows the figures below alone." } }
+        div.moved {
+            (controls)
+            table {
+                thead { tr {
+                    th scope="col" { "left of" }
+                    th scope="col" { span.key.before {} "before" }
+                    th scope="col" { span.key.now {} "now" }
+                } }
+                tbody {
+                    @for name in names {
+                        tr {
+                            th scope="row" { code { (name) } }
+                            td.number data-left="before" {}
+                            td.number data-left="now" {}
+                        }
+                    }
+                }
+            }
+        }
+        p #status role="status" {}
+        canvas #strips role="img" aria-label="Measured and simulated over time, and their differences" {}
+        p.note { span.key.measured {} "measured, with the simulations over it; below, what they are off" }
+    }
+}

@@ -1,0 +1,216 @@
+// What was found, to be moved: every value of it is simulated along the record.
+
+/** How long the page may compute before it lets the browser draw, in ms. */
+const SLICE = 14;
+/** How long a whole motion may take, in ms. */
+const LONGEST_WAIT = 30000;
+
+const model = JSON.parse(document.getElementById("model").textContent);
+const element = (id) => document.getElementById(id);
+
+/** Numbers that are written in base 64. */
+const numbers = (text) => new Float64Array(bytes(text).buffer);
+
+/** One column of rows. */
+const column = (rows, place, count) => rows.filter((_, number) => number % count === place);
+
+/** A sensor's quantity at a time near a sample, by the cubic through its four neighbours. */
+function interpolated(times, values, at, near) {
+  let before = near;
+  while (before > 0 && times[before] > at) before -= 1;
+  while (before < times.length - 1 && times[before + 1] <= at) before += 1;
+  const count = Math.min(times.length, 4);
+  const first = Math.min(Math.max(0, before - 1), times.length - count);
+  let sum = 0;
+  for (let i = first; i < first + count; i += 1) {
+    let weight = 1;
+    for (let j = first; j < first + count; j += 1) if (j !== i) weight *= (at - times[j]) / (times[i] - times[j]);
+    sum += weight * values[i];
+  }
+  return sum;
+}
+
+/** The motion along the record, window by window. */
+class Playback {
+  constructor(data, exports) {
+    this.windows = data.windows;
+    this.times = numbers(data.times);
+    this.driven = numbers(data.driven);
+    const count = data.channels.length;
+    const [measured, before] = [numbers(data.measured), numbers(data.before)];
+    this.channels = data.channels.map((channel, place) => ({
+      ...channel,
+      measured: column(measured, place, count),
+      before: column(before, place, count),
+      quantity: new Float64Array(this.times.length),
+      now: new Float64Array(this.times.length),
+    }));
+    this.declared = data.parameters;
+    this.machine = new Machine(data, exports);
+    this.motion = new Motion(this.machine, Float64Array.from(data.windows[0].initial));
+    this.machine.parameters.set(data.parameters);
+    this.machine.prepare();
+  }
+
+  /** Follows all windows; yields after every sample, so that the page stays alive. */
+  *follow() {
+    for (const channel of this.channels) channel.quantity.fill(NaN);
+    const inputs = this.machine.inputs.length;
+    for (const { first, samples, initial } of this.windows) {
+      for (let sample = first; sample < first + samples; sample += 1) {
+        const t = this.times[sample];
+        const { motion } = this;
+        if (sample > first) while (motion.t < t && !motion.failed) motion.advance(t);
+        this.machine.inputs.set(this.driven.subarray(sample * inputs, (sample + 1) * inputs));
+        if (sample === first) motion.restart(initial, t);
+        else if (inputs > 0) this.driveOn();
+        if (motion.failed) return;
+        this.read(sample);
+        yield;
+      }
+    }
+  }
+
+  /** Goes on with other inputs: a new piece of the motion, though of much the same steps. */
+  driveOn() {
+    const { motion } = this;
+    const { step, inARow } = motion;
+    motion.begin();
+    [motion.step, motion.inARow] = [step, inARow];
+  }
+
+  read(sample) {
+    const { t, state } = this.motion;
+    const observables = this.machine.observe(t, state);
+    for (const channel of this.channels) {
+      const { state: place, observable } = channel.from;
+      channel.quantity[sample] = place === undefined ? observables[observable] : state[place];
+    }
+  }
+
+  /** What the sensors show of the quantities; what is left of each channel, where they are compared. */
+  see() {
+    return this.channels.map((channel) => {
+      const { gain, bias, delay, quantity, now, measured } = channel;
+      let [sum, count] = [0, 0];
+      for (const { first, samples, judged } of this.windows) {
+        const [times, values] = [this.times, quantity].map((all) => all.subarray(first, first + samples));
+        for (let sample = 0; sample < samples; sample += 1) {
+          const value = delay === 0 ? values[sample] : interpolated(times, values, times[sample] - delay, sample);
+          const compared = sample >= judged[0] && sample < judged[1];
+          const seen = gain * value + bias;
+          now[first + sample] = compared ? seen : NaN;
+          if (!Number.isFinite(measured[first + sample])) continue;
+          count += 1;
+          if (compared) sum += (seen - measured[first + sample]) ** 2;
+        }
+      }
+      return Math.sqrt(sum / Math.max(1, count));
+    });
+  }
+}
+
+/** Everything that changes while the page is open. */
+class Page {
+  constructor(exports) {
+    this.playback = new Playback(model, exports);
+    this.breaks = new Set(model.windows.map(({ first }) => first));
+    this.canvas = element("strips");
+    this.canvas.style.setProperty("--channels", model.channels.length);
+    this.controls = Array.from(document.querySelectorAll("[data-kind]"));
+    for (const control of this.controls) join(control, (value) => this.change(control.dataset, value));
+    element("defaults").addEventListener("click", () => {
+      for (const control of this.controls) control.reset();
+    });
+    const again = () => this.draw();
+    addEventListener("resize", again);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
+    for (const [place, { left, unit }] of model.channels.entries()) this.write("before", place, left[0], unit);
+    this.begin();
+  }
+
+  /** Sets a parameter, or a sensor's gain, bias or delay; without a value what was found. */
+  change({ kind, place }, value) {
+    const { machine, declared, channels } = this.playback;
+    if (kind === "parameter") {
+      machine.parameters[place] = value ?? declared[place];
+      machine.prepare();
+    } else {
+      channels[place][kind] = value ?? model.channels[place][kind];
+    }
+    this.begin();
+  }
+
+  begin() {
+    this.work = this.playback.follow();
+    this.started = performance.now();
+    if (!this.pending) this.later();
+  }
+
+  later() {
+    this.pending = true;
+    setTimeout(() => this.go(), 0);
+  }
+
+  /** Computes for a while; draws when all is there. */
+  go() {
+    this.pending = false;
+    const deadline = performance.now() + SLICE;
+    while (performance.now() < deadline) {
+      if (this.work.next().done) {
+        this.finish();
+        return;
+      }
+    }
+    if (performance.now() - this.started > LONGEST_WAIT) {
+      say("status", "This motion changes too fast to be followed here.");
+      return;
+    }
+    say("status", "Computing …");
+    this.later();
+  }
+
+  finish() {
+    const left = this.playback.see();
+    for (const [place, value] of left.entries()) this.write("now", place, value, model.channels[place].unit);
+    say("status", this.obstacle());
+    this.draw();
+  }
+
+  obstacle() {
+    const { machine, motion } = this.playback;
+    if (!machine.usable) return "With this value the mass matrix is not positive definite: there is no motion.";
+    return motion.failed ? "With this value the motion cannot be followed to the end." : "";
+  }
+
+  write(which, place, value, unit) {
+    const cell = document.querySelectorAll(`[data-left=${which}]`)[place];
+    const { number, prefix } = scaled(value, unit);
+    cell.textContent = Number.isFinite(value) ? `${number} ${prefix}` : "–";
+    cell.dataset.value = value;
+  }
+
+  draw() {
+    drawStrips(this.canvas, this.playback.times, this.breaks, this.playback.channels);
+  }
+}
+
+/** A root mean square of three digits, in a multiple of its unit that reads well. */
+function scaled(value, unit) {
+  const single = /^(m|s|N|rad|V|A|W|J|Pa)(?=$|\/| )/.test(unit);
+  const steps = [
+    [1, ""],
+    [1e-3, "m"],
+    [1e-6, "µ"],
+    [1e-9, "n"],
+  ];
+  const [size, prefix] = (single && steps.find(([least]) => Math.abs(value) >= 0.9995 * least)) || steps[0];
+  return { number: shown(value / size, 3), prefix: unit === "1" ? "" : prefix + unit };
+}
+
+WebAssembly.instantiate(bytes(model.module), {}).then(
+  ({ instance }) => new Page(instance.exports),
+  (error) => {
+    say("status", `This browser does not run the model: ${error.message}`);
+  },
+);

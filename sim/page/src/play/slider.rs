@@ -1,0 +1,155 @@
+//! Sliders with a number beside them, for what a page can change.
+
+use eomgen_codegen::symbolic::formula::{Formula, Symbol};
+use eomgen_model_spec::model::Parameter;
+use maud::{Markup, html};
+
+use crate::formula::formula;
+
+/// In how many steps a slider goes from one end to the other.
+const STEPS: f64 = 400.0;
+
+/// A number that a page can change.
+#[derive(Clone, Debug)]
+pub struct Slider<'m> {
+    /// Its name.
+    pub name: String,
+    /// The unit that it is shown in.
+    pub unit: String,
+    /// What it is, in words.
+    pub doc: &'m str,
+    /// Its place among those of its kind.
+    pub place: usize,
+    /// How much one of its unit is in SI.
+    pub factor: f64,
+    /// In its unit, as are the ends.
+    pub value: f64,
+    /// The lower end.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+}
+
+impl<'m> Slider<'m> {
+    /// A parameter in its declared unit, at this value in SI. Without declared ends from 0 to twice
+    /// its value.
+    pub fn of_parameter(parameter: &'m Parameter, place: usize, value: f64) -> Self {
+        let unit = &parameter.unit;
+        let value = unit.from_si(value);
+        let (low, high) = around(value);
+        let (min, max) = (parameter.min, parameter.max);
+        let low = min.map_or(low, |min| unit.from_si(min));
+        let high = max.map_or(high, |max| unit.from_si(max));
+        Self {
+            name: parameter.name.clone(),
+            unit: printed(&unit.to_string()),
+            doc: &parameter.doc,
+            place,
+            factor: unit.to_si(1.0),
+            value,
+            low: low.min(value),
+            high: high.max(value),
+        }
+    }
+
+    /// Its markup. `kind` and place are what the script knows it by.
+    pub fn control(&self, kind: &str) -> Markup {
+        let Self {
+            name,
+            unit,
+            doc,
+            place,
+            value,
+            low,
+            high,
+            factor,
+        } = self;
+
+        let id = format!("{kind}-{place}");
+        let step = (high / STEPS - low / STEPS).max(f64::MIN_POSITIVE);
+        let [value, low, high, step] = [*value, *low, *high, step].map(written);
+        html! {
+            div.control data-kind=(kind) data-place=(place) data-factor=(written(*factor)) {
+                label.name for=(id) {
+                    (formula(&Formula::Symbol(Symbol::of_state(name))))
+                    @if unit != "1" { span.unit { (unit) } }
+                }
+                input type="number" step="any" value=(value) aria-label={ (name) " in " (unit) };
+                input id=(id) type="range" min=(low) max=(high) step=(step) value=(value)
+                    aria-label={ (name) " in " (unit) ", slider" };
+                @if !doc.is_empty() { small { (doc) } }
+            }
+        }
+    }
+}
+
+/// From 0 to twice a value; around 0 where it is that. All finite.
+fn around(value: f64) -> (f64, f64) {
+    let twice = (2.0 * value).clamp(f64::MIN, f64::MAX);
+    if value > 0.0 {
+        (0.0, twice)
+    } else if value < 0.0 {
+        (twice, 0.0)
+    } else {
+        (-1.0, 1.0)
+    }
+}
+
+/// A number with all its digits, short where it is large or small.
+fn written(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || (1e-4..1e6).contains(&size) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
+/// A unit with its exponents raised; those that are fractions stay as they are.
+pub fn printed(unit: &str) -> String {
+    if unit.contains("^(") {
+        return unit.to_owned();
+    }
+    let mut raised = false;
+    let mut text = String::new();
+    for letter in unit.chars() {
+        raised = letter == '^' || raised && (letter == '-' || letter.is_ascii_digit());
+        match letter {
+            '^' => {}
+            '-' if raised => text.push('⁻'),
+            '0'..='9' if raised => {
+                let digit = letter as usize - '0' as usize;
+                text.extend("⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit));
+            }
+            other => text.push(other),
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exponents_are_raised() {
+        for (unit, shown) in [
+            ("m/s^2", "m/s²"),
+            ("kg m^-10", "kg m⁻¹⁰"),
+            ("N m", "N m"),
+            ("1", "1"),
+            ("m^(1/2)", "m^(1/2)"),
+        ] {
+            assert_eq!(printed(unit), shown);
+        }
+    }
+
+    #[test]
+    fn a_slider_has_two_ends() {
+        for value in [0.0, 1.0, -2.0, 1.7e308, -1.7e308, 5e-324] {
+            let (low, high) = around(value);
+            assert!(low <= value && value <= high && low < high, "{value}");
+            assert!(low.is_finite() && high.is_finite(), "{value}");
+        }
+    }
+}
