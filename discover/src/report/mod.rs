@@ -2,7 +2,7 @@
 //! [`result`] put together in `discovery`, where model and records disagree ([`location`]), the
 //! specification with what was found ([`write_back`]) run again ([`mod@resimulation`]); documents
 //! (`json`) and the page (`page`) with its `pictures` and what was measured over what is simulated
-//! (`overlay`), and what was found, to be moved in the page (`playback`).
+//! (`overlay`), how numbers are written there (`quantity`), and what was found, to be moved in the page (`playback`).
 
 mod discovery;
 mod json;
@@ -12,6 +12,7 @@ mod overlay;
 mod page;
 mod pictures;
 mod playback;
+mod quantity;
 pub mod resimulation;
 pub mod result;
 pub mod run;

@@ -40,8 +40,13 @@ pub const WIDE: Look = Look {
     still: false,
 };
 
-/// What the probe saw in a page.
+/// What the probe saw in a page to play with.
 pub fn probed(browser: &str, page: &Path, look: Look) -> Value {
+    probed_by("probe.js", browser, page, look)
+}
+
+/// What a probe saw in a page.
+pub fn probed_by(probe: &str, browser: &str, page: &Path, look: Look) -> Value {
     let script = |name: &str| project().join("tests/tests/page").join(name);
     let Look { width, dark, still } = look;
     let look = serde_json::json!({ "width": width, "dark": dark, "still": still });
@@ -50,7 +55,7 @@ pub fn probed(browser: &str, page: &Path, look: Look) -> Value {
         .arg(script("look.mjs"))
         .arg(browser)
         .arg(page)
-        .arg(script("probe.js"))
+        .arg(script(probe))
         .arg(profile.path())
         .arg(look.to_string())
         .output()

@@ -1,5 +1,5 @@
 //! `eomgen page`: the module of WebAssembly that its pages compute with, bit by bit; the pages, in a
-//! browser; and what the command refuses.
+//! browser; what the command refuses; and the report of a discovery, which computes as they do.
 
 mod bits;
 mod browser;
@@ -7,6 +7,7 @@ mod command;
 mod drawing;
 mod hostile;
 mod motion;
+mod report;
 
 use std::path::{Path, PathBuf};
 

@@ -4,8 +4,8 @@
 use eomgen_page::{section, table};
 use maud::{Markup, html};
 
-use crate::report::page::quantity::readable;
 use crate::report::page::verdict::words;
+use crate::report::quantity::readable;
 use crate::report::result::{EffectAt, RejectedEffect};
 
 /// More rows than this are folded.

@@ -3,8 +3,8 @@
 use eomgen_page::{section, table};
 use maud::{Markup, html};
 
-use crate::report::page::quantity::{estimate, percent, plain};
 use crate::report::page::verdict::words;
+use crate::report::quantity::{estimate, percent, plain};
 use crate::report::result::{Discovery, FoundEffect, Status, Step};
 
 /// The effects; nothing where there are none, as the verdict says so.
@@ -53,8 +53,8 @@ fn effect(effect: &FoundEffect) -> Markup {
             }
             dt { "evidence" }
             dd {
-                "without it what is left of the held-out records grows by "
-                (percent(effect.statistics.held_out / (1.0 - effect.statistics.held_out)))
+                "with it " (percent(effect.statistics.held_out))
+                " less is left of the held-out records"
                 ", " (plain(effect.statistics.held_out_errors, 2)) " standard errors"
             }
         }

@@ -3,7 +3,7 @@
 use eomgen_page::table;
 use maud::{Markup, html};
 
-use crate::report::page::quantity::{plain, quantity};
+use crate::report::quantity::{plain, quantity};
 use crate::report::result::{ChannelGap, Compared, OnRecords};
 
 pub(super) fn table_of(compared: &Compared) -> Markup {

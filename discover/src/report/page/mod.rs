@@ -4,14 +4,13 @@
 //!
 //! `verdict` is its first sentence, `gap` what is left of each channel, `found` the effects and how
 //! they were found, `alternatives` what was not taken, `nuisances` what was declared beside what
-//! came out, `origin` files and hashes, `quantity` how numbers are written.
+//! came out, `origin` files and hashes.
 
 mod alternatives;
 mod found;
 mod gap;
 mod nuisances;
 mod origin;
-mod quantity;
 mod verdict;
 
 #[cfg(test)]
@@ -21,8 +20,8 @@ use eomgen_page::{ScriptedDocument, document, scripted_document, section};
 use maud::{Markup, html};
 
 use crate::report::playback::Playback;
+use crate::report::quantity::readable;
 use crate::report::result::{Compared, Comparison, Discovery};
-use quantity::readable;
 
 impl Comparison {
     /// The page, a complete HTML document that refers to nothing outside.

@@ -3,7 +3,7 @@
 use eomgen_page::{section, table};
 use maud::{Markup, html};
 
-use crate::report::page::quantity::estimate;
+use crate::report::quantity::{estimate, to_tenths};
 use crate::report::result::{Compared, Nuisance};
 
 /// From so many standard deviations on something is worth a remark: three is the most that a fit
@@ -54,7 +54,7 @@ fn row(of: &Nuisance) -> Markup {
             td.number { (estimate(mean, sd, unit)) }
             td.number { (estimate(of.fitted.value, of.fitted.sd, unit)) }
             td class=[class] {
-                @if off.is_finite() { (format!("{:.1}", off).replace('-', "−")) } @else { "–" }
+                @if off.is_finite() { (to_tenths(off)) } @else { "–" }
             }
         }
     }

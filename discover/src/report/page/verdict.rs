@@ -3,7 +3,7 @@
 
 use maud::{Markup, html};
 
-use crate::report::page::quantity::{estimate, percent, plain};
+use crate::report::quantity::{estimate, percent, plain};
 use crate::report::result::{
     Compared, Comparison, Discovery, EffectAt, FoundEffect, OnRecords, Status, Verdict,
 };

@@ -11,6 +11,7 @@ use crate::fit::fitted::Fit;
 use crate::model::estimation_model::EstimationModel;
 use crate::model::problem::EstimationProblem;
 use crate::report::playback::stretch::{Piece, Stretch};
+use crate::report::quantity::quantity;
 use crate::thresholds;
 
 /// The relative tolerance of `motion.js`.
@@ -26,23 +27,25 @@ const DIFFERENT: f64 = 0.05;
 
 /// Whether explicit steps leave what the fit leaves, at the numbers of the specification that was
 /// written.
+///
+/// # Errors
+/// Why a page cannot compute it, in words.
 pub(super) fn as_fitted(
     problem: &EstimationProblem<'_>,
     best: &Fit,
     model: &EstimationModel,
     stretch: &Stretch,
-) -> bool {
+) -> Result<(), String> {
     let channels = problem.noise.len();
     let mut sums = vec![0.0; channels];
     let mut counts = vec![0.0; channels];
     let mut steps = 0;
     for piece in &stretch.windows {
-        let Some((seen, own)) = seen(problem, best, model, stretch, piece) else {
-            return false;
-        };
+        let seen = seen(problem, best, model, stretch, piece);
+        let (seen, own) = seen.ok_or("the motion cannot be followed in short explicit steps")?;
         steps += own;
         if steps > MOST_STEPS {
-            return false;
+            return Err("the motion is too fast for the steps of a page".to_owned());
         }
         let measured = stretch.measured[piece.first * channels..].iter();
         for (number, (seen, measured)) in seen.iter().zip(measured).enumerate() {
@@ -56,10 +59,19 @@ pub(super) fn as_fitted(
         }
     }
     let left = sums.iter().zip(&counts).zip(&stretch.left);
-    left.into_iter().all(|((sum, count), [_, fitted])| {
+    for (channel, ((sum, count), [_, fitted])) in problem.dataset.channels.iter().zip(left) {
         let left = f64::sqrt(sum / f64::max(*count, 1.0));
-        (left - fitted).abs() <= DIFFERENT * fitted
-    })
+        // What is not a number is no small difference.
+        let agree = (left - fitted).abs() <= DIFFERENT * fitted;
+        if !agree {
+            let [left, fitted] = [left, *fitted].map(|left| quantity(left, 3, &channel.unit));
+            return Err(format!(
+                "its motion unfolds so fast that another method leaves {left} in {} where the fit leaves {fitted}",
+                channel.name
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// What the sensors show of a window, and how many steps it takes; none where it cannot be followed.

@@ -25,7 +25,11 @@ use crate::search::found::Accepted;
 const STYLE: &str = include_str!("playback.css");
 
 /// Its own part of the script.
-const SCRIPT: [&str; 2] = [include_str!("strips.js"), include_str!("playback.js")];
+const SCRIPT: [&str; 3] = [
+    include_str!("strips.js"),
+    include_str!("playback.js"),
+    include_str!("panel.js"),
+];
 
 /// A part of a page that computes, or why there is none.
 #[derive(Clone, Debug)]
@@ -33,7 +37,7 @@ pub(crate) enum Playback {
     /// What is shown, and the data of its script.
     Computed { body: Markup, data: String },
     /// There is something to move, but a page cannot compute it: why.
-    Still(&'static str),
+    Still(String),
     /// There is nothing to move.
     None,
 }
@@ -52,17 +56,15 @@ impl Playback {
             return Self::None;
         };
         let Ok(module) = wasm::emit(model.program()) else {
-            return Self::Still("its equations cannot be emitted as WebAssembly");
+            return Self::Still("its equations cannot be emitted as WebAssembly".to_owned());
         };
         let Some(stretch) = Stretch::of(problem, null, best) else {
             return Self::Still(
                 "the motion cannot be followed at the beginning of the test record",
             );
         };
-        if !followed::as_fitted(problem, best, &model, &stretch) {
-            return Self::Still(
-                "the steps that a page would need are too many, or lead elsewhere than the fit",
-            );
+        if let Err(why) = followed::as_fitted(problem, best, &model, &stretch) {
+            return Self::Still(why);
         }
         let controls = controls(problem, best, &model, accepted);
         let data = data::json(problem, best, &model, &stretch, &module);
@@ -100,7 +102,7 @@ fn body(problem: &EstimationProblem<'_>, stretch: &Stretch, controls: &Markup) -
             (controls)
             table {
                 thead { tr {
-                    th scope="col" { "left of" }
+                    th scope="col" { "rms left of" }
                     th scope="col" { span.key.before {} "before" }
                     th scope="col" { span.key.now {} "now" }
                 } }

@@ -13,6 +13,19 @@ function limits(columns) {
   return [low - margin, high + margin];
 }
 
+/** In which multiple of its unit a magnitude reads well: its size in the unit, and how it is written. */
+function multiple(magnitude, unit) {
+  const takesPrefix = /^(m|s|N|rad|V|A|W|J|Pa)(?=$|\/| )/.test(unit);
+  const steps = [
+    [1, ""],
+    [1e-3, "m"],
+    [1e-6, "µ"],
+    [1e-9, "n"],
+  ];
+  const [size, prefix] = (takesPrefix && steps.find(([least]) => magnitude >= 0.9995 * least)) || steps[0];
+  return { size, unit: unit === "1" ? "" : prefix + unit };
+}
+
 /** A strip of a canvas over time: where its numbers stand. */
 class Strip {
   constructor(context, { left, right, top, bottom }, [start, end], [low, high]) {
@@ -21,8 +34,10 @@ class Strip {
     this.up = (value) => bottom - ((value - low) / (high - low || 1)) * (bottom - top);
   }
 
-  frame(colour, title) {
+  frame(colour, name, unit) {
     const { context, left, right, top, bottom, low, high } = this;
+    const of = multiple(Math.max(Math.abs(low), Math.abs(high)), unit);
+    const title = of.unit === "" ? name : `${name} [${of.unit}]`;
     context.strokeStyle = colour.line;
     context.lineWidth = 1;
     context.beginPath();
@@ -33,8 +48,8 @@ class Strip {
     context.stroke();
     context.fillStyle = colour.soft;
     context.textAlign = "right";
-    context.fillText(shown(high, 3), left - 6, top + 10, left - 8);
-    context.fillText(shown(low, 3), left - 6, bottom, left - 8);
+    context.fillText(shown(high / of.size, 3), left - 6, top + 10, left - 8);
+    context.fillText(shown(low / of.size, 3), left - 6, bottom, left - 8);
     context.textAlign = "left";
     context.fillStyle = colour.ink;
     context.fillText(title, left, top - 6, right - left);
@@ -73,16 +88,15 @@ function drawStrips(canvas, times, breaks, channels) {
   for (const [place, { name, unit, measured, before, now }] of channels.entries()) {
     const top = place * tall;
     const less = (column) => column.map((value, sample) => value - measured[sample]);
-    const of = unit === "1" ? "" : ` [${unit}]`;
     const motion = { left, right, top: top + 20, bottom: top + 0.58 * tall };
     const both = new Strip(context, motion, span, limits([measured, before]));
-    both.frame(colour, `${name}${of}`);
+    both.frame(colour, name, unit);
     both.curve(times, measured, breaks, colour.soft, 5);
     both.curve(times, before, breaks, colour.marks[1], 1.6);
     both.curve(times, now, breaks, colour.marks[0], 1.6);
     const [first, second] = [less(before), less(now)];
     const off = new Strip(context, { left, right, top: top + 0.58 * tall + 28, bottom: top + tall - 10 }, span, limits([first, [0]]));
-    off.frame(colour, `${name}: simulated minus measured${of}`);
+    off.frame(colour, `${name}: simulated minus measured`, unit);
     off.curve(times, first, breaks, colour.marks[1], 1.4);
     off.curve(times, second, breaks, colour.marks[0], 1.4);
   }

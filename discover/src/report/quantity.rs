@@ -14,7 +14,7 @@ const PLAIN_WITHOUT_PREFIX: std::ops::Range<f64> = 1e-3..1e5;
 
 /// A value with one standard deviation: `12.03 ± 0.02 N`, the deviation with one digit, or two where
 /// the first is 1. A deviation that is not known is left out.
-pub(super) fn estimate(value: f64, sd: f64, unit: &str) -> String {
+pub(crate) fn estimate(value: f64, sd: f64, unit: &str) -> String {
     if !(sd.is_finite() && sd > 0.0) {
         return quantity(value, 4, unit);
     }
@@ -34,7 +34,7 @@ pub(super) fn estimate(value: f64, sd: f64, unit: &str) -> String {
 }
 
 /// A value with so many digits: `5.73 mm`.
-pub(super) fn quantity(value: f64, digits: i32, unit: &str) -> String {
+pub(crate) fn quantity(value: f64, digits: i32, unit: &str) -> String {
     if !value.is_finite() {
         return "not known".to_owned();
     }
@@ -45,15 +45,20 @@ pub(super) fn quantity(value: f64, digits: i32, unit: &str) -> String {
 }
 
 /// A plain number with so many digits: `57300`, `1.02`.
-pub(super) fn plain(value: f64, digits: i32) -> String {
+pub(crate) fn plain(value: f64, digits: i32) -> String {
     if !value.is_finite() {
         return "not known".to_owned();
     }
     to_place(value, exponent(value.abs()) - digits + 1)
 }
 
+/// A plain number with one digit after the point.
+pub(crate) fn to_tenths(value: f64) -> String {
+    to_place(value, -1)
+}
+
 /// A part as percents; all but all is not called all.
-pub(super) fn percent(part: f64) -> String {
+pub(crate) fn percent(part: f64) -> String {
     match 100.0 * part {
         p if !p.is_finite() => "an unknown part".to_owned(),
         p if p >= 99.95 => "all".to_owned(),
@@ -113,7 +118,7 @@ fn to_place(value: f64, place: i32) -> String {
 }
 
 /// A sentence of the documents with its numbers written for people: `±` and powers of ten.
-pub(super) fn readable(text: &str) -> String {
+pub(crate) fn readable(text: &str) -> String {
     let words = text.split(' ').map(|word| match word {
         "+-" => "±".to_owned(),
         word => number_word(word).unwrap_or_else(|| word.to_owned()),
@@ -195,6 +200,7 @@ mod tests {
         assert_eq!(percent(0.954), "95 %");
         assert_eq!(percent(0.9949), "99.5 %");
         assert_eq!(percent(0.99991), "all");
+        assert_eq!(to_tenths(-0.04), "0.0");
         assert_eq!(percent(f64::NAN), "an unknown part");
     }
 }
