@@ -60,7 +60,7 @@ impl Playback {
         };
         let Some(stretch) = Stretch::of(problem, null, best) else {
             return Self::Still(
-                "the motion cannot be followed at the beginning of the test record",
+                "the motion cannot be followed at the beginning of the test record".to_owned(),
             );
         };
         if let Err(why) = followed::as_fitted(problem, best, &model, &stretch) {
