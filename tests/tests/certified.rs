@@ -115,7 +115,7 @@ fn a_certificate_beside_the_source_is_about_that_source() {
     assert_eq!(certificate["model"], "stamping_lever");
     assert_eq!(certificate["passed"], true);
     assert_eq!(certificate["specification_sha256"], sha256(LEVER));
-    assert_eq!(certificate["source_sha256"], sha256(&read(&out, "lib.rs")));
+    assert_eq!(certificate["source_sha256"], sha256(read(&out, "lib.rs")));
     let version = accepted(&["--version"]);
     assert_eq!(certificate["generator"], version.trim());
     assert_eq!(certificate["parameters"]["l"], 0.4, "in SI");
