@@ -70,7 +70,7 @@ pub enum Command {
     Discover(Discover),
     /// Measure the motion over a grid of parameters.
     #[command(
-        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
+        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR --engine slurm --shards 100\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
     )]
     Sweep(Sweep),
     /// Put the shards of a sweep together; refuses where some are missing.
@@ -444,6 +444,15 @@ pub struct Trim {
     pub json: bool,
 }
 
+/// What runs the shards of a sweep on many machines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Engine {
+    /// An array job, and a job that merges after it.
+    Slurm,
+    /// Tasks on the workers of a scheduler, by the Python package.
+    Dask,
+}
+
 /// Options of `sweep`.
 #[derive(Args)]
 pub struct Sweep {
@@ -483,7 +492,17 @@ pub struct Sweep {
     /// Compute part I of N only; `merge` puts the parts together.
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     pub shard: Option<String>,
-    /// How many threads compute; the result does not depend on it. One per core by default.
+    /// Have all shards run by a cluster's engine, in a folder that all of its machines see.
+    #[arg(long, value_enum)]
+    pub engine: Option<Engine>,
+    /// Into how many shards an engine parts the sweep; 16 by default.
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub shards: Option<u16>,
+    /// Where Dask's scheduler is, by default what DASK_SCHEDULER_ADDRESS says.
+    #[arg(long, value_name = "ADDRESS")]
+    pub scheduler: Option<String>,
+    /// How many threads compute; the result does not depend on it. One per core by default, and one for
+    /// a shard of an engine.
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Print one JSON document on what was done.

@@ -12,6 +12,7 @@ mod checked_in;
 mod commands;
 mod discovery;
 mod emission;
+mod engines;
 mod error;
 mod figures;
 mod fmu;

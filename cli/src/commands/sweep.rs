@@ -4,6 +4,7 @@ use eomgen_sweep::{Folder, Shard};
 use serde_json::{Value, json};
 
 use crate::arguments::Sweep;
+use crate::engines::{self, Submitted};
 use crate::error::{Result, say};
 use crate::progress::Bar;
 use crate::settings::setting;
@@ -13,6 +14,7 @@ use crate::sweep_job::{check_measures, grid, job, measures, model, refused};
 /// Runs the command.
 pub fn run(options: &Sweep) -> Result {
     check_measures(&options.measure)?;
+    engines::check(options)?;
     let shard = options
         .shard
         .as_deref()
@@ -28,6 +30,10 @@ pub fn run(options: &Sweep) -> Result {
     let measures = measures(options, &model, &grid)?;
     let job = job(&model, &grid, &set, &measures)?;
     let folder = Folder::open(&options.out, job).map_err(refused)?;
+    if let Some(engine) = options.engine {
+        let Submitted { document, text } = engines::submit(engine, options)?;
+        return end(options, document, json!({}), &text);
+    }
     let mut bar = None;
     let mut progress = |computed: usize, whole: usize| {
         let bar = bar.get_or_insert_with(|| Bar::new("sweeping", whole as f64, "points"));

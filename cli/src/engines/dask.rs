@@ -1,0 +1,57 @@
+//! Dask: the Python package's `eomgen.dask` spreads the shards over a scheduler's workers.
+
+use std::process::{Command, Stdio};
+
+use serde_json::json;
+
+use super::Submitted;
+use super::shards::Commands;
+use crate::arguments::Sweep;
+use crate::error::{Error, Result};
+
+/// Runs the sweep, and waits for it.
+pub fn run(options: &Sweep) -> Result<Submitted> {
+    let commands = Commands::of(options)?;
+    let scheduler = options
+        .scheduler
+        .clone()
+        .or_else(|| std::env::var("DASK_SCHEDULER_ADDRESS").ok());
+    let scheduler = scheduler.ok_or_else(|| {
+        Error::input(
+            "--engine dask: give --scheduler the address of its scheduler, such as tcp://node1:8786, or set \
+             DASK_SCHEDULER_ADDRESS",
+        )
+    })?;
+    let count = commands.count.to_string();
+    let threads = commands.threads.unwrap_or(1).to_string();
+    // What the module says goes to people, on stderr; stdout is this program's.
+    let status = Command::new("python3")
+        .args([
+            "-m",
+            "eomgen.dask",
+            "--scheduler",
+            &scheduler,
+            "--shards",
+            &count,
+        ])
+        .args(["--", &commands.program])
+        .args(&commands.sweep)
+        .args(["--threads", &threads])
+        .stdout(Stdio::null())
+        .status()
+        .map_err(|error| {
+            Error::input(format!(
+                "--engine dask: python3 cannot be run here ({error})"
+            ))
+        })?;
+    if status.success() {
+        return Ok(Submitted {
+            document: json!({ "engine": "dask", "shards": commands.count, "folder": options.out.display().to_string() }),
+            text: format!("{}: {count} shards, merged\n", options.out.display()),
+        });
+    }
+    Err(Error::input(
+        "--engine dask: the sweep was not run, or not to its end; the parts so far are there. It needs the Python \
+         package (pip install './python[dask]') for the python3 that is found first",
+    ))
+}

@@ -1,0 +1,115 @@
+"""Sweeps over a Dask cluster: each task is one shard, run by the program `eomgen` on a worker.
+
+    >>> from dask.distributed import Client
+    >>> import eomgen.dask
+    >>> client = Client("tcp://node1:8786")
+    >>> eomgen.dask.sweep(client, ["arm.toml", "--vary", "omega=10:60:100", "--measure", "poincare",
+    ...                            "--out", "map"], shards=32)
+
+All workers have to see the same files. A worker that is lost takes nothing with it: Dask gives its
+shards to others, which find the parts that it left. `eomgen sweep --engine dask` comes here.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+from typing import Any, Callable, Optional, Sequence
+
+__all__ = ["SweepError", "sweep"]
+
+
+class SweepError(RuntimeError):
+    """A shard that was refused, or was killed time and again; what it said."""
+
+
+def _run(command: Sequence[str], folder: Optional[str] = None) -> str:
+    """Runs the program, in the folder that its relative paths are of; what it says."""
+    try:
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise SweepError(f"{command[0]} cannot be run: {error.strerror}") from None
+    if done.returncode != 0:
+        why = done.stderr.strip() or f"it ended with {done.returncode}"
+        raise SweepError(f"{' '.join(command)}: {why}")
+    return done.stdout
+
+
+def _folder(arguments: Sequence[str]) -> str:
+    """What follows --out."""
+    for place, argument in enumerate(arguments):
+        if argument == "--out" and place + 1 < len(arguments):
+            return arguments[place + 1]
+        if argument.startswith("--out="):
+            return argument[len("--out=") :]
+    raise ValueError("the arguments of a sweep hold --out and a folder")
+
+
+def sweep(
+    client: Any,
+    arguments: Sequence[str],
+    shards: int = 16,
+    *,
+    program: str = "eomgen",
+    progress: Optional[Callable[[int, int], object]] = None,
+) -> str:
+    """Runs all shards of a sweep on a cluster and merges them; what `eomgen merge` says.
+
+    client: a dask.distributed.Client. arguments: those of `eomgen sweep`, without `--shard`, as texts.
+    shards: into how many the sweep is parted. program: the program's path on the workers and here.
+    progress: called with how many shards are done, and how many there are.
+
+    Raises SweepError where a shard is refused, and passes on what Dask raises: KilledWorker where
+    the workers of a shard are lost time and again.
+    """
+    from dask.distributed import as_completed
+
+    arguments = [os.fspath(argument) for argument in arguments]
+    if not isinstance(shards, int) or isinstance(shards, bool) or not 1 <= shards <= 100_000:
+        raise ValueError(f"shards = {shards!r}: expected a whole number from 1 to 100000")
+    folder, here = _folder(arguments), os.getcwd()
+    numbered = [f"{number}/{shards}" for number in range(1, shards + 1)]
+    commands = [[program, "sweep", *arguments, "--shard", shard] for shard in numbered]
+    # Not a function of its arguments alone: it has to be run, whatever ran before.
+    futures = client.map(_run, commands, folder=here, pure=False)
+    try:
+        for done, future in enumerate(as_completed(futures), start=1):
+            future.result()
+            if progress is not None:
+                progress(done, shards)
+    except BaseException:
+        client.cancel(futures)
+        raise
+    return _run([program, "merge", folder])
+
+
+def _main() -> int:
+    parser = argparse.ArgumentParser(prog="python3 -m eomgen.dask")
+    parser.add_argument("--scheduler", required=True)
+    parser.add_argument("--shards", type=int, required=True)
+    parser.add_argument("command", nargs="+")
+    given = parser.parse_args()
+    try:
+        from dask.distributed import Client
+    except ImportError:
+        print("error: Dask is not installed: pip install 'dask[distributed]'", file=sys.stderr)
+        return 1
+    program, _, *arguments = given.command
+
+    def tell(done: int, whole: int) -> None:
+        if sys.stderr.isatty():
+            print(f"\r{done} of {whole} shards", end="\n" if done == whole else "", file=sys.stderr)
+
+    try:
+        with Client(given.scheduler, timeout="10s") as client:
+            print(sweep(client, arguments, given.shards, program=program, progress=tell), end="")
+    except Exception as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(_main())
