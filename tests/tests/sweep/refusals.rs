@@ -31,6 +31,30 @@ fn another_sweep_in_the_folder_is_refused_and_left_alone() {
 }
 
 #[test]
+fn engines_are_asked_for_what_they_can_do() {
+    let place = Place::new();
+    for (more, what) in [
+        (&["--engine", "pbs"][..], "slurm, dask"),
+        (
+            &["--engine", "slurm", "--shard", "1/2"],
+            "--shards says how many",
+        ),
+        (&["--shards", "4"], "--shards goes with --engine"),
+        (&["--engine", "slurm", "--shards", "0"], "1..=1000"),
+        (&["--engine", "slurm", "--shards", "1001"], "1..=1000"),
+        (
+            &["--engine", "slurm", "--scheduler", "tcp://a:1"],
+            "--engine dask",
+        ),
+        (&["--engine", "dask"], "DASK_SCHEDULER_ADDRESS"),
+    ] {
+        let message = refuse(&place.sweep("map", &[&MAP[..], more].concat()));
+        assert!(message.contains(what), "{more:?}: {message}");
+        assert!(!place.at("map/sweep.parquet").exists());
+    }
+}
+
+#[test]
 fn points_without_a_number_say_why() {
     let place = Place::new();
     // Without mass there is no motion, at a frequency of 0 no forcing period.
