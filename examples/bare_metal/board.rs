@@ -1,6 +1,7 @@
 //! The controller on a Cortex-M without operating system, standard library or allocator:
 //! prints the bits of the motion, the instructions that a call takes and the depth of the
-//! stack, through the semihosting of a debugger or an emulator.
+//! stack, through the semihosting of a debugger or an emulator. `controller` is the one in Rust or
+//! the one in C.
 //!
 //! Instructions are counted by the SysTick timer. Under QEMU with `-icount shift=0` an
 //! instruction takes a nanosecond and a tick of the 25 MHz clock 40 of them.
@@ -12,8 +13,9 @@ use core::hint::black_box;
 use core::panic::PanicInfo;
 use core::ptr::{addr_of, read_volatile, write_volatile};
 
-use arm::{Parameters, rates_into};
-use controller::{Coefficients, Inputs, Real, State, displaced, prepared, step};
+use controller::{
+    Coefficients, Inputs, Parameters, Real, State, displaced, prepared, rates_into, step,
+};
 
 /// Steps of the run.
 const STEPS: u32 = 250;
@@ -174,7 +176,7 @@ fn stack_depth(work: impl FnOnce()) -> u32 {
 /// A function of its own, so that its stack is seen.
 #[inline(never)]
 fn prepared_from(parameters: &Parameters) -> Coefficients {
-    arm::Coefficients::prepare(parameters).cast()
+    controller::prepared_from(parameters)
 }
 
 #[unsafe(no_mangle)]

@@ -4,7 +4,8 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
-use arm::{Parameters, STATES, rates_into};
+use arm::STATES;
+pub use arm::{Parameters, rates_into};
 
 /// What all numbers are: `f64`, or `f32` with `--cfg single`.
 #[cfg(not(single))]
@@ -34,9 +35,15 @@ pub const GAIN: State = [
     23.76957, -1.397188, -0.8054563, -0.8642767, -0.8870597,
 ];
 
-/// The coefficients of the specification's parameters, prepared in double precision.
+/// The coefficients of parameters, prepared in double precision.
+#[inline]
+pub fn prepared_from(parameters: &Parameters) -> Coefficients {
+    arm::Coefficients::prepare(parameters).cast()
+}
+
+/// The coefficients of the specification's parameters.
 pub fn prepared() -> Coefficients {
-    arm::Coefficients::prepare(&Parameters::default()).cast()
+    prepared_from(&Parameters::default())
 }
 
 /// Where a run begins: the carrier displaced by 2 mm, at rest, the meshes loaded.

@@ -4,7 +4,8 @@ use controller::{Real, State, displaced, prepared, step};
 
 fn main() {
     let coefficients = prepared();
-    assert!(coefficients.positive_definite);
+    // A truth value in Rust, a number in C.
+    assert_eq!(i32::from(coefficients.positive_definite), 1);
     let mut state: State = displaced();
     for count in 1..=250_u32 {
         let t = (count - 1) as Real * controller::STEP;

@@ -1,0 +1,105 @@
+/* The controller of controller.rs in C, over the arm as emitted for C: the same operations in
+ * the same order, so the same motion to the bit. Compile with -std=c99 or -ffp-contract=off. */
+#include "planetary_arm_rig.h"
+#ifdef PREPARED_IN_DOUBLE
+/* The arm once more under another name and in double precision, see `run`. */
+#include "arm_in_double.h"
+#include <stddef.h>
+#endif
+
+typedef planetary_arm_rig_real real;
+typedef planetary_arm_rig_coefficients coefficients;
+enum { STATES = planetary_arm_rig_STATES };
+
+/* Length of a step, s. */
+static const real STEP = (real)20e-6;
+
+/* Torque per state, N m per m and N m per m/s: controller.rs says where it is from. */
+static const real GAIN[STATES] = {
+    (real)192.6589,  (real)456.0491,  (real)998.8651,   (real)-312.1875,   (real)-105.3722,
+    (real)20.75653,  (real)457.063,   (real)1.629354,   (real)5.443445,    (real)23.76957,
+    (real)-1.397188, (real)-0.8054563, (real)-0.8642767, (real)-0.8870597,
+};
+
+/* Declared by who calls from another language, see controller_in_c.rs. */
+#ifdef PREPARED_IN_DOUBLE
+typedef arm_in_double_parameters parameters_in_double;
+#else
+typedef planetary_arm_rig_parameters parameters_in_double;
+#endif
+void controller_default_parameters(parameters_in_double *parameters);
+void controller_prepare(const parameters_in_double *parameters, coefficients *prepared);
+void controller_displaced(real *state);
+void controller_step(real t, const real *state, const coefficients *arm, real *next);
+
+/* The specification's values. */
+void controller_default_parameters(parameters_in_double *parameters) {
+#ifdef PREPARED_IN_DOUBLE
+    arm_in_double_default_parameters(parameters);
+#else
+    planetary_arm_rig_default_parameters(parameters);
+#endif
+}
+
+/* The arm's coefficients, prepared in double precision whatever the precision of the rest. */
+void controller_prepare(const parameters_in_double *parameters, coefficients *prepared) {
+#ifdef PREPARED_IN_DOUBLE
+    /* Numbers, and a flag behind them. */
+    enum { NUMBERS = offsetof(coefficients, positive_definite) / sizeof(real) };
+    arm_in_double_coefficients in_double;
+    const double *from = (const double *)&in_double;
+    real *to = (real *)prepared;
+    arm_in_double_prepare(parameters, &in_double);
+    for (int i = 0; i < NUMBERS; ++i) {
+        to[i] = (real)from[i];
+    }
+    prepared->positive_definite = in_double.positive_definite;
+#else
+    planetary_arm_rig_prepare(parameters, prepared);
+#endif
+}
+
+/* Where a run begins: the carrier displaced by 2 mm, at rest, the meshes loaded. */
+void controller_displaced(real *state) {
+    for (int i = 0; i < STATES; ++i) {
+        state[i] = 0;
+    }
+    state[0] = state[1] = (real)30e-6;
+    state[2] = (real)2e-3;
+}
+
+/* The torque of the motor for a state, N m. */
+static real torque(const real *state) {
+    real sum = 0;
+    for (int i = 0; i < STATES; ++i) {
+        sum += GAIN[i] * state[i];
+    }
+    return -sum;
+}
+
+/* state + h rate */
+static void moved(const real *state, real h, const real *rate, real *to) {
+    for (int i = 0; i < STATES; ++i) {
+        to[i] = state[i] + h * rate[i];
+    }
+}
+
+/* One step of the closed loop at time `t`, s: the torque for `state`, held while the arm moves
+ * by the classical method of Runge and Kutta. */
+void controller_step(real t, const real *state, const coefficients *arm, real *next) {
+    planetary_arm_rig_inputs inputs;
+    real at[STATES], at_begin[STATES], at_middle[STATES], again[STATES], at_end[STATES];
+    const real half = (real)0.5 * STEP;
+    inputs.u = torque(state);
+    planetary_arm_rig_rates(t, state, &inputs, arm, at_begin);
+    moved(state, half, at_begin, at);
+    planetary_arm_rig_rates(t + half, at, &inputs, arm, at_middle);
+    moved(state, half, at_middle, at);
+    planetary_arm_rig_rates(t + half, at, &inputs, arm, again);
+    moved(state, STEP, again, at);
+    planetary_arm_rig_rates(t + STEP, at, &inputs, arm, at_end);
+    for (int i = 0; i < STATES; ++i) {
+        const real between = at_middle[i] + again[i];
+        next[i] = state[i] + STEP / 6 * (at_begin[i] + 2 * between + at_end[i]);
+    }
+}
