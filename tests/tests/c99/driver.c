@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define POINTS 24
+#define POINTS 36
+/* From here on, something is extreme or no number at all. */
+#define EXTREME 24
 
 static uint64_t seed = 0x9e3779b97f4a7c15;
 
@@ -38,6 +40,9 @@ static void show(const char *what, const NAME_real *numbers, int count) {
 int main(void) {
     (void)defaults;
     static const double scales[4] = {1.0, 1e-2, 2e-5, 10.0};
+    const double extremes[6] = {
+        strtod("nan", NULL), strtod("inf", NULL), -strtod("inf", NULL), 1e308, -1e308, 5e-324
+    };
     static NAME_real mass[NAME_DEGREES_OF_FREEDOM][NAME_DEGREES_OF_FREEDOM];
     for (int point = 0; point < POINTS; ++point) {
         const double scale = scales[point % 4];
@@ -52,6 +57,9 @@ int main(void) {
             for (int i = 0; i < NAME_PARAMETERS; ++i) {
                 numbers[i] = (NAME_real)(defaults[i] * (1.0 + uniform(0.05)));
             }
+            if (point >= EXTREME) {
+                numbers[point % ROOM(NAME_PARAMETERS)] = (NAME_real)extremes[point / 2 % 6];
+            }
             NAME_parameters_from_array(numbers, &parameters);
         }
         NAME_prepare(&parameters, &coefficients);
@@ -61,6 +69,10 @@ int main(void) {
         }
         for (int i = 0; i < NAME_INPUTS; ++i) {
             signals[i] = (NAME_real)uniform(1.0);
+        }
+        if (point >= EXTREME && point % 2 == 0) {
+            state[point / 2 % NAME_STATES] = (NAME_real)extremes[point / 2 % 6];
+            signals[0] = (NAME_real)extremes[point / 4 % 6];
         }
         NAME_inputs_from_array(signals, &inputs);
         printf("point %d %d\n", point, coefficients.positive_definite);

@@ -5,7 +5,14 @@ use eomgen_codegen::c::{self, EmitError};
 use super::{compare, compilers, program, requested};
 
 /// A pendulum with this for its names and texts.
-fn pendulum(model: &str, title: &str, doc: &str, length: &str, input: &str, angle: &str) -> String {
+pub fn pendulum(
+    model: &str,
+    title: &str,
+    doc: &str,
+    length: &str,
+    input: &str,
+    angle: &str,
+) -> String {
     format!(
         "[model]\nname = \"{model}\"\ntitle = \"{title}\"\n\
          [parameters]\n\
@@ -22,8 +29,15 @@ fn pendulum(model: &str, title: &str, doc: &str, length: &str, input: &str, angl
 
 #[test]
 fn texts_do_not_leave_their_comments() {
-    let doc = "*/ int x; /* ??/ /*/ \\\\ \\u202e [`STATE_NAMES`] \u{e9}";
-    if compilers() {
+    if !compilers() {
+        return;
+    }
+    for doc in [
+        "*/ int x; /* ??/ /*/ \\\\ \\u202e [`STATE_NAMES`] \u{e9}",
+        "*//* //\\\\",
+        "??/??/",
+        "*??/",
+    ] {
         compare(&program(
             &pendulum("texts", doc, doc, "l", "u", "theta"),
             0,
@@ -44,6 +58,8 @@ fn names_of_the_emitted_code_do_not_collide() {
         ("sin_", "block", "guards_"),
         ("y0", "gamma", "j1"),
         ("M_PI", "signal", "I"),
+        ("lambda", "None", "def"),
+        ("main", "printf", "NAN"),
     ] {
         compare(&program(
             &pendulum("names", "t", "d", length, input, angle),
@@ -62,7 +78,9 @@ fn names_of_the_emitted_code_do_not_collide() {
 
 #[test]
 fn words_of_c_are_no_names() {
-    for word in ["new", "class", "bool", "NULL", "template"] {
+    for word in [
+        "new", "class", "bool", "NULL", "template", "errno", "stdout",
+    ] {
         let program = program(&pendulum("words", "t", "d", word, "u", "theta"), 0, &[]);
         let error = c::emit(&program).expect_err("a word of C");
         let EmitError::Name { name, language } = &error else {
@@ -74,6 +92,23 @@ fn words_of_c_are_no_names() {
             format!(
                 "`{word}` is no C or C++ identifier: the specification has to call it otherwise"
             )
+        );
+    }
+}
+
+/// Words of C that are words of Rust as well, or nearly, are refused before anything is emitted.
+#[test]
+fn words_of_c_are_refused_with_their_line() {
+    for word in ["double", "int", "register", "restrict"] {
+        let text = pendulum("words", "t", "d", word, "u", "theta");
+        let source = eomgen_model_spec::source::Source::new("model.toml", text.as_str());
+        let Err(found) = eomgen_model_spec::check(source) else {
+            panic!("`{word}` was taken")
+        };
+        let said = found.to_string();
+        assert!(
+            said.contains(&format!("`{word}` cannot be a name")),
+            "{said}"
         );
     }
 }

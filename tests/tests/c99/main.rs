@@ -1,6 +1,6 @@
 //! The emitted C against the emitted Rust, both compiled: the same bits of every output at the
-//! same states, of every shipped model, of models for every feature of the language, and of names
-//! and texts that mean something to C. Skipped, and said so, without a C compiler.
+//! same states, some of them infinite or NaN, of every shipped model, of models for every feature of
+//! the language, and of names and texts that mean something to C. Skipped, and said so, without a C compiler.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -16,6 +16,7 @@ use eomgen_tests::models::{project, shipped};
 
 mod command;
 mod hostile;
+mod linked;
 
 /// What every compiler of the emitted C is asked for.
 const WARNINGS: [&str; 4] = ["-pedantic", "-Wall", "-Wextra", "-Werror"];
@@ -101,6 +102,11 @@ fn printed_by_c(program: &Program, real: &str, folder: &Path) -> String {
     let executable = folder.join(format!("driver_{real}"));
     let mut command = Command::new("cc");
     command.args(["-std=c99", "-O1"]).args(WARNINGS);
+    // What C leaves undefined, such as NaN as an integer, ends the driver.
+    command.args([
+        "-fsanitize=undefined,float-cast-overflow",
+        "-fsanitize-undefined-trap-on-error",
+    ]);
     for (name, requested) in ["-DREQUESTED", "-DDERIVATIVES"]
         .iter()
         .zip(requests(program))
