@@ -23,22 +23,36 @@ fn packages(chosen: &[&str]) -> BTreeSet<String> {
     text.lines().map(line).collect()
 }
 
-#[test]
-fn what_the_program_needs_is_built_as_the_tests_need_it() {
-    // What is built for the compiler itself, with features of its own, stays out.
-    let hosts = ["--exclude", "eomgen-macros", "--exclude", "eomgen-build"];
-    let whole = ["--workspace", "--edges", "normal,dev,no-proc-macro"];
-    let whole = packages(&[&whole[..], &hosts].concat());
-    for (package, manifest) in [
-        ("eomgen-cli", "cli/Cargo.toml"),
-        ("eomgen-python", "python/Cargo.toml"),
-    ] {
-        let alone = packages(&["--package", package, "--edges", "normal,no-proc-macro"]);
-        let twice: Vec<_> = alone.difference(&whole).collect();
+/// The program and the Python package, with their manifests.
+const ALONE: [(&str, &str); 2] = [
+    ("eomgen-cli", "cli/Cargo.toml"),
+    ("eomgen-python", "python/Cargo.toml"),
+];
+
+/// Compares what each needs alone, along these edges, with what is built for the tests.
+fn compare(edges: &str, whole: &BTreeSet<String>) {
+    for (package, manifest) in ALONE {
+        let alone = packages(&["--package", package, "--edges", edges]);
+        let twice: Vec<_> = alone.difference(whole).collect();
         assert!(
             twice.is_empty(),
             "compiled for {package} and again for the tests; {manifest} can ask for the \
              features that the tests do: {twice:#?}"
         );
     }
+}
+
+#[test]
+fn what_the_program_needs_is_built_as_the_tests_need_it() {
+    // What is built for the compiler itself, with features of its own, stays out.
+    let hosts = ["--exclude", "eomgen-macros", "--exclude", "eomgen-build"];
+    let whole = ["--workspace", "--edges", "normal,dev,no-proc-macro"];
+    let whole = packages(&[&whole[..], &hosts].concat());
+    compare("normal,no-proc-macro", &whole);
+}
+
+#[test]
+fn macros_that_it_is_compiled_with_are_those_of_the_tests() {
+    let whole = packages(&["--workspace", "--edges", "normal,build,dev"]);
+    compare("normal,build", &whole);
 }
