@@ -306,7 +306,8 @@ pub struct Validate {
 /// How to integrate.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Solver {
-    /// `exact` where the model is linear between its switches, else `rk`.
+    /// `exact` where the model is linear between its switches, else `rk`, and `radau` where the
+    /// motion is stiff.
     Auto,
     /// From switch to switch without any error but rounding; for models that are linear
     /// between their switches.
@@ -315,6 +316,8 @@ pub enum Solver {
     Rk,
     /// Adams' multistep method of variable order, the paper's, with the same location.
     Adams,
+    /// Radau's implicit method of order 5 with exact Jacobians, for stiff models.
+    Radau,
 }
 
 impl From<Solver> for eomgen_compiled_model::Solver {
@@ -324,6 +327,7 @@ impl From<Solver> for eomgen_compiled_model::Solver {
             Solver::Exact => Self::Exact,
             Solver::Rk => Self::Rk,
             Solver::Adams => Self::Adams,
+            Solver::Radau => Self::Radau,
         }
     }
 }

@@ -17,7 +17,15 @@ pub fn follow(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> 
     let bar = Bar::new("simulating", end - begin, "s");
     let motion = instance.follow(request, &mut |t| bar.set(t - begin))?;
     if let Some(Choice::NotFollowed(reason)) = &motion.choice {
-        warn(&format!("warning: not solved exactly but by rk: {reason}"));
+        warn(&format!(
+            "warning: not solved exactly but by {}: {reason}",
+            motion.solver
+        ));
+    }
+    if let Some(Choice::Stiff(reason)) = &motion.choice {
+        warn(&format!(
+            "note: solved by radau, because the motion is {reason}"
+        ));
     }
     Ok(motion)
 }

@@ -129,5 +129,6 @@ fn in_words(choice: &Choice) -> String {
         Choice::NotFollowed(reason) => {
             format!("the exact solver does not follow this motion: {reason}")
         }
+        Choice::Stiff(reason) => format!("the motion is {reason}"),
     }
 }

@@ -261,6 +261,33 @@ fn stiffness_is_said_after_seconds() {
     }
 }
 
+/// The motion that `auto` takes over is that of smooth steps with a friction a thousand times less
+/// steep, but for what that changes: the pendulum comes to rest at the same time.
+#[test]
+fn stiffness_is_solved_by_the_implicit_solver() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (spec, out) = (written(folder.path(), STIFF), folder.path().join("a.csv"));
+    let shown = out.display().to_string();
+    let begun = Instant::now();
+    let output = run(&[
+        "simulate", &spec, "--until", "10", "--sample", "0.1", "--json", "--out", &shown,
+    ]);
+    let said = text(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert!(
+        said.contains("radau") && said.contains("`theta_dot` settles"),
+        "{said}"
+    );
+    let document: serde_json::Value =
+        serde_json::from_slice(&output.stdout).expect("one JSON document");
+    assert_eq!(document["solver"], "radau");
+    assert!(
+        document["evaluations"].as_u64().expect("a number") < 30_000,
+        "{document}"
+    );
+    assert!(begun.elapsed() < Duration::from_secs(20));
+}
+
 #[test]
 fn a_mass_matrix_that_loses_its_definiteness_is_named() {
     for solver in ["auto", "rk", "adams"] {

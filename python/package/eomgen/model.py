@@ -200,8 +200,8 @@ class Model:
         """The motion from t = 0.
 
         until: its end, s. sample: the time from sample to sample, s; a thousandth of the whole if
-        None. solver: "auto", "exact" (for models that are linear between their switches), "rk" or
-        "adams"; tolerance: the relative one of all but "exact".
+        None. solver: "auto", "exact" (for models that are linear between their switches), "rk",
+        "adams" or "radau" (for stiff models); tolerance: the relative one of all but "exact".
 
         initial: (states,), or names to numbers; the others as the specification says.
 

@@ -7,19 +7,32 @@ use std::cell::{RefCell, RefMut};
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_codegen::program::{Op, ValueId};
 use eomgen_sim::inputs::HeldInputs;
-use eomgen_sim::ode::{Surface, System};
+use eomgen_sim::ode::{Surface, System, jacobian_by_differences};
+
+use crate::jacobians::{Jacobian, JacobianEvaluator};
 
 /// A derived model driven by inputs, as the solvers see it; it owns or borrows both. The mass
 /// matrix has positive pivots at the evaluator's parameters.
 pub struct Driven<E, I> {
     evaluator: E,
     inputs: I,
+    jacobians: Option<RefCell<JacobianEvaluator>>,
 }
 
 impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
     /// Takes an evaluator, prepared with the parameters to be used, and its inputs.
     pub fn new(evaluator: E, inputs: I) -> Self {
-        Self { evaluator, inputs }
+        Self {
+            evaluator,
+            inputs,
+            jacobians: None,
+        }
+    }
+
+    /// The same with its own Jacobian, at the same parameters, for implicit methods.
+    pub fn with_jacobian(mut self, jacobians: JacobianEvaluator) -> Self {
+        self.jacobians = Some(RefCell::new(jacobians));
+        self
     }
 
     fn evaluator(&self) -> RefMut<'_, Evaluator> {
@@ -72,6 +85,16 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
 
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
         self.evaluator().rates(self.point(t, y), out);
+    }
+
+    fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        match &self.jacobians {
+            Some(jacobians) => {
+                let mut jacobians = jacobians.borrow_mut();
+                jacobians.evaluate(Jacobian::RatesByState, self.point(t, y), out);
+            }
+            None => jacobian_by_differences(self, t, y, out),
+        }
     }
 
     fn guard_count(&self) -> usize {

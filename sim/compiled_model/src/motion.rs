@@ -10,7 +10,8 @@ use crate::error::Error;
 /// How to integrate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Solver {
-    /// [`Solver::Exact`] where the model is linear between its switches, else [`Solver::Rk`].
+    /// [`Solver::Exact`] where the model is linear between its switches, else [`Solver::Rk`], and
+    /// [`Solver::Radau`] where the motion turns out to be stiff.
     #[default]
     Auto,
     /// From switch to switch without any error but rounding; for models that are linear
@@ -20,11 +21,14 @@ pub enum Solver {
     Rk,
     /// Adams' multistep method of variable order, the paper's, with the same location.
     Adams,
+    /// Radau's implicit method of order 5 with the model's own Jacobian and the same location, for
+    /// stiff models.
+    Radau,
 }
 
 impl Solver {
     /// Every solver.
-    pub const ALL: [Self; 4] = [Self::Auto, Self::Exact, Self::Rk, Self::Adams];
+    pub const ALL: [Self; 5] = [Self::Auto, Self::Exact, Self::Rk, Self::Adams, Self::Radau];
 
     /// Its name on the command line and in files.
     pub fn name(self) -> &'static str {
@@ -33,6 +37,7 @@ impl Solver {
             Self::Exact => "exact",
             Self::Rk => "rk",
             Self::Adams => "adams",
+            Self::Radau => "radau",
         }
     }
 }
@@ -66,7 +71,7 @@ impl Motion {
     pub fn complete(self) -> Result<Self, Error> {
         match self.stopped {
             None => Ok(self),
-            Some(Stopped { t, reason }) => Err(Error::Stopped { t, reason }),
+            Some(Stopped { t, reason, .. }) => Err(Error::Stopped { t, reason }),
         }
     }
 }
@@ -80,6 +85,8 @@ pub enum Choice {
     NotLinear(String),
     /// It is, but the exact solver does not follow this motion, for this reason.
     NotFollowed(String),
+    /// It is stiff: what settles so fast that an explicit solver has no end in sight.
+    Stiff(String),
 }
 
 /// Why a solver did not come to the end.
@@ -89,4 +96,6 @@ pub struct Stopped {
     pub t: Option<f64>,
     /// What is wrong, with names, and what to do.
     pub reason: String,
+    /// Where stability kept the steps of an explicit solver too short: what settles so fast.
+    pub stiff: Option<String>,
 }

@@ -15,6 +15,10 @@ use crate::motion::{Choice, Motion, Solver, Stopped};
 /// The relative tolerance where nothing is said about it.
 pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 
+/// More explicit steps than this to the end, kept short by stability alone, and
+/// [`Solver::Auto`] takes an implicit solver: what that needs for all is a few times less.
+const MOST_STIFF_STEPS: u64 = 100_000;
+
 /// What is to be simulated.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'r> {
@@ -73,19 +77,23 @@ impl Instance<'_> {
         request: &Request<'_>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
-        let runge_kutta = (Method::DormandPrince853, Solver::Rk);
+        let asked = |method| Settings {
+            method,
+            ..Settings::with_tolerance(request.tolerance)
+        };
         let exact = match request.solver {
-            Solver::Rk => return self.general(request, runge_kutta, None, progress),
-            Solver::Adams => {
-                return self.general(request, (Method::Adams, Solver::Adams), None, progress);
+            Solver::Rk => {
+                return self.general(request, &asked(Method::DormandPrince853), None, progress);
             }
+            Solver::Adams => return self.general(request, &asked(Method::Adams), None, progress),
+            Solver::Radau => return self.general(request, &asked(Method::Radau), None, progress),
             Solver::Exact | Solver::Auto => self.model.piecewise_linear(),
         };
         let is_free = request.solver == Solver::Auto;
         if let Err(error) = exact {
             if is_free {
                 let choice = Some(Choice::NotLinear(error.to_string()));
-                return self.general(request, runge_kutta, choice, progress);
+                return self.chosen(request, choice, progress);
             }
             return Err(error.into());
         }
@@ -103,38 +111,77 @@ impl Instance<'_> {
         let reason = self.named(&surfaces, |names| error.named(names));
         if is_free && is_for_the_general(&error) {
             let choice = Some(Choice::NotFollowed(reason));
-            return self.general(request, runge_kutta, choice, progress);
+            return self.chosen(request, choice, progress);
         }
         let choice = is_free.then_some(Choice::PiecewiseLinear);
         let t = error.time();
         let so_far = motion(trajectory, request, Solver::Exact, choice);
-        stopped(so_far, Stopped { t, reason })
+        let stiff = None;
+        stopped(so_far, Stopped { t, reason, stiff })
+    }
+
+    /// With an explicit solver for any model, or an implicit one where the motion is stiff.
+    fn chosen(
+        &self,
+        request: &Request<'_>,
+        choice: Option<Choice>,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Motion, Error> {
+        let explicit = Settings {
+            max_steps_if_stiff: MOST_STIFF_STEPS,
+            ..Settings::with_tolerance(request.tolerance)
+        };
+        let mut motion = self.general(request, &explicit, choice, progress)?;
+        let stiff = motion
+            .stopped
+            .as_mut()
+            .and_then(|stopped| stopped.stiff.take());
+        let Some(reason) = stiff else {
+            return Ok(motion);
+        };
+        let implicit = Settings {
+            method: Method::Radau,
+            ..Settings::with_tolerance(request.tolerance)
+        };
+        let choice = Some(Choice::Stiff(reason));
+        self.general(request, &implicit, choice, progress)
     }
 
     /// With a solver for any model.
     fn general(
         &self,
         request: &Request<'_>,
-        (method, solver): (Method, Solver),
+        settings: &Settings,
         choice: Option<Choice>,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
-        let settings = Settings {
-            method,
-            ..Settings::with_tolerance(request.tolerance)
-        };
         let evaluator = RefCell::new(self.evaluator()?);
-        let system = Driven::new(&evaluator, request.inputs);
+        let mut system = Driven::new(&evaluator, request.inputs);
+        let solver = match settings.method {
+            Method::DormandPrince853 => Solver::Rk,
+            Method::Adams => Solver::Adams,
+            Method::Radau => Solver::Radau,
+        };
+        if settings.method == Method::Radau {
+            system = system.with_jacobian(self.jacobian_evaluator()?);
+        }
         let mut trajectory = Trajectory::default();
         let asked = (request.initial, request.span(), request.times);
-        let ended = simulate_into(&mut trajectory, &system, asked, &settings, progress);
+        let ended = simulate_into(&mut trajectory, &system, asked, settings, progress);
         let so_far = motion(trajectory, request, solver, choice);
         match ended {
             Ok(()) => Ok(so_far),
             Err(error) => {
                 let (t, surfaces) = (SolveError::time(&error), system.surfaces());
                 let reason = self.named(&surfaces, |names| error.named(names));
-                stopped(so_far, Stopped { t, reason })
+                let stiff = match error {
+                    SolveError::Stiff { state, within, .. } => {
+                        let state = &self.model.state_names()[state];
+                        Some(format!("stiff: `{state}` settles within {within:.1e} s"))
+                    }
+                    _ => None,
+                };
+                stopped(so_far, Stopped { t, reason, stiff })
             }
         }
     }

@@ -70,6 +70,8 @@ pub struct Adams {
 }
 
 impl Stepper for Adams {
+    const IS_EXPLICIT: bool = true;
+
     fn new(start: Point, step: f64, tolerance: f64) -> Self {
         let mut magnitudes = Magnitudes::new(start.y.len(), tolerance);
         magnitudes.raise(&start.y);
@@ -180,6 +182,15 @@ impl Stepper for Adams {
         // The driver stepped over a surface; what is remembered says nothing of that.
         let start = &self.before.point;
         Ok(single_step(watched, start, t - start.t)?.y)
+    }
+
+    fn single_step<S: System + ?Sized>(
+        watched: &Watched<'_, S>,
+        start: &Point,
+        length: f64,
+        _: f64,
+    ) -> Result<Point, SolveError> {
+        single_step(watched, start, length)
     }
 }
 

@@ -31,6 +31,8 @@ pub struct DormandPrince853 {
 }
 
 impl Stepper for DormandPrince853 {
+    const IS_EXPLICIT: bool = true;
+
     fn new(start: Point, step: f64, tolerance: f64) -> Self {
         let mut stepper = Self {
             method: Method::dop853(),
@@ -146,6 +148,15 @@ impl Stepper for DormandPrince853 {
     ) -> Result<Vec<f64>, SolveError> {
         // The crate's interpolation is of order 4; a step from the same start is of 8.
         Ok(single_step(watched, &self.last, t - self.last.t)?.y)
+    }
+
+    fn single_step<S: System + ?Sized>(
+        watched: &Watched<'_, S>,
+        start: &Point,
+        length: f64,
+        _: f64,
+    ) -> Result<Point, SolveError> {
+        single_step(watched, start, length)
     }
 }
 

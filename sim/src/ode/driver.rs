@@ -4,9 +4,10 @@ use std::collections::VecDeque;
 
 use super::adams::Adams;
 use super::crossing::{approach, over};
-use super::dormand_prince::{DormandPrince853, single_step};
+use super::dormand_prince::DormandPrince853;
 use super::error::SolveError;
 use super::grazing::{leapt_over, passed_over};
+use super::radau::Radau;
 use super::request;
 use super::settings::{Method, Settings};
 use super::stepper::{Outcome, Point, Stepper, refusal};
@@ -68,6 +69,7 @@ pub fn simulate_into<S: System + ?Sized>(
     let run = match settings.method {
         Method::DormandPrince853 => run::<S, DormandPrince853>,
         Method::Adams => run::<S, Adams>,
+        Method::Radau => run::<S, Radau>,
     };
     run(
         trajectory,
@@ -217,16 +219,18 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.check_steps()?;
             self.trajectory.work.trials += 1;
             self.watched.reset();
-            // By Runge-Kutta for every method: what a multistep method remembers holds
-            // on the near side only.
-            let point = single_step(self.watched, &start, window)?;
+            // Relying on nothing: what a multistep method remembers holds on the near side only.
+            let point = M::single_step(self.watched, &start, window, self.settings.tolerance)?;
             if self.is_beyond(&point) {
                 self.stepper.restart(point, length);
                 return self.accept(start.t);
             }
             if window > SHORTEST_CONTACT * length {
+                let tolerance = self.settings.tolerance;
                 let trials = &mut self.trajectory.work.trials;
-                if let Some(ahead) = leapt_over(self.watched, &start, &point, trials)? {
+                if let Some(ahead) =
+                    leapt_over::<S, M>(self.watched, &start, &point, tolerance, trials)?
+                {
                     // Too short for this step: let shorter ones find it.
                     self.stepper.restart(start, 0.25 * ahead);
                     return Ok(());
@@ -345,12 +349,16 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
 
     /// Whether there will be an end.
     fn look_at_the_pace(&mut self, system: &S) -> Result<(), SolveError> {
+        if !M::IS_EXPLICIT {
+            return Ok(());
+        }
         let Point { t, y } = self.stepper.here();
         let standing = Standing {
             t: *t,
             y,
             step: self.stepper.step(),
             steps: (self.steps(), self.settings.max_steps),
+            most_if_stiff: self.settings.max_steps_if_stiff,
             end: self.end,
         };
         self.pace.look(system, &standing)

@@ -123,8 +123,8 @@ impl SolveError {
             } => format!(
                 "stopped at t = {t:?} s: the model is stiff. {} settles within {within:.1e} s, \
                  which keeps the steps of an explicit solver so short that {steps:.1e} more of \
-                 them were needed; soften what makes it settle (a stiff spring or damper, a \
-                 smooth friction that is too steep), or shorten the time",
+                 them were needed; take the solver radau, which is implicit, or soften what makes \
+                 it settle (a stiff spring or damper, a smooth friction that is too steep)",
                 names.state(*state)
             ),
             Self::TooManySteps { t, steps, state } => format!(

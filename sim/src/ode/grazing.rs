@@ -9,7 +9,6 @@
 //! with a parabola in place of the interpolant's polynomial. What it cannot see is a function that turns more
 //! than once within a step.
 
-use super::dormand_prince::single_step;
 use super::error::SolveError;
 use super::stepper::{Point, Stepper};
 use super::system::System;
@@ -61,20 +60,22 @@ pub fn passed_over<S: System + ?Sized, M: Stepper>(
     })
 }
 
-/// The same for one step of the Runge-Kutta method from `start` to `end`, whatever its error.
+/// The same for one step of a method from `start` to `end`, whatever its error; `tolerance` is for
+/// what has to be solved for.
 ///
 /// # Errors
 ///
 /// As for [`passed_over`].
-pub fn leapt_over<S: System + ?Sized>(
+pub fn leapt_over<S: System + ?Sized, M: Stepper>(
     watched: &Watched<'_, S>,
     start: &Point,
     end: &Point,
+    tolerance: f64,
     trials: &mut u64,
 ) -> Result<Option<f64>, SolveError> {
     let mut after = |length: f64| {
         *trials += 1;
-        single_step(watched, start, length)
+        M::single_step(watched, start, length, tolerance)
     };
     let middle = after(0.5 * (end.t - start.t))?;
     search(watched, &[start.clone(), middle, end.clone()], &mut after)

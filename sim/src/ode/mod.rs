@@ -3,7 +3,8 @@
 //! The pipeline: a [`System`] is evaluated under `watch`, which notices when a trial
 //! leaves the regime the step began in; a `stepper` makes single steps, those of the
 //! Dormand-Prince method of order 8 (`dormand_prince`) or of Adams' method of variable
-//! order (`adams`, of `attempt`s that continue a `history`); `crossing` approaches a switching
+//! order (`adams`, of `attempt`s that continue a `history`), or of Radau's implicit method of order 5
+//! for stiff systems (`radau`, each a `collocation`); `crossing` approaches a switching
 //! surface by steps that stay on one side and then steps over it, and `grazing` finds what a step
 //! passed over; `driver` strings these
 //! together into a [`Trajectory`], `stiffness` being asked whether there will be an end; an
@@ -29,6 +30,7 @@
 
 mod adams;
 mod attempt;
+mod collocation;
 mod crossing;
 mod dormand_prince;
 mod driver;
@@ -37,6 +39,7 @@ mod grazing;
 mod history;
 mod magnitudes;
 mod names;
+mod radau;
 mod request;
 pub mod runge_kutta;
 mod settings;
@@ -50,5 +53,5 @@ pub use driver::{simulate, simulate_into};
 pub use error::{NOT_POSITIVE, SolveError};
 pub use names::{Names, Surface};
 pub use settings::{Method, SMALLEST_MAGNITUDE, Settings};
-pub use system::System;
+pub use system::{System, jacobian_by_differences};
 pub use trajectory::{Switch, Trajectory, Work};

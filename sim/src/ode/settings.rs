@@ -18,6 +18,8 @@ pub enum Method {
     /// The multistep method of Adams with variable order, which begins anew behind every
     /// switching surface.
     Adams,
+    /// Radau's implicit Runge-Kutta steps of order 5, for stiff systems.
+    Radau,
 }
 
 /// Method, accuracy and limits of a simulation.
@@ -30,6 +32,9 @@ pub struct Settings {
     /// Give up after this many steps, rejected ones and those towards a switching
     /// surface included.
     pub max_steps: u64,
+    /// Give up when what decays fastest keeps the steps of an explicit method so short that more
+    /// than this many of them were needed to the end.
+    pub max_steps_if_stiff: u64,
     /// Give up when switching surfaces are crossed faster than this, per second of
     /// simulated time and averaged over a few hundred crossings.
     pub max_switch_rate: f64,
@@ -51,6 +56,7 @@ impl Default for Settings {
             method: Method::default(),
             tolerance: 1e-9,
             max_steps: 20_000_000,
+            max_steps_if_stiff: 20_000_000,
             max_switch_rate: 1e6,
         }
     }

@@ -25,6 +25,9 @@ pub struct Outcome {
 
 /// A method that stands at a point and can go on from there.
 pub trait Stepper: Sized {
+    /// Whether stability keeps its steps short where a system is stiff.
+    const IS_EXPLICIT: bool;
+
     /// Steps from `start`, the first one of length `step` (s) at most.
     fn new(start: Point, step: f64, tolerance: f64) -> Self;
 
@@ -72,6 +75,16 @@ pub trait Stepper: Sized {
         watched: &Watched<'_, S>,
         t: f64,
     ) -> Result<Vec<f64>, SolveError>;
+
+    /// The point that a step of exactly `length` s leads to from `start`, whatever its error and
+    /// without relying on what came before; what has to be solved for is as accurate as
+    /// `tolerance` asks.
+    fn single_step<S: System + ?Sized>(
+        watched: &Watched<'_, S>,
+        start: &Point,
+        length: f64,
+        tolerance: f64,
+    ) -> Result<Point, SolveError>;
 }
 
 /// Why a method refused to go on from a point with this step (s).

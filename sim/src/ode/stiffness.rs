@@ -10,7 +10,7 @@ use super::error::SolveError;
 use super::system::System;
 
 /// Steps between two looks at the pace: a fraction of a second's work.
-const STEPS: u64 = 1 << 16;
+const STEPS: u64 = 1 << 13;
 
 /// So many looks in a row must find no end.
 const LOOKS: u32 = 3;
@@ -45,6 +45,8 @@ pub struct Standing<'a> {
     pub step: f64,
     /// Steps so far, refused ones included, and the most there may be.
     pub steps: (u64, u64),
+    /// The most that there may be where stability keeps them short.
+    pub most_if_stiff: u64,
     /// The end, s.
     pub end: f64,
 }
@@ -74,6 +76,7 @@ impl Pace {
         }
         let needed = (standing.end - t) / (t - self.last.0) * done as f64;
         self.last = (t, steps);
+        let most = most.min(standing.most_if_stiff);
         if needed < most.saturating_sub(steps) as f64 {
             self.hopeless = 0;
             return Ok(());

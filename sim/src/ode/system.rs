@@ -1,5 +1,7 @@
 //! What the solver needs to know of a system.
 
+use super::settings::SMALLEST_MAGNITUDE;
+
 /// A system y' = f(t, y) whose right-hand side is smooth between switching surfaces.
 pub trait System {
     /// The number of state variables.
@@ -7,6 +9,13 @@ pub trait System {
 
     /// Writes y' at time `t` and state `y` to `out`; all have [`System::states`] entries.
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]);
+
+    /// Writes the derivatives of the rates by the state at time `t` and state `y` to `out`, row by
+    /// row: entry (i, j), of y_i' by y_j, at `i * states + j`. Implicit methods ask for it. By
+    /// forward differences unless the system knows better.
+    fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        jacobian_by_differences(self, t, y, out);
+    }
 
     /// The number of switching surfaces.
     fn guard_count(&self) -> usize {
@@ -40,6 +49,10 @@ impl<S: System + ?Sized> System for &S {
         (**self).rates(t, y, out);
     }
 
+    fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        (**self).jacobian(t, y, out);
+    }
+
     fn guard_count(&self) -> usize {
         (**self).guard_count()
     }
@@ -54,5 +67,23 @@ impl<S: System + ?Sized> System for &S {
 
     fn next_breakpoint(&self, t: f64) -> Option<f64> {
         (**self).next_breakpoint(t)
+    }
+}
+
+/// The derivatives of the rates by the state, as [`System::jacobian`] has them, by forward
+/// differences, each over a part of the state's size.
+pub fn jacobian_by_differences<S: System + ?Sized>(system: &S, t: f64, y: &[f64], out: &mut [f64]) {
+    let states = y.len();
+    let mut base = vec![0.0; states];
+    system.rates(t, y, &mut base);
+    let (mut moved, mut rates) = (y.to_vec(), vec![0.0; states]);
+    for column in 0..states {
+        let step = f64::EPSILON.sqrt() * y[column].abs().max(SMALLEST_MAGNITUDE);
+        moved[column] = y[column] + step;
+        system.rates(t, &moved, &mut rates);
+        for row in 0..states {
+            out[row * states + column] = (rates[row] - base[row]) / (moved[column] - y[column]);
+        }
+        moved[column] = y[column];
     }
 }

@@ -53,6 +53,12 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         self.horizon.set(t);
     }
 
+    /// The time that trials at `t` see.
+    fn seen(&self, t: f64) -> f64 {
+        let horizon = self.horizon.get();
+        if t < horizon { t } else { horizon.next_down() }
+    }
+
     /// The switching function whose side a trial since [`Watched::reset`] left.
     pub fn crossed(&self) -> Option<usize> {
         self.crossed.get()
@@ -77,6 +83,11 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
     /// Evaluations of the right-hand side so far.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.get()
+    }
+
+    /// The derivatives of the rates by the state, row by row; see [`System::jacobian`].
+    pub fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        self.system.jacobian(self.seen(t), y, out);
     }
 
     /// Notices if a trial state lies on another side of a surface, without its rates.
@@ -150,8 +161,7 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
 
 impl<S: System + ?Sized> ODE<f64, Vec<f64>> for Watched<'_, S> {
     fn diff(&self, t: f64, y: &Vec<f64>, out: &mut Vec<f64>) {
-        let horizon = self.horizon.get();
-        let t = if t < horizon { t } else { horizon.next_down() };
+        let t = self.seen(t);
         self.system.rates(t, y, out);
         self.evaluations.set(self.evaluations.get() + 1);
         if let Some(state) = out.iter().position(|rate| !rate.is_finite()) {

@@ -1,0 +1,382 @@
+//! One step of Radau's method: its three stages by Newton's method, the error estimate and the
+//! collocation polynomial (Hairer and Wanner, "Solving Ordinary Differential Equations II",
+//! section IV.8). Which steps, and what is made of them, is decided in `radau`.
+//!
+//! With Z the differences of the stages from the start, A the coefficients of the method and h the
+//! step, the stages solve A^-1 Z / h = F(Z). In the variables W = T^-1 Z, which make A^-1 a real
+//! number and a complex pair, Newton's method takes one real and one complex linear system of the
+//! size of the state instead of one three times as large.
+
+use differential_equations::ode::ODE;
+use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
+
+use super::magnitudes::Magnitudes;
+use super::stepper::Point;
+use super::system::System;
+use super::watch::Watched;
+
+/// Iterations of Newton's method in a step.
+pub const MOST_ITERATIONS: u32 = 7;
+
+/// The stages are solved for to this part of the tolerance at most.
+const STAGES: f64 = 0.03;
+
+/// And no closer than rounding lets them, in units of the last place.
+const ROUNDING: f64 = 10.0;
+
+/// A change this small, relative to what the stages are solved for to, is the last one.
+const SMALL: f64 = 0.3;
+
+/// Changes that become no smaller lead nowhere.
+const DIVERGES: f64 = 0.99;
+
+/// The real eigenvalue of A^-1.
+const REAL: f64 = 3.637_834_252_744_495_7;
+
+/// The complex pair: its real and imaginary part.
+const PAIR: (f64, f64) = (2.681_082_873_627_752_3, 3.050_430_199_247_410_5);
+
+/// The eigenvectors of A, columns; those of the pair as real and imaginary part.
+const T: [[f64; 3]; 3] = [
+    [
+        0.091_232_394_870_892_94,
+        -0.141_255_295_020_954_2,
+        -0.030_029_194_105_147_424,
+    ],
+    [
+        0.241_717_932_707_107,
+        0.204_129_352_293_799_93,
+        0.382_942_112_757_261_9,
+    ],
+    [0.966_048_182_615_092_9, 1.0, 0.0],
+];
+
+/// The inverse of T.
+const T_INVERSE: [[f64; 3]; 3] = [
+    [
+        4.325_579_890_063_155,
+        0.339_199_251_815_809_84,
+        0.541_770_539_935_874_9,
+    ],
+    [
+        -4.178_718_591_551_905,
+        -0.327_682_820_761_062_4,
+        0.476_623_554_500_550_44,
+    ],
+    [
+        -0.502_872_634_945_786_8,
+        2.571_926_949_855_605_4,
+        -0.596_039_204_828_224_9,
+    ],
+];
+
+/// At which parts of the step the stages are.
+fn nodes() -> [f64; 3] {
+    let root = 6.0_f64.sqrt();
+    [(4.0 - root) / 10.0, (4.0 + root) / 10.0, 1.0]
+}
+
+/// What the stages enter the error estimate with.
+fn weights_of_error() -> [f64; 3] {
+    let root = 6.0_f64.sqrt();
+    [
+        -(13.0 + 7.0 * root) / 3.0,
+        (-13.0 + 7.0 * root) / 3.0,
+        -1.0 / 3.0,
+    ]
+}
+
+/// The linear systems of steps of one length, with one Jacobian.
+pub struct Factors {
+    /// The length, s.
+    pub length: f64,
+    real: LU<f64, Dyn, Dyn>,
+    pair: LU<Complex<f64>, Dyn, Dyn>,
+}
+
+impl Factors {
+    /// For a Jacobian and steps of `length` s.
+    pub fn new(jacobian: &DMatrix<f64>, length: f64) -> Self {
+        let states = jacobian.nrows();
+        let mut real = -jacobian;
+        let mut pair = jacobian.map(|entry| Complex::new(-entry, 0.0));
+        for place in 0..states {
+            real[(place, place)] += REAL / length;
+            pair[(place, place)] += Complex::new(PAIR.0, PAIR.1) / length;
+        }
+        Self {
+            length,
+            real: real.lu(),
+            pair: pair.lu(),
+        }
+    }
+}
+
+/// The stages of a step, as differences from its start.
+#[derive(Clone)]
+pub struct Stages {
+    z: [DVector<f64>; 3],
+    /// The length of the step, s.
+    length: f64,
+    /// Iterations made.
+    pub iterations: u32,
+    /// By how much an iteration reduced the last change: how good the Jacobian is.
+    pub contraction: f64,
+}
+
+impl Stages {
+    /// The stages of a step from `start` with these `factors`, starting from the polynomial of the
+    /// step before if there is one; nothing if Newton's method does not converge.
+    pub fn solve<S: System + ?Sized>(
+        watched: &Watched<'_, S>,
+        start: &Point,
+        factors: &Factors,
+        before: Option<&Self>,
+        magnitudes: &Magnitudes,
+    ) -> Option<Self> {
+        let (length, states) = (factors.length, start.y.len());
+        let mut z = match before {
+            Some(before) => nodes().map(|node| before.beyond(node * length)),
+            None => [(); 3].map(|()| DVector::zeros(states)),
+        };
+        let mut w = transformed(&T_INVERSE, &z);
+        let tolerance = magnitudes.tolerance();
+        let enough = STAGES.min(tolerance.sqrt());
+        let enough = enough.max(ROUNDING * f64::EPSILON / tolerance);
+        let (mut last_change, mut contraction) = (0.0, 0.0);
+        for iterations in 1..=MOST_ITERATIONS {
+            let rates = rates_of(watched, start, length, &z);
+            let change = change(factors, &w, &transformed(&T_INVERSE, &rates))?;
+            let sizes = change.each_ref().map(|part| {
+                let size = magnitudes.norm(part.iter().copied(), &start.y);
+                size * size
+            });
+            let size = (sizes.iter().sum::<f64>() / 3.0).sqrt();
+            for (w, change) in w.iter_mut().zip(&change) {
+                *w += change;
+            }
+            z = transformed(&T, &w);
+            if !size.is_finite() {
+                return None;
+            }
+            let is_first = iterations == 1;
+            if !is_first {
+                contraction = size / last_change;
+            }
+            // So small a change leaves nothing that counts, whatever the next ones are.
+            let is_small = size <= SMALL * enough;
+            if !is_small && contraction >= DIVERGES {
+                return None;
+            }
+            // What is left after a first change is not known.
+            let left = contraction / (1.0 - contraction) * size;
+            if is_small || (!is_first && left <= enough) {
+                return Some(Self {
+                    z,
+                    length,
+                    iterations,
+                    contraction,
+                });
+            }
+            let more = (MOST_ITERATIONS - iterations) as i32;
+            if !is_first && left * contraction.powi(more - 1) > enough {
+                return None;
+            }
+            last_change = size;
+        }
+        None
+    }
+
+    /// The state at the end of the step.
+    pub fn end(&self, start: &[f64]) -> Vec<f64> {
+        start.iter().zip(&self.z[2]).map(|(y, z)| y + z).collect()
+    }
+
+    /// The state so long after `start` (s), where the step began, by the polynomial through the
+    /// start and the stages: of order 3 everywhere in the step.
+    pub fn inside(&self, start: &[f64], after: f64) -> Vec<f64> {
+        let difference = self.difference(after / self.length);
+        start.iter().zip(&difference).map(|(y, z)| y + z).collect()
+    }
+
+    /// The difference from the end of the step so long after it, s.
+    fn beyond(&self, after: f64) -> DVector<f64> {
+        self.difference(1.0 + after / self.length) - &self.z[2]
+    }
+
+    /// The difference from the start at a part of the step: Lagrange's polynomial, zero at 0.
+    fn difference(&self, part: f64) -> DVector<f64> {
+        let nodes = nodes();
+        let mut sum = DVector::zeros(self.z[0].len());
+        for (place, z) in self.z.iter().enumerate() {
+            let mut factor = part / nodes[place];
+            for (other, node) in nodes.iter().enumerate() {
+                if other != place {
+                    factor *= (part - node) / (nodes[place] - node);
+                }
+            }
+            sum.axpy(factor, z, 1.0);
+        }
+        sum
+    }
+
+    /// The estimated error of states inside the step relative to what is allowed, from how the third
+    /// derivative changed since the step `before`. The error estimate of the step does not see it
+    /// in what decays fast, where the ends of steps are right however long they are.
+    pub fn error_inside(&self, before: &Self, start: &Point, magnitudes: &Magnitudes) -> f64 {
+        let apart = 0.5 * (self.length + before.length);
+        let change = (self.third_derivative() - before.third_derivative()) / apart;
+        let error = change * (LARGEST_BETWEEN_NODES / 24.0 * self.length.powi(4));
+        magnitudes.norm(error.iter().copied(), &start.y)
+    }
+
+    /// Of the polynomial through the start and the stages.
+    fn third_derivative(&self) -> DVector<f64> {
+        let nodes = nodes();
+        let mut sum = DVector::zeros(self.z[0].len());
+        for (place, z) in self.z.iter().enumerate() {
+            let others = (0..3).filter(|other| *other != place);
+            let product: f64 = others.map(|other| nodes[place] - nodes[other]).product();
+            sum.axpy(6.0 / (nodes[place] * product * self.length.powi(3)), z, 1.0);
+        }
+        sum
+    }
+
+    /// The estimated error of the step relative to what is allowed. `rates` are those at the start.
+    /// `is_doubted` filters it once more by the rates beside the start, which a first step or one
+    /// after a refusal needs.
+    pub fn error<S: System + ?Sized>(
+        &self,
+        watched: &Watched<'_, S>,
+        start: &Point,
+        rates: &[f64],
+        (factors, magnitudes): (&Factors, &Magnitudes),
+        is_doubted: bool,
+    ) -> f64 {
+        let mut combined = DVector::zeros(start.y.len());
+        for (weight, z) in weights_of_error().into_iter().zip(&self.z) {
+            combined.axpy(weight / self.length, z, 1.0);
+        }
+        let filtered = |rates: &[f64]| {
+            let right = DVector::from_column_slice(rates) + &combined;
+            let error = factors.real.solve(&right)?;
+            let norm = magnitudes.norm(error.iter().copied(), &start.y);
+            Some((error, norm))
+        };
+        let Some((error, norm)) = filtered(rates) else {
+            return f64::INFINITY;
+        };
+        if norm < 1.0 || !is_doubted {
+            return norm;
+        }
+        let beside: Vec<f64> = start.y.iter().zip(&error).map(|(y, e)| y + e).collect();
+        let mut rates = vec![0.0; beside.len()];
+        watched.diff(start.t, &beside, &mut rates);
+        filtered(&rates).map_or(f64::INFINITY, |(_, norm)| norm)
+    }
+}
+
+/// The polynomial on the nodes of the method, s (s - c_1) (s - c_2) (s - 1), at its largest between 0
+/// and 1: what the error of interpolation is a multiple of.
+const LARGEST_BETWEEN_NODES: f64 = 0.01826;
+
+/// The rates at the stages.
+fn rates_of<S: System + ?Sized>(
+    watched: &Watched<'_, S>,
+    start: &Point,
+    length: f64,
+    z: &[DVector<f64>; 3],
+) -> [DVector<f64>; 3] {
+    let nodes = nodes();
+    let mut rates = vec![0.0; start.y.len()];
+    std::array::from_fn(|stage| {
+        let y: Vec<f64> = start.y.iter().zip(&z[stage]).map(|(y, z)| y + z).collect();
+        watched.diff(start.t + nodes[stage] * length, &y, &mut rates);
+        DVector::from_column_slice(&rates)
+    })
+}
+
+/// Newton's change of W, given W and T^-1 F; nothing where the linear systems are singular.
+fn change(
+    factors: &Factors,
+    w: &[DVector<f64>; 3],
+    rates: &[DVector<f64>; 3],
+) -> Option<[DVector<f64>; 3]> {
+    let h = factors.length;
+    let first = factors.real.solve(&(&rates[0] - &w[0] * (REAL / h)))?;
+    let eigenvalue = Complex::new(PAIR.0, PAIR.1) / h;
+    let pair = DVector::from_fn(w[1].len(), |place, _| {
+        let of_rates = Complex::new(rates[1][place], rates[2][place]);
+        of_rates - eigenvalue * Complex::new(w[1][place], w[2][place])
+    });
+    let pair = factors.pair.solve(&pair)?;
+    Some([
+        first,
+        pair.map(|entry| entry.re),
+        pair.map(|entry| entry.im),
+    ])
+}
+
+/// A matrix times three vectors.
+fn transformed(matrix: &[[f64; 3]; 3], vectors: &[DVector<f64>; 3]) -> [DVector<f64>; 3] {
+    matrix.map(|row| {
+        let mut sum = DVector::zeros(vectors[0].len());
+        for (factor, vector) in row.into_iter().zip(vectors) {
+            sum.axpy(factor, vector, 1.0);
+        }
+        sum
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, Vector3};
+
+    use super::*;
+
+    /// The coefficients of the method follow from its nodes: the integrals of Lagrange's polynomials.
+    fn coefficients() -> Matrix3<f64> {
+        let nodes = nodes();
+        let powers = Matrix3::from_fn(|row, column| nodes[row].powi(column as i32));
+        let integrals = Matrix3::from_fn(|row, column| {
+            nodes[row].powi(column as i32 + 1) / f64::from(column as u32 + 1)
+        });
+        integrals * powers.try_inverse().expect("distinct nodes")
+    }
+
+    #[test]
+    fn the_transform_makes_the_coefficients_a_number_and_a_pair() {
+        let t = Matrix3::from_fn(|row, column| T[row][column]);
+        let inverse = Matrix3::from_fn(|row, column| T_INVERSE[row][column]);
+        assert!((t * inverse - Matrix3::identity()).abs().max() < 1e-14);
+        let of_inverse = coefficients().try_inverse().expect("not singular");
+        let (a, b) = PAIR;
+        let expected = Matrix3::new(REAL, 0.0, 0.0, 0.0, a, -b, 0.0, b, a);
+        assert!((inverse * of_inverse * t - expected).abs().max() < 1e-13);
+    }
+
+    #[test]
+    fn the_error_of_interpolation_is_the_largest_between_the_nodes() {
+        let [a, b, c] = nodes();
+        let values = (0..=10_000).map(|i| {
+            let s = f64::from(i) / 1e4;
+            (s * (s - a) * (s - b) * (s - c)).abs()
+        });
+        let largest = values.fold(0.0, f64::max);
+        assert!(
+            (largest / LARGEST_BETWEEN_NODES - 1.0).abs() < 0.01,
+            "{largest}"
+        );
+    }
+
+    #[test]
+    fn the_error_estimate_vanishes_for_polynomials_of_degree_3() {
+        // With y = s^p and h = 1, rates at the start are 0 for p > 1: the estimate compares the step
+        // with a formula of order 3.
+        let weights = Vector3::from(weights_of_error());
+        for power in 2..=3 {
+            let stages = Vector3::from(nodes()).map(|node| node.powi(power));
+            assert!(weights.dot(&stages).abs() < 1e-14, "{power}");
+        }
+    }
+}

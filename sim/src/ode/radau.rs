@@ -1,0 +1,295 @@
+//! Radau IIA of order 5, an implicit Runge-Kutta method for stiff systems: what decays fast does
+//! not keep its steps short. The control of steps follows Hairer and Wanner, "Solving Ordinary
+//! Differential Equations II", section IV.8; what a single step does is in `collocation`.
+//!
+//! The error estimate is of order 3, and so is the polynomial that gives states inside a step. Both
+//! are held to the tolerance, so that the end of a step is more accurate than was asked.
+
+use differential_equations::ode::ODE;
+use nalgebra::DMatrix;
+
+use super::collocation::{Factors, MOST_ITERATIONS, Stages};
+use super::error::SolveError;
+use super::magnitudes::Magnitudes;
+use super::stepper::{Outcome, Point, Stepper, refusal};
+use super::system::System;
+use super::watch::Watched;
+
+/// The step that the error estimate proposes is shortened by this.
+const SAFETY: f64 = 0.9;
+
+/// From step to step the length grows by this at most, and shrinks by this at most.
+const GROWTH: (f64, f64) = (8.0, 0.2);
+
+/// A step is left as it is where it would grow by no more: that saves the factors.
+const WORTH_NEW_FACTORS: f64 = 1.2;
+
+/// A Jacobian that lets Newton's method contract as fast serves the next step as well.
+const GOOD_JACOBIAN: f64 = 1e-3;
+
+/// A step of given length is made in parts where Newton's method does not converge; so many of them
+/// may be refused.
+const MOST_REFUSED: u32 = 50;
+
+/// The step and its error before the last one, for the prediction of the next.
+#[derive(Clone, Copy)]
+struct Accepted {
+    length: f64,
+    error: f64,
+}
+
+/// Steps of the method.
+pub struct Radau {
+    /// Where the last step began.
+    last: Point,
+    /// Where the next step begins.
+    here: Point,
+    /// The rates there, if they are known.
+    rates: Option<Vec<f64>>,
+    /// The length of the next step, s.
+    step: f64,
+    magnitudes: Magnitudes,
+    jacobian: Option<DMatrix<f64>>,
+    factors: Option<Factors>,
+    /// Those of the last step, if it led here.
+    stages: Option<Stages>,
+    accepted: Option<Accepted>,
+    /// The last try was refused.
+    is_refused: bool,
+}
+
+impl Stepper for Radau {
+    const IS_EXPLICIT: bool = false;
+
+    fn new(start: Point, step: f64, tolerance: f64) -> Self {
+        let mut magnitudes = Magnitudes::new(start.y.len(), tolerance);
+        magnitudes.raise(&start.y);
+        Self {
+            last: start.clone(),
+            here: start,
+            rates: None,
+            step,
+            magnitudes,
+            jacobian: None,
+            factors: None,
+            stages: None,
+            accepted: None,
+            is_refused: false,
+        }
+    }
+
+    fn here(&self) -> &Point {
+        &self.here
+    }
+
+    fn last(&self) -> &Point {
+        &self.last
+    }
+
+    fn step(&self) -> f64 {
+        self.step
+    }
+
+    fn set_step(&mut self, step: f64) {
+        self.step = step;
+    }
+
+    fn restart(&mut self, point: Point, step: f64) {
+        self.last = std::mem::replace(&mut self.here, point);
+        self.magnitudes.raise(&self.here.y);
+        self.forget();
+        self.step = step;
+    }
+
+    fn advance<S: System + ?Sized>(
+        &mut self,
+        watched: &Watched<'_, S>,
+        until: f64,
+    ) -> Result<Outcome, SolveError> {
+        let limit = until - self.here.t;
+        let is_cut = limit <= self.step;
+        let length = if is_cut { limit } else { self.step };
+        let jacobian = (self.jacobian).get_or_insert_with(|| jacobian(watched, &self.here));
+        let factors = match self.factors.take() {
+            Some(factors) if factors.length == length => factors,
+            _ => Factors::new(jacobian, length),
+        };
+        let (here, before) = (&self.here, self.stages.as_ref());
+        let solved = Stages::solve(watched, here, &factors, before, &self.magnitudes);
+        let outcome = |is_accepted| Outcome {
+            is_accepted,
+            length,
+        };
+        let Some(stages) = solved else {
+            self.refuse(0.5 * length);
+            return Ok(outcome(false));
+        };
+        let rates = self.rates.take();
+        let rates = rates.unwrap_or_else(|| rates_at(watched, &self.here));
+        let is_doubted = self.is_refused || self.accepted.is_none();
+        let by = (&factors, &self.magnitudes);
+        let error = stages.error(watched, &self.here, &rates, by, is_doubted);
+        let inside = (self.stages.as_ref()).map_or(0.0, |before| {
+            stages.error_inside(before, &self.here, &self.magnitudes)
+        });
+        let error = error.max(inside);
+        if error.is_nan() || error >= 1.0 {
+            let next = length * proposed(error, stages.iterations);
+            self.rates = Some(rates);
+            self.refuse(next.min(SAFETY * length));
+            return Ok(outcome(false));
+        }
+        let end = Point {
+            t: if is_cut { until } else { self.here.t + length },
+            y: stages.end(&self.here.y),
+        };
+        let next = length * self.growth(length, error, stages.iterations);
+        // A step cut short says nothing against the longer one.
+        self.step = if is_cut { next.max(self.step) } else { next };
+        self.last = std::mem::replace(&mut self.here, end);
+        if stages.contraction > GOOD_JACOBIAN {
+            self.jacobian = None;
+        } else if (1.0..=WORTH_NEW_FACTORS).contains(&(self.step / length)) {
+            self.step = length;
+            self.factors = Some(factors);
+        }
+        self.stages = Some(stages);
+        let error = error.max(1e-2);
+        self.accepted = Some(Accepted { length, error });
+        self.is_refused = false;
+        self.magnitudes.raise(&self.here.y);
+        Ok(outcome(true))
+    }
+
+    fn take_back(&mut self) {
+        std::mem::swap(&mut self.last, &mut self.here);
+        self.forget();
+    }
+
+    fn trial<S: System + ?Sized>(
+        &mut self,
+        watched: &Watched<'_, S>,
+        length: f64,
+    ) -> Result<Point, SolveError> {
+        Self::single_step(watched, &self.here, length, self.magnitudes.tolerance())
+    }
+
+    fn middle(&mut self) -> Option<Vec<f64>> {
+        let half = 0.5 * (self.here.t - self.last.t);
+        let stages = self.stages.as_ref()?;
+        Some(stages.inside(&self.last.y, half))
+    }
+
+    fn inside<S: System + ?Sized>(
+        &mut self,
+        watched: &Watched<'_, S>,
+        t: f64,
+    ) -> Result<Vec<f64>, SolveError> {
+        let after = t - self.last.t;
+        if let Some(stages) = &self.stages {
+            return Ok(stages.inside(&self.last.y, after));
+        }
+        let tolerance = self.magnitudes.tolerance();
+        Ok(Self::single_step(watched, &self.last, after, tolerance)?.y)
+    }
+
+    fn single_step<S: System + ?Sized>(
+        watched: &Watched<'_, S>,
+        start: &Point,
+        length: f64,
+        tolerance: f64,
+    ) -> Result<Point, SolveError> {
+        let end = start.t + length;
+        let mut magnitudes = Magnitudes::new(start.y.len(), tolerance);
+        let mut point = start.clone();
+        // In parts that are halves of halves, so that they add up to one exactly.
+        let (mut part, mut done, mut refused) = (1.0, 0.0, 0);
+        while done < 1.0 {
+            magnitudes.raise(&point.y);
+            let factors = Factors::new(&jacobian(watched, &point), part * length);
+            if let Some(stages) = Stages::solve(watched, &point, &factors, None, &magnitudes) {
+                done += part;
+                let t = if done < 1.0 {
+                    start.t + done * length
+                } else {
+                    end
+                };
+                let y = stages.end(&point.y);
+                point = Point { t, y };
+                if done % (2.0 * part) == 0.0 {
+                    part *= 2.0;
+                }
+                continue;
+            }
+            part *= 0.5;
+            refused += 1;
+            if refused > MOST_REFUSED {
+                return Err(refusal(watched, start, part * length));
+            }
+        }
+        Ok(point)
+    }
+}
+
+impl Radau {
+    /// Forgets all that holds only where the last step led.
+    fn forget(&mut self) {
+        self.rates = None;
+        self.jacobian = None;
+        self.factors = None;
+        self.stages = None;
+        self.accepted = None;
+    }
+
+    /// After a step was refused: a shorter one, with a Jacobian of its start.
+    fn refuse(&mut self, step: f64) {
+        self.step = step;
+        self.is_refused = true;
+        self.factors = None;
+        if self.stages.is_some() {
+            // It may be one of an earlier point.
+            self.jacobian = None;
+        }
+    }
+
+    /// By how much the next step is longer than this one, which had this error: the prediction of
+    /// Gustafsson looks at the step before as well.
+    fn growth(&self, length: f64, error: f64, iterations: u32) -> f64 {
+        let growth = proposed(error, iterations);
+        let growth = if self.is_refused {
+            growth.min(1.0)
+        } else {
+            growth
+        };
+        let Some(before) = self.accepted else {
+            return growth;
+        };
+        let predicted =
+            SAFETY * length / before.length * (before.error / (error * error)).powf(0.25);
+        growth.min(predicted.clamp(GROWTH.1, GROWTH.0))
+    }
+}
+
+/// By how much a next step may be longer, from the error of this one and the work it was to solve it.
+fn proposed(error: f64, iterations: u32) -> f64 {
+    let most = f64::from(2 * MOST_ITERATIONS);
+    let safety = SAFETY * (most + 1.0) / (most + f64::from(iterations));
+    let growth = safety / error.powf(0.25);
+    if growth.is_nan() {
+        return GROWTH.1;
+    }
+    growth.clamp(GROWTH.1, GROWTH.0)
+}
+
+fn rates_at<S: System + ?Sized>(watched: &Watched<'_, S>, point: &Point) -> Vec<f64> {
+    let mut rates = vec![0.0; point.y.len()];
+    watched.diff(point.t, &point.y, &mut rates);
+    rates
+}
+
+fn jacobian<S: System + ?Sized>(watched: &Watched<'_, S>, point: &Point) -> DMatrix<f64> {
+    let states = point.y.len();
+    let mut entries = vec![0.0; states * states];
+    watched.jacobian(point.t, &point.y, &mut entries);
+    DMatrix::from_row_slice(states, states, &entries)
+}
