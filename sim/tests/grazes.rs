@@ -54,7 +54,7 @@ fn swing(method: Method, tolerance: f64, wall: f64, stiffness: f64, until: f64) 
 fn a_contact_much_shorter_than_a_step_is_seen() {
     const SWINGS: u32 = 20;
     let stiffness = 1e6;
-    for method in [Method::DormandPrince853, Method::Adams] {
+    for method in [Method::DormandPrince853, Method::Adams, Method::Radau] {
         // Depths that errors of the amplitude do not hide.
         let depths = [(1e-6, 1e-3), (1e-9, 1e-3), (1e-9, 1e-5)];
         let tight = [1e-3, 1e-5, 1e-7].map(|depth| (1e-12, depth));
@@ -72,7 +72,7 @@ fn a_contact_much_shorter_than_a_step_is_seen() {
 
 #[test]
 fn a_swing_that_stays_before_the_wall_has_no_contact() {
-    for method in [Method::DormandPrince853, Method::Adams] {
+    for method in [Method::DormandPrince853, Method::Adams, Method::Radau] {
         let until = 20.0 * 2.0 * PI;
         let free = swing(method, 1e-9, 2.0, 1e6, until);
         for gap in [1e-2, 1e-4, 1e-6] {

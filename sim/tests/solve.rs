@@ -301,7 +301,7 @@ fn what_was_found_before_a_stop_is_kept() {
     // y' = y^2 from 1: 1/(1 - t).
     let system = smooth(1, |_, y, out| out[0] = y[0] * y[0]);
     let samples: Vec<f64> = (0..200).map(|k| 0.01 * f64::from(k)).collect();
-    for method in [Method::DormandPrince853, Method::Adams] {
+    for method in [Method::DormandPrince853, Method::Adams, Method::Radau] {
         let settings = Settings {
             method,
             ..Settings::with_tolerance(1e-9)
@@ -404,7 +404,7 @@ impl System for Indefinite {
 
 #[test]
 fn where_the_mass_matrix_is_not_positive_definite_the_coordinate_is_named() {
-    for method in [Method::DormandPrince853, Method::Adams] {
+    for method in [Method::DormandPrince853, Method::Adams, Method::Radau] {
         let settings = Settings {
             method,
             ..Settings::with_tolerance(1e-9)

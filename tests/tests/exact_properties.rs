@@ -8,6 +8,7 @@
 
 use std::time::{Duration, Instant};
 
+use eomgen_compiled_model::{CompiledModel, Orders, Solver};
 use eomgen_sim::ode::{Method, SolveError, Trajectory};
 use eomgen_sim::piecewise_linear::ExactError;
 use eomgen_tests::models::load;
@@ -204,5 +205,31 @@ proptest! {
     ) {
         let subject = Subject::new(machine(&masses, &starts, &terms).model(), 0);
         agree(&subject, 0.3, 1e-4)?;
+    }
+}
+
+/// The implicit solver, with the models' own Jacobians, against the one that fits each model best.
+#[test]
+fn radau_follows_the_shipped_models() {
+    for (name, until, reference) in [
+        ("planetary_arm", 0.1, Solver::Exact),
+        ("double_pendulum", 1.0, Solver::Rk),
+        ("two_link_arm", 0.2, Solver::Rk),
+        ("cart_two_arms", 0.2, Solver::Rk),
+    ] {
+        let path = eomgen_tests::models::path(name);
+        let model = CompiledModel::load(&path, Orders::Declared).expect("a model");
+        let instance = model.at_declared().expect("an instance");
+        let times = grid(until, 16);
+        let inputs = instance.no_inputs();
+        let by = |solver| {
+            let motion = instance.simulate(instance.initial(), &times, &inputs, solver);
+            motion.expect("a motion").trajectory
+        };
+        let (found, expected) = (by(Solver::Radau), by(reference));
+        assert_eq!(found.switches.len(), expected.switches.len(), "{name}");
+        let off = difference(&found.states, &expected.states, 1e-9);
+        println!("{name}: {off:e}, {:?}", found.work);
+        assert!(off < 1e-6, "{name}: {off:e}");
     }
 }

@@ -7,7 +7,6 @@
 //! number and a complex pair, Newton's method takes one real and one complex linear system of the
 //! size of the state instead of one three times as large.
 
-use differential_equations::ode::ODE;
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
 
 use super::magnitudes::Magnitudes;
@@ -126,14 +125,15 @@ pub struct Stages {
 
 impl Stages {
     /// The stages of a step from `start` with these `factors`, starting from the polynomial of the
-    /// step before if there is one; nothing if Newton's method does not converge.
+    /// step before if there is one. Where Newton's method does not converge, the error holds the
+    /// stages that it came to. Its iterates are not looked at: where they are means nothing.
     pub fn solve<S: System + ?Sized>(
         watched: &Watched<'_, S>,
         start: &Point,
         factors: &Factors,
         before: Option<&Self>,
         magnitudes: &Magnitudes,
-    ) -> Option<Self> {
+    ) -> Result<Self, Self> {
         let (length, states) = (factors.length, start.y.len());
         let mut z = match before {
             Some(before) => nodes().map(|node| before.beyond(node * length)),
@@ -146,19 +146,21 @@ impl Stages {
         let (mut last_change, mut contraction) = (0.0, 0.0);
         for iterations in 1..=MOST_ITERATIONS {
             let rates = rates_of(watched, start, length, &z);
-            let change = change(factors, &w, &transformed(&T_INVERSE, &rates))?;
+            let Some(change) = change(factors, &w, &transformed(&T_INVERSE, &rates)) else {
+                break;
+            };
             let sizes = change.each_ref().map(|part| {
                 let size = magnitudes.norm(part.iter().copied(), &start.y);
                 size * size
             });
             let size = (sizes.iter().sum::<f64>() / 3.0).sqrt();
+            if !size.is_finite() {
+                break;
+            }
             for (w, change) in w.iter_mut().zip(&change) {
                 *w += change;
             }
             z = transformed(&T, &w);
-            if !size.is_finite() {
-                return None;
-            }
             let is_first = iterations == 1;
             if !is_first {
                 contraction = size / last_change;
@@ -166,12 +168,12 @@ impl Stages {
             // So small a change leaves nothing that counts, whatever the next ones are.
             let is_small = size <= SMALL * enough;
             if !is_small && contraction >= DIVERGES {
-                return None;
+                break;
             }
             // What is left after a first change is not known.
             let left = contraction / (1.0 - contraction) * size;
             if is_small || (!is_first && left <= enough) {
-                return Some(Self {
+                return Ok(Self {
                     z,
                     length,
                     iterations,
@@ -180,11 +182,24 @@ impl Stages {
             }
             let more = (MOST_ITERATIONS - iterations) as i32;
             if !is_first && left * contraction.powi(more - 1) > enough {
-                return None;
+                break;
             }
             last_change = size;
         }
-        None
+        Err(Self {
+            z,
+            length,
+            iterations: MOST_ITERATIONS,
+            contraction,
+        })
+    }
+
+    /// Notices if a stage lies beyond a surface.
+    pub fn look<S: System + ?Sized>(&self, watched: &Watched<'_, S>, start: &Point) {
+        for (node, z) in nodes().into_iter().zip(&self.z) {
+            let y: Vec<f64> = start.y.iter().zip(z).map(|(y, z)| y + z).collect();
+            watched.look(start.t + node * self.length, &y);
+        }
     }
 
     /// The state at the end of the step.
@@ -271,7 +286,7 @@ impl Stages {
         }
         let beside: Vec<f64> = start.y.iter().zip(&error).map(|(y, e)| y + e).collect();
         let mut rates = vec![0.0; beside.len()];
-        watched.diff(start.t, &beside, &mut rates);
+        watched.rates(start.t, &beside, &mut rates);
         filtered(&rates).map_or(f64::INFINITY, |(_, norm)| norm)
     }
 }
@@ -291,7 +306,7 @@ fn rates_of<S: System + ?Sized>(
     let mut rates = vec![0.0; start.y.len()];
     std::array::from_fn(|stage| {
         let y: Vec<f64> = start.y.iter().zip(&z[stage]).map(|(y, z)| y + z).collect();
-        watched.diff(start.t + nodes[stage] * length, &y, &mut rates);
+        watched.rates(start.t + nodes[stage] * length, &y, &mut rates);
         DVector::from_column_slice(&rates)
     })
 }

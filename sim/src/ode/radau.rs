@@ -5,7 +5,6 @@
 //! The error estimate is of order 3, and so is the polynomial that gives states inside a step. Both
 //! are held to the tolerance, so that the end of a step is more accurate than was asked.
 
-use differential_equations::ode::ODE;
 use nalgebra::DMatrix;
 
 use super::collocation::{Factors, MOST_ITERATIONS, Stages};
@@ -120,10 +119,16 @@ impl Stepper for Radau {
             is_accepted,
             length,
         };
-        let Some(stages) = solved else {
-            self.refuse(0.5 * length);
-            return Ok(outcome(false));
+        let stages = match solved {
+            Ok(stages) => stages,
+            Err(stages) => {
+                // A surface may be what makes it hard.
+                stages.look(watched, &self.here);
+                self.refuse(0.5 * length);
+                return Ok(outcome(false));
+            }
         };
+        stages.look(watched, &self.here);
         let rates = self.rates.take();
         let rates = rates.unwrap_or_else(|| rates_at(watched, &self.here));
         let is_doubted = self.is_refused || self.accepted.is_none();
@@ -207,7 +212,8 @@ impl Stepper for Radau {
         while done < 1.0 {
             magnitudes.raise(&point.y);
             let factors = Factors::new(&jacobian(watched, &point), part * length);
-            if let Some(stages) = Stages::solve(watched, &point, &factors, None, &magnitudes) {
+            if let Ok(stages) = Stages::solve(watched, &point, &factors, None, &magnitudes) {
+                stages.look(watched, &point);
                 done += part;
                 let t = if done < 1.0 {
                     start.t + done * length
@@ -216,6 +222,10 @@ impl Stepper for Radau {
                 };
                 let y = stages.end(&point.y);
                 point = Point { t, y };
+                if refused > 0 && watched.crossed().is_some() {
+                    // Beyond a surface: what comes behind it is of no use to a trial.
+                    break;
+                }
                 if done % (2.0 * part) == 0.0 {
                     part *= 2.0;
                 }
@@ -283,7 +293,7 @@ fn proposed(error: f64, iterations: u32) -> f64 {
 
 fn rates_at<S: System + ?Sized>(watched: &Watched<'_, S>, point: &Point) -> Vec<f64> {
     let mut rates = vec![0.0; point.y.len()];
-    watched.diff(point.t, &point.y, &mut rates);
+    watched.rates(point.t, &point.y, &mut rates);
     rates
 }
 

@@ -78,7 +78,7 @@ pub trait Stepper: Sized {
 
     /// The point that a step of exactly `length` s leads to from `start`, whatever its error and
     /// without relying on what came before; what has to be solved for is as accurate as
-    /// `tolerance` asks.
+    /// `tolerance` asks. Where that is hard, it may end earlier, beyond a switching surface.
     fn single_step<S: System + ?Sized>(
         watched: &Watched<'_, S>,
         start: &Point,

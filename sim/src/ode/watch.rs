@@ -85,6 +85,19 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         self.evaluations.get()
     }
 
+    /// The rates at `t` and `y`, without a look at which side of a surface that is.
+    pub fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        let t = self.seen(t);
+        self.system.rates(t, y, out);
+        self.evaluations.set(self.evaluations.get() + 1);
+        if let Some(state) = out.iter().position(|rate| !rate.is_finite()) {
+            self.not_finite.set(Some(state));
+            if self.indefinite.get().is_none() {
+                self.indefinite.set(self.system.indefinite(t, y));
+            }
+        }
+    }
+
     /// The derivatives of the rates by the state, row by row; see [`System::jacobian`].
     pub fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
         self.system.jacobian(self.seen(t), y, out);
@@ -161,15 +174,7 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
 
 impl<S: System + ?Sized> ODE<f64, Vec<f64>> for Watched<'_, S> {
     fn diff(&self, t: f64, y: &Vec<f64>, out: &mut Vec<f64>) {
-        let t = self.seen(t);
-        self.system.rates(t, y, out);
-        self.evaluations.set(self.evaluations.get() + 1);
-        if let Some(state) = out.iter().position(|rate| !rate.is_finite()) {
-            self.not_finite.set(Some(state));
-            if self.indefinite.get().is_none() {
-                self.indefinite.set(self.system.indefinite(t, y));
-            }
-        }
+        self.rates(t, y, out);
         self.look(t, y);
     }
 }
