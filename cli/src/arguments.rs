@@ -70,7 +70,7 @@ pub enum Command {
     Discover(Discover),
     /// Measure the motion over a grid of parameters.
     #[command(
-        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR --engine slurm --shards 100\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
+        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary k=10:1e5:50:log --measure max:tip,rms:tip --until 2 --out DIR\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR --engine slurm --shards 100\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
     )]
     Sweep(Sweep),
     /// Put the shards of a sweep together; refuses where some are missing.
@@ -463,11 +463,17 @@ pub struct Sweep {
     /// The specification.
     pub spec: PathBuf,
     /// Parameters that take the same evenly spaced values together, in the unit the
-    /// specification declares (repeatable; all combinations are measured).
-    #[arg(long, value_name = "NAME[,NAME...]=FROM:TO:COUNT", required = true)]
+    /// specification declares (repeatable; all combinations are measured). With `:log` behind it
+    /// their logarithms are evenly spaced.
+    #[arg(
+        long,
+        value_name = "NAME[,NAME...]=FROM:TO:COUNT[:log]",
+        required = true
+    )]
     pub vary: Vec<String>,
     /// What is measured: `lyapunov`, the largest Lyapunov exponent; `poincare`, the motion
-    /// once per forcing period.
+    /// once per forcing period; `max:NAME`, `rms:NAME`, `final:NAME`, a number of what an
+    /// observable, a coordinate or a rate does over time.
     #[arg(
         long,
         value_name = "NAME[,NAME...]",
@@ -493,6 +499,9 @@ pub struct Sweep {
     /// Forcing periods that are measured.
     #[arg(long, value_name = "PERIODS", default_value_t = 60)]
     pub periods: usize,
+    /// Time from the start that `max`, `rms` and `final` look at, in s, in place of forcing periods.
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub until: Option<f64>,
     /// Compute part I of N only; `merge` puts the parts together.
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     pub shard: Option<String>,

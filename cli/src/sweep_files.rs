@@ -33,7 +33,9 @@ pub fn finish(folder: &Folder) -> Result<Finished> {
     for (measure, picture) in draw(job, &table) {
         match picture {
             Ok(bytes) => {
-                let path = folder.path().join(format!("map_{measure}.png"));
+                let path = folder
+                    .path()
+                    .join(format!("map_{}.png", measure.replace(':', "_")));
                 write_file(&path, &bytes)?;
                 finished.files.push(path);
             }

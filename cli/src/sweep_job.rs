@@ -3,15 +3,18 @@
 use eomgen_compiled_model::{CompiledModel, Orders};
 use eomgen_model_spec::model::Model;
 use eomgen_sweep::job::Plan;
+use eomgen_sweep::over_time::forms;
 use eomgen_sweep::parameters::columns;
-use eomgen_sweep::{Axis, Grid, Job, Lyapunov, Measure, Poincare, Span, SweepError};
+use eomgen_sweep::{
+    Axis, Grid, Job, Lyapunov, Measure, OverTime, Poincare, Span, SweepError, Window,
+};
 
 use crate::arguments::Sweep;
 use crate::error::{Error, Result};
 use crate::model::{load, orders};
 use crate::settings::warn_of_inputs;
 
-/// What can be measured.
+/// What can be measured beside numbers of a course over time.
 const MEASURES: [&str; 2] = ["lyapunov", "poincare"];
 
 /// What the library refuses.
@@ -19,15 +22,14 @@ pub fn refused(error: SweepError) -> Error {
     Error::input(error.to_string())
 }
 
-/// Refuses measures that do not exist.
-pub fn check_measures(names: &[String]) -> Result {
-    match names.iter().find(|name| !MEASURES.contains(&name.as_str())) {
-        None => Ok(()),
-        Some(unknown) => Err(Error::input(format!(
-            "--measure {unknown}: unknown measure; there is {}",
-            MEASURES.join(" and ")
-        ))),
-    }
+/// What a measure that does not exist is told.
+fn unknown(name: &str) -> Error {
+    let known = MEASURES.map(str::to_owned).into_iter().chain(forms());
+    let known: Vec<String> = known.collect();
+    Error::input(format!(
+        "--measure {name}: unknown measure; there is {}",
+        known.join(", ")
+    ))
 }
 
 /// The grid that is asked for.
@@ -81,10 +83,23 @@ pub fn measures<'a>(
         periods: options.periods,
     };
     let frequency = &options.frequency;
+    let window = match options.until {
+        Some(end) => Window::Until(end),
+        None => Window::Periods {
+            forcing: frequency.clone(),
+            span,
+        },
+    };
     let measure = |name: &String| -> Result<Box<dyn Measure + 'a>> {
         Ok(match name.as_str() {
             "lyapunov" => Box::new(Lyapunov::new(model, frequency, span).map_err(refused)?),
-            _ => Box::new(Poincare::new(model, frequency, span, lines == 1).map_err(refused)?),
+            "poincare" => {
+                Box::new(Poincare::new(model, frequency, span, lines == 1).map_err(refused)?)
+            }
+            _ => {
+                let measure = OverTime::new(model, name, &window);
+                Box::new(measure.ok_or_else(|| unknown(name))?.map_err(refused)?)
+            }
         })
     };
     options.measure.iter().map(measure).collect()

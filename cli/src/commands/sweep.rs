@@ -9,11 +9,10 @@ use crate::error::{Result, say};
 use crate::progress::Bar;
 use crate::settings::setting;
 use crate::sweep_files::finish;
-use crate::sweep_job::{check_measures, grid, job, measures, model, refused};
+use crate::sweep_job::{grid, job, measures, model, refused};
 
 /// Runs the command.
 pub fn run(options: &Sweep) -> Result {
-    check_measures(&options.measure)?;
     engines::check(options)?;
     let shard = options
         .shard

@@ -13,9 +13,10 @@
 //! [`spectrum`] estimates power spectral densities, [`zero_one`] tests a series for chaos,
 //! [`poincare`] describes a stroboscopic section, [`exponent`] averages logarithmic growth,
 //! and [`classify`] weighs these against each other by a stated rule. [`modes`] says which
-//! mode of a flexible body carries the motion, [`natural_modes`] which modes a linearised machine has.
+//! mode of a flexible body carries the motion, [`course`] has single numbers of a course over time, [`natural_modes`] which modes a linearised machine has.
 
 pub mod classify;
+pub mod course;
 mod error;
 pub mod exponent;
 pub mod modes;

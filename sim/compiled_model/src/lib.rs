@@ -56,6 +56,6 @@ pub use error::Error;
 pub use instance::Instance;
 pub use jacobians::{Jacobian, JacobianEvaluator, Linearisation};
 pub use model::{CompiledModel, Orders};
-pub use motion::{Choice, Motion, Solver, Stopped};
+pub use motion::{Cause, Choice, Motion, Solver, Stopped};
 pub use operating_point::{OperatingPoint, Setting};
 pub use simulate::{DEFAULT_TOLERANCE, Request};

@@ -96,6 +96,19 @@ pub struct Stopped {
     pub t: Option<f64>,
     /// What is wrong, with names, and what to do.
     pub reason: String,
-    /// Where stability kept the steps of an explicit solver too short: what settles so fast.
-    pub stiff: Option<String>,
+    /// What kind of reason that is.
+    pub cause: Cause,
+}
+
+/// What kind of reason a solver has to stop.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// Rates are infinite or not numbers, or the mass matrix is not positive definite.
+    NotFinite,
+    /// Switching surfaces are crossed too fast, or hold the motion.
+    Switching,
+    /// Stability keeps the steps of an explicit solver too short: what settles so fast.
+    Stiff(String),
+    /// No step is short enough, or there are too many of them.
+    Limit,
 }

@@ -10,7 +10,7 @@ use eomgen_sim::piecewise_linear::{ExactError, Propagator};
 use crate::driven::Driven;
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::motion::{Choice, Motion, Solver, Stopped};
+use crate::motion::{Cause, Choice, Motion, Solver, Stopped};
 
 /// The relative tolerance where nothing is said about it.
 pub const DEFAULT_TOLERANCE: f64 = 1e-9;
@@ -116,8 +116,8 @@ impl Instance<'_> {
         let choice = is_free.then_some(Choice::PiecewiseLinear);
         let t = error.time();
         let so_far = motion(trajectory, request, Solver::Exact, choice);
-        let stiff = None;
-        stopped(so_far, Stopped { t, reason, stiff })
+        let cause = self.cause_of_exact(&error);
+        stopped(so_far, Stopped { t, reason, cause })
     }
 
     /// With an explicit solver for any model, or an implicit one where the motion is stiff.
@@ -131,19 +131,16 @@ impl Instance<'_> {
             max_steps_if_stiff: MOST_STIFF_STEPS,
             ..Settings::with_tolerance(request.tolerance)
         };
-        let mut motion = self.general(request, &explicit, choice, progress)?;
-        let stiff = motion
-            .stopped
-            .as_mut()
-            .and_then(|stopped| stopped.stiff.take());
-        let Some(reason) = stiff else {
+        let motion = self.general(request, &explicit, choice, progress)?;
+        let cause = motion.stopped.as_ref().map(|stopped| &stopped.cause);
+        let Some(Cause::Stiff(what)) = cause else {
             return Ok(motion);
         };
         let implicit = Settings {
             method: Method::Radau,
             ..Settings::with_tolerance(request.tolerance)
         };
-        let choice = Some(Choice::Stiff(reason));
+        let choice = Some(Choice::Stiff(what.clone()));
         self.general(request, &implicit, choice, progress)
     }
 
@@ -174,15 +171,36 @@ impl Instance<'_> {
             Err(error) => {
                 let (t, surfaces) = (SolveError::time(&error), system.surfaces());
                 let reason = self.named(&surfaces, |names| error.named(names));
-                let stiff = match error {
-                    SolveError::Stiff { state, within, .. } => {
-                        let state = &self.model.state_names()[state];
-                        Some(format!("stiff: `{state}` settles within {within:.1e} s"))
-                    }
-                    _ => None,
-                };
-                stopped(so_far, Stopped { t, reason, stiff })
+                let cause = self.cause(&error);
+                stopped(so_far, Stopped { t, reason, cause })
             }
+        }
+    }
+
+    /// What kind of reason an error is.
+    fn cause(&self, error: &SolveError) -> Cause {
+        match error {
+            SolveError::NotFinite { .. } | SolveError::NotPositiveDefinite { .. } => {
+                Cause::NotFinite
+            }
+            SolveError::Caught { .. } | SolveError::TooManySwitches { .. } => Cause::Switching,
+            SolveError::Stiff { state, within, .. } => {
+                let state = &self.model.state_names()[*state];
+                Cause::Stiff(format!("stiff: `{state}` settles within {within:.1e} s"))
+            }
+            SolveError::Request { .. }
+            | SolveError::StepTooSmall { .. }
+            | SolveError::TooManySteps { .. } => Cause::Limit,
+        }
+    }
+
+    /// The same of the exact solver's.
+    fn cause_of_exact(&self, error: &ExactError) -> Cause {
+        match error {
+            ExactError::Stopped(error) => self.cause(error),
+            ExactError::Held { .. } => Cause::Switching,
+            ExactError::NotFinite | ExactError::NotPositiveDefinite => Cause::NotFinite,
+            _ => Cause::Limit,
         }
     }
 

@@ -1,6 +1,6 @@
 //! What of a failed point is kept.
 
-use eomgen_compiled_model::Error;
+use eomgen_compiled_model::{Cause, Error, Motion};
 use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
 
@@ -10,6 +10,21 @@ impl From<Error> for Failure {
     /// What an instance refuses is wrong with its parameters.
     fn from(_: Error) -> Self {
         Self::Parameters
+    }
+}
+
+/// A motion that came to its end, or why there is none.
+pub fn of_motion(motion: Result<Motion, Error>) -> Result<Motion, Failure> {
+    let motion = motion.map_err(|error| match error {
+        // Before the motion has begun.
+        Error::Stopped { .. } => Failure::NotFinite,
+        error => error.into(),
+    })?;
+    match motion.stopped.as_ref().map(|stopped| &stopped.cause) {
+        None => Ok(motion),
+        Some(Cause::NotFinite) => Err(Failure::NotFinite),
+        Some(Cause::Switching) => Err(Failure::Switching),
+        Some(Cause::Stiff(_) | Cause::Limit) => Err(Failure::Limit),
     }
 }
 

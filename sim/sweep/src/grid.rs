@@ -3,11 +3,30 @@
 use serde::{Deserialize, Serialize};
 
 use super::error::SweepError;
+use eomgen_elementary::Function;
 
 /// The most points of a grid.
 pub const MOST_POINTS: usize = 10_000_000;
 
-/// Parameters that take the same evenly spaced values together.
+/// How the values of an axis are spaced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Spacing {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// Evenly in their logarithms.
+    Log,
+}
+
+impl Spacing {
+    /// What is left out of a plan, so that one without logarithms says nothing of them.
+    fn is_linear(&self) -> bool {
+        *self == Self::Linear
+    }
+}
+
+/// Parameters that take the same spaced values together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// The parameters.
@@ -18,18 +37,21 @@ pub struct Axis {
     pub to: f64,
     /// How many values; with one it is `from`.
     pub count: usize,
+    /// How they are spaced.
+    #[serde(default, skip_serializing_if = "Spacing::is_linear")]
+    pub spacing: Spacing,
 }
 
 impl Axis {
-    /// Reads `NAME[,NAME...]=FROM:TO:COUNT`.
+    /// Reads `NAME[,NAME...]=FROM:TO:COUNT[:log]`.
     ///
     /// # Errors
     /// Says which part is wrong and what would be right.
     pub fn parse(text: &str) -> Result<Self, SweepError> {
         let refused = |reason: String| {
             SweepError::Request(format!(
-                "--vary {text}: {reason}; expected NAME[,NAME...]=FROM:TO:COUNT, such as \
-                 b_sp,b_pr=0:100e-6:200"
+                "--vary {text}: {reason}; expected NAME[,NAME...]=FROM:TO:COUNT or \
+                 FROM:TO:COUNT:log, such as b_sp,b_pr=0:100e-6:200"
             ))
         };
         let (names, range) = text
@@ -40,8 +62,11 @@ impl Axis {
             .map(|name| name.trim().to_owned())
             .collect();
         let parts: Vec<&str> = range.split(':').map(str::trim).collect();
-        let [from, to, count] = parts[..] else {
-            return Err(refused(format!("{} numbers in the range", parts.len())));
+        let (from, to, count, spacing) = match parts[..] {
+            [from, to, count] => (from, to, count, Spacing::Linear),
+            [from, to, count, "log"] => (from, to, count, Spacing::Log),
+            [_, _, _, other] => return Err(refused(format!("\"{other}\" is no spacing"))),
+            _ => return Err(refused(format!("{} numbers in the range", parts.len()))),
         };
         let number = |part: &str| {
             part.parse::<f64>()
@@ -54,6 +79,7 @@ impl Axis {
             count: count
                 .parse()
                 .map_err(|_| refused(format!("\"{count}\" is no whole number")))?,
+            spacing,
         };
         axis.check().map_err(refused)?;
         Ok(axis)
@@ -79,10 +105,16 @@ impl Axis {
         if !((self.to - self.from) * self.count as f64).is_finite() {
             return Err("the range is too wide".to_owned());
         }
+        let is_log = self.spacing == Spacing::Log;
+        if is_log && !((self.to / self.from).is_normal() && self.to / self.from > 0.0) {
+            return Err(
+                "both ends of a logarithmic range are positive, or both negative".to_owned(),
+            );
+        }
         Ok(())
     }
 
-    /// Value `index`, counted from 0: evenly spaced, the first and the last exact.
+    /// Value `index`, counted from 0: spaced as the axis says, the first and the last exact.
     pub fn value(&self, index: usize) -> f64 {
         if index == 0 {
             return self.from;
@@ -90,7 +122,17 @@ impl Axis {
         if index + 1 >= self.count {
             return self.to;
         }
-        self.from + (self.to - self.from) * index as f64 / (self.count - 1) as f64
+        let part = index as f64 / (self.count - 1) as f64;
+        match self.spacing {
+            Spacing::Linear => {
+                self.from + (self.to - self.from) * index as f64 / (self.count - 1) as f64
+            }
+            // By the project's own functions, so that every machine has the same bits.
+            Spacing::Log => {
+                let logarithm = Function::Ln.apply(&[self.to / self.from]);
+                self.from * Function::Exp.apply(&[logarithm * part])
+            }
+        }
     }
 
     /// All values in order.

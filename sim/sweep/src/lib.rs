@@ -2,7 +2,7 @@
 //! parallel, in parts that survive a kill and can be computed on several machines.
 //!
 //! The pipeline: [`grid`] (what is varied, [`parameters`] of the model), [`measure`] (what is
-//! measured; `forcing` is its period, [`span`] how long is looked; [`poincare`] and [`lyapunov`] are
+//! measured; `forcing` is its period, [`span`] how long is looked; [`poincare`], [`lyapunov`] and [`over_time`] are
 //! measures), [`job`] (all of that as data, with a
 //! hash that names it), [`folder`] and `part` (the job and its finished chunks as files),
 //! [`shard`] (who computes which chunk), [`run`](mod@run) (computing them), [`merge`](mod@merge) (all chunks to one
@@ -52,6 +52,7 @@ pub mod job;
 pub mod lyapunov;
 pub mod measure;
 pub mod merge;
+pub mod over_time;
 pub mod parameters;
 mod part;
 pub mod poincare;
@@ -66,6 +67,7 @@ pub use job::Job;
 pub use lyapunov::Lyapunov;
 pub use measure::{Column, Description, Failure, Measure, Worker};
 pub use merge::{Table, merge};
+pub use over_time::{OverTime, Window};
 pub use poincare::Poincare;
 pub use run::{Done, run};
 pub use shard::Shard;

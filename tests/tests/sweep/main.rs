@@ -2,6 +2,7 @@
 //! against the closed form of a forced oscillator; what is refused.
 
 mod exponents;
+mod over_time;
 mod place;
 mod refusals;
 

@@ -1,0 +1,257 @@
+//! The measures `max:NAME`, `rms:NAME` and `final:NAME`: one number of a quantity's course over
+//! time. Samples are taken as `simulate` takes its rows; who integrates is the model's business.
+
+use std::collections::BTreeMap;
+
+use eomgen_analysis::course::{greatest, root_mean_square};
+use eomgen_compiled_model::{CompiledModel, Instance, Motion, Request, Solver};
+use eomgen_model_spec::suggest::did_you_mean;
+
+use crate::error::SweepError;
+use crate::failure::of_motion;
+use crate::forcing::{Frequency, frequency};
+use crate::measure::{Column, Description, Failure, Measure, Worker};
+use crate::span::Span;
+
+/// Samples are a thousandth of the time apart, as rows of `simulate` are.
+const SAMPLES: usize = 1000;
+
+/// The relative tolerance of solvers that have one.
+const TOLERANCE: f64 = 1e-9;
+
+/// What becomes of a course over time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Statistic {
+    Greatest,
+    RootMeanSquare,
+    Last,
+}
+
+impl Statistic {
+    const ALL: [Self; 3] = [Self::Greatest, Self::RootMeanSquare, Self::Last];
+
+    /// Its name on the command line.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Greatest => "max",
+            Self::RootMeanSquare => "rms",
+            Self::Last => "final",
+        }
+    }
+
+    fn about(self) -> &'static str {
+        match self {
+            Self::Greatest => "greatest",
+            Self::RootMeanSquare => "root mean square of",
+            Self::Last => "last",
+        }
+    }
+}
+
+/// The names that [`OverTime::new`] takes, with `NAME` for the quantity.
+pub fn forms() -> impl Iterator<Item = String> {
+    Statistic::ALL
+        .into_iter()
+        .map(|statistic| format!("{}:NAME", statistic.name()))
+}
+
+/// Which time is looked at.
+#[derive(Clone, Debug)]
+pub enum Window {
+    /// From t = 0 to this time, s.
+    Until(f64),
+    /// So many periods of a forcing after others.
+    Periods {
+        /// The parameter that is the angular frequency of the forcing.
+        forcing: String,
+        /// Which ones.
+        span: Span,
+    },
+}
+
+/// The window with its forcing looked up.
+enum Times {
+    Until(f64),
+    Periods(Frequency, Span),
+}
+
+/// What is looked at: its place among the states or the observables.
+enum Quantity {
+    State(usize),
+    Observable(usize),
+}
+
+/// Measures a model at many parameter values.
+pub struct OverTime<'a> {
+    model: &'a CompiledModel,
+    statistic: Statistic,
+    quantity: Quantity,
+    /// Of the quantity.
+    name: String,
+    unit: String,
+    times: Times,
+}
+
+impl<'a> OverTime<'a> {
+    /// Measures what `asked` says, `max:tip` say: of an observable, a coordinate or a rate. Nothing if
+    /// it is no such measure.
+    ///
+    /// # Errors
+    /// A quantity that the model does not have, a window that makes no sense.
+    pub fn new(
+        model: &'a CompiledModel,
+        asked: &str,
+        window: &Window,
+    ) -> Option<Result<Self, SweepError>> {
+        let (statistic, name) = asked.split_once(':')?;
+        let mut statistics = Statistic::ALL.into_iter();
+        let statistic = statistics.find(|known| known.name() == statistic)?;
+        Some(Self::of(model, statistic, name, window))
+    }
+
+    fn of(
+        model: &'a CompiledModel,
+        statistic: Statistic,
+        name: &str,
+        window: &Window,
+    ) -> Result<Self, SweepError> {
+        let asked = format!("{}:{name}", statistic.name());
+        let (states, observables) = (model.state_names(), model.observable_names());
+        let place = |names: &[String]| names.iter().position(|known| known == name);
+        let (quantity, unit) = if let Some(place) = place(&observables) {
+            let unit = model.program().observables[place].unit.clone();
+            (Quantity::Observable(place), unit)
+        } else if let Some(place) = place(&states) {
+            (Quantity::State(place), model.state_units()[place].clone())
+        } else {
+            let known = observables.iter().chain(&states).map(String::as_str);
+            let hint = did_you_mean(name, known).unwrap_or_else(|| {
+                format!(
+                    "there are {}",
+                    [observables.join(", "), states.join(", ")].join(", ")
+                )
+            });
+            return Err(SweepError::Request(format!(
+                "--measure {asked}: the model `{}` has no observable, coordinate or rate `{name}`: {hint}",
+                model.model().name
+            )));
+        };
+        let times = match window {
+            Window::Until(end) if *end > 0.0 && end.is_finite() => Times::Until(*end),
+            Window::Until(end) => {
+                return Err(SweepError::Request(format!(
+                    "--until {end:?}: expected a time in s above 0"
+                )));
+            }
+            Window::Periods { forcing, span } => {
+                span.check(&asked, 1)?;
+                let known = frequency(model.model(), forcing).map_err(|error| {
+                    SweepError::Request(format!(
+                        "--measure {asked}: {error}; or give --until, the time in s that is looked at"
+                    ))
+                })?;
+                Times::Periods(known, *span)
+            }
+        };
+        Ok(Self {
+            model,
+            statistic,
+            quantity,
+            name: name.to_owned(),
+            unit,
+            times,
+        })
+    }
+
+    /// The times of the samples, s: the start, and those that are looked at from the place given.
+    fn times(&self, instance: &Instance<'_>) -> Result<(Vec<f64>, usize), Failure> {
+        let (begin, end) = match &self.times {
+            Times::Until(end) => (0.0, *end),
+            Times::Periods(frequency, span) => {
+                let period = frequency.period(instance)?;
+                let begin = span.transient as f64 * period;
+                (begin, begin + span.periods as f64 * period)
+            }
+        };
+        let sample = |place: usize| match place {
+            SAMPLES => end,
+            _ => begin + (end - begin) * place as f64 / SAMPLES as f64,
+        };
+        let looked_at = (0..=SAMPLES).map(sample);
+        let before = usize::from(begin > 0.0);
+        let times = std::iter::repeat_n(0.0, before).chain(looked_at);
+        Ok((times.collect(), before))
+    }
+
+    /// The quantity at every sample.
+    fn course(&self, instance: &Instance<'_>, motion: &Motion) -> Result<Vec<f64>, Failure> {
+        Ok(match self.quantity {
+            Quantity::State(place) => {
+                let states = motion.trajectory.states.iter();
+                states.map(|state| state[place]).collect()
+            }
+            Quantity::Observable(place) => {
+                let mut course = Vec::with_capacity(motion.trajectory.times.len());
+                instance.observe(motion, |_, _, observables| course.push(observables[place]))?;
+                course
+            }
+        })
+    }
+}
+
+impl Measure for OverTime<'_> {
+    fn describe(&self) -> Description {
+        let option = |name: &str, value: String| (name.to_owned(), value);
+        let window = match &self.times {
+            Times::Until(end) => vec![option("until", format!("{end:?}"))],
+            Times::Periods(frequency, span) => vec![
+                option("frequency", frequency.name().to_owned()),
+                option("transient", span.transient.to_string()),
+                option("periods", span.periods.to_string()),
+            ],
+        };
+        let asked = format!("{}:{}", self.statistic.name(), self.name);
+        let about = format!("{} {}", self.statistic.about(), self.name);
+        Description {
+            about: format!("{about}, of {SAMPLES} samples and one"),
+            options: BTreeMap::from_iter(window.into_iter().chain([
+                option("solver", Solver::Auto.name().to_owned()),
+                option("tolerance", format!("{TOLERANCE:?}")),
+                option("samples", (SAMPLES + 1).to_string()),
+            ])),
+            columns: vec![Column::new(&asked, &self.unit, about)],
+            drawn: vec![asked.clone()],
+            quantity: self.name.clone(),
+            name: asked,
+        }
+    }
+
+    fn worker(&self) -> Box<dyn Worker + '_> {
+        Box::new(self)
+    }
+}
+
+impl Worker for &OverTime<'_> {
+    fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
+        let instance = self.model.with(settings)?;
+        let (times, first) = self.times(&instance)?;
+        let inputs = instance.no_inputs();
+        let request = Request {
+            initial: instance.initial(),
+            times: &times,
+            inputs: &inputs,
+            solver: Solver::Auto,
+            tolerance: TOLERANCE,
+        };
+        let motion = of_motion(instance.follow(&request, &mut |_| {}))?;
+        let course = self.course(&instance, &motion)?;
+        let (times, course) = (&times[first..], &course[first..]);
+        out[0] = match self.statistic {
+            Statistic::Greatest => greatest(course),
+            Statistic::RootMeanSquare => root_mean_square(times, course),
+            Statistic::Last => course.last().copied(),
+        }
+        .ok_or(Failure::Undefined)?;
+        Ok(())
+    }
+}
