@@ -436,3 +436,32 @@ fn where_the_mass_matrix_is_not_positive_definite_the_coordinate_is_named() {
         assert_eq!(at_once, Err(wanted));
     }
 }
+
+#[test]
+fn rows_between_steps_have_their_tolerance_and_cost_no_evaluation() {
+    let system = smooth(2, |t, y, out| {
+        out.copy_from_slice(&[y[0] * t.cos(), -y[0] * t.sin()]);
+    });
+    let rows: Vec<f64> = (0..=5000).map(|k| 0.002 * f64::from(k)).collect();
+    let mut longest = 0.0;
+    for tolerance in [1e-4, 1e-8, 1e-12] {
+        let at = |samples: &[f64]| {
+            let settings = Settings::with_tolerance(tolerance);
+            let span = (0.0, 10.0);
+            let found = simulate(&system, &[1.0, 0.0], span, samples, &settings, &mut |_| {});
+            found.expect("a trajectory")
+        };
+        let (with, without) = (at(&rows), at(&[]));
+        assert_eq!(with.work, without.work);
+        assert_eq!(with.last, without.last);
+        let errors = with.times.iter().zip(&with.states);
+        let errors = errors.map(|(t, state)| (state[0] - t.sin().exp()).abs());
+        let worst = errors.fold(0.0, f64::max);
+        // Errors of the steps add up and grow by e^2.
+        let bound = 2.0_f64.exp() * with.work.steps as f64 * tolerance;
+        assert!(worst < bound, "{worst:e} at {tolerance:e}");
+        longest = f64::max(longest, 10.0 / with.work.steps as f64);
+    }
+    // There are many rows in a step.
+    assert!(longest > 0.2, "{longest}");
+}

@@ -166,9 +166,17 @@ impl Stepper for Adams {
         }
     }
 
-    fn middle(&mut self) -> Option<Vec<f64>> {
-        let (before, now) = (self.before.point.t, self.now.point.t);
-        self.interpolated(before + 0.5 * (now - before))
+    fn interpolated(&mut self, t: f64) -> Option<Vec<f64>> {
+        let Stand { point, history, .. } = &self.before;
+        let last = self.last.as_ref()?;
+        let weights = history.weights(t - point.t);
+        let mut y = point.y.clone();
+        history.predict(&weights, last.order, &mut y);
+        let factor = history.correction_inside(&weights, last.order, last.weights.length);
+        for (y, surprise) in y.iter_mut().zip(&last.surprise) {
+            *y += factor * surprise;
+        }
+        Some(y)
     }
 
     fn inside<S: System + ?Sized>(
@@ -195,20 +203,6 @@ impl Stepper for Adams {
 }
 
 impl Adams {
-    /// The state at time `t` (s) inside the last step, if this method made it.
-    fn interpolated(&self, t: f64) -> Option<Vec<f64>> {
-        let Stand { point, history, .. } = &self.before;
-        let last = self.last.as_ref()?;
-        let weights = history.weights(t - point.t);
-        let mut y = point.y.clone();
-        history.predict(&weights, last.order, &mut y);
-        let factor = history.correction_inside(&weights, last.order, last.weights.length);
-        for (y, surprise) in y.iter_mut().zip(&last.surprise) {
-            *y += factor * surprise;
-        }
-        Some(y)
-    }
-
     /// Evaluates the rates at a start and shortens the step to what they allow.
     fn begin<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>) -> Result<(), SolveError> {
         if self.now.history.points() > 0 {

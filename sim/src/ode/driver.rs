@@ -249,8 +249,12 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         (guards.iter().enumerate()).any(|(guard, value)| self.watched.is_beyond(guard, *value))
     }
 
-    /// The state at `t` (s), which lies inside the last step.
+    /// The state at `t` (s), which lies inside the last step. Where a surface was stepped over
+    /// nothing is interpolated.
     fn inside(&mut self, t: f64) -> Result<Vec<f64>, SolveError> {
+        if let Some(state) = self.stepper.interpolated(t) {
+            return Ok(state);
+        }
         self.check_steps()?;
         self.trajectory.work.trials += 1;
         self.watched.reset();

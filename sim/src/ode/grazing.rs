@@ -43,14 +43,15 @@ pub fn passed_over<S: System + ?Sized, M: Stepper>(
     stepper: &mut M,
     trials: &mut u64,
 ) -> Result<Option<f64>, SolveError> {
-    let Some(middle) = watched.has_guards().then(|| stepper.middle()).flatten() else {
+    if !watched.has_guards() {
+        return Ok(None);
+    }
+    let (start, end) = (stepper.last().clone(), stepper.here().clone());
+    let t = start.t + 0.5 * (end.t - start.t);
+    let Some(y) = stepper.interpolated(t) else {
         return Ok(None);
     };
-    let (start, end) = (stepper.last().clone(), stepper.here().clone());
-    let middle = Point {
-        t: start.t + 0.5 * (end.t - start.t),
-        y: middle,
-    };
+    let middle = Point { t, y };
     let begin = start.t;
     search(watched, &[start, middle, end], &mut |at| {
         *trials += 1;

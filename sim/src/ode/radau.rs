@@ -55,6 +55,8 @@ pub struct Radau {
     accepted: Option<Accepted>,
     /// The last try was refused.
     is_refused: bool,
+    /// The next step begins where the right-hand side may have jumped.
+    is_starting: bool,
 }
 
 impl Stepper for Radau {
@@ -74,6 +76,7 @@ impl Stepper for Radau {
             stages: None,
             accepted: None,
             is_refused: false,
+            is_starting: true,
         }
     }
 
@@ -105,6 +108,9 @@ impl Stepper for Radau {
         watched: &Watched<'_, S>,
         until: f64,
     ) -> Result<Outcome, SolveError> {
+        if std::mem::take(&mut self.is_starting) {
+            self.begin(watched);
+        }
         let limit = until - self.here.t;
         let is_cut = limit <= self.step;
         let length = if is_cut { limit } else { self.step };
@@ -162,6 +168,7 @@ impl Stepper for Radau {
         let error = error.max(1e-2);
         self.accepted = Some(Accepted { length, error });
         self.is_refused = false;
+        self.is_starting = is_cut;
         self.magnitudes.raise(&self.here.y);
         Ok(outcome(true))
     }
@@ -179,10 +186,9 @@ impl Stepper for Radau {
         Self::single_step(watched, &self.here, length, self.magnitudes.tolerance())
     }
 
-    fn middle(&mut self) -> Option<Vec<f64>> {
-        let half = 0.5 * (self.here.t - self.last.t);
+    fn interpolated(&mut self, t: f64) -> Option<Vec<f64>> {
         let stages = self.stages.as_ref()?;
-        Some(stages.inside(&self.last.y, half))
+        Some(stages.inside(&self.last.y, t - self.last.t))
     }
 
     fn inside<S: System + ?Sized>(
@@ -190,11 +196,10 @@ impl Stepper for Radau {
         watched: &Watched<'_, S>,
         t: f64,
     ) -> Result<Vec<f64>, SolveError> {
-        let after = t - self.last.t;
-        if let Some(stages) = &self.stages {
-            return Ok(stages.inside(&self.last.y, after));
+        if let Some(state) = self.interpolated(t) {
+            return Ok(state);
         }
-        let tolerance = self.magnitudes.tolerance();
+        let (after, tolerance) = (t - self.last.t, self.magnitudes.tolerance());
         Ok(Self::single_step(watched, &self.last, after, tolerance)?.y)
     }
 
@@ -249,6 +254,40 @@ impl Radau {
         self.factors = None;
         self.stages = None;
         self.accepted = None;
+        self.is_starting = true;
+    }
+
+    /// Shortens the first step of a start to what the rates and their change allow. The error
+    /// estimate is blind there: it passes a step so long that the method damps a fast vibration
+    /// which it should follow. By the rule of Hairer, Norsett and Wanner, "Solving Ordinary
+    /// Differential Equations I", section II.4, for an error of order 3.
+    fn begin<S: System + ?Sized>(&mut self, watched: &Watched<'_, S>) {
+        let here = &self.here;
+        let norm = |values: &[f64]| self.magnitudes.norm(values.iter().copied(), &here.y);
+        let rates = rates_at(watched, here);
+        let (size, speed) = (norm(&here.y), norm(&rates));
+        let short = if size > 0.0 && speed > 0.0 {
+            (0.01 * size / speed).min(self.step)
+        } else {
+            self.step
+        };
+        let near = here.y.iter().zip(&rates).map(|(y, rate)| y + short * rate);
+        let near = Point {
+            t: here.t + short,
+            y: near.collect(),
+        };
+        let later = rates_at(watched, &near);
+        let change: Vec<f64> = later
+            .iter()
+            .zip(&rates)
+            .map(|(b, a)| (b - a) / short)
+            .collect();
+        let fastest = speed.max(norm(&change));
+        let first = (0.01 / fastest).powf(0.25);
+        if first > 0.0 {
+            self.step = self.step.min(first);
+        }
+        self.rates = Some(rates);
     }
 
     /// After a step was refused: a shorter one, with a Jacobian of its start.

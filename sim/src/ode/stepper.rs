@@ -65,9 +65,9 @@ pub trait Stepper: Sized {
         length: f64,
     ) -> Result<Point, SolveError>;
 
-    /// The state in the middle of the last step by interpolation, without an evaluation and less
-    /// accurate than the step; `None` if none was made yet.
-    fn middle(&mut self) -> Option<Vec<f64>>;
+    /// The state at time `t` (s) inside the last step by interpolation, with the accuracy of the
+    /// step and without an evaluation; `None` if this method made none to here.
+    fn interpolated(&mut self, t: f64) -> Option<Vec<f64>>;
 
     /// The state at time `t` (s) inside the last step, with the accuracy of the step.
     fn inside<S: System + ?Sized>(
