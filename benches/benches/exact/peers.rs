@@ -76,6 +76,7 @@ impl Peer {
         match self {
             Self::Located(Method::DormandPrince853) => "DOP853, located",
             Self::Located(Method::Adams) => "Adams, located",
+            Self::Located(Method::Radau) => "Radau, located",
             Self::Continuous(Scheme::Dop853) => "DOP853, continuous",
             Self::Continuous(Scheme::Dopri5) => "Dopri5, continuous",
             Self::Continuous(Scheme::Verner6) => "Verner 6(5), continuous",
