@@ -8,6 +8,7 @@ use crate::raw::{
     RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawInput, RawLine, RawParameter,
     RawPoint, RawRange, RawSensor, RawTerm,
 };
+use crate::suggest::did_you_mean;
 use crate::table::{Entry, Name, Quantity, Record, Written, unknown_key};
 
 const PARAMETER_EXAMPLE: &str = "{ value = 0.5, unit = \"m\" }";
@@ -113,10 +114,15 @@ pub fn field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
 fn basis_named(written: &Written) -> Result<Basis, Diagnostic> {
     let meant = keys::BASES.iter().find(|(name, _)| *name == written.text);
     meant.map(|(_, basis)| *basis).ok_or_else(|| {
-        let known: Vec<&str> = keys::BASES.iter().map(|(name, _)| *name).collect();
-        Diagnostic::error(format!("unknown basis {}", quoted(&written.text)))
-            .at(written.span, "not known")
-            .help(format!("known are {}", known.join(" and ")))
+        let unknown = Diagnostic::error(format!("unknown basis {}", quoted(&written.text)))
+            .at(written.span, "not known");
+        let names = keys::BASES.iter().map(|(name, _)| *name);
+        unknown.help(did_you_mean(&written.text, names).unwrap_or_else(|| {
+            "a beam has an end at `from` and one at `to`, each clamped, pinned, free or guided, as \
+             pinned_clamped; others are rod_fixed_free, rod_fixed_fixed, rod_free_free, string and \
+             clamped_free_printed"
+                .to_owned()
+        }))
     })
 }
 

@@ -7,7 +7,7 @@ use eomgen_model_spec::model::Basis;
 
 use crate::support::{evaluator, model, observables};
 
-const EXACT: Basis = Basis::ClampedFree;
+const EXACT: Basis = Basis::CLAMPED_FREE;
 const PRINTED: Basis = Basis::ClampedFreePrinted;
 
 fn moment(power: u32, derivative: u8) -> TableKind {

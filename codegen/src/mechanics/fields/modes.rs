@@ -1,151 +1,48 @@
-//! Mode shapes of uniform beams and their dimensionless integrals, for the bases a
-//! specification can name. Everything is a function of s = x/l and of the mode's number;
-//! lengths and stiffnesses enter elsewhere as parameters.
-//!
-//! The shapes are Eq. (17) of the paper,
-//! phi_r(s) = sin z - sinh z + xi_r (cos z - cosh z), z = beta_r l s, evaluated with
-//! exponentials of -z and of -(beta_r l - z): the hyperbolic functions themselves lose all
-//! digits from r of about 12 on. The elementary functions are the project's own, so that
-//! the tables have the same bits on every machine.
+//! The numbers of a basis: mode shapes at points and their dimensionless integrals. Everything is
+//! a function of s = x/l and of the mode's number; lengths and stiffnesses enter elsewhere as
+//! parameters.
 
-use eomgen_elementary::Function;
 use eomgen_model_spec::model::Basis;
 
+use super::beam;
+use super::mode::{Mode, power};
 use crate::mechanics::fields::quadrature::{QuadratureRule, gauss_legendre};
 use crate::symbolic::tables::{TableKind, quadrature_size};
 
-/// One mode of a basis.
-#[derive(Clone, Copy, Debug)]
-struct Mode {
-    /// r, from 1.
-    number: usize,
-    /// beta_r l
-    wavenumber: f64,
-    /// xi_r
-    mixing: f64,
-    /// (1 + xi_r) exp(beta_r l)
-    growing: f64,
-}
-
-impl Mode {
-    fn new(basis: Basis, number: usize) -> Self {
-        match basis {
-            Basis::ClampedFree => Self::clamped_free(number),
-            Basis::ClampedFreePrinted => Self::printed(number),
-        }
-    }
-
-    /// Root of cos z cosh z = -1 next to (r - 1/2) pi. With z = (r - 1/2) pi + d the
-    /// equation is sin d = (-1)^(r+1) sech z, a contraction.
-    fn clamped_free(number: usize) -> Self {
-        let sign = alternating(number);
-        let centre = std::f64::consts::PI * (number as f64 - 0.5);
-        let mut offset = 0.0;
-        for _ in 0..64 {
-            let decay = exponential(-(centre + offset));
-            let sech = 2.0 * decay / (1.0 + decay * decay);
-            let next = -sign * Function::Asin.apply(&[sech]);
-            if next == offset {
-                break;
-            }
-            offset = next;
-        }
-        let wavenumber = centre + offset;
-        let decay = exponential(-wavenumber);
-        let sech = 2.0 * decay / (1.0 + decay * decay);
-        let cosine = -sech;
-        let sine = -sign * Function::Cos.apply(&[offset]);
-        // xi = -(sin + sinh)/(cos + cosh), numerator and denominator times 2 exp(-z)
-        let numerator = 2.0 * sine * decay + 1.0 - decay * decay;
-        let denominator = 2.0 * cosine * decay + 1.0 + decay * decay;
-        Self {
-            number,
-            wavenumber,
-            mixing: -numerator / denominator,
-            growing: 2.0 * (cosine - sine + decay) / denominator,
-        }
-    }
-
-    /// beta_r l and xi_r as Eq. (18) and (19) print them.
-    fn printed(number: usize) -> Self {
-        let wavenumber = std::f64::consts::PI * (number as f64 - 0.5);
-        let sine = -alternating(number);
-        let decay = exponential(-wavenumber);
-        let mixing = (1.0 + decay * decay) / (2.0 * sine * decay + 1.0 - decay * decay);
-        Self {
-            number,
-            wavenumber,
-            mixing,
-            growing: (1.0 + mixing) / decay,
-        }
-    }
-
-    /// phi_r^(a)(s), the derivative by s.
-    fn shape(&self, derivative: u8, s: f64) -> f64 {
-        let z = self.wavenumber * s;
-        let (sine, cosine) = (Function::Sin.apply(&[z]), Function::Cos.apply(&[z]));
-        let wave = match derivative % 4 {
-            0 => sine + self.mixing * cosine,
-            1 => cosine - self.mixing * sine,
-            2 => -sine - self.mixing * cosine,
-            _ => -cosine + self.mixing * sine,
-        };
-        let growing = self.growing * exponential(-self.wavenumber * (1.0 - s));
-        let falling = (1.0 - self.mixing) * exponential(-z);
-        let falling = if derivative.is_multiple_of(2) {
-            -falling
-        } else {
-            falling
-        };
-        power(self.wavenumber, derivative) * (wave - 0.5 * (growing + falling))
-    }
-
-    fn at_start(&self, derivative: u8) -> f64 {
-        match derivative {
-            0 | 1 => 0.0,
-            _ => self.shape(derivative, 0.0),
-        }
-    }
-
-    /// At the free end moment and shear vanish and phi_r(1) = (-1)^r 2 xi_r.
-    fn at_end(&self, basis: Basis, derivative: u8) -> f64 {
-        match (basis, derivative) {
-            (Basis::ClampedFree, 0) => 2.0 * alternating(self.number) * self.mixing,
-            (Basis::ClampedFree, 2 | 3) => 0.0,
-            _ => self.shape(derivative, 1.0),
-        }
+/// Mode `number` of a basis, from 1.
+fn mode(basis: Basis, number: usize) -> Mode {
+    match basis {
+        Basis::Beam { from, to } => beam::mode(from, to, number),
+        Basis::ClampedFreePrinted => beam::printed(number),
     }
 }
 
-/// (-1)^r
-fn alternating(number: usize) -> f64 {
-    if number.is_multiple_of(2) { 1.0 } else { -1.0 }
-}
-
-fn exponential(x: f64) -> f64 {
-    Function::Exp.apply(&[x])
-}
-
-fn power(base: f64, exponent: u8) -> f64 {
-    (0..exponent).fold(1.0, |product, _| product * base)
-}
-
-/// Whether the integral of s^k phi_r^(a) phi_p^(b) vanishes for r != p in this basis:
-/// the shapes and their curvatures are orthogonal for a uniform beam.
+/// Whether the integral of s^k phi_r^(a) phi_p^(b) vanishes for r != p in this basis: the shapes
+/// and their curvatures are orthogonal for a uniform beam. Sines and cosines are so in every
+/// derivative that is one of the same kind.
 pub fn is_orthogonal(basis: Basis, power: u32, left: u8, right: u8) -> bool {
-    basis == Basis::ClampedFree && power == 0 && left == right && (left == 0 || left == 2)
+    let alike = left == right && (left == 0 || left == 2);
+    match basis {
+        Basis::Beam { from, to } if beam::is_sinusoidal(from, to) => {
+            power == 0 && (left + right).is_multiple_of(2)
+        }
+        Basis::Beam { .. } => power == 0 && alike,
+        Basis::ClampedFreePrinted => false,
+    }
 }
 
 /// The numbers of a table for modes 1 to `order`; matrices row by row.
 pub fn table(basis: Basis, order: usize, kind: TableKind) -> Vec<f64> {
-    let modes: Vec<Mode> = (1..=order).map(|number| Mode::new(basis, number)).collect();
+    let modes: Vec<Mode> = (1..=order).map(|number| mode(basis, number)).collect();
     let each = |value: &dyn Fn(&Mode) -> f64| modes.iter().map(value).collect::<Vec<f64>>();
     match kind {
         TableKind::Wavenumber => each(&|mode| mode.wavenumber),
-        TableKind::Mixing => each(&|mode| mode.mixing),
-        TableKind::GrowingAmplitude => each(&|mode| mode.growing),
-        TableKind::ShapeAtStart(derivative) => each(&|mode| mode.at_start(derivative)),
-        TableKind::ShapeAtEnd(derivative) => each(&|mode| mode.at_end(basis, derivative)),
+        TableKind::Mixing => each(&|mode| mode.cosine),
+        TableKind::GrowingAmplitude => each(&|mode| -2.0 * mode.rising),
+        TableKind::FallingAmplitude => each(&|mode| mode.falling),
+        TableKind::RisingAmplitude => each(&|mode| mode.rising),
+        TableKind::ShapeAtStart(derivative) => each(&|mode| at_start(mode, derivative)),
+        TableKind::ShapeAtEnd(derivative) => each(&|mode| at_end(basis, mode, derivative)),
         TableKind::Moment { power, derivative } => moments(basis, &modes, power, derivative),
         TableKind::OwnMoment { power, left, right } => {
             own_moments(basis, &modes, power, left, right)
@@ -160,7 +57,25 @@ pub fn table(basis: Basis, order: usize, kind: TableKind) -> Vec<f64> {
     }
 }
 
-/// RowNodes: nodes; columns: modes.
+fn at_start(mode: &Mode, derivative: u8) -> f64 {
+    match mode.at_start.get(usize::from(derivative)) {
+        Some(0.0) => 0.0,
+        _ => mode.shape(derivative, 0.0),
+    }
+}
+
+/// By the values the end's conditions give, which are free of the error of a phase of beta_r l.
+/// The clamped beam's free end keeps the rounding it has always had where they say nothing.
+fn at_end(basis: Basis, mode: &Mode, derivative: u8) -> f64 {
+    match (basis, derivative) {
+        (Basis::ClampedFreePrinted, _) | (Basis::CLAMPED_FREE, 1 | 4..) => {
+            mode.shape(derivative, 1.0)
+        }
+        _ => power(mode.wavenumber, derivative) * mode.at_end[usize::from(derivative % 4)],
+    }
+}
+
+/// Rows: nodes; columns: modes.
 fn shapes_at(modes: &[Mode], derivative: u8, nodes: &[f64]) -> Vec<Vec<f64>> {
     nodes
         .iter()
@@ -169,34 +84,41 @@ fn shapes_at(modes: &[Mode], derivative: u8, nodes: &[f64]) -> Vec<Vec<f64>> {
 }
 
 /// Integrals of s^k phi_r^(a).
-///
-/// For the exact shapes phi'''' = (beta l)^4 phi, so integrating by parts with
-/// phi(0) = phi'(0) = phi''(1) = phi'''(1) = 0 gives 2/(beta l) for k = 0 and
-/// -2 xi/(beta l)^2 for k = 1.
 fn moments(basis: Basis, modes: &[Mode], moment: u32, derivative: u8) -> Vec<f64> {
-    match (basis, moment, derivative) {
-        (Basis::ClampedFree, 0, 0) => modes.iter().map(|m| 2.0 / m.wavenumber).collect(),
-        (Basis::ClampedFree, 1, 0) => modes
+    if matches!(basis, Basis::Beam { .. }) && moment < 2 && derivative == 0 {
+        return modes
             .iter()
-            .map(|m| -2.0 * m.mixing / (m.wavenumber * m.wavenumber))
-            .collect(),
-        _ => {
-            let (nodes, weights) = rule(modes.len(), moment);
-            let shapes = shapes_at(modes, derivative, &nodes);
-            (0..modes.len())
-                .map(|r| sum_over(&weights, |g| shapes[g][r]))
-                .collect()
-        }
+            .map(|mode| closed_moment(mode, moment))
+            .collect();
+    }
+    let (nodes, weights) = rule(modes.len(), moment);
+    let shapes = shapes_at(modes, derivative, &nodes);
+    (0..modes.len())
+        .map(|r| sum_over(&weights, |g| shapes[g][r]))
+        .collect()
+}
+
+/// The integral of phi, or of s phi, of a beam: phi'''' = k^4 phi, so that integrating by parts
+/// leaves values at the ends.
+pub(super) fn closed_moment(mode: &Mode, moment: u32) -> f64 {
+    let k = mode.wavenumber;
+    match moment {
+        0 => (mode.at_end[3] - mode.at_start[3]) / k,
+        _ => mode.at_end[3] / k + (mode.at_start[2] - mode.at_end[2]) / (k * k),
     }
 }
 
-/// Integrals of s^k phi_r^(a) phi_r^(b); xi^2 and (beta l)^4 xi^2 for the exact shapes
-/// and curvatures.
+/// Integrals of s^k phi_r^(a) phi_r^(b); where a and b differ by 2, twice by parts.
 fn own_moments(basis: Basis, modes: &[Mode], moment: u32, left: u8, right: u8) -> Vec<f64> {
     if is_orthogonal(basis, moment, left, right) {
+        let opposite = !(left.abs_diff(right) / 2).is_multiple_of(2);
+        let sign = if opposite { -1.0 } else { 1.0 };
         return modes
             .iter()
-            .map(|m| power(m.wavenumber, 2 * left) * m.mixing * m.mixing)
+            .map(|m| {
+                let [one, other] = m.mean_square;
+                sign * (power(m.wavenumber, left + right) * one * other)
+            })
             .collect();
     }
     let pairs = pair_moments(modes, moment, left, right);

@@ -1,8 +1,9 @@
 //! Mode shapes at a point and integrals of one term of an integrand, as nodes: exact
 //! dimensionless constants where there are some, quadrature elsewhere.
 
-use eomgen_model_spec::model::Function;
+use eomgen_model_spec::model::{Basis, End, Function};
 
+use crate::mechanics::fields::beam::is_sinusoidal;
 use crate::mechanics::fields::domain::Domain;
 use crate::mechanics::fields::modes::is_orthogonal;
 use crate::mechanics::fields::term::IntegrandTerm;
@@ -16,6 +17,17 @@ pub(crate) fn shapes_at(graph: &mut Graph, domain: &Domain, s: NodeId, derivativ
         Some(1.0) => return domain.table(graph, TableKind::ShapeAtEnd(derivative)),
         _ => {}
     }
+    match domain.basis {
+        Basis::ClampedFreePrinted
+        | Basis::Beam {
+            from: End::Clamped, ..
+        } => clamped_shapes(graph, domain, s, derivative),
+        Basis::Beam { from, to } => beam_shapes(graph, domain, s, derivative, [from, to]),
+    }
+}
+
+/// Eq. (17), by xi_r and (1 + xi_r) exp(beta_r l).
+fn clamped_shapes(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8) -> NodeId {
     let beta = domain.table(graph, TableKind::Wavenumber);
     let xi = domain.table(graph, TableKind::Mixing);
     let growing = domain.table(graph, TableKind::GrowingAmplitude);
@@ -49,6 +61,62 @@ pub(crate) fn shapes_at(graph: &mut Graph, domain: &Domain, s: NodeId, derivativ
         (falling_sign, falling),
     ]);
     graph.product(&[(beta, i32::from(derivative)), (shape, 1)])
+}
+
+/// sin z, sin z + xi cos z or cos z, as the start has it, with exponentials from both ends unless
+/// neither end has one.
+fn beam_shapes(
+    graph: &mut Graph,
+    domain: &Domain,
+    s: NodeId,
+    derivative: u8,
+    [from, to]: [End; 2],
+) -> NodeId {
+    let beta = domain.table(graph, TableKind::Wavenumber);
+    let z = graph.multiply(beta, s);
+    let mut terms = Vec::new();
+    if from != End::Guided {
+        terms.push(turned(graph, Function::Sin, z, derivative));
+    }
+    if from != End::Pinned {
+        let (sign, mut cosine) = turned(graph, Function::Cos, z, derivative);
+        if from != End::Guided {
+            let xi = domain.table(graph, TableKind::Mixing);
+            cosine = graph.multiply(xi, cosine);
+        }
+        terms.push((sign, cosine));
+    }
+    if !is_sinusoidal(from, to) {
+        let left = graph.negate(z);
+        let right = graph.subtract(z, beta);
+        let parity = if derivative.is_multiple_of(2) {
+            1.0
+        } else {
+            -1.0
+        };
+        for (sign, exponent, amplitude) in [
+            (parity, left, TableKind::FallingAmplitude),
+            (1.0, right, TableKind::RisingAmplitude),
+        ] {
+            let exponential = graph.call(Function::Exp, &[exponent]);
+            let amplitude = domain.table(graph, amplitude);
+            terms.push((sign, graph.multiply(amplitude, exponential)));
+        }
+    }
+    let shape = graph.combine(&terms);
+    graph.product(&[(beta, i32::from(derivative)), (shape, 1)])
+}
+
+/// A derivative of sin z or cos z by z, with its sign.
+fn turned(graph: &mut Graph, function: Function, z: NodeId, derivative: u8) -> (f64, NodeId) {
+    let quarters = derivative + u8::from(function == Function::Cos);
+    let own = if quarters.is_multiple_of(2) {
+        Function::Sin
+    } else {
+        Function::Cos
+    };
+    let sign = if quarters % 4 < 2 { 1.0 } else { -1.0 };
+    (sign, graph.call(own, &[z]))
 }
 
 /// The integral over s of s^power weight atom_1 atom_2; a vector over the modes where a

@@ -14,6 +14,8 @@ pub(super) fn table(kind: TableKind) -> Markup {
             (fenced("(", &html! { mn { "1" } mo { "+" } (mixing()) }, ")"))
             msup { mi { "e" } mrow { (wavenumber()) } }
         },
+        TableKind::FallingAmplitude => amplitude("−"),
+        TableKind::RisingAmplitude => amplitude("+"),
         TableKind::ShapeAtStart(derivative) => at_position(derivative, &html! { mn { "0" } }),
         TableKind::ShapeAtEnd(derivative) => at_position(derivative, &html! { mn { "1" } }),
         TableKind::Moment { power, derivative } => integral(power, &shape("i", derivative)),
@@ -37,6 +39,11 @@ fn wavenumber() -> Markup {
 
 fn mixing() -> Markup {
     element(&identifier("ξ"), "i")
+}
+
+/// The factor of an exponential in a mode.
+fn amplitude(sense: &str) -> Markup {
+    html! { msubsup { (identifier("φ")) (identifier("i")) mo { (sense) } } }
 }
 
 /// A mode shape with primes for its derivatives.
