@@ -12,11 +12,12 @@ pub const COORDINATE: [&str; 5] = ["unit", "doc", "initial", "initial_rate", "ra
 /// Keys of an entry of `[inputs]`.
 pub const INPUT: [&str; 3] = ["unit", "doc", "range"];
 /// Keys of a `[fields.NAME]`.
-pub const FIELD: [&str; 8] = [
+pub const FIELD: [&str; 9] = [
     "along",
     "from",
     "to",
     "basis",
+    "table",
     "coordinates",
     "order",
     "unit",
@@ -61,8 +62,11 @@ pub fn sections() -> impl Iterator<Item = &'static str> {
     SECTIONS.iter().map(|(name, _)| *name)
 }
 
-/// The bases of a field. Rods and strings share the sines and cosines of pinned and guided beams.
-pub const BASES: [(&str, Basis); 21] = [
+/// The basis whose shapes are in a file.
+pub const TABLE: &str = "table";
+
+/// The other bases of a field. Rods and strings share the sines and cosines of pinned and guided beams.
+pub static BASES: [(&str, Basis); 21] = [
     ("clamped_free", beam(End::Clamped, End::Free)),
     ("clamped_free_printed", Basis::ClampedFreePrinted),
     ("clamped_clamped", beam(End::Clamped, End::Clamped)),

@@ -26,6 +26,9 @@ pub fn plain(kind: TableKind) -> String {
         TableKind::RisingAmplitude => "rising_i".to_owned(),
         TableKind::ShapeAtStart(d) => format!("phi_i{}(0)", primes(d)),
         TableKind::ShapeAtEnd(d) => format!("phi_i{}(1)", primes(d)),
+        TableKind::ShapeAtPlace { bits, derivative } => {
+            format!("phi_i{}({})", primes(derivative), f64::from_bits(bits))
+        }
         TableKind::Moment { power, derivative } => {
             format!("int[{}phi_i{}]", power_of_s(power), primes(derivative))
         }
@@ -71,6 +74,9 @@ pub fn latex(kind: TableKind) -> String {
         TableKind::RisingAmplitude => "\\varphi^+_i".to_owned(),
         TableKind::ShapeAtStart(d) => format!("{}(0)", phi("i", d)),
         TableKind::ShapeAtEnd(d) => format!("{}(1)", phi("i", d)),
+        TableKind::ShapeAtPlace { bits, derivative } => {
+            format!("{}({})", phi("i", derivative), f64::from_bits(bits))
+        }
         TableKind::Moment { power, derivative } => {
             integral(format!("{}{}", s(power), phi("i", derivative)))
         }
@@ -127,6 +133,13 @@ pub fn constant_name(table: &Table) -> String {
         TableKind::RisingAmplitude => "RISING_AMPLITUDE".to_owned(),
         TableKind::ShapeAtStart(d) => format!("PHI{}_AT_START", derivative(d)),
         TableKind::ShapeAtEnd(d) => format!("PHI{}_AT_END", derivative(d)),
+        TableKind::ShapeAtPlace {
+            bits,
+            derivative: d,
+        } => {
+            let place = f64::from_bits(bits).to_string().replace('.', "_");
+            format!("PHI{}_AT_{place}", derivative(d))
+        }
         TableKind::Moment {
             power: k,
             derivative: d,

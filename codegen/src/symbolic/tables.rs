@@ -23,6 +23,13 @@ pub enum TableKind {
     ShapeAtStart(u8),
     /// phi_r^(a)(1), a vector over the modes.
     ShapeAtEnd(u8),
+    /// phi_r^(a)(s) at a fixed place of a table of shapes, a vector over the modes.
+    ShapeAtPlace {
+        /// s, by its bits.
+        bits: u64,
+        /// a
+        derivative: u8,
+    },
     /// The integral of s^k phi_r^(a), a vector over the modes.
     Moment {
         /// k

@@ -135,12 +135,56 @@ inner_shear = { value = "B*at(diff(w, x, 3), x_0 + l/5)", unit = "N" }
 #[test]
 fn every_basis_passes_its_certificate() {
     for (basis, _) in published() {
-        for order in [0, 1, 4] {
+        for order in [1, 4] {
             let model = checked(&everything(&basis, order));
             let certificate = certificate(&model, &model);
             let failures: Vec<_> = certificate.failures().collect();
             assert!(certificate.passed, "{basis}, order {order}: {failures:#?}");
         }
+    }
+}
+
+/// A string that hangs from the end of a beam: its end moves with the beam's.
+const BEAM_AND_STRING: &str = r#"
+[model]
+name = "beam_and_string"
+[parameters]
+mu = { value = 2, unit = "kg/m" }
+B = { value = 3, unit = "N m^2" }
+F = { value = 40, unit = "N" }
+l = { value = 0.7, unit = "m" }
+[fields.w]
+along = "x"
+from = 0
+to = "l"
+basis = "guided_free"
+coordinates = "q"
+order = 3
+unit = "m"
+[fields.v]
+along = "y"
+from = "l"
+to = "3*l"
+basis = "string"
+coordinates = "p"
+order = 3
+unit = "m"
+[kinetic]
+beam = "1/2*integral(mu*dot(w)^2, w)"
+string = "1/2*integral(0.1*mu*(dot(v) + (3*l - y)/(2*l)*at(dot(w), l))^2, v)"
+[potential]
+bending = "1/2*integral(B*diff(w, x, 2)^2, w)"
+tension = "1/2*integral(F*(diff(v, y, 1) - at(w, l)/(2*l))^2, v)"
+"#;
+
+#[test]
+fn fields_of_different_bases_pass_together() {
+    for order in [0, 1, 5] {
+        let text = BEAM_AND_STRING.replace("order = 3", &format!("order = {order}"));
+        let model = checked(&text);
+        let certificate = certificate(&model, &model);
+        let failures: Vec<_> = certificate.failures().collect();
+        assert!(certificate.passed, "order {order}: {failures:#?}");
     }
 }
 
@@ -183,11 +227,11 @@ fn a_free_beam_moves_as_its_coordinates_say() {
     let text = uniform("free_free", 3)
         .replace(
             "[fields.w]",
-            "[coordinates]\ny = { unit = \"m\" }\nphi = { unit = \"rad\" }\n[fields.w]",
+            "[coordinates]\ny = { unit = \"m\" }\npsi = { unit = \"rad\" }\n[fields.w]",
         )
         .replace(
             "mu*dot(w)^2",
-            "mu*(dot(y) + (x - x_0 - l/2)*dot(phi) + dot(w))^2",
+            "mu*(dot(y) + (x - x_0 - l/2)*dot(psi) + dot(w))^2",
         );
     let folder = tempfile::tempdir().expect("a folder");
     let model = written(folder.path(), &text);

@@ -31,6 +31,16 @@ pub(super) struct Mode {
 }
 
 impl Mode {
+    /// The integral of phi, or of s phi with `power` 1: phi'''' = k^4 phi, so that integrating by
+    /// parts leaves values at the ends.
+    pub(super) fn moment(&self, power: u32) -> f64 {
+        let k = self.wavenumber;
+        match power {
+            0 => (self.at_end[3] - self.at_start[3]) / k,
+            _ => self.at_end[3] / k + (self.at_start[2] - self.at_end[2]) / (k * k),
+        }
+    }
+
     /// phi^(n)(s), the derivative by s.
     pub(super) fn shape(&self, derivative: u8, s: f64) -> f64 {
         let z = self.wavenumber * s;

@@ -6,149 +6,208 @@ use eomgen_model_spec::model::Basis;
 
 use super::beam;
 use super::mode::{Mode, power};
-use crate::mechanics::fields::quadrature::{QuadratureRule, gauss_legendre};
+use super::quadrature::{QuadratureRule, composite, gauss_legendre};
+use super::spline::Spline;
 use crate::symbolic::tables::{TableKind, quadrature_size};
 
-/// Mode `number` of a basis, from 1.
-fn mode(basis: Basis, number: usize) -> Mode {
-    match basis {
-        Basis::Beam { from, to } => beam::mode(from, to, number),
-        Basis::ClampedFreePrinted => beam::printed(number),
-    }
-}
+/// The fewest nodes in each piece of a spline: a product of two shapes is of degree 6.
+const NODES_OF_A_PIECE: usize = 4;
 
 /// Whether the integral of s^k phi_r^(a) phi_p^(b) vanishes for r != p in this basis: the shapes
 /// and their curvatures are orthogonal for a uniform beam. Sines and cosines are so in every
 /// derivative that is one of the same kind.
-pub fn is_orthogonal(basis: Basis, power: u32, left: u8, right: u8) -> bool {
+pub fn is_orthogonal(basis: &Basis, power: u32, left: u8, right: u8) -> bool {
     let alike = left == right && (left == 0 || left == 2);
-    match basis {
+    match *basis {
         Basis::Beam { from, to } if beam::is_sinusoidal(from, to) => {
             power == 0 && (left + right).is_multiple_of(2)
         }
         Basis::Beam { .. } => power == 0 && alike,
-        Basis::ClampedFreePrinted => false,
+        Basis::ClampedFreePrinted | Basis::Table { .. } => false,
     }
+}
+
+/// How many quadrature nodes a field of this order has.
+pub fn node_count(basis: &Basis, order: usize) -> usize {
+    match basis {
+        Basis::Table { table, .. } => {
+            let pieces = table.positions.len() - 1;
+            pieces * nodes_of_a_piece(pieces, order)
+        }
+        Basis::Beam { .. } | Basis::ClampedFreePrinted => quadrature_size(order),
+    }
+}
+
+/// As many nodes over the whole field as other bases have, and enough for the products.
+fn nodes_of_a_piece(pieces: usize, order: usize) -> usize {
+    quadrature_size(order)
+        .div_ceil(pieces)
+        .max(NODES_OF_A_PIECE)
 }
 
 /// The numbers of a table for modes 1 to `order`; matrices row by row.
-pub fn table(basis: Basis, order: usize, kind: TableKind) -> Vec<f64> {
-    let modes: Vec<Mode> = (1..=order).map(|number| mode(basis, number)).collect();
-    let each = |value: &dyn Fn(&Mode) -> f64| modes.iter().map(value).collect::<Vec<f64>>();
+pub fn table(basis: &Basis, order: usize, kind: TableKind) -> Vec<f64> {
+    let shapes = Shapes::of(basis, order);
     match kind {
-        TableKind::Wavenumber => each(&|mode| mode.wavenumber),
-        TableKind::Mixing => each(&|mode| mode.cosine),
-        TableKind::GrowingAmplitude => each(&|mode| -2.0 * mode.rising),
-        TableKind::FallingAmplitude => each(&|mode| mode.falling),
-        TableKind::RisingAmplitude => each(&|mode| mode.rising),
-        TableKind::ShapeAtStart(derivative) => each(&|mode| at_start(mode, derivative)),
-        TableKind::ShapeAtEnd(derivative) => each(&|mode| at_end(basis, mode, derivative)),
-        TableKind::Moment { power, derivative } => moments(basis, &modes, power, derivative),
+        TableKind::Wavenumber => shapes.each(|mode| mode.wavenumber),
+        TableKind::Mixing => shapes.each(|mode| mode.cosine),
+        TableKind::GrowingAmplitude => shapes.each(|mode| -2.0 * mode.rising),
+        TableKind::FallingAmplitude => shapes.each(|mode| mode.falling),
+        TableKind::RisingAmplitude => shapes.each(|mode| mode.rising),
+        TableKind::ShapeAtStart(derivative) => shapes.at_start(derivative),
+        TableKind::ShapeAtEnd(derivative) => shapes.at_end(basis, derivative),
+        TableKind::ShapeAtPlace { bits, derivative } => shapes.at(derivative, f64::from_bits(bits)),
+        TableKind::Moment { power, derivative } => shapes.moments(basis, power, derivative),
         TableKind::OwnMoment { power, left, right } => {
-            own_moments(basis, &modes, power, left, right)
+            shapes.own_moments(basis, power, left, right)
         }
-        TableKind::PairMoment { power, left, right } => pair_moments(&modes, power, left, right),
-        TableKind::NodePosition => gauss_legendre(quadrature_size(order)).nodes,
-        TableKind::NodeWeight => gauss_legendre(quadrature_size(order)).weights,
+        TableKind::PairMoment { power, left, right } => shapes.pair_moments(power, left, right),
+        TableKind::NodePosition => shapes.rule(0).nodes,
+        TableKind::NodeWeight => shapes.rule(0).weights,
         TableKind::ShapeAtNodes(derivative) => {
-            let nodes = gauss_legendre(quadrature_size(order)).nodes;
-            shapes_at(&modes, derivative, &nodes).concat()
+            let nodes = shapes.rule(0).nodes;
+            shapes.at_each(derivative, &nodes).concat()
         }
     }
 }
 
-fn at_start(mode: &Mode, derivative: u8) -> f64 {
-    match mode.at_start.get(usize::from(derivative)) {
-        Some(0.0) => 0.0,
-        _ => mode.shape(derivative, 0.0),
-    }
+/// The shapes of a basis up to an order.
+enum Shapes {
+    /// By formulas.
+    Modes(Vec<Mode>),
+    /// By a table, with its knots.
+    Splines(Vec<f64>, Vec<Spline>),
 }
 
-/// By the values the end's conditions give, which are free of the error of a phase of beta_r l.
-/// The clamped beam's free end keeps the rounding it has always had where they say nothing.
-fn at_end(basis: Basis, mode: &Mode, derivative: u8) -> f64 {
-    match (basis, derivative) {
-        (Basis::ClampedFreePrinted, _) | (Basis::CLAMPED_FREE, 1 | 4..) => {
-            mode.shape(derivative, 1.0)
+impl Shapes {
+    fn of(basis: &Basis, order: usize) -> Self {
+        let numbers = 1..=order;
+        match basis {
+            Basis::Beam { from, to } => {
+                Self::Modes(numbers.map(|r| beam::mode(*from, *to, r)).collect())
+            }
+            Basis::ClampedFreePrinted => Self::Modes(numbers.map(beam::printed).collect()),
+            Basis::Table { table, .. } => {
+                let first = table.positions[0];
+                let length = table.positions[table.positions.len() - 1] - first;
+                let knots = table.positions.iter().map(|x| (x - first) / length);
+                let knots: Vec<f64> = knots.collect();
+                let used = table.shapes.iter().take(order);
+                let splines = used.map(|values| Spline::new(&knots, values)).collect();
+                Self::Splines(knots, splines)
+            }
         }
-        _ => power(mode.wavenumber, derivative) * mode.at_end[usize::from(derivative % 4)],
     }
-}
 
-/// Rows: nodes; columns: modes.
-fn shapes_at(modes: &[Mode], derivative: u8, nodes: &[f64]) -> Vec<Vec<f64>> {
-    nodes
-        .iter()
-        .map(|&s| modes.iter().map(|mode| mode.shape(derivative, s)).collect())
-        .collect()
-}
-
-/// Integrals of s^k phi_r^(a).
-fn moments(basis: Basis, modes: &[Mode], moment: u32, derivative: u8) -> Vec<f64> {
-    if matches!(basis, Basis::Beam { .. }) && moment < 2 && derivative == 0 {
-        return modes
-            .iter()
-            .map(|mode| closed_moment(mode, moment))
-            .collect();
+    /// A number of each mode that has a formula.
+    fn each(&self, value: impl Fn(&Mode) -> f64) -> Vec<f64> {
+        match self {
+            Self::Modes(modes) => modes.iter().map(value).collect(),
+            Self::Splines(..) => Vec::new(),
+        }
     }
-    let (nodes, weights) = rule(modes.len(), moment);
-    let shapes = shapes_at(modes, derivative, &nodes);
-    (0..modes.len())
-        .map(|r| sum_over(&weights, |g| shapes[g][r]))
-        .collect()
-}
 
-/// The integral of phi, or of s phi, of a beam: phi'''' = k^4 phi, so that integrating by parts
-/// leaves values at the ends.
-pub(super) fn closed_moment(mode: &Mode, moment: u32) -> f64 {
-    let k = mode.wavenumber;
-    match moment {
-        0 => (mode.at_end[3] - mode.at_start[3]) / k,
-        _ => mode.at_end[3] / k + (mode.at_start[2] - mode.at_end[2]) / (k * k),
+    /// All shapes at a place.
+    fn at(&self, derivative: u8, s: f64) -> Vec<f64> {
+        match self {
+            Self::Modes(modes) => modes.iter().map(|m| m.shape(derivative, s)).collect(),
+            Self::Splines(_, splines) => splines
+                .iter()
+                .map(|spline| spline.derivative(derivative, s))
+                .collect(),
+        }
     }
-}
 
-/// Integrals of s^k phi_r^(a) phi_r^(b); where a and b differ by 2, twice by parts.
-fn own_moments(basis: Basis, modes: &[Mode], moment: u32, left: u8, right: u8) -> Vec<f64> {
-    if is_orthogonal(basis, moment, left, right) {
-        let opposite = !(left.abs_diff(right) / 2).is_multiple_of(2);
-        let sign = if opposite { -1.0 } else { 1.0 };
-        return modes
-            .iter()
-            .map(|m| {
+    fn at_start(&self, derivative: u8) -> Vec<f64> {
+        let zero = |mode: &Mode| mode.at_start.get(usize::from(derivative)) == Some(&0.0);
+        match self {
+            Self::Modes(_) => self.each(|mode| match zero(mode) {
+                true => 0.0,
+                false => mode.shape(derivative, 0.0),
+            }),
+            Self::Splines(..) => self.at(derivative, 0.0),
+        }
+    }
+
+    /// By the values the end's conditions give, which are free of the error of a phase of beta_r l.
+    /// The clamped beam's free end keeps the rounding it has always had where they say nothing.
+    fn at_end(&self, basis: &Basis, derivative: u8) -> Vec<f64> {
+        let keeps = *basis == Basis::CLAMPED_FREE && matches!(derivative, 1 | 4..);
+        match (self, basis) {
+            (Self::Modes(_), Basis::Beam { .. }) if !keeps => self.each(|mode| {
+                power(mode.wavenumber, derivative) * mode.at_end[usize::from(derivative % 4)]
+            }),
+            _ => self.at(derivative, 1.0),
+        }
+    }
+
+    /// Rows: places; columns: modes.
+    fn at_each(&self, derivative: u8, places: &[f64]) -> Vec<Vec<f64>> {
+        places.iter().map(|s| self.at(derivative, *s)).collect()
+    }
+
+    /// Integrals of s^k phi_r^(a).
+    fn moments(&self, basis: &Basis, moment: u32, derivative: u8) -> Vec<f64> {
+        if matches!(basis, Basis::Beam { .. }) && moment < 2 && derivative == 0 {
+            return self.each(|mode| mode.moment(moment));
+        }
+        let QuadratureRule { nodes, weights } = self.rule(moment);
+        let shapes = self.at_each(derivative, &nodes);
+        (0..self.order())
+            .map(|r| sum_over(&weights, |g| shapes[g][r]))
+            .collect()
+    }
+
+    /// Integrals of s^k phi_r^(a) phi_r^(b); where a and b differ by 2, twice by parts.
+    fn own_moments(&self, basis: &Basis, moment: u32, left: u8, right: u8) -> Vec<f64> {
+        if is_orthogonal(basis, moment, left, right) {
+            let opposite = !(left.abs_diff(right) / 2).is_multiple_of(2);
+            let sign = if opposite { -1.0 } else { 1.0 };
+            return self.each(|m| {
                 let [one, other] = m.mean_square;
                 sign * (power(m.wavenumber, left + right) * one * other)
-            })
-            .collect();
+            });
+        }
+        let pairs = self.pair_moments(moment, left, right);
+        pairs.iter().step_by(self.order() + 1).copied().collect()
     }
-    let pairs = pair_moments(modes, moment, left, right);
-    (0..modes.len())
-        .map(|r| pairs[r * modes.len() + r])
-        .collect()
-}
 
-fn pair_moments(modes: &[Mode], moment: u32, left: u8, right: u8) -> Vec<f64> {
-    let (nodes, weights) = rule(modes.len(), moment);
-    let a = shapes_at(modes, left, &nodes);
-    let b = if left == right {
-        a.clone()
-    } else {
-        shapes_at(modes, right, &nodes)
-    };
-    let order = modes.len();
-    (0..order * order)
-        .map(|place| sum_over(&weights, |g| a[g][place / order] * b[g][place % order]))
-        .collect()
-}
-
-/// Nodes and weights times s^k.
-fn rule(order: usize, moment: u32) -> (Vec<f64>, Vec<f64>) {
-    let QuadratureRule { nodes, mut weights } =
-        gauss_legendre(quadrature_size(order) + moment as usize);
-    for (weight, s) in weights.iter_mut().zip(&nodes) {
-        *weight *= (0..moment).fold(1.0, |product, _| product * s);
+    fn pair_moments(&self, moment: u32, left: u8, right: u8) -> Vec<f64> {
+        let QuadratureRule { nodes, weights } = self.rule(moment);
+        let a = self.at_each(left, &nodes);
+        let b = if left == right {
+            a.clone()
+        } else {
+            self.at_each(right, &nodes)
+        };
+        let order = self.order();
+        (0..order * order)
+            .map(|place| sum_over(&weights, |g| a[g][place / order] * b[g][place % order]))
+            .collect()
     }
-    (nodes, weights)
+
+    fn order(&self) -> usize {
+        match self {
+            Self::Modes(modes) => modes.len(),
+            Self::Splines(_, splines) => splines.len(),
+        }
+    }
+
+    /// Nodes, and weights times s^k.
+    fn rule(&self, moment: u32) -> QuadratureRule {
+        let order = self.order();
+        let mut rule = match self {
+            Self::Modes(_) => gauss_legendre(quadrature_size(order) + moment as usize),
+            Self::Splines(knots, _) => {
+                let nodes = nodes_of_a_piece(knots.len() - 1, order);
+                composite(knots, nodes + moment as usize / 2)
+            }
+        };
+        for (weight, s) in rule.weights.iter_mut().zip(&rule.nodes) {
+            *weight *= (0..moment).fold(1.0, |product, _| product * s);
+        }
+        rule
+    }
 }
 
 /// Sum of weights times values with a running compensation of the rounding errors: the

@@ -11,18 +11,40 @@ use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use crate::symbolic::tables::TableKind;
 
 /// phi_r^(a) at s, a vector over the modes: tables at the ends, formulas elsewhere.
-pub(crate) fn shapes_at(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8) -> NodeId {
-    match graph.as_constant(s) {
-        Some(0.0) => return domain.table(graph, TableKind::ShapeAtStart(derivative)),
-        Some(1.0) => return domain.table(graph, TableKind::ShapeAtEnd(derivative)),
+///
+/// # Errors
+/// A place between the rows of a table of shapes that depends on parameters.
+pub(crate) fn shapes_at(
+    graph: &mut Graph,
+    domain: &Domain,
+    s: NodeId,
+    derivative: u8,
+) -> Result<NodeId, String> {
+    let place = graph.as_constant(s);
+    match place {
+        Some(0.0) => return Ok(domain.table(graph, TableKind::ShapeAtStart(derivative))),
+        Some(1.0) => return Ok(domain.table(graph, TableKind::ShapeAtEnd(derivative))),
         _ => {}
     }
-    match domain.basis {
-        Basis::ClampedFreePrinted
-        | Basis::Beam {
-            from: End::Clamped, ..
-        } => clamped_shapes(graph, domain, s, derivative),
-        Basis::Beam { from, to } => beam_shapes(graph, domain, s, derivative, [from, to]),
+    match (&domain.basis, place) {
+        (
+            Basis::ClampedFreePrinted
+            | Basis::Beam {
+                from: End::Clamped, ..
+            },
+            _,
+        ) => Ok(clamped_shapes(graph, domain, s, derivative)),
+        (&Basis::Beam { from, to }, _) => Ok(beam_shapes(graph, domain, s, derivative, [from, to])),
+        (Basis::Table { .. }, Some(s)) if (0.0..=1.0).contains(&s) => {
+            let bits = s.to_bits();
+            Ok(domain.table(graph, TableKind::ShapeAtPlace { bits, derivative }))
+        }
+        (Basis::Table { .. }, Some(_)) => Err("a table has no shapes outside its field".into()),
+        (Basis::Table { .. }, None) => Err(
+            "the shapes of a table are known at its ends and at a fixed fraction of its length, \
+             such as at(w, 0.3*l)"
+                .into(),
+        ),
     }
 }
 
@@ -129,7 +151,7 @@ pub(crate) fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &Integr
     match *term.atoms.as_slice() {
         [a, b] => {
             let (left, right) = (a.derivative(), b.derivative());
-            let orthogonal = is_orthogonal(domain.basis, term.power, left, right);
+            let orthogonal = is_orthogonal(&domain.basis, term.power, left, right);
             let amplitudes = [
                 a.amplitudes(graph, domain.field),
                 b.amplitudes(graph, domain.field),

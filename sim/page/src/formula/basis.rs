@@ -18,6 +18,9 @@ pub(super) fn table(kind: TableKind) -> Markup {
         TableKind::RisingAmplitude => amplitude("+"),
         TableKind::ShapeAtStart(derivative) => at_position(derivative, &html! { mn { "0" } }),
         TableKind::ShapeAtEnd(derivative) => at_position(derivative, &html! { mn { "1" } }),
+        TableKind::ShapeAtPlace { bits, derivative } => {
+            at_position(derivative, &html! { mn { (f64::from_bits(bits)) } })
+        }
         TableKind::Moment { power, derivative } => integral(power, &shape("i", derivative)),
         TableKind::OwnMoment { power, left, right } => {
             integral(power, &html! { (shape("i", left)) (shape("i", right)) })
