@@ -2,7 +2,6 @@
 
 use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
 use eomgen_model_spec::model::Model;
-use eomgen_model_spec::source::Source;
 
 use crate::error::{Error, Result, warn};
 
@@ -43,7 +42,7 @@ pub fn with_inputs(mut model: Model, prescribed: &[String]) -> Result<Model> {
             value: value.trim().to_owned(),
         });
         let edited = edit::apply(&model.source, &[edit]).map_err(|error| wrong(&said(&error)))?;
-        let source = Source::new(model.source.path.clone(), edited);
+        let source = model.source.edited(edited);
         let checked = eomgen_model_spec::check(source).map_err(Error::Specification)?;
         model = checked.model;
     }

@@ -114,7 +114,7 @@ pub fn job(
 ) -> Result<Job> {
     let (model, orders) = (compiled.model(), compiled.orders());
     let plan = Plan::new(
-        &model.source,
+        model.hash(),
         &model.name,
         orders,
         set,

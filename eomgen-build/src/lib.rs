@@ -95,6 +95,16 @@ pub fn generate_with(
     let path = specification.as_ref();
     println!("cargo::rerun-if-changed={}", root.join(path).display());
     let checked = eomgen_model_spec::load_from(&root, path).map_err(|found| refused(&found))?;
+    let beside = path.parent().unwrap_or(Path::new(""));
+    for table in checked
+        .model
+        .fields
+        .iter()
+        .filter_map(|field| field.basis.table())
+    {
+        let file = root.join(beside).join(&table.file);
+        println!("cargo::rerun-if-changed={}", file.display());
+    }
     for warning in checked.warnings.records() {
         println!("cargo::warning={}", line(&warning));
     }

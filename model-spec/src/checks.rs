@@ -3,8 +3,9 @@
 
 use crate::diagnostic::{Declared, Diagnostic, Diagnostics, quoted};
 use crate::dimension::Dimension;
+use crate::evaluate::evaluate;
 use crate::infer::Words;
-use crate::model::{CoefficientKind, Expr, ExprKind, Model, Ordinate, ParameterValue};
+use crate::model::{Basis, CoefficientKind, Expr, ExprKind, Model, Ordinate, ParameterValue};
 use crate::suggest::did_you_mean;
 
 /// Reports sensors on channels that the model does not have.
@@ -36,6 +37,28 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
                 Diagnostic::error(message)
                     .at(sensor.span, "not a channel of this model")
                     .help(near.unwrap_or_else(|| rule.to_owned())),
+            );
+        }
+    }
+}
+
+/// Reports tables that do not span their field's domain at the declared values.
+pub fn check_tables(model: &Model, found: &mut Diagnostics) {
+    let Ok(parameters) = model.parameter_values() else {
+        return;
+    };
+    for field in &model.fields {
+        let Basis::Table { table, span } = &field.basis else {
+            continue;
+        };
+        let [from, to] = [&field.from, &field.to].map(|end| evaluate(end, &parameters));
+        if let Err(fault) = table.spans(from, to) {
+            let (line, column) = (fault.line, fault.column);
+            let message = format!("{}:{line}:{column}: {}", table.file, fault.message);
+            found.push(
+                Diagnostic::error(message)
+                    .at(*span, "this table")
+                    .help("the table's first x is `from` and its last x is `to`, in m"),
             );
         }
     }

@@ -5,9 +5,10 @@ use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::keys;
 use crate::model::Basis;
 use crate::raw::{
-    RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawInput, RawLine, RawParameter,
-    RawPoint, RawRange, RawSensor, RawTerm,
+    RawBasis, RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawInput, RawLine,
+    RawParameter, RawPoint, RawRange, RawSensor, RawTerm,
 };
+use crate::suggest::did_you_mean;
 use crate::table::{Entry, Name, Quantity, Record, Written, unknown_key};
 
 const PARAMETER_EXAMPLE: &str = "{ value = 0.5, unit = \"m\" }";
@@ -104,19 +105,48 @@ pub fn field(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawField> {
         along: name_of(found.keep(along?.written())?),
         from: found.keep(from?.quantity())?,
         to: found.keep(to?.quantity())?,
-        basis: found.keep(basis?.written().and_then(|written| basis_named(&written)))?,
+        basis: basis_of(&record, &basis?, found)?,
         coordinates: name_of(found.keep(coordinates?.written())?),
         order: found.keep(order?.whole())?,
     })
 }
 
+/// What `basis` and `table` say together.
+fn basis_of(record: &Record<'_>, basis: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBasis> {
+    let written = found.keep(basis.written())?;
+    let table = record.get("table");
+    if written.text == keys::TABLE {
+        let help = "name the file with the shapes: table = \"modes.csv\"";
+        let table = table.or_else(|| record.require("table", help, found))?;
+        return found.keep(table.written()).map(RawBasis::Table);
+    }
+    let named = found.keep(basis_named(&written))?;
+    if let Some(table) = table {
+        found.push(
+            Diagnostic::error("a table of shapes beside a basis that has its own")
+                .at(table.name.span, "not read")
+                .help("write basis = \"table\", or leave the table out"),
+        );
+        return None;
+    }
+    Some(RawBasis::Named(named))
+}
+
 fn basis_named(written: &Written) -> Result<Basis, Diagnostic> {
     let meant = keys::BASES.iter().find(|(name, _)| *name == written.text);
-    meant.map(|(_, basis)| *basis).ok_or_else(|| {
-        let known: Vec<&str> = keys::BASES.iter().map(|(name, _)| *name).collect();
-        Diagnostic::error(format!("unknown basis {}", quoted(&written.text)))
-            .at(written.span, "not known")
-            .help(format!("known are {}", known.join(" and ")))
+    meant.map(|(_, basis)| basis.clone()).ok_or_else(|| {
+        let unknown = Diagnostic::error(format!("unknown basis {}", quoted(&written.text)))
+            .at(written.span, "not known");
+        let names = keys::BASES
+            .iter()
+            .map(|(name, _)| *name)
+            .chain([keys::TABLE]);
+        unknown.help(did_you_mean(&written.text, names).unwrap_or_else(|| {
+            "a beam has an end at `from` and one at `to`, each clamped, pinned, free or guided, as \
+             pinned_clamped; others are rod_fixed_free, rod_fixed_fixed, rod_free_free, string, \
+             table (shapes of a file) and clamped_free_printed"
+                .to_owned()
+        }))
     })
 }
 

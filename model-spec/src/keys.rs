@@ -1,7 +1,7 @@
 //! The sections of a specification and the keys of their entries: what the reader takes, and
 //! what the schema has to list.
 
-use crate::model::Basis;
+use crate::model::{Basis, End};
 
 /// Keys of `[model]`.
 pub const MODEL: [&str; 2] = ["name", "title"];
@@ -12,11 +12,12 @@ pub const COORDINATE: [&str; 5] = ["unit", "doc", "initial", "initial_rate", "ra
 /// Keys of an entry of `[inputs]`.
 pub const INPUT: [&str; 3] = ["unit", "doc", "range"];
 /// Keys of a `[fields.NAME]`.
-pub const FIELD: [&str; 8] = [
+pub const FIELD: [&str; 9] = [
     "along",
     "from",
     "to",
     "basis",
+    "table",
     "coordinates",
     "order",
     "unit",
@@ -61,8 +62,34 @@ pub fn sections() -> impl Iterator<Item = &'static str> {
     SECTIONS.iter().map(|(name, _)| *name)
 }
 
-/// The bases of a field.
-pub const BASES: [(&str, Basis); 2] = [
-    ("clamped_free", Basis::ClampedFree),
+/// The basis whose shapes are in a file.
+pub const TABLE: &str = "table";
+
+/// The other bases of a field. Rods and strings share the sines and cosines of pinned and guided beams.
+pub static BASES: [(&str, Basis); 21] = [
+    ("clamped_free", beam(End::Clamped, End::Free)),
     ("clamped_free_printed", Basis::ClampedFreePrinted),
+    ("clamped_clamped", beam(End::Clamped, End::Clamped)),
+    ("clamped_pinned", beam(End::Clamped, End::Pinned)),
+    ("clamped_guided", beam(End::Clamped, End::Guided)),
+    ("pinned_clamped", beam(End::Pinned, End::Clamped)),
+    ("pinned_pinned", beam(End::Pinned, End::Pinned)),
+    ("pinned_free", beam(End::Pinned, End::Free)),
+    ("pinned_guided", beam(End::Pinned, End::Guided)),
+    ("free_clamped", beam(End::Free, End::Clamped)),
+    ("free_pinned", beam(End::Free, End::Pinned)),
+    ("free_free", beam(End::Free, End::Free)),
+    ("free_guided", beam(End::Free, End::Guided)),
+    ("guided_clamped", beam(End::Guided, End::Clamped)),
+    ("guided_pinned", beam(End::Guided, End::Pinned)),
+    ("guided_free", beam(End::Guided, End::Free)),
+    ("guided_guided", beam(End::Guided, End::Guided)),
+    ("rod_fixed_free", beam(End::Pinned, End::Guided)),
+    ("rod_fixed_fixed", beam(End::Pinned, End::Pinned)),
+    ("rod_free_free", beam(End::Guided, End::Guided)),
+    ("string", beam(End::Pinned, End::Pinned)),
 ];
+
+const fn beam(from: End, to: End) -> Basis {
+    Basis::Beam { from, to }
+}

@@ -27,7 +27,7 @@
 //! to [`ast`]), `document` (TOML tables to raw entries), `names`, `expression` and `resolve` (names),
 //! `motion` (what may stand where), `units_check` and `infer` (units of every expression), `checks`,
 //! [`model`] (the result; [`mod@ids`] say which entry of its lists is meant). [`load()`] and [`check`] go all the way. What is wrong is said by
-//! [`diagnostic`]; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers.
+//! [`diagnostic`]; [`shape_table`] reads mode shapes from a file beside it; [`edit`] changes a specification and keeps its comments; [`variant`] sets numbers.
 //! [`toml_file`] and [`mod@table`] read other files of TOML with their places as well. [`models`] are
 //! the specifications shipped. Nothing here knows how
 //! equations are derived.
@@ -41,6 +41,7 @@ pub mod edit;
 mod entries;
 pub mod evaluate;
 mod expression;
+mod file_beside;
 mod functions;
 pub mod ids;
 mod infer;
@@ -57,6 +58,7 @@ mod raw;
 mod resolve;
 mod scale;
 pub mod schema;
+pub mod shape_table;
 pub mod source;
 pub mod span;
 pub mod suggest;

@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::checks::{check_drawing, check_sensors, warn_unused};
+use crate::checks::{check_drawing, check_sensors, check_tables, warn_unused};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::document;
 use crate::model::Model;
@@ -44,7 +44,9 @@ pub fn load_from(root: &Path, path: &Path) -> Result<Checked, Diagnostics> {
     let bytes = read(&root.join(path))
         .map_err(|diagnostic| Diagnostics::one(Source::new(shown.clone(), ""), diagnostic))?;
     let text = String::from_utf8(bytes).map_err(|error| not_utf8(shown.clone(), &error))?;
-    check(Source::new(shown, text))
+    let file = root.join(path);
+    let folder = file.parent().unwrap_or(Path::new(""));
+    check(Source::new(shown, text).in_folder(folder))
 }
 
 /// Checks a specification.
@@ -67,6 +69,9 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     check_drawing(&model, &mut found);
     if found.is_empty() {
         found.keep(model.check_numbers().map_err(ModelError::diagnostic));
+    }
+    if found.is_empty() {
+        check_tables(&model, &mut found);
     }
     if !found.is_empty() {
         return Err(found);

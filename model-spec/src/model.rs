@@ -5,10 +5,13 @@
 //! coordinates in the order of the specification, then each field's S modes, then the
 //! rates of all these in the same order.
 
+use std::sync::Arc;
+
 use crate::ast::BinaryOperator;
 use crate::ids::{
     CoefficientId, CoordinateId, DefinitionId, FieldId, InputId, ObservableId, ParameterId, PointId,
 };
+use crate::shape_table::ShapeTable;
 use crate::source::Source;
 use crate::span::Span;
 use crate::unit::Unit;
@@ -204,16 +207,59 @@ pub struct Field {
 }
 
 /// The mode shapes of a field.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Basis {
-    /// Clamped-free beam, beta_r l the roots of cos z cosh z = -1, in the paper's
-    /// normalisation, Eq. (17) with the corrected xi_r. In a specification
-    /// `"clamped_free"`.
-    ClampedFree,
+    /// The elastic modes of a uniform beam. Clamped and free: Eq. (17) with beta_r l the roots of
+    /// cos z cosh z = -1 and the corrected xi_r. A rod in tension or torsion, or a string, fixed
+    /// at an end has the shapes of a beam pinned there, one free at an end those of a beam guided
+    /// there. In a specification `"clamped_free"`, `"string"` and so on.
+    Beam {
+        /// The end at `from`.
+        from: End,
+        /// The end at `to`.
+        to: End,
+    },
     /// Eq. (17) with beta_r and xi_r as Eq. (18) and (19) print them, for comparison
     /// only: these shapes are not orthogonal and violate the free end's conditions.
     /// In a specification `"clamped_free_printed"`.
     ClampedFreePrinted,
+    /// Shapes from a file, between whose rows a cubic spline runs. They belong to
+    /// s = (x - from)/(to - from): another length stretches them. In a specification `"table"`.
+    Table {
+        /// The shapes.
+        table: Arc<ShapeTable>,
+        /// Where the file's name stands.
+        span: Span,
+    },
+}
+
+impl Basis {
+    /// The table of a basis that has one.
+    pub fn table(&self) -> Option<&ShapeTable> {
+        match self {
+            Self::Table { table, .. } => Some(table),
+            Self::Beam { .. } | Self::ClampedFreePrinted => None,
+        }
+    }
+
+    /// The beam of the paper.
+    pub const CLAMPED_FREE: Self = Self::Beam {
+        from: End::Clamped,
+        to: End::Free,
+    };
+}
+
+/// What holds the end of a beam.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum End {
+    /// No deflection and no slope.
+    Clamped,
+    /// No deflection and no moment.
+    Pinned,
+    /// No moment and no shear.
+    Free,
+    /// No slope and no shear: it slides across the beam without turning.
+    Guided,
 }
 
 /// A named expression of coordinates, rates, inputs, parameters and time (no bare field or

@@ -67,6 +67,12 @@ pub const PLANETARY_ARM_RIG: ShippedModel = ShippedModel {
     text: include_str!("../models/planetary_arm_rig.toml"),
 };
 
+/// A disc on an elastic shaft.
+pub const SHAFT_AND_DISC: ShippedModel = ShippedModel {
+    name: "shaft_and_disc",
+    text: include_str!("../models/shaft_and_disc.toml"),
+};
+
 /// Two flexible links in a plane with a tip mass.
 pub const TWO_LINK_ARM: ShippedModel = ShippedModel {
     name: "two_link_arm",
@@ -74,7 +80,7 @@ pub const TWO_LINK_ARM: ShippedModel = ShippedModel {
 };
 
 /// All of them, by name.
-pub const ALL: [ShippedModel; 9] = [
+pub const ALL: [ShippedModel; 10] = [
     CART_TWO_ARMS,
     DOUBLE_PENDULUM,
     EMPS,
@@ -83,5 +89,6 @@ pub const ALL: [ShippedModel; 9] = [
     PENDULUM,
     PLANETARY_ARM,
     PLANETARY_ARM_RIG,
+    SHAFT_AND_DISC,
     TWO_LINK_ARM,
 ];

@@ -130,6 +130,15 @@ pub struct RawInput {
     pub range: Option<RawRange>,
 }
 
+/// The mode shapes that a field asks for.
+#[derive(Debug)]
+pub enum RawBasis {
+    /// Those of a formula.
+    Named(Basis),
+    /// Those of the file `table`.
+    Table(Written),
+}
+
 /// A `[fields.NAME]`.
 #[derive(Debug)]
 pub struct RawField {
@@ -142,7 +151,7 @@ pub struct RawField {
     /// `to`
     pub to: Quantity,
     /// `basis`
-    pub basis: Basis,
+    pub basis: RawBasis,
     /// `coordinates`
     pub coordinates: Name,
     /// `order` and its place.

@@ -2,6 +2,7 @@
 //! means.
 
 use std::fmt::Write;
+use std::path::Path;
 use std::sync::Arc;
 
 use sha2::{Digest, Sha256};
@@ -13,6 +14,8 @@ pub struct Source {
     pub path: String,
     /// The whole text.
     pub text: Arc<str>,
+    /// The folder of the file, where the tables that the text names lie; none for a text alone.
+    pub folder: Option<Arc<Path>>,
 }
 
 /// A place in a text, both counted from 1.
@@ -30,6 +33,24 @@ impl Source {
         Self {
             path: path.into(),
             text: text.into(),
+            folder: None,
+        }
+    }
+
+    /// The same, read from a file in this folder.
+    #[must_use]
+    pub fn in_folder(mut self, folder: &Path) -> Self {
+        self.folder = Some(folder.into());
+        self
+    }
+
+    /// Another text in the place of this one.
+    #[must_use]
+    pub fn edited(&self, text: impl Into<Arc<str>>) -> Self {
+        Self {
+            path: self.path.clone(),
+            text: text.into(),
+            folder: self.folder.clone(),
         }
     }
 

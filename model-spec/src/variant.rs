@@ -4,6 +4,7 @@
 use crate::diagnostic::Diagnostic;
 use crate::evaluate::evaluate;
 use crate::model::{MAX_ORDER, Model, Parameter, ParameterValue, Range};
+use crate::source::sha256;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
 
@@ -63,6 +64,23 @@ impl std::fmt::Display for ModelError {
 impl std::error::Error for ModelError {}
 
 impl Model {
+    /// SHA-256 of all that the model was read from: of the specification's text, or, where it
+    /// names tables, of the digits of its hash and of theirs in the order of the fields.
+    pub fn hash(&self) -> String {
+        let tables = self.fields.iter().filter_map(|field| field.basis.table());
+        let tables: String = tables.map(|table| table.sha256.as_str()).collect();
+        match tables.is_empty() {
+            true => self.source.hash(),
+            false => sha256(self.source.hash() + &tables),
+        }
+    }
+
+    /// The highest order that every field has: a table has as many shapes as columns.
+    pub fn highest_order(&self) -> usize {
+        let tables = self.fields.iter().filter_map(|field| field.basis.table());
+        tables.fold(MAX_ORDER, |order, table| order.min(table.shapes.len()))
+    }
+
     /// The values of all parameters in SI, in the order of [`Model::parameters`].
     ///
     /// # Errors
@@ -207,6 +225,11 @@ impl Model {
             Some(order) if order > MAX_ORDER => {
                 let message = format!("the order {order} is above the limit");
                 Err(ModelError::new(message).help(format!("the highest order is {MAX_ORDER}")))
+            }
+            Some(order) if order > self.highest_order() => {
+                let shapes = self.highest_order();
+                let message = format!("the order {order} asks for more shapes than a table has");
+                Err(ModelError::new(message).help(format!("the table has {shapes}")))
             }
             Some(order) if self.fields.is_empty() && order > 0 => {
                 let message = format!(

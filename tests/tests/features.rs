@@ -53,6 +53,7 @@ features! {
         sums_over_modes: [0, 1, 4];
         printed_basis: [0, 1, 4];
         printed_basis_by_sums: [0, 1, 4];
+        full_mass_on_springs: [0, 1, 4];
         two_fields: [0, 1, 3];
         cubic_stiffness: [0, 1, 3];
         gravity_arm: [0, 1, 4];

@@ -1,6 +1,6 @@
 //! From the macro's arguments to the items of a model, through `model-spec` and `codegen`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::rust::{Packaging, emit};
@@ -57,14 +57,21 @@ fn file(
         Variant::derive_with(&model, &orders, outputs).map_err(|found| in_file(&found, place))?;
     let items = emitted(&variant)?;
     let warnings = warnings_in_file(&checked.warnings, place);
-    let Some(path) = root.join(&written).to_str().map(str::to_owned) else {
+    let folder = Path::new(&written).parent().unwrap_or(Path::new(""));
+    let tables = model.fields.iter().filter_map(|field| field.basis.table());
+    let files = tables.map(|table| folder.join(&table.file));
+    let read = std::iter::once(PathBuf::from(&written)).chain(files);
+    let paths: Option<Vec<String>> = read
+        .map(|file| root.join(file).to_str().map(str::to_owned))
+        .collect();
+    let Some(paths) = paths else {
         return Err(Error::new(place, "the path of the file is not Unicode"));
     };
     Ok(quote! {
         #items
         #warnings
-        // The compiler looks at the file again when it has changed.
-        const _: &[u8] = ::core::include_bytes!(#path);
+        // The compiler looks at the files again when they have changed.
+        #(const _: &[u8] = ::core::include_bytes!(#paths);)*
     })
 }
 

@@ -11,6 +11,7 @@ use eomgen_model_spec::span::Span;
 
 use crate::mechanics::fields::domain::Domain;
 use crate::mechanics::fields::function::FieldFunction;
+use crate::mechanics::fields::modes::node_count;
 use crate::mechanics::fields::term::Atom;
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::differentiate::Direction;
@@ -60,7 +61,11 @@ pub struct Translator<'m> {
 impl<'m> Translator<'m> {
     /// A translator for fields of these orders.
     pub fn new(model: &'m Model, orders: &[usize]) -> Self {
-        let mut graph = Graph::new(orders);
+        let fields = model.fields.iter().zip(orders);
+        let nodes: Vec<usize> = fields
+            .map(|(field, order)| node_count(&field.basis, *order))
+            .collect();
+        let mut graph = Graph::new(orders, &nodes);
         graph.reserve_names(model.parameters.iter().map(|p| &p.name));
         graph.reserve_names(model.coordinates.iter().map(|c| &c.name));
         graph.reserve_names(model.inputs.iter().map(|i| &i.name));
@@ -224,7 +229,7 @@ impl<'m> Translator<'m> {
         let length = self.graph.subtract(to, from);
         Ok(Domain {
             field,
-            basis: spec.basis,
+            basis: spec.basis.clone(),
             from,
             to,
             length,
@@ -242,6 +247,7 @@ impl<'m> Translator<'m> {
                 match field_atom(expr) {
                     Some(atom) => {
                         let domain = self.domain(field)?;
+                        domain.has(atom).map_err(|m| error(expr, m))?;
                         Ok(FieldFunction::atom(&mut self.graph, &domain, atom))
                     }
                     None => Ok(FieldFunction::constant(self.node(expr)?)),

@@ -30,18 +30,20 @@ pub struct Graph {
     known: HashMap<Operation, NodeId>,
     tables: Vec<Table>,
     orders: Vec<usize>,
+    node_counts: Vec<usize>,
     names: HashMap<NodeId, String>,
     taken: HashSet<String>,
 }
 
 impl Graph {
-    /// An empty graph for fields of these orders.
-    pub fn new(orders: &[usize]) -> Self {
+    /// An empty graph for fields of these orders with these numbers of quadrature nodes.
+    pub fn new(orders: &[usize], node_counts: &[usize]) -> Self {
         Self {
             nodes: Vec::new(),
             known: HashMap::new(),
             tables: Vec::new(),
             orders: orders.to_vec(),
+            node_counts: node_counts.to_vec(),
             names: HashMap::new(),
             taken: HashSet::new(),
         }
@@ -66,7 +68,7 @@ impl Graph {
     pub fn size(&self, space: Space) -> usize {
         match space {
             Space::Modes(field) => self.orders[field],
-            Space::Nodes(field) => crate::symbolic::tables::quadrature_size(self.orders[field]),
+            Space::Nodes(field) => self.node_counts[field],
         }
     }
 

@@ -22,8 +22,13 @@ pub fn plain(kind: TableKind) -> String {
         TableKind::Wavenumber => "betal_i".to_owned(),
         TableKind::Mixing => "xi_i".to_owned(),
         TableKind::GrowingAmplitude => "((1 + xi_i)*exp(betal_i))".to_owned(),
+        TableKind::FallingAmplitude => "falling_i".to_owned(),
+        TableKind::RisingAmplitude => "rising_i".to_owned(),
         TableKind::ShapeAtStart(d) => format!("phi_i{}(0)", primes(d)),
         TableKind::ShapeAtEnd(d) => format!("phi_i{}(1)", primes(d)),
+        TableKind::ShapeAtPlace { bits, derivative } => {
+            format!("phi_i{}({})", primes(derivative), f64::from_bits(bits))
+        }
         TableKind::Moment { power, derivative } => {
             format!("int[{}phi_i{}]", power_of_s(power), primes(derivative))
         }
@@ -65,8 +70,13 @@ pub fn latex(kind: TableKind) -> String {
         TableKind::Wavenumber => "(\\beta l)_i".to_owned(),
         TableKind::Mixing => "\\xi_i".to_owned(),
         TableKind::GrowingAmplitude => "(1 + \\xi_i)e^{(\\beta l)_i}".to_owned(),
+        TableKind::FallingAmplitude => "\\varphi^-_i".to_owned(),
+        TableKind::RisingAmplitude => "\\varphi^+_i".to_owned(),
         TableKind::ShapeAtStart(d) => format!("{}(0)", phi("i", d)),
         TableKind::ShapeAtEnd(d) => format!("{}(1)", phi("i", d)),
+        TableKind::ShapeAtPlace { bits, derivative } => {
+            format!("{}({})", phi("i", derivative), f64::from_bits(bits))
+        }
         TableKind::Moment { power, derivative } => {
             integral(format!("{}{}", s(power), phi("i", derivative)))
         }
@@ -88,6 +98,8 @@ pub fn doc(table: &Table) -> String {
         TableKind::Wavenumber => "beta_r l of the modes".to_owned(),
         TableKind::Mixing => "xi_r of the modes, Eq. (17)".to_owned(),
         TableKind::GrowingAmplitude => "(1 + xi_r) exp(beta_r l) of the modes".to_owned(),
+        TableKind::FallingAmplitude => "factors of exp(-beta_r l s) in the modes".to_owned(),
+        TableKind::RisingAmplitude => "factors of exp(-beta_r l (1 - s)) in the modes".to_owned(),
         TableKind::NodePosition => "Gauss-Legendre nodes on [0, 1]".to_owned(),
         TableKind::NodeWeight => "Gauss-Legendre weights on [0, 1]".to_owned(),
         kind => format!(
@@ -117,8 +129,17 @@ pub fn constant_name(table: &Table) -> String {
         TableKind::Wavenumber => "BETA_L".to_owned(),
         TableKind::Mixing => "XI".to_owned(),
         TableKind::GrowingAmplitude => "GROWING_AMPLITUDE".to_owned(),
+        TableKind::FallingAmplitude => "FALLING_AMPLITUDE".to_owned(),
+        TableKind::RisingAmplitude => "RISING_AMPLITUDE".to_owned(),
         TableKind::ShapeAtStart(d) => format!("PHI{}_AT_START", derivative(d)),
         TableKind::ShapeAtEnd(d) => format!("PHI{}_AT_END", derivative(d)),
+        TableKind::ShapeAtPlace {
+            bits,
+            derivative: d,
+        } => {
+            let place = f64::from_bits(bits).to_string().replace('.', "_");
+            format!("PHI{}_AT_{place}", derivative(d))
+        }
         TableKind::Moment {
             power: k,
             derivative: d,

@@ -11,14 +11,25 @@ use eomgen_model_spec::ids::FieldId;
 pub enum TableKind {
     /// beta_r l, a vector over the modes.
     Wavenumber,
-    /// xi_r of Eq. (17), a vector over the modes.
+    /// xi_r of Eq. (17), the factor of cos z beside sin z, a vector over the modes.
     Mixing,
     /// (1 + xi_r) exp(beta_r l), which stays of order 1, a vector over the modes.
     GrowingAmplitude,
+    /// The factor of exp(-z), z = beta_r l s, in a mode, a vector over the modes.
+    FallingAmplitude,
+    /// The factor of exp(z - beta_r l) in a mode, a vector over the modes.
+    RisingAmplitude,
     /// phi_r^(a)(0), a vector over the modes.
     ShapeAtStart(u8),
     /// phi_r^(a)(1), a vector over the modes.
     ShapeAtEnd(u8),
+    /// phi_r^(a)(s) at a fixed place of a table of shapes, a vector over the modes.
+    ShapeAtPlace {
+        /// s, by its bits.
+        bits: u64,
+        /// a
+        derivative: u8,
+    },
     /// The integral of s^k phi_r^(a), a vector over the modes.
     Moment {
         /// k

@@ -266,7 +266,7 @@ pub fn apply(source: &Source, edits: &[Edit]) -> Result<String, EditError> {
         make(&mut document, edit)?;
     }
     let text = restored(&source.text, document.to_string());
-    let edited = Source::new(source.path.clone(), text.as_str());
+    let edited = source.edited(text.as_str());
     check(edited).map_err(EditError::Invalid)?;
     Ok(text)
 }

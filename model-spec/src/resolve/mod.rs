@@ -5,19 +5,23 @@
 mod coefficients;
 mod drawing;
 
+use std::sync::Arc;
+
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
 use crate::expression::{Resolver, Scope};
 use crate::ids::{DefinitionId, ParameterId};
 use crate::model::{
-    Coordinate, Definition, Expr, ExprKind, Field, Force, Input, MAX_ORDER, Model, Observable,
-    Parameter, ParameterValue, Range, Sensor, Term,
+    Basis, Coordinate, Definition, Expr, ExprKind, Field, Force, Input, MAX_ORDER, Model,
+    Observable, Parameter, ParameterValue, Range, Sensor, Term,
 };
 use crate::names::Names;
 use crate::order::{Reference, order};
 use crate::raw::{
-    Document, RawCoordinate, RawField, RawInput, RawParameter, RawRange, RawSensor, RawTerm,
+    Document, RawBasis, RawCoordinate, RawField, RawInput, RawParameter, RawRange, RawSensor,
+    RawTerm,
 };
+use crate::shape_table::ShapeTable;
 use crate::source::Source;
 use crate::span::Span;
 use crate::table::{Number, Quantity, Written};
@@ -253,10 +257,40 @@ impl Builder {
         })
     }
 
+    /// The mode shapes of a field of this order.
+    fn basis(&mut self, raw: RawBasis, (order, span): (i64, Span)) -> Option<Basis> {
+        let file = match raw {
+            RawBasis::Named(basis) => return Some(basis),
+            RawBasis::Table(file) => file,
+        };
+        let folder = self.found.source().folder.clone();
+        let table = self.found.keep(ShapeTable::read(
+            folder.as_deref(),
+            file.span,
+            &file.text,
+            MAX_ORDER,
+        ))?;
+        let shapes = table.shapes.len();
+        if usize::try_from(order).is_ok_and(|order| order > shapes && order <= MAX_ORDER) {
+            let message = format!("the order {order} asks for more shapes than {}", file.text);
+            self.found.push(
+                Diagnostic::error(message)
+                    .at(span, "too high")
+                    .help(format!("the table has {shapes}")),
+            );
+            return None;
+        }
+        Some(Basis::Table {
+            table: Arc::new(table),
+            span: file.span,
+        })
+    }
+
     fn field(&mut self, raw: RawField) -> Option<Field> {
         let unit = self.coherent_unit(raw.unit);
         let from = self.expression(&raw.from, Scope::Parameters);
         let to = self.expression(&raw.to, Scope::Parameters);
+        let basis = self.basis(raw.basis, raw.order);
         let order = self.found.keep(field_order(raw.order));
         Some(Field {
             name: raw.name.text,
@@ -264,7 +298,7 @@ impl Builder {
             along: raw.along.text,
             from: from?,
             to: to?,
-            basis: raw.basis,
+            basis: basis?,
             coordinates: raw.coordinates.text,
             order: order?,
             doc: raw.doc,

@@ -42,9 +42,10 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// A plan of this version of the program.
+    /// A plan of this version of the program; `specification` is the hash of all that the model
+    /// was read from, [`Model::hash`](eomgen_model_spec::model::Model::hash).
     pub fn new(
-        source: &Source,
+        specification: String,
         model: &str,
         orders: &[usize],
         set: &[(&str, f64)],
@@ -56,7 +57,7 @@ impl Plan {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             model: model.to_owned(),
-            specification: source.hash(),
+            specification,
             orders: orders.to_vec(),
             set: set
                 .iter()
@@ -211,7 +212,7 @@ pub(super) mod tests {
             quantity: "m".to_owned(),
         };
         let plan = Plan::new(
-            &Source::new("a.toml", "text"),
+            Source::new("a.toml", "text").hash(),
             "a",
             &[],
             &[("y", 0.1)],

@@ -19,7 +19,7 @@
 //! let span = Span { transient: 2, periods: 20 };
 //! let measures: [Box<dyn Measure + '_>; 1] = [Box::new(Lyapunov::new(&model, "omega", span)?)];
 //! let plan = Plan::new(
-//!     &model.model().source,
+//!     model.model().hash(),
 //!     &model.model().name,
 //!     model.orders(),
 //!     &[],

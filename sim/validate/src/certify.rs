@@ -8,7 +8,7 @@ use super::checks::{
 use super::oracle::{Oracle, OracleError};
 use super::outputs::Outputs;
 use super::variant::Variant;
-use eomgen_model_spec::model::{MAX_ORDER, Model};
+use eomgen_model_spec::model::Model;
 use eomgen_model_spec::source::sha256;
 
 pub use super::checks::exact::{Derivative, Sized};
@@ -72,7 +72,7 @@ pub fn about(
     Certified {
         model: model.name.clone(),
         order,
-        specification_sha256: model.source.hash(),
+        specification_sha256: model.hash(),
         source_sha256: emitted.map(|emitted| sha256(&emitted.source)),
         with: emitted
             .and_then(|emitted| emitted.outputs.clone())
@@ -136,7 +136,7 @@ fn nested(
     if subject.model.fields.is_empty() {
         return Ok(skipped("nesting", "the model has no field"));
     }
-    let found = if subject.order < MAX_ORDER {
+    let found = if subject.order < subject.model.highest_order() {
         let mut larger = (subject.variants)(subject.order + 1)?;
         nesting::check("nesting", oracle, variant, larger.as_mut())
     } else {

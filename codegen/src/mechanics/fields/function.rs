@@ -124,8 +124,7 @@ impl FieldFunction {
 
     /// The value at a position (parameters only).
     pub fn at(&self, graph: &mut Graph, domain: &Domain, position: NodeId) -> Outcome<NodeId> {
-        let from_start = graph.subtract(position, domain.from);
-        let s = graph.divide(from_start, domain.length);
+        let s = domain.relative(graph, position);
         let mut terms = Vec::new();
         for term in &self.terms {
             if term.weight.is_some() {
@@ -136,7 +135,7 @@ impl FieldFunction {
             }
             let mut factors = vec![(term.scalar, 1), (s, term.power as i32)];
             for atom in &term.atoms {
-                let shapes = shapes_at(graph, domain, s, atom.derivative());
+                let shapes = shapes_at(graph, domain, s, atom.derivative())?;
                 let value = match atom.amplitudes(graph, domain.field) {
                     Some(amplitudes) => {
                         let product = graph.multiply(shapes, amplitudes);

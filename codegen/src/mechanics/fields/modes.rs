@@ -1,232 +1,213 @@
-//! Mode shapes of uniform beams and their dimensionless integrals, for the bases a
-//! specification can name. Everything is a function of s = x/l and of the mode's number;
-//! lengths and stiffnesses enter elsewhere as parameters.
-//!
-//! The shapes are Eq. (17) of the paper,
-//! phi_r(s) = sin z - sinh z + xi_r (cos z - cosh z), z = beta_r l s, evaluated with
-//! exponentials of -z and of -(beta_r l - z): the hyperbolic functions themselves lose all
-//! digits from r of about 12 on. The elementary functions are the project's own, so that
-//! the tables have the same bits on every machine.
+//! The numbers of a basis: mode shapes at points and their dimensionless integrals. Everything is
+//! a function of s = x/l and of the mode's number; lengths and stiffnesses enter elsewhere as
+//! parameters.
 
-use eomgen_elementary::Function;
 use eomgen_model_spec::model::Basis;
 
-use crate::mechanics::fields::quadrature::{QuadratureRule, gauss_legendre};
+use super::beam;
+use super::mode::{Mode, power};
+use super::quadrature::{QuadratureRule, composite, gauss_legendre};
+use super::spline::Spline;
 use crate::symbolic::tables::{TableKind, quadrature_size};
 
-/// One mode of a basis.
-#[derive(Clone, Copy, Debug)]
-struct Mode {
-    /// r, from 1.
-    number: usize,
-    /// beta_r l
-    wavenumber: f64,
-    /// xi_r
-    mixing: f64,
-    /// (1 + xi_r) exp(beta_r l)
-    growing: f64,
-}
+/// The fewest nodes in each piece of a spline: a product of two shapes is of degree 6.
+const NODES_OF_A_PIECE: usize = 4;
 
-impl Mode {
-    fn new(basis: Basis, number: usize) -> Self {
-        match basis {
-            Basis::ClampedFree => Self::clamped_free(number),
-            Basis::ClampedFreePrinted => Self::printed(number),
+/// Whether the integral of s^k phi_r^(a) phi_p^(b) vanishes for r != p in this basis: the shapes
+/// and their curvatures are orthogonal for a uniform beam. Sines and cosines are so in every
+/// derivative that is one of the same kind.
+pub fn is_orthogonal(basis: &Basis, power: u32, left: u8, right: u8) -> bool {
+    let alike = left == right && (left == 0 || left == 2);
+    match *basis {
+        Basis::Beam { from, to } if beam::is_sinusoidal(from, to) => {
+            power == 0 && (left + right).is_multiple_of(2)
         }
-    }
-
-    /// Root of cos z cosh z = -1 next to (r - 1/2) pi. With z = (r - 1/2) pi + d the
-    /// equation is sin d = (-1)^(r+1) sech z, a contraction.
-    fn clamped_free(number: usize) -> Self {
-        let sign = alternating(number);
-        let centre = std::f64::consts::PI * (number as f64 - 0.5);
-        let mut offset = 0.0;
-        for _ in 0..64 {
-            let decay = exponential(-(centre + offset));
-            let sech = 2.0 * decay / (1.0 + decay * decay);
-            let next = -sign * Function::Asin.apply(&[sech]);
-            if next == offset {
-                break;
-            }
-            offset = next;
-        }
-        let wavenumber = centre + offset;
-        let decay = exponential(-wavenumber);
-        let sech = 2.0 * decay / (1.0 + decay * decay);
-        let cosine = -sech;
-        let sine = -sign * Function::Cos.apply(&[offset]);
-        // xi = -(sin + sinh)/(cos + cosh), numerator and denominator times 2 exp(-z)
-        let numerator = 2.0 * sine * decay + 1.0 - decay * decay;
-        let denominator = 2.0 * cosine * decay + 1.0 + decay * decay;
-        Self {
-            number,
-            wavenumber,
-            mixing: -numerator / denominator,
-            growing: 2.0 * (cosine - sine + decay) / denominator,
-        }
-    }
-
-    /// beta_r l and xi_r as Eq. (18) and (19) print them.
-    fn printed(number: usize) -> Self {
-        let wavenumber = std::f64::consts::PI * (number as f64 - 0.5);
-        let sine = -alternating(number);
-        let decay = exponential(-wavenumber);
-        let mixing = (1.0 + decay * decay) / (2.0 * sine * decay + 1.0 - decay * decay);
-        Self {
-            number,
-            wavenumber,
-            mixing,
-            growing: (1.0 + mixing) / decay,
-        }
-    }
-
-    /// phi_r^(a)(s), the derivative by s.
-    fn shape(&self, derivative: u8, s: f64) -> f64 {
-        let z = self.wavenumber * s;
-        let (sine, cosine) = (Function::Sin.apply(&[z]), Function::Cos.apply(&[z]));
-        let wave = match derivative % 4 {
-            0 => sine + self.mixing * cosine,
-            1 => cosine - self.mixing * sine,
-            2 => -sine - self.mixing * cosine,
-            _ => -cosine + self.mixing * sine,
-        };
-        let growing = self.growing * exponential(-self.wavenumber * (1.0 - s));
-        let falling = (1.0 - self.mixing) * exponential(-z);
-        let falling = if derivative.is_multiple_of(2) {
-            -falling
-        } else {
-            falling
-        };
-        power(self.wavenumber, derivative) * (wave - 0.5 * (growing + falling))
-    }
-
-    fn at_start(&self, derivative: u8) -> f64 {
-        match derivative {
-            0 | 1 => 0.0,
-            _ => self.shape(derivative, 0.0),
-        }
-    }
-
-    /// At the free end moment and shear vanish and phi_r(1) = (-1)^r 2 xi_r.
-    fn at_end(&self, basis: Basis, derivative: u8) -> f64 {
-        match (basis, derivative) {
-            (Basis::ClampedFree, 0) => 2.0 * alternating(self.number) * self.mixing,
-            (Basis::ClampedFree, 2 | 3) => 0.0,
-            _ => self.shape(derivative, 1.0),
-        }
+        Basis::Beam { .. } => power == 0 && alike,
+        Basis::ClampedFreePrinted | Basis::Table { .. } => false,
     }
 }
 
-/// (-1)^r
-fn alternating(number: usize) -> f64 {
-    if number.is_multiple_of(2) { 1.0 } else { -1.0 }
+/// How many quadrature nodes a field of this order has.
+pub fn node_count(basis: &Basis, order: usize) -> usize {
+    match basis {
+        Basis::Table { table, .. } => {
+            let pieces = table.positions.len() - 1;
+            pieces * nodes_of_a_piece(pieces, order)
+        }
+        Basis::Beam { .. } | Basis::ClampedFreePrinted => quadrature_size(order),
+    }
 }
 
-fn exponential(x: f64) -> f64 {
-    Function::Exp.apply(&[x])
-}
-
-fn power(base: f64, exponent: u8) -> f64 {
-    (0..exponent).fold(1.0, |product, _| product * base)
-}
-
-/// Whether the integral of s^k phi_r^(a) phi_p^(b) vanishes for r != p in this basis:
-/// the shapes and their curvatures are orthogonal for a uniform beam.
-pub fn is_orthogonal(basis: Basis, power: u32, left: u8, right: u8) -> bool {
-    basis == Basis::ClampedFree && power == 0 && left == right && (left == 0 || left == 2)
+/// As many nodes over the whole field as other bases have, and enough for the products.
+fn nodes_of_a_piece(pieces: usize, order: usize) -> usize {
+    quadrature_size(order)
+        .div_ceil(pieces)
+        .max(NODES_OF_A_PIECE)
 }
 
 /// The numbers of a table for modes 1 to `order`; matrices row by row.
-pub fn table(basis: Basis, order: usize, kind: TableKind) -> Vec<f64> {
-    let modes: Vec<Mode> = (1..=order).map(|number| Mode::new(basis, number)).collect();
-    let each = |value: &dyn Fn(&Mode) -> f64| modes.iter().map(value).collect::<Vec<f64>>();
+pub fn table(basis: &Basis, order: usize, kind: TableKind) -> Vec<f64> {
+    let shapes = Shapes::of(basis, order);
     match kind {
-        TableKind::Wavenumber => each(&|mode| mode.wavenumber),
-        TableKind::Mixing => each(&|mode| mode.mixing),
-        TableKind::GrowingAmplitude => each(&|mode| mode.growing),
-        TableKind::ShapeAtStart(derivative) => each(&|mode| mode.at_start(derivative)),
-        TableKind::ShapeAtEnd(derivative) => each(&|mode| mode.at_end(basis, derivative)),
-        TableKind::Moment { power, derivative } => moments(basis, &modes, power, derivative),
+        TableKind::Wavenumber => shapes.each(|mode| mode.wavenumber),
+        TableKind::Mixing => shapes.each(|mode| mode.cosine),
+        TableKind::GrowingAmplitude => shapes.each(|mode| -2.0 * mode.rising),
+        TableKind::FallingAmplitude => shapes.each(|mode| mode.falling),
+        TableKind::RisingAmplitude => shapes.each(|mode| mode.rising),
+        TableKind::ShapeAtStart(derivative) => shapes.at_start(derivative),
+        TableKind::ShapeAtEnd(derivative) => shapes.at_end(basis, derivative),
+        TableKind::ShapeAtPlace { bits, derivative } => shapes.at(derivative, f64::from_bits(bits)),
+        TableKind::Moment { power, derivative } => shapes.moments(basis, power, derivative),
         TableKind::OwnMoment { power, left, right } => {
-            own_moments(basis, &modes, power, left, right)
+            shapes.own_moments(basis, power, left, right)
         }
-        TableKind::PairMoment { power, left, right } => pair_moments(&modes, power, left, right),
-        TableKind::NodePosition => gauss_legendre(quadrature_size(order)).nodes,
-        TableKind::NodeWeight => gauss_legendre(quadrature_size(order)).weights,
+        TableKind::PairMoment { power, left, right } => shapes.pair_moments(power, left, right),
+        TableKind::NodePosition => shapes.rule(0).nodes,
+        TableKind::NodeWeight => shapes.rule(0).weights,
         TableKind::ShapeAtNodes(derivative) => {
-            let nodes = gauss_legendre(quadrature_size(order)).nodes;
-            shapes_at(&modes, derivative, &nodes).concat()
+            let nodes = shapes.rule(0).nodes;
+            shapes.at_each(derivative, &nodes).concat()
         }
     }
 }
 
-/// RowNodes: nodes; columns: modes.
-fn shapes_at(modes: &[Mode], derivative: u8, nodes: &[f64]) -> Vec<Vec<f64>> {
-    nodes
-        .iter()
-        .map(|&s| modes.iter().map(|mode| mode.shape(derivative, s)).collect())
-        .collect()
+/// The shapes of a basis up to an order.
+enum Shapes {
+    /// By formulas.
+    Modes(Vec<Mode>),
+    /// By a table, with its knots.
+    Splines(Vec<f64>, Vec<Spline>),
 }
 
-/// Integrals of s^k phi_r^(a).
-///
-/// For the exact shapes phi'''' = (beta l)^4 phi, so integrating by parts with
-/// phi(0) = phi'(0) = phi''(1) = phi'''(1) = 0 gives 2/(beta l) for k = 0 and
-/// -2 xi/(beta l)^2 for k = 1.
-fn moments(basis: Basis, modes: &[Mode], moment: u32, derivative: u8) -> Vec<f64> {
-    match (basis, moment, derivative) {
-        (Basis::ClampedFree, 0, 0) => modes.iter().map(|m| 2.0 / m.wavenumber).collect(),
-        (Basis::ClampedFree, 1, 0) => modes
-            .iter()
-            .map(|m| -2.0 * m.mixing / (m.wavenumber * m.wavenumber))
-            .collect(),
-        _ => {
-            let (nodes, weights) = rule(modes.len(), moment);
-            let shapes = shapes_at(modes, derivative, &nodes);
-            (0..modes.len())
-                .map(|r| sum_over(&weights, |g| shapes[g][r]))
-                .collect()
+impl Shapes {
+    fn of(basis: &Basis, order: usize) -> Self {
+        let numbers = 1..=order;
+        match basis {
+            Basis::Beam { from, to } => {
+                Self::Modes(numbers.map(|r| beam::mode(*from, *to, r)).collect())
+            }
+            Basis::ClampedFreePrinted => Self::Modes(numbers.map(beam::printed).collect()),
+            Basis::Table { table, .. } => {
+                let first = table.positions[0];
+                let length = table.positions[table.positions.len() - 1] - first;
+                let knots = table.positions.iter().map(|x| (x - first) / length);
+                let knots: Vec<f64> = knots.collect();
+                let used = table.shapes.iter().take(order);
+                let splines = used.map(|values| Spline::new(&knots, values)).collect();
+                Self::Splines(knots, splines)
+            }
         }
     }
-}
 
-/// Integrals of s^k phi_r^(a) phi_r^(b); xi^2 and (beta l)^4 xi^2 for the exact shapes
-/// and curvatures.
-fn own_moments(basis: Basis, modes: &[Mode], moment: u32, left: u8, right: u8) -> Vec<f64> {
-    if is_orthogonal(basis, moment, left, right) {
-        return modes
-            .iter()
-            .map(|m| power(m.wavenumber, 2 * left) * m.mixing * m.mixing)
-            .collect();
+    /// A number of each mode that has a formula.
+    fn each(&self, value: impl Fn(&Mode) -> f64) -> Vec<f64> {
+        match self {
+            Self::Modes(modes) => modes.iter().map(value).collect(),
+            Self::Splines(..) => Vec::new(),
+        }
     }
-    let pairs = pair_moments(modes, moment, left, right);
-    (0..modes.len())
-        .map(|r| pairs[r * modes.len() + r])
-        .collect()
-}
 
-fn pair_moments(modes: &[Mode], moment: u32, left: u8, right: u8) -> Vec<f64> {
-    let (nodes, weights) = rule(modes.len(), moment);
-    let a = shapes_at(modes, left, &nodes);
-    let b = if left == right {
-        a.clone()
-    } else {
-        shapes_at(modes, right, &nodes)
-    };
-    let order = modes.len();
-    (0..order * order)
-        .map(|place| sum_over(&weights, |g| a[g][place / order] * b[g][place % order]))
-        .collect()
-}
-
-/// Nodes and weights times s^k.
-fn rule(order: usize, moment: u32) -> (Vec<f64>, Vec<f64>) {
-    let QuadratureRule { nodes, mut weights } =
-        gauss_legendre(quadrature_size(order) + moment as usize);
-    for (weight, s) in weights.iter_mut().zip(&nodes) {
-        *weight *= (0..moment).fold(1.0, |product, _| product * s);
+    /// All shapes at a place.
+    fn at(&self, derivative: u8, s: f64) -> Vec<f64> {
+        match self {
+            Self::Modes(modes) => modes.iter().map(|m| m.shape(derivative, s)).collect(),
+            Self::Splines(_, splines) => splines
+                .iter()
+                .map(|spline| spline.derivative(derivative, s))
+                .collect(),
+        }
     }
-    (nodes, weights)
+
+    fn at_start(&self, derivative: u8) -> Vec<f64> {
+        let zero = |mode: &Mode| mode.at_start.get(usize::from(derivative)) == Some(&0.0);
+        match self {
+            Self::Modes(_) => self.each(|mode| match zero(mode) {
+                true => 0.0,
+                false => mode.shape(derivative, 0.0),
+            }),
+            Self::Splines(..) => self.at(derivative, 0.0),
+        }
+    }
+
+    /// By the values the end's conditions give, which are free of the error of a phase of beta_r l.
+    /// The clamped beam's free end keeps the rounding it has always had where they say nothing.
+    fn at_end(&self, basis: &Basis, derivative: u8) -> Vec<f64> {
+        let keeps = *basis == Basis::CLAMPED_FREE && matches!(derivative, 1 | 4..);
+        match (self, basis) {
+            (Self::Modes(_), Basis::Beam { .. }) if !keeps => self.each(|mode| {
+                power(mode.wavenumber, derivative) * mode.at_end[usize::from(derivative % 4)]
+            }),
+            _ => self.at(derivative, 1.0),
+        }
+    }
+
+    /// Rows: places; columns: modes.
+    fn at_each(&self, derivative: u8, places: &[f64]) -> Vec<Vec<f64>> {
+        places.iter().map(|s| self.at(derivative, *s)).collect()
+    }
+
+    /// Integrals of s^k phi_r^(a).
+    fn moments(&self, basis: &Basis, moment: u32, derivative: u8) -> Vec<f64> {
+        if matches!(basis, Basis::Beam { .. }) && moment < 2 && derivative == 0 {
+            return self.each(|mode| mode.moment(moment));
+        }
+        let QuadratureRule { nodes, weights } = self.rule(moment);
+        let shapes = self.at_each(derivative, &nodes);
+        (0..self.order())
+            .map(|r| sum_over(&weights, |g| shapes[g][r]))
+            .collect()
+    }
+
+    /// Integrals of s^k phi_r^(a) phi_r^(b); where a and b differ by 2, twice by parts.
+    fn own_moments(&self, basis: &Basis, moment: u32, left: u8, right: u8) -> Vec<f64> {
+        if is_orthogonal(basis, moment, left, right) {
+            let opposite = !(left.abs_diff(right) / 2).is_multiple_of(2);
+            let sign = if opposite { -1.0 } else { 1.0 };
+            return self.each(|m| {
+                let [one, other] = m.mean_square;
+                sign * (power(m.wavenumber, left + right) * one * other)
+            });
+        }
+        let pairs = self.pair_moments(moment, left, right);
+        pairs.iter().step_by(self.order() + 1).copied().collect()
+    }
+
+    fn pair_moments(&self, moment: u32, left: u8, right: u8) -> Vec<f64> {
+        let QuadratureRule { nodes, weights } = self.rule(moment);
+        let a = self.at_each(left, &nodes);
+        let b = if left == right {
+            a.clone()
+        } else {
+            self.at_each(right, &nodes)
+        };
+        let order = self.order();
+        (0..order * order)
+            .map(|place| sum_over(&weights, |g| a[g][place / order] * b[g][place % order]))
+            .collect()
+    }
+
+    fn order(&self) -> usize {
+        match self {
+            Self::Modes(modes) => modes.len(),
+            Self::Splines(_, splines) => splines.len(),
+        }
+    }
+
+    /// Nodes, and weights times s^k.
+    fn rule(&self, moment: u32) -> QuadratureRule {
+        let order = self.order();
+        let mut rule = match self {
+            Self::Modes(_) => gauss_legendre(quadrature_size(order) + moment as usize),
+            Self::Splines(knots, _) => {
+                let nodes = nodes_of_a_piece(knots.len() - 1, order);
+                composite(knots, nodes + moment as usize / 2)
+            }
+        };
+        for (weight, s) in rule.weights.iter_mut().zip(&rule.nodes) {
+            *weight *= (0..moment).fold(1.0, |product, _| product * s);
+        }
+        rule
+    }
 }
 
 /// Sum of weights times values with a running compensation of the rounding errors: the

@@ -1,8 +1,9 @@
 //! Mode shapes at a point and integrals of one term of an integrand, as nodes: exact
 //! dimensionless constants where there are some, quadrature elsewhere.
 
-use eomgen_model_spec::model::Function;
+use eomgen_model_spec::model::{Basis, End, Function};
 
+use crate::mechanics::fields::beam::is_sinusoidal;
 use crate::mechanics::fields::domain::Domain;
 use crate::mechanics::fields::modes::is_orthogonal;
 use crate::mechanics::fields::term::IntegrandTerm;
@@ -10,12 +11,45 @@ use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
 use crate::symbolic::tables::TableKind;
 
 /// phi_r^(a) at s, a vector over the modes: tables at the ends, formulas elsewhere.
-pub(crate) fn shapes_at(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8) -> NodeId {
-    match graph.as_constant(s) {
-        Some(0.0) => return domain.table(graph, TableKind::ShapeAtStart(derivative)),
-        Some(1.0) => return domain.table(graph, TableKind::ShapeAtEnd(derivative)),
+///
+/// # Errors
+/// A place between the rows of a table of shapes that depends on parameters.
+pub(crate) fn shapes_at(
+    graph: &mut Graph,
+    domain: &Domain,
+    s: NodeId,
+    derivative: u8,
+) -> Result<NodeId, String> {
+    let place = graph.as_constant(s);
+    match place {
+        Some(0.0) => return Ok(domain.table(graph, TableKind::ShapeAtStart(derivative))),
+        Some(1.0) => return Ok(domain.table(graph, TableKind::ShapeAtEnd(derivative))),
         _ => {}
     }
+    match (&domain.basis, place) {
+        (
+            Basis::ClampedFreePrinted
+            | Basis::Beam {
+                from: End::Clamped, ..
+            },
+            _,
+        ) => Ok(clamped_shapes(graph, domain, s, derivative)),
+        (&Basis::Beam { from, to }, _) => Ok(beam_shapes(graph, domain, s, derivative, [from, to])),
+        (Basis::Table { .. }, Some(s)) if (0.0..=1.0).contains(&s) => {
+            let bits = s.to_bits();
+            Ok(domain.table(graph, TableKind::ShapeAtPlace { bits, derivative }))
+        }
+        (Basis::Table { .. }, Some(_)) => Err("a table has no shapes outside its field".into()),
+        (Basis::Table { .. }, None) => Err(
+            "the shapes of a table are known at its ends and at a fixed fraction of its length, \
+             such as at(w, 0.3*l)"
+                .into(),
+        ),
+    }
+}
+
+/// Eq. (17), by xi_r and (1 + xi_r) exp(beta_r l).
+fn clamped_shapes(graph: &mut Graph, domain: &Domain, s: NodeId, derivative: u8) -> NodeId {
     let beta = domain.table(graph, TableKind::Wavenumber);
     let xi = domain.table(graph, TableKind::Mixing);
     let growing = domain.table(graph, TableKind::GrowingAmplitude);
@@ -51,6 +85,62 @@ pub(crate) fn shapes_at(graph: &mut Graph, domain: &Domain, s: NodeId, derivativ
     graph.product(&[(beta, i32::from(derivative)), (shape, 1)])
 }
 
+/// sin z, sin z + xi cos z or cos z, as the start has it, with exponentials from both ends unless
+/// neither end has one.
+fn beam_shapes(
+    graph: &mut Graph,
+    domain: &Domain,
+    s: NodeId,
+    derivative: u8,
+    [from, to]: [End; 2],
+) -> NodeId {
+    let beta = domain.table(graph, TableKind::Wavenumber);
+    let z = graph.multiply(beta, s);
+    let mut terms = Vec::new();
+    if from != End::Guided {
+        terms.push(turned(graph, Function::Sin, z, derivative));
+    }
+    if from != End::Pinned {
+        let (sign, mut cosine) = turned(graph, Function::Cos, z, derivative);
+        if from != End::Guided {
+            let xi = domain.table(graph, TableKind::Mixing);
+            cosine = graph.multiply(xi, cosine);
+        }
+        terms.push((sign, cosine));
+    }
+    if !is_sinusoidal(from, to) {
+        let left = graph.negate(z);
+        let right = graph.subtract(z, beta);
+        let parity = if derivative.is_multiple_of(2) {
+            1.0
+        } else {
+            -1.0
+        };
+        for (sign, exponent, amplitude) in [
+            (parity, left, TableKind::FallingAmplitude),
+            (1.0, right, TableKind::RisingAmplitude),
+        ] {
+            let exponential = graph.call(Function::Exp, &[exponent]);
+            let amplitude = domain.table(graph, amplitude);
+            terms.push((sign, graph.multiply(amplitude, exponential)));
+        }
+    }
+    let shape = graph.combine(&terms);
+    graph.product(&[(beta, i32::from(derivative)), (shape, 1)])
+}
+
+/// A derivative of sin z or cos z by z, with its sign.
+fn turned(graph: &mut Graph, function: Function, z: NodeId, derivative: u8) -> (f64, NodeId) {
+    let quarters = derivative + u8::from(function == Function::Cos);
+    let own = if quarters.is_multiple_of(2) {
+        Function::Sin
+    } else {
+        Function::Cos
+    };
+    let sign = if quarters % 4 < 2 { 1.0 } else { -1.0 };
+    (sign, graph.call(own, &[z]))
+}
+
 /// The integral over s of s^power weight atom_1 atom_2; a vector over the modes where a
 /// bare shape is left.
 pub(crate) fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &IntegrandTerm) -> NodeId {
@@ -61,7 +151,7 @@ pub(crate) fn integral_of_term(graph: &mut Graph, domain: &Domain, term: &Integr
     match *term.atoms.as_slice() {
         [a, b] => {
             let (left, right) = (a.derivative(), b.derivative());
-            let orthogonal = is_orthogonal(domain.basis, term.power, left, right);
+            let orthogonal = is_orthogonal(&domain.basis, term.power, left, right);
             let amplitudes = [
                 a.amplitudes(graph, domain.field),
                 b.amplitudes(graph, domain.field),

@@ -37,6 +37,19 @@ pub fn gauss_legendre(n: usize) -> QuadratureRule {
     QuadratureRule { nodes, weights }
 }
 
+/// The n-point rule between each two of these knots.
+pub fn composite(knots: &[f64], n: usize) -> QuadratureRule {
+    let rule = gauss_legendre(n);
+    let pieces = knots.windows(2).map(|ends| (ends[0], ends[1] - ends[0]));
+    let (nodes, weights) = pieces
+        .flat_map(|(left, h)| {
+            let own = rule.nodes.iter().zip(&rule.weights);
+            own.map(move |(s, weight)| (left + h * s, h * weight))
+        })
+        .unzip();
+    QuadratureRule { nodes, weights }
+}
+
 /// P_n(x) and its derivative.
 fn legendre(n: usize, x: f64) -> (f64, f64) {
     let (mut previous, mut current) = (1.0, x);

@@ -59,7 +59,7 @@ pub fn lower_affine(
         program: Program {
             name: model.name.clone(),
             title: model.title.clone(),
-            spec_hash: model.source.hash(),
+            spec_hash: model.hash(),
             parameters,
             coordinates: model
                 .coordinates

@@ -108,7 +108,8 @@ impl Lowering<'_> {
     }
 
     /// A prepared factor times a sum over modes of prepared factors times others: the factor
-    /// goes into the prepared ones, if nothing else needs the sum without it.
+    /// goes into the prepared ones, if nothing else needs the sum without it. A factor that is a
+    /// vector stands outside the sum.
     fn scaled_total(
         &mut self,
         number: f64,
@@ -125,6 +126,10 @@ impl Lowering<'_> {
         let Operation::Product(factors) = graph.operation(*summand) else {
             return None;
         };
+        let scalars = |(id, _): &(NodeId, i32)| graph.shape(*id) == Shape::Scalar;
+        if !parameter_only.iter().all(scalars) {
+            return None;
+        }
         let once = self.uses.get(&total) == Some(&1);
         let (constant, moving): (Vec<_>, Vec<_>) = factors
             .iter()

@@ -79,7 +79,7 @@ pub fn lower_with_outputs(
     Program {
         name: model.name.clone(),
         title: model.title.clone(),
-        spec_hash: model.source.hash(),
+        spec_hash: model.hash(),
         parameters: program_parameters(model, parameter_values),
         coordinates: model
             .coordinates

@@ -14,8 +14,13 @@ pub(super) fn table(kind: TableKind) -> Markup {
             (fenced("(", &html! { mn { "1" } mo { "+" } (mixing()) }, ")"))
             msup { mi { "e" } mrow { (wavenumber()) } }
         },
+        TableKind::FallingAmplitude => amplitude("−"),
+        TableKind::RisingAmplitude => amplitude("+"),
         TableKind::ShapeAtStart(derivative) => at_position(derivative, &html! { mn { "0" } }),
         TableKind::ShapeAtEnd(derivative) => at_position(derivative, &html! { mn { "1" } }),
+        TableKind::ShapeAtPlace { bits, derivative } => {
+            at_position(derivative, &html! { mn { (f64::from_bits(bits)) } })
+        }
         TableKind::Moment { power, derivative } => integral(power, &shape("i", derivative)),
         TableKind::OwnMoment { power, left, right } => {
             integral(power, &html! { (shape("i", left)) (shape("i", right)) })
@@ -37,6 +42,11 @@ fn wavenumber() -> Markup {
 
 fn mixing() -> Markup {
     element(&identifier("ξ"), "i")
+}
+
+/// The factor of an exponential in a mode.
+fn amplitude(sense: &str) -> Markup {
+    html! { msubsup { (identifier("φ")) (identifier("i")) mo { (sense) } } }
 }
 
 /// A mode shape with primes for its derivatives.

@@ -87,7 +87,7 @@ impl<'m> Lowering<'m> {
                 field.name
             )));
         }
-        let domain = Domain::new(from, to, field.basis, self.system.size, order);
+        let domain = Domain::new(from, to, &field.basis, self.system.size, order);
         let number = self.system.domains.len();
         self.quadratures.push(self.system.places.len());
         self.system

@@ -34,6 +34,7 @@ mod observables;
 mod places;
 mod scene;
 mod shapes;
+mod splines;
 mod switches;
 mod system;
 mod terms;

@@ -11,6 +11,7 @@
 use super::double_double::DoubleDouble;
 use super::legendre::unit_rule;
 use super::shapes::Shape;
+use super::splines::{self, SplineShape};
 use eomgen_model_spec::model::Basis;
 use nalgebra::DMatrix;
 
@@ -28,19 +29,58 @@ pub(super) struct Domain {
     pub offset: usize,
     /// Number of modes.
     pub order: usize,
-    shapes: Vec<Shape>,
+    shapes: Shapes,
+}
+
+/// Mode shapes by a formula or through the values of a table, with the rule that integrates them.
+#[derive(Clone, Debug)]
+enum Shapes {
+    Modes(Vec<Shape>),
+    Splines(Vec<SplineShape>, Vec<(DoubleDouble, f64)>),
 }
 
 impl Domain {
     /// The domain `from..to` with the first `order` shapes of `basis`.
-    pub fn new(from: f64, to: f64, basis: Basis, offset: usize, order: usize) -> Self {
+    pub fn new(from: f64, to: f64, basis: &Basis, offset: usize, order: usize) -> Self {
+        let numbers = 1..=order;
+        let shapes = match basis {
+            Basis::Table { table, .. } => Shapes::Splines(
+                numbers.map(|r| SplineShape::new(table, r)).collect(),
+                splines::rule(table, order),
+            ),
+            Basis::Beam { .. } | Basis::ClampedFreePrinted => {
+                Shapes::Modes(numbers.map(|r| Shape::new(basis, r)).collect())
+            }
+        };
         Self {
             from,
             length: to - from,
             offset,
             order,
-            shapes: (1..=order).map(|r| Shape::new(basis, r)).collect(),
+            shapes,
         }
+    }
+
+    /// The places and weights on [0, 1] that integrate the shapes.
+    fn rule(&self) -> Vec<(DoubleDouble, f64)> {
+        match &self.shapes {
+            Shapes::Splines(_, rule) => rule.clone(),
+            Shapes::Modes(_) => unit_rule(4 * self.order + 40)
+                .iter()
+                .map(|node| (node.position, node.weight))
+                .collect(),
+        }
+    }
+
+    /// A derivative of the shape number `mode`, from 0, by s.
+    fn shape(&self, mode: usize, derivative: u8, position: DoubleDouble) -> f64 {
+        let value = match &self.shapes {
+            Shapes::Modes(shapes) => shapes.get(mode).map(|s| s.derivative(derivative, position)),
+            Shapes::Splines(shapes, _) => shapes
+                .get(mode)
+                .map(|s| s.derivative(derivative, position.high)),
+        };
+        value.unwrap_or(f64::NAN)
     }
 }
 
@@ -61,18 +101,18 @@ pub(super) struct PlaceSet {
 impl PlaceSet {
     /// The quadrature nodes of a field.
     pub fn quadrature(field: usize, domain: &Domain) -> Self {
-        let rule = unit_rule(4 * domain.order + 40);
+        let rule = domain.rule();
         Self {
             field,
             positions: rule
                 .iter()
-                .map(|node| domain.from + domain.length * node.position.high)
+                .map(|(position, _)| domain.from + domain.length * position.high)
                 .collect(),
             weights: rule
                 .iter()
-                .map(|node| domain.length * node.weight)
+                .map(|(_, weight)| domain.length * weight)
                 .collect(),
-            relative: rule.iter().map(|node| node.position).collect(),
+            relative: rule.iter().map(|(position, _)| *position).collect(),
             shapes: Default::default(),
         }
     }
@@ -99,13 +139,9 @@ impl PlaceSet {
                 domain.order,
                 relative.len(),
                 |mode, place| {
-                    domain
-                        .shapes
-                        .get(mode)
-                        .zip(relative.get(place))
-                        .map_or(f64::NAN, |(shape, position)| {
-                            scale * shape.derivative(derivative, *position)
-                        })
+                    relative.get(place).map_or(f64::NAN, |position| {
+                        scale * domain.shape(mode, derivative, *position)
+                    })
                 },
             ));
         }

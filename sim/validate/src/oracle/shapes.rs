@@ -1,67 +1,81 @@
-//! Mode shapes of a uniform clamped-free beam, Eq. (17), with exact frequencies or with
-//! Eq. (18) and (19) as printed. Own formulas and own roots: the derivation has its own,
-//! and the two must meet only in the result.
+//! Mode shapes of uniform beams by their boundary conditions alone: no formula of any kind of beam
+//! stands here. The derivation has such formulas, and the two must meet only in the result.
 //!
-//! phi_r = (sin u - sinh u) + xi_r (cos u - cosh u), u = z_r s, s = x/l, is evaluated as
+//! The four solutions of phi'''' = z^4 phi,
 //!
 //! ```text
-//! sin u + xi cos u + (1 - xi)/2 exp(-u) - growing exp(-(z - u))
+//! sin u    cos u    exp(-u)    exp(-(z - u)),    u = z s, s = x/l,
 //! ```
 //!
-//! so that nothing cancels for large z. The phase is (r - 1/2) pi s + delta_r s with a
-//! small delta_r, its first part reduced exactly before it is multiplied by pi.
+//! stay of size 1. Each end asks for two derivatives to vanish. The determinant of these four
+//! equations, bisected beside a multiple of pi/4, gives z; the vector they leave free is the shape.
+//! The phase is that multiple of s plus a small part, the first reduced exactly before it is
+//! multiplied by pi.
 
 use super::double_double::DoubleDouble;
-use eomgen_model_spec::model::Basis;
+use eomgen_model_spec::model::{Basis, End};
+use nalgebra::{Matrix4, Vector4};
 use std::f64::consts::PI;
 
 /// Mode r of a beam of unit length.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shape {
-    /// r - 1/2.
+    /// The multiple of pi beside z, a whole number of quarters.
     half_waves: f64,
-    /// z_r - (r - 1/2) pi.
+    /// What z is beyond that multiple of pi.
     delta: f64,
-    /// z_r = beta_r l.
+    /// z = beta_r l.
     root: f64,
-    /// xi_r of Eq. (17).
-    xi: f64,
-    /// (1 + xi)/2 exp(z), the factor of exp(-(z - u)).
-    growing: f64,
+    /// The factors of the four solutions.
+    factors: Vector4<f64>,
 }
 
 impl Shape {
-    /// Mode `r`, counted from 1, of `basis`.
-    pub fn new(basis: Basis, r: usize) -> Self {
+    /// Mode `r`, counted from 1, of a `basis` with a formula.
+    pub fn new(basis: &Basis, r: usize) -> Self {
         match basis {
-            Basis::ClampedFree => Self::exact(r),
-            Basis::ClampedFreePrinted => Self::printed(r),
+            Basis::Beam { from, to } => Self::of_beam(*from, *to, r),
+            _ => Self::printed(r),
         }
     }
 
-    /// cos z cosh z = -1 with z = (r - 1/2) pi + delta reads
-    /// sin delta = (-1)^(r+1)/cosh z; then cos z = -1/cosh z and
-    /// sin z = (-1)^(r+1) tanh z, which is what xi is built from.
-    fn exact(r: usize) -> Self {
-        let half_waves = r as f64 - 0.5;
-        let sign = if r.is_multiple_of(2) { -1.0 } else { 1.0 };
-        let mut delta: f64 = 0.0;
+    /// The wave of a beam long against its waves is reflected at each end with a phase of its own,
+    /// which says near which quarter of pi the roots lie; they are off by less than 1/2.
+    fn of_beam(from: End, to: End, r: usize) -> Self {
+        let phase = |end| match end {
+            End::Clamped => 0.25,
+            End::Pinned => 0.0,
+            End::Free => -0.75,
+            End::Guided => -0.5,
+        };
+        // Motions as a rigid body are the first of their sequence and are left out.
+        let rigid = f64::from(rigid_motions(from, to));
+        let half_waves = r as f64 + rigid + phase(from) + phase(to);
+        let determinant = |delta| conditions([from, to], half_waves, delta).determinant();
+        let (mut low, mut high) = (-0.5, 0.5);
+        let sign = determinant(low).signum();
+        // 2^-60 of the first interval.
         for _ in 0..60 {
-            let z = half_waves * PI + delta;
-            let value = delta.sin() - sign / z.cosh();
-            let slope = delta.cos() + sign * z.tanh() / z.cosh();
-            delta -= value / slope;
+            let middle = 0.5 * (low + high);
+            if determinant(middle) * sign > 0.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
         }
-        let root = half_waves * PI + delta;
-        let decay = (-root).exp();
-        let (sine, cosine) = (sign * root.tanh(), -1.0 / root.cosh());
-        let divisor = 2.0 * sine * decay - 1.0 + decay * decay;
+        let delta = 0.5 * (low + high);
+        let factors = null_vector(conditions([from, to], half_waves, delta));
+        // The sine counts 1, or the cosine where the start leaves no sine.
+        let unit = if from == End::Guided {
+            factors.y
+        } else {
+            factors.x
+        };
         Self {
             half_waves,
             delta,
-            root,
-            xi: (2.0 * cosine * decay + 1.0 + decay * decay) / divisor,
-            growing: (sine + cosine + decay) / divisor,
+            root: half_waves * PI + delta,
+            factors: factors / unit,
         }
     }
 
@@ -77,47 +91,90 @@ impl Shape {
             half_waves,
             delta: 0.0,
             root,
-            xi,
-            growing: 0.5 * (1.0 + xi) * root.exp(),
+            factors: Vector4::new(1.0, xi, 0.5 * (1.0 - xi), -0.5 * (1.0 + xi) * root.exp()),
         }
     }
 
     /// The derivative of order `derivative` of phi by s at `position` in [0, 1].
     pub fn derivative(&self, derivative: u8, position: DoubleDouble) -> f64 {
         let s = position.high;
-        let (sine, cosine) = self.sine_cosine(position);
-        let (sine_part, cosine_part) = match derivative % 4 {
-            0 => (sine, cosine),
-            1 => (cosine, -sine),
-            2 => (-sine, -cosine),
-            _ => (-cosine, sine),
-        };
         let remaining = (1.0 - s) - position.low;
-        let parity = if derivative.is_multiple_of(2) {
-            1.0
-        } else {
-            -1.0
-        };
-        let decaying = parity * 0.5 * (1.0 - self.xi) * (-self.root * s).exp();
-        let growing = self.growing * (-self.root * remaining).exp();
-        let value = (sine_part + self.xi * cosine_part) + (decaying - growing);
-        value * self.root.powi(i32::from(derivative))
+        let solutions = Vector4::from(solutions(
+            derivative,
+            sine_cosine(self.half_waves, self.delta, position),
+            [(-self.root * s).exp(), (-self.root * remaining).exp()],
+        ));
+        self.factors.dot(&solutions) * self.root.powi(i32::from(derivative))
     }
+}
 
-    /// sin and cos of z s: the turns (r - 1/2) s / 2 are reduced exactly, the rest is a
-    /// small angle, so the error does not grow with r.
-    fn sine_cosine(&self, position: DoubleDouble) -> (f64, f64) {
-        let half_turns = DoubleDouble::product(self.half_waves, position.high);
-        let quarter_turns = (2.0 * half_turns.high).round();
-        let reduced = (half_turns.high - 0.5 * quarter_turns)
-            + (half_turns.low + self.half_waves * position.low);
-        let (sine, cosine) = (PI * reduced + self.delta * position.high).sin_cos();
-        match quarter_turns.rem_euclid(4.0) as u8 {
-            0 => (sine, cosine),
-            1 => (cosine, -sine),
-            2 => (-sine, -cosine),
-            _ => (-cosine, sine),
-        }
+/// The translation and the rotation that the ends leave.
+fn rigid_motions(from: End, to: End) -> u8 {
+    let translates = |end| matches!(end, End::Free | End::Guided);
+    let rotates = |end| matches!(end, End::Free | End::Pinned);
+    let translation = translates(from) && translates(to);
+    let rotation = rotates(from) && rotates(to) && (from == End::Free || to == End::Free);
+    u8::from(translation) + u8::from(rotation)
+}
+
+/// The conditions at both ends for the factors of the solutions: an end makes two derivatives
+/// vanish.
+fn conditions(ends: [End; 2], half_waves: f64, delta: f64) -> Matrix4<f64> {
+    let decay = (-(half_waves * PI + delta)).exp();
+    let one = DoubleDouble::new(1.0);
+    let wave = [(0.0, 1.0), sine_cosine(half_waves, delta, one)];
+    let exponentials = [[1.0, decay], [decay, 1.0]];
+    Matrix4::from_fn(|row, column| {
+        let vanishing = match ends[row / 2] {
+            End::Clamped => [0, 1],
+            End::Pinned => [0, 2],
+            End::Free => [2, 3],
+            End::Guided => [1, 3],
+        };
+        solutions(vanishing[row % 2], wave[row / 2], exponentials[row / 2])[column]
+    })
+}
+
+/// The derivatives of the four solutions by u.
+fn solutions(derivative: u8, (sine, cosine): (f64, f64), exponentials: [f64; 2]) -> [f64; 4] {
+    let (of_sine, of_cosine) = match derivative % 4 {
+        0 => (sine, cosine),
+        1 => (cosine, -sine),
+        2 => (-sine, -cosine),
+        _ => (-cosine, sine),
+    };
+    let parity = if derivative.is_multiple_of(2) {
+        1.0
+    } else {
+        -1.0
+    };
+    let [decaying, growing] = exponentials;
+    [of_sine, of_cosine, parity * decaying, growing]
+}
+
+/// The vector that a singular matrix maps to nothing, to rounding: the right singular vector of
+/// the least singular value.
+fn null_vector(matrix: Matrix4<f64>) -> Vector4<f64> {
+    let decomposition = matrix.svd(false, true);
+    let least = decomposition.singular_values.imin();
+    decomposition
+        .v_t
+        .map_or_else(Vector4::zeros, |rows| rows.row(least).transpose())
+}
+
+/// sin and cos of z s: the turns are reduced exactly, the rest is a small angle, so the error does
+/// not grow with r.
+fn sine_cosine(half_waves: f64, delta: f64, position: DoubleDouble) -> (f64, f64) {
+    let half_turns = DoubleDouble::product(half_waves, position.high);
+    let quarter_turns = (2.0 * half_turns.high).round();
+    let reduced =
+        (half_turns.high - 0.5 * quarter_turns) + (half_turns.low + half_waves * position.low);
+    let (sine, cosine) = (PI * reduced + delta * position.high).sin_cos();
+    match quarter_turns.rem_euclid(4.0) as u8 {
+        0 => (sine, cosine),
+        1 => (cosine, -sine),
+        2 => (-sine, -cosine),
+        _ => (-cosine, sine),
     }
 }
 
@@ -139,7 +196,7 @@ mod tests {
             7.854_757_438_237_613,
         ];
         for (index, root) in roots.iter().enumerate() {
-            let shape = Shape::new(Basis::ClampedFree, index + 1);
+            let shape = Shape::new(&Basis::CLAMPED_FREE, index + 1);
             assert!((shape.root - root).abs() < 4e-15, "{}", shape.root);
         }
     }
@@ -147,7 +204,7 @@ mod tests {
     #[test]
     fn the_exact_shapes_satisfy_the_ends_and_the_printed_ones_do_not() {
         for r in [1, 2, 3, 12, 64, 128] {
-            let shape = Shape::new(Basis::ClampedFree, r);
+            let shape = Shape::new(&Basis::CLAMPED_FREE, r);
             let clamp = DoubleDouble::new(0.0);
             for (derivative, end) in [(0, clamp), (1, clamp), (2, ONE), (3, ONE)] {
                 let scaled = shape.derivative(derivative, end) / shape.root.powi(derivative.into());
@@ -157,7 +214,7 @@ mod tests {
                 );
             }
         }
-        let printed = Shape::new(Basis::ClampedFreePrinted, 1);
+        let printed = Shape::new(&Basis::ClampedFreePrinted, 1);
         assert!((printed.derivative(2, ONE) / printed.root.powi(2)).abs() > 1.0);
     }
 
@@ -166,8 +223,8 @@ mod tests {
         let rule = unit_rule(4 * 64 + 40);
         for (r, k) in [(1, 2), (1, 64), (63, 64), (30, 41)] {
             let (left, right) = (
-                Shape::new(Basis::ClampedFree, r),
-                Shape::new(Basis::ClampedFree, k),
+                Shape::new(&Basis::CLAMPED_FREE, r),
+                Shape::new(&Basis::CLAMPED_FREE, k),
             );
             let product: f64 = rule
                 .iter()
@@ -186,12 +243,12 @@ mod tests {
         // int_0^1 s phi ds = 2/z^2 in magnitude: phi'''' = z^4 phi integrated by parts.
         let rule = unit_rule(4 * 128 + 40);
         for r in [1, 8, 64, 128] {
-            let shape = Shape::new(Basis::ClampedFree, r);
+            let shape = Shape::new(&Basis::CLAMPED_FREE, r);
             let moment: f64 = rule
                 .iter()
                 .map(|node| node.weight * node.position.high * shape.derivative(0, node.position))
                 .sum();
-            let exact = 2.0 * shape.xi / shape.root.powi(2);
+            let exact = 2.0 * shape.factors.y / shape.root.powi(2);
             // The addends are of size 1/552 and the moment of size 2/z^2.
             let tolerance = 1e-14_f64.max(2e-17 * shape.root.powi(2));
             assert!(

@@ -1,5 +1,8 @@
 //! `linearise`, `modes`, `trim`, and what drives and starts `simulate`, against closed forms.
 
+mod bases;
+mod tables;
+
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 

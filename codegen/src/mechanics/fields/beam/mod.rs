@@ -1,0 +1,235 @@
+//! The modes of a uniform beam between two ends, each clamped, pinned, free or guided.
+//!
+//! Wave numbers are sought beside a multiple of pi/4, from which they differ by less and less:
+//! cos z cosh z = 1 and -1 become sin d = (-1)^(r+1) sech z, tan z = tanh z and -tanh z become
+//! tan d = -exp(-2 z) and exp(-2 z). The amplitudes follow from the conditions at the two ends
+//! (R. D. Blevins, "Formulas for Natural Frequency and Mode Shape", 1979, Table 8-1, where
+//! guided ends are called sliding). The second derivative of a mode is a mode with clamped and
+//! free ends exchanged, so that a beam with a free start has the wave numbers and the wave of
+//! one with a clamped start.
+
+use eomgen_elementary::Function;
+use eomgen_model_spec::model::End;
+
+use super::mode::{Mode, exponential, values_at};
+
+#[cfg(test)]
+mod tests;
+
+/// Elastic mode `number`, from 1, of a beam with these ends.
+pub(super) fn mode(from: End, to: End, number: usize) -> Mode {
+    let root = Root::of(from, to, number);
+    let wave = wave(from, to, root);
+    let wave_at_end = wave_at_end(from, to, root, number, wave);
+    let [falling, rising] = exponentials(from, to, root, wave, wave_at_end[0]);
+    let [sine, cosine] = wave;
+    let (falling_at_end, rising_at_start) = (falling * root.decay, rising * root.decay);
+    // 4 int phi^2 = phi(1)^2 + phi''(1)^2/k^4 - 2 phi'(1) phi'''(1)/k^4, or the same from the
+    // start; of these an end from which the shape decays leaves one.
+    let mean_square = match (from, to) {
+        (start, _) if decays(start) => [cosine; 2],
+        (_, end) if decays(end) => [wave_at_end[0]; 2],
+        _ => [1.0, 0.5],
+    };
+    Mode {
+        wavenumber: root.k,
+        sine,
+        cosine,
+        falling,
+        rising,
+        at_start: values_at(
+            from,
+            [cosine, sine],
+            [falling + rising_at_start, rising_at_start - falling],
+        ),
+        at_end: values_at(
+            to,
+            wave_at_end,
+            [falling_at_end + rising, rising - falling_at_end],
+        ),
+        mean_square,
+    }
+}
+
+/// Mode `number` with beta_r l and xi_r as Eq. (18) and (19) print them. It satisfies no condition
+/// at its end, and none of its integrals is known in closed form.
+pub(super) fn printed(number: usize) -> Mode {
+    let wavenumber = std::f64::consts::PI * (number as f64 - 0.5);
+    let sine = -alternating(number);
+    let decay = exponential(-wavenumber);
+    let mixing = (1.0 + decay * decay) / (2.0 * sine * decay + 1.0 - decay * decay);
+    Mode {
+        wavenumber,
+        sine: 1.0,
+        cosine: mixing,
+        falling: 0.5 * (1.0 - mixing),
+        rising: -0.5 * ((1.0 + mixing) / decay),
+        at_start: [0.0, 0.0, f64::NAN, f64::NAN],
+        at_end: [f64::NAN; 4],
+        mean_square: [f64::NAN; 2],
+    }
+}
+
+/// Whether every shape is a sine or a cosine alone.
+pub(super) fn is_sinusoidal(from: End, to: End) -> bool {
+    !decays(from) && !decays(to)
+}
+
+/// k = beta_r l with its sine and cosine, which are known better than by its rounded value.
+#[derive(Clone, Copy)]
+struct Root {
+    k: f64,
+    sine: f64,
+    cosine: f64,
+    /// exp(-k)
+    decay: f64,
+}
+
+impl Root {
+    fn of(from: End, to: End, number: usize) -> Self {
+        let sign = alternating(number);
+        let hyperbolic = |k: f64| -sign * Function::Asin.apply(&[sech(exponential(-k))]);
+        let tangent = |k: f64| Function::Atan.apply(&[exponential(-2.0 * k)]);
+        match (decays(from), decays(to)) {
+            (true, true) => {
+                let unlike = unlikeness(from, to);
+                let root = Self::beside(number, -2.0 * unlike, hyperbolic);
+                Self {
+                    cosine: -unlike * sech(root.decay),
+                    ..root
+                }
+            }
+            (false, false) if from == to => Self::beside(number, 0.0, |_| 0.0),
+            (false, false) => Self::beside(number, -2.0, |_| 0.0),
+            _ if from == End::Pinned || to == End::Pinned => {
+                Self::beside(number, 1.0, |k| -tangent(k))
+            }
+            _ => Self::beside(number, -1.0, tangent),
+        }
+    }
+
+    /// The fixed point of k = (r + quarters/4) pi + offset(k), a contraction.
+    fn beside(number: usize, quarters: f64, offset: impl Fn(f64) -> f64) -> Self {
+        let centre = std::f64::consts::PI * (number as f64 + 0.25 * quarters);
+        let mut d = 0.0;
+        for _ in 0..64 {
+            let next = offset(centre + d);
+            if next == d {
+                break;
+            }
+            d = next;
+        }
+        let (small_sine, small_cosine) = (Function::Sin.apply(&[d]), Function::Cos.apply(&[d]));
+        let [sine, cosine] = quarter_turns(quarters).map(|value| alternating(number) * value);
+        let k = centre + d;
+        Self {
+            k,
+            sine: sine * small_cosine + cosine * small_sine,
+            cosine: cosine * small_cosine - sine * small_sine,
+            decay: exponential(-k),
+        }
+    }
+}
+
+/// The sine and cosine of -2, -1, 0, 1 or 2 times pi/4.
+fn quarter_turns(quarters: f64) -> [f64; 2] {
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    if quarters == 0.0 {
+        [0.0, 1.0]
+    } else if quarters.abs() == 1.0 {
+        [quarters * half, half]
+    } else {
+        [0.5 * quarters, 0.0]
+    }
+}
+
+/// sech k from exp(-k).
+fn sech(decay: f64) -> f64 {
+    2.0 * decay / (1.0 + decay * decay)
+}
+
+/// Whether shapes have an exponential that falls off from this end.
+fn decays(end: End) -> bool {
+    matches!(end, End::Clamped | End::Free)
+}
+
+/// Of ends that decay: -1 for two of a kind, cos k cosh k = 1, and 1 for clamped with free,
+/// cos k cosh k = -1.
+fn unlikeness(from: End, to: End) -> f64 {
+    if from == to { -1.0 } else { 1.0 }
+}
+
+/// The factors of sin z and of cos z: the sine's is 1, or the cosine's where there is no sine.
+fn wave(from: End, to: End, root: Root) -> [f64; 2] {
+    let square = root.decay * root.decay;
+    let mixing = match (from, to) {
+        (End::Pinned, _) => return [1.0, 0.0],
+        (End::Guided, _) => return [0.0, 1.0],
+        (_, End::Pinned) => -(1.0 - square) / (1.0 + square),
+        (_, End::Guided) => -(1.0 + square) / (1.0 - square),
+        // -(sin - sinh)/(cos - cosh) and -(sin + sinh)/(cos + cosh), numerator and denominator
+        // times 2 exp(-k)
+        _ => {
+            let unlike = unlikeness(from, to);
+            let numerator = 2.0 * root.sine * root.decay + unlike - unlike * square;
+            -numerator / divisor(unlike, root)
+        }
+    };
+    [1.0, mixing]
+}
+
+/// cos k - cosh k or cos k + cosh k, times 2 exp(-k).
+fn divisor(unlike: f64, root: Root) -> f64 {
+    2.0 * root.cosine * root.decay + unlike + unlike * root.decay * root.decay
+}
+
+/// What the wave is at the end, and its first derivative over k.
+fn wave_at_end(from: End, to: End, root: Root, number: usize, [a, c]: [f64; 2]) -> [f64; 2] {
+    if decays(from) && decays(to) {
+        // Such a wave is the same from either end, but for signs.
+        let sign = unlikeness(from, to) * alternating(number);
+        return [sign * c, -sign * a];
+    }
+    [
+        a * root.sine + c * root.cosine,
+        a * root.cosine - c * root.sine,
+    ]
+}
+
+/// The factors of exp(-z) and of exp(z - k).
+fn exponentials(from: End, to: End, root: Root, wave: [f64; 2], wave_at_end: f64) -> [f64; 2] {
+    let decay = root.decay;
+    // Exponentials cancel the wave at a clamped end and double it at a free one.
+    let sense = |end| if end == End::Free { 1.0 } else { -1.0 };
+    match (from, to) {
+        (End::Pinned, end) if decays(end) => {
+            let rising = sense(end) * wave_at_end / (1.0 - decay * decay);
+            [-rising * decay, rising]
+        }
+        (End::Guided, end) if decays(end) => {
+            let rising = sense(end) * wave_at_end / (1.0 + decay * decay);
+            [rising * decay, rising]
+        }
+        (End::Pinned | End::Guided, _) => [0.0, 0.0],
+        (start, end) => {
+            let [sine, cosine] = wave;
+            let falling = -sense(start) * 0.5 * (sine - cosine);
+            let rising = match end {
+                End::Pinned => -falling * decay,
+                End::Guided => falling * decay,
+                // -+(1 + xi) exp(k)/2
+                _ => {
+                    let unlike = unlikeness(from, to);
+                    let above = root.cosine - root.sine + unlike * decay;
+                    sense(start) * (above / divisor(unlike, root))
+                }
+            };
+            [falling, rising]
+        }
+    }
+}
+
+/// (-1)^r
+fn alternating(number: usize) -> f64 {
+    if number.is_multiple_of(2) { 1.0 } else { -1.0 }
+}

@@ -1,0 +1,85 @@
+//! Text files beside a specification: in its folder or below, no larger than a limit.
+
+use std::io::Read;
+use std::path::{Component, Path, PathBuf};
+
+/// The largest file read, in bytes.
+const MAX_SIZE: u64 = 8 << 20;
+
+/// What is wrong with a file, as the rest of a sentence that begins with its name, and what would
+/// be right.
+pub struct Refused(pub String, pub &'static str);
+
+/// The text of the file of that name.
+///
+/// # Errors
+/// A name that leads out of the folder, a file that cannot be read, is too large or is not UTF-8.
+pub fn read(folder: &Path, name: &str) -> Result<String, Refused> {
+    let bytes = bytes(&beside(folder, name)?)?;
+    match text(&bytes) {
+        Ok(text) => Ok(text.to_owned()),
+        Err(line) => Err(Refused(
+            format!("is not UTF-8 text: line {line}"),
+            "save the file as UTF-8",
+        )),
+    }
+}
+
+/// Links are followed: where they lead counts.
+fn beside(folder: &Path, name: &str) -> Result<PathBuf, Refused> {
+    let relative = Path::new(name);
+    let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+    let folder = match folder.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => folder,
+    };
+    let place = folder.join(relative);
+    // What is not there is said by whoever reads it.
+    let leads_out = match (place.canonicalize(), folder.canonicalize()) {
+        (Ok(place), Ok(folder)) => !place.starts_with(folder),
+        _ => false,
+    };
+    if name.is_empty() || leads_out || !relative.components().all(inside) {
+        return Err(Refused(
+            "lies outside the specification's folder".to_owned(),
+            "give the name of a file beside the specification or below",
+        ));
+    }
+    Ok(place)
+}
+
+fn bytes(path: &Path) -> Result<Vec<u8>, Refused> {
+    let help = "give the name of a file beside the specification or below";
+    let unreadable = |error: std::io::Error| Refused(format!("cannot be read: {error}"), help);
+    let too_large = || {
+        let limit = MAX_SIZE >> 20;
+        Refused(format!("is larger than {limit} MiB"), "give a smaller file")
+    };
+    let metadata = std::fs::metadata(path).map_err(unreadable)?;
+    if !metadata.is_file() {
+        return Err(Refused("is not a file".to_owned(), help));
+    }
+    if metadata.len() > MAX_SIZE {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(unreadable)?;
+    // The file may have grown since.
+    let read = file.take(MAX_SIZE + 1).read_to_end(&mut bytes);
+    read.map_err(unreadable)?;
+    if bytes.len() as u64 > MAX_SIZE {
+        return Err(too_large());
+    }
+    Ok(bytes)
+}
+
+/// A text in UTF-8, or the line of the first byte that is part of none. A zero byte is one: the
+/// letters of UTF-16 have them.
+fn text(bytes: &[u8]) -> Result<&str, usize> {
+    let line = |valid: &[u8]| valid.iter().filter(|byte| **byte == b'\n').count() + 1;
+    let text = std::str::from_utf8(bytes).map_err(|error| line(&bytes[..error.valid_up_to()]))?;
+    match text.find('\0') {
+        Some(zero) => Err(line(&bytes[..zero])),
+        None => Ok(text),
+    }
+}

@@ -1,0 +1,292 @@
+//! Mode shapes from a file: a table of CSV beside the specification, as a finite-element
+//! program writes it. Columns `x, phi_1, phi_2, ...`, a row for each place.
+//!
+//! Nothing here knows how shapes are interpolated.
+
+use std::path::Path;
+
+use crate::diagnostic::Diagnostic;
+use crate::file_beside;
+use crate::source::sha256;
+use crate::span::Span;
+
+/// The most rows of a table: each is a knot of the shapes in emitted code.
+pub const MAX_ROWS: usize = 2000;
+
+/// The fewest rows: four make a cubic.
+const MIN_ROWS: usize = 4;
+
+/// The most cells of a line that are looked at: more than any table has.
+const MAX_CELLS: usize = 1000;
+
+/// How much longer a step may be than both steps beside it: more is a gap.
+const GAP: f64 = 3.0;
+
+/// What has to be left of a shape beside the others, relative to it, for it to be another one.
+const INDEPENDENT: f64 = 1e-8;
+
+/// How far the ends of the table may lie from those of the field, relative to its length.
+const ENDS: f64 = 1e-9;
+
+/// Mode shapes given at places.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShapeTable {
+    /// The file's name, as the specification gives it.
+    pub file: String,
+    /// SHA-256 of the file, in hexadecimal digits.
+    pub sha256: String,
+    /// The places x, in m, strictly increasing.
+    pub positions: Vec<f64>,
+    /// For each mode its values at the places.
+    pub shapes: Vec<Vec<f64>>,
+}
+
+impl ShapeTable {
+    /// The file of that name, written at `span`, in a specification's folder or below, with at most
+    /// `most` shapes.
+    ///
+    /// # Errors
+    /// No folder, a name that leads out of it, a file that cannot be read, is too large or is not
+    /// UTF-8, and what [`Self::parse`] refuses.
+    pub fn read(
+        folder: Option<&Path>,
+        span: Span,
+        name: &str,
+        most: usize,
+    ) -> Result<Self, Diagnostic> {
+        let refused = |message: String| Diagnostic::error(message).at(span, "this table");
+        let Some(folder) = folder else {
+            return Err(refused(format!(
+                "the table \"{name}\" lies beside the specification's file, and here is its text alone"
+            ))
+            .help("give the specification as a file; `compare`, `discover`, sections in place and texts without a file take no tables"));
+        };
+        let text = file_beside::read(folder, name)
+            .map_err(|error| refused(format!("the table \"{name}\" {}", error.0)).help(error.1))?;
+        Self::parse(name, &text, most).map_err(|fault| {
+            refused(format!("{name}:{}:{}: {}", fault.line, fault.column, fault.message)).help(
+                "the first line is x,phi_1,phi_2,... and every other a place, increasing, with the shapes there",
+            )
+        })
+    }
+
+    /// The table of a text, with at most `most` shapes.
+    ///
+    /// # Errors
+    /// A header other than `x,phi_1,phi_2,...`, numbers that are missing or not finite, places that
+    /// do not increase or leave a gap, too few or too many rows, shapes that are not independent.
+    pub fn parse(file: &str, text: &str, most: usize) -> Result<Self, TableFault> {
+        let content = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut lines = (1..).zip(content.lines());
+        let header = lines.next().map_or("", |(_, line)| line);
+        let count = modes(header, most)?;
+        let mut table = Self {
+            file: file.to_owned(),
+            sha256: sha256(text),
+            positions: Vec::new(),
+            shapes: vec![Vec::new(); count],
+        };
+        for (number, line) in lines {
+            // A last line may end in nothing but its end.
+            if !line.trim().is_empty() || content.lines().count() > number {
+                table.row(number, line)?;
+            }
+        }
+        table.check()?;
+        Ok(table)
+    }
+
+    fn row(&mut self, line: usize, text: &str) -> Result<(), TableFault> {
+        if self.positions.len() == MAX_ROWS {
+            let message = format!("more than {MAX_ROWS} rows");
+            return Err(TableFault::new(line, 1, message));
+        }
+        let expected = 1 + self.shapes.len();
+        let cells = cells(text);
+        if cells.len() != expected {
+            let message = format!("{} numbers where the header has {expected}", cells.len());
+            return Err(TableFault::new(line, 1, message));
+        }
+        for (index, (column, cell)) in cells.into_iter().enumerate() {
+            let number = cell.parse().ok().filter(|value: &f64| value.is_finite());
+            let number = number.ok_or_else(|| {
+                let message = match cell {
+                    "" => "a number is missing".to_owned(),
+                    cell => format!("`{}` is no finite number", shortened(cell)),
+                };
+                TableFault::new(line, column, message)
+            })?;
+            match index {
+                0 => self.place(line, column, number)?,
+                mode => self.shapes[mode - 1].push(number),
+            }
+        }
+        Ok(())
+    }
+
+    fn place(&mut self, line: usize, column: usize, x: f64) -> Result<(), TableFault> {
+        if let Some(last) = self.positions.last()
+            && x <= *last
+        {
+            let message = format!("x = {x} does not lie beyond the {last} before it");
+            return Err(TableFault::new(line, column, message));
+        }
+        self.positions.push(x);
+        Ok(())
+    }
+
+    /// What only the whole table shows.
+    fn check(&self) -> Result<(), TableFault> {
+        let (rows, modes) = (self.positions.len(), self.shapes.len());
+        let least = MIN_ROWS.max(2 * modes + 2);
+        if rows < least {
+            let message = format!("{rows} rows: {modes} shapes need at least {least}");
+            return Err(TableFault::new(rows + 1, 1, message));
+        }
+        self.gaps()?;
+        if let Some(mode) = dependent(&self.shapes) {
+            let message = format!(
+                "phi_{} is a combination of the shapes before it, or zero",
+                mode + 1
+            );
+            return Err(TableFault::new(1, 1, message));
+        }
+        Ok(())
+    }
+
+    fn gaps(&self) -> Result<(), TableFault> {
+        let steps: Vec<f64> = self
+            .positions
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .collect();
+        for (index, step) in steps.iter().enumerate() {
+            let before = index.checked_sub(1).and_then(|index| steps.get(index));
+            let beside = [before, steps.get(index + 1)].into_iter().flatten();
+            let longest = beside.fold(0.0, |longest: f64, step| longest.max(*step));
+            if *step > GAP * longest {
+                let (from, to) = (self.positions[index], self.positions[index + 1]);
+                let message = format!(
+                    "a gap from x = {from} to {to}, more than {GAP} times the steps beside it"
+                );
+                return Err(TableFault::new(index + 3, 1, message));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the places span the field's domain.
+    ///
+    /// # Errors
+    /// The end that lies elsewhere.
+    pub fn spans(&self, from: f64, to: f64) -> Result<(), TableFault> {
+        let last = self.positions.len() - 1;
+        for (index, end, name) in [(0, from, "from"), (last, to, "to")] {
+            let x = self.positions[index];
+            let there = (x - end).abs() <= ENDS * (to - from).abs();
+            if !there {
+                let message = format!("x = {x} at this end, where the field has {name} = {end} m");
+                return Err(TableFault::new(index + 2, 1, message));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What is wrong with a table, and where in its file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableFault {
+    /// The line, from 1.
+    pub line: usize,
+    /// The character in it, from 1.
+    pub column: usize,
+    /// What is wrong.
+    pub message: String,
+}
+
+impl TableFault {
+    fn new(line: usize, column: usize, message: impl Into<String>) -> Self {
+        Self {
+            line,
+            column,
+            message: message.into(),
+        }
+    }
+}
+
+/// How many shapes a header names.
+fn modes(header: &str, most: usize) -> Result<usize, TableFault> {
+    let cells = cells(header);
+    if cells.len() < 2 {
+        let message = "no header x,phi_1,phi_2,... with at least one shape";
+        return Err(TableFault::new(1, 1, message));
+    }
+    for (index, (column, name)) in cells.iter().enumerate() {
+        let expected = match index {
+            0 => "x".to_owned(),
+            mode => format!("phi_{mode}"),
+        };
+        if *name != expected {
+            let message = format!(
+                "the column `{}` where {expected} is expected",
+                shortened(name)
+            );
+            return Err(TableFault::new(1, *column, message));
+        }
+    }
+    let modes = cells.len() - 1;
+    if modes > most {
+        let message = format!("{modes} shapes: the highest order is {most}");
+        return Err(TableFault::new(1, 1, message));
+    }
+    Ok(modes)
+}
+
+/// The cells of a line without their blanks, each with its place in it.
+fn cells(line: &str) -> Vec<(usize, &str)> {
+    let mut column = 1;
+    line.split(',')
+        .take(MAX_CELLS)
+        .map(|cell| {
+            let blanks = cell.chars().take_while(|c| c.is_whitespace()).count();
+            let place = column + blanks;
+            column += cell.chars().count() + 1;
+            (place, cell.trim())
+        })
+        .collect()
+}
+
+fn shortened(cell: &str) -> String {
+    match cell.char_indices().nth(40) {
+        Some((end, _)) => format!("{}...", &cell[..end]),
+        None => cell.to_owned(),
+    }
+}
+
+/// The first shape of which nothing is left when those before it are taken off, by the modified
+/// process of Gram and Schmidt, done twice.
+fn dependent(shapes: &[Vec<f64>]) -> Option<usize> {
+    let norm = |shape: &[f64]| shape.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let mut directions: Vec<Vec<f64>> = Vec::new();
+    for (mode, shape) in shapes.iter().enumerate() {
+        // Sizes whose squares overflow or vanish are sizes as well.
+        let size = shape.iter().fold(0.0, |size: f64, v| size.max(v.abs()));
+        let mut rest: Vec<f64> = shape.iter().map(|v| v / size).collect();
+        let before = norm(&rest);
+        for direction in directions.iter().chain(&directions) {
+            let part: f64 = rest.iter().zip(direction).map(|(a, b)| a * b).sum();
+            for (value, other) in rest.iter_mut().zip(direction) {
+                *value -= part * other;
+            }
+        }
+        let left = norm(&rest);
+        // Of a shape that is zero everywhere this is not a number.
+        let is_another = left > INDEPENDENT * before;
+        if !is_another {
+            return Some(mode);
+        }
+        rest.iter_mut().for_each(|value| *value /= left);
+        directions.push(rest);
+    }
+    None
+}
