@@ -19,6 +19,8 @@ pub struct Document {
     pub coordinates: Vec<RawCoordinate>,
     /// `[inputs]`
     pub inputs: Vec<RawInput>,
+    /// `[states]`
+    pub states: Vec<RawState>,
     /// `[fields.NAME]`
     pub fields: Vec<RawField>,
     /// `[definitions]`
@@ -128,6 +130,21 @@ pub struct RawInput {
     pub doc: String,
     /// `range`
     pub range: Option<RawRange>,
+}
+
+/// An entry of `[states]`.
+#[derive(Debug)]
+pub struct RawState {
+    /// Its key.
+    pub name: Name,
+    /// `unit`
+    pub unit: Option<Written>,
+    /// `rate`
+    pub rate: Quantity,
+    /// `initial`
+    pub initial: Option<Quantity>,
+    /// `doc`
+    pub doc: String,
 }
 
 /// A `[fields.NAME]`.
