@@ -126,6 +126,44 @@ fn states_of_first_order_stand_last_in_the_state() {
     );
 }
 
+/// A thousand states, each with the rate of the one before it.
+#[test]
+fn rates_of_rates_are_written_out_to_a_limit_and_quickly() {
+    let chain = |count: usize| {
+        let states = (1..count).map(|k| {
+            let before = k - 1;
+            format!("z_{k} = {{ unit = \"N\", rate = \"dot(d_{before})\" }}\n")
+        });
+        let definitions = (0..count).map(|k| format!("d_{k} = \"2*z_{k}\"\n"));
+        let first = "z_0 = { unit = \"N\", rate = \"u*m/(m*s)\" }\n";
+        ACTUATED
+            .replace("lag = ", "other = ")
+            .replace(
+                "tau = { value",
+                "l = { value = 1, unit = \"m\" }\ns = { value = 1, unit = \"s\" }\ntau = { value",
+            )
+            .replace(
+                "[definitions]\n",
+                &format!("[definitions]\n{}", definitions.collect::<String>()),
+            )
+            .replace(
+                "[states]\n",
+                &format!("[states]\n{first}{}", states.collect::<String>()),
+            )
+    };
+    let begun = std::time::Instant::now();
+    checked(&chain(50));
+    let shown = refused(&chain(1000));
+    assert!(shown.contains("deep"), "{shown}");
+    let circle = chain(1000).replace("\"u*m/(m*s)\"", "\"dot(d_999)\"");
+    let shown = refused(&circle);
+    assert!(
+        shown.contains("the rate of the state `z_0` refers to itself"),
+        "{shown}"
+    );
+    assert!(begun.elapsed().as_secs() < 3, "{:?}", begun.elapsed());
+}
+
 #[test]
 fn values_are_in_si_and_follow_what_they_refer_to() {
     let model = checked(BEAM).model;
