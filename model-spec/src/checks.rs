@@ -28,11 +28,12 @@ pub fn check_sensors(model: &Model, found: &mut Diagnostics) {
             .map(|coordinate| coordinate.name.clone()),
     );
     channels.extend(rates);
+    channels.extend(model.states.iter().map(|state| state.name.clone()));
     for sensor in &model.sensors {
         if !channels.contains(&sensor.channel) {
             let message = format!("no quantity {} to be measured", quoted(&sensor.channel));
             let near = did_you_mean(&sensor.channel, channels.iter().map(String::as_str));
-            let rule = "a channel is an observable, a coordinate or a rate (NAME_dot)";
+            let rule = "a channel is an observable, a coordinate, a rate (NAME_dot) or a state";
             found.push(
                 Diagnostic::error(message)
                     .at(sensor.span, "not a channel of this model")
@@ -149,6 +150,10 @@ fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
     for coordinate in &model.coordinates {
         let initial = coordinate.initial.iter();
         initial.chain(&coordinate.initial_rate).for_each(&mut *see);
+    }
+    for state in &model.states {
+        see(&state.rate);
+        state.initial.iter().for_each(&mut *see);
     }
     let coordinates = model.coordinates.iter().map(|c| &c.range);
     let inputs = model.inputs.iter().map(|input| &input.range);

@@ -7,7 +7,7 @@ use toml_edit::Document as Toml;
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::entries::{
     coefficient, coordinate, field, force, input, line, name_of, observable, parameter, point,
-    sensor, term,
+    sensor, state, term,
 };
 use crate::keys;
 use crate::raw::{Document, RawDrawing};
@@ -61,6 +61,7 @@ impl<'d> Reader<'d> {
             parameters: self.collect("parameters", parameter),
             coordinates: self.collect("coordinates", coordinate),
             inputs: self.collect("inputs", input),
+            states: self.collect("states", state),
             fields: self.collect("fields", field),
             definitions: self.collect("definitions", term),
             kinetic: self.collect("kinetic", term),

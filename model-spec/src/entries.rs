@@ -6,13 +6,14 @@ use crate::keys;
 use crate::model::Basis;
 use crate::raw::{
     RawBasis, RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawInput, RawLine,
-    RawParameter, RawPoint, RawRange, RawSensor, RawTerm,
+    RawParameter, RawPoint, RawRange, RawSensor, RawState, RawTerm,
 };
 use crate::suggest::did_you_mean;
 use crate::table::{Entry, Name, Quantity, Record, Written, unknown_key};
 
 const PARAMETER_EXAMPLE: &str = "{ value = 0.5, unit = \"m\" }";
 const COORDINATE_EXAMPLE: &str = "{ unit = \"rad\", initial = 0 }";
+const STATE_EXAMPLE: &str = "{ unit = \"N\", rate = \"(k*x - z)/tau\", initial = 0 }";
 const FORCE_EXAMPLE: &str = "{ on = \"theta\", value = \"-c*dot(theta)\" }";
 const FIELD_EXAMPLE: &str = "{ along = \"x\", from = 0, to = \"l\", basis = \"clamped_free\", \
                              coordinates = \"q\", order = 4, unit = \"m\" }";
@@ -76,6 +77,21 @@ pub fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
         unit: required_unit(&record, found),
         doc: record.text("doc", found),
         range: range(&record, found),
+    })
+}
+
+/// An entry of `[states]`.
+pub fn state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
+    let record = entry.record(&keys::STATE, STATE_EXAMPLE, found)?;
+    let unit = required_unit(&record, found);
+    let help = "give its derivative by the time: rate = \"(k*x - z)/tau\"";
+    let rate = record.require("rate", help, found)?.quantity();
+    Some(RawState {
+        name: entry.name.clone(),
+        unit,
+        rate: found.keep(rate)?,
+        initial: record.quantity("initial", found),
+        doc: record.text("doc", found),
     })
 }
 

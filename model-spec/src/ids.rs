@@ -74,6 +74,8 @@ ids! {
     CoordinateId;
     /// One of [`Model::inputs`](crate::model::Model::inputs).
     InputId;
+    /// One of [`Model::states`](crate::model::Model::states).
+    StateId;
     /// One of [`Model::fields`](crate::model::Model::fields).
     FieldId;
     /// One of [`Model::observables`](crate::model::Model::observables).

@@ -15,7 +15,7 @@ pub type Inferred = Option<Dimension>;
 
 /// What is known of units so far.
 pub struct Inference<'m> {
-    /// Declares the units of parameters, coordinates, inputs and fields.
+    /// Declares the units of parameters, coordinates, inputs, states and fields.
     pub model: &'m Model,
     /// The units of definitions; those that are referred to are filled in first.
     pub definitions: Vec<Dimension>,
@@ -62,6 +62,7 @@ impl Inference<'_> {
             ExprKind::Parameter(index) => Ok(Some(model.parameters[*index].unit.dimension)),
             ExprKind::Coordinate(index) => Ok(Some(model.coordinates[*index].unit.dimension)),
             ExprKind::Input(index) => Ok(Some(model.inputs[*index].unit.dimension)),
+            ExprKind::State(index) => Ok(Some(model.states[*index].unit.dimension)),
             ExprKind::Definition(index) => Ok(Some(self.definitions[*index])),
             ExprKind::Coefficient(index) => Ok(self.coefficients.get(index.index()).copied()),
             ExprKind::Field(field) | ExprKind::ModeCoordinate(field) => {

@@ -11,6 +11,8 @@ pub const PARAMETER: [&str; 6] = ["value", "unit", "doc", "source", "min", "max"
 pub const COORDINATE: [&str; 5] = ["unit", "doc", "initial", "initial_rate", "range"];
 /// Keys of an entry of `[inputs]`.
 pub const INPUT: [&str; 3] = ["unit", "doc", "range"];
+/// Keys of an entry of `[states]`.
+pub const STATE: [&str; 4] = ["unit", "rate", "initial", "doc"];
 /// Keys of a `[fields.NAME]`.
 pub const FIELD: [&str; 9] = [
     "along",
@@ -40,11 +42,12 @@ pub const DRAWING: [&str; 2] = ["points", "lines"];
 pub const POINT: [&str; 2] = ["x", "y"];
 
 /// The sections, each with the keys of its entries; of `[model]` and `[drawing]` their own.
-pub const SECTIONS: [(&str, &[&str]); 14] = [
+pub const SECTIONS: [(&str, &[&str]); 15] = [
     ("model", &MODEL),
     ("parameters", &PARAMETER),
     ("coordinates", &COORDINATE),
     ("inputs", &INPUT),
+    ("states", &STATE),
     ("fields", &FIELD),
     ("definitions", &TERM),
     ("kinetic", &TERM),

@@ -3,13 +3,15 @@
 //!
 //! All numbers are in coherent SI units. The state of a model of order S is the
 //! coordinates in the order of the specification, then each field's S modes, then the
-//! rates of all these in the same order.
+//! rates of all these in the same order, then the states of first order in the order of the
+//! specification.
 
 use std::sync::Arc;
 
 use crate::ast::BinaryOperator;
 use crate::ids::{
-    CoefficientId, CoordinateId, DefinitionId, FieldId, InputId, ObservableId, ParameterId, PointId,
+    CoefficientId, CoordinateId, DefinitionId, FieldId, InputId, ObservableId, ParameterId,
+    PointId, StateId,
 };
 use crate::shape_table::ShapeTable;
 use crate::source::Source;
@@ -34,6 +36,8 @@ pub struct Model {
     pub coordinates: Vec<Coordinate>,
     /// Signals supplied at run time.
     pub inputs: Vec<Input>,
+    /// States of first order, whose rates the specification gives.
+    pub states: Vec<State>,
     /// Flexible fields.
     pub fields: Vec<Field>,
     /// Named expressions; a definition refers only to definitions before it in
@@ -177,6 +181,25 @@ pub struct Input {
     pub doc: String,
     /// Where it lives, if the specification says so.
     pub range: Option<Range>,
+    /// Where its name stands.
+    pub span: Span,
+}
+
+/// A state of first order z, with dz/dt = `rate`: a filter, an actuator, a current.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// ASCII name.
+    pub name: String,
+    /// Its unit (coherent SI).
+    pub unit: Unit,
+    /// What it is.
+    pub doc: String,
+    /// Its rate, in its unit per s: an expression of coordinates, rates, states, inputs,
+    /// parameters and time. The rates of states that it holds, in definitions too, lead to no
+    /// circle.
+    pub rate: Expr,
+    /// Initial value (parameters only), 0 if absent.
+    pub initial: Option<Expr>,
     /// Where its name stands.
     pub span: Span,
 }
@@ -397,6 +420,7 @@ impl Expr {
             | ExprKind::Parameter(_)
             | ExprKind::Coordinate(_)
             | ExprKind::Input(_)
+            | ExprKind::State(_)
             | ExprKind::Definition(_)
             | ExprKind::Coefficient(_)
             | ExprKind::Field(_)
@@ -443,6 +467,8 @@ pub enum ExprKind {
     Coordinate(CoordinateId),
     /// An input.
     Input(InputId),
+    /// A state of first order.
+    State(StateId),
     /// A definition.
     Definition(DefinitionId),
     /// An earlier entry of [`Model::coefficients`], inside coefficients only.
@@ -454,7 +480,7 @@ pub enum ExprKind {
     ModeCoordinate(FieldId),
     /// A field's mode shape `phi[i]`, a function of the position, i as above.
     ModeShape(FieldId),
-    /// The time derivative of a coordinate, definition, field or mode coordinate.
+    /// The time derivative of a coordinate, definition, field, mode coordinate or state.
     Dot(Box<Expr>),
     /// The derivative of an expression in the field (`w`, `dot(w)` or `phi[i]`) by the
     /// position, this many times (1 to 4).

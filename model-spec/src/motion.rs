@@ -1,12 +1,13 @@
-//! Which coordinates, rates and inputs each expression depends on, through definitions too,
-//! and what of that is allowed where: energies hold no inputs, potentials no rates, a force
+//! Which coordinates, rates, states and inputs each expression depends on, through definitions too,
+//! and what of that is allowed where: energies hold no inputs and no states, potentials no rates, a force
 //! works on something that moves, and every coordinate has inertia.
 
 use std::collections::BTreeSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::ids::{CoordinateId, FieldId};
+use crate::ids::{CoordinateId, FieldId, StateId};
 use crate::model::{Expr, ExprKind, Model, Term};
+use crate::rate_order::{WrittenOut, rate_order};
 use crate::span::Span;
 
 /// The deepest expression accepted once definitions are written out.
@@ -28,6 +29,10 @@ struct Motion {
     rates: BTreeSet<Moving>,
     /// Where a rate enters, if one does.
     rate: Option<Span>,
+    /// The states that enter by their values.
+    states: BTreeSet<StateId>,
+    /// Where a state, or the rate of one, enters, if one does.
+    state: Option<Span>,
     /// Where an input enters, if one does.
     input: Option<Span>,
     /// Whether time enters.
@@ -40,12 +45,21 @@ struct Motion {
 pub fn check(model: &Model, found: &mut Diagnostics) {
     let mut checker = Checker {
         definitions: vec![Motion::default(); model.definitions.len()],
+        state_rates: vec![0; model.states.len()],
         model,
         found,
     };
-    for &index in &model.definition_order {
-        let definition = &model.definitions[index];
-        checker.definitions[index] = checker.motion(&definition.value);
+    // Names lead to no circle here: those that do are refused where they are looked up.
+    for written in rate_order(model).unwrap_or_default() {
+        match written {
+            WrittenOut::Definition(index) => {
+                checker.definitions[index] = checker.motion(&model.definitions[index].value);
+            }
+            WrittenOut::Rate(index) => {
+                checker.state_rates[index] = checker.motion(&model.states[index].rate).depth;
+            }
+            WrittenOut::RatesWithin(_) => {}
+        }
     }
     checker.energies();
     checker.forces();
@@ -57,6 +71,8 @@ pub fn check(model: &Model, found: &mut Diagnostics) {
 struct Checker<'m, 'f> {
     model: &'m Model,
     definitions: Vec<Motion>,
+    /// How deep the rates of the states are, definitions written out.
+    state_rates: Vec<usize>,
     found: &'f mut Diagnostics,
 }
 
@@ -66,12 +82,12 @@ impl Checker<'_, '_> {
         let mut inertial = BTreeSet::new();
         for term in &model.kinetic {
             let motion = self.motion(&term.value);
-            self.refuse_input(term, &motion, "the kinetic energy");
+            self.refuse_driven(term, &motion, "the kinetic energy");
             inertial.extend(motion.rates);
         }
         for term in &model.potential {
             let motion = self.motion(&term.value);
-            self.refuse_input(term, &motion, "the potential energy");
+            self.refuse_driven(term, &motion, "the potential energy");
             if let Some(place) = motion.rate {
                 self.found.push(
                     Diagnostic::error(format!("the potential energy `{}` holds a rate", term.name))
@@ -82,19 +98,27 @@ impl Checker<'_, '_> {
         }
         for term in &model.dissipation {
             let motion = self.motion(&term.value);
-            self.refuse_input(term, &motion, "the dissipation");
+            self.refuse_driven(term, &motion, "the dissipation");
         }
         if self.found.is_empty() {
             self.refuse_massless(&inertial);
         }
     }
 
-    fn refuse_input(&mut self, term: &Term, motion: &Motion, what: &str) {
+    /// An energy is one of the mechanism alone.
+    fn refuse_driven(&mut self, term: &Term, motion: &Motion, what: &str) {
         if let Some(place) = motion.input {
             self.found.push(
                 Diagnostic::error(format!("{what} `{}` holds an input", term.name))
                     .at(place, "this is an input")
                     .help("inputs act through [forces]"),
+            );
+        }
+        if let Some(place) = motion.state {
+            self.found.push(
+                Diagnostic::error(format!("{what} `{}` holds a state", term.name))
+                    .at(place, "this is a state")
+                    .help("states act through [forces]"),
             );
         }
     }
@@ -129,6 +153,8 @@ impl Checker<'_, '_> {
                 Some((place, "this is a rate"))
             } else if let Some(place) = on.input {
                 Some((place, "this is an input"))
+            } else if let Some(place) = on.state {
+                Some((place, "this is a state"))
             } else if on.values.is_empty() {
                 Some((force.on.span, "this does not move"))
             } else {
@@ -165,6 +191,10 @@ impl Checker<'_, '_> {
         match &expr.kind {
             ExprKind::Time => motion.time = true,
             ExprKind::Input(_) => motion.input = motion.input.or(Some(expr.span)),
+            ExprKind::State(index) => {
+                motion.states.insert(*index);
+                motion.state = motion.state.or(Some(expr.span));
+            }
             ExprKind::Coordinate(index) => {
                 motion.values.insert(Moving::Coordinate(*index));
             }
@@ -205,11 +235,15 @@ impl Checker<'_, '_> {
         if let Some(diagnostic) = rate_error(operand.span, &inner) {
             self.found.push(diagnostic);
         }
+        motion.state = motion.state.or(inner.state.map(|_| operand.span));
+        let deepest = inner.states.iter().map(|state| self.state_rates[*state]);
+        motion.depth = motion.depth.max(depth + 1 + deepest.max().unwrap_or(0));
         motion.rate = motion.rate.or(Some(operand.span));
         motion.rates.extend(inner.values.iter().copied());
         // The rate of a definition, or of a field's function, depends on the coordinates too.
         if matches!(operand.kind, ExprKind::Definition(_) | ExprKind::At { .. }) {
             motion.values.extend(inner.values);
+            motion.states.extend(inner.states);
         }
         motion.time |= inner.time;
         motion.depth = motion.depth.max(inner.depth);
@@ -221,6 +255,8 @@ impl Motion {
     fn include(&mut self, known: &Self, span: Span, depth: usize) {
         self.values.extend(known.values.iter().copied());
         self.rates.extend(known.rates.iter().copied());
+        self.states.extend(known.states.iter().copied());
+        self.state = self.state.or(known.state.map(|_| span));
         self.rate = self.rate.or(known.rate.map(|_| span));
         self.input = self.input.or(known.input.map(|_| span));
         self.time |= known.time;
@@ -241,7 +277,7 @@ fn rate_error(span: Span, inner: &Motion) -> Option<Diagnostic> {
             .help("if the rate is measured, declare it as an input of its own");
         return Some(diagnostic);
     }
-    if inner.values.is_empty() && !inner.time {
+    if inner.values.is_empty() && inner.states.is_empty() && !inner.time {
         let diagnostic = Diagnostic::error("dot() of something that has no rate")
             .at(span, "this holds no coordinate")
             .help("dot() takes a coordinate, a definition that holds one, or a field");

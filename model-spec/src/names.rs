@@ -5,7 +5,9 @@ use std::collections::{HashMap, HashSet};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::functions::reserved;
-use crate::ids::{CoefficientId, CoordinateId, DefinitionId, FieldId, InputId, ParameterId};
+use crate::ids::{
+    CoefficientId, CoordinateId, DefinitionId, FieldId, InputId, ParameterId, StateId,
+};
 use crate::raw::Document;
 use crate::span::Span;
 use crate::table::Name;
@@ -22,6 +24,8 @@ pub enum Symbol {
     Coordinate(CoordinateId),
     /// An input.
     Input(InputId),
+    /// A state of first order.
+    State(StateId),
     /// A field.
     Field(FieldId),
     /// The mode coordinates of a field.
@@ -41,6 +45,7 @@ impl Symbol {
             Self::Parameter(_) => "a parameter",
             Self::Coordinate(_) => "a coordinate",
             Self::Input(_) => "an input",
+            Self::State(_) => "a state",
             Self::Field(_) => "a field",
             Self::Modes(_) => "a field's mode coordinates",
             Self::Position => "a field's position",
@@ -131,6 +136,9 @@ impl Names {
         }
         for (index, input) in document.inputs.iter().enumerate() {
             self.add(&input.name, Symbol::Input(InputId::new(index)), found);
+        }
+        for (index, state) in document.states.iter().enumerate() {
+            self.add(&state.name, Symbol::State(StateId::new(index)), found);
         }
     }
 
@@ -234,7 +242,11 @@ impl Names {
             Some(stem) => (stem, "the rate of"),
             None => (name, "a mode of"),
         };
-        if what == "the rate of" && matches!(self.get(stem), Some(Symbol::Coordinate(_))) {
+        let has_rate = matches!(
+            self.get(stem),
+            Some(Symbol::Coordinate(_) | Symbol::State(_))
+        );
+        if what == "the rate of" && has_rate {
             return Some(format!("{what} `{stem}`"));
         }
         let (modes, number) = stem.rsplit_once('_')?;

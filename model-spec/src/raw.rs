@@ -19,6 +19,8 @@ pub struct Document {
     pub coordinates: Vec<RawCoordinate>,
     /// `[inputs]`
     pub inputs: Vec<RawInput>,
+    /// `[states]`
+    pub states: Vec<RawState>,
     /// `[fields.NAME]`
     pub fields: Vec<RawField>,
     /// `[definitions]`
@@ -137,6 +139,21 @@ pub enum RawBasis {
     Named(Basis),
     /// Those of the file `table`.
     Table(Written),
+}
+
+/// An entry of `[states]`.
+#[derive(Debug)]
+pub struct RawState {
+    /// Its key.
+    pub name: Name,
+    /// `unit`
+    pub unit: Option<Written>,
+    /// `rate`
+    pub rate: Quantity,
+    /// `initial`
+    pub initial: Option<Quantity>,
+    /// `doc`
+    pub doc: String,
 }
 
 /// A `[fields.NAME]`.

@@ -25,6 +25,7 @@ pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
     units.inputs();
     units.fields();
     if units.definitions() {
+        units.states();
         units.energies();
         units.forces();
         units.coefficients();
@@ -75,6 +76,21 @@ impl Units<'_, '_> {
     fn inputs(&mut self) {
         for input in &self.model.inputs {
             self.range(input.range.as_ref(), input.unit.dimension, &input.name);
+        }
+    }
+
+    fn states(&mut self) {
+        for state in &self.model.states {
+            let own = state.unit.dimension;
+            if let Some(expr) = &state.initial {
+                let subject = format!("the initial value of `{}`", state.name);
+                self.expect_quantity(expr, own, &subject);
+            }
+            if let Some(rate) = own.over(Dimension::TIME) {
+                let subject = format!("the rate of `{}`", state.name);
+                let because = format!("expected {}: {} per s", Words(rate), state.unit);
+                self.expect(&state.rate, rate, &subject, &because);
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 
 use crate::diagnostic::Diagnostic;
 use crate::evaluate::evaluate;
-use crate::model::{MAX_ORDER, Model, Parameter, ParameterValue, Range};
+use crate::model::{Expr, MAX_ORDER, Model, Parameter, ParameterValue, Range};
 use crate::source::sha256;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
@@ -100,7 +100,7 @@ impl Model {
     }
 
     /// The initial state in SI at these orders: values of coordinates, modes (0), then
-    /// their rates.
+    /// their rates, then the states of first order.
     ///
     /// # Errors
     /// As [`Model::parameter_values`], and initial values that are not finite.
@@ -108,19 +108,16 @@ impl Model {
         let parameters = self.parameter_values()?;
         let modes: usize = orders.iter().sum();
         let half = self.coordinates.len() + modes;
-        let mut state = vec![0.0; 2 * half];
+        let mut state = vec![0.0; 2 * half + self.states.len()];
         for (index, coordinate) in self.coordinates.iter().enumerate() {
             let given = [&coordinate.initial, &coordinate.initial_rate];
             for (expr, place) in given.into_iter().zip([index, half + index]) {
-                let Some(expr) = expr else { continue };
-                let value = evaluate(expr, &parameters);
-                if !value.is_finite() {
-                    let name = &coordinate.name;
-                    let message = format!("the initial value of `{name}` comes out as {value}");
-                    return Err(ModelError::new(message).at(expr.span));
-                }
-                state[place] = value;
+                state[place] = initial_value(&coordinate.name, expr.as_ref(), &parameters)?;
             }
+        }
+        for (first_order, place) in self.states.iter().zip(2 * half..) {
+            let expr = first_order.initial.as_ref();
+            state[place] = initial_value(&first_order.name, expr, &parameters)?;
         }
         Ok(state)
     }
@@ -196,6 +193,9 @@ impl Model {
         if self.coordinates.iter().any(|known| known.name == name) {
             return format!("`{name}` is a coordinate: its `initial` says where it begins");
         }
+        if self.states.iter().any(|known| known.name == name) {
+            return format!("`{name}` is a state: its `initial` says where it begins");
+        }
         let alike: Vec<&str> = known().filter(|known| share_a_part(name, known)).collect();
         let (intro, names) = match alike.len() {
             0 => ("the parameters are", known().collect()),
@@ -246,7 +246,7 @@ impl Model {
     }
 
     /// The names of the states at these orders: coordinates, modes `q_1 ..`, then the
-    /// rates `NAME_dot` in the same order.
+    /// rates `NAME_dot` in the same order, then the states of first order.
     pub fn state_names(&self, orders: &[usize]) -> Vec<String> {
         let mut names: Vec<String> = self.coordinates.iter().map(|c| c.name.clone()).collect();
         for (field, order) in self.fields.iter().zip(orders) {
@@ -254,6 +254,7 @@ impl Model {
         }
         let rates: Vec<String> = names.iter().map(|name| format!("{name}_dot")).collect();
         names.extend(rates);
+        names.extend(self.states.iter().map(|state| state.name.clone()));
         names
     }
 
@@ -293,6 +294,19 @@ impl Range {
         let end = |expr| evaluate(expr, parameters);
         (end(&self.low), end(&self.high))
     }
+}
+
+/// An initial value in SI: 0 where none is given.
+fn initial_value(name: &str, expr: Option<&Expr>, parameters: &[f64]) -> Result<f64, ModelError> {
+    let Some(expr) = expr else {
+        return Ok(0.0);
+    };
+    let value = evaluate(expr, parameters);
+    if value.is_finite() {
+        return Ok(value);
+    }
+    let message = format!("the initial value of `{name}` comes out as {value}");
+    Err(ModelError::new(message).at(expr.span))
 }
 
 /// Whether a range is one: finite, the lower end below the upper one.

@@ -77,6 +77,93 @@ fn value(model: &Model, name: &str) -> f64 {
     model.parameter_values().expect("finite")[index.expect(name)]
 }
 
+const ACTUATED: &str = r#"[model]
+name = "actuated"
+[parameters]
+m = { value = 2, unit = "kg" }
+k = { value = 50, unit = "N/m" }
+tau = { value = 20, unit = "ms" }
+[coordinates]
+x = { unit = "m", initial_rate = 3 }
+[inputs]
+u = { unit = "N" }
+[states]
+lag = { unit = "N s", rate = "abs(z) - dot(z)*tau", initial = 0.25 }
+z = { unit = "N", rate = "(command - max(z, 0))/tau", initial = "k*l" }
+[definitions]
+command = "u + k*x - m*dot(x)/tau"
+both = "z + k*x"
+[kinetic]
+mass = "1/2*m*dot(x)^2"
+[forces]
+actuator = { on = "x", value = "z + tau*dot(both)" }
+[observables]
+slope = "dot(z)"
+[sensors.z]
+gain = 1.01
+"#;
+
+#[test]
+fn states_of_first_order_stand_last_in_the_state() {
+    let text = ACTUATED.replace(
+        "[coordinates]",
+        "l = { value = 30, unit = \"mm\" }\n[coordinates]",
+    );
+    let checked = checked(&text);
+    let model = &checked.model;
+    assert_eq!(model.state_names(&[]), ["x", "x_dot", "lag", "z"]);
+    assert_eq!(
+        model.initial_state(&[]).expect("numbers"),
+        [0.0, 3.0, 0.25, 1.5]
+    );
+    let unit = model.observables[ObservableId::new(0)].unit.to_string();
+    assert_eq!(model.observables[ObservableId::new(0)].name, "slope");
+    assert!(["N/s", "kg m/s^3"].contains(&unit.as_str()), "{unit}");
+    assert!(
+        checked.warnings.is_empty(),
+        "{}",
+        checked.warnings.render(false)
+    );
+}
+
+/// A thousand states, each with the rate of the one before it.
+#[test]
+fn rates_of_rates_are_written_out_to_a_limit_and_quickly() {
+    let chain = |count: usize| {
+        let states = (1..count).map(|k| {
+            let before = k - 1;
+            format!("z_{k} = {{ unit = \"N\", rate = \"dot(d_{before})\" }}\n")
+        });
+        let definitions = (0..count).map(|k| format!("d_{k} = \"2*z_{k}\"\n"));
+        let first = "z_0 = { unit = \"N\", rate = \"u*m/(m*s)\" }\n";
+        ACTUATED
+            .replace("lag = ", "other = ")
+            .replace(
+                "tau = { value",
+                "l = { value = 1, unit = \"m\" }\ns = { value = 1, unit = \"s\" }\ntau = { value",
+            )
+            .replace(
+                "[definitions]\n",
+                &format!("[definitions]\n{}", definitions.collect::<String>()),
+            )
+            .replace(
+                "[states]\n",
+                &format!("[states]\n{first}{}", states.collect::<String>()),
+            )
+    };
+    let begun = std::time::Instant::now();
+    checked(&chain(50));
+    let shown = refused(&chain(1000));
+    assert!(shown.contains("deep"), "{shown}");
+    let circle = chain(1000).replace("\"u*m/(m*s)\"", "\"dot(d_999)\"");
+    let shown = refused(&circle);
+    assert!(
+        shown.contains("the rate of the state `z_0` refers to itself"),
+        "{shown}"
+    );
+    assert!(begun.elapsed().as_secs() < 3, "{:?}", begun.elapsed());
+}
+
 #[test]
 fn values_are_in_si_and_follow_what_they_refer_to() {
     let model = checked(BEAM).model;

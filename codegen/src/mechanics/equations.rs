@@ -11,7 +11,7 @@ use crate::mechanics::lagrange::{GradientBy, Variables};
 use crate::mechanics::mass_matrix::{MassMatrix, ModalMassBlock};
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::{Accelerations, solve};
-use crate::mechanics::translate::{Derived, Translator};
+use crate::mechanics::translate::{DeriveError, Derived, Translator};
 use crate::symbolic::graph::{Graph, NodeId};
 
 /// The equations of motion of one model at one order.
@@ -57,6 +57,7 @@ pub struct Equations {
 
 /// Derives the equations of motion for fields of these orders.
 pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
+    refuse_states(model)?;
     let mut translator = Translator::new(model, orders);
     let derived_parameters = derived_parameters(&mut translator)?;
     let mut terms = Vec::new();
@@ -118,6 +119,21 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         inputs: model.inputs.len(),
         modal_blocks,
     })
+}
+
+/// Programs hold coordinates, modes and their rates: what else moves is checked and no more.
+fn refuse_states(model: &Model) -> Derived<()> {
+    match model.states.first() {
+        None => Ok(()),
+        Some(state) => Err(DeriveError {
+            span: state.span,
+            message: format!(
+                "equations with the state `{}` cannot be derived",
+                state.name
+            ),
+            help: Some("`eomgen check` reads [states]; equations are derived without them".into()),
+        }),
+    }
 }
 
 fn name_mass_matrix(graph: &mut Graph, model: &Model, mass: &MassMatrix) {

@@ -101,6 +101,7 @@ impl<'m> Translator<'m> {
             ExprKind::Parameter(index) => Ok(self.graph.intern(Operation::Parameter(*index))),
             ExprKind::Coordinate(index) => Ok(self.graph.intern(Operation::Coordinate(*index))),
             ExprKind::Input(index) => Ok(self.graph.intern(Operation::Input(*index))),
+            ExprKind::State(_) => Err(error(expr, "equations with a state cannot be derived")),
             ExprKind::Definition(index) => self.definition(*index),
             ExprKind::Coefficient(index) => match self.coefficients.get(index.index()) {
                 Some(&node) => Ok(node),

@@ -53,7 +53,8 @@ fn parts(model: &Model, expr: &Expr, into: &mut Parts) {
         | ExprKind::Field(_)
         | ExprKind::ModeCoordinate(_)
         | ExprKind::Time
-        | ExprKind::Input(_) => {
+        | ExprKind::Input(_)
+        | ExprKind::State(_) => {
             into.other = true;
         }
         _ => {}

@@ -251,7 +251,11 @@ fn bends(model: &Model, expr: &Expr) -> Option<bool> {
                 None => is_position = false,
             }
         }
-        ExprKind::Dot(_) | ExprKind::Time | ExprKind::Input(_) | ExprKind::Call(..) => {
+        ExprKind::Dot(_)
+        | ExprKind::Time
+        | ExprKind::Input(_)
+        | ExprKind::State(_)
+        | ExprKind::Call(..) => {
             is_position = false;
         }
         _ => {}

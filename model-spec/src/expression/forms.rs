@@ -51,6 +51,7 @@ impl Resolver<'_> {
         let span = operand.span;
         match resolved.kind {
             ExprKind::Coordinate(_)
+            | ExprKind::State(_)
             | ExprKind::Definition(_)
             | ExprKind::Field(_)
             | ExprKind::ModeCoordinate(_) => Ok(ExprKind::Dot(Box::new(resolved))),

@@ -109,6 +109,7 @@ impl<'n> Resolver<'n> {
             Symbol::Parameter(index) => Ok(ExprKind::Parameter(index)),
             Symbol::Coordinate(index) if motion => Ok(ExprKind::Coordinate(index)),
             Symbol::Input(index) if motion => Ok(ExprKind::Input(index)),
+            Symbol::State(index) if self.scope == Scope::Motion => Ok(ExprKind::State(index)),
             Symbol::Definition(index) if motion => Ok(ExprKind::Definition(index)),
             Symbol::Field(field) if motion => self.field(field, name, span),
             Symbol::Position if self.scope != Scope::Parameters => self.position(name, span),
@@ -170,6 +171,9 @@ impl<'n> Resolver<'n> {
 
     fn out_of_scope(&self, what: &str, kind: &str, span: Span) -> Diagnostic {
         let rule = match self.scope {
+            Scope::Factor if kind == "a state" => {
+                "coefficients are factors of accelerations, by coordinates, rates and inputs"
+            }
             Scope::Parameters => "this expression may hold parameters only",
             Scope::Coefficient(_) => "a coefficient holds parameters and earlier coefficients",
             Scope::Motion | Scope::Factor => "coefficients are names for results, not for input",

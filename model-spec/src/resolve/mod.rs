@@ -13,13 +13,14 @@ use crate::expression::{Resolver, Scope};
 use crate::ids::{DefinitionId, ParameterId};
 use crate::model::{
     Basis, Coordinate, Definition, Expr, ExprKind, Field, Force, Input, MAX_ORDER, Model,
-    Observable, Parameter, ParameterValue, Range, Sensor, Term,
+    Observable, Parameter, ParameterValue, Range, Sensor, State, Term,
 };
 use crate::names::Names;
 use crate::order::{Reference, order};
+use crate::rate_order::{WrittenOut, rate_order};
 use crate::raw::{
     Document, RawBasis, RawCoordinate, RawField, RawInput, RawParameter, RawRange, RawSensor,
-    RawTerm,
+    RawState, RawTerm,
 };
 use crate::shape_table::ShapeTable;
 use crate::source::Source;
@@ -70,6 +71,7 @@ impl Builder {
             source: source.clone(),
             coordinates: self.all(document.coordinates, Self::coordinate),
             inputs: self.all(document.inputs, Self::input),
+            states: self.all(document.states, Self::state),
             fields: self.all(document.fields, Self::field),
             kinetic: self.all(document.kinetic, Self::term),
             potential: self.all(document.potential, Self::term),
@@ -125,6 +127,25 @@ impl Builder {
             }
             Err(circle) => self.found.push(circular("definition", &circle, named)),
         }
+        // What refers to itself without any rate is said above.
+        if self.found.is_empty() && !model.states.is_empty() {
+            self.refuse_circular_rates(model);
+        }
+    }
+
+    fn refuse_circular_rates(&mut self, model: &Model) {
+        let Err(circle) = rate_order(model) else {
+            return;
+        };
+        let named = |index: usize| match circle[index].0 {
+            WrittenOut::Definition(id) | WrittenOut::RatesWithin(id) => {
+                model.definitions[id].name.as_str()
+            }
+            WrittenOut::Rate(id) => model.states[id].name.as_str(),
+        };
+        let places: Vec<Reference> = (0..circle.len()).map(|at| (at, circle[at].1)).collect();
+        let diagnostic = circular("rate of the state", &places, named);
+        self.found.push(diagnostic);
     }
 
     fn unit(&mut self, written: Option<Written>) -> Option<Unit> {
@@ -283,6 +304,23 @@ impl Builder {
         Some(Basis::Table {
             table: Arc::new(table),
             span: file.span,
+        })
+    }
+
+    fn state(&mut self, raw: RawState) -> Option<State> {
+        let unit = self.coherent_unit(raw.unit);
+        let rate = self.expression(&raw.rate, Scope::Motion);
+        let initial = match raw.initial {
+            Some(quantity) => self.expression(&quantity, Scope::Parameters).map(Some),
+            None => Some(None),
+        };
+        Some(State {
+            name: raw.name.text,
+            unit: unit?,
+            doc: raw.doc,
+            rate: rate?,
+            initial: initial?,
+            span: raw.name.span,
         })
     }
 

@@ -1,0 +1,106 @@
+//! In which order definitions and the rates of states can be written out, where `dot(z)` stands
+//! for the rate of the state z, and where they go round in a circle: a rate that holds itself is
+//! an equation to be solved, not a rate.
+
+use std::collections::BTreeMap;
+
+use crate::ids::{DefinitionId, StateId};
+use crate::model::{Expr, ExprKind, Model};
+use crate::order::{Reference, order};
+use crate::span::Span;
+
+/// What is written out where it is named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WrittenOut {
+    /// The value of a definition.
+    Definition(DefinitionId),
+    /// The rate of a state, for `dot(z)`.
+    Rate(StateId),
+    /// The rates of all states that a definition holds, for `dot` of that definition.
+    RatesWithin(DefinitionId),
+}
+
+/// Definitions and rates, each after those that it holds.
+///
+/// # Errors
+/// A circle, beginning with the rate of a state: each with the place that refers to the next.
+pub fn rate_order(model: &Model) -> Result<Vec<WrittenOut>, Vec<(WrittenOut, Span)>> {
+    let sizes = Sizes {
+        definitions: model.definitions.len(),
+        states: model.states.len(),
+    };
+    let held = |expr: &Expr| references(expr, sizes);
+    let values = model.definitions.iter().map(|known| held(&known.value));
+    let rates = model.states.iter().map(|state| held(&state.rate));
+    let within = model.definitions.iter().map(|known| {
+        let mut found = BTreeMap::new();
+        held_rates(&known.value, sizes, &mut found);
+        found.into_iter().collect()
+    });
+    let all: Vec<Vec<Reference>> = values.chain(rates).chain(within).collect();
+    match order(&all) {
+        Ok(sorted) => Ok(sorted.into_iter().map(|place| sizes.at(place)).collect()),
+        Err(circle) => {
+            let mut circle: Vec<_> = circle
+                .into_iter()
+                .map(|(place, span)| (sizes.at(place), span))
+                .collect();
+            let is_rate = |(known, _): &(WrittenOut, Span)| matches!(known, WrittenOut::Rate(_));
+            let first = circle.iter().position(is_rate).unwrap_or(0);
+            circle.rotate_left(first);
+            Err(circle)
+        }
+    }
+}
+
+/// Places in one list: values of definitions, rates of states, rates within definitions.
+#[derive(Clone, Copy)]
+struct Sizes {
+    definitions: usize,
+    states: usize,
+}
+
+impl Sizes {
+    fn rate(self, state: StateId) -> usize {
+        self.definitions + state.index()
+    }
+
+    fn within(self, definition: DefinitionId) -> usize {
+        self.definitions + self.states + definition.index()
+    }
+
+    fn at(self, place: usize) -> WrittenOut {
+        match place.checked_sub(self.definitions) {
+            None => WrittenOut::Definition(DefinitionId::new(place)),
+            Some(after) => match after.checked_sub(self.states) {
+                None => WrittenOut::Rate(StateId::new(after)),
+                Some(last) => WrittenOut::RatesWithin(DefinitionId::new(last)),
+            },
+        }
+    }
+}
+
+/// What an expression refers to, each once, by the first place that does.
+fn references(expr: &Expr, sizes: Sizes) -> Vec<Reference> {
+    let mut found = BTreeMap::new();
+    expr.visit(&mut |part| match &part.kind {
+        ExprKind::Definition(index) => {
+            found.entry(index.index()).or_insert(part.span);
+        }
+        ExprKind::Dot(operand) => held_rates(operand, sizes, &mut found),
+        _ => {}
+    });
+    found.into_iter().collect()
+}
+
+/// The rates of the states that an expression holds.
+fn held_rates(expr: &Expr, sizes: Sizes, found: &mut BTreeMap<usize, Span>) {
+    expr.visit(&mut |part| {
+        let place = match part.kind {
+            ExprKind::State(state) => sizes.rate(state),
+            ExprKind::Definition(definition) => sizes.within(definition),
+            _ => return,
+        };
+        found.entry(place).or_insert(part.span);
+    });
+}
