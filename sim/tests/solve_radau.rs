@@ -349,7 +349,7 @@ fn what_cannot_be_integrated_is_reported_where_it_is() {
 #[test]
 fn a_singular_matrix_of_the_iteration_is_got_around() {
     // y' = a y with a h just the real eigenvalue of the method in the first step.
-    let rate = 3.637_834_252_744_495_7 / 1e-6;
+    let rate = 3.637_834_252_744_496 / 1e-6;
     let system = stiff(
         1,
         move |_: f64, y: &[f64], out: &mut [f64]| out[0] = rate * y[0],
