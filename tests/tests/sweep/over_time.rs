@@ -111,7 +111,10 @@ fn they_are_those_of_the_rows_of_simulate() {
         assert!(right.abs() > 1e-6, "{name}: nothing moves");
     };
     near("max:tip", course("tip").fold(f64::MIN, f64::max));
-    near("final:x_sp_dot", course("x_sp_dot").next_back().expect("rows"));
+    near(
+        "final:x_sp_dot",
+        course("x_sp_dot").next_back().expect("rows"),
+    );
     let squares: Vec<f64> = course("tip").map(|x| x * x).collect();
     let ends = 0.5 * (squares[0] + squares[1000]);
     let rms = ((squares.iter().sum::<f64>() - ends) / 1000.0).sqrt();
