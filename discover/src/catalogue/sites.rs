@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use eomgen_model_spec::ast::BinaryOperator;
+use eomgen_model_spec::dimension::Dimension;
 use eomgen_model_spec::edit::Section;
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
 use eomgen_model_spec::model::{Expr, ExprKind, Function, Model, Term};
@@ -295,6 +296,10 @@ fn arms(model: &Model) -> Vec<Site> {
             .iter()
             .find_map(|term| factor_of_square(&term.value, &bent));
         let declared = &model.fields[field];
+        // Masses, springs and bending at an end are of a deflection: a shaft that twists has none.
+        if declared.unit.dimension != Dimension::LENGTH {
+            return None;
+        }
         let mut arguments: BTreeMap<&'static str, String> = [
             ("term", term.name.clone()),
             ("velocity", text(model, velocity)),

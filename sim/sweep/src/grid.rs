@@ -108,7 +108,7 @@ impl Axis {
         let is_log = self.spacing == Spacing::Log;
         if is_log && !((self.to / self.from).is_normal() && self.to / self.from > 0.0) {
             return Err(
-                "both ends of a logarithmic range are positive, or both negative".to_owned(),
+                "the ends of a logarithmic range are both positive, or both negative".to_owned(),
             );
         }
         Ok(())
@@ -252,7 +252,10 @@ mod tests {
         for (text, part) in [
             ("b", "no `=`"),
             ("b=1:2", "2 numbers"),
-            ("b=1:2:3:4", "4 numbers"),
+            ("b=1:2:3:4", "\"4\" is no spacing"),
+            ("b=1:2:3:log:5", "5 numbers"),
+            ("b=0:2:3:log", "both positive"),
+            ("b=-1:2:3:log", "both positive"),
             ("b=x:2:3", "\"x\" is no number"),
             ("b=0:1:2.5", "\"2.5\" is no whole number"),
             ("b=0:1:-3", "\"-3\" is no whole number"),
