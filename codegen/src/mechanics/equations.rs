@@ -131,7 +131,7 @@ fn refuse_states(model: &Model) -> Derived<()> {
                 "equations with the state `{}` cannot be derived",
                 state.name
             ),
-            help: Some("`eomgen check` reads [states]; equations are derived without them".into()),
+            help: Some("[states] are read and their rates checked, no more: leave them out".into()),
         }),
     }
 }
