@@ -32,12 +32,11 @@ fn one(options: &Generate, spec: &Path, out: &Path) -> Result {
     let orders = orders(&model, options.order.as_deref())?;
     let variant = Variant::derive_with(&model, &orders, &outputs).map_err(Error::Specification)?;
     let emitted = emission::files(&model, &variant, options)?;
-    let certificate = if options.certify {
+    let mut certificate = None;
+    if options.certify {
         let text = emission::source(&variant.program, Packaging::Crate)?;
-        Some(certify_source(&model, &orders, &outputs, text)?)
-    } else {
-        None
-    };
+        certificate = Some(certify_source(&model, &orders, &outputs, text)?);
+    }
     let mut files = Vec::new();
     for (name, contents) in &emitted {
         files.push(out.join(name));
