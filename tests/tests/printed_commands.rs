@@ -34,8 +34,8 @@ const REDUCED: [(&str, &str); 2] = [
 const ELSEWHERE: [(&str, &str); 12] = [
     ("cargo install --path cli", "tests/tests/installed.rs"),
     // The same commands, as the package's own page has them.
-    ("python3 -m venv .venv", "tests/tests/python.rs"),
-    ("pip install ./python", "tests/tests/python.rs"),
+    ("python3 -m venv .venv", "tests/tests/hosts/python.rs"),
+    ("pip install ./python", "tests/tests/hosts/python.rs"),
     // What it would bring into a project.
     ("cargo add eomgen", "tests/tests/packages.rs"),
     // The bench of a small machine, built and run.

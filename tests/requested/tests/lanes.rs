@@ -5,14 +5,24 @@ use eomgen_lanes::{LANES, Lanes, Registers, Task, Vector};
 use proptest::prelude::*;
 
 mod functions {
-    eomgen::model! { spec = "../tests/tests/features/functions.toml", order = 0, with = [lanes] }
+    eomgen::model! { spec = "../tests/features/functions.toml", order = 0, with = [lanes] }
 }
 eomgen_lanes::scalar!(functions);
 
 mod arm {
-    eomgen::model! { spec = "../model-spec/models/planetary_arm.toml", order = 9, with = [lanes] }
+    eomgen::model! { spec = "../../model-spec/models/planetary_arm.toml", order = 9, with = [lanes] }
 }
 eomgen_lanes::scalar!(arm);
+
+/// Runs something on a stack that holds the values of every function inlined into one another, which
+/// without optimisation all have places of their own.
+fn with_stack<T: Send>(run: impl FnOnce() -> T + Send) -> T {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(1 << 28);
+        let thread = thread.spawn_scoped(scope, run).expect("a thread");
+        thread.join().expect("no panic")
+    })
+}
 
 macro_rules! bits {
     ($module:ident, $test:ident, $scale:literal) => {
@@ -55,7 +65,8 @@ macro_rules! bits {
                     }
                 }
                 for registers in Registers::ALL.into_iter().filter(|r| r.are_there()) {
-                    let found = eomgen_lanes::run_with(registers, all());
+                    let task = all();
+                    let found = with_stack(move || eomgen_lanes::run_with(registers, task));
                     for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
                         let same = found.to_bits() == expected.to_bits() || (found.is_nan() && expected.is_nan());
                         prop_assert!(same, "{registers:?}: {found:e} and {expected:e}");

@@ -30,7 +30,7 @@ fn reported(friction: f64, command: &str) -> (Measured, Value) {
 fn left(measured: &Measured, parameter: &str) -> f64 {
     let file = |name: &str| project().join(name);
     let output = Command::new("node")
-        .arg(file("tests/tests/page/playback.mjs"))
+        .arg(file("tests/tests/hosts/page/playback.mjs"))
         .arg(measured.file("out/report.html"))
         .arg(file("sim/page/src/play/motion.js"))
         .arg(file("discover/src/report/playback/playback.js"))

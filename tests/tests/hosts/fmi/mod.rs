@@ -46,7 +46,7 @@ fn is_there(packages: &str, what: &str) -> bool {
 
 /// Runs a script of this folder.
 fn python(script: &str, arguments: &[&str]) {
-    let place = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fmi")).join(script);
+    let place = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/hosts/fmi")).join(script);
     let output = Command::new("python3")
         .arg(place)
         .args(arguments)

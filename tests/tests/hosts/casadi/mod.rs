@@ -77,7 +77,7 @@ fn check(name: &str, order: usize, with: &[Output], folder: &Path) {
     let output = Command::new(python)
         .arg(concat!(
             env!("CARGO_MANIFEST_DIR"),
-            "/tests/casadi/check.py"
+            "/tests/hosts/casadi/check.py"
         ))
         .arg(&library)
         .arg(program.state_names().join(","))

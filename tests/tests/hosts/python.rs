@@ -30,11 +30,14 @@ fn shell(commands: &str) -> Output {
 /// What keeps the package from being installed here, if anything does.
 fn missing(folder: &Path) -> Option<&'static str> {
     let works = |commands: &str| shell(commands).status.success();
-    let folder = folder.display();
-    if !works(&format!("python3 -m venv {folder}/tried")) {
+    if !works("python3 -c 'import ensurepip, venv'") {
         return Some("python3 with venv (Debian: apt-get install python3-venv)");
     }
-    let registry = format!("{folder}/tried/bin/pip download --no-deps -d {folder} maturin numpy");
+    if !works("python3 -m pip --version") {
+        return Some("python3 with pip (Debian: apt-get install python3-pip)");
+    }
+    let folder = folder.display();
+    let registry = format!("python3 -m pip download --no-deps -d {folder} maturin numpy");
     (!works(&registry)).then_some("a registry of Python packages")
 }
 

@@ -47,7 +47,7 @@ pub fn probed(browser: &str, page: &Path, look: Look) -> Value {
 
 /// What a probe saw in a page.
 pub fn probed_by(probe: &str, browser: &str, page: &Path, look: Look) -> Value {
-    let script = |name: &str| project().join("tests/tests/page").join(name);
+    let script = |name: &str| project().join("tests/tests/hosts/page").join(name);
     let Look { width, dark, still } = look;
     let look = serde_json::json!({ "width": width, "dark": dark, "still": still });
     let profile = tempfile::tempdir().expect("a folder");

@@ -95,7 +95,7 @@ fn computed(module: &[u8], cases: &[Case], counts: [usize; 5]) -> Vec<f64> {
     std::fs::write(folder.path().join("module.wasm"), module).expect("written");
     std::fs::write(folder.path().join("points.bin"), bytes).expect("written");
     let output = Command::new("node")
-        .arg(project().join("tests/tests/page/bits.mjs"))
+        .arg(project().join("tests/tests/hosts/page/bits.mjs"))
         .arg(folder.path())
         .args(counts.map(|count| count.to_string()))
         .output()

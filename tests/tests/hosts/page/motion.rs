@@ -15,7 +15,7 @@ use super::{drawn, page};
 fn shown(spec: &Path, end: f64) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let output = Command::new("node")
-        .arg(project().join("tests/tests/page/motion.mjs"))
+        .arg(project().join("tests/tests/hosts/page/motion.mjs"))
         .arg(page(spec, &[], folder.path()))
         .arg(project().join("sim/page/src/play/motion.js"))
         .arg(end.to_string())
