@@ -29,8 +29,9 @@ pub(crate) fn polynomial<R: Real, const N: usize>(x: R, coefficients: &[f64; N])
     terms[0]
 }
 
-/// `3 * 2^51`: in its binade, up and down by 2^51, doubles are the integers.
-const ROUNDING_ALIGNER: f64 = (3_u64 << 51) as f64;
+/// `3 * 2^51`: in its binade, up and down by 2^51, doubles are the integers. Kernels round by
+/// adding and subtracting it.
+pub const ROUNDING_ALIGNER: f64 = (3_u64 << 51) as f64;
 
 /// The integer nearest to `x`, ties to even, for `|x| <= 2^51`; `+0` for zero.
 #[inline(always)]

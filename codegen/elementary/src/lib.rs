@@ -75,6 +75,7 @@ mod kernel;
 #[cfg(feature = "trace")]
 mod record;
 
+pub use approximation::ROUNDING_ALIGNER;
 pub use exponential::{cosh, exp, exp_minus_one, sinh, tanh};
 pub use inverse_trigonometric::{acos, asin, atan, atan2};
 pub use logarithm::ln;

@@ -1,6 +1,8 @@
 //! Expressions and statements as marked text of C, with parentheses only where the order of
 //! evaluation needs them.
 
+use eomgen_elementary::ROUNDING_ALIGNER;
+
 use crate::program::{PARTIAL_SUMS, Program};
 use crate::statements::layout::{BLOCK, CLOSE, COMMA_OUT, FLOW, FLOW_OUT, SPACE, ZERO, block};
 use crate::statements::{Array, Expression, Index, Operator, Place, Statement, Structure};
@@ -116,7 +118,11 @@ impl Writer {
                 &format!("{parts}[{part}] + {element}"),
             )
         };
-        if blocks > 1 {
+        // One block is no loop over blocks: gcc then adds the partial sums in vectors.
+        if blocks == 2 {
+            let first = format!("{PARTIAL_SUMS} + k");
+            text += &looped("k", PARTIAL_SUMS, &added(&first, "k"));
+        } else if blocks > 2 {
             let inner = looped("k", PARTIAL_SUMS, &added("first + k", "k"));
             let head = format!(
                 "for (int first = {PARTIAL_SUMS}; first < {}; first += {PARTIAL_SUMS}) {{",
@@ -225,6 +231,10 @@ impl Writer {
     }
 
     fn binary(&self, operator: Operator, a: &Expression, b: &Expression) -> (String, Level) {
+        if let Some(x) = rounded(operator, a, b) {
+            let function = format!("{}nearest_integer", self.prefix);
+            return (call(&function, &[self.expression(x)]), Level::Atom);
+        }
         let (sign, level, right) = match operator {
             Operator::Add => ("+", Level::Sum, Level::Product),
             Operator::Subtract => ("-", Level::Sum, Level::Product),
@@ -356,6 +366,18 @@ fn index_text(index: &Index) -> String {
         Index::Variable(name) => (*name).to_owned(),
         Index::Sum(a, b) => format!("{} + {}", index_text(a), index_text(b)),
         Index::Product(a, b) => format!("{} * {}", index_text(a), index_text(b)),
+    }
+}
+
+/// What a difference rounds to an integer, if it takes away again what was added for that: text of its own,
+/// because compilers that may reorder sums leave out both.
+fn rounded<'e>(operator: Operator, a: &'e Expression, b: &Expression) -> Option<&'e Expression> {
+    let aligner = |e: &Expression| matches!(e, Expression::Number(n) if *n == ROUNDING_ALIGNER);
+    match (operator, a) {
+        (Operator::Subtract, Expression::Binary(Operator::Add, x, added)) => {
+            (aligner(added) && aligner(b)).then_some(x)
+        }
+        _ => None,
     }
 }
 

@@ -95,7 +95,7 @@ typedef union {
 ";
 
 /// What kernels call and what has no literal, by name.
-const PRIMITIVES: [(&str, &str); 7] = [
+const PRIMITIVES: [(&str, &str); 8] = [
     (
         "nan",
         "\
@@ -125,6 +125,30 @@ static double NAME_infinity(void) {
 static double NAME_magnitude(double x) {
     const double negated = 0.0 - x;
     return x > negated ? x : negated;
+}
+",
+    ),
+    (
+        "nearest_integer",
+        "\
+/** The integer nearest to x, ties to even, for |x| up to 2^51. Where sums may be reordered, each step is
+ * hidden from that, in a register or by way of memory: it is done with these numbers and no others. */
+static double NAME_nearest_integer(double x) {
+#if !defined(__FAST_MATH__) && !defined(__ASSOCIATIVE_MATH__) && !defined(_M_FP_FAST)
+    return x + 6.755399441055744e15 - 6.755399441055744e15;
+#elif defined(__GNUC__) && defined(__SSE2__)
+    __asm__(\"\" : \"+x\"(x));
+    x = x + 6.755399441055744e15;
+    __asm__(\"\" : \"+x\"(x));
+    x = x - 6.755399441055744e15;
+    __asm__(\"\" : \"+x\"(x));
+    return x;
+#else
+    volatile double held = x;
+    held = held + 6.755399441055744e15;
+    held = held - 6.755399441055744e15;
+    return held;
+#endif
 }
 ",
     ),

@@ -17,6 +17,7 @@ use eomgen_tests::models::{project, shipped};
 mod command;
 mod hostile;
 mod linked;
+mod reordered;
 
 /// What every compiler of the emitted C is asked for.
 const WARNINGS: [&str; 4] = ["-pedantic", "-Wall", "-Wextra", "-Werror"];

@@ -89,6 +89,29 @@ impl<const S: usize> Eliminated<S> {
         }
     }
 
+    /// All prepared numbers in the order of their fields, for the same equations in another language
+    /// (`benches/c/by_hand.h`).
+    pub fn prepared(&self) -> Vec<f64> {
+        let mesh = |mesh: Mesh| [mesh.stiffness, mesh.damping, mesh.half_width];
+        let scalars = [
+            self.motor,
+            self.fluctuation,
+            self.omega,
+            self.motor_damping,
+            self.sun,
+            self.planet,
+            self.carrier,
+        ];
+        let modes = [self.bending, self.minus_square, self.minus_coupling];
+        let meshes = mesh(self.sun_planet)
+            .into_iter()
+            .chain(mesh(self.planet_ring));
+        meshes
+            .chain(scalars)
+            .chain(modes.into_iter().flatten())
+            .collect()
+    }
+
     /// Writes the rates of `state` (x_sp, x_pr, x_c, q_1 .. q_S in m, then their rates in m/s) at
     /// time `t` in s. The motor's sine is waited for last. Not inlined, as emitted functions
     /// are not into other crates.
