@@ -64,10 +64,16 @@ pub fn torque(state: &State) -> Real {
     -sum
 }
 
-/// One step of the closed loop at time `t`, s: the torque for `state`, held while the arm
-/// moves by the classical method of Runge and Kutta.
+/// One step of the closed loop at time `t`, s: the torque for `state`, held.
 pub fn step(t: Real, state: &State, coefficients: &Coefficients) -> State {
-    let inputs = Inputs { u: torque(state) };
+    driven(t, state, torque(state), coefficients)
+}
+
+/// Where the arm is a step after time `t`, s, under a torque that is held, N m, by the classical
+/// method of Runge and Kutta.
+#[inline(always)]
+pub fn driven(t: Real, state: &State, torque: Real, coefficients: &Coefficients) -> State {
+    let inputs = Inputs { u: torque };
     let half = 0.5 * STEP;
     let rates = |t: Real, state: &State| {
         let mut rates = [0.0; STATES];

@@ -1,17 +1,21 @@
-//! The example controller on emulated microcontrollers: `examples/bare_metal/run` with the
-//! arm as it is emitted now, in Rust and in C. Skipped, loudly, where the emulator or the
+//! The example controller and its observer on emulated microcontrollers: `examples/bare_metal/run` with
+//! the arm as it is emitted now, in Rust and in C, and `examples/bare_metal/observe`. Skipped, loudly, where the emulator or the
 //! compiler's target is missing, and what is in C where its compiler is; a machine that has them
 //! may not fail.
 
 use std::fmt::Write;
+use std::path::Path;
 use std::process::Command;
 
 use eomgen_codegen::c;
+use eomgen_codegen::program::Output;
 use eomgen_codegen::rust::{Packaging, emit};
+use eomgen_codegen::variant::Variant;
 use eomgen_tests::models::{load, project, variant};
 
-/// What the run is to print, refreshed with EOMGEN_REFRESH.
+/// What the runs are to print, refreshed with EOMGEN_REFRESH.
 const KEPT: &str = "examples/bare_metal/counts.txt";
+const KEPT_OF_THE_OBSERVER: &str = "examples/bare_metal/observer_counts.txt";
 
 /// A rise of a count above what is kept that fails, in percent: compilers differ a little.
 const RISE: u64 = 5;
@@ -63,6 +67,45 @@ fn counts(text: &str) -> Vec<(&str, u64)> {
         .collect()
 }
 
+/// What a script of the example prints, given the emitted arm and a folder.
+fn printed(script: &str, arm: &Path) -> String {
+    let output = Command::new("bash")
+        .arg(project().join("examples/bare_metal").join(script))
+        .arg(arm)
+        .arg(arm.parent().expect("a folder"))
+        .output()
+        .expect("bash");
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{printed}{said}");
+    printed
+}
+
+/// Asserts that no count has risen above what is kept; without what is in C where that was not run.
+fn no_count_has_risen(kept_at: &str, printed: &str, with_c: bool) {
+    let path = project().join(kept_at);
+    if with_c && std::env::var_os("EOMGEN_REFRESH").is_some() {
+        std::fs::write(&path, printed.as_bytes()).expect("written");
+    }
+    let kept = std::fs::read_to_string(path).expect("the counts as kept");
+    let (mut kept, now) = (counts(&kept), counts(printed));
+    if !with_c {
+        kept.retain(|(name, _)| !name.ends_with(" in C"));
+    }
+    assert_eq!(kept.len(), now.len(), "{printed}");
+    let mut risen = String::new();
+    for ((name, kept), (same, now)) in kept.iter().zip(&now) {
+        assert_eq!(name, same);
+        if 100 * now > (100 + RISE) * kept {
+            writeln!(risen, "{name}: {now} instead of {kept}").expect("a string");
+        }
+    }
+    assert!(
+        risen.is_empty(),
+        "{risen}if that is meant: EOMGEN_REFRESH=1 cargo test --release -p eomgen-tests --test bare_metal"
+    );
+}
+
 /// The motion's bits are compared, and a panic or an allocator left in the program refused,
 /// by the run itself.
 #[test]
@@ -86,36 +129,24 @@ fn the_controller_runs_on_microcontrollers_with_the_bits_of_this_machine() {
             std::fs::write(path, text).expect("written");
         }
     }
-    let output = Command::new("bash")
-        .arg(project().join("examples/bare_metal/run"))
-        .arg(&arm)
-        .arg(folder.path())
-        .output()
-        .expect("bash");
-    let (printed, said) = (
-        String::from_utf8_lossy(&output.stdout),
-        String::from_utf8_lossy(&output.stderr),
-    );
-    assert!(output.status.success(), "{printed}{said}");
-    let path = project().join(KEPT);
-    if with_c && std::env::var_os("EOMGEN_REFRESH").is_some() {
-        std::fs::write(&path, printed.as_bytes()).expect("written");
+    no_count_has_risen(KEPT, &printed("run", &arm), with_c);
+}
+
+/// Half a second of the arm, which the observer sees by sensors that fail at times. Its bits are compared by
+/// the run itself, and where the estimate ends asserted by the program that runs on this machine.
+#[test]
+fn the_observer_runs_on_a_microcontroller_with_the_bits_of_this_machine() {
+    if let Some(missing) = missing() {
+        skips::skip(&format!(
+            "the observer was not run on a microcontroller, for want of {missing}"
+        ));
+        return;
     }
-    let kept = std::fs::read_to_string(path).expect("the counts as kept");
-    let (mut kept, now) = (counts(&kept), counts(&printed));
-    if !with_c {
-        kept.retain(|(name, _)| !name.ends_with(" in C"));
-    }
-    assert_eq!(kept.len(), now.len(), "{printed}");
-    let mut risen = String::new();
-    for ((name, kept), (same, now)) in kept.iter().zip(&now) {
-        assert_eq!(name, same);
-        if 100 * now > (100 + RISE) * kept {
-            writeln!(risen, "{name}: {now} instead of {kept}").expect("a string");
-        }
-    }
-    assert!(
-        risen.is_empty(),
-        "{risen}if that is meant: EOMGEN_REFRESH=1 cargo test --release -p eomgen-tests --test bare_metal"
-    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let arm = folder.path().join("arm.rs");
+    let outputs = [Output::Jacobians];
+    let derived = Variant::derive_with(&load("planetary_arm_rig"), &[4], &outputs);
+    let source = emit(&derived.expect("derived").program, Packaging::Crate).expect("emitted");
+    std::fs::write(&arm, source).expect("written");
+    no_count_has_risen(KEPT_OF_THE_OBSERVER, &printed("observe", &arm), true);
 }
