@@ -91,7 +91,7 @@ fn commands(page: &str, lines: &[String], printed: &mut Vec<Printed>) {
 
 /// All commands in running text and tables.
 pub fn in_text() -> Vec<Printed> {
-    let begins = ["cargo ", "rustc ", "EOMGEN_", "examples/bare_metal/run"];
+    let begins = ["cargo ", "rustc ", "EOMGEN_", "examples/bare_metal/"];
     let mut printed = Vec::new();
     for (page, text) in pages() {
         // Odd parts between single backticks, with the blocks out of the way.

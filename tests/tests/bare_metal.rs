@@ -67,8 +67,8 @@ fn counts(text: &str) -> Vec<(&str, u64)> {
         .collect()
 }
 
-/// What a script of the example prints, given the emitted arm and a folder.
-fn printed(script: &str, arm: &Path) -> String {
+/// What a script of the example prints and what it says besides, given the emitted arm.
+fn printed(script: &str, arm: &Path) -> (String, String) {
     let output = Command::new("bash")
         .arg(project().join("examples/bare_metal").join(script))
         .arg(arm)
@@ -76,9 +76,9 @@ fn printed(script: &str, arm: &Path) -> String {
         .output()
         .expect("bash");
     let printed = String::from_utf8_lossy(&output.stdout).into_owned();
-    let said = String::from_utf8_lossy(&output.stderr);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(output.status.success(), "{printed}{said}");
-    printed
+    (printed, said)
 }
 
 /// Asserts that no count has risen above what is kept; without what is in C where that was not run.
@@ -129,7 +129,7 @@ fn the_controller_runs_on_microcontrollers_with_the_bits_of_this_machine() {
             std::fs::write(path, text).expect("written");
         }
     }
-    no_count_has_risen(KEPT, &printed("run", &arm), with_c);
+    no_count_has_risen(KEPT, &printed("run", &arm).0, with_c);
 }
 
 /// Half a second of the arm, which the observer sees by sensors that fail at times. Its bits are compared by
@@ -148,5 +148,9 @@ fn the_observer_runs_on_a_microcontroller_with_the_bits_of_this_machine() {
     let derived = Variant::derive_with(&load("planetary_arm_rig"), &[4], &outputs);
     let source = emit(&derived.expect("derived").program, Packaging::Crate).expect("emitted");
     std::fs::write(&arm, source).expect("written");
-    no_count_has_risen(KEPT_OF_THE_OBSERVER, &printed("observe", &arm), true);
+    let (printed, said) = printed("observe", &arm);
+    no_count_has_risen(KEPT_OF_THE_OBSERVER, &printed, true);
+    let page = std::fs::read_to_string(project().join("docs/controllers.md")).expect("the page");
+    let errors: Vec<&str> = said.lines().filter(|line| !line.is_empty()).collect();
+    assert!(page.contains(&errors.join("\n")), "not on the page: {said}");
 }

@@ -31,7 +31,7 @@ const REDUCED: [(&str, &str); 2] = [
 ];
 
 /// What another test runs, with the file that does.
-const ELSEWHERE: [(&str, &str); 13] = [
+const ELSEWHERE: [(&str, &str); 14] = [
     ("cargo install --path cli", "tests/tests/installed.rs"),
     // The same commands, as the package's own page has them.
     ("python3 -m venv .venv", "tests/tests/hosts/python.rs"),
@@ -53,6 +53,11 @@ const ELSEWHERE: [(&str, &str); 13] = [
     // The same script, with the arm as it is emitted.
     (
         "examples/bare_metal/run rig4/lib.rs",
+        "tests/tests/bare_metal.rs",
+    ),
+    // The same script, and what it prints.
+    (
+        "examples/bare_metal/observe rig4_jacobians/lib.rs",
         "tests/tests/bare_metal.rs",
     ),
     // Six cases of the suite.
@@ -203,6 +208,38 @@ fn compiled(line: &str, folder: &Path) -> String {
     text(&output.stdout)
 }
 
+/// Whether there is a Python with SciPy; says so if not.
+fn scipy() -> bool {
+    let found = Command::new("python3")
+        .args(["-c", "import numpy, scipy"])
+        .output();
+    let there = found.is_ok_and(|output| output.status.success());
+    if !there {
+        skips::skip(
+            "the regulator of docs/controllers.md was not computed, for want of python3 with \
+             numpy and scipy (pip install scipy)",
+        );
+    }
+    there
+}
+
+/// Runs an example in Python; all it says. It refuses with status 1.
+fn by_python(line: &str, folder: &Path, refused: bool) -> String {
+    let output = Command::new("sh")
+        .args(["-c", line])
+        .current_dir(folder)
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .output();
+    let output = output.expect("a shell");
+    let said = text(&output.stdout) + &text(&output.stderr);
+    assert_eq!(
+        output.status.code(),
+        Some(i32::from(refused)),
+        "{line}: {said}"
+    );
+    said
+}
+
 /// A line without what differs from run to run or from machine to machine: how long something
 /// took, and by how many roundings a check missed its mark.
 fn settled(line: &str) -> String {
@@ -230,6 +267,8 @@ enum Form<'a> {
     Program(&'a str),
     /// A line for compilers.
     Compilers,
+    /// An example in Python that needs SciPy.
+    Scipy,
     /// Named in the lists above.
     Elsewhere(&'static str),
     /// Tests that the whole test command runs, of a package and maybe of one file.
@@ -252,6 +291,7 @@ fn form(command: &str) -> Form<'_> {
         }
         ["eomgen", ..] => Form::Program(command.trim_start_matches("eomgen ")),
         ["rustc" | "cc", ..] => Form::Compilers,
+        ["python3", ..] => Form::Scipy,
         ["cargo", "test", "--release", ref rest @ ..] => match rest {
             ["--workspace"] => Form::Tests(""),
             ["-p", _, ..] => Form::Tests(command),
@@ -309,6 +349,7 @@ fn every_printed_command_does_what_the_pages_say() {
     let (in_blocks, _) = in_blocks();
     assert!(in_blocks.len() > 20, "{in_blocks:#?}");
     let mut outputs: BTreeMap<String, String> = BTreeMap::new();
+    let scipy = scipy();
     for Printed {
         page,
         command,
@@ -326,6 +367,11 @@ fn every_printed_command_does_what_the_pages_say() {
                 once(&|| said(arguments, &place, refused));
             }
             Form::Compilers => once(&|| compiled(&meant, &place)),
+            Form::Scipy if !scipy => {}
+            Form::Scipy => {
+                let refused = output.iter().any(|line| line.starts_with("error"));
+                once(&|| by_python(&meant, &place, refused));
+            }
             Form::Elsewhere(file) => assert!(project().join(file).exists(), "{file}"),
             Form::Tests(command) => are_tests(command),
             Form::Ci(words) => {

@@ -1,0 +1,101 @@
+"""A linear-quadratic regulator for the planetary arm from its linearisation, tried on the arm with its play.
+
+    eomgen linearise model-spec/models/planetary_arm_rig.toml --at x_sp=1e-3 --at x_pr=1e-3 --out contact.json
+    eomgen generate model-spec/models/planetary_arm_rig.toml --target c99 --out arm
+    cc -shared -fPIC -std=c99 -O2 -I arm examples/controllers/closed_loop.c arm/planetary_arm_rig.c -o arm.so
+    python examples/controllers/lqr.py contact.json arm.so
+
+Linearised where both meshes are in contact, the torque moves every state. Linearised at rest, without `--at`,
+the meshes are open and it moves the sun alone: that is said, and no gain is computed.
+"""
+
+import ctypes
+import json
+import sys
+
+import numpy as np
+from scipy.integrate import simpson
+from scipy.linalg import matrix_balance, solve_continuous_are
+
+LARGE = {"m": 1e-3, "m/s": 1.0}  # what costs as much as 1 N m of torque, by the unit of the state
+STEP, DURATION = 20e-6, 2.0  # s
+PLAY = 25e-6  # m, half the backlash
+
+
+def reached(A, B):
+    """An orthonormal basis of what the inputs reach: the Krylov space of (A, B).
+
+    Powers of A would leave nothing of small directions, so each new one is made orthogonal to
+    those before it (the staircase of P. Van Dooren, IEEE Trans. Autom. Control 26, 1981).
+    """
+    size = np.linalg.norm(A, 2)
+    basis = np.empty((len(A), 0))
+    new = B / np.maximum(np.linalg.norm(B, axis=0), np.finfo(float).tiny)
+    while new.size:
+        for _ in range(2):
+            new = new - basis @ (basis.T @ new)
+        left, lengths, _ = np.linalg.svd(new, full_matrices=False)
+        left = left[:, lengths > 1e-12 * (size if basis.size else 1.0)]
+        basis = np.hstack([basis, left])
+        new = A @ left
+    return basis
+
+
+def gain(document):
+    """The gain K of u = -K x, P of the cost x P x from x to rest, and what states count from.
+
+    Refuses what the input cannot control.
+    """
+    A, B = np.array(document["A"]), np.array(document["B"])
+    _, (scale, _) = matrix_balance(A, permute=False, separate=True)
+    basis = reached(A / scale[:, None] * scale, B / scale[:, None])
+    print(f"controllability: rank {basis.shape[1]} of {len(A)}", flush=True)
+    if basis.shape[1] < len(A):
+        out = np.linalg.norm(basis, axis=1) < 1e-9
+        out = ", ".join(name for name, alone in zip(document["states"], out) if alone) or "the rest"
+        sys.exit(
+            f"error: the torque does not move {out}: no gain controls them\n"
+            "help: linearise where both meshes are in contact: --at x_sp=1e-3 --at x_pr=1e-3"
+        )
+    large = np.array([LARGE[unit] for unit in document["units"]["states"]])
+    A, B = A / large[:, None] * large, B / large[:, None]
+    P = solve_continuous_are(A, B, np.eye(len(A)), np.eye(1))
+    left = A.T @ P + P @ A - P @ B @ B.T @ P + np.eye(len(A))
+    K = B.T @ P
+    slowest = np.linalg.eigvals(A - B @ K).real.max()
+    assert np.linalg.norm(left) < 1e-9 * np.linalg.norm(A.T @ P) and slowest < 0
+    print(f"slowest pole with the regulator: {slowest:.2f} 1/s")
+    return K[0] / large, P / np.outer(large, large), large
+
+
+def motion(library, play, K, begin):
+    """The states of the arm with its contacts, a row for each step."""
+    states = np.zeros((round(DURATION / STEP) + 1, len(K)))
+    states[0] = begin
+    pointer = ctypes.POINTER(ctypes.c_double)
+    K = np.ascontiguousarray(K)
+    arguments = ctypes.c_double(play), K.ctypes.data_as(pointer), ctypes.c_double(STEP), len(states) - 1
+    assert library.closed_loop(*arguments, states.ctypes.data_as(pointer)) == 1
+    return states
+
+
+def main():
+    with open(sys.argv[1], encoding="utf-8") as file:
+        document = json.load(file)
+    K, P, large = gain(document)
+    library = ctypes.CDLL(sys.argv[2] if "/" in sys.argv[2] else "./" + sys.argv[2])
+    begin = np.zeros(len(K))
+    begin[document["states"].index("x_c")] = 2e-3
+    for play in [0.0, PLAY]:
+        states = motion(library, play, K, begin)
+        rates = ((states / large) ** 2).sum(axis=1) + (states @ K) ** 2
+        cost = simpson(rates, dx=STEP) / (begin @ P @ begin)
+        late = states[round(0.75 * len(states)) :, 2]
+        print(f"play of {2e6 * play:.0f} um: {cost:.3f} of the cost that the Riccati equation says")
+        print(f"    the carrier within {1e6 * abs(late).max():.2f} um after {0.75 * DURATION} s")
+        # Without play the arm is linear, so that its cost is the predicted one. Within its play nothing holds it.
+        assert abs(cost - 1) < (0.05 if play else 1e-3) and abs(late).max() < (play or 1e-6)
+
+
+if __name__ == "__main__":
+    main()

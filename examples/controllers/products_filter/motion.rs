@@ -1,0 +1,130 @@
+//! The arm as it moves, what is measured of it, and the columns of whatever is carried along its motion.
+
+use arm::{Coefficients, Inputs, STATES};
+
+pub type State = [f64; STATES];
+
+/// Length of a step, s, steps from measurement to measurement, and measurements.
+pub const STEP: f64 = 1e-5;
+pub const STEPS: usize = 100;
+pub const MEASUREMENTS: usize = 100;
+/// What is measured, by the number of the observable, with one standard deviation: the angle of the sun, rad,
+/// that of the carrier, rad, and the deflection of the arm's end, m.
+pub const MEASURED: [(usize, f64); 3] = [(0, 1e-4), (2, 2e-5), (3, 1e-5)];
+/// The torque, N m: it loads the meshes on one side all the way.
+pub const TORQUE: f64 = 3.0;
+/// What the torque has besides, of which the filters do not know: one standard deviation, N m, drawn anew for
+/// each measurement.
+pub const DISTURBANCE: f64 = 0.05;
+/// The deflections of both meshes where the run begins, m: in contact.
+pub const DEFLECTION: f64 = 25.5e-6;
+/// The states that are uncertain where the run begins, by their numbers, with one standard deviation: the deflections
+/// of the meshes, the carrier's path, two modes, all m, and the carrier's rate, m/s.
+pub const UNCERTAIN: [(usize, f64); 6] = [
+    (0, 1e-7),
+    (1, 1e-7),
+    (2, 1e-3),
+    (3, 1e-4),
+    (4, 1e-5),
+    (21, 1e-2),
+];
+/// Gaussian numbers of mean 0 and standard deviation 1, nearly: the sum of twelve uniform ones.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        let mut uniform = || {
+            // Knuth's constants for a linear congruential generator of 64 bits.
+            self.0 = self
+                .0
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
+            (self.0 >> 11) as f64 / (1u64 << 53) as f64
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+}
+
+pub fn moved(state: &State, by: f64, rate: &State) -> State {
+    std::array::from_fn(|i| state[i] + by * rate[i])
+}
+
+/// A step of the method of Runge and Kutta for a state and the columns beside it, whose rates are those of the
+/// linearised motion at the state of each stage. `times` is the Jacobian there, times columns.
+pub fn stepped(
+    arm: &Coefficients,
+    t: f64,
+    disturbance: f64,
+    state: &mut State,
+    columns: &mut [State],
+    times: impl Fn(f64, &State, &Inputs, &[State]) -> Vec<State>,
+) {
+    const ALONG: [f64; 4] = [0.0, 0.5, 0.5, 1.0];
+    const WEIGHT: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
+    let (begin, first) = (*state, columns.to_vec());
+    let (mut rate, mut rates) = ([0.0; STATES], vec![[0.0; STATES]; columns.len()]);
+    for (along, weight) in ALONG.iter().zip(WEIGHT) {
+        let (t, by) = (t + along * STEP, along * STEP);
+        let at = moved(&begin, by, &rate);
+        let inputs = Inputs {
+            u: TORQUE + disturbance,
+        };
+        let carried: Vec<State> = first
+            .iter()
+            .zip(&rates)
+            .map(|(column, rate)| moved(column, by, rate))
+            .collect();
+        rate = arm::rates(t, &at, &inputs, arm);
+        rates = times(t, &at, &inputs, &carried);
+        *state = moved(state, weight * STEP, &rate);
+        for (column, rate) in columns.iter_mut().zip(&rates) {
+            *column = moved(column, weight * STEP, rate);
+        }
+    }
+}
+
+/// An observable of a state. All that are measured are linear, so it is that of a column too.
+pub fn measured(arm: &Coefficients, t: f64, state: &State, which: usize) -> f64 {
+    arm::observables(t, state, &Inputs::default(), arm)[which]
+}
+
+/// The state that the filters begin with.
+pub fn expected() -> State {
+    let mut state = [0.0; STATES];
+    (state[0], state[1]) = (DEFLECTION, DEFLECTION);
+    state
+}
+
+/// Columns of the covariance that they begin with.
+pub fn begin() -> Vec<State> {
+    let column = |(which, deviation): &(usize, f64)| {
+        let mut column = [0.0; STATES];
+        column[*which] = *deviation;
+        column
+    };
+    UNCERTAIN.iter().map(column).collect()
+}
+
+/// The arm as it moves with its disturbance, from a state that the filters do not know, and what is measured of it:
+/// after each period its state and its record.
+pub fn motion(arm: &Coefficients) -> Vec<(State, [f64; MEASURED.len()])> {
+    let mut noise = Noise(7);
+    let mut state = expected();
+    for (which, deviation) in UNCERTAIN {
+        state[which] += deviation * noise.next();
+    }
+    let mut after = |period: usize| {
+        let disturbance = DISTURBANCE * noise.next();
+        for count in period * STEPS..(period + 1) * STEPS {
+            let t = STEP * count as f64;
+            stepped(arm, t, disturbance, &mut state, &mut [], |_, _, _, _| {
+                Vec::new()
+            });
+        }
+        let t = STEP * ((period + 1) * STEPS) as f64;
+        let record = MEASURED
+            .map(|(which, deviation)| measured(arm, t, &state, which) + deviation * noise.next());
+        (state, record)
+    };
+    (0..MEASUREMENTS).map(&mut after).collect()
+}

@@ -1,0 +1,114 @@
+//! The filter by products: the covariance is S S', and each column of S is carried by a product.
+
+use crate::filter::Filter;
+use crate::motion::{DISTURBANCE, STEP, STEPS, State, measured, moved, stepped};
+use arm::{Coefficients, Inputs, STATES};
+
+/// What is counted equal where columns are dropped: 1 mm and 1 m/s.
+const LARGE: [f64; 2] = [1e-3, 1.0];
+
+/// What the columns change by: the Jacobian times each, and for the last the torque's disturbance besides. A product each.
+fn by_products(arm: &Coefficients) -> impl Fn(f64, &State, &Inputs, &[State]) -> Vec<State> {
+    |t, state, inputs, columns| {
+        let last = columns.len() - 1;
+        let product = |(k, column)| {
+            let push = Inputs {
+                u: if k == last { DISTURBANCE } else { 0.0 },
+            };
+            arm::jacobian_vector_product(t, state, inputs, arm, column, &push)
+        };
+        columns.iter().enumerate().map(product).collect()
+    }
+}
+
+/// With the covariance as S S'.
+pub struct Products {
+    pub estimate: State,
+    pub columns: Vec<State>,
+    /// Columns that are kept.
+    pub rank: usize,
+}
+
+impl Filter for Products {
+    fn carried(&mut self, arm: &Coefficients, t: f64) {
+        self.columns.push([0.0; STATES]);
+        for count in 0..STEPS {
+            let t = t + STEP * count as f64;
+            stepped(
+                arm,
+                t,
+                0.0,
+                &mut self.estimate,
+                &mut self.columns,
+                by_products(arm),
+            );
+        }
+        self.columns = largest(&self.columns, self.rank);
+    }
+
+    fn taken(&mut self, arm: &Coefficients, t: f64, which: usize, value: f64, deviation: f64) {
+        let seen: Vec<f64> = self
+            .columns
+            .iter()
+            .map(|column| measured(arm, t, column, which))
+            .collect();
+        let variance = seen.iter().map(|seen| seen * seen).sum::<f64>() + deviation * deviation;
+        let missed = value - measured(arm, t, &self.estimate, which);
+        let mut direction = [0.0; STATES];
+        for (column, seen) in self.columns.iter().zip(&seen) {
+            direction = moved(&direction, *seen, column);
+        }
+        self.estimate = moved(&self.estimate, missed / variance, &direction);
+        let shrink = 1.0 / (variance + deviation * variance.sqrt());
+        for (column, seen) in self.columns.iter_mut().zip(&seen) {
+            *column = moved(column, -shrink * seen, &direction);
+        }
+    }
+
+    fn estimate(&self) -> &State {
+        &self.estimate
+    }
+
+    fn variance(&self, i: usize) -> f64 {
+        self.columns
+            .iter()
+            .map(|column| column[i] * column[i])
+            .sum()
+    }
+}
+
+/// The columns of the largest part of S S', at most `rank`: S times the eigenvectors of S' S, by Jacobi's rotations of
+/// columns until all are orthogonal.
+fn largest(columns: &[State], rank: usize) -> Vec<State> {
+    let size = |i: usize| LARGE[usize::from(i >= STATES / 2)];
+    let mut columns: Vec<State> = columns
+        .iter()
+        .map(|c| std::array::from_fn(|i| c[i] / size(i)))
+        .collect();
+    let product = |a: &State, b: &State| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    for _ in 0..30 {
+        let mut turned = false;
+        for first in 0..columns.len() {
+            for second in first + 1..columns.len() {
+                let (a, b) = (columns[first], columns[second]);
+                let (aa, bb, ab) = (product(&a, &a), product(&b, &b), product(&a, &b));
+                if ab.abs() <= 1e-14 * (aa * bb).sqrt() {
+                    continue;
+                }
+                turned = true;
+                let (sine, cosine) = (0.5 * (2.0 * ab).atan2(aa - bb)).sin_cos();
+                columns[first] = std::array::from_fn(|i| cosine * a[i] + sine * b[i]);
+                columns[second] = std::array::from_fn(|i| cosine * b[i] - sine * a[i]);
+            }
+        }
+        if !turned {
+            break;
+        }
+    }
+    columns.sort_by(|a, b| product(b, b).total_cmp(&product(a, a)));
+    columns.truncate(rank);
+    columns
+        .iter()
+        .map(|c| std::array::from_fn(|i| c[i] * size(i)))
+        .collect()
+}

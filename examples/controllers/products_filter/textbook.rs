@@ -1,0 +1,94 @@
+//! The textbook's filter: the covariance is a matrix, and the Jacobians carry it.
+
+use crate::filter::Filter;
+use crate::motion::{DISTURBANCE, STEP, STEPS, State, measured, moved, stepped};
+use arm::{Coefficients, Inputs, RATES_BY_INPUTS, RATES_BY_STATE, STATES};
+
+/// What the columns change by: the Jacobian by the state times each, and for the last what the torque's
+/// disturbance does besides.
+fn by_jacobians(arm: &Coefficients) -> impl Fn(f64, &State, &Inputs, &[State]) -> Vec<State> {
+    |t, state, inputs, columns| {
+        let by_state = arm::rates_by_state(t, state, inputs, arm);
+        let by_inputs = arm::rates_by_inputs(t, state, inputs, arm);
+        let product = |column: &State| {
+            let mut product = [0.0; STATES];
+            for (k, nonzero) in by_state.iter().enumerate() {
+                product[RATES_BY_STATE.rows[k]] += nonzero * column[RATES_BY_STATE.columns[k]];
+            }
+            product
+        };
+        let mut rates: Vec<State> = columns.iter().map(product).collect();
+        if let Some(driven) = rates.last_mut() {
+            for (k, nonzero) in by_inputs.iter().enumerate() {
+                driven[RATES_BY_INPUTS.rows[k]] += DISTURBANCE * nonzero;
+            }
+        }
+        rates
+    }
+}
+
+/// With the covariance as a matrix, by the Jacobian: the textbook's.
+pub struct Textbook {
+    pub estimate: State,
+    pub covariance: Vec<State>,
+}
+
+impl Filter for Textbook {
+    fn carried(&mut self, arm: &Coefficients, t: f64) {
+        // The columns of the transition matrix, and what the disturbance does.
+        let mut flow = vec![[0.0; STATES]; STATES + 1];
+        for (k, column) in flow.iter_mut().take(STATES).enumerate() {
+            column[k] = 1.0;
+        }
+        for count in 0..STEPS {
+            let t = t + STEP * count as f64;
+            stepped(
+                arm,
+                t,
+                0.0,
+                &mut self.estimate,
+                &mut flow,
+                by_jacobians(arm),
+            );
+        }
+        let pushed = flow[STATES];
+        let times = |rows: &[State]| -> Vec<State> {
+            let carried = |row: &State| {
+                let add =
+                    |sum: State, (column, factor): (&State, &f64)| moved(&sum, *factor, column);
+                flow.iter().zip(row).fold([0.0; STATES], add)
+            };
+            rows.iter().map(carried).collect()
+        };
+        let half = transposed(&times(&self.covariance));
+        self.covariance = times(&half);
+        for (row, part) in self.covariance.iter_mut().zip(pushed) {
+            *row = moved(row, part, &pushed);
+        }
+    }
+
+    fn taken(&mut self, arm: &Coefficients, t: f64, which: usize, value: f64, deviation: f64) {
+        let direction: State =
+            std::array::from_fn(|i| measured(arm, t, &self.covariance[i], which));
+        let variance = measured(arm, t, &direction, which) + deviation * deviation;
+        let missed = value - measured(arm, t, &self.estimate, which);
+        self.estimate = moved(&self.estimate, missed / variance, &direction);
+        for (row, part) in self.covariance.iter_mut().zip(direction) {
+            *row = moved(row, -part / variance, &direction);
+        }
+    }
+
+    fn estimate(&self) -> &State {
+        &self.estimate
+    }
+
+    fn variance(&self, i: usize) -> f64 {
+        self.covariance[i][i]
+    }
+}
+
+fn transposed(rows: &[State]) -> Vec<State> {
+    (0..STATES)
+        .map(|j| std::array::from_fn(|i| rows[i][j]))
+        .collect()
+}
