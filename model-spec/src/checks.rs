@@ -118,7 +118,9 @@ pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
         }
     }
     for ((name, span), used) in definitions.zip(used.definitions) {
-        if !used {
+        // What a frame defines, at the frame's own name, is there for those who want it.
+        let written = model.source.text.get(span.start..span.end);
+        if !used && written.is_some_and(|written| written.contains(name.as_str())) {
             warn(Declared::Definition, name, span);
         }
     }

@@ -6,15 +6,15 @@ use toml_edit::Document as Toml;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::entries::{
-    coefficient, coordinate, field, force, input, line, name_of, observable, parameter, point,
-    sensor, state, term,
+    body, coefficient, coordinate, field, force, frame, input, line, name_of, observable,
+    parameter, point, sensor, state, term,
 };
 use crate::keys;
 use crate::raw::{Document, RawDrawing};
 use crate::source::Source;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
-use crate::table::{Entry, Name, entries};
+use crate::table::{Entry, Name, Quantity, entries};
 use crate::toml_file::grammar_error;
 
 /// The most named things a specification may hold.
@@ -64,6 +64,9 @@ impl<'d> Reader<'d> {
             states: self.collect("states", state),
             fields: self.collect("fields", field),
             definitions: self.collect("definitions", term),
+            frames: self.collect("frames", frame),
+            bodies: self.collect("bodies", body),
+            gravity: self.gravity(),
             kinetic: self.collect("kinetic", term),
             potential: self.collect("potential", term),
             dissipation: self.collect("dissipation", term),
@@ -102,7 +105,7 @@ impl<'d> Reader<'d> {
         if document.coordinates.is_empty() && document.fields.is_empty() {
             missing.push("[coordinates] (or [fields.NAME])");
         }
-        if document.kinetic.is_empty() {
+        if document.kinetic.is_empty() && document.bodies.is_empty() {
             missing.push("[kinetic]");
         }
         if self.found.is_empty() && !missing.is_empty() {
@@ -139,6 +142,16 @@ impl<'d> Reader<'d> {
         let name = name_of(self.found.keep(named.written())?);
         let title = record.text("title", &mut self.found);
         Some((name, title))
+    }
+
+    /// The model's gravity, if it has one.
+    fn gravity(&mut self) -> Option<Vec<Quantity>> {
+        let model = self.section("model")?.table("{ }").ok()?;
+        let entry = model
+            .into_iter()
+            .find(|entry| entry.name.text == "gravity")?;
+        let components = entry.quantities(&[3], "[0, 0, \"-g\"]");
+        self.found.keep(components)
     }
 
     /// All entries of a section.

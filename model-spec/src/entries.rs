@@ -5,8 +5,8 @@ use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::keys;
 use crate::model::Basis;
 use crate::raw::{
-    RawBasis, RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawInput, RawLine,
-    RawParameter, RawPoint, RawRange, RawSensor, RawState, RawTerm,
+    RawBasis, RawBody, RawCoefficient, RawCoefficientKind, RawCoordinate, RawField, RawFrame,
+    RawInput, RawLine, RawParameter, RawPoint, RawRange, RawSensor, RawState, RawTerm,
 };
 use crate::suggest::did_you_mean;
 use crate::table::{Entry, Name, Quantity, Record, Written, unknown_key};
@@ -15,6 +15,8 @@ const PARAMETER_EXAMPLE: &str = "{ value = 0.5, unit = \"m\" }";
 const COORDINATE_EXAMPLE: &str = "{ unit = \"rad\", initial = 0 }";
 const STATE_EXAMPLE: &str = "{ unit = \"N\", rate = \"(k*x - z)/tau\", initial = 0 }";
 const FORCE_EXAMPLE: &str = "{ on = \"theta\", value = \"-c*dot(theta)\" }";
+const FRAME_EXAMPLE: &str = "{ in = \"link_1\", rotation = \"rotation_z(q_2)\" }";
+const BODY_EXAMPLE: &str = "{ frame = \"link_1\", mass = \"m_1\" }";
 const FIELD_EXAMPLE: &str = "{ along = \"x\", from = 0, to = \"l\", basis = \"clamped_free\", \
                              coordinates = \"q\", order = 4, unit = \"m\" }";
 
@@ -212,6 +214,56 @@ pub fn observable(
     let record = entry.record(&keys::OBSERVABLE, "\"at(w, l)\"", found)?;
     let unit = record.written("unit", found);
     Some((term_of(&record, found)?, unit))
+}
+
+/// A `[frames.NAME]`.
+pub fn frame(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawFrame> {
+    let record = entry.record(&keys::FRAME, FRAME_EXAMPLE, found)?;
+    let origin = record.get("origin");
+    let origin = origin.map(|entry| entry.quantities(&[3], "[0, 0, \"d\"]"));
+    Some(RawFrame {
+        name: entry.name.clone(),
+        parent: record.written("in", found),
+        origin: origin.and_then(|origin| found.keep(origin)),
+        rotation: record.written("rotation", found),
+        doc: record.text("doc", found),
+    })
+}
+
+/// A `[bodies.NAME]`.
+pub fn body(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawBody> {
+    let record = entry.record(&keys::BODY, BODY_EXAMPLE, found)?;
+    let mut list = |key: &str, counts: &[usize], example: &str| {
+        let list = record.get(key)?.quantities(counts, example);
+        found.keep(list)
+    };
+    let centre = list("centre", &[3], "[0, 0, \"c\"]");
+    let inertia = list("inertia", &[3, 6], "[\"I_x\", \"I_y\", \"I_z\"]");
+    let help = "name the frame it is fixed to: frame = \"link_1\"";
+    let frame = record.require("frame", help, found).map(Entry::written);
+    let frame = frame.and_then(|frame| found.keep(frame));
+    let mass = match (record.get("mass"), record.get("inertia")) {
+        (None, None) => {
+            let name = quoted(&entry.name.text);
+            found.push(
+                Diagnostic::error(format!("the body {name} has no `mass` and no `inertia`"))
+                    .at(entry.name.span, "it has no energy")
+                    .help("give its mass: mass = \"m\""),
+            );
+            return None;
+        }
+        (None, Some(_)) => None,
+        (Some(mass), _) => Some(found.keep(mass.quantity())?),
+    };
+    Some(RawBody {
+        name: entry.name.clone(),
+        frame: frame?,
+        mass,
+        centre,
+        inertia,
+        doc: record.text("doc", found),
+        origin: record.text("source", found),
+    })
 }
 
 /// An entry of `[coefficients]`.

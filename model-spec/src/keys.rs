@@ -4,7 +4,7 @@
 use crate::model::{Basis, End};
 
 /// Keys of `[model]`.
-pub const MODEL: [&str; 2] = ["name", "title"];
+pub const MODEL: [&str; 3] = ["name", "title", "gravity"];
 /// Keys of an entry of `[parameters]`.
 pub const PARAMETER: [&str; 6] = ["value", "unit", "doc", "source", "min", "max"];
 /// Keys of an entry of `[coordinates]`.
@@ -25,6 +25,10 @@ pub const FIELD: [&str; 9] = [
     "unit",
     "doc",
 ];
+/// Keys of a `[frames.NAME]`.
+pub const FRAME: [&str; 4] = ["in", "origin", "rotation", "doc"];
+/// Keys of a `[bodies.NAME]`.
+pub const BODY: [&str; 6] = ["frame", "mass", "centre", "inertia", "doc", "source"];
 /// Keys of a definition, of a term of an energy or of the dissipation.
 pub const TERM: [&str; 3] = ["value", "doc", "source"];
 /// Keys of an entry of `[forces]`.
@@ -42,7 +46,7 @@ pub const DRAWING: [&str; 2] = ["points", "lines"];
 pub const POINT: [&str; 2] = ["x", "y"];
 
 /// The sections, each with the keys of its entries; of `[model]` and `[drawing]` their own.
-pub const SECTIONS: [(&str, &[&str]); 15] = [
+pub const SECTIONS: [(&str, &[&str]); 17] = [
     ("model", &MODEL),
     ("parameters", &PARAMETER),
     ("coordinates", &COORDINATE),
@@ -50,6 +54,8 @@ pub const SECTIONS: [(&str, &[&str]); 15] = [
     ("states", &STATE),
     ("fields", &FIELD),
     ("definitions", &TERM),
+    ("frames", &FRAME),
+    ("bodies", &BODY),
     ("kinetic", &TERM),
     ("potential", &TERM),
     ("dissipation", &TERM),

@@ -61,6 +61,7 @@ mod scale;
 pub mod schema;
 pub mod shape_table;
 pub mod source;
+mod space;
 pub mod span;
 pub mod suggest;
 pub mod table;

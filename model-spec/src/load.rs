@@ -10,6 +10,7 @@ use crate::model::Model;
 use crate::motion;
 use crate::resolve::resolve;
 use crate::source::Source;
+use crate::space;
 use crate::span::Span;
 use crate::units_check;
 use crate::variant::ModelError;
@@ -59,12 +60,13 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
         let size = source.text.len() as u64;
         return Err(Diagnostics::one(source, too_large(size)));
     }
-    let document = document::read(&source)?;
-    let mut resolved = resolve(document, &source)?;
+    let mut document = document::read(&source)?;
+    let demands = space::expand(&mut document, &source)?;
+    let mut resolved = resolve(document, demands, &source)?;
     let mut found = Diagnostics::new(source.clone());
     motion::check(&resolved.model, &mut found);
     units_check::check(&mut resolved, &mut found);
-    let model = resolved.model;
+    let (model, inertias) = (resolved.model, resolved.inertias);
     check_sensors(&model, &mut found);
     check_drawing(&model, &mut found);
     if found.is_empty() {
@@ -72,6 +74,12 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     }
     if found.is_empty() {
         check_tables(&model, &mut found);
+    }
+    if found.is_empty() && !inertias.is_empty() {
+        let values = model.parameter_values().map_err(ModelError::diagnostic);
+        if let Some(values) = found.keep(values) {
+            space::check_inertias(&inertias, &values, &mut found);
+        }
     }
     if !found.is_empty() {
         return Err(found);

@@ -73,6 +73,12 @@ pub const SHAFT_AND_DISC: ShippedModel = ShippedModel {
     text: include_str!("../models/shaft_and_disc.toml"),
 };
 
+/// The PUMA 560, a six-joint arm of bodies in space.
+pub const PUMA_560: ShippedModel = ShippedModel {
+    name: "puma_560",
+    text: include_str!("../models/puma_560.toml"),
+};
+
 /// Two flexible links in a plane with a tip mass.
 pub const TWO_LINK_ARM: ShippedModel = ShippedModel {
     name: "two_link_arm",
@@ -80,7 +86,7 @@ pub const TWO_LINK_ARM: ShippedModel = ShippedModel {
 };
 
 /// All of them, by name.
-pub const ALL: [ShippedModel; 10] = [
+pub const ALL: [ShippedModel; 11] = [
     CART_TWO_ARMS,
     DOUBLE_PENDULUM,
     EMPS,
@@ -89,6 +95,7 @@ pub const ALL: [ShippedModel; 10] = [
     PENDULUM,
     PLANETARY_ARM,
     PLANETARY_ARM_RIG,
+    PUMA_560,
     SHAFT_AND_DISC,
     TWO_LINK_ARM,
 ];

@@ -13,6 +13,8 @@ pub struct Document {
     pub name: Name,
     /// `title` of `[model]`.
     pub title: String,
+    /// `gravity` of `[model]`: the acceleration of free fall, along the fixed axes.
+    pub gravity: Option<Vec<Quantity>>,
     /// `[parameters]`
     pub parameters: Vec<RawParameter>,
     /// `[coordinates]`
@@ -25,6 +27,10 @@ pub struct Document {
     pub fields: Vec<RawField>,
     /// `[definitions]`
     pub definitions: Vec<RawTerm>,
+    /// `[frames.NAME]`
+    pub frames: Vec<RawFrame>,
+    /// `[bodies.NAME]`
+    pub bodies: Vec<RawBody>,
     /// `[kinetic]`
     pub kinetic: Vec<RawTerm>,
     /// `[potential]`
@@ -186,6 +192,40 @@ pub struct RawTerm {
     pub name: Name,
     /// The expression.
     pub value: Quantity,
+    /// `doc`
+    pub doc: String,
+    /// `source`
+    pub origin: String,
+}
+
+/// A `[frames.NAME]`.
+#[derive(Debug)]
+pub struct RawFrame {
+    /// Its key.
+    pub name: Name,
+    /// `in`: the frame it is placed in; the fixed axes if absent.
+    pub parent: Option<Written>,
+    /// `origin`: three components along the parent's axes.
+    pub origin: Option<Vec<Quantity>>,
+    /// `rotation`: from its own axes to the parent's.
+    pub rotation: Option<Written>,
+    /// `doc`
+    pub doc: String,
+}
+
+/// A `[bodies.NAME]`.
+#[derive(Debug)]
+pub struct RawBody {
+    /// Its key.
+    pub name: Name,
+    /// `frame`
+    pub frame: Written,
+    /// `mass`; a body without one has inertia only.
+    pub mass: Option<Quantity>,
+    /// `centre`: three components along the frame's axes.
+    pub centre: Option<Vec<Quantity>>,
+    /// `inertia`: three principal moments or six elements, about the centre of mass.
+    pub inertia: Option<Vec<Quantity>>,
     /// `doc`
     pub doc: String,
     /// `source`

@@ -48,6 +48,8 @@ pub enum Quantity {
     Number(Number),
     /// A TOML string.
     Expression(Written),
+    /// What a short form stands for.
+    Expansion(Box<Syntax>),
 }
 
 impl Written {
@@ -85,6 +87,16 @@ impl Quantity {
                 span: number.span,
             }),
             Self::Expression(written) => written.syntax(),
+            Self::Expansion(syntax) => Ok(syntax.as_ref().clone()),
+        }
+    }
+
+    /// Where it stands.
+    pub fn span(&self) -> Span {
+        match self {
+            Self::Number(number) => number.span,
+            Self::Expression(written) => written.span,
+            Self::Expansion(syntax) => syntax.span,
         }
     }
 }
@@ -301,6 +313,25 @@ impl<'d> Entry<'d> {
             })
         };
         Ok([end(low)?, end(high)?])
+    }
+
+    /// The numbers or expressions of the array that is this entry's value, as many as one of
+    /// `counts`.
+    ///
+    /// # Errors
+    /// If it is no such array.
+    pub fn quantities(&self, counts: &[usize], example: &str) -> Result<Vec<Quantity>, Diagnostic> {
+        let list = self.list(example)?;
+        if !counts.contains(&list.len()) {
+            let name = &self.name.text;
+            let counts: Vec<String> = counts.iter().map(usize::to_string).collect();
+            let (counts, given) = (counts.join(" or "), list.len());
+            let message = format!("{} has {counts} components, not {given}", quoted(name));
+            return Err(Diagnostic::error(message)
+                .at(self.span(), format!("{given} given"))
+                .help(format!("write {name} = {example}")));
+        }
+        list.iter().map(Entry::quantity).collect()
     }
 
     /// The place of a value of this entry; the entry's own where the value has none.

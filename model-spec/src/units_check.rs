@@ -24,7 +24,7 @@ pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
     units.coordinates();
     units.inputs();
     units.fields();
-    if units.definitions() {
+    if units.definitions() && units.short_forms(&resolved.demanded) {
         units.states();
         units.energies();
         units.forces();
@@ -200,6 +200,17 @@ impl Units<'_, '_> {
     }
 
     /// A quantity for which a bare number is in SI.
+    /// Whether the quantities of short forms have their units; the energies made of one that has
+    /// not would only say it again.
+    fn short_forms(&mut self, demanded: &[(Expr, Dimension, String)]) -> bool {
+        let clean = self.found.is_empty();
+        for (value, dimension, subject) in demanded {
+            let expected = format!("expected {}", Words(*dimension));
+            self.expect(value, *dimension, subject, &expected);
+        }
+        !clean || self.found.is_empty()
+    }
+
     fn expect_quantity(&mut self, expr: &Expr, expected: Dimension, subject: &str) {
         if !matches!(expr.kind, ExprKind::Number(_)) {
             self.expect(

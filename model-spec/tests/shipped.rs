@@ -23,6 +23,9 @@ fn value(model: &Model, name: &str) -> f64 {
     values[index.unwrap_or_else(|| panic!("{name}"))]
 }
 
+#[path = "shipped/bodies.rs"]
+mod bodies;
+
 #[test]
 fn every_shipped_specification_loads_without_a_warning() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");

@@ -24,6 +24,9 @@ impl Known<'_> {
         let written = match quantity {
             Quantity::Number(number) => return Ok(Ordinate::Number(number.value)),
             Quantity::Expression(written) => written,
+            Quantity::Expansion(syntax) => {
+                return Err(Diagnostic::error("a point is placed by a name").at(syntax.span, ""));
+            }
         };
         let place = |names: &[&str]| names.iter().position(|name| *name == written.text);
         if let Some(place) = place(&self.observables) {
@@ -83,7 +86,7 @@ impl Builder {
             name: raw.name.text.clone(),
             x: x?,
             y: y?,
-            spans: [place(&raw.x), place(&raw.y)],
+            spans: [raw.x.span(), raw.y.span()],
         })
     }
 
@@ -94,14 +97,6 @@ impl Builder {
             name: raw.name.text.clone(),
             points: points.collect(),
         }
-    }
-}
-
-/// Where a number or a name stands.
-fn place(quantity: &Quantity) -> Span {
-    match quantity {
-        Quantity::Number(number) => number.span,
-        Quantity::Expression(written) => written.span,
     }
 }
 

@@ -24,6 +24,7 @@ use crate::raw::{
 };
 use crate::shape_table::ShapeTable;
 use crate::source::Source;
+use crate::space::{Demands, Inertia};
 use crate::span::Span;
 use crate::table::{Number, Quantity, Written};
 use crate::unit::Unit;
@@ -35,17 +36,26 @@ pub struct Resolved {
     pub model: Model,
     /// The units that observables declare, in their order.
     pub declared: Vec<Option<Unit>>,
+    /// Quantities of short forms, each with its unit and what it is.
+    pub demanded: Vec<(Expr, Dimension, String)>,
+    /// Inertias of bodies.
+    pub inertias: Vec<Inertia<Expr>>,
 }
 
 /// The model of a document.
 ///
 /// # Errors
 /// Unfit names, unknown names, unreadable units and expressions, references in a circle.
-pub fn resolve(document: Document, source: &Source) -> Result<Resolved, Diagnostics> {
+pub fn resolve(
+    document: Document,
+    demands: Demands,
+    source: &Source,
+) -> Result<Resolved, Diagnostics> {
     let mut found = Diagnostics::new(source.clone());
     let names = Names::declare(&document, &mut found);
     let mut builder = Builder { names, found };
-    let resolved = builder.model(document, source);
+    let mut resolved = builder.model(document, source);
+    builder.demands(demands, &mut resolved);
     if builder.found.is_empty() {
         Ok(resolved)
     } else {
@@ -92,7 +102,42 @@ impl Builder {
         if self.found.is_empty() {
             self.put_in_order(&mut model);
         }
-        Resolved { model, declared }
+        Resolved {
+            model,
+            declared,
+            demanded: Vec::new(),
+            inertias: Vec::new(),
+        }
+    }
+
+    /// What short forms ask of their quantities.
+    fn demands(&mut self, demands: Demands, resolved: &mut Resolved) {
+        if !self.found.is_empty() {
+            return;
+        }
+        for demand in demands.units {
+            if let Some(value) = self.expression(&demand.value, Scope::Motion) {
+                let demanded = (value, demand.dimension, demand.subject);
+                resolved.demanded.push(demanded);
+            }
+        }
+        for inertia in demands.inertias {
+            let mut constant = |value: &Quantity| self.expression(value, Scope::Parameters);
+            let mass = match &inertia.mass {
+                Some(mass) => match constant(mass) {
+                    None => continue,
+                    mass => mass,
+                },
+                None => None,
+            };
+            let elements: Option<Vec<Expr>> = inertia.elements.iter().map(constant).collect();
+            resolved.inertias.extend(elements.map(|elements| Inertia {
+                elements,
+                mass,
+                body: inertia.body,
+                span: inertia.span,
+            }));
+        }
     }
 
     fn all<R, T>(&mut self, raw: Vec<R>, build: impl Fn(&mut Self, R) -> Option<T>) -> Vec<T> {
@@ -197,7 +242,7 @@ impl Builder {
                 let unit = unit.as_ref()?;
                 ParameterValue::Number(self.in_si(unit, *number)?)
             }
-            Quantity::Expression(_) => {
+            Quantity::Expression(_) | Quantity::Expansion(_) => {
                 ParameterValue::Expression(self.expression(&raw.value, Scope::Parameters)?)
             }
         };

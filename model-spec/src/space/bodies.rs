@@ -1,0 +1,154 @@
+//! The energies of a body: 1/2 m v.v + 1/2 omega.I omega with v the velocity of its centre of
+//! mass, and -m g.p by gravity with p the centre's position.
+
+use super::frames::{Frame, Frames, along};
+use super::moving::Moving;
+use super::scalar::{add, half, is, multiply, negate, number, square};
+use super::vector::{Vector, cross, inner, sum, zero};
+use super::{Demands, Inertia, UnitDemand, expansion};
+use crate::ast::Syntax;
+use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
+use crate::dimension::Dimension;
+use crate::raw::{Document, RawBody, RawTerm};
+use crate::span::Span;
+use crate::table::Quantity;
+
+/// The pairs of axes of I_xx, I_yy, I_zz, I_xy, I_yz, I_xz.
+const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
+
+/// Adds the energies of all bodies to the document.
+pub fn expand(
+    document: &mut Document,
+    frames: &Frames,
+    moving: &Moving,
+    demands: &mut Demands,
+    found: &mut Diagnostics,
+) {
+    for body in std::mem::take(&mut document.bodies) {
+        if found.is_full() {
+            return;
+        }
+        let terms = document.kinetic.iter().chain(&document.potential);
+        if let Some(term) = terms.into_iter().find(|t| t.name.text == body.name.text) {
+            let name = quoted(&body.name.text);
+            found.push(
+                Diagnostic::error(format!("the name {name} is taken"))
+                    .at(body.name.span, "a body gives its name to its energies")
+                    .also(term.name.span, "here")
+                    .help("choose another name"),
+            );
+            continue;
+        }
+        let Some(frame) = found.keep(frames.get(&body.frame)) else {
+            continue;
+        };
+        let Some(parts) = parts(&body, moving, demands, found) else {
+            continue;
+        };
+        let term = |value: Syntax| RawTerm {
+            name: body.name.clone(),
+            value: expansion(value),
+            doc: body.doc.clone(),
+            origin: body.origin.clone(),
+        };
+        let kinetic = kinetic(&parts, frame);
+        if !is(&kinetic, 0.0) {
+            document.kinetic.push(term(kinetic));
+        }
+        if frames.gravity {
+            let way = add(frame.depth.clone(), inner(&frame.down, &parts.centre));
+            let weight = match &frames.strength {
+                Some(strength) => multiply(parts.mass.clone(), strength.clone()),
+                None => parts.mass.clone(),
+            };
+            let potential = negate(multiply(weight, way));
+            if !is(&potential, 0.0) {
+                document.potential.push(term(potential));
+            }
+        }
+    }
+}
+
+/// What a body is made of.
+struct Parts {
+    mass: Syntax,
+    centre: Vector,
+    inertia: Vec<Syntax>,
+    span: Span,
+}
+
+fn parts(
+    body: &RawBody,
+    moving: &Moving,
+    demands: &mut Demands,
+    found: &mut Diagnostics,
+) -> Option<Parts> {
+    let own = &body.name;
+    let mass = match &body.mass {
+        Some(mass) => {
+            demands.units.push(UnitDemand {
+                value: mass.clone(),
+                dimension: Dimension::MASS,
+                subject: format!("the mass of `{}`", own.text),
+            });
+            found.keep(mass.syntax())?
+        }
+        None => number(0.0, own.span),
+    };
+    let subject = format!("the centre of `{}`", own.text);
+    let centre = match &body.centre {
+        Some(centre) => along(centre, &subject, Dimension::LENGTH, demands, found)?,
+        None => zero(own.span),
+    };
+    let mut inertia = Vec::new();
+    for value in body.inertia.iter().flatten() {
+        inertia.push(found.keep(value.syntax())?);
+        demands.units.push(UnitDemand {
+            value: value.clone(),
+            dimension: Dimension::of([1, 2, 0, 0]),
+            subject: format!("the inertia of `{}`", own.text),
+        });
+    }
+    for part in centre.iter().chain(&inertia).chain([&mass]) {
+        if moving.holds(part) {
+            found.push(
+                Diagnostic::error(format!("the body {} changes", quoted(&own.text)))
+                    .at(part.span, "this moves")
+                    .help("mass, centre and inertia are constant: what moves is a frame"),
+            );
+            return None;
+        }
+    }
+    let elements = body.inertia.clone().unwrap_or_default();
+    let span = elements.iter().map(Quantity::span).reduce(Span::join);
+    demands.inertias.push(Inertia {
+        body: own.clone(),
+        mass: body.mass.clone(),
+        elements,
+        span: span.unwrap_or(own.span),
+    });
+    Some(Parts {
+        mass,
+        centre,
+        inertia,
+        span: own.span,
+    })
+}
+
+fn kinetic(parts: &Parts, frame: &Frame) -> Syntax {
+    let omega = &frame.omega;
+    let velocity = sum(frame.velocity.clone(), cross(omega, &parts.centre));
+    let [x, y, z] = velocity.map(square);
+    let translation = half(multiply(parts.mass.clone(), add(add(x, y), z)));
+    let mut rotation = number(0.0, parts.span);
+    for (element, (i, j)) in parts.inertia.iter().zip(PAIRS) {
+        let product = if i == j {
+            square(omega[i].clone())
+        } else {
+            let both = multiply(omega[i].clone(), omega[j].clone());
+            multiply(number(2.0, element.span), both)
+        };
+        rotation = add(rotation, multiply(element.clone(), product));
+    }
+    add(translation, half(rotation))
+}

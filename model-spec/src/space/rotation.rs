@@ -1,0 +1,113 @@
+//! Rotations as written: a product of turns about the axes, `rotation_x(pi/2)*rotation_z(q)`.
+//! Each turn is about an axis of the frame that those before it have made.
+
+use super::scalar::{add, call, multiply, negate, number};
+use super::vector::Vector;
+use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
+use crate::diagnostic::Diagnostic;
+use crate::span::Span;
+
+/// A turn about an axis.
+pub struct Turn {
+    /// 0, 1, 2 for x, y, z.
+    pub axis: usize,
+    /// The angle, by the right hand.
+    pub angle: Syntax,
+}
+
+/// The turns of a rotation, from the parent's axes on.
+///
+/// # Errors
+/// What is no product of turns.
+pub fn turns(syntax: &Syntax) -> Result<Vec<Turn>, Diagnostic> {
+    let mut turns = Vec::new();
+    let mut rest = syntax;
+    while let SyntaxKind::Binary(BinaryOperator::Multiply, left, right) = &rest.kind {
+        turns.push(turn(right)?);
+        rest = left;
+    }
+    turns.push(turn(rest)?);
+    turns.reverse();
+    Ok(turns)
+}
+
+fn turn(syntax: &Syntax) -> Result<Turn, Diagnostic> {
+    let help = "a rotation is a product of rotation_x(ANGLE), rotation_y(ANGLE) and \
+                rotation_z(ANGLE)";
+    let refused = |span: Span, why: &str| {
+        Diagnostic::error("this is no rotation")
+            .at(span, why)
+            .help(help)
+    };
+    let SyntaxKind::Call {
+        function,
+        function_span,
+        arguments,
+    } = &syntax.kind
+    else {
+        return Err(refused(syntax.span, "not a rotation about an axis"));
+    };
+    let axis = match function.as_str() {
+        "rotation_x" => 0,
+        "rotation_y" => 1,
+        "rotation_z" => 2,
+        _ => return Err(refused(*function_span, "not a rotation about an axis")),
+    };
+    match arguments.as_slice() {
+        [angle] => Ok(Turn {
+            axis,
+            angle: angle.clone(),
+        }),
+        _ => Err(refused(syntax.span, "it takes one angle")),
+    }
+}
+
+impl Turn {
+    /// The components of a vector along the turned axes.
+    pub fn of(&self, vector: &Vector) -> Vector {
+        let (k, i, j) = (self.axis, (self.axis + 1) % 3, (self.axis + 2) % 3);
+        let (cosine, sine) = self.cosine_and_sine();
+        let product =
+            |factor: &Syntax, index: usize| multiply(vector[index].clone(), factor.clone());
+        let mut turned = vector.clone();
+        turned[i] = add(product(&cosine, i), product(&sine, j));
+        turned[j] = add(product(&cosine, j), negate(product(&sine, i)));
+        turned[k] = vector[k].clone();
+        turned
+    }
+
+    /// Quarter turns are exact, so that axes that coincide do so in the equations.
+    fn cosine_and_sine(&self) -> (Syntax, Syntax) {
+        let span = self.angle.span;
+        let quarters = quarters(&self.angle).filter(|q| q.fract() == 0.0 && q.abs() < 1e9);
+        let values = quarters.map(|quarters| match quarters.rem_euclid(4.0) as u8 {
+            0 => (1.0, 0.0),
+            1 => (0.0, 1.0),
+            2 => (-1.0, 0.0),
+            _ => (0.0, -1.0),
+        });
+        match values {
+            Some((cosine, sine)) => (number(cosine, span), number(sine, span)),
+            None => (
+                call("cos", self.angle.clone()),
+                call("sin", self.angle.clone()),
+            ),
+        }
+    }
+}
+
+/// How many quarter turns a constant angle has.
+fn quarters(angle: &Syntax) -> Option<f64> {
+    match &angle.kind {
+        SyntaxKind::Number(value) if *value == 0.0 => Some(0.0),
+        SyntaxKind::Name(name) if name == "pi" => Some(2.0),
+        SyntaxKind::Negate(operand) => Some(-quarters(operand)?),
+        SyntaxKind::Binary(operator, left, right) => match (operator, &left.kind, &right.kind) {
+            (BinaryOperator::Divide, _, SyntaxKind::Number(by)) => Some(quarters(left)? / by),
+            (BinaryOperator::Multiply, SyntaxKind::Number(by), _) => Some(by * quarters(right)?),
+            (BinaryOperator::Multiply, _, SyntaxKind::Number(by)) => Some(quarters(left)? * by),
+            _ => None,
+        },
+        _ => None,
+    }
+}

@@ -1,0 +1,117 @@
+//! Sums and products of expressions as written, without what is 0 and without factors of 1.
+
+use crate::ast::{BinaryOperator, Syntax, SyntaxKind};
+use crate::span::Span;
+
+/// A literal.
+pub fn number(value: f64, span: Span) -> Syntax {
+    Syntax {
+        kind: SyntaxKind::Number(value),
+        span,
+    }
+}
+
+/// A name.
+pub fn name(text: &str, span: Span) -> Syntax {
+    Syntax {
+        kind: SyntaxKind::Name(text.to_owned()),
+        span,
+    }
+}
+
+/// A function of one argument.
+pub fn call(function: &str, argument: Syntax) -> Syntax {
+    let span = argument.span;
+    let kind = SyntaxKind::Call {
+        function: function.to_owned(),
+        function_span: span,
+        arguments: vec![argument],
+    };
+    Syntax { kind, span }
+}
+
+/// Whether this is the literal.
+pub fn is(syntax: &Syntax, value: f64) -> bool {
+    syntax.kind == SyntaxKind::Number(value)
+}
+
+/// `-a`
+pub fn negate(a: Syntax) -> Syntax {
+    let span = a.span;
+    match a.kind {
+        SyntaxKind::Number(value) => number(0.0 - value, span),
+        SyntaxKind::Negate(operand) => *operand,
+        _ => Syntax {
+            kind: SyntaxKind::Negate(Box::new(a)),
+            span,
+        },
+    }
+}
+
+/// `a + b`
+pub fn add(a: Syntax, b: Syntax) -> Syntax {
+    if is(&a, 0.0) {
+        return b;
+    }
+    if is(&b, 0.0) {
+        return a;
+    }
+    let span = a.span;
+    match b.kind {
+        SyntaxKind::Negate(operand) => binary(BinaryOperator::Subtract, a, *operand, span),
+        _ => binary(BinaryOperator::Add, a, b, span),
+    }
+}
+
+/// `a * b`
+pub fn multiply(a: Syntax, b: Syntax) -> Syntax {
+    if is(&a, 0.0) || is(&b, 1.0) {
+        return a;
+    }
+    if is(&b, 0.0) || is(&a, 1.0) {
+        return b;
+    }
+    if is(&a, -1.0) {
+        return negate(b);
+    }
+    if is(&b, -1.0) {
+        return negate(a);
+    }
+    let span = b.span;
+    match (a.kind, b.kind) {
+        (SyntaxKind::Negate(a), SyntaxKind::Negate(b)) => multiply(*a, *b),
+        (SyntaxKind::Negate(a), kind) => negate(multiply(*a, Syntax { kind, span })),
+        (kind, SyntaxKind::Negate(b)) => negate(multiply(Syntax { kind, span }, *b)),
+        (left, right) => {
+            let left = Syntax {
+                kind: left,
+                span: a.span,
+            };
+            let right = Syntax { kind: right, span };
+            binary(BinaryOperator::Multiply, left, right, span)
+        }
+    }
+}
+
+/// `a^2`
+pub fn square(a: Syntax) -> Syntax {
+    let span = a.span;
+    match a.kind {
+        SyntaxKind::Number(value) => number(value * value, span),
+        SyntaxKind::Negate(operand) => square(*operand),
+        _ => binary(BinaryOperator::Power, a, number(2.0, span), span),
+    }
+}
+
+/// `a / 2`
+pub fn half(a: Syntax) -> Syntax {
+    let span = a.span;
+    multiply(number(0.5, span), a)
+}
+
+fn binary(operator: BinaryOperator, a: Syntax, b: Syntax, span: Span) -> Syntax {
+    Syntax {
+        kind: SyntaxKind::Binary(operator, Box::new(a), Box::new(b)),
+        span,
+    }
+}

@@ -1,0 +1,40 @@
+//! Vectors of three expressions along the axes of one frame.
+
+use super::scalar::{add, multiply, negate, number};
+use crate::ast::Syntax;
+use crate::span::Span;
+
+/// Components along x, y, z.
+pub type Vector = [Syntax; 3];
+
+/// The axes, as names end.
+pub const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Zero.
+pub fn zero(span: Span) -> Vector {
+    [0, 1, 2].map(|_| number(0.0, span))
+}
+
+/// `a + b`
+pub fn sum([ax, ay, az]: Vector, [bx, by, bz]: Vector) -> Vector {
+    [add(ax, bx), add(ay, by), add(az, bz)]
+}
+
+/// The vector product.
+pub fn cross([ax, ay, az]: &Vector, [bx, by, bz]: &Vector) -> Vector {
+    let minor = |a: &Syntax, d: &Syntax, c: &Syntax, b: &Syntax| {
+        let left = multiply(a.clone(), d.clone());
+        add(left, negate(multiply(c.clone(), b.clone())))
+    };
+    [
+        minor(ay, bz, az, by),
+        minor(az, bx, ax, bz),
+        minor(ax, by, ay, bx),
+    ]
+}
+
+/// The scalar product.
+pub fn inner([ax, ay, az]: &Vector, [bx, by, bz]: &Vector) -> Syntax {
+    let product = |a: &Syntax, b: &Syntax| multiply(a.clone(), b.clone());
+    add(add(product(ax, bx), product(ay, by)), product(az, bz))
+}
