@@ -13,6 +13,7 @@ mod furuta_pendulum;
 mod hub_beam_tip_mass;
 mod linear_system;
 mod pendulum;
+mod puma_560;
 mod shaft_and_disc;
 mod two_link_arm;
 
@@ -67,6 +68,7 @@ pub fn find(name: &str) -> Option<ClosedForm> {
         "furuta_pendulum" => Some(furuta_pendulum::accelerations),
         "hub_beam_tip_mass" => Some(hub_beam_tip_mass::accelerations),
         "pendulum" => Some(pendulum::accelerations),
+        "puma_560" => Some(puma_560::accelerations),
         "shaft_and_disc" => Some(shaft_and_disc::accelerations),
         "two_link_arm" => Some(two_link_arm::accelerations),
         _ => None,
