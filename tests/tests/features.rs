@@ -70,6 +70,7 @@ features! {
         functions: [0];
         shorter_functions: [0];
         pendulum_chain: [0];
+        heavy_top: [0];
     }
     // Forces alone do not account for the energy: the power is judged once more, by
     // differences of the energy.
