@@ -460,6 +460,18 @@ fn rows_between_steps_have_their_tolerance_and_cost_no_evaluation() {
         // Errors of the steps add up and grow by e^2.
         let bound = 2.0_f64.exp() * with.work.steps as f64 * tolerance;
         assert!(worst < bound, "{worst:e} at {tolerance:e}");
+        let ends = (1..=100).map(|k| {
+            let t = 0.1 * f64::from(k);
+            let settings = Settings::with_tolerance(tolerance);
+            let found = simulate(&system, &[1.0, 0.0], (0.0, t), &[], &settings, &mut |_| {});
+            (found.expect("a trajectory").last[0] - t.sin().exp()).abs()
+        });
+        let ends = ends.fold(0.0, f64::max);
+        // One order less than at the ends of steps that are as long as the tolerance lets them be.
+        assert!(
+            worst < 20.0 * ends,
+            "{worst:e} and {ends:e} at {tolerance:e}"
+        );
         longest = f64::max(longest, 10.0 / with.work.steps as f64);
     }
     // There are many rows in a step.
