@@ -59,11 +59,11 @@ pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
 /// Names and units of coordinates and modes.
 fn coordinates(compiled: &CompiledModel) -> Vec<(String, String)> {
     let names = compiled.state_names();
-    let half = names.len() / 2;
+    let degrees = compiled.program().degrees_of_freedom();
     names
         .into_iter()
         .zip(compiled.state_units())
-        .take(half)
+        .take(degrees)
         .collect()
 }
 

@@ -83,7 +83,7 @@ fn initial_mass_matrix(
     let state = model
         .initial_state(orders)
         .map_err(|error| error.diagnostic())?;
-    let size = state.len() / 2;
+    let size = program.degrees_of_freedom();
     let mut matrix = vec![0.0; size * size];
     let inputs = vec![0.0; model.inputs.len()];
     Evaluator::new(program.clone()).mass_matrix(

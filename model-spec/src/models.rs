@@ -67,6 +67,12 @@ pub const PLANETARY_ARM_RIG: ShippedModel = ShippedModel {
     text: include_str!("../models/planetary_arm_rig.toml"),
 };
 
+/// A moving-coil loudspeaker, with currents as states of first order.
+pub const LOUDSPEAKER: ShippedModel = ShippedModel {
+    name: "loudspeaker",
+    text: include_str!("../models/loudspeaker.toml"),
+};
+
 /// A disc on an elastic shaft.
 pub const SHAFT_AND_DISC: ShippedModel = ShippedModel {
     name: "shaft_and_disc",
@@ -86,12 +92,13 @@ pub const TWO_LINK_ARM: ShippedModel = ShippedModel {
 };
 
 /// All of them, by name.
-pub const ALL: [ShippedModel; 11] = [
+pub const ALL: [ShippedModel; 12] = [
     CART_TWO_ARMS,
     DOUBLE_PENDULUM,
     EMPS,
     FURUTA_PENDULUM,
     HUB_BEAM_TIP_MASS,
+    LOUDSPEAKER,
     PENDULUM,
     PLANETARY_ARM,
     PLANETARY_ARM_RIG,

@@ -71,6 +71,8 @@ features! {
         shorter_functions: [0];
         pendulum_chain: [0];
         heavy_top: [0];
+        states_of_first_order: [0, 1, 3];
+        piecewise_linear_states: [0];
     }
     // Forces alone do not account for the energy: the power is judged once more, by
     // differences of the energy.

@@ -45,7 +45,7 @@ fn shipped_models_are_what_their_physics_says() {
             .expect("a name");
         let expected = match name {
             "planetary_arm" | "planetary_arm_rig" => Some("piecewise linear"),
-            "emps" | "hub_beam_tip_mass" | "shaft_and_disc" => Some("linear"),
+            "emps" | "hub_beam_tip_mass" | "loudspeaker" | "shaft_and_disc" => Some("linear"),
             _ => None,
         };
         let kind = kind(&load(name));

@@ -46,7 +46,7 @@ const FUNCTIONS: [&str; 20] = [
 ];
 
 /// What [`kind`] may say.
-const OPERATIONS: [&str; 25] = [
+const OPERATIONS: [&str; 26] = [
     "Add",
     "Apply",
     "Assemble",
@@ -68,6 +68,7 @@ const OPERATIONS: [&str; 25] = [
     "Power",
     "Rate",
     "Select",
+    "State",
     "Subtract",
     "Table",
     "Time",
@@ -98,6 +99,7 @@ fn kind(op: &Op) -> &'static str {
         Op::PivotReciprocal(_) => "PivotReciprocal",
         Op::Power(..) => "Power",
         Op::Rate(_) => "Rate",
+        Op::State(_) => "State",
         Op::Select { .. } => "Select",
         Op::Subtract(..) => "Subtract",
         Op::Table(_) => "Table",

@@ -14,17 +14,26 @@ pub fn run(options: &Modes) -> Result {
     let run = compiled.at_declared()?;
     let at = run.operating_point(&assignments("--at", &options.at)?)?;
     let found = linearised(&run, &at)?;
-    let modes = natural_modes(&found.a).map_err(|error| Error::input(error.to_string()))?;
+    let modes = natural_modes(&found.a, compiled.program().degrees_of_freedom())
+        .map_err(|error| Error::input(error.to_string()))?;
     if !options.json {
         return say(&table(&compiled, &modes));
     }
-    let states = compiled.state_names();
-    let coordinates = &states[..states.len() / 2];
     let mut document = head(&compiled);
     document.insert("at".to_owned(), named(&compiled, &at));
-    document.insert("coordinates".to_owned(), json!(coordinates));
+    document.insert("coordinates".to_owned(), json!(shape_names(&compiled)));
     document.insert("modes".to_owned(), modes.iter().map(record).collect());
     say(&format!("{:#}\n", Value::Object(document)))
+}
+
+/// What the numbers of a shape are amplitudes of: coordinates, then states of first order.
+fn shape_names(compiled: &CompiledModel) -> Vec<String> {
+    let (mut names, degrees) = (
+        compiled.state_names(),
+        compiled.program().degrees_of_freedom(),
+    );
+    names.drain(degrees..2 * degrees);
+    names
 }
 
 fn record(mode: &NaturalMode) -> Value {
@@ -47,7 +56,7 @@ const SHOWN: f64 = 5e-5;
 
 fn table(compiled: &CompiledModel, modes: &[NaturalMode]) -> String {
     let mut text = "frequency, Hz   damping ratio   shape (its largest coordinates)\n".to_owned();
-    let names = compiled.state_names();
+    let names = shape_names(compiled);
     for mode in modes {
         let mut parts: Vec<_> = names.iter().zip(&mode.shape).collect();
         parts.sort_by(|a, b| b.1.norm().total_cmp(&a.1.norm()));

@@ -23,7 +23,8 @@ pub fn run(options: &Trim) -> Result {
         other => other?,
     };
     let linear = linearised(&run, &found.at)?;
-    let modes = natural_modes(&linear.a).map_err(|error| Error::input(error.to_string()))?;
+    let modes = natural_modes(&linear.a, compiled.program().degrees_of_freedom())
+        .map_err(|error| Error::input(error.to_string()))?;
     let largest = modes.iter().map(|mode| mode.eigenvalue.norm());
     let least = ZERO * largest.fold(0.0, f64::max);
     let growth = modes.iter().map(|mode| mode.eigenvalue.re);
@@ -41,7 +42,8 @@ pub fn run(options: &Trim) -> Result {
 
 fn document(compiled: &CompiledModel, found: &Equilibrium, stability: &str) -> Value {
     let states = compiled.state_names();
-    let coordinates = &states[..states.len() / 2];
+    let degrees = compiled.program().degrees_of_freedom();
+    let coordinates = &states[..degrees];
     let (inputs, input_units) = inputs(compiled);
     let units = &compiled.state_units()[..coordinates.len()];
     let mut document = head(compiled);

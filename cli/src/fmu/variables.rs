@@ -210,33 +210,37 @@ impl List {
 
     /// The state and its derivatives.
     fn state(&mut self, model: &Model, names: &[String], initial: &[f64], orders: &[usize]) {
-        let mut rows: Vec<(String, &Measurement)> = Vec::new();
+        // What each is, its unit, and whether it is a rate of that.
+        let mut rows: Vec<(String, &Measurement, bool)> = Vec::new();
         for coordinate in &model.coordinates {
-            rows.push((coordinate.doc.clone(), &coordinate.unit));
+            rows.push((coordinate.doc.clone(), &coordinate.unit, false));
         }
         for (field, order) in model.fields.iter().zip(orders) {
             for mode in 1..=*order {
-                rows.push((format!("{}, mode {mode}", field.doc), &field.unit));
+                rows.push((format!("{}, mode {mode}", field.doc), &field.unit, false));
             }
         }
-        let half = rows.len();
-        let first = self.variables.len();
-        for (place, name) in names.iter().enumerate() {
-            let (doc, unit) = &rows[place % half];
-            let is_rate = place >= half;
-            let doc = match is_rate {
-                true => format!("Rate of {}", names[place - half]),
-                false => doc.clone(),
-            };
-            let measure = self.units.rate(unit, u8::from(is_rate));
-            self.push(name, Kind::State, &doc, measure).start = Some(initial[place]);
+        for place in 0..rows.len() {
+            rows.push((format!("Rate of {}", names[place]), rows[place].1, true));
         }
-        for place in 0..names.len() {
-            let name = format!("der({})", self.variables[first + place].name);
-            let (_, unit) = &rows[place % half];
-            let measure = self.units.rate(unit, 1 + u8::from(place >= half));
-            let doc = format!("Derivative of {}", self.variables[first + place].name);
-            self.push(&name, Kind::Rate(first + place), &doc, measure);
+        for state in &model.states {
+            rows.push((state.doc.clone(), &state.unit, false));
+        }
+        let first = self.variables.len();
+        for ((name, (doc, unit, is_rate)), initial) in names.iter().zip(&rows).zip(initial) {
+            let measure = self.units.rate(unit, u8::from(*is_rate));
+            self.push(name, Kind::State, doc, measure).start = Some(*initial);
+        }
+        for (place, (_, unit, is_rate)) in rows.iter().enumerate() {
+            let state = self.variables[first + place].name.clone();
+            let measure = self.units.rate(unit, 1 + u8::from(*is_rate));
+            let doc = format!("Derivative of {state}");
+            self.push(
+                &format!("der({state})"),
+                Kind::Rate(first + place),
+                &doc,
+                measure,
+            );
         }
     }
 }

@@ -203,6 +203,10 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
                 self.call.state,
                 program.degrees_of_freedom() + index.index(),
             ),
+            Op::State(index) => (
+                self.call.state,
+                2 * program.degrees_of_freedom() + index.index(),
+            ),
             Op::Input(index) => (self.call.memory, self.shared.inputs() + index.index()),
             Op::Parameter(_) | Op::Argument(..) => {
                 (self.call.memory, self.shared.places.offset(id))
@@ -265,6 +269,7 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
             | Op::Parameter(_)
             | Op::Coordinate(_)
             | Op::Rate(_)
+            | Op::State(_)
             | Op::Input(_)
             | Op::Time => self.store_leaf(id),
             // In its place by the evaluator.
@@ -361,6 +366,11 @@ impl<'a, 'p, 'f> Writer<'a, 'p, 'f> {
         for (row, id) in scalars.iter().enumerate() {
             let number = self.number(*id, Lanes::One);
             out.start = degrees + row;
+            self.store(number, out, At::one(0));
+        }
+        for (place, id) in self.program.first_order_rates.iter().enumerate() {
+            let number = self.number(*id, Lanes::One);
+            out.start = 2 * degrees + place;
             self.store(number, out, At::one(0));
         }
         for (field, id) in FieldId::first(modal.len()).zip(modal) {

@@ -177,7 +177,8 @@ fn at_rest_except(graph: &mut Graph, id: NodeId, kept: &[NodeId]) -> NodeId {
             Operation::Coordinate(_)
             | Operation::Rate(_)
             | Operation::ModeCoordinates(_)
-            | Operation::ModeRates(_) => true,
+            | Operation::ModeRates(_)
+            | Operation::State(_) => true,
             Operation::Call(function, _) => {
                 matches!(
                     function,

@@ -2,6 +2,7 @@
 //! d/dt(dT/dq') - dT/dq + dV/dq + dR/dq' = Q, as nodes of one graph: mass matrix,
 //! generalised forces, accelerations, energy, power and guards.
 
+use eomgen_model_spec::ids::StateId;
 use eomgen_model_spec::model::{Model, ParameterValue, Term};
 
 use crate::mechanics::coefficients::{NamedCoefficient, named};
@@ -11,7 +12,7 @@ use crate::mechanics::lagrange::{GradientBy, Variables};
 use crate::mechanics::mass_matrix::{MassMatrix, ModalMassBlock};
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::{Accelerations, solve};
-use crate::mechanics::translate::{DeriveError, Derived, Translator};
+use crate::mechanics::translate::{Derived, Translator};
 use crate::symbolic::graph::{Graph, NodeId};
 
 /// The equations of motion of one model at one order.
@@ -36,6 +37,8 @@ pub struct Equations {
     pub forces: RowNodes,
     /// The accelerations and how they were solved for.
     pub accelerations: Accelerations,
+    /// The rates of the states of first order.
+    pub state_rates: Vec<NodeId>,
     /// Power of all non-conservative forces, in W: d(T + V)/dt.
     pub power: NodeId,
     /// The switching surfaces: a node that changes sign, with what it means.
@@ -55,9 +58,18 @@ pub struct Equations {
     pub modal_blocks: Vec<ModalMassBlock>,
 }
 
+impl Equations {
+    /// What the rates of the state are computed from: accelerations and the rates of the states
+    /// of first order.
+    pub(crate) fn rate_nodes(&self) -> Vec<NodeId> {
+        let mut nodes = self.accelerations.rows.nodes();
+        nodes.extend(&self.state_rates);
+        nodes
+    }
+}
+
 /// Derives the equations of motion for fields of these orders.
 pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
-    refuse_states(model)?;
     let mut translator = Translator::new(model, orders);
     let derived_parameters = derived_parameters(&mut translator)?;
     let mut terms = Vec::new();
@@ -74,6 +86,9 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     let right_side = variables.difference(&mut translator.graph, &forces, &velocity_terms);
     let accelerations = solve(&mut translator.graph, &mass, &right_side);
     name_accelerations(&mut translator.graph, model, &accelerations);
+    let state_rates = StateId::first(model.states.len())
+        .map(|index| translator.state_rate(index))
+        .collect::<Derived<Vec<NodeId>>>()?;
     let power = power(
         &mut translator.graph,
         &variables,
@@ -96,6 +111,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     moving.extend(velocity_terms.nodes());
     moving.extend(mass.scalars.iter().flatten());
     moving.extend(accelerations.rows.nodes());
+    moving.extend(&state_rates);
     let guards = guards(&mut translator.graph, &moving);
     let modal_blocks = mass.assembled_blocks(&mut translator.graph);
     let definitions = translator.definition_nodes();
@@ -110,6 +126,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         velocity_terms,
         forces,
         accelerations,
+        state_rates,
         power,
         guards,
         observables,
@@ -119,21 +136,6 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         inputs: model.inputs.len(),
         modal_blocks,
     })
-}
-
-/// Programs hold coordinates, modes and their rates: what else moves is checked and no more.
-fn refuse_states(model: &Model) -> Derived<()> {
-    match model.states.first() {
-        None => Ok(()),
-        Some(state) => Err(DeriveError {
-            span: state.span,
-            message: format!(
-                "equations with the state `{}` cannot be derived",
-                state.name
-            ),
-            help: Some("[states] are read and their rates checked, no more: leave them out".into()),
-        }),
-    }
 }
 
 fn name_mass_matrix(graph: &mut Graph, model: &Model, mass: &MassMatrix) {

@@ -193,6 +193,7 @@ fn begins_with_minus(graph: &Graph, id: NodeId) -> bool {
 pub(crate) fn may_rest(graph: &Graph, id: NodeId) -> bool {
     let moves = Dependence::COORDINATE
         .join(Dependence::RATE)
+        .join(Dependence::STATE)
         .join(Dependence::TIME);
     if !graph.dependence(id).has(moves) {
         return true;

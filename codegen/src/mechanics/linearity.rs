@@ -46,7 +46,8 @@ pub fn linearity(equations: &Equations) -> Linearity {
     }
     let rows = [equations.velocity_terms.nodes(), equations.forces.nodes()].concat();
     let surfaces = equations.guards.iter().map(|guard| guard.value);
-    for node in rows.into_iter().chain(surfaces) {
+    let state_rates = equations.state_rates.iter().copied();
+    for node in rows.into_iter().chain(state_rates).chain(surfaces) {
         match degrees.of(node) {
             Ok(0 | 1) => {}
             Ok(_) => return Linearity::Nonlinear(node),
@@ -87,6 +88,7 @@ impl Degrees<'_> {
             | Operation::Rate(_)
             | Operation::ModeCoordinates(_)
             | Operation::ModeRates(_)
+            | Operation::State(_)
             | Operation::Input(_) => Ok(1),
             Operation::Sum(terms) => self.highest(terms.iter().map(|(_, term)| *term)),
             Operation::Product(factors) => {
@@ -148,6 +150,7 @@ impl Degrees<'_> {
     fn is_phase(&self, id: NodeId) -> bool {
         let moving = Dependence::COORDINATE
             .join(Dependence::RATE)
+            .join(Dependence::STATE)
             .join(Dependence::INPUT);
         if self.graph.dependence(id).has(moving) {
             return false;

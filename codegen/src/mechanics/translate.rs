@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::diagnostic::Diagnostic;
-use eomgen_model_spec::ids::{DefinitionId, FieldId};
+use eomgen_model_spec::ids::{DefinitionId, FieldId, StateId};
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 use eomgen_model_spec::span::Span;
 
@@ -15,7 +15,7 @@ use crate::mechanics::fields::modes::node_count;
 use crate::mechanics::fields::term::Atom;
 use crate::symbolic::arguments::Arguments;
 use crate::symbolic::differentiate::Direction;
-use crate::symbolic::graph::{Graph, NodeId, Operation, Space};
+use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation, Space};
 
 /// Why a model could not be derived, and where in its source.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,6 +55,7 @@ pub struct Translator<'m> {
     /// The graph that grows.
     pub graph: Graph,
     definitions: HashMap<DefinitionId, NodeId>,
+    state_rates: HashMap<StateId, NodeId>,
     coefficients: Vec<NodeId>,
 }
 
@@ -69,6 +70,7 @@ impl<'m> Translator<'m> {
         graph.reserve_names(model.parameters.iter().map(|p| &p.name));
         graph.reserve_names(model.coordinates.iter().map(|c| &c.name));
         graph.reserve_names(model.inputs.iter().map(|i| &i.name));
+        graph.reserve_names(model.states.iter().map(|s| &s.name));
         graph.reserve_names(model.definitions.iter().map(|d| &d.name));
         graph.reserve_names(model.observables.iter().map(|o| &o.name));
         graph.reserve_names(model.coefficients.iter().map(|c| &c.name));
@@ -76,6 +78,7 @@ impl<'m> Translator<'m> {
             model,
             graph,
             definitions: HashMap::new(),
+            state_rates: HashMap::new(),
             coefficients: Vec::new(),
         }
     }
@@ -101,7 +104,7 @@ impl<'m> Translator<'m> {
             ExprKind::Parameter(index) => Ok(self.graph.intern(Operation::Parameter(*index))),
             ExprKind::Coordinate(index) => Ok(self.graph.intern(Operation::Coordinate(*index))),
             ExprKind::Input(index) => Ok(self.graph.intern(Operation::Input(*index))),
-            ExprKind::State(_) => Err(error(expr, "equations with a state cannot be derived")),
+            ExprKind::State(index) => Ok(self.graph.intern(Operation::State(*index))),
             ExprKind::Definition(index) => self.definition(*index),
             ExprKind::Coefficient(index) => match self.coefficients.get(index.index()) {
                 Some(&node) => Ok(node),
@@ -175,27 +178,21 @@ impl<'m> Translator<'m> {
         match operand.kind {
             ExprKind::Coordinate(index) => Ok(self.graph.intern(Operation::Rate(index))),
             ExprKind::ModeCoordinate(field) => Ok(self.graph.intern(Operation::ModeRates(field))),
+            ExprKind::State(index) => self.state_rate(index),
             _ => {
                 let node = self.node(operand)?;
-                if self
-                    .graph
-                    .dependence(node)
-                    .has(crate::symbolic::graph::Dependence::RATE)
-                {
+                if self.graph.dependence(node).has(Dependence::RATE) {
                     return Err(DeriveError {
                         span: operand.span,
                         message: "dot() of something that holds a rate is an acceleration".into(),
                         help: Some("an energy, force or observable may hold rates, no more".into()),
                     });
                 }
-                if self
-                    .graph
-                    .dependence(node)
-                    .has(crate::symbolic::graph::Dependence::INPUT)
-                {
+                if self.graph.dependence(node).has(Dependence::INPUT) {
                     return Err(error(operand, "the rate of an input is not known"));
                 }
-                let rate = along_motion(&mut self.graph, node);
+                let rates = self.rates_within(node)?;
+                let rate = along_motion_and_states(&mut self.graph, node, &rates);
                 if let ExprKind::Definition(index) = operand.kind {
                     let name = format!("{}_dot", self.model.definitions[index].name);
                     self.graph.set_name(rate, &name);
@@ -203,6 +200,34 @@ impl<'m> Translator<'m> {
                 Ok(rate)
             }
         }
+    }
+
+    /// The rate of a state, as the specification gives it.
+    pub fn state_rate(&mut self, index: StateId) -> Derived<NodeId> {
+        if let Some(&known) = self.state_rates.get(&index) {
+            return Ok(known);
+        }
+        let model = self.model;
+        let state = &model.states[index];
+        let node = self.node(&state.rate)?;
+        self.graph
+            .suggest_name(node, &format!("{}_dot", state.name));
+        self.state_rates.insert(index, node);
+        Ok(node)
+    }
+
+    /// The rates of the states that a node depends on.
+    fn rates_within(&mut self, node: NodeId) -> Derived<HashMap<StateId, NodeId>> {
+        if !self.graph.dependence(node).has(Dependence::STATE) {
+            return Ok(HashMap::new());
+        }
+        let mut rates = HashMap::new();
+        for leaf in self.graph.reachable(&[node]) {
+            if let Operation::State(index) = *self.graph.operation(leaf) {
+                rates.insert(index, self.state_rate(index)?);
+            }
+        }
+        Ok(rates)
     }
 
     fn at(&mut self, field: FieldId, value: &Expr, position: &Expr) -> Derived<NodeId> {
@@ -297,10 +322,20 @@ fn field_atom(expr: &Expr) -> Option<Atom> {
 /// The time derivative of a node along the motion, without accelerations: coordinates
 /// move with their rates, time with 1.
 pub fn along_motion(graph: &mut Graph, node: NodeId) -> NodeId {
+    along_motion_and_states(graph, node, &HashMap::new())
+}
+
+/// The same where states of first order move with these rates.
+fn along_motion_and_states(
+    graph: &mut Graph,
+    node: NodeId,
+    rates: &HashMap<StateId, NodeId>,
+) -> NodeId {
     let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
         Operation::Coordinate(index) => graph.intern(Operation::Rate(index)),
         Operation::ModeCoordinates(field) => graph.intern(Operation::ModeRates(field)),
         Operation::Time => graph.one(),
+        Operation::State(index) => rates.get(&index).copied().unwrap_or_else(|| graph.zero()),
         _ => graph.zero(),
     };
     Direction::new(&tangent).derivative(graph, node)

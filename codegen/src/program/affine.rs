@@ -13,6 +13,7 @@ pub(crate) struct AffineRowValues {
     pub mode_coordinates: Vec<ValueId>,
     pub rates: Vec<ValueId>,
     pub mode_rates: Vec<ValueId>,
+    pub states: Vec<ValueId>,
     pub inputs: Vec<ValueId>,
     pub sines: Vec<ValueId>,
     pub cosines: Vec<ValueId>,
@@ -31,6 +32,7 @@ pub struct AffineProgram {
 pub(crate) struct AffineLayout {
     pub(crate) scalars: Vec<AffineRowValues>,
     pub(crate) modal: Vec<AffineRowValues>,
+    pub(crate) first_order: Vec<AffineRowValues>,
     pub(crate) guards: Vec<AffineRowValues>,
     pub(crate) guard_functions: Vec<Function>,
     pub(crate) guard_groups: Vec<usize>,
@@ -63,6 +65,9 @@ pub struct AffineRows {
 pub struct AffineSystem {
     /// Numbers in the state.
     pub states: usize,
+    /// Degrees of freedom: positions come first in the state, then as many rates, then states of
+    /// first order.
+    pub degrees: usize,
     /// The rates of the state: as many rows as states.
     pub rates: AffineRows,
     /// The switching functions.
@@ -115,6 +120,11 @@ impl AffineEvaluator {
         self.evaluator.program().states()
     }
 
+    /// Degrees of freedom.
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.evaluator.program().degrees_of_freedom()
+    }
+
     /// The number of inputs.
     pub fn inputs(&self) -> usize {
         self.layout.inputs
@@ -140,6 +150,7 @@ impl AffineEvaluator {
         let value = |id: &ValueId| self.evaluator.slice(*id)[0];
         AffineSystem {
             states: self.states(),
+            degrees: self.degrees_of_freedom(),
             rates: self.rates(),
             guards: self.guards(),
             phases: self
@@ -165,9 +176,13 @@ impl AffineEvaluator {
     fn rates(&self) -> AffineRows {
         let program = self.evaluator.program();
         let degrees = program.degrees_of_freedom();
-        let mut rows = self.zero_rows(2 * degrees);
+        let states = self.states();
+        let mut rows = self.zero_rows(states);
         for row in 0..degrees {
-            rows.state[row * 2 * degrees + degrees + row] = 1.0;
+            rows.state[row * states + degrees + row] = 1.0;
+        }
+        for (row, values) in self.layout.first_order.iter().enumerate() {
+            self.fill(&mut rows, 2 * degrees + row, values, 0);
         }
         for (row, values) in self.layout.scalars.iter().enumerate() {
             self.fill(&mut rows, degrees + row, values, 0);
@@ -205,8 +220,13 @@ impl AffineEvaluator {
     fn fill(&self, rows: &mut AffineRows, row: usize, values: &AffineRowValues, element: usize) {
         let program = self.evaluator.program();
         let degrees = program.degrees_of_freedom();
-        let state = &mut rows.state[row * 2 * degrees..(row + 1) * 2 * degrees];
-        let (positions, velocities) = state.split_at_mut(degrees);
+        let states = self.states();
+        let state = &mut rows.state[row * states..(row + 1) * states];
+        let (positions, rest) = state.split_at_mut(degrees);
+        let (velocities, first_order) = rest.split_at_mut(degrees);
+        for (slot, id) in first_order.iter_mut().zip(&values.states) {
+            *slot = self.element(*id, element);
+        }
         let halves = [
             (positions, &values.coordinates, &values.mode_coordinates),
             (velocities, &values.rates, &values.mode_rates),

@@ -25,6 +25,7 @@ impl Program {
             | Op::Rate(_)
             | Op::ModeCoordinates(_)
             | Op::ModeRates(_)
+            | Op::State(_)
             | Op::Input(_)
             | Op::Argument(..)
             | Op::Time => 0,

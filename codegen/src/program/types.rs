@@ -1,7 +1,7 @@
 //! The program: its values, quantities, rows and blocks.
 
 use super::value::{Extent, Op, Value, ValueId};
-use crate::mechanics::outputs::Outputs;
+use crate::mechanics::outputs::{Outputs, Products};
 use crate::symbolic::graph::Variable;
 use eomgen_model_spec::ids::FieldId;
 
@@ -90,6 +90,8 @@ pub struct Program {
     pub coordinates: Vec<Quantity>,
     /// Fields.
     pub fields: Vec<ProgramField>,
+    /// States of first order.
+    pub first_order: Vec<Quantity>,
     /// Inputs.
     pub inputs: Vec<Quantity>,
     /// Observables; the last two are `energy` and `power`.
@@ -100,6 +102,8 @@ pub struct Program {
     pub values: Vec<Value>,
     /// Accelerations.
     pub accelerations: RowValues,
+    /// The rates of the states of first order.
+    pub first_order_rates: Vec<ValueId>,
     /// The mass matrix.
     pub mass: MassBlocks,
     /// Velocity terms c of M q'' + c = f.
@@ -131,6 +135,15 @@ pub struct ProgramTable {
     pub values: Vec<f64>,
 }
 
+impl Products<ValueId, RowValues> {
+    /// What the product with a direction is computed from.
+    pub(crate) fn forward_roots(&self) -> Vec<ValueId> {
+        let mut roots = self.forward.all();
+        roots.extend(&self.forward_first_order);
+        roots
+    }
+}
+
 impl Program {
     /// A value.
     pub fn value(&self, id: ValueId) -> &Value {
@@ -147,9 +160,9 @@ impl Program {
         self.coordinates.len() + self.fields.iter().map(|f| f.order).sum::<usize>()
     }
 
-    /// Numbers in the state: coordinates, modes, and the rates of both.
+    /// Numbers in the state: coordinates, modes, the rates of both, and states of first order.
     pub fn states(&self) -> usize {
-        2 * self.degrees_of_freedom()
+        2 * self.degrees_of_freedom() + self.first_order.len()
     }
 
     /// Names of the state in its order; a rate's is its coordinate's with `_dot`.
@@ -160,6 +173,7 @@ impl Program {
         }
         let rates: Vec<String> = names.iter().map(|name| format!("{name}_dot")).collect();
         names.extend(rates);
+        names.extend(self.first_order.iter().map(|state| state.name.clone()));
         names
     }
 
@@ -198,6 +212,7 @@ impl Program {
     pub fn variable_place(&self, variable: Variable) -> usize {
         match variable {
             Variable::Coordinate(index) => index.index(),
+            Variable::State(index) => 2 * self.degrees_of_freedom() + index.index(),
             Variable::Input(index) => index.index(),
             Variable::Parameter(index) => index.index(),
             Variable::Time => 0,
@@ -205,6 +220,14 @@ impl Program {
             Variable::Rate(index) => self.degrees_of_freedom() + index.index(),
             Variable::ModeRates(field) => self.degrees_of_freedom() + self.mode_offset(field),
         }
+    }
+
+    /// What the rates of the state are computed from: accelerations and the rates of the states
+    /// of first order.
+    pub fn rate_roots(&self) -> Vec<ValueId> {
+        let mut roots = self.accelerations.all();
+        roots.extend(&self.first_order_rates);
+        roots
     }
 
     /// Every value that `roots` are computed from, in the order of the program.
@@ -230,7 +253,7 @@ impl Program {
     /// pivot that is computed per call makes the accelerations NaN.
     pub fn may_lose_definiteness(&self) -> bool {
         let is_pivot = |op: &Op| matches!(op, Op::PivotReciprocal(_) | Op::Cholesky(_));
-        let accelerations = self.per_call(&self.accelerations.all());
+        let accelerations = self.per_call(&self.rate_roots());
         accelerations.iter().any(|id| is_pivot(&self.value(*id).op))
     }
 

@@ -1,6 +1,6 @@
 //! The values of a program: what each holds, how it is computed, and from which.
 
-use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId};
+use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, StateId};
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
@@ -68,6 +68,8 @@ pub enum Op {
     ModeCoordinates(FieldId),
     /// The rates of a field's mode coordinates.
     ModeRates(FieldId),
+    /// A state of first order.
+    State(StateId),
     /// An input.
     Input(InputId),
     /// The time.
@@ -175,6 +177,7 @@ impl Op {
             | Self::Rate(_)
             | Self::ModeCoordinates(_)
             | Self::ModeRates(_)
+            | Self::State(_)
             | Self::Input(_)
             | Self::Time
             | Self::Argument(..) => Vec::new(),

@@ -59,6 +59,8 @@ impl Report {
             "Generalised forces $f$, with $M\\,\\ddot{q} + c = f$",
             &rows("f", &self.forces),
         )?;
+        let state_rates = lines(&self.state_rates);
+        section(out, "Rates of states of first order", &state_rates)?;
         let coefficients = self.coefficients.iter();
         let coefficients: Vec<String> = coefficients
             .map(|line| equation(&line.name.latex(), &line.formula))
@@ -121,6 +123,7 @@ impl Report {
             &self.pivots,
             &self.velocity_terms,
             &self.forces,
+            &self.state_rates,
             &self.accelerations,
         ];
         parts

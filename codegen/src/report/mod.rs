@@ -48,6 +48,7 @@ impl Report {
             pivots: writer.named(&equations.accelerations.pivots),
             velocity_terms: writer.lines(&outline.velocity_terms),
             forces: writer.lines(&outline.forces),
+            state_rates: writer.lines(&outline.state_rates),
             coefficients: writer.coefficients(evaluator),
             accelerations: writer.accelerations(),
             guards: guards.map(|guard| reader.formula(guard.value)).collect(),

@@ -28,6 +28,8 @@ pub(super) struct Outline<'a> {
     pub velocity_terms: Vec<Shown>,
     /// Nonzero generalised forces.
     pub forces: Vec<Shown>,
+    /// The rates of states of first order.
+    pub state_rates: Vec<Shown>,
     /// What kind of model it is.
     pub linearity: Linearity,
 }
@@ -42,6 +44,7 @@ impl<'a> Outline<'a> {
             mass_matrix: Vec::new(),
             velocity_terms: Vec::new(),
             forces: Vec::new(),
+            state_rates: Vec::new(),
             linearity: linearity(equations),
         };
         outline.definitions = outline.definitions();
@@ -49,6 +52,7 @@ impl<'a> Outline<'a> {
         outline.mass_matrix = outline.mass_matrix();
         outline.velocity_terms = outline.rows(&equations.velocity_terms);
         outline.forces = outline.rows(&equations.forces);
+        outline.state_rates = outline.state_rates();
         outline
     }
 
@@ -60,6 +64,7 @@ impl<'a> Outline<'a> {
             &self.terms,
             &self.velocity_terms,
             &self.forces,
+            &self.state_rates,
         ];
         let mut nodes: Vec<NodeId> = shown.into_iter().flatten().map(|(_, node)| *node).collect();
         nodes.extend(self.mass_matrix.iter().map(|(_, _, node)| *node));
@@ -126,6 +131,14 @@ impl<'a> Outline<'a> {
             .chain(modal.map(|(field, id)| (EquationRow::Modes(field), *id)))
             .filter(|(row, id)| !self.graph().is_zero(*id) && self.is_present(*row))
             .map(|(row, id)| (Formula::Symbol(self.row_symbol(row)), id))
+            .collect()
+    }
+
+    fn state_rates(&self) -> Vec<Shown> {
+        let states = self.model.states.iter();
+        states
+            .map(|state| Formula::Symbol(Symbol::plain(&state.name).with_dots(1)))
+            .zip(self.equations.state_rates.iter().copied())
             .collect()
     }
 

@@ -47,6 +47,7 @@ impl Report {
             "Generalised forces f, with M q'' + c = f",
             &self.forces,
         )?;
+        section(out, "Rates of states of first order", &self.state_rates)?;
         if !self.coefficients.is_empty() {
             writeln!(out, "\nCoefficients")?;
             for line in &self.coefficients {

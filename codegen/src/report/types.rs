@@ -36,6 +36,9 @@ pub struct Report {
     pub velocity_terms: Vec<Line>,
     /// Generalised forces f.
     pub forces: Vec<Line>,
+    /// The rates of states of first order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub state_rates: Vec<Line>,
     /// The coefficients the specification names.
     pub coefficients: Vec<CoefficientLine>,
     /// The accelerations in terms of these.

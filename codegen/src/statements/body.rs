@@ -154,6 +154,7 @@ impl<'a> Body<'a> {
             (
                 Op::Coordinate(_)
                 | Op::Rate(_)
+                | Op::State(_)
                 | Op::Input(_)
                 | Op::Parameter(_)
                 | Op::Argument(..),
@@ -177,6 +178,7 @@ impl<'a> Body<'a> {
         match program.value(id).op {
             Op::Coordinate(index) => program.coordinates[index].name.clone(),
             Op::Rate(index) => format!("{}_dot", program.coordinates[index].name),
+            Op::State(index) => program.first_order[index].name.clone(),
             Op::Input(index) => program.inputs[index].name.clone(),
             Op::Parameter(place) => program.parameters[place].quantity.name.clone(),
             _ => String::from("s"),

@@ -176,6 +176,7 @@ impl<'a> Body<'a> {
         Ok(match program.value(id).op {
             Op::Coordinate(index) => at("state", index.index()),
             Op::Rate(index) => at("state", program.degrees_of_freedom() + index.index()),
+            Op::State(index) => at("state", 2 * program.degrees_of_freedom() + index.index()),
             Op::Input(index) => field(Structure::Inputs, &program.inputs[index].name)?,
             Op::Parameter(place) => {
                 let name = &program.parameters[place].quantity.name;

@@ -78,11 +78,15 @@ fn jacobian_vector_product(
     needed: &mut Needed,
 ) -> Emitted<Stage> {
     let degrees = file.program.degrees_of_freedom();
-    let mut body = file.body(&products.forward.all(), needed)?;
+    let mut body = file.body(&products.forward_roots(), needed)?;
     let computed = body.take();
     let rate = Expression::element("direction", [Index::after(degrees, "i")]);
     body.assign_each(degrees, Place::new("product", ["i".into()]), rate);
     write_row_values(&mut body, "product", degrees, &products.forward)?;
+    for (index, id) in products.forward_first_order.iter().enumerate() {
+        let value = body.scalar(*id)?;
+        body.assign(Place::new("product", [(2 * degrees + index).into()]), value);
+    }
     Ok(Stage {
         name: "jacobian_vector_product",
         doc: "Product of the Jacobian of the rates by state and inputs with a direction: how the\n\
@@ -118,7 +122,7 @@ fn vector_jacobian_product(
             Variable::Input(index) => inputs[*index] = body.scalar(*id)?,
             // The product is by state and inputs.
             Variable::Parameter(_) | Variable::Time => {}
-            Variable::Coordinate(_) => {
+            Variable::Coordinate(_) | Variable::State(_) => {
                 let value = body.scalar(*id)?;
                 body.assign(at(), value);
             }
@@ -287,7 +291,7 @@ pub fn rates_in_regime(file: &File<'_>, needed: &mut Needed) -> Emitted<Option<S
         return Ok(None);
     };
     let switches = switches.iter().map(|switch| (switch.value, switch.decided));
-    let roots = file.program.accelerations.all();
+    let roots = file.program.rate_roots();
     let body = file.body_in_regime(&roots, needed, switches.collect())?;
     let doc = format!(
         "Rates of the state within a regime, written to `rates`: those of [`rates_into`] where\n\

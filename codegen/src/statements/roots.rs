@@ -18,7 +18,7 @@ pub(super) fn mass_roots(program: &Program) -> Vec<ValueId> {
 
 /// What the stages that are called with coefficients return.
 pub fn stage_roots(program: &Program) -> Vec<ValueId> {
-    let mut roots = program.accelerations.all();
+    let mut roots = program.rate_roots();
     roots.extend(&program.observable_values);
     roots.extend(program.guards.iter().map(|g| g.value));
     roots.extend(mass_roots(program));
@@ -56,7 +56,7 @@ fn output_roots(program: &Program) -> Vec<ValueId> {
         .collect();
     roots.extend(outputs.guard_rates.iter().flatten());
     if let Some(products) = &outputs.products {
-        roots.extend(products.forward.all());
+        roots.extend(products.forward_roots());
         roots.extend(products.reverse.iter().map(|(_, id)| *id));
         roots.extend(products.by_parameters.entries.iter().map(|e| e.value));
     }

@@ -26,7 +26,7 @@ const COPIED_AT_ONCE: usize = 8;
 
 /// The rates.
 pub fn rates(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
-    let body = file.body(&file.program.accelerations.all(), needed)?;
+    let body = file.body(&file.program.rate_roots(), needed)?;
     rates_of(
         body,
         "rates_into",
@@ -53,6 +53,10 @@ pub(super) fn rates_of(mut body: Body<'_>, name: &'static str, doc: String) -> E
     write_rates_of_positions(&mut body, degrees);
     let accelerations = &body.program.accelerations;
     write_row_values(&mut body, "rates", degrees, accelerations)?;
+    for (place, id) in body.program.first_order_rates.iter().enumerate() {
+        let value = body.scalar(*id)?;
+        body.assign(Place::new("rates", [(2 * degrees + place).into()]), value);
+    }
     Ok(Stage {
         name,
         doc,

@@ -189,6 +189,7 @@ impl Graph {
             | Operation::Parameter(_)
             | Operation::Coordinate(_)
             | Operation::Rate(_)
+            | Operation::State(_)
             | Operation::Input(_)
             | Operation::Time
             | Operation::Total(_) => Shape::Scalar,
@@ -245,6 +246,7 @@ impl Graph {
             Operation::Parameter(_) => Dependence::PARAMETER,
             Operation::Coordinate(_) | Operation::ModeCoordinates(_) => Dependence::COORDINATE,
             Operation::Rate(_) | Operation::ModeRates(_) => Dependence::RATE,
+            Operation::State(_) => Dependence::STATE,
             Operation::Input(_) => Dependence::INPUT,
             Operation::Time => Dependence::TIME,
             Operation::Argument(..) => Dependence::ARGUMENT,
@@ -277,6 +279,7 @@ impl Graph {
             | Operation::Parameter(_)
             | Operation::Coordinate(_)
             | Operation::Rate(_)
+            | Operation::State(_)
             | Operation::Input(_)
             | Operation::Time
             | Operation::ModeCoordinates(_)
@@ -318,6 +321,7 @@ impl Graph {
             Variable::ModeCoordinates(field) => Operation::ModeCoordinates(field),
             Variable::Rate(index) => Operation::Rate(index),
             Variable::ModeRates(field) => Operation::ModeRates(field),
+            Variable::State(index) => Operation::State(index),
             Variable::Input(index) => Operation::Input(index),
             Variable::Parameter(index) => Operation::Parameter(index),
             Variable::Time => Operation::Time,

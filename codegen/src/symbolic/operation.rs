@@ -1,6 +1,6 @@
 //! What the nodes of the graph compute, their shapes, and what they depend on.
 
-use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId};
+use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId, StateId};
 use eomgen_model_spec::model::Function;
 
 use crate::symbolic::arguments::Arguments;
@@ -56,6 +56,8 @@ pub enum Variable {
     Rate(CoordinateId),
     /// The rates of a field's mode coordinates.
     ModeRates(FieldId),
+    /// A state of first order.
+    State(StateId),
     /// An input.
     Input(InputId),
     /// A parameter; in a program, a place among the independent ones.
@@ -89,6 +91,8 @@ pub enum Operation {
     Coordinate(CoordinateId),
     /// The rate of a generalised coordinate.
     Rate(CoordinateId),
+    /// A state of first order.
+    State(StateId),
     /// A signal supplied at run time.
     Input(InputId),
     /// The time.
@@ -203,6 +207,7 @@ impl Dependence {
     pub(crate) const INPUT: Self = Self(8);
     pub(crate) const TIME: Self = Self(16);
     pub(crate) const ARGUMENT: Self = Self(32);
+    pub(crate) const STATE: Self = Self(64);
 
     pub(crate) fn join(self, other: Self) -> Self {
         Self(self.0 | other.0)

@@ -24,7 +24,7 @@ pub(crate) struct AccelerationDifferences<'c> {
 impl<'c> AccelerationDifferences<'c> {
     /// Others with the sizes by which they differ.
     pub fn new(base: &'c mut Evaluator, moved: Vec<MovedEvaluator<'c>>) -> Self {
-        let states = 2 * base.program().degrees_of_freedom();
+        let states = base.program().states();
         Self {
             base,
             moved,
@@ -44,14 +44,14 @@ impl<'c> AccelerationDifferences<'c> {
 impl Drives for AccelerationDifferences<'_> {
     fn at(&mut self, t: f64, state: &[f64], inputs: &[f64], out: &mut [f64]) {
         let [base, moved] = &mut self.rates;
-        let half = base.len() / 2;
+        let first = self.base.program().degrees_of_freedom();
         self.base.rates(Point { t, state, inputs }, base);
-        let slots = out.chunks_exact_mut(half.max(1));
+        let slots = out.chunks_exact_mut((base.len() - first).max(1));
         for (of, slots) in self.moved.iter_mut().zip(slots) {
             of.evaluator.rates(Point { t, state, inputs }, moved);
             for (slot, (a, b)) in slots
                 .iter_mut()
-                .zip(moved[half..].iter().zip(&base[half..]))
+                .zip(moved[first..].iter().zip(&base[first..]))
             {
                 *slot = (a - b) / of.size;
             }

@@ -220,15 +220,18 @@ impl Chain<'_> {
 /// Initial states read from smoothed records, where the channels show all coordinates.
 ///
 /// # Errors
-/// The coordinate that no channel shows.
+/// The coordinate, or the state of first order, that no channel shows.
 fn read_smoothed(
     model: &EstimationModel,
     windows: &Windows<'_>,
     channels: &[Channel],
 ) -> Result<Vec<Vec<f64>>, DiscoverError> {
-    let half = model.state_count() / 2;
-    let mut sources = Vec::with_capacity(half);
-    for coordinate in 0..half {
+    let degrees = model.degrees_of_freedom();
+    if let Some(state) = model.states.get(2 * degrees) {
+        return Err(DiscoverError::StateNotMeasured(state.clone()));
+    }
+    let mut sources = Vec::with_capacity(degrees);
+    for coordinate in 0..degrees {
         let shown = (channels.iter())
             .position(|channel| channel.quantity == Quantity::Coordinate(coordinate));
         sources

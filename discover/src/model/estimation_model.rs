@@ -166,6 +166,11 @@ impl EstimationModel {
         Some(ChannelId::new(index))
     }
 
+    /// Degrees of freedom: as many coordinates come first in the state, then as many rates.
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.compiled.program().degrees_of_freedom()
+    }
+
     /// How many states there are.
     pub fn state_count(&self) -> usize {
         self.states.len()

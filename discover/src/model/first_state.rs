@@ -26,15 +26,15 @@ pub fn first_state(
             }
         }
         Initial::Estimate => {
-            let half = model.state_count() / 2;
+            let degrees = model.degrees_of_freedom();
             for (channel, column) in channels.iter().zip(&record.channels) {
                 let (value, slope) = begin(&record.times, column);
                 match channel.quantity {
                     Quantity::Coordinate(coordinate) => {
                         state[coordinate] = value;
-                        state[half + coordinate] = slope;
+                        state[degrees + coordinate] = slope;
                     }
-                    Quantity::Rate(coordinate) => state[half + coordinate] = value,
+                    Quantity::Rate(coordinate) => state[degrees + coordinate] = value,
                     Quantity::Observable(_) => {}
                 }
             }

@@ -18,7 +18,7 @@ pub(crate) struct NonlinearRemainder {
 impl NonlinearRemainder {
     /// Both models with the same states.
     pub fn new(whole: Evaluator, linear: Evaluator) -> Self {
-        let states = 2 * whole.program().degrees_of_freedom();
+        let states = whole.program().states();
         Self {
             guards: corresponding_guards(&whole, &linear),
             values: vec![0.0; whole.guard_count()],
@@ -58,8 +58,8 @@ impl Force for NonlinearRemainder {
         let [whole, linear] = &mut self.rates;
         self.whole.rates(Point { t, state, inputs }, whole);
         self.linear.rates(Point { t, state, inputs }, linear);
-        let half = out.len();
-        let pairs = whole[half..].iter().zip(&linear[half..]);
+        let first = whole.len() - out.len();
+        let pairs = whole[first..].iter().zip(&linear[first..]);
         let differences = pairs.map(|(a, b)| a - b);
         out.iter_mut()
             .zip(differences)

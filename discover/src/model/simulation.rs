@@ -140,7 +140,12 @@ impl<'m> Simulation<'m> {
         let linear_outputs = self.linear_outputs.as_ref()?;
         let integrator = self.integrator.as_mut()?;
         let n = initial.len();
-        let mut tangents = Tangents::new(n, by_state, driven.count, driven.drives);
+        let mut tangents = Tangents::new(
+            (n, integrator.degrees_of_freedom()),
+            by_state,
+            driven.count,
+            driven.drives,
+        );
         let mut found = LinearisedMotion::default();
         let free = if by_state { n } else { 0 };
         let options = Options {

@@ -179,15 +179,16 @@ impl EquationEvaluator {
         }));
     }
 
-    /// For each equation the accelerations by a force of one unit, one after the other.
+    /// For each equation what a force of one unit adds to the accelerations and to the rates of
+    /// states of first order, one equation after the other.
     pub fn accelerations(&mut self, point: Point<'_>, out: &mut Vec<f64>) {
         let [free, forced] = &mut self.rates;
-        let half = free.len() / 2;
+        let first = self.free.program().degrees_of_freedom();
         self.free.rates(point, free);
         out.clear();
         for evaluator in &mut self.forced {
             evaluator.rates(point, forced);
-            let pairs = forced[half..].iter().zip(&free[half..]);
+            let pairs = forced[first..].iter().zip(&free[first..]);
             out.extend(pairs.map(|(a, b)| a - b));
         }
     }

@@ -56,24 +56,25 @@ impl<'s> SteppedWindow<'s> {
         driven: NeighbourDrives<'_>,
         level: f64,
     ) -> Option<DMatrix<f64>> {
-        let (half, count, drives) = (start.len() / 2, driven.count, driven.drives);
+        let first = self.evaluator.program().degrees_of_freedom();
+        let (forced, count, drives) = (start.len() - first, driven.count, driven.drives);
         let mut steps = Vec::new();
         let own = self.motion(start, None, Some(&mut steps))?;
         let windows = self.shooting.windows;
         let inputs = windows.inputs(&windows.list[self.window]);
-        let mut accelerations = vec![Vec::with_capacity(3 * steps.len() * half); count];
-        let mut all = vec![0.0; count * half];
+        let mut accelerations = vec![Vec::with_capacity(3 * steps.len() * forced); count];
+        let mut all = vec![0.0; count * forced];
         let (mut rates, mut square) = (vec![0.0; start.len()], 0.0);
         for step in &steps {
             for (t, state) in &step.points {
                 let inputs = inputs.at(step.middle);
                 drives.at(*t, state, inputs, &mut all);
-                for (force, now) in accelerations.iter_mut().zip(all.chunks_exact(half)) {
+                for (force, now) in accelerations.iter_mut().zip(all.chunks_exact(forced)) {
                     force.extend_from_slice(now);
                 }
                 let t = *t;
                 self.evaluator.rates(Point { t, state, inputs }, &mut rates);
-                square += rates[half..].iter().map(|a| a * a).sum::<f64>();
+                square += rates[first..].iter().map(|a| a * a).sum::<f64>();
             }
         }
         let mut matrix = DMatrix::zeros(own.len(), count);
@@ -132,7 +133,8 @@ impl<'s> SteppedWindow<'s> {
         force: Option<(f64, &[f64])>,
         mut visited: Option<&mut Vec<Step>>,
     ) -> Option<Vec<f64>> {
-        let (half, times) = (start.len() / 2, self.times());
+        let degrees = self.evaluator.program().degrees_of_freedom();
+        let (forced, times) = (start.len() - degrees, self.times());
         let windows = self.shooting.windows;
         let inputs = windows.inputs(&windows.list[self.window]);
         let mut state = start.to_vec();
@@ -160,8 +162,8 @@ impl<'s> SteppedWindow<'s> {
                     };
                     self.evaluator.rates(at, rates);
                     if let Some((size, force)) = force {
-                        let first = (3 * number + point) * half;
-                        let force_responses = rates[half..].iter_mut().zip(&force[first..]);
+                        let first = (3 * number + point) * forced;
+                        let force_responses = rates[degrees..].iter_mut().zip(&force[first..]);
                         force_responses.for_each(|(k, a)| *k += size * a);
                     }
                     if visited.is_some() {

@@ -61,12 +61,13 @@ impl Drives for ForceDrives<'_> {
             operating_point.time = t - self.begin;
         }
         (self.columns.weights)(&self.operating_points, inputs, &mut self.weights);
-        let half = state.len() / 2;
-        let slots = out.chunks_exact_mut(half.max(1));
+        let forced = out.len() / self.columns.equations.len().max(1);
+        let slots = out.chunks_exact_mut(forced.max(1));
         for (slots, (equation, weight)) in
             slots.zip(self.columns.equations.iter().zip(&self.weights))
         {
-            let own = &self.accelerations[equation.index() * half..(equation.index() + 1) * half];
+            let own =
+                &self.accelerations[equation.index() * forced..(equation.index() + 1) * forced];
             let pairs = slots.iter_mut().zip(own);
             pairs.for_each(|(slot, acceleration)| *slot = weight * acceleration);
         }

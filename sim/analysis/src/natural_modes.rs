@@ -1,11 +1,13 @@
-//! Natural modes of a linearised machine: the eigenvalues of q'' = K q + D q' and the shapes that
-//! belong to them.
+//! Natural modes of a linearised machine: the eigenvalues of q'' = K q + D q' + F z with states of
+//! first order z' = G q + H z + E q', where there are such, and the shapes that belong to them.
 //!
 //! The eigenvalues are those of the state matrix, balanced first (Parlett and Reinsch 1969), by its
 //! real Schur form; shapes by inverse iteration on lambda^2 - lambda D - K (Golub and Van Loan,
 //! *Matrix Computations*, 7.5 and 7.6). A rigid motion has the eigenvalue 0, mostly twice and
 //! defective, which rounding turns into numbers as large as the root of the unit roundoff; how
-//! often it is one is therefore counted by the ranks of K and of D on its null space.
+//! often it is one is therefore counted by the ranks of K and of D on its null space, and, beside
+//! states of first order, whose integrals make longer chains, by taking null spaces away one after
+//! the other (Golub and Van Loan, 7.6.5).
 
 use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
@@ -30,7 +32,8 @@ const MOST_STEPS: usize = 400;
 pub struct NaturalMode {
     /// lambda, 1/s. Of a conjugate pair that with the positive imaginary part.
     pub eigenvalue: Complex<f64>,
-    /// v: the coordinates' amplitudes in their SI units, the largest number of them 1.
+    /// v: the coordinates' amplitudes in their SI units, the largest number of them 1, and those of
+    /// states of first order; where no coordinate moves, the largest of these is 1.
     pub shape: Vec<Complex<f64>>,
 }
 
@@ -53,24 +56,23 @@ impl NaturalMode {
     }
 }
 
-/// The natural modes of d(q, q')/dt = A (q, q'), lowest frequency first: `matrix` is A row by row,
-/// its upper half (0 1).
+/// The natural modes of d(q, q', z)/dt = A (q, q', z) with so many degrees of freedom, lowest
+/// frequency first: `matrix` is A row by row, the rows of q being (0 1 0).
 ///
 /// # Errors
 ///
-/// A matrix that is not square with an even number of rows, entries that are not finite, and
+/// A matrix that is not square with at least two rows for each degree of freedom, entries that are not finite, and
 /// eigenvalues that cannot be computed.
-pub fn natural_modes(matrix: &[f64]) -> Result<Vec<NaturalMode>, AnalysisError> {
-    let states = matrix.len().isqrt();
-    let degrees = states / 2;
-    if 4 * degrees * degrees != matrix.len() {
-        let (expected, given) = (4 * degrees * degrees, matrix.len());
+pub fn natural_modes(matrix: &[f64], degrees: usize) -> Result<Vec<NaturalMode>, AnalysisError> {
+    let states = matrix.len().isqrt().max(2 * degrees);
+    if states * states != matrix.len() {
+        let (expected, given) = (states * states, matrix.len());
         return Err(AnalysisError::Lengths { expected, given });
     }
     if let Some(sample) = matrix.iter().position(|entry| !entry.is_finite()) {
         return Err(AnalysisError::NotFinite { sample });
     }
-    if degrees == 0 {
+    if states == 0 {
         return Ok(Vec::new());
     }
     let mut balanced = DMatrix::from_row_slice(states, states, matrix);
@@ -80,7 +82,10 @@ pub fn natural_modes(matrix: &[f64]) -> Result<Vec<NaturalMode>, AnalysisError> 
     let mut eigenvalues: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
     eigenvalues.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
     let pencil = Pencil::of(&balanced, &sizes, degrees);
-    let rigid = pencil.rigid();
+    let mut rigid = pencil.rigid();
+    if states > 2 * degrees {
+        rigid.multiplicity = zero_eigenvalues(balanced);
+    }
     let mut modes: Vec<(Complex<f64>, DVector<Complex<f64>>)> = Vec::new();
     modes.extend(rigid.shapes.into_iter().map(|shape| (0.0.into(), shape)));
     for eigenvalue in eigenvalues.into_iter().skip(rigid.multiplicity) {
@@ -99,14 +104,18 @@ pub fn natural_modes(matrix: &[f64]) -> Result<Vec<NaturalMode>, AnalysisError> 
     Ok(scaled.collect())
 }
 
-/// lambda^2 - lambda D - K in balanced coordinates.
+/// lambda^2 - lambda D - K in balanced coordinates, states of first order after them with
+/// lambda in place of lambda^2.
 struct Pencil {
+    /// (K F; G H)
     stiffness: DMatrix<f64>,
+    /// (D 0; E 0)
     damping: DMatrix<f64>,
-    /// From the upper half: q' in balanced numbers for each q.
+    /// From the upper rows: q' in balanced numbers for each q; 1 for states of first order.
     ratio: DVector<f64>,
-    /// What a balanced coordinate is in SI.
+    /// What a balanced number is in SI.
     sizes: DVector<f64>,
+    degrees: usize,
 }
 
 /// The motions with the eigenvalue 0.
@@ -118,27 +127,41 @@ struct Rigid {
 
 impl Pencil {
     fn of(balanced: &DMatrix<f64>, sizes: &DVector<f64>, degrees: usize) -> Self {
-        let half = |row: usize, column: usize| {
-            let corner = (row * degrees, column * degrees);
-            balanced.view(corner, (degrees, degrees)).into_owned()
+        let count = balanced.nrows() - degrees;
+        // Positions and states of first order, by their places in the state.
+        let held = |place: usize| {
+            if place < degrees {
+                place
+            } else {
+                place + degrees
+            }
         };
         Self {
-            stiffness: half(1, 0),
-            damping: half(1, 1),
-            ratio: half(0, 1).diagonal(),
-            sizes: sizes.rows(0, degrees).into_owned(),
+            stiffness: DMatrix::from_fn(count, count, |row, column| {
+                balanced[(degrees + row, held(column))]
+            }),
+            damping: DMatrix::from_fn(count, count, |row, column| match column < degrees {
+                true => balanced[(degrees + row, degrees + column)],
+                false => 0.0,
+            }),
+            ratio: DVector::from_fn(count, |place, _| match place < degrees {
+                true => balanced[(place, degrees + place)],
+                false => 1.0,
+            }),
+            sizes: DVector::from_fn(count, |place, _| sizes[held(place)]),
+            degrees,
         }
     }
 
     /// lambda (lambda/ratio) - (lambda/ratio) D - K: the rates are lambda/ratio of the coordinates.
     fn at(&self, eigenvalue: Complex<f64>) -> DMatrix<Complex<f64>> {
-        let degrees = self.ratio.len();
-        DMatrix::from_fn(degrees, degrees, |row, column| {
+        let count = self.ratio.len();
+        DMatrix::from_fn(count, count, |row, column| {
             let rate = eigenvalue / self.ratio[column];
-            let inertia = if row == column {
-                eigenvalue * rate
-            } else {
-                0.0.into()
+            let inertia = match row == column {
+                true if row < self.degrees => eigenvalue * rate,
+                true => eigenvalue,
+                false => 0.0.into(),
             };
             inertia - rate * self.damping[(row, column)] - self.stiffness[(row, column)]
         })
@@ -195,10 +218,10 @@ impl Pencil {
         eigenvalue: Complex<f64>,
         earlier: &[DVector<Complex<f64>>],
     ) -> DVector<Complex<f64>> {
-        let degrees = self.ratio.len();
+        let count = self.ratio.len();
         let singular = self.at(eigenvalue * (1.0 + BESIDE)).lu();
         // Of no symmetry that a machine might have too.
-        let mut shape = DVector::from_fn(degrees, |row, _| {
+        let mut shape = DVector::from_fn(count, |row, _| {
             Complex::new(1.0 + (1.7 * (row + earlier.len()) as f64).sin() / 2.0, 0.1)
         });
         for _ in 0..4 {
@@ -218,21 +241,54 @@ impl Pencil {
         shape
     }
 
-    /// Coordinates in SI, the largest number 1.
+    /// Coordinates in SI, the largest number 1, and states of first order.
     fn in_si(&self, shape: &DVector<Complex<f64>>) -> Vec<Complex<f64>> {
         let amplitudes: Vec<Complex<f64>> = shape
             .iter()
             .zip(&self.sizes)
             .map(|(value, size)| value * *size)
             .collect();
-        let largest = amplitudes
-            .iter()
-            .copied()
-            .max_by(|a, b| a.norm().total_cmp(&b.norm()));
-        let largest = largest
-            .filter(|value| value.norm() > 0.0)
+        let largest = |of: &[Complex<f64>]| {
+            let most = of
+                .iter()
+                .copied()
+                .max_by(|a, b| a.norm().total_cmp(&b.norm()));
+            most.filter(|value| value.norm() > 0.0)
+        };
+        // What rounding moves does not count.
+        let moves = shape.rows(0, self.degrees).norm() > RANK * shape.norm();
+        let largest = largest(&amplitudes[..self.degrees])
+            .filter(|_| moves)
+            .or_else(|| largest(&amplitudes))
             .unwrap_or(1.0.into());
         amplitudes.iter().map(|value| value / largest).collect()
+    }
+}
+
+/// How often 0 is an eigenvalue, chains of any length counted: null spaces are taken away until
+/// there is none.
+fn zero_eigenvalues(mut matrix: DMatrix<f64>) -> usize {
+    let mut count = 0;
+    loop {
+        // Rows of one size, as in [`Pencil::rigid`]: the null space is the same.
+        let mut equilibrated = matrix.clone();
+        for mut row in equilibrated.row_iter_mut() {
+            let size = row.amax();
+            if size > 0.0 {
+                row /= size;
+            }
+        }
+        let null = null_space(&equilibrated);
+        if null.ncols() == 0 {
+            return count;
+        }
+        count += null.ncols();
+        if null.ncols() == matrix.ncols() {
+            return count;
+        }
+        // An orthonormal basis of what is left: the null space of the null space.
+        let rest = null_space(&(&null * null.transpose()));
+        matrix = rest.transpose() * matrix * rest;
     }
 }
 
@@ -282,11 +338,11 @@ mod tests {
 
     #[test]
     fn a_damped_oscillator_has_its_closed_form() -> Result<(), AnalysisError> {
-        let modes = natural_modes(&matrix(&[&[-400.0]], &[&[-4.0]]))?;
+        let modes = natural_modes(&matrix(&[&[-400.0]], &[&[-4.0]]), 1)?;
         assert_eq!(modes.len(), 1);
         assert!(close(modes[0].frequency(), 20.0 / std::f64::consts::TAU));
         assert!(close(modes[0].damping(), 0.1), "{modes:?}");
-        let strong = natural_modes(&matrix(&[&[-400.0]], &[&[-50.0]]))?;
+        let strong = natural_modes(&matrix(&[&[-400.0]], &[&[-50.0]]), 1)?;
         let decays: Vec<f64> = strong.iter().map(|mode| mode.eigenvalue.re).collect();
         assert!(
             close(decays[0], -10.0) && close(decays[1], -40.0),
@@ -306,10 +362,10 @@ mod tests {
             );
             let rows = |m: &[[f64; 2]; 2]| [m[0].to_vec(), m[1].to_vec()];
             let (stiffness, damping) = (rows(&stiffness), rows(&damping));
-            let modes = natural_modes(&matrix(
-                &[&stiffness[0], &stiffness[1]],
-                &[&damping[0], &damping[1]],
-            ))?;
+            let modes = natural_modes(
+                &matrix(&[&stiffness[0], &stiffness[1]], &[&damping[0], &damping[1]]),
+                2,
+            )?;
             assert_eq!(modes.len(), 2, "{modes:?}");
             assert_eq!((modes[0].frequency(), modes[0].damping()), (0.0, 0.0));
             assert!(
@@ -328,7 +384,7 @@ mod tests {
 
     #[test]
     fn a_free_mass_with_friction_moves_rigidly_and_decays() -> Result<(), AnalysisError> {
-        let modes = natural_modes(&matrix(&[&[0.0]], &[&[-3.0]]))?;
+        let modes = natural_modes(&matrix(&[&[0.0]], &[&[-3.0]]), 1)?;
         let found: Vec<(f64, f64)> = modes
             .iter()
             .map(|m| (m.eigenvalue.re, m.damping()))
@@ -338,9 +394,33 @@ mod tests {
     }
 
     #[test]
+    fn an_integral_of_a_free_position_makes_a_chain_of_three() -> Result<(), AnalysisError> {
+        // q'' = -3 u with u' = -5 u + 2 q', and an integral of q: eigenvalues 0 twice, and those
+        // of lambda^2 + 5 lambda + 6.
+        let matrix = [
+            [0.0, 1.0, 0.0, 0.0],
+            [0.0, 0.0, -3.0, 0.0],
+            [0.0, 2.0, -5.0, 0.0],
+            [1.0, 0.0, 0.0, 0.0],
+        ];
+        let modes = natural_modes(matrix.as_flattened(), 1)?;
+        let found: Vec<f64> = modes.iter().map(|mode| mode.eigenvalue.re).collect();
+        assert!(
+            found.len() == 3 && found[0] == 0.0 && close(found[1], -2.0) && close(found[2], -3.0),
+            "{found:?}"
+        );
+        // u = -lambda^2 q/3, and an integral of 1/lambda.
+        let [q, u, integral] = modes[2].shape[..] else {
+            panic!("{modes:?}");
+        };
+        assert!(close(q.re, 1.0) && close(u.re, -3.0) && close(integral.re, -1.0 / 3.0));
+        Ok(())
+    }
+
+    #[test]
     fn equal_frequencies_have_shapes_of_their_own() -> Result<(), AnalysisError> {
         let none: &[f64] = &[0.0, 0.0];
-        let modes = natural_modes(&matrix(&[&[-9.0, 0.0], &[0.0, -9.0]], &[none, none]))?;
+        let modes = natural_modes(&matrix(&[&[-9.0, 0.0], &[0.0, -9.0]], &[none, none]), 2)?;
         assert_eq!(modes.len(), 2);
         let (a, b) = (&modes[0].shape, &modes[1].shape);
         let area = a[0] * b[1] - a[1] * b[0];
@@ -350,8 +430,9 @@ mod tests {
 
     #[test]
     fn what_is_no_state_matrix_is_refused() {
-        assert!(natural_modes(&[1.0; 9]).is_err());
-        assert!(natural_modes(&[f64::NAN; 4]).is_err());
-        assert_eq!(natural_modes(&[]), Ok(Vec::new()));
+        assert!(natural_modes(&[1.0; 8], 1).is_err());
+        assert!(natural_modes(&[1.0; 4], 2).is_err());
+        assert!(natural_modes(&[f64::NAN; 4], 1).is_err());
+        assert_eq!(natural_modes(&[], 0), Ok(Vec::new()));
     }
 }

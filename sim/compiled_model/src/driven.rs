@@ -69,7 +69,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
     fn guards_at_rest(&self, size: f64) -> Vec<f64> {
         let mut values = vec![0.0; self.guard_count()];
         let mut state = vec![0.0; self.states()];
-        let degrees = state.len() / 2;
+        let degrees = self.evaluator().program().degrees_of_freedom();
         for (place, coordinate) in state[..degrees].iter_mut().enumerate() {
             *coordinate = size / (place + 2) as f64;
         }

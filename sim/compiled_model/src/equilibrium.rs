@@ -28,42 +28,47 @@ const RANK: f64 = 1e-12;
 /// A state at rest that stays there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equilibrium {
-    /// Where it is; all rates are 0.
+    /// Where it is; all rates are 0, those of states of first order too.
     pub at: OperatingPoint,
-    /// The accelerations that are left of rounding, SI, in the order of the coordinates.
+    /// The accelerations, and then the rates of states of first order, that are left of rounding,
+    /// SI, in the order of the coordinates and of the states.
     pub residual: Vec<f64>,
-    /// The names of the coordinates and inputs that were looked for.
+    /// The names of the coordinates, inputs and states of first order that were looked for.
     pub free: Vec<String>,
     /// Whether forces depend on the time there: then it is one at that instant alone.
     pub depends_on_time: bool,
 }
 
 impl Instance<'_> {
-    /// The equilibrium next to the initial state. Coordinates are free but for those that are fixed;
-    /// inputs are 0 or as fixed, but where coordinates are fixed those that are not are free: they
-    /// hold the machine there.
+    /// The equilibrium next to the initial state. Coordinates and states of first order are free but
+    /// for those that are fixed; inputs are 0 or as fixed, but where coordinates or such states are
+    /// fixed those that are not are free: they hold the machine there.
     ///
     /// # Errors
     /// An unknown name, a rate that is fixed to something else than 0, and
     /// [`Error::Stopped`] where no equilibrium is found.
     pub fn equilibrium(&self, fixed: &[(&str, f64)]) -> Result<Equilibrium, Error> {
         let mut at = self.operating_point(fixed)?;
-        let degrees = at.state.len() / 2;
+        let degrees = self.model().program().degrees_of_freedom();
+        let rates = degrees..2 * degrees;
         let mut settings = Vec::with_capacity(fixed.len());
         for (name, value) in fixed {
             let setting = self.model().setting(name)?;
-            if matches!(setting, Setting::State(place) if place >= degrees) && *value != 0.0 {
+            if matches!(setting, Setting::State(place) if rates.contains(&place)) && *value != 0.0 {
                 return Err(Error::Request(format!(
                     "{name} = {value}: in an equilibrium all rates are 0"
                 )));
             }
             settings.push(setting);
         }
-        at.state[degrees..].fill(0.0);
+        at.state[rates.clone()].fill(0.0);
         let is_fixed = |setting: &Setting| settings.contains(setting);
-        let coordinates = (0..degrees).map(Setting::State);
-        let mut free: Vec<Setting> = coordinates.filter(|place| !is_fixed(place)).collect();
-        if free.len() < degrees {
+        let places = (0..at.state.len()).filter(|place| !rates.contains(place));
+        let mut free: Vec<Setting> = places
+            .map(Setting::State)
+            .filter(|place| !is_fixed(place))
+            .collect();
+        if free.len() < at.state.len() - degrees {
             let inputs = (0..at.inputs.len()).map(Setting::Input);
             free.extend(inputs.filter(|place| !is_fixed(place)));
         }
@@ -95,7 +100,8 @@ struct Search<'i, 'm> {
     free: Vec<Setting>,
 }
 
-/// The accelerations at a point, and their derivatives by what is free.
+/// The accelerations and the rates of states of first order at a point, and their derivatives by
+/// what is free.
 struct Linear {
     accelerations: DVector<f64>,
     matrix: DMatrix<f64>,
@@ -130,8 +136,9 @@ impl Search<'_, '_> {
     }
 
     fn linearised(&mut self, at: &OperatingPoint) -> Result<Linear, Error> {
-        let degrees = at.state.len() / 2;
-        let mut rates = vec![0.0; 2 * degrees];
+        let degrees = self.instance.model().program().degrees_of_freedom();
+        let states = at.state.len();
+        let mut rates = vec![0.0; states];
         self.instance.evaluator()?.rates(at.point(), &mut rates);
         let mut dense = |of: Jacobian| {
             let (rows, columns) = self.jacobians.shape(of);
@@ -143,12 +150,12 @@ impl Search<'_, '_> {
             dense(Jacobian::RatesByState),
             dense(Jacobian::RatesByInputs),
         );
-        let matrix = DMatrix::from_fn(degrees, self.free.len(), |row, column| {
-            match self.free[column] {
-                Setting::State(place) => by_state[(degrees + row, place)],
-                Setting::Input(place) => by_inputs[(degrees + row, place)],
-                Setting::Time => 0.0,
-            }
+        let matrix = DMatrix::from_fn(states - degrees, self.free.len(), |row, column| match self
+            .free[column]
+        {
+            Setting::State(place) => by_state[(degrees + row, place)],
+            Setting::Input(place) => by_inputs[(degrees + row, place)],
+            Setting::Time => 0.0,
         });
         let accelerations = DVector::from_column_slice(&rates[degrees..]);
         let all = accelerations.iter().chain(matrix.iter());
@@ -157,8 +164,8 @@ impl Search<'_, '_> {
                 "an acceleration is no finite number".to_owned(),
             ));
         }
-        let sizes = DVector::from_fn(degrees, |row, _| {
-            let by_state = (0..degrees).map(|k| (by_state[(degrees + row, k)] * at.state[k]).abs());
+        let sizes = DVector::from_fn(states - degrees, |row, _| {
+            let by_state = (0..states).map(|k| (by_state[(degrees + row, k)] * at.state[k]).abs());
             let by_inputs =
                 (0..at.inputs.len()).map(|k| (by_inputs[(degrees + row, k)] * at.inputs[k]).abs());
             by_state

@@ -159,6 +159,8 @@ impl CompiledModel {
         }
         let rates: Vec<String> = units.iter().map(|unit| format!("{unit}/s")).collect();
         units.extend(rates);
+        let first_order = self.model.states.iter();
+        units.extend(first_order.map(|state| state.unit.to_string()));
         units
     }
 

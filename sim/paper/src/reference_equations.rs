@@ -19,12 +19,13 @@ const PAPER_SCALES: (f64, f64) = (3.0885e4, 25e-6);
 
 /// The specifications that were written out by hand. A model of the same name may follow
 /// other conventions; only what has the very equations of one of them is the same machine.
-const SHIPPED: [&str; 10] = [
+const SHIPPED: [&str; 11] = [
     models::PLANETARY_ARM.text,
     models::DOUBLE_PENDULUM.text,
     models::CART_TWO_ARMS.text,
     models::FURUTA_PENDULUM.text,
     models::HUB_BEAM_TIP_MASS.text,
+    models::LOUDSPEAKER.text,
     models::PENDULUM.text,
     models::EMPS.text,
     models::PUMA_560.text,
@@ -253,7 +254,7 @@ fn closed_form(
         })
     };
     let modes: usize = order * model.fields.len();
-    let rest = vec![0.0; 2 * (model.coordinates.len() + modes)];
+    let rest = vec![0.0; 2 * (model.coordinates.len() + modes) + model.states.len()];
     let still = vec![0.0; model.inputs.len()];
     evaluate(&rest, &still).map_err(|unfit| unfit.to_string())?;
     Ok(reference(

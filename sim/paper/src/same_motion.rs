@@ -12,6 +12,7 @@ pub fn difference(model: &Model, known: &Model, given: &[&str]) -> Option<String
     let pair = Pair { model, known };
     pair.coordinates()
         .or_else(|| pair.inputs())
+        .or_else(|| pair.states())
         .or_else(|| pair.fields())
         .or_else(|| pair.terms("kinetic", &model.kinetic, &known.kinetic))
         .or_else(|| pair.terms("potential", &model.potential, &known.potential))
@@ -41,6 +42,18 @@ impl Pair<'_> {
             inputs.map(|input| input.name.clone()).collect()
         };
         listed("inputs", &names(self.model), &names(self.known))
+    }
+
+    fn states(&self) -> Option<String> {
+        let names = |model: &Model| -> Vec<String> {
+            let states = model.states.iter();
+            states.map(|state| state.name.clone()).collect()
+        };
+        listed("states", &names(self.model), &names(self.known)).or_else(|| {
+            let mut pairs = self.model.states.iter().zip(self.known.states.iter());
+            let other = pairs.find(|(state, known)| !self.same(&state.rate, &known.rate));
+            other.map(|(state, _)| format!("the rate of its state `{}` is another", state.name))
+        })
     }
 
     fn fields(&self) -> Option<String> {
@@ -119,7 +132,7 @@ impl Pair<'_> {
                     && arguments.len() == others.len()
                     && arguments.iter().zip(others).all(|(a, b)| self.same(a, b))
             }
-            // What has no parts; coordinates, inputs and fields are known to be the same.
+            // What has no parts; coordinates, inputs, states and fields are known to be the same.
             (left, right) => left == right,
         }
     }

@@ -57,11 +57,12 @@ impl ExponentialIntegrator {
             slopes.keep();
             return Ok(());
         }
-        let (n, half) = (self.states, self.states / 2);
+        let (n, degrees) = (self.states, self.degrees);
+        let forced = n - degrees;
         let rows = self.regimes[motion.regime].matrix.rows;
         slopes.rates.resize(rows, 0.0);
         self.rates(motion, &mut slopes.rates);
-        let accelerations = slopes.rates[half..n].iter();
+        let accelerations = slopes.rates[degrees..n].iter();
         let largest = accelerations.fold(0.0f64, |most, a| most.max(a.abs()));
         let (mut base, mut moved) = (
             std::mem::take(&mut slopes.base),
@@ -80,7 +81,7 @@ impl ExponentialIntegrator {
                 continue;
             }
             let mut matters = false;
-            let column = &mut slopes.there[place * half..(place + 1) * half];
+            let column = &mut slopes.there[place * forced..(place + 1) * forced];
             for (slot, (after, before)) in column.iter_mut().zip(pairs(&moved, &base)) {
                 matters |= (after - before).abs() > ROUNDING * largest;
                 *slot = (after - before) / size;

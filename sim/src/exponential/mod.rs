@@ -70,6 +70,7 @@ impl ExponentialIntegrator {
         let steps = turns.ceil().max(LEAST_STEPS) * refinement;
         (steps <= MOST_STEPS).then(|| Self {
             states: evaluator.states(),
+            degrees: evaluator.degrees_of_freedom(),
             surfaces,
             regimes: Vec::new(),
             known: HashMap::new(),
@@ -79,6 +80,16 @@ impl ExponentialIntegrator {
             last_own: (Vec::new(), 0),
             apart: RegimeDifference::default(),
         })
+    }
+
+    /// Degrees of freedom of the model.
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.degrees
+    }
+
+    /// The rates that forces act on: accelerations, and rates of states of first order.
+    fn forced(&self) -> usize {
+        self.states - self.degrees
     }
 
     /// Runs from `initial` at the first of the samples (s, ascending) to the last; `show` is
@@ -138,9 +149,9 @@ impl ExponentialIntegrator {
             given,
             base: Vec::new(),
             event_values: Vec::new(),
-            remainder: Remainder::none(self.states / 2, count),
+            remainder: Remainder::none(self.forced(), count),
             next: Vec::new(),
-            later: Remainder::none(self.states / 2, count),
+            later: Remainder::none(self.forced(), count),
             change: Vec::new(),
         };
         motion.regime = self.regime(&motion.sides)?;
@@ -175,7 +186,7 @@ impl ExponentialIntegrator {
         if let Some(tangents) = &mut options.tangents {
             tangents.begin(t, &motion.state, values);
             if options.force.is_some() {
-                tangents.slopes = Some(Slopes::new(self.states, count));
+                tangents.slopes = Some(Slopes::new(self.states, self.forced(), count));
             }
         }
         Ok(motion)
@@ -249,14 +260,14 @@ impl ExponentialIntegrator {
     /// motion stands.
     fn evaluate_events(&self, motion: &mut Motion) {
         let regime = &self.regimes[motion.regime];
-        let half = self.states / 2;
+        let degrees = self.degrees;
         motion.event_values.clear();
         let rows = regime.functions.iter().zip(&motion.remainder.moved);
         motion
             .event_values
             .extend(rows.map(|(row, moved)| row.at(&motion.state, &motion.given) + moved));
         for (row, function) in regime.rates.iter().zip(&regime.functions) {
-            let forced = dot(&function.state[half..], &motion.remainder.force);
+            let forced = dot(&function.state[degrees..], &motion.remainder.force);
             motion
                 .event_values
                 .push(row.at(&motion.state, &motion.given) + forced);
@@ -300,7 +311,7 @@ impl ExponentialIntegrator {
         end: f64,
         options: &mut Options<'_, '_>,
     ) -> Result<bool, String> {
-        let (n, half) = (self.states, self.states / 2);
+        let n = self.states;
         let regime = &self.regimes[motion.regime];
         motion.next.clear();
         motion.next.extend_from_slice(&motion.base);
@@ -346,7 +357,7 @@ impl ExponentialIntegrator {
         if options.force.is_some() {
             std::mem::swap(&mut motion.remainder, &mut motion.later);
             for place in 0..surfaces {
-                let row = &regime.functions[place].state[half..];
+                let row = &regime.functions[place].state[self.degrees..];
                 motion.event_values[place] += motion.remainder.moved[place];
                 motion.event_values[surfaces + place] += dot(row, &motion.remainder.force);
             }

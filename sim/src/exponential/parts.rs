@@ -104,9 +104,11 @@ impl ExponentialIntegrator {
     /// The rates where the motion stands.
     pub(super) fn rates(&self, motion: &Motion, out: &mut [f64]) {
         let regime = &self.regimes[motion.regime];
-        let (n, half) = (self.states, self.states / 2);
+        let degrees = self.degrees;
         regime.rates(&motion.state, &motion.given, out);
-        let sums = out[half..n].iter_mut().zip(&motion.remainder.force);
+        let sums = out[degrees..self.states]
+            .iter_mut()
+            .zip(&motion.remainder.force);
         sums.for_each(|(o, f)| *o += f);
     }
 
@@ -188,11 +190,13 @@ impl ExponentialIntegrator {
         self.rates(motion, &mut rates);
         // On this side of a surface that was reached.
         self.find_remainder_beside(motion, (t, -AHEAD), &rates, options)?;
-        let half = self.states / 2;
+        let degrees = self.degrees;
         for (place, before) in before.iter().enumerate() {
             let change = 0.5 * tau * (motion.remainder.force[place] - before);
-            motion.state[half + place] += change;
-            motion.state[place] += change * tau / 3.0;
+            motion.state[degrees + place] += change;
+            if place < degrees {
+                motion.state[place] += change * tau / 3.0;
+            }
         }
         Ok(())
     }

@@ -85,13 +85,14 @@ impl Regime {
             return None;
         }
         let n = system.states;
-        let columns = n + rates.given.ncols() + n / 2;
+        let (degrees, forced) = (system.degrees, n - system.degrees);
+        let columns = n + rates.given.ncols() + forced;
         let mut whole = DMatrix::zeros(columns, columns);
         whole.view_mut((0, 0), (n, n)).copy_from(&rates.state);
         let given = rates.given.ncols();
         whole.view_mut((0, n), (n, given)).copy_from(&rates.given);
-        for place in 0..n / 2 {
-            whole[(n / 2 + place, n + given + place)] = 1.0;
+        for place in 0..forced {
+            whole[(degrees + place, n + given + place)] = 1.0;
         }
         let flow = (whole * step).exp();
         let mut doubled = Vec::with_capacity(DOUBLINGS);
@@ -99,7 +100,7 @@ impl Regime {
         for _ in 0..DOUBLINGS {
             doubled.push((
                 Columns::of(n, n, |r, c| longer[(r, c)]),
-                Columns::of(n, n / 2, |r, c| longer[(r, n + given + c)]),
+                Columns::of(n, forced, |r, c| longer[(r, n + given + c)]),
             ));
             longer = &longer * &longer;
         }
@@ -118,7 +119,7 @@ impl Regime {
             matrix: Columns::of(n, n, |r, c| rates.state[(r, c)]),
             step: Columns::of(rows, n, |r, c| row_of(r, c, None)),
             step_given: Columns::of(rows, given, |r, c| row_of(r, n + c, Some(c))),
-            step_force: Columns::of(rows, n / 2, |r, c| row_of(r, n + given + c, None)),
+            step_force: Columns::of(rows, forced, |r, c| row_of(r, n + given + c, None)),
             doubled,
             given: rates.given,
             functions,

@@ -68,10 +68,15 @@ pub struct RegimeDifference {
 }
 
 impl RegimeDifference {
-    pub fn of(a: &Regime, b: &Regime, states: usize, pair: (usize, usize)) -> Self {
+    pub fn of(
+        a: &Regime,
+        b: &Regime,
+        (states, degrees): (usize, usize),
+        pair: (usize, usize),
+    ) -> Self {
         let differing = |columns: usize, entry: &dyn Fn(&Regime, usize, usize) -> f64| {
             let column = |column: usize| -> Vec<f64> {
-                let rows = states / 2..states;
+                let rows = degrees..states;
                 rows.map(|row| entry(a, row, column) - entry(b, row, column))
                     .collect()
             };

@@ -92,7 +92,7 @@ impl ExponentialIntegrator {
             self.apart = RegimeDifference::of(
                 &self.regimes[pair.0],
                 &self.regimes[pair.1],
-                self.states,
+                (self.states, self.degrees),
                 pair,
             );
         }

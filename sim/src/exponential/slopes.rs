@@ -22,14 +22,13 @@ pub struct Slopes {
 }
 
 impl Slopes {
-    /// Of a model with so many states and surfaces.
-    pub fn new(states: usize, surfaces: usize) -> Self {
-        let half = states / 2;
+    /// Of a model with so many states, rates that forces act on, and surfaces.
+    pub fn new(states: usize, forced: usize, surfaces: usize) -> Self {
         Self {
-            here: vec![0.0; states * half],
-            there: vec![0.0; states * half],
-            base: Remainder::none(half, surfaces),
-            moved: Remainder::none(half, surfaces),
+            here: vec![0.0; states * forced],
+            there: vec![0.0; states * forced],
+            base: Remainder::none(forced, surfaces),
+            moved: Remainder::none(forced, surfaces),
             ..Self::default()
         }
     }
@@ -69,9 +68,9 @@ impl Slopes {
     }
 
     fn add(&self, derivatives: &[f64], vector: &[f64], factor: f64, out: &mut [f64]) {
-        let half = out.len();
+        let forced = out.len();
         for state in &self.active {
-            let column = &derivatives[state * half..(state + 1) * half];
+            let column = &derivatives[state * forced..(state + 1) * forced];
             let size = factor * vector[*state];
             out.iter_mut().zip(column).for_each(|(o, d)| *o += size * d);
         }

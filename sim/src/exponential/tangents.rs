@@ -32,6 +32,7 @@ impl Drives for Free {
 /// Tangent vectors: those of the initial state first, then the driven ones.
 pub struct Tangents<'d> {
     states: usize,
+    degrees: usize,
     /// How many are of the initial state.
     free: usize,
     driven: usize,
@@ -54,11 +55,18 @@ pub struct Tangents<'d> {
 }
 
 impl<'d> Tangents<'d> {
-    /// The vectors of all initial states, if they are wanted, and driven ones that begin as
+    /// Of a model with so many states and degrees of freedom. The vectors of all initial states, if they are wanted, and driven ones that begin as
     /// nothing.
-    pub fn new(states: usize, by_state: bool, driven: usize, drives: &'d mut dyn Drives) -> Self {
+    pub fn new(
+        (states, degrees): (usize, usize),
+        by_state: bool,
+        driven: usize,
+        drives: &'d mut dyn Drives,
+    ) -> Self {
+        let forced = states - degrees;
         Self {
             states,
+            degrees,
             free: if by_state { states } else { 0 },
             driven,
             stride: states.next_multiple_of(kernels::LANES),
@@ -67,10 +75,10 @@ impl<'d> Tangents<'d> {
             vectors: Vec::new(),
             next: Vec::new(),
             drives,
-            here: vec![0.0; driven * (states / 2)],
-            there: vec![0.0; driven * (states / 2)],
+            here: vec![0.0; driven * forced],
+            there: vec![0.0; driven * forced],
             slopes: None,
-            felt: vec![0.0; states / 2],
+            felt: vec![0.0; forced],
         }
     }
 
@@ -143,12 +151,12 @@ impl<'d> Tangents<'d> {
     /// Makes several steps at once, with the drives held, and corrected at the end what is felt
     /// of the forces that change with the state.
     fn several(&mut self, (state, force): &(Columns, Columns)) {
-        let half = self.states / 2;
+        let forced = self.states - self.degrees;
         self.next.fill(0.0);
         for place in 0..self.driven {
             let first = (self.free + place) * self.stride;
             let out = &mut self.next[first..first + self.stride];
-            force.add_product(&self.here[place * half..(place + 1) * half], out);
+            force.add_product(&self.here[place * forced..(place + 1) * forced], out);
         }
         state.add_products(self.states, &self.vectors, &mut self.next);
         if let Some(slopes) = &self.slopes {
@@ -168,7 +176,8 @@ impl<'d> Tangents<'d> {
 
     /// Goes on by a part of a step, s, that ends at a state.
     pub fn part(&mut self, regime: &Regime, tau: f64, end: (f64, &[f64], &[f64])) {
-        let (n, half) = (self.states, self.states / 2);
+        let (n, degrees) = (self.states, self.degrees);
+        let forced = n - degrees;
         let (t, state, inputs) = end;
         if self.on_surface {
             self.find_drives(t, state, inputs);
@@ -179,12 +188,12 @@ impl<'d> Tangents<'d> {
             rates.fill(0.0);
             regime.matrix.add_product(vector, &mut rates);
             if let Some(slopes) = &self.slopes {
-                slopes.add_begin(vector, &mut rates[half..n]);
+                slopes.add_begin(vector, &mut rates[degrees..n]);
             }
             if place >= self.free {
-                let first = (place - self.free) * half;
-                let drives = &self.here[first..first + half];
-                rates[half..n]
+                let first = (place - self.free) * forced;
+                let drives = &self.here[first..first + forced];
+                rates[degrees..n]
                     .iter_mut()
                     .zip(drives)
                     .for_each(|(r, d)| *r += d);

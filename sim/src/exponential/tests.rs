@@ -130,7 +130,7 @@ fn tangents_are_differences_of_neighbouring_motions() {
     let mut integrator =
         ExponentialIntegrator::new(exact.evaluator(&values), 5e-4, 1.0).expect("can be integrated");
     let mut free = Free;
-    let mut tangents = Tangents::new(14, true, 0, &mut free);
+    let mut tangents = Tangents::new((14, 7), true, 0, &mut free);
     let mut found = vec![0.0; 14 * 14];
     let options = Options {
         force: None,
@@ -228,7 +228,7 @@ fn a_driven_tangent_is_the_motion_of_what_drives_it() {
     let inputs = HeldInputs::new(vec![0.0], vec![5.0], 1).expect("inputs");
     let times: Vec<f64> = (0..=100).map(|k| f64::from(k) * 0.01).collect();
     let mut push = Push;
-    let mut tangents = Tangents::new(2, false, 2, &mut push);
+    let mut tangents = Tangents::new((2, 1), false, 2, &mut push);
     let mut last = Vec::new();
     let options = Options {
         force: None,

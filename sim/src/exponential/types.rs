@@ -16,6 +16,8 @@ pub struct ExponentialIntegrator {
     pub(super) regimes: Vec<Regime>,
     pub(super) known: HashMap<Vec<Side>, Option<usize>>,
     pub(super) states: usize,
+    /// Degrees of freedom: as many positions come first in the state, then as many rates.
+    pub(super) degrees: usize,
     /// The length of a step, s.
     pub(super) step: f64,
     /// The sides on which the linear part alone would be, those for which that was asked last

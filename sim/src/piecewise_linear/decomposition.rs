@@ -71,9 +71,14 @@ pub(super) enum Failure {
 }
 
 impl Decomposition {
-    /// The parts of a square matrix, on which forces act as fast as `forcing`, 1/s. Real
+    /// The parts of a square matrix whose state begins with so many positions and as many rates, on which forces act as fast as `forcing`, 1/s. Real
     /// eigenvalues up to `slow` in magnitude, 1/s, go to the integrals.
-    pub fn of(matrix: &DMatrix<f64>, forcing: f64, slow: f64) -> Result<Self, Failure> {
+    pub fn of(
+        matrix: &DMatrix<f64>,
+        degrees: usize,
+        forcing: f64,
+        slow: f64,
+    ) -> Result<Self, Failure> {
         if matrix.iter().any(|entry| !entry.is_finite()) {
             return Err(Failure::NotFinite);
         }
@@ -81,8 +86,8 @@ impl Decomposition {
         let (pure, felt): (Vec<usize>, Vec<usize>) = (0..matrix.ncols()).partition(unfelt);
         let inner = matrix.select_columns(&felt).select_rows(&felt);
         let outer = matrix.select_columns(&felt).select_rows(&pure);
-        let mut schur =
-            SchurForm::of(&inner, time_scale(matrix, &felt)).ok_or(Failure::NotConverged)?;
+        let mut schur = SchurForm::of(&inner, time_scale(matrix, degrees, &felt))
+            .ok_or(Failure::NotConverged)?;
         let near_zero = near_zero(&schur.eigenvalues(), forcing, slow);
         schur.sort_by_key(near_zero.iter().map(|near| usize::from(!near)).collect());
         let zeros = near_zero.iter().filter(|near| **near).count();
@@ -100,20 +105,23 @@ impl Decomposition {
     }
 }
 
-/// A unit of time in which positions and rates are of like size: 1 for the first half of the
-/// state, the positions, and a power of two near the fastest rate for the second.
-fn time_scale(matrix: &DMatrix<f64>, felt: &[usize]) -> Vec<f64> {
-    let half = matrix.nrows() / 2;
-    let rates = matrix.rows(half, matrix.nrows() - half);
-    let stiffest = rates.columns(0, half).amax().sqrt();
-    let drag = rates.columns(half, matrix.nrows() - half).amax();
+/// A unit of time in which positions and rates are of like size: 1 for the positions, which come
+/// first in the state, and for states of first order, a power of two near the fastest rate for
+/// the rates between them.
+fn time_scale(matrix: &DMatrix<f64>, degrees: usize, felt: &[usize]) -> Vec<f64> {
+    let rates = matrix.rows(degrees, degrees);
+    let stiffest = rates.columns(0, degrees).amax().sqrt();
+    let drag = rates.columns(degrees, degrees).amax();
     let fastest = stiffest.max(drag);
     let unit = if fastest > 0.0 {
         fastest.log2().round().exp2()
     } else {
         1.0
     };
-    let of = |state: &usize| if *state < half { 1.0 } else { unit };
+    let of = |state: &usize| match state / degrees.max(1) {
+        1 => unit,
+        _ => 1.0,
+    };
     felt.iter().map(of).collect()
 }
 
@@ -158,7 +166,7 @@ mod tests {
     }
 
     fn check(matrix: &DMatrix<f64>, tolerance: f64) -> Decomposition {
-        let found = Decomposition::of(matrix, 0.0, 0.0).expect("decomposes");
+        let found = Decomposition::of(matrix, matrix.nrows() / 2, 0.0, 0.0).expect("decomposes");
         let (back, identity) = composed(&found);
         let size = matrix.nrows();
         assert!((identity - DMatrix::identity(size, size)).norm() < tolerance);
@@ -211,7 +219,7 @@ mod tests {
         let mut matrix = DMatrix::zeros(2, 2);
         matrix[(1, 0)] = f64::NAN;
         assert_eq!(
-            Decomposition::of(&matrix, 0.0, 0.0).err(),
+            Decomposition::of(&matrix, matrix.nrows() / 2, 0.0, 0.0).err(),
             Some(Failure::NotFinite)
         );
     }

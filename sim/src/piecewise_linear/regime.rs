@@ -75,7 +75,7 @@ impl Regime {
         let matrix = DMatrix::from_row_slice(states, states, &system.rates.state);
         let frequencies: Vec<f64> = system.phases.iter().map(|phase| phase[0]).collect();
         let highest = frequencies.iter().map(|f| f.abs()).fold(0.0, f64::max);
-        let decomposition = Decomposition::of(&matrix, highest, slow)?;
+        let decomposition = Decomposition::of(&matrix, system.degrees, highest, slow)?;
         let forcing = Forcing::of(&system);
         if !forcing.is_finite() || frequencies.iter().any(|f| !f.is_finite()) {
             return Err(Failure::NotFinite);

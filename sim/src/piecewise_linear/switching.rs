@@ -45,7 +45,8 @@ pub(super) fn switched_rate(evaluator: &mut AffineEvaluator, system: &AffineSyst
         let other = evaluator.system(&sides);
         let rows = system.rates.state.chunks(states.max(1));
         for (a, b) in rows.zip(other.rates.state.chunks(states.max(1))) {
-            let positions = a.iter().zip(b).take(states / 2);
+            // Degrees of freedom come first in the state.
+            let positions = a.iter().zip(b).take(system.degrees);
             largest = positions.fold(largest, |m, (a, b)| m.max((a - b).abs()));
         }
     }

@@ -81,8 +81,8 @@ pub(super) struct Surroundings<'s> {
     pub parameters: &'s [f64],
     /// The state.
     pub sample: &'s Sample,
-    /// The accelerations there, held.
-    pub accelerations: Vec<f64>,
+    /// The accelerations and the rates of states of first order there, held.
+    pub unknowns: Vec<f64>,
 }
 
 impl Surroundings<'_> {
@@ -135,7 +135,7 @@ impl Surroundings<'_> {
             inputs,
         } = sample;
         let equations = oracle.equations(*time, state, inputs).ok()?;
-        let rows = equations.residuals(&self.accelerations);
+        let rows = equations.residuals(&self.unknowns);
         let mut quantities: Vec<Slope> = rows
             .iter()
             .map(|row| Slope {

@@ -28,7 +28,7 @@ const LARGEST: f64 = 1e6;
 pub struct Sample {
     /// Time, in s.
     pub time: f64,
-    /// Coordinates, then rates.
+    /// Coordinates, their rates, states of first order.
     pub state: Vec<f64>,
     /// Inputs in the order of the model.
     pub inputs: Vec<f64>,
@@ -117,10 +117,10 @@ impl<'o> Sampler<'o> {
     /// The highest frequency of a coordinate by itself with every dead zone closed, in
     /// rad/s, at least 1.
     pub fn highest_frequency(&self) -> f64 {
-        let (positions, rates) = self.sizes.split_at(self.oracle.size());
+        let (positions, rest) = self.sizes.split_at(self.oracle.size());
         let frequencies = positions
             .iter()
-            .zip(rates)
+            .zip(rest)
             .map(|(position, rate)| rate / position);
         frequencies.fold(1.0, f64::max)
     }

@@ -11,11 +11,10 @@ use super::oracle::{Oracle, OracleError};
 
 /// The size of every entry of the state.
 pub(super) fn of_state(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
-    let size = oracle.size();
     let inputs = vec![0.0; oracle.input_count()];
     let mut sizes = of_coordinates(oracle, &inputs)?;
     let mut state = sizes.clone();
-    state.resize(2 * size, 0.0);
+    state.resize(oracle.state_length(), 0.0);
     // Where the sizes are no state of the model's domain, the initial state is one.
     if oracle.equations_inside(0.0, &state, &inputs)?.is_none() {
         state = oracle.initial().to_vec();
@@ -34,7 +33,32 @@ pub(super) fn of_state(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
         .map(|(size, (stiffness, mass))| size * frequency(stiffness / mass))
         .collect();
     sizes.extend(rates);
+    let first_order = of_states(oracle, &sizes, &inputs)?;
+    sizes.extend(first_order);
     Ok(sizes)
+}
+
+/// The sizes of states of first order: where the rate of one is 0 while the others are 0 and
+/// coordinates and rates as large as their sizes, if it decays; its initial value, or 1 in SI, if
+/// not.
+fn of_states(oracle: &Oracle, sizes: &[f64], inputs: &[f64]) -> Result<Vec<f64>, OracleError> {
+    let mut state = sizes.to_vec();
+    state.resize(oracle.state_length(), 0.0);
+    let equations = oracle.equations(0.0, &state, inputs)?;
+    let decays = oracle.state_decays(0.0, &state, inputs)?;
+    let initial = oracle.initial().iter().skip(sizes.len());
+    let rates = equations.state_rates.iter().zip(decays).zip(initial);
+    Ok(rates
+        .map(|((addends, decay), initial)| {
+            let rate: f64 = addends.iter().map(|addend| addend.value).sum();
+            let usual = if *initial == 0.0 { 1.0 } else { initial.abs() };
+            let balanced = (rate / decay).abs();
+            match balanced > 0.0 && balanced.is_finite() {
+                true => balanced,
+                false => usual,
+            }
+        })
+        .collect())
 }
 
 /// The sizes of the coordinates, 0 for modes. A coordinate is in a dead zone if it alone
@@ -46,7 +70,7 @@ fn of_coordinates(oracle: &Oracle, inputs: &[f64]) -> Result<Vec<f64>, OracleErr
             *entry = 0.0;
         }
     }
-    let still = vec![0.0; 2 * oracle.size()];
+    let still = vec![0.0; oracle.state_length()];
     let values = oracle.switch_values(0.0, &still, inputs)?;
     for (index, value) in values.iter().enumerate() {
         let slopes = oracle.switch_slopes(index, 0.0, &still, inputs)?;

@@ -2,6 +2,7 @@
 //! as a person would try.
 
 use eomgen_compiled_model::CompiledModel;
+use eomgen_model_spec::ids::StateId;
 use eomgen_model_spec::model::Model;
 use eomgen_page::play::{Slider, printed};
 
@@ -71,7 +72,7 @@ impl<'m> Quantities<'m> {
     }
 }
 
-/// Units of coordinates and modes, then of their rates.
+/// Units of coordinates and modes, then of their rates, then of states of first order.
 fn state_units(compiled: &CompiledModel) -> Vec<String> {
     let program = compiled.program();
     let mut units: Vec<String> = program.coordinates.iter().map(|c| c.unit.clone()).collect();
@@ -80,6 +81,7 @@ fn state_units(compiled: &CompiledModel) -> Vec<String> {
     }
     let rates: Vec<String> = units.iter().map(|unit| per_second(unit)).collect();
     units.extend(rates);
+    units.extend(program.first_order.iter().map(|state| state.unit.clone()));
     units
 }
 
@@ -102,7 +104,7 @@ fn movable_places(model: &Model, orders: &[usize]) -> Vec<usize> {
     places
 }
 
-/// Coordinates and modes, then their rates.
+/// Coordinates and modes, then their rates, then states of first order.
 fn initial_state<'m>(
     compiled: &'m CompiledModel,
     units: &[String],
@@ -111,10 +113,11 @@ fn initial_state<'m>(
 ) -> Vec<Slider<'m>> {
     let model = compiled.model();
     let names = compiled.state_names();
-    let degrees = names.len() / 2;
+    let degrees = compiled.program().degrees_of_freedom();
     let places = movable_places(model, compiled.orders());
     let rates = places.iter().map(|place| place + degrees);
-    let all = places.iter().copied().chain(rates);
+    let first_order = 2 * degrees..names.len();
+    let all = places.iter().copied().chain(rates).chain(first_order);
     let lengths = compiled.program().parameters.iter();
     let size = lengths
         .filter(|parameter| parameter.quantity.unit == "m")
@@ -128,11 +131,14 @@ fn initial_state<'m>(
             let reach = reach(&units[place], size).max(1.5 * value.abs());
             (-reach, reach)
         });
-        let coordinate = model.coordinates.get(place);
+        let coordinate = model.coordinates.get(place).map(|known| &known.doc);
+        let state = place
+            .checked_sub(2 * degrees)
+            .map(|state| &model.states[StateId::new(state)].doc);
         Slider {
             name: names[place].clone(),
             unit: printed(&units[place]),
-            doc: coordinate.map_or("", |coordinate| &coordinate.doc),
+            doc: coordinate.or(state).map_or("", String::as_str),
             place,
             factor: 1.0,
             value,
@@ -160,7 +166,7 @@ fn shown(compiled: &CompiledModel, units: &[String]) -> Vec<Shown> {
     let states = compiled.state_names().into_iter().zip(units.to_vec());
     let observables = &compiled.program().observables;
     let observables = observables.iter().map(|o| (o.name.clone(), o.unit.clone()));
-    let degrees = units.len() / 2;
+    let degrees = compiled.program().degrees_of_freedom();
     let all = states.chain(observables).enumerate();
     all.map(|(place, (name, unit))| Shown {
         at_first: place < degrees.min(SHOWN_AT_FIRST - 1) || name == "energy",

@@ -39,6 +39,8 @@ pub struct AffineEquations {
     pub(crate) scalars: Vec<AffineRow>,
     /// One per field: its coefficients hold a number or a row per mode.
     pub(crate) modal: Vec<AffineRow>,
+    /// One per state of first order.
+    pub(crate) first_order: Vec<AffineRow>,
     pub(crate) guards: Vec<AffineRow>,
     pub(crate) guard_functions: Vec<Function>,
     /// For each guard the first one that differs from it by parameters alone.
@@ -82,19 +84,28 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
         scalars: each(graph, &equations.accelerations.rows.scalars, &mut replaced),
         modal: each(graph, &equations.accelerations.rows.modal, &mut replaced),
     };
+    let state_rates = each(graph, &equations.state_rates, &mut replaced);
     let surfaces: Vec<NodeId> = equations.guards.iter().map(|guard| guard.value).collect();
     let guards = each(graph, &surfaces, &mut replaced);
-    let moving = [accelerations.nodes(), guards.clone()].concat();
+    let moving = [accelerations.nodes(), state_rates.clone(), guards.clone()].concat();
     let sinusoids = rows::Sinusoids::in_nodes(graph, &moving);
     let inputs = input_count(graph, &moving);
-    let mut reader = rows::Reader::new(&accelerations, graph, &sinusoids, inputs);
+    let mut reader = rows::Reader::new(
+        graph,
+        (&accelerations, state_rates.len()),
+        &sinusoids,
+        inputs,
+    );
     let scalars = read(&mut reader, graph, &accelerations.scalars);
     let modal = FieldId::first(accelerations.modal.len()).zip(&accelerations.modal);
     let modal: Vec<AffineRow> = modal
         .map(|(field, id)| reader.row(graph, *id, Some(Space::Modes(field))))
         .collect();
+    let first_order = read(&mut reader, graph, &state_rates);
     let guard_rows = read(&mut reader, graph, &guards);
-    let rows = scalars.iter().chain(&modal).chain(&guard_rows);
+    let rows = [&scalars, &modal, &first_order, &guard_rows]
+        .into_iter()
+        .flatten();
     let unsettled = |id: &NodeId| !graph.dependence(*id).is_parameter_only();
     if let Some(node) = rows.flat_map(AffineRow::nodes).find(unsettled) {
         return Err(node);
@@ -120,6 +131,7 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
         derived_parameters,
         scalars,
         modal,
+        first_order,
         guards: guard_rows,
         guard_functions: equations.guards.iter().map(|g| g.function).collect(),
         guard_groups,

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId};
+use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, StateId};
 use eomgen_model_spec::model::Function;
 
 use crate::mechanics::rows::RowNodes;
@@ -19,6 +19,7 @@ pub(crate) struct AffineRow {
     pub mode_coordinates: Vec<NodeId>,
     pub rates: Vec<NodeId>,
     pub mode_rates: Vec<NodeId>,
+    pub states: Vec<NodeId>,
     pub inputs: Vec<NodeId>,
     pub sines: Vec<NodeId>,
     pub cosines: Vec<NodeId>,
@@ -33,6 +34,7 @@ impl AffineRow {
             &self.mode_coordinates,
             &self.rates,
             &self.mode_rates,
+            &self.states,
             &self.inputs,
             &self.sines,
             &self.cosines,
@@ -80,6 +82,7 @@ pub(super) struct Reader<'a> {
     sinusoids: &'a Sinusoids,
     coordinates: Vec<NodeId>,
     rates: Vec<NodeId>,
+    states: Vec<NodeId>,
     inputs: Vec<NodeId>,
     modes: Vec<ModalDerivative>,
     mode_rates: Vec<ModalDerivative>,
@@ -87,10 +90,11 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    /// A reader for a model whose accelerations have these rows.
+    /// A reader for a model whose accelerations have these rows, with so many states of first
+    /// order.
     pub fn new(
-        rows: &RowNodes,
         graph: &mut Graph,
+        (rows, states): (&RowNodes, usize),
         sinusoids: &'a Sinusoids,
         inputs: usize,
     ) -> Self {
@@ -119,6 +123,7 @@ impl<'a> Reader<'a> {
             sinusoids,
             coordinates: leaves(scalars.clone().map(Operation::Coordinate).collect()),
             rates: leaves(scalars.map(Operation::Rate).collect()),
+            states: leaves(StateId::first(states).map(Operation::State).collect()),
             inputs: leaves(InputId::first(inputs).map(Operation::Input).collect()),
             modes,
             mode_rates,
@@ -135,7 +140,7 @@ impl<'a> Reader<'a> {
                 .collect()
         };
         let (coordinates, rates) = (by(graph, &self.coordinates), by(graph, &self.rates));
-        let inputs = by(graph, &self.inputs);
+        let (states, inputs) = (by(graph, &self.states), by(graph, &self.inputs));
         let by_calls = |graph: &mut Graph, place: usize| -> Vec<NodeId> {
             let calls = self.sinusoids.calls.iter();
             calls
@@ -145,6 +150,7 @@ impl<'a> Reader<'a> {
         AffineRow {
             coordinates,
             rates,
+            states,
             inputs,
             sines: by_calls(graph, 0),
             cosines: by_calls(graph, 1),
@@ -163,6 +169,7 @@ impl<'a> Reader<'a> {
                 | Operation::Rate(_)
                 | Operation::ModeCoordinates(_)
                 | Operation::ModeRates(_)
+                | Operation::State(_)
                 | Operation::Input(_) => true,
                 _ => sinusoids.calls.iter().flatten().any(|call| *call == node),
             };

@@ -23,7 +23,7 @@ impl Sides {
     pub fn of(equations: &mut Equations) -> Self {
         let first_side = equations.parameter_names.len();
         let values: Vec<NodeId> = equations.guards.iter().map(|guard| guard.value).collect();
-        let roots = [equations.accelerations.rows.nodes(), values.clone()].concat();
+        let roots = [equations.rate_nodes(), values.clone()].concat();
         let graph = &mut equations.graph;
         let mut sides = Self {
             known: HashMap::new(),

@@ -30,7 +30,7 @@ pub fn check(
         orders,
         moves: equations.inertia_moves(),
     };
-    match lack(mass, machine.names.len() / 2) {
+    match lack(mass, model.coordinates.len() + orders.iter().sum::<usize>()) {
         None => Ok(()),
         Some(lack) => Err(machine.diagnostic(&lack)),
     }

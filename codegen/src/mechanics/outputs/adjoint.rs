@@ -3,11 +3,11 @@
 //! vector is summed over its elements, what a sum hands down stands for every element.
 //! What comes through a branch is chosen where it leaves the branch, not where it enters.
 
-use eomgen_model_spec::ids::{CoordinateId, FieldId, ParameterId};
+use eomgen_model_spec::ids::{CoordinateId, FieldId, ParameterId, StateId};
 use std::collections::HashMap;
 
 use super::matrix_derivatives::holds_matrix_of_parameters;
-use crate::mechanics::rows::RowNodes;
+use crate::mechanics::equations::Equations;
 use crate::symbolic::differentiate::{choice, partial_derivatives};
 use crate::symbolic::graph::{
     Argument, Dependence, Graph, NodeId, Operation, Shape, Space, Variable,
@@ -18,14 +18,19 @@ pub fn weight(graph: &mut Graph, variable: Variable) -> NodeId {
     graph.intern(Operation::Argument(Argument::Weights, variable))
 }
 
-/// The weight of each acceleration, and the acceleration.
-pub fn weighted(graph: &mut Graph, rows: &RowNodes) -> Vec<(NodeId, NodeId)> {
+/// The weight of each acceleration and of each rate of a state of first order, and what it weighs.
+pub fn weighted(equations: &mut Equations) -> Vec<(NodeId, NodeId)> {
+    let rows = &equations.accelerations.rows;
+    let graph = &mut equations.graph;
     let mut weighted = Vec::new();
     for (index, row) in CoordinateId::first(rows.scalars.len()).zip(&rows.scalars) {
         weighted.push((weight(graph, Variable::Rate(index)), *row));
     }
     for (field, row) in FieldId::first(rows.modal.len()).zip(&rows.modal) {
         weighted.push((weight(graph, Variable::ModeRates(field)), *row));
+    }
+    for (index, rate) in StateId::first(equations.state_rates.len()).zip(&equations.state_rates) {
+        weighted.push((weight(graph, Variable::State(index)), *rate));
     }
     weighted
 }

@@ -2,7 +2,7 @@
 //! dynamics, guards' rates, products with the Jacobian. Jacobians themselves are in
 //! `jacobian`. The structure they stand in is in `types`.
 
-use super::adjoint::{self, weight, weighted};
+use super::adjoint::{self, weighted};
 use super::hessian::gradient_derivative;
 use super::jacobian::{
     JacobianRows, by_parameters, by_time, by_variables, observable_rows, one_row, rate_rows,
@@ -15,7 +15,7 @@ use crate::mechanics::equations::Equations;
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::translate::along_motion;
 use crate::symbolic::differentiate::Direction;
-use crate::symbolic::graph::{Argument, Graph, NodeId, Operation, Space, Variable};
+use crate::symbolic::graph::{Argument, Graph, NodeId, Operation, Shape, Space, Variable};
 use crate::symbolic::matrix::StructuredMatrix;
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
 
@@ -39,7 +39,7 @@ pub fn derive_outputs(
         || has(Output::TimeDerivatives)
         || has(Output::Hessians);
     if differentiated {
-        let mut roots = equations.accelerations.rows.nodes();
+        let mut roots = equations.rate_nodes();
         roots.extend(&equations.observables);
         roots.push(equations.power);
         if holds_moving_matrix(&equations.graph, &roots) {
@@ -159,9 +159,11 @@ fn times(graph: &mut Graph, matrix: &StructuredMatrix, vector: NodeId) -> Vec<No
 /// The rates of the guards along the motion, the inputs held.
 fn guard_rates(equations: &mut Equations) -> Vec<NodeId> {
     let rows = equations.accelerations.rows.clone();
+    let state_rates = equations.state_rates.clone();
     let tangent = move |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
         Operation::Rate(index) => rows.scalars[index],
         Operation::ModeRates(field) => rows.modal[field],
+        Operation::State(index) => state_rates[index],
         _ => along_motion(graph, leaf),
     };
     let mut direction = Direction::new(&tangent);
@@ -184,17 +186,19 @@ fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
         scalars: derivatives(graph, &mut direction, &rows.scalars),
         modal: derivatives(graph, &mut direction, &rows.modal),
     };
-    let weighted = weighted(graph, &rows);
-    let gradient = adjoint::gradient(graph, &weighted);
+    let first_order = derivatives(graph, &mut direction, &equations.state_rates);
+    let weighted = weighted(equations);
+    let gradient = adjoint::gradient(&mut equations.graph, &weighted);
     let mut reverse: Vec<(Variable, NodeId)> = gradient
         .into_iter()
-        .filter_map(|(leaf, node)| Some((variable_of(graph, leaf)?, node)))
+        .filter_map(|(leaf, node)| Some((variable_of(&equations.graph, leaf)?, node)))
         .collect();
     reverse.sort_by_key(|(_, node)| *node);
     Products {
         forward,
+        forward_first_order: first_order,
         reverse,
-        by_parameters: weighted_by_parameters(equations, &rows, &weighted),
+        by_parameters: weighted_by_parameters(equations, &weighted),
     }
 }
 
@@ -202,7 +206,6 @@ fn products(equations: &mut Equations) -> Products<NodeId, RowNodes> {
 /// one parameter after the other where matrices hold them.
 fn weighted_by_parameters(
     equations: &mut Equations,
-    rows: &RowNodes,
     weighted: &[(NodeId, NodeId)],
 ) -> Jacobian<NodeId> {
     const NAME: &str = "weighted_rates_by_parameters";
@@ -210,23 +213,22 @@ fn weighted_by_parameters(
     match adjoint::gradient_by_parameters(graph, weighted, &equations.derived_parameters) {
         Some(gradient) => one_row(graph, NAME, &gradient),
         None => {
-            let sum = JacobianRows::single(weighted_sum(graph, rows));
+            let sum = JacobianRows::single(weighted_sum(graph, weighted));
             by_parameters(equations, &sum, NAME)
         }
     }
 }
 
-/// The sum of weights times accelerations, the rows of the rates that hold parameters.
-fn weighted_sum(graph: &mut Graph, rows: &RowNodes) -> NodeId {
+/// The sum of weights times accelerations and rates, the rows that hold parameters.
+fn weighted_sum(graph: &mut Graph, weighted: &[(NodeId, NodeId)]) -> NodeId {
     let mut terms = Vec::new();
-    for (index, row) in CoordinateId::first(rows.scalars.len()).zip(&rows.scalars) {
-        let weight = weight(graph, Variable::Rate(index));
-        terms.push((1.0, graph.multiply(weight, *row)));
-    }
-    for (field, row) in FieldId::first(rows.modal.len()).zip(&rows.modal) {
-        let weight = weight(graph, Variable::ModeRates(field));
-        let product = graph.multiply(weight, *row);
-        terms.push((1.0, graph.total_over(Space::Modes(field), product)));
+    for &(weight, row) in weighted {
+        let product = graph.multiply(weight, row);
+        let term = match graph.shape(weight) {
+            Shape::Vector(space) => graph.total_over(space, product),
+            _ => product,
+        };
+        terms.push((1.0, term));
     }
     graph.combine(&terms)
 }
@@ -244,6 +246,7 @@ fn variable_of(graph: &Graph, leaf: NodeId) -> Option<Variable> {
         Operation::ModeCoordinates(field) => Variable::ModeCoordinates(field),
         Operation::Rate(index) => Variable::Rate(index),
         Operation::ModeRates(field) => Variable::ModeRates(field),
+        Operation::State(index) => Variable::State(index),
         Operation::Input(index) => Variable::Input(index),
         _ => return None,
     })

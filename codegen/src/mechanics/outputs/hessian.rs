@@ -63,7 +63,8 @@ pub(crate) fn gradient_derivative(
 
 fn places(equations: &Equations) -> Places {
     let degrees = degrees_of_freedom(equations);
-    let before_parameters = 1 + 2 * degrees + equations.inputs;
+    let before_inputs = 1 + 2 * degrees + equations.state_rates.len();
+    let before_parameters = before_inputs + equations.inputs;
     let one = |first: usize| first..first + 1;
     let mut places = vec![(Variable::Time, one(0))];
     for variable in state_variables(equations) {
@@ -76,12 +77,13 @@ fn places(equations: &Equations) -> Places {
             Variable::Rate(index) => one(1 + degrees + index.index()),
             Variable::ModeCoordinates(field) => modes(field, 0),
             Variable::ModeRates(field) => modes(field, degrees),
+            Variable::State(index) => one(1 + 2 * degrees + index.index()),
             Variable::Input(_) | Variable::Parameter(_) | Variable::Time => continue,
         };
         places.push((variable, place));
     }
     for index in InputId::first(equations.inputs) {
-        let place = one(1 + 2 * degrees + index.index());
+        let place = one(before_inputs + index.index());
         places.push((Variable::Input(index), place));
     }
     for (place, index) in independent(equations).enumerate() {
@@ -102,9 +104,8 @@ fn gradient(
     places: &Places,
     weighted_by_parameters: &Jacobian<NodeId>,
 ) -> Vec<(Range<usize>, NodeId)> {
-    let accelerations = equations.accelerations.rows.clone();
+    let weighted = weighted(equations);
     let graph = &mut equations.graph;
-    let weighted = weighted(graph, &accelerations);
     let by_leaf = adjoint::gradient(graph, &weighted);
     let mut rows = Vec::new();
     for (variable, place) in places {

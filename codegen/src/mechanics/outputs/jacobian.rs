@@ -8,7 +8,7 @@ use crate::mechanics::equations::Equations;
 use crate::symbolic::differentiate::{Direction, ModalDerivative};
 use crate::symbolic::graph::{Graph, NodeId, Operation, Space, Variable};
 use crate::symbolic::matrix::StructuredMatrix;
-use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId};
+use eomgen_model_spec::ids::{CoordinateId, FieldId, InputId, ParameterId, StateId};
 
 /// The rows of a Jacobian: nodes, and the diagonal block of ones if there is one.
 pub(crate) struct JacobianRows {
@@ -68,8 +68,15 @@ pub(crate) fn rate_rows(equations: &Equations) -> JacobianRows {
             field: Some(field),
         });
     }
+    let first_order = equations.state_rates.iter().enumerate();
+    rows.extend(first_order.map(|(index, node)| EquationRow {
+        first: 2 * degrees + index,
+        count: 1,
+        node: *node,
+        field: None,
+    }));
     JacobianRows {
-        count: 2 * degrees,
+        count: 2 * degrees + equations.state_rates.len(),
         identity: Some(degrees),
         rows,
     }
@@ -187,6 +194,7 @@ pub(super) fn state_variables(equations: &Equations) -> Vec<Variable> {
         .chain(FieldId::first(fields).map(Variable::ModeCoordinates))
         .chain(CoordinateId::first(coordinates).map(Variable::Rate))
         .chain(FieldId::first(fields).map(Variable::ModeRates))
+        .chain(StateId::first(equations.state_rates.len()).map(Variable::State))
         .collect()
 }
 

@@ -46,7 +46,7 @@ pub enum Decided {
 /// The piecewise functions of the accelerations that surfaces decide. What switches mode by
 /// mode, or by surfaces that the number of a regime has no room for, is not among them.
 pub(crate) fn switches(equations: &mut Equations) -> Vec<Switch<NodeId>> {
-    let roots = equations.accelerations.rows.nodes();
+    let roots = equations.rate_nodes();
     let places = places(equations);
     let graph = &mut equations.graph;
     let place = |surface: NodeId| {

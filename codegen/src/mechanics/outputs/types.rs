@@ -49,6 +49,8 @@ pub struct Products<N, R> {
     /// The accelerations' rows of the product with a direction; those above are the rates'
     /// part of the direction.
     pub forward: R,
+    /// The same rows of the states of first order.
+    pub forward_first_order: Vec<N>,
     /// For each variable, the product of the weights with its column, without what the
     /// rates' own rows add.
     pub reverse: Vec<(Variable, N)>,

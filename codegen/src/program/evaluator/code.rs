@@ -1,7 +1,7 @@
 //! Machine code of a program, as the evaluator calls it. How it is made is not known here.
 
 use super::point::Point;
-use crate::program::{Program, RowValues, ValueId};
+use crate::program::{Products, Program, RowValues, ValueId};
 
 /// What is computed together in one call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +52,7 @@ impl Stage {
     /// The values it answers with.
     pub fn roots(self, program: &Program) -> Vec<ValueId> {
         match self {
-            Self::Rates => program.accelerations.all(),
+            Self::Rates => program.rate_roots(),
             Self::Observables => program.observable_values.clone(),
             Self::Guards => program.guards.iter().map(|guard| guard.value).collect(),
             Self::Mass => {
@@ -92,7 +92,7 @@ impl Stage {
                 rows.flat_map(RowValues::all).collect()
             }
             Self::GuardRates => outputs.guard_rates.iter().flatten().copied().collect(),
-            Self::ForwardProduct => products.flat_map(|p| p.forward.all()).collect(),
+            Self::ForwardProduct => products.flat_map(Products::forward_roots).collect(),
             Self::ReverseProduct => products
                 .flat_map(|p| p.reverse.iter().map(|(_, id)| *id))
                 .collect(),

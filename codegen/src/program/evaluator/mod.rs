@@ -123,7 +123,11 @@ impl Evaluator {
     fn interpreted_rates(&mut self, point: &Point<'_>, out: &mut [f64]) {
         self.compute(Stage::Rates, point);
         let degrees = self.program.degrees_of_freedom();
-        let (velocities, accelerations) = out.split_at_mut(degrees);
+        let (velocities, rest) = out.split_at_mut(degrees);
+        let (accelerations, first_order) = rest.split_at_mut(degrees);
+        for (rate, id) in first_order.iter_mut().zip(&self.program.first_order_rates) {
+            *rate = self.memory[self.places.offset(*id)];
+        }
         velocities.copy_from_slice(&point.state[degrees..2 * degrees]);
         self.copy_rows(
             &self.program.accelerations.scalars,

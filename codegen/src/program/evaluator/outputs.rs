@@ -73,7 +73,11 @@ impl Evaluator {
         self.set_argument(Argument::Direction, state, inputs);
         self.compute(Stage::ForwardProduct, &point);
         let degrees = self.program.degrees_of_freedom();
-        let (velocities, accelerations) = out.split_at_mut(degrees);
+        let (velocities, rest) = out.split_at_mut(degrees);
+        let (accelerations, first_order) = rest.split_at_mut(degrees);
+        for (slot, id) in first_order.iter_mut().zip(&products.forward_first_order) {
+            *slot = self.element(*id, 0);
+        }
         velocities.copy_from_slice(&state[degrees..2 * degrees]);
         let RowValues { scalars, modal } = products.forward;
         self.copy_rows(&scalars, &modal, accelerations);

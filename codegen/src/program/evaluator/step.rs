@@ -40,6 +40,7 @@ pub(super) fn step(
             let start = degrees + program.mode_offset(*field);
             out.copy_from_slice(&point.state[start..start + out.len()]);
         }
+        Op::State(index) => out[0] = point.state[2 * degrees + index.index()],
         Op::Input(index) => out[0] = point.inputs.get(index.index()).copied().unwrap_or(0.0),
         Op::Time => out[0] = point.t,
         Op::Negate(a) => unary(out, &operands, *a, |a| -a),

@@ -25,7 +25,7 @@ pub fn lower_affine(
         rows.iter().map(|row| values(&mut lowering, row)).collect()
     };
     let (scalars, modal) = (rows(&equations.scalars), rows(&equations.modal));
-    let guards = rows(&equations.guards);
+    let (first_order, guards) = (rows(&equations.first_order), rows(&equations.guards));
     let phases = equations
         .phases
         .iter()
@@ -48,6 +48,7 @@ pub fn lower_affine(
         layout: AffineLayout {
             scalars,
             modal,
+            first_order,
             guards,
             guard_functions: equations.guard_functions.clone(),
             guard_groups: equations.guard_groups.clone(),
@@ -67,11 +68,17 @@ pub fn lower_affine(
                 .map(|c| quantity(&c.name, &c.unit.text, &c.doc))
                 .collect(),
             fields: fields(model, equations.graph.orders()),
+            first_order: model
+                .states
+                .iter()
+                .map(|s| quantity(&s.name, &s.unit.text, &s.doc))
+                .collect(),
             inputs: Vec::new(),
             observables: Vec::new(),
             tables: lowering.tables,
             values: lowering.values,
             accelerations: RowValues::default(),
+            first_order_rates: Vec::new(),
             mass: MassBlocks::default(),
             velocity_terms: RowValues::default(),
             forces: RowValues::default(),
@@ -117,6 +124,7 @@ fn values(lowering: &mut Lowering<'_>, row: &AffineRow) -> AffineRowValues {
         mode_coordinates: all(&row.mode_coordinates),
         rates: all(&row.rates),
         mode_rates: all(&row.mode_rates),
+        states: all(&row.states),
         inputs: all(&row.inputs),
         sines: all(&row.sines),
         cosines: all(&row.cosines),

@@ -39,8 +39,13 @@ pub fn lower_with_outputs(
         &equations.derived_parameters,
         &equations.parameter_names,
     );
-    lowering.uses = equations.graph.uses(&equations.accelerations.rows.nodes());
+    lowering.uses = equations.graph.uses(&equations.rate_nodes());
     let accelerations = lowering.rows(&equations.accelerations.rows);
+    let first_order_rates = equations
+        .state_rates
+        .iter()
+        .map(|id| lowering.value(*id))
+        .collect();
     lowering.uses.clear();
     let mass = lowering.mass(equations);
     let velocity_terms = lowering.rows(&equations.velocity_terms);
@@ -96,6 +101,11 @@ pub fn lower_with_outputs(
                 order: *order,
             })
             .collect(),
+        first_order: model
+            .states
+            .iter()
+            .map(|s| quantity(&s.name, &s.unit.text, &s.doc))
+            .collect(),
         inputs: model
             .inputs
             .iter()
@@ -105,6 +115,7 @@ pub fn lower_with_outputs(
         tables: lowering.tables,
         values: lowering.values,
         accelerations,
+        first_order_rates,
         mass,
         velocity_terms,
         forces,

@@ -32,6 +32,11 @@ impl Lowering<'_> {
                 .collect(),
             products: outputs.products.as_ref().map(|products| Products {
                 forward: self.rows(&products.forward),
+                forward_first_order: products
+                    .forward_first_order
+                    .iter()
+                    .map(|node| self.value(*node))
+                    .collect(),
                 reverse: products
                     .reverse
                     .iter()

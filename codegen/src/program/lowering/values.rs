@@ -37,6 +37,7 @@ impl Hash for Computation {
             Op::Table(place) | Op::Parameter(place) => place.hash(state),
             Op::Coordinate(coordinate) | Op::Rate(coordinate) => coordinate.hash(state),
             Op::ModeCoordinates(field) | Op::ModeRates(field) => field.hash(state),
+            Op::State(index) => index.hash(state),
             Op::Input(input) => input.hash(state),
             Op::Argument(argument, variable) => (argument, variable).hash(state),
             op => op.operands().hash(state),
@@ -141,6 +142,7 @@ impl<'g> Lowering<'g> {
             | Op::Rate(_)
             | Op::ModeCoordinates(_)
             | Op::ModeRates(_)
+            | Op::State(_)
             | Op::Input(_)
             | Op::Time
             | Op::Argument(..) => false,
@@ -207,6 +209,7 @@ impl<'g> Lowering<'g> {
             Operation::Assemble(assembly) => return self.assembly(assembly),
             Operation::Coordinate(index) => Op::Coordinate(*index),
             Operation::Rate(index) => Op::Rate(*index),
+            Operation::State(index) => Op::State(*index),
             Operation::Input(index) => Op::Input(*index),
             Operation::Time => Op::Time,
             Operation::Argument(argument, Variable::Parameter(index)) => {

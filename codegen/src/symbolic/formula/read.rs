@@ -149,6 +149,7 @@ impl<'a> Reader<'a> {
                 Formula::Symbol(self.variable(Variable::Coordinate(*index)))
             }
             Operation::Rate(index) => Formula::Symbol(self.variable(Variable::Rate(*index))),
+            Operation::State(index) => Formula::Symbol(self.variable(Variable::State(*index))),
             Operation::Input(index) => Formula::Symbol(self.variable(Variable::Input(*index))),
             Operation::ModeCoordinates(field) => {
                 Formula::Symbol(self.variable(Variable::ModeCoordinates(*field)))
@@ -193,6 +194,7 @@ impl<'a> Reader<'a> {
         match variable {
             Variable::Coordinate(index) => Symbol::plain(&model.coordinates[index].name),
             Variable::Rate(index) => Symbol::plain(&model.coordinates[index].name).with_dots(1),
+            Variable::State(index) => Symbol::plain(&model.states[index].name),
             Variable::Input(index) => Symbol::plain(&model.inputs[index].name),
             Variable::Parameter(index) => Symbol::plain(&model.parameters[index].name),
             Variable::Time => Symbol::plain("t"),

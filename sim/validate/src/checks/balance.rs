@@ -7,7 +7,7 @@ use super::super::certificate::{Check, Worst};
 use super::super::oracle::{Conditioned, Equations, Oracle, OracleError};
 use super::super::sampler::{Sample, Sampler};
 use super::super::variant::Variant;
-use super::{ROW_TOLERANCE, accelerations};
+use super::{ROW_TOLERANCE, unknowns};
 
 /// Name of the check.
 const NAME: &str = "power_balance";
@@ -152,14 +152,15 @@ fn imbalance(
         state,
         inputs,
     } = sample;
-    let found = accelerations(variant, *time, state, inputs).and_then(|accelerations| {
+    let found = unknowns(variant, *time, state, inputs).and_then(|unknowns| {
         let power = variant.power(*time, state, inputs)?;
-        Ok((accelerations, power))
+        Ok((unknowns, power))
     });
-    let (accelerations, power) = match found {
+    let (mut accelerations, power) = match found {
         Ok(found) => found,
         Err(message) => return Ok(Err(message)),
     };
+    accelerations.truncate(oracle.size());
     let rate = oracle.energy_rate(*time, state, &accelerations, inputs)?;
     let forces = oracle.power(*time, state, inputs)?;
     let rows = equations.residuals(&accelerations);

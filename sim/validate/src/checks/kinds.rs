@@ -35,10 +35,10 @@ struct Arguments {
 }
 
 impl Arguments {
-    fn drawn(sample: &Sample, random: &mut Random) -> Self {
+    fn drawn(sample: &Sample, degrees: usize, random: &mut Random) -> Self {
         let mut draw = |count: usize| (0..count).map(|_| random.away_from_zero()).collect();
         Self {
-            accelerations: draw(sample.state.len() / 2),
+            accelerations: draw(degrees),
             direction: draw(sample.state.len()),
             input_direction: draw(sample.inputs.len()),
             weights: draw(sample.state.len()),
@@ -104,11 +104,12 @@ pub fn check(
     let Some(outputs) = &emitted.outputs else {
         return Vec::new();
     };
+    let degrees = variant.coordinate_names().len();
     let mut random = Random::new(SEED);
     let arguments: Vec<Arguments> = samples
         .iter()
         .take(STATES)
-        .map(|sample| Arguments::drawn(sample, &mut random))
+        .map(|sample| Arguments::drawn(sample, degrees, &mut random))
         .collect();
     let calls = calls(outputs);
     let text: Vec<String> = arguments.iter().map(Arguments::line).collect();

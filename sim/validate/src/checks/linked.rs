@@ -74,7 +74,7 @@ impl EmittedFunction {
             Self::Power => Ok(vec![variant.power(*time, state, inputs)?]),
             Self::Guards => variant.guards(*time, state, inputs),
             Self::MassMatrix => {
-                let size = state.len() / 2;
+                let size = variant.coordinate_names().len();
                 let mut mass = vec![f64::NAN; size * size];
                 variant.mass_matrix(*time, state, inputs, &mut mass)?;
                 Ok(mass)

@@ -33,9 +33,9 @@ pub const MASS_TOLERANCE: f64 = 2e-13;
 /// a few factors, which may be formed in another order on the other side.
 pub const SYMMETRY_TOLERANCE: f64 = 1e-15;
 
-/// The accelerations a variant gives, the second half of its rates; the first half must
-/// be the rates of the state, bit for bit.
-fn accelerations(
+/// The accelerations a variant gives, then the rates of states of first order; the rates of the
+/// coordinates, which come first, must be those of the state, bit for bit.
+fn unknowns(
     variant: &mut dyn Variant,
     time: f64,
     state: &[f64],
@@ -43,8 +43,8 @@ fn accelerations(
 ) -> Result<Vec<f64>, String> {
     let mut rates = vec![f64::NAN; state.len()];
     variant.rates(time, state, inputs, &mut rates)?;
-    let size = state.len() / 2;
-    if rates.get(..size) != state.get(size..) {
+    let size = variant.coordinate_names().len();
+    if rates.get(..size) != state.get(size..2 * size) {
         return Err("the rates of the coordinates are not those of the state".to_owned());
     }
     Ok(rates.split_off(size))
@@ -57,7 +57,7 @@ fn mass_matrix(
     state: &[f64],
     inputs: &[f64],
 ) -> Result<DMatrix<f64>, String> {
-    let size = state.len() / 2;
+    let size = variant.coordinate_names().len();
     let mut mass = vec![f64::NAN; size * size];
     variant.mass_matrix(time, state, inputs, &mut mass)?;
     Ok(DMatrix::from_row_slice(size, size, &mass))

@@ -6,7 +6,7 @@ use super::super::certificate::{Check, Worst};
 use super::super::oracle::{Oracle, OracleError, Residual};
 use super::super::sampler::{Drawn, Sample, Sampler};
 use super::super::variant::Variant;
-use super::{MASS_TOLERANCE, ROW_TOLERANCE, accelerations, mass_matrix, matrix_distance};
+use super::{MASS_TOLERANCE, ROW_TOLERANCE, mass_matrix, matrix_distance, unknowns};
 use nalgebra::DMatrix;
 
 /// States compared.
@@ -71,7 +71,7 @@ fn compare(
     };
     let own = sides(small, sample)?;
     let other = sides(large, &embedded)?.restricted(&kept);
-    let found = accelerations(small, sample.time, &sample.state, &sample.inputs)?;
+    let found = unknowns(small, sample.time, &sample.state, &sample.inputs)?;
     let scales = equations.residuals(&found);
     let rows = |own: &[f64], other: &[f64]| {
         let pairs = own.iter().zip(other).zip(&scales);
@@ -91,11 +91,13 @@ fn compare(
 /// The state of the larger variant with the added modes at zero.
 fn embed(state: &[f64], kept: &[usize], size: usize) -> Vec<f64> {
     let mut embedded = vec![0.0; 2 * size];
-    let (positions, rates) = state.split_at(state.len() / 2);
+    let (positions, rest) = state.split_at(kept.len());
+    let (rates, first_order) = rest.split_at(kept.len());
     for ((row, position), rate) in kept.iter().zip(positions).zip(rates) {
         embedded[*row] = *position;
         embedded[size + row] = *rate;
     }
+    embedded.extend(first_order);
     embedded
 }
 
@@ -126,7 +128,7 @@ fn sides(variant: &mut dyn Variant, sample: &Sample) -> Result<Sides, String> {
         state,
         inputs,
     } = sample;
-    let mut bias = vec![f64::NAN; state.len() / 2];
+    let mut bias = vec![f64::NAN; variant.coordinate_names().len()];
     let mut forces = bias.clone();
     variant.bias_and_forces(*time, state, inputs, &mut bias, &mut forces)?;
     Ok(Sides {

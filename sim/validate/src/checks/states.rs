@@ -6,7 +6,7 @@ use super::super::oracle::{Conditioned, Equations, Oracle, OracleError};
 use super::super::sampler::{Drawn, Regime, Sample, Sampler};
 use super::super::variant::Variant;
 use super::{
-    MASS_TOLERANCE, ROW_TOLERANCE, SYMMETRY_TOLERANCE, accelerations, mass_matrix, matrix_distance,
+    MASS_TOLERANCE, ROW_TOLERANCE, SYMMETRY_TOLERANCE, mass_matrix, matrix_distance, unknowns,
 };
 use nalgebra::{Cholesky, DMatrix};
 use std::collections::HashMap;
@@ -207,8 +207,10 @@ impl Findings<'_> {
             self.energy
                 .include(Worst::of(energy.deviation(found), place));
             let power = variant.power(*time, state, inputs)?;
-            let found = accelerations(variant, *time, state, inputs)?;
-            let expected = self.power(sample, &found).map_err(|e| e.to_string())?;
+            let found = unknowns(variant, *time, state, inputs)?;
+            let expected = self
+                .power(sample, &found[..equations.size()])
+                .map_err(|e| e.to_string())?;
             self.power
                 .include(Worst::of(expected.deviation(power), place));
             self.compare_accelerations(&found, equations, sample, place);
@@ -249,9 +251,9 @@ impl Findings<'_> {
         sample: &Sample,
         place: &str,
     ) {
-        let distance = equations.accelerations().map_or(f64::INFINITY, |dense| {
-            equations.distance(dense.as_slice(), found)
-        });
+        let distance = equations
+            .unknowns()
+            .map_or(f64::INFINITY, |dense| equations.distance(&dense, found));
         self.dense.include(Worst::of(distance, place));
         for (reference, worst) in self.references.iter().zip(&mut self.by_reference) {
             let deviation =
@@ -337,10 +339,10 @@ fn is_same(oracle: &Oracle, drawn: &Drawn, regime: &Regime) -> Result<bool, Orac
     let Drawn { sample, equations } = drawn;
     let (state, inputs) = (&sample.state, &sample.inputs);
     let other = oracle.equations_on(&regime.sides, sample.time, state, inputs)?;
-    let Some(accelerations) = equations.accelerations() else {
+    let Some(unknowns) = equations.unknowns() else {
         return Ok(false);
     };
     let mass = matrix_distance(&equations.mass, &other.mass, equations);
-    let rows = other.worst_residual(accelerations.as_slice());
+    let rows = other.worst_residual(&unknowns);
     Ok(mass <= MASS_TOLERANCE && rows <= ROW_TOLERANCE)
 }

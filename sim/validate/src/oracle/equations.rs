@@ -10,7 +10,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 /// sum over k of mass[j, k] q_k'' + sum over terms of term[j] = 0
 /// ```
 ///
-/// in the unit of the force on coordinate j.
+/// in the unit of the force on coordinate j; and for every state of first order its rate.
 #[derive(Clone, Debug)]
 pub struct Equations {
     /// The mass matrix, n by n.
@@ -19,6 +19,8 @@ pub struct Equations {
     pub mass_magnitude: DMatrix<f64>,
     /// All that does not hold an acceleration, sums within a term addend by addend.
     pub terms: Vec<RowTerm>,
+    /// For every state of first order the addends of its rate, in its unit per s.
+    pub state_rates: Vec<Vec<Conditioned>>,
 }
 
 /// What one addend of a term of the specification adds to every row.
@@ -100,7 +102,9 @@ impl Equations {
             .iter()
             .flat_map(|t| t.rows.iter().chain(&t.magnitudes));
         let mass = self.mass.iter().chain(&self.mass_magnitude);
+        let mut rates = self.state_rates.iter().flatten();
         terms.chain(mass).all(|number| number.is_finite())
+            && rates.all(|rate| rate.value.is_finite() && rate.magnitude.is_finite())
     }
 
     /// Whether the mass matrix is positive definite, and not by rounding alone.
@@ -129,7 +133,7 @@ impl Equations {
         mean.max(self.mass_magnitude[(row, column)])
     }
 
-    /// Number of rows.
+    /// Number of degrees of freedom.
     pub fn size(&self) -> usize {
         self.mass.nrows()
     }
@@ -151,8 +155,34 @@ impl Equations {
         Some(Cholesky::new(scaled)?.solve(&right).component_mul(&scale))
     }
 
-    /// Every row's sum for given accelerations, with the row's scale.
-    pub fn residuals(&self, accelerations: &[f64]) -> Vec<Residual> {
+    /// The accelerations as from [`Equations::accelerations`], then the rates of the states of
+    /// first order.
+    pub fn unknowns(&self) -> Option<Vec<f64>> {
+        let mut unknowns = self.accelerations()?.as_slice().to_vec();
+        let rates = self.state_rates.iter();
+        unknowns.extend(rates.map(|addends| residual(addends.iter().copied()).value));
+        Some(unknowns)
+    }
+
+    /// How many numbers the rows are for: accelerations, then rates of states of first order.
+    pub fn unknown_count(&self) -> usize {
+        self.size() + self.state_rates.len()
+    }
+
+    /// Every row's sum for given unknowns (accelerations, then rates of states of first order; 0
+    /// those that are left out), with the row's scale.
+    pub fn residuals(&self, unknowns: &[f64]) -> Vec<Residual> {
+        let rates = unknowns.get(self.size()..).unwrap_or_default();
+        let rates = rates.iter().copied().chain(std::iter::repeat(0.0));
+        let of_states = self.state_rates.iter().zip(rates).map(|(addends, rate)| {
+            let addends = addends.iter().map(|addend| *addend * -1.0);
+            residual(addends.chain([Conditioned::new(rate, rate.abs())]))
+        });
+        let rows = self.rows_of_degrees(unknowns).into_iter();
+        rows.chain(of_states).collect()
+    }
+
+    fn rows_of_degrees(&self, accelerations: &[f64]) -> Vec<Residual> {
         (0..self.size())
             .map(|row| {
                 let masses = self.mass.row(row);
@@ -168,32 +198,39 @@ impl Equations {
             .collect()
     }
 
-    /// The largest relative residual; infinite if the number of accelerations is wrong
+    /// The largest relative residual; infinite if the number of unknowns is wrong
     /// or one is not a number.
-    pub fn worst_residual(&self, accelerations: &[f64]) -> f64 {
-        if accelerations.len() != self.size() {
+    pub fn worst_residual(&self, unknowns: &[f64]) -> f64 {
+        if unknowns.len() != self.unknown_count() {
             return f64::INFINITY;
         }
-        self.residuals(accelerations)
+        self.residuals(unknowns)
             .iter()
             .map(Residual::relative)
             .fold(0.0, f64::max)
     }
 
-    /// How far two sets of accelerations are apart: the largest over the rows of
-    /// |mass (first - second)| relative to the row's scale at `first`.
+    /// How far two sets of unknowns are apart: the largest over the rows of
+    /// |mass (first - second)|, or |first - second| for rates of states of first order, relative to
+    /// the row's scale at `first`.
     pub fn distance(&self, first: &[f64], second: &[f64]) -> f64 {
-        if first.len() != self.size() || second.len() != self.size() {
+        if first.len() != self.unknown_count() || second.len() != self.unknown_count() {
             return f64::INFINITY;
         }
         let difference = DVector::from_iterator(
             self.size(),
-            first.iter().zip(second).map(|(left, right)| left - right),
+            first
+                .iter()
+                .zip(second)
+                .map(|(left, right)| left - right)
+                .take(self.size()),
         );
         let rows = &self.mass * difference;
+        let rates = first.iter().zip(second).skip(self.size());
+        let rates: Vec<f64> = rates.map(|(left, right)| left - right).collect();
         self.residuals(first)
             .iter()
-            .zip(rows.iter())
+            .zip(rows.iter().chain(&rates))
             .map(|(residual, value)| {
                 Residual {
                     value: *value,
@@ -246,6 +283,7 @@ mod tests {
                 RowTermKind::Force,
                 vec![(-3.0).into(), 1.0.into()],
             )],
+            state_rates: Vec::new(),
         }
     }
 

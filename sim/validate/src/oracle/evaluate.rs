@@ -20,6 +20,8 @@ pub(super) trait Level: DualNum<Primitive = f64> + Copy {
     fn of(motion: Motion) -> Self;
     /// The time derivative of `tree`.
     fn dot(pass: &Pass<'_>, tree: &Tree, frame: &Frame<'_>) -> Self;
+    /// A state of first order.
+    fn state(pass: &Pass<'_>, index: usize) -> Self;
     /// Where values of definitions are kept.
     fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>>;
     /// The derivatives of integral `index`, where they are kept for all rows.
@@ -33,6 +35,14 @@ impl Level for Number {
 
     fn dot(pass: &Pass<'_>, tree: &Tree, frame: &Frame<'_>) -> Self {
         pass.evaluate::<Dual<Number>>(tree, frame).eps
+    }
+
+    fn state(pass: &Pass<'_>, index: usize) -> Self {
+        let along = pass.directions.contains(&Direction::Time);
+        let still = || Pass::new(pass.scene, Direction::Still, Direction::Still);
+        let rate = along.then(|| still().state_rate::<Self>(index, &Frame::Outside).re.value);
+        pass.scene
+            .state(index, rate.unwrap_or(0.0), pass.directions)
     }
 
     fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>> {
@@ -51,6 +61,11 @@ impl Level for Dual<Number> {
 
     fn dot(_: &Pass<'_>, _: &Tree, _: &Frame<'_>) -> Self {
         Self::from(f64::NAN)
+    }
+
+    fn state(pass: &Pass<'_>, index: usize) -> Self {
+        let rate = pass.state_rate(index, &Frame::Outside);
+        Dual::new(Number::state(pass, index), rate)
     }
 
     fn kept<'p>(pass: &'p Pass<'_>, definition: usize) -> Option<&'p Cell<Option<Self>>> {
@@ -165,12 +180,30 @@ impl<'s> Pass<'s> {
             Tree::Call(function, arguments) => self.call(*function, arguments, frame),
             Tree::Time => N::of(self.time()),
             Tree::Coordinate(index) => N::of(self.scene.coordinate(*index, self.directions)),
+            Tree::State(index) => N::state(self, *index),
+            Tree::StateRate(index) => self.state_rate(*index, frame),
             Tree::Field { leaf, set } => {
                 N::of(self.scene.field(*leaf, *set, frame.node(), self.directions))
             }
             Tree::Mode { field } => N::of(self.mode(*field, frame)),
             still => N::from(self.still(still, frame)),
         }
+    }
+
+    /// The rate of a state of first order.
+    fn state_rate<N: Level>(&self, index: usize, frame: &Frame<'_>) -> N {
+        let mut sum = N::from(0.0);
+        for addend in self
+            .scene
+            .system
+            .state_rates
+            .get(index)
+            .into_iter()
+            .flatten()
+        {
+            sum += self.evaluate::<N>(addend, frame);
+        }
+        sum
     }
 
     /// What does not change with the state or the time.

@@ -142,7 +142,8 @@ impl Scene<'_> {
             (second, first)
         };
         let mixed = match (lesser, greater) {
-            (Direction::Still, _) => Conditioned::default(),
+            // What is kept holds no state of first order.
+            (Direction::Still | Direction::State(_), _) => Conditioned::default(),
             (Direction::Time, Direction::Position(row)) => self
                 .by_position(table, integral)
                 .along_motion_by_row
@@ -170,7 +171,7 @@ impl Scene<'_> {
         direction: Direction,
     ) -> Option<Conditioned> {
         match direction {
-            Direction::Still => Some(Conditioned::default()),
+            Direction::Still | Direction::State(_) => Some(Conditioned::default()),
             Direction::Time => Some(self.by_rate(table, integral).along_motion),
             Direction::Position(row) => self.by_position(table, integral).by_row.get(row),
             Direction::Rate(row) => self.by_rate(table, integral).by_row.get(row),
@@ -336,7 +337,7 @@ impl Integral {
 
 fn rank(direction: Direction) -> u8 {
     match direction {
-        Direction::Still => 0,
+        Direction::Still | Direction::State(_) => 0,
         Direction::Time => 1,
         Direction::Position(_) | Direction::LeafPosition(_) => 2,
         Direction::Rate(_) | Direction::LeafRate(_) => 3,

@@ -35,7 +35,7 @@ impl<'m> Lowering<'m> {
         }
     }
 
-    /// The fields' domains and the definitions of `model` at `order`.
+    /// The fields' domains, the definitions and the rates of the states of `model` at `order`.
     pub fn of_model(
         model: &Model,
         order: usize,
@@ -63,6 +63,10 @@ impl<'m> Lowering<'m> {
             if let Some(entry) = lowering.system.dependences.get_mut(index) {
                 *entry = dependence;
             }
+        }
+        for state in &model.states {
+            let addends = lowering.term(&state.name, &state.rate)?.addends();
+            lowering.system.state_rates.push(addends);
         }
         Ok(lowering)
     }
@@ -155,6 +159,7 @@ impl<'m> Lowering<'m> {
             ),
             ExprKind::Coordinate(index) => Tree::Coordinate(index.index()),
             ExprKind::Input(index) => Tree::Input(index.index()),
+            ExprKind::State(index) => Tree::State(index.index()),
             ExprKind::Definition(index) => match self.system.definitions.get(index.index()) {
                 Some(Tree::Constant(value)) => Tree::Constant(*value),
                 _ => Tree::Definition(index.index()),
@@ -221,6 +226,7 @@ impl<'m> Lowering<'m> {
         }
         Ok(match operand {
             Tree::Constant(_) | Tree::PerMode { .. } | Tree::Shape { .. } => Tree::Constant(0.0),
+            Tree::State(index) => Tree::StateRate(index),
             operand => Tree::Dot(operand.into()),
         })
     }
@@ -274,7 +280,7 @@ impl<'m> Lowering<'m> {
                 [field] => tree = self.per_mode(*field, tree),
                 _ => {}
             }
-        } else if keep && indices.is_empty() && !dependence.nested {
+        } else if keep && indices.is_empty() && !dependence.nested && dependence.states.is_empty() {
             tree = Tree::Places {
                 set,
                 body: body.clone().into(),

@@ -16,7 +16,7 @@
 //! d/dt dT/dq_j' - dT/dq_j + dV/dq_j + dR/dq_j' - sum of value * d(on)/dq_j = 0
 //! ```
 //!
-//! where d/dt dT/dq_j' = sum over k of M_jk q_k'' + (the derivative of dT/dq_j' along
+//! and for every state of first order z' - rate = 0, where d/dt dT/dq_j' = sum over k of M_jk q_k'' + (the derivative of dT/dq_j' along
 //! the motion with the rates held).
 
 mod conditioned;
@@ -66,6 +66,7 @@ pub struct Oracle {
     system: System,
     names: Vec<String>,
     inputs: usize,
+    states: usize,
     initial: Vec<f64>,
     ranges: Ranges,
     kinetic: Vec<Lowered>,
@@ -100,6 +101,7 @@ impl Oracle {
             system: lowering.system,
             names: coordinate_names(model, order),
             inputs: model.inputs.len(),
+            states: model.states.len(),
             initial: initial_state(model, order, parameters),
             ranges: Ranges::of(model, parameters),
             kinetic,
@@ -128,7 +130,17 @@ impl Oracle {
         self.inputs
     }
 
-    /// The initial state of the specification: coordinates, then rates.
+    /// Number of states of first order.
+    pub fn state_count(&self) -> usize {
+        self.states
+    }
+
+    /// Numbers in the state: coordinates, their rates, states of first order.
+    pub fn state_length(&self) -> usize {
+        2 * self.size() + self.states
+    }
+
+    /// The initial state of the specification: coordinates, then rates, then states of first order.
     pub fn initial(&self) -> &[f64] {
         &self.initial
     }
@@ -153,7 +165,7 @@ impl Oracle {
         self.system.domains.iter().map(|domain| domain.length)
     }
 
-    /// The equations of motion at a state: coordinates, then rates, in SI.
+    /// The equations of motion at a state: coordinates, rates, states of first order, in SI.
     ///
     /// # Errors
     /// [`OracleError::Length`] if the state or the inputs do not fit.
@@ -227,7 +239,35 @@ impl Oracle {
             mass,
             mass_magnitude,
             terms,
+            state_rates: self.state_rates(scene),
         }
+    }
+
+    /// The addends of the rates of states of first order.
+    fn state_rates(&self, scene: &Scene<'_>) -> Vec<Vec<Conditioned>> {
+        let pass = Pass::new(scene, Direction::Still, Direction::Still);
+        let rates = self.system.state_rates.iter();
+        rates
+            .map(|addends| addends.iter().map(|tree| pass.value(tree).re).collect())
+            .collect()
+    }
+
+    /// How the rate of each state of first order changes with itself alone, 1/s.
+    ///
+    /// # Errors
+    /// [`OracleError::Length`] if the state or the inputs do not fit.
+    pub fn state_decays(
+        &self,
+        time: f64,
+        state: &[f64],
+        inputs: &[f64],
+    ) -> Result<Vec<f64>, OracleError> {
+        let scene = self.scene(time, state, None, inputs)?;
+        let decay = |index: usize| {
+            let pass = Pass::new(&scene, Direction::Still, Direction::State(index));
+            pass.value(&Tree::StateRate(index)).eps2.value
+        };
+        Ok((0..self.states).map(decay).collect())
     }
 
     /// Second derivatives of the potential energy by each generalised coordinate alone.
@@ -259,7 +299,7 @@ impl Oracle {
         accelerations: Option<&'s [f64]>,
         inputs: &'s [f64],
     ) -> Result<Scene<'s>, OracleError> {
-        expect_length("state entries", 2 * self.size(), state.len())?;
+        expect_length("state entries", self.state_length(), state.len())?;
         expect_length("inputs", self.inputs, inputs.len())?;
         Ok(Scene::new(&self.system, time, state, accelerations, inputs))
     }
@@ -316,7 +356,7 @@ impl Ranges {
     }
 }
 
-/// Coordinates, modes at 0, then their rates.
+/// Coordinates, modes at 0, then their rates, then states of first order.
 fn initial_state(model: &Model, order: usize, parameters: &[f64]) -> Vec<f64> {
     let modes = vec![0.0; order * model.fields.len()];
     let given = |expr: &Option<Expr>| {
@@ -329,6 +369,7 @@ fn initial_state(model: &Model, order: usize, parameters: &[f64]) -> Vec<f64> {
     let rates = model.coordinates.iter().map(|c| given(&c.initial_rate));
     let mut state: Vec<f64> = values.chain(modes.iter().copied()).collect();
     state.extend(rates.chain(modes.iter().copied()));
+    state.extend(model.states.iter().map(|s| given(&s.initial)));
     state
 }
 

@@ -20,6 +20,8 @@ pub(super) enum Direction {
     Position(usize),
     /// The rate of a generalised coordinate.
     Rate(usize),
+    /// A state of first order.
+    State(usize),
     /// A field value at the current place, its rate held.
     LeafPosition(Leaf),
     /// The rate of a field value at the current place.
@@ -73,12 +75,14 @@ pub(super) struct Scene<'s> {
     pub imposed: Option<Imposed<'s>>,
     position: &'s [f64],
     rate: &'s [f64],
+    /// States of first order.
+    first_order: &'s [f64],
     acceleration: Option<&'s [f64]>,
     values: Vec<Vec<Values>>,
 }
 
 impl<'s> Scene<'s> {
-    /// A state (coordinates, then rates); without accelerations rates are constant.
+    /// A state (coordinates, their rates, states of first order); without accelerations rates are constant.
     pub fn new(
         system: &'s System,
         time: f64,
@@ -86,7 +90,8 @@ impl<'s> Scene<'s> {
         acceleration: Option<&'s [f64]>,
         inputs: &'s [f64],
     ) -> Self {
-        let (position, rate) = state.split_at(system.size.min(state.len()));
+        let (position, rest) = state.split_at(system.size.min(state.len()));
+        let (rate, first_order) = rest.split_at(system.size.min(rest.len()));
         let mut scene = Self {
             system,
             time,
@@ -95,6 +100,7 @@ impl<'s> Scene<'s> {
             imposed: None,
             position,
             rate,
+            first_order,
             acceleration,
             values: Vec::new(),
         };
@@ -149,6 +155,17 @@ impl<'s> Scene<'s> {
             Direction::Rate(row) if row == index => (0.0, 1.0),
             _ => (0.0, 0.0),
         }
+    }
+
+    /// A state of first order and how fast it changes in two directions, where it moves at `rate`.
+    pub fn state(&self, index: usize, rate: f64, directions: [Direction; 2]) -> Number {
+        let seeds = directions.map(|direction| match direction {
+            Direction::State(row) if row == index => 1.0,
+            Direction::Time => rate,
+            _ => 0.0,
+        });
+        let value = self.first_order.get(index).copied().unwrap_or(f64::NAN);
+        Motion::new((value, 0.0), seeds.map(|seed| (seed, 0.0))).value
     }
 
     /// A field value at place `node` of `set` in two directions.

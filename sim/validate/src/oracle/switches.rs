@@ -144,7 +144,8 @@ impl Oracle {
         let directions = rows
             .clone()
             .map(Direction::Position)
-            .chain(rows.map(Direction::Rate));
+            .chain(rows.map(Direction::Rate))
+            .chain((0..self.states).map(Direction::State));
         Ok(directions
             .map(|direction| {
                 let pass = Pass::new(&scene, Direction::Still, direction);
@@ -169,6 +170,9 @@ pub(super) fn find(oracle: &Oracle, model: &Model) -> Vec<Switch> {
     for force in &oracle.forces {
         search.walk(&force.on);
         search.walk(&force.value);
+    }
+    for addend in oracle.system.state_rates.iter().flatten() {
+        search.walk(addend);
     }
     search.found
 }
@@ -251,6 +255,8 @@ impl Search<'_> {
         match tree {
             Tree::Coordinate(index) => self.oracle.names.get(*index).cloned(),
             Tree::Definition(index) => Some(self.model.definitions.get(*index)?.name.clone()),
+            Tree::State(index) => Some(self.model.states.get(*index)?.name.clone()),
+            Tree::StateRate(index) => Some(format!("{}_dot", self.model.states.get(*index)?.name)),
             Tree::Dot(operand) => Some(format!("{}_dot", self.name(operand)?)),
             _ => None,
         }

@@ -29,6 +29,10 @@ pub(super) enum Tree {
     },
     /// A coordinate that is no mode, by its place in the state.
     Coordinate(usize),
+    /// A state of first order, by its place among them.
+    State(usize),
+    /// The rate of a state of first order.
+    StateRate(usize),
     /// A definition.
     Definition(usize),
     /// A field, or its derivative by the position, at the current place.
@@ -94,6 +98,8 @@ pub(super) struct Dependence {
     pub coordinates: BTreeSet<usize>,
     /// Fields, through their modes or their values.
     pub fields: BTreeSet<usize>,
+    /// States of first order, through their values or their rates.
+    pub states: BTreeSet<usize>,
     /// Field values at the place around the expression.
     pub leaves: BTreeSet<Leaf>,
     /// Fields whose sum's index is used and not bound inside.
@@ -113,12 +119,14 @@ pub(super) struct Dependence {
 impl Dependence {
     /// Nothing that changes with the state, the time or the inputs.
     pub fn is_constant(&self) -> bool {
-        self.coordinates.is_empty() && self.fields.is_empty() && !self.time && !self.input
+        let sets = self.coordinates.is_empty() && self.fields.is_empty() && self.states.is_empty();
+        sets && !self.time && !self.input
     }
 
     fn absorb(&mut self, other: &Self) {
         self.coordinates.extend(&other.coordinates);
         self.fields.extend(&other.fields);
+        self.states.extend(&other.states);
         self.leaves.extend(&other.leaves);
         self.indices.extend(&other.indices);
         self.position |= other.position;
@@ -148,6 +156,7 @@ impl Tree {
             Self::Input(_) => found.input = true,
             Self::Position { .. } => found.position = true,
             Self::Coordinate(index) => drop(found.coordinates.insert(*index)),
+            Self::State(index) | Self::StateRate(index) => drop(found.states.insert(*index)),
             Self::Definition(index) => {
                 if let Some(definition) = definitions.get(*index) {
                     found.absorb(definition);

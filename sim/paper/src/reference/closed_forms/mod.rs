@@ -12,6 +12,7 @@ mod emps;
 mod furuta_pendulum;
 mod hub_beam_tip_mass;
 mod linear_system;
+mod loudspeaker;
 mod pendulum;
 mod puma_560;
 mod shaft_and_disc;
@@ -29,11 +30,13 @@ pub struct StateAndParameters<'a> {
     pub input: &'a dyn Fn(&str) -> Option<f64>,
     /// The truncation order of the flexible field, 0 without one.
     pub order: usize,
-    /// The coordinates in the specification's order, the modes, then the rates of all.
+    /// The coordinates in the specification's order, the modes, then the rates of all, then states
+    /// of first order.
     pub state: &'a [f64],
 }
 
-/// Accelerations of a machine, in the order of its coordinates, with row scales.
+/// Accelerations of a machine, in the order of its coordinates, then rates of states of first
+/// order, with row scales.
 pub type ClosedForm = fn(&StateAndParameters<'_>) -> Result<Evaluation, NotApplicable>;
 
 /// Why a closed form has no value in a situation.
@@ -67,6 +70,7 @@ pub fn find(name: &str) -> Option<ClosedForm> {
         "emps" => Some(emps::accelerations),
         "furuta_pendulum" => Some(furuta_pendulum::accelerations),
         "hub_beam_tip_mass" => Some(hub_beam_tip_mass::accelerations),
+        "loudspeaker" => Some(loudspeaker::accelerations),
         "pendulum" => Some(pendulum::accelerations),
         "puma_560" => Some(puma_560::accelerations),
         "shaft_and_disc" => Some(shaft_and_disc::accelerations),

@@ -36,7 +36,7 @@ impl Known {
         random: &mut Random,
     ) -> Self {
         let mass = equations.mass.clone();
-        let scales = equations.residuals(&vec![0.0; equations.size()]);
+        let scales = equations.residuals(&[]);
         // Weights M mu of the accelerations: mu times the rows says what their sum is.
         let multipliers = DVector::from_iterator(
             scales.len(),
@@ -45,11 +45,13 @@ impl Known {
                 random.away_from_zero() / scale
             }),
         );
-        let velocities = sample.state.iter().skip(scales.len());
+        let velocities = sample.state.iter().skip(mass.nrows()).take(mass.nrows());
         let mut weights: Vec<f64> = velocities
             .map(|rate| random.away_from_zero() / rate.abs().max(f64::MIN_POSITIVE))
             .collect();
-        weights.extend((&mass * &multipliers).iter());
+        let (of_degrees, of_states) = multipliers.as_slice().split_at(mass.nrows());
+        weights.extend((&mass * DVector::from_column_slice(of_degrees)).iter());
+        weights.extend(of_states);
         let jacobians = JACOBIANS.iter().filter_map(|name| {
             let found = outputs.jacobian(name, sample)?;
             Some((*name, found))
@@ -144,7 +146,7 @@ impl Known {
                 if name.starts_with("rates") {
                     self.of_rates(&change, direction, slopes)
                 } else {
-                    of_observables(&change, &slopes[self.mass.nrows()..])
+                    of_observables(&change, &slopes[self.multipliers.len()..])
                 },
             ));
         }
@@ -181,10 +183,12 @@ impl Known {
     /// Changes of the rates: those of the accelerations must undo the change of the rows.
     fn of_rates(&self, change: &[f64], direction: &Direction, slopes: &[Slope]) -> Vec<f64> {
         let size = self.mass.nrows();
-        if change.len() != 2 * size {
-            return vec![f64::INFINITY; 2 * size];
+        let count = size + self.multipliers.len();
+        if change.len() != count {
+            return vec![f64::INFINITY; count];
         }
-        let (velocities, accelerations) = change.split_at(size);
+        let (velocities, rest) = change.split_at(size);
+        let (accelerations, first_order) = rest.split_at(size);
         let same = velocities.iter().zip(&direction.state[size..]);
         let mut found: Vec<f64> = same.map(|(found, by)| relative(found - by, *by)).collect();
         for (row, slope) in slopes.iter().take(size).enumerate() {
@@ -194,6 +198,9 @@ impl Known {
                 .clone()
                 .fold(slope.scale, |scale, a| scale.max(a.abs()));
             found.push(relative(addends.sum::<f64>() + slope.value, scale));
+        }
+        for (rate, slope) in first_order.iter().zip(&slopes[size..]) {
+            found.push(relative(rate + slope.value, slope.scale.max(rate.abs())));
         }
         found
     }
@@ -215,7 +222,7 @@ impl Known {
             found += weighted * by;
             scale = scale.max((weighted * by).abs());
         }
-        for (weight, by) in self.weights.iter().zip(&direction.state[size..]) {
+        for (weight, by) in self.weights[..size].iter().zip(&direction.state[size..]) {
             found -= weight * by;
             scale = scale.max((weight * by).abs());
         }

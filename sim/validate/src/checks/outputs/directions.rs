@@ -33,7 +33,7 @@ pub(super) fn directions(
         return Ok(Vec::new());
     }
     let oracle = judged.oracle;
-    let (states, inputs) = (2 * oracle.size(), oracle.input_count());
+    let (states, inputs) = (oracle.state_length(), oracle.input_count());
     let still = Direction::still(states, inputs, judged.parameters.len());
     let small = oracle.size() <= SMALL.0;
     let mut found = Vec::new();

@@ -24,10 +24,11 @@ pub(super) fn guard_rates(
         return Ok(());
     };
     let equations = oracle.equations(sample.time, &sample.state, &sample.inputs)?;
-    let Some(accelerations) = equations.accelerations() else {
+    let Some(unknowns) = equations.unknowns() else {
         return Ok(());
     };
-    let rates = [&sample.state[oracle.size()..], accelerations.as_slice()].concat();
+    let velocities = &sample.state[oracle.size()..2 * oracle.size()];
+    let rates = [velocities, &unknowns].concat();
     let sizes = sizes::of_state(oracle)?;
     let fastest = rates
         .iter()

@@ -50,7 +50,7 @@ pub(crate) fn check(
             .equations(sample.time, &sample.state, &sample.inputs)?;
         forces(&mut rows, &equations, outputs, sample, &mut random, &place);
         guard_rates(&mut rows, judged.oracle, variant, outputs, sample, &place)?;
-        let Some(accelerations) = equations.accelerations() else {
+        let Some(unknowns) = equations.unknowns() else {
             continue;
         };
         let surroundings = Surroundings {
@@ -59,7 +59,7 @@ pub(crate) fn check(
             order: judged.order,
             parameters: judged.parameters,
             sample,
-            accelerations: accelerations.as_slice().to_vec(),
+            unknowns,
         };
         let known = Known::new(judged, &equations, outputs, sample, &mut random);
         for direction in directions(judged, &names, count <= 2, &mut random)? {
