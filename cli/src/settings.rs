@@ -67,7 +67,7 @@ fn said(error: &EditError) -> String {
 
 /// Says which inputs are 0 where there is no record.
 pub fn warn_of_inputs(model: &Model) {
-    for input in &model.inputs {
+    for input in model.inputs.iter().filter(|input| input.rate_of.is_none()) {
         warn(&format!(
             "warning: no record gives the input `{}`: it is 0",
             input.name

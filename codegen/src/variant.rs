@@ -85,7 +85,7 @@ fn initial_mass_matrix(
         .map_err(|error| error.diagnostic())?;
     let size = program.degrees_of_freedom();
     let mut matrix = vec![0.0; size * size];
-    let inputs = vec![0.0; model.inputs.len()];
+    let inputs = model.typical_inputs().map_err(|error| error.diagnostic())?;
     Evaluator::new(program.clone()).mass_matrix(
         Point {
             t: 0.0,

@@ -4,8 +4,11 @@
 use crate::diagnostic::{Declared, Diagnostic, Diagnostics, quoted};
 use crate::dimension::Dimension;
 use crate::evaluate::evaluate;
+use crate::ids::InputId;
 use crate::infer::Words;
-use crate::model::{Basis, CoefficientKind, Expr, ExprKind, Model, Ordinate, ParameterValue};
+use crate::model::{
+    Basis, CoefficientKind, Expr, ExprKind, Input, Model, Ordinate, ParameterValue,
+};
 use crate::suggest::did_you_mean;
 
 /// Reports sensors on channels that the model does not have.
@@ -104,7 +107,15 @@ pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
     };
     for_each_expression(model, &mut |expr| expr.visit(&mut |part| used.mark(part)));
     let parameters = model.parameters.iter().map(|p| (&p.name, p.span));
-    let inputs = model.inputs.iter().map(|i| (&i.name, i.span));
+    // Rates that are given with an input need not be used, and whoever uses one uses the input.
+    let used_with_rates = |input: InputId| {
+        let rates = std::iter::successors(Some(input), |of| model.inputs[*of].rate);
+        rates.into_iter().any(|of| used.inputs[of])
+    };
+    let unused_inputs: Vec<&Input> = InputId::first(model.inputs.len())
+        .filter(|input| model.inputs[*input].rate_of.is_none() && !used_with_rates(*input))
+        .map(|input| &model.inputs[input])
+        .collect();
     let definitions = model.definitions.iter().map(|d| (&d.name, d.span));
     let mut warn = |kind, name: &str, span| warnings.push(Diagnostic::unused(kind, name, span));
     for ((name, span), used) in parameters.zip(used.parameters) {
@@ -112,10 +123,8 @@ pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
             warn(Declared::Parameter, name, span);
         }
     }
-    for ((name, span), used) in inputs.zip(used.inputs) {
-        if !used {
-            warn(Declared::Input, name, span);
-        }
+    for input in unused_inputs {
+        warn(Declared::Input, &input.name, input.span);
     }
     for ((name, span), used) in definitions.zip(used.definitions) {
         // What a frame defines, at the frame's own name, is there for those who want it.

@@ -10,7 +10,7 @@ use crate::entries::{
     parameter, point, sensor, state, term,
 };
 use crate::keys;
-use crate::raw::{Document, RawDrawing};
+use crate::raw::{Document, RawDrawing, RawInput};
 use crate::source::Source;
 use crate::span::Span;
 use crate::suggest::did_you_mean;
@@ -60,7 +60,9 @@ impl<'d> Reader<'d> {
         let document = Document {
             parameters: self.collect("parameters", parameter),
             coordinates: self.collect("coordinates", coordinate),
-            inputs: self.collect("inputs", input),
+            inputs: (self.collect("inputs", input).into_iter())
+                .flat_map(RawInput::with_rates)
+                .collect(),
             states: self.collect("states", state),
             fields: self.collect("fields", field),
             definitions: self.collect("definitions", term),

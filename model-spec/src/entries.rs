@@ -79,7 +79,30 @@ pub fn input(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawInput> {
         unit: required_unit(&record, found),
         doc: record.text("doc", found),
         range: range(&record, found),
+        rate_order: 0,
+        rates: rates(&record, found),
     })
+}
+
+/// How many rates of an input are given: none, or both that an energy needs.
+fn rates(record: &Record<'_>, found: &mut Diagnostics) -> u8 {
+    let Some((number, span)) = record
+        .get("rates")
+        .and_then(|entry| found.keep(entry.whole()))
+    else {
+        return 0;
+    };
+    if number != 2 {
+        let diagnostic =
+            Diagnostic::error(format!("{number} rates of an input are not known here"))
+                .at(span, "expected 2")
+                .help(
+                    "rates = 2: the rate and the second rate are inputs too, `s_dot` and `s_ddot`",
+                );
+        found.push(diagnostic);
+        return 0;
+    }
+    2
 }
 
 /// An entry of `[states]`.

@@ -10,7 +10,7 @@ pub const PARAMETER: [&str; 6] = ["value", "unit", "doc", "source", "min", "max"
 /// Keys of an entry of `[coordinates]`.
 pub const COORDINATE: [&str; 5] = ["unit", "doc", "initial", "initial_rate", "range"];
 /// Keys of an entry of `[inputs]`.
-pub const INPUT: [&str; 3] = ["unit", "doc", "range"];
+pub const INPUT: [&str; 4] = ["unit", "rates", "doc", "range"];
 /// Keys of an entry of `[states]`.
 pub const STATE: [&str; 4] = ["unit", "rate", "initial", "doc"];
 /// Keys of a `[fields.NAME]`.

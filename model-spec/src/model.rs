@@ -181,6 +181,11 @@ pub struct Input {
     pub doc: String,
     /// Where it lives, if the specification says so.
     pub range: Option<Range>,
+    /// The input that is its rate, if that is given: of prescribed motion s this is `s_dot`, of
+    /// `s_dot` it is `s_ddot`.
+    pub rate: Option<InputId>,
+    /// The input that it is the rate of, if it is one.
+    pub rate_of: Option<InputId>,
     /// Where its name stands.
     pub span: Span,
 }

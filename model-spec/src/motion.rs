@@ -1,11 +1,12 @@
 //! Which coordinates, rates, states and inputs each expression depends on, through definitions too,
-//! and what of that is allowed where: energies hold no inputs and no states, potentials no rates, a force
+//! and what of that is allowed where: energies hold no states and only inputs whose rates are
+//! given, potentials no rates, a force
 //! works on something that moves, and every coordinate has inertia.
 
 use std::collections::BTreeSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::ids::{CoordinateId, FieldId, StateId};
+use crate::ids::{CoordinateId, FieldId, InputId, StateId};
 use crate::model::{Expr, ExprKind, Model, Term};
 use crate::rate_order::{WrittenOut, rate_order};
 use crate::span::Span;
@@ -33,8 +34,8 @@ struct Motion {
     states: BTreeSet<StateId>,
     /// Where a state, or the rate of one, enters, if one does.
     state: Option<Span>,
-    /// Where an input enters, if one does.
-    input: Option<Span>,
+    /// Where the input enters of which the fewest rates are given, if one does, with how many.
+    input: Option<(u8, Span)>,
     /// Whether time enters.
     time: bool,
     /// Depth of the expression with definitions written out.
@@ -107,11 +108,14 @@ impl Checker<'_, '_> {
 
     /// An energy is one of the mechanism alone.
     fn refuse_driven(&mut self, term: &Term, motion: &Motion, what: &str) {
-        if let Some(place) = motion.input {
+        if let Some((0, place)) = motion.input {
             self.found.push(
                 Diagnostic::error(format!("{what} `{}` holds an input", term.name))
-                    .at(place, "this is an input")
-                    .help("inputs act through [forces]"),
+                    .at(place, "this is an input whose rate is not given")
+                    .help(
+                        "inputs act through [forces]; of prescribed motion the rates are given: \
+                         rates = 2",
+                    ),
             );
         }
         if let Some(place) = motion.state {
@@ -151,7 +155,7 @@ impl Checker<'_, '_> {
             let on = self.motion(&force.on);
             let problem = if let Some(place) = on.rate {
                 Some((place, "this is a rate"))
-            } else if let Some(place) = on.input {
+            } else if let Some((0, place)) = on.input {
                 Some((place, "this is an input"))
             } else if let Some(place) = on.state {
                 Some((place, "this is a state"))
@@ -168,6 +172,13 @@ impl Checker<'_, '_> {
                 );
             }
         }
+    }
+
+    /// How many rates of an input are given.
+    fn given_rates(&self, input: InputId) -> u8 {
+        let inputs = &self.model.inputs;
+        let rates = std::iter::successors(inputs[input].rate, |rate| inputs[*rate].rate);
+        u8::try_from(rates.count()).unwrap_or(u8::MAX)
     }
 
     /// What an expression depends on; reports what `dot` is used on wrongly.
@@ -190,7 +201,7 @@ impl Checker<'_, '_> {
         motion.depth = motion.depth.max(depth);
         match &expr.kind {
             ExprKind::Time => motion.time = true,
-            ExprKind::Input(_) => motion.input = motion.input.or(Some(expr.span)),
+            ExprKind::Input(index) => motion.hold_input(self.given_rates(*index), expr.span),
             ExprKind::State(index) => {
                 motion.states.insert(*index);
                 motion.state = motion.state.or(Some(expr.span));
@@ -245,12 +256,22 @@ impl Checker<'_, '_> {
             motion.values.extend(inner.values);
             motion.states.extend(inner.states);
         }
+        if let Some((rates, _)) = inner.input {
+            motion.hold_input(rates.saturating_sub(1), operand.span);
+        }
         motion.time |= inner.time;
         motion.depth = motion.depth.max(inner.depth);
     }
 }
 
 impl Motion {
+    /// Holds an input of which so many rates are given.
+    fn hold_input(&mut self, rates: u8, span: Span) {
+        if self.input.is_none_or(|(fewest, _)| rates < fewest) {
+            self.input = Some((rates, span));
+        }
+    }
+
     /// Adds what a definition depends on that is named at `span`.
     fn include(&mut self, known: &Self, span: Span, depth: usize) {
         self.values.extend(known.values.iter().copied());
@@ -258,7 +279,9 @@ impl Motion {
         self.states.extend(known.states.iter().copied());
         self.state = self.state.or(known.state.map(|_| span));
         self.rate = self.rate.or(known.rate.map(|_| span));
-        self.input = self.input.or(known.input.map(|_| span));
+        if let Some((rates, _)) = known.input {
+            self.hold_input(rates, span);
+        }
         self.time |= known.time;
         self.depth = self.depth.max(depth + known.depth);
     }
@@ -271,13 +294,14 @@ fn rate_error(span: Span, inner: &Motion) -> Option<Diagnostic> {
             .help("accelerations follow from the energies and appear nowhere in them");
         return Some(diagnostic);
     }
-    if inner.input.is_some() {
+    if matches!(inner.input, Some((0, _))) {
         let diagnostic = Diagnostic::error("the rate of an input is not known")
             .at(span, "this holds an input")
-            .help("if the rate is measured, declare it as an input of its own");
+            .help("`rates = 2` in its entry says that its rates are given as well");
         return Some(diagnostic);
     }
-    if inner.values.is_empty() && inner.states.is_empty() && !inner.time {
+    let is_still = inner.values.is_empty() && inner.states.is_empty() && inner.input.is_none();
+    if is_still && !inner.time {
         let diagnostic = Diagnostic::error("dot() of something that has no rate")
             .at(span, "this holds no coordinate")
             .help("dot() takes a coordinate, a definition that holds one, or a field");

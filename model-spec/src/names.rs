@@ -59,6 +59,8 @@ impl Symbol {
 pub struct Names {
     symbols: HashMap<String, (Symbol, Span)>,
     observables: HashSet<String>,
+    /// For each input the one that is its rate, if that is given.
+    input_rates: Vec<Option<InputId>>,
     /// Name, position and mode coordinates of each field.
     pub fields: Vec<FieldNames>,
 }
@@ -80,6 +82,7 @@ impl Names {
         let mut names = Self {
             symbols: HashMap::new(),
             observables: HashSet::new(),
+            input_rates: Vec::new(),
             fields: Vec::new(),
         };
         names.declare_quantities(document, found);
@@ -109,6 +112,11 @@ impl Names {
         self.symbols.get(name).map(|(symbol, _)| *symbol)
     }
 
+    /// The input that is the rate of an input, if that is given.
+    pub fn input_rate(&self, input: InputId) -> Option<InputId> {
+        self.input_rates.get(input.index()).copied().flatten()
+    }
+
     /// Whether this is the name of an observable.
     pub fn is_observable(&self, name: &str) -> bool {
         self.observables.contains(name)
@@ -135,7 +143,10 @@ impl Names {
             );
         }
         for (index, input) in document.inputs.iter().enumerate() {
-            self.add(&input.name, Symbol::Input(InputId::new(index)), found);
+            let id = InputId::new(index);
+            self.add(&input.name, Symbol::Input(id), found);
+            self.input_rates
+                .push((input.rates > 0).then(|| InputId::new(index + 1)));
         }
         for (index, state) in document.states.iter().enumerate() {
             self.add(&state.name, Symbol::State(StateId::new(index)), found);

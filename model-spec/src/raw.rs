@@ -136,6 +136,35 @@ pub struct RawInput {
     pub doc: String,
     /// `range`
     pub range: Option<RawRange>,
+    /// Which rate of the input that the entry names it is: 0 for the input itself.
+    pub rate_order: u8,
+    /// How many rates follow it.
+    pub rates: u8,
+}
+
+impl RawInput {
+    /// The input, then the rates that are given with it: `s`, `s_dot`, `s_ddot`.
+    pub fn with_rates(self) -> Vec<Self> {
+        let rate = |order: u8, suffix: &str| Self {
+            name: Name {
+                text: format!("{}_{suffix}", self.name.text),
+                span: self.name.span,
+            },
+            unit: self.unit.clone(),
+            doc: match order {
+                1 => format!("rate of {}", self.name.text),
+                _ => format!("second rate of {}", self.name.text),
+            },
+            range: None,
+            rate_order: order,
+            rates: self.rates - order,
+        };
+        let rates: Vec<Self> = (1..=self.rates)
+            .zip(["dot", "ddot"])
+            .map(|(order, suffix)| rate(order, suffix))
+            .collect();
+        std::iter::once(self).chain(rates).collect()
+    }
 }
 
 /// The mode shapes that a field asks for.

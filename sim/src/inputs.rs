@@ -1,6 +1,11 @@
 //! Inputs of a model over time.
 
-/// Inputs that are constant between the times of a record. Before the first sample the
+use std::borrow::Cow;
+
+use crate::cubic_spline::CubicSpline;
+
+/// Inputs that are constant between the times of a record, but for prescribed motion, which follows
+/// a spline through its samples with the spline's rates. Before the first sample the
 /// first one holds, after the last one the last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeldInputs {
@@ -8,6 +13,8 @@ pub struct HeldInputs {
     /// One row per time, one number per input.
     values: Vec<f64>,
     count: usize,
+    /// Prescribed motion: its place among the inputs, its rate and second rate being the next two.
+    prescribed: Vec<(usize, CubicSpline)>,
 }
 
 impl HeldInputs {
@@ -17,6 +24,7 @@ impl HeldInputs {
             times: vec![0.0],
             values: vec![0.0; count],
             count,
+            prescribed: Vec::new(),
         }
     }
 
@@ -28,11 +36,38 @@ impl HeldInputs {
             times,
             values,
             count,
+            prescribed: Vec::new(),
         })
     }
 
+    /// The same with the input at a place following a spline, its rate and second rate the next
+    /// two inputs.
+    #[must_use]
+    pub fn with_prescribed(mut self, place: usize, spline: CubicSpline) -> Self {
+        self.prescribed.push((place, spline));
+        self
+    }
+
+    /// Whether an input moves between samples.
+    pub fn moves(&self) -> bool {
+        !self.prescribed.is_empty()
+    }
+
     /// The inputs at a time, in the order of the model.
-    pub fn at(&self, t: f64) -> &[f64] {
+    pub fn at(&self, t: f64) -> Cow<'_, [f64]> {
+        let held = self.held_at(t);
+        if self.prescribed.is_empty() {
+            return Cow::Borrowed(held);
+        }
+        let mut inputs = held.to_vec();
+        for (place, spline) in &self.prescribed {
+            inputs[*place..*place + 3].copy_from_slice(&spline.at(t));
+        }
+        Cow::Owned(inputs)
+    }
+
+    /// The inputs of the last sample, prescribed motion as well.
+    pub fn held_at(&self, t: f64) -> &[f64] {
         let after = self.times.partition_point(|time| *time <= t);
         let row = after.saturating_sub(1);
         &self.values[row * self.count..(row + 1) * self.count]
@@ -63,11 +98,12 @@ mod tests {
             times: vec![0.0, 1.0, 2.0],
             values: vec![5.0, 6.0, 7.0],
             count: 1,
+            prescribed: Vec::new(),
         };
-        assert_eq!(held.at(-1.0), [5.0]);
-        assert_eq!(held.at(0.999), [5.0]);
-        assert_eq!(held.at(1.0), [6.0]);
-        assert_eq!(held.at(9.0), [7.0]);
+        assert_eq!(*held.at(-1.0), [5.0]);
+        assert_eq!(*held.at(0.999), [5.0]);
+        assert_eq!(*held.at(1.0), [6.0]);
+        assert_eq!(*held.at(9.0), [7.0]);
         assert_eq!(held.next_change(0.0), Some(1.0));
         assert_eq!(held.next_change(1.5), Some(2.0));
         assert_eq!(held.next_change(2.0), None);
@@ -76,6 +112,6 @@ mod tests {
     #[test]
     fn no_input_never_changes() {
         assert_eq!(HeldInputs::zero(0).next_change(0.0), None);
-        assert_eq!(HeldInputs::zero(2).at(3.0), [0.0, 0.0]);
+        assert_eq!(*HeldInputs::zero(2).at(3.0), [0.0, 0.0]);
     }
 }

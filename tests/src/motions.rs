@@ -194,7 +194,7 @@ impl Subject {
         let mut values = vec![0.0; evaluator.program().observables.len()];
         let pairs = times.iter().zip(states);
         let energy = |(&t, state): (&f64, &Vec<f64>)| {
-            let inputs = self.inputs.at(t);
+            let inputs = &self.inputs.at(t);
             evaluator.observables(Point { t, state, inputs }, &mut values);
             values[values.len() - 2]
         };

@@ -77,6 +77,7 @@ features! {
     // Forces alone do not account for the energy: the power is judged once more, by
     // differences of the energy.
     also_by_differences {
+        prescribed_motion: [0, 2];
         rheonomic: [0, 1, 4];
         mass_of_time: [0];
         nonquadratic_kinetic: [0];
@@ -126,7 +127,7 @@ fn power_is_the_rate_of_the_energy(name: &str, orders: &[usize]) {
         let count = evaluator.program().observables.len();
         for sample in samples(&model, order, 0x0b5e, 20) {
             let mut rates = vec![0.0; sample.state.len()];
-            evaluator.rates(at(&sample, sample.time, &sample.state), &mut rates);
+            evaluator.rates(at(&sample), &mut rates);
             let mut values = |step: f64| {
                 let moved: Vec<f64> = sample
                     .state
@@ -135,7 +136,21 @@ fn power_is_the_rate_of_the_energy(name: &str, orders: &[usize]) {
                     .map(|(y, rate)| y + step * rate)
                     .collect();
                 let mut out = vec![0.0; count];
-                evaluator.observables(at(&sample, sample.time + step, &moved), &mut out);
+                // Prescribed motion goes on at its rates.
+                let inputs = model
+                    .inputs
+                    .iter()
+                    .zip(&sample.inputs)
+                    .map(|(input, value)| {
+                        let rate = input.rate.map_or(0.0, |rate| sample.inputs[rate.index()]);
+                        value + step * rate
+                    });
+                let moved = Sample {
+                    time: sample.time + step,
+                    state: moved,
+                    inputs: inputs.collect(),
+                };
+                evaluator.observables(at(&moved), &mut out);
                 (out[count - 2], out[count - 1])
             };
             let fastest = sample
@@ -155,10 +170,10 @@ fn power_is_the_rate_of_the_energy(name: &str, orders: &[usize]) {
     }
 }
 
-fn at<'s>(sample: &'s Sample, t: f64, state: &'s [f64]) -> Point<'s> {
+fn at(sample: &Sample) -> Point<'_> {
     Point {
-        t,
-        state,
+        t: sample.time,
+        state: &sample.state,
         inputs: &sample.inputs,
     }
 }

@@ -7,8 +7,8 @@ use crate::mechanics::guard::Guard;
 use crate::mechanics::lagrange::{GradientBy, Variables};
 use crate::mechanics::rows::RowNodes;
 use crate::mechanics::solve::Accelerations;
-use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion};
-use crate::symbolic::differentiate::{Direction, by_scalar};
+use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion, explicit_rate};
+use crate::symbolic::differentiate::Direction;
 use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
 
 /// -dR/dq' and the forces by virtual work, Q_j = value d(on)/dq_j.
@@ -57,11 +57,10 @@ pub(crate) fn power(
     momenta: &RowNodes,
     accelerations: &Accelerations,
 ) -> NodeId {
-    let time = graph.intern(Operation::Time);
     let work = variables.dot_rates(graph, applied);
-    let potential_rate = by_scalar(graph, potential, time);
+    let potential_rate = explicit_rate(graph, potential);
     let mut terms = vec![(1.0, work), (1.0, potential_rate)];
-    let kinetic_rate = by_scalar(graph, kinetic, time);
+    let kinetic_rate = explicit_rate(graph, kinetic);
     if !crate::symbolic::degree::is_quadratic_in_rates(graph, kinetic) {
         let twice = variables.dot_rates(graph, momenta);
         let rest = graph.combine_flat(&[(2.0, kinetic), (-1.0, twice)]);

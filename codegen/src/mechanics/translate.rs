@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::diagnostic::Diagnostic;
-use eomgen_model_spec::ids::{DefinitionId, FieldId, StateId};
+use eomgen_model_spec::ids::{DefinitionId, FieldId, InputId, StateId};
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 use eomgen_model_spec::span::Span;
 
@@ -67,6 +67,8 @@ impl<'m> Translator<'m> {
             .map(|(field, order)| node_count(&field.basis, *order))
             .collect();
         let mut graph = Graph::new(orders, &nodes);
+        let rates = model.inputs.iter().map(|input| input.rate);
+        graph.set_input_rates(rates.collect());
         graph.reserve_names(model.parameters.iter().map(|p| &p.name));
         graph.reserve_names(model.coordinates.iter().map(|c| &c.name));
         graph.reserve_names(model.inputs.iter().map(|i| &i.name));
@@ -188,7 +190,7 @@ impl<'m> Translator<'m> {
                         help: Some("an energy, force or observable may hold rates, no more".into()),
                     });
                 }
-                if self.graph.dependence(node).has(Dependence::INPUT) {
+                if self.holds_input_without_rate(node) {
                     return Err(error(operand, "the rate of an input is not known"));
                 }
                 let rates = self.rates_within(node)?;
@@ -200,6 +202,14 @@ impl<'m> Translator<'m> {
                 Ok(rate)
             }
         }
+    }
+
+    fn holds_input_without_rate(&self, node: NodeId) -> bool {
+        self.graph.dependence(node).has(Dependence::INPUT)
+            && self.graph.reachable(&[node]).into_iter().any(|leaf| {
+                matches!(*self.graph.operation(leaf), Operation::Input(input)
+                    if self.graph.input_rate(input).is_none())
+            })
     }
 
     /// The rate of a state, as the specification gives it.
@@ -319,8 +329,8 @@ fn field_atom(expr: &Expr) -> Option<Atom> {
     }
 }
 
-/// The time derivative of a node along the motion, without accelerations: coordinates
-/// move with their rates, time with 1.
+/// The time derivative of a node along the motion, without accelerations: coordinates and
+/// inputs whose rates are given move with their rates, time with 1, and other inputs are held.
 pub fn along_motion(graph: &mut Graph, node: NodeId) -> NodeId {
     along_motion_and_states(graph, node, &HashMap::new())
 }
@@ -335,10 +345,29 @@ fn along_motion_and_states(
         Operation::Coordinate(index) => graph.intern(Operation::Rate(index)),
         Operation::ModeCoordinates(field) => graph.intern(Operation::ModeRates(field)),
         Operation::Time => graph.one(),
+        Operation::Input(index) => rate_of_input(graph, index),
         Operation::State(index) => rates.get(&index).copied().unwrap_or_else(|| graph.zero()),
         _ => graph.zero(),
     };
     Direction::new(&tangent).derivative(graph, node)
+}
+
+/// How fast a node changes while the state is held: with the time, and with inputs whose rates are
+/// given.
+pub fn explicit_rate(graph: &mut Graph, node: NodeId) -> NodeId {
+    let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
+        Operation::Time => graph.one(),
+        Operation::Input(index) => rate_of_input(graph, index),
+        _ => graph.zero(),
+    };
+    Direction::new(&tangent).derivative(graph, node)
+}
+
+fn rate_of_input(graph: &mut Graph, input: InputId) -> NodeId {
+    match graph.input_rate(input) {
+        Some(rate) => graph.intern(Operation::Input(rate)),
+        None => graph.zero(),
+    }
 }
 
 fn error(expr: &Expr, message: impl Into<String>) -> DeriveError {

@@ -9,7 +9,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use eomgen_model_spec::ids::FieldId;
+use eomgen_model_spec::ids::{FieldId, InputId};
 use eomgen_model_spec::model::Function;
 
 pub use crate::symbolic::operation::{
@@ -30,6 +30,8 @@ pub struct Graph {
     known: HashMap<Operation, NodeId>,
     tables: Vec<Table>,
     orders: Vec<usize>,
+    /// For each input the one that is its rate, if that is given.
+    input_rates: Vec<Option<InputId>>,
     node_counts: Vec<usize>,
     names: HashMap<NodeId, String>,
     taken: HashSet<String>,
@@ -43,6 +45,7 @@ impl Graph {
             known: HashMap::new(),
             tables: Vec::new(),
             orders: orders.to_vec(),
+            input_rates: Vec::new(),
             node_counts: node_counts.to_vec(),
             names: HashMap::new(),
             taken: HashSet::new(),
@@ -57,6 +60,16 @@ impl Graph {
     /// The names in use, of nodes and of quantities.
     pub fn taken_names(&self) -> impl Iterator<Item = &str> {
         self.taken.iter().map(String::as_str)
+    }
+
+    /// Says for each input which one is its rate, if that is given.
+    pub(crate) fn set_input_rates(&mut self, rates: Vec<Option<InputId>>) {
+        self.input_rates = rates;
+    }
+
+    /// The input that is the rate of an input, if that is given.
+    pub(crate) fn input_rate(&self, input: InputId) -> Option<InputId> {
+        self.input_rates.get(input.index()).copied().flatten()
     }
 
     /// The order of each field.

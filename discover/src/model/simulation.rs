@@ -245,7 +245,7 @@ impl<'m> Simulation<'m> {
             for step in 0..steps {
                 let begin = pair[0] + step as f64 * h;
                 // Half a step on, so that rounding of a sample's time does not decide.
-                let inputs = inputs.at(begin + 0.5 * h);
+                let inputs = inputs.held_at(begin + 0.5 * h);
                 method.step(&mut state, (begin, h), |_, t, state, rates| {
                     evaluator.rates(Point { t, state, inputs }, rates);
                 });
@@ -334,7 +334,7 @@ impl<'m> Simulation<'m> {
             linear_outputs.append(state, values);
             return;
         }
-        let inputs = inputs.at(t);
+        let inputs = inputs.held_at(t);
         let (evaluator, point) = (self.evaluator.get_mut(), Point { t, state, inputs });
         self.measured
             .append(evaluator, point, &mut self.observables, values);

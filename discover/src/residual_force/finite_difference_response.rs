@@ -67,7 +67,7 @@ impl<'s> SteppedWindow<'s> {
         let (mut rates, mut square) = (vec![0.0; start.len()], 0.0);
         for step in &steps {
             for (t, state) in &step.points {
-                let inputs = inputs.at(step.middle);
+                let inputs = inputs.held_at(step.middle);
                 drives.at(*t, state, inputs, &mut all);
                 for (force, now) in accelerations.iter_mut().zip(all.chunks_exact(forced)) {
                     force.extend_from_slice(now);
@@ -142,7 +142,7 @@ impl<'s> SteppedWindow<'s> {
         let mut measured = Vec::with_capacity(times.len() * self.shooting.channels());
         self.measure(
             (*times.first()?, &state),
-            inputs.at(times[0]),
+            inputs.held_at(times[0]),
             &mut measured,
         );
         let mut number = 0;
@@ -151,7 +151,7 @@ impl<'s> SteppedWindow<'s> {
             for step in 0..self.steps {
                 let begin = pair[0] + step as f64 * h;
                 let middle = begin + 0.5 * h;
-                let held = inputs.at(middle);
+                let held = inputs.held_at(middle);
                 let mut points = [const { (0.0, Vec::new()) }; 3];
                 method.step(&mut state, (begin, h), |stage, t, state, rates| {
                     let point = POINTS[stage];
@@ -175,7 +175,7 @@ impl<'s> SteppedWindow<'s> {
                     visited.push(Step { middle, points });
                 }
             }
-            self.measure((pair[1], &state), inputs.at(pair[1]), &mut measured);
+            self.measure((pair[1], &state), inputs.held_at(pair[1]), &mut measured);
         }
         let is_finite = measured.iter().all(|value| value.is_finite());
         is_finite.then_some(measured)

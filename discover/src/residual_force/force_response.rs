@@ -155,7 +155,7 @@ pub fn operating_points(
             let point = Point {
                 t: *t,
                 state: &state,
-                inputs: inputs.at(*t),
+                inputs: inputs.held_at(*t),
             };
             evaluator.operating_points(point, &mut operating_points);
             for operating_point in &mut operating_points {

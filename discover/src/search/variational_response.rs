@@ -142,13 +142,13 @@ fn points(at: &LinearisedFit, problem: &EstimationProblem<'_>, fit: &Fit) -> Opt
         };
         let samples = window.times.iter().zip(states).step_by(thresholds::SAMPLED);
         for (t, state) in samples {
-            let rates = simulation.rates(*t, &state, inputs.at(*t));
+            let rates = simulation.rates(*t, &state, inputs.held_at(*t));
             for (sum, rate) in points.squares.iter_mut().zip(&rates[n / 2..]) {
                 *sum += rate * rate;
             }
             points.times.push(*t);
             points.states.push(state);
-            points.inputs.push(inputs.at(*t).to_vec());
+            points.inputs.push(inputs.held_at(*t).to_vec());
             points.rates.push(rates);
         }
     }

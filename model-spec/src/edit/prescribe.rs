@@ -10,7 +10,7 @@ use crate::ast::{Syntax, SyntaxKind};
 
 /// Prescribes an input.
 pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<(), EditError> {
-    let unit = remove(document, &edit.name).ok_or_else(|| EditError::MissingTerm {
+    let (unit, has_rates) = remove(document, &edit.name).ok_or_else(|| EditError::MissingTerm {
         section: "inputs".to_owned(),
         name: edit.name.clone(),
     })?;
@@ -28,9 +28,29 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
     } else {
         edit.value.clone()
     };
+    if !has_rates {
+        return define(document, &edit.name, value);
+    }
+    // Whatever its rates are, they are those of the time.
+    let value = if mentions_time(&tree) {
+        value
+    } else {
+        let second = unused(document, "one_second");
+        parameter(document, &of_one(&second, "s"))?;
+        format!("({value})*(1 + 0*t/{second})")
+    };
+    define(document, &edit.name, value)?;
+    let rate = format!("{}_dot", edit.name);
+    if is_named(document, &rate) {
+        define(document, &rate, format!("dot({})", edit.name))?;
+    }
+    Ok(())
+}
+
+fn define(document: &mut DocumentMut, name: &str, value: String) -> Result<(), EditError> {
     let definition = NewTerm {
         section: Section::Definitions,
-        name: edit.name.clone(),
+        name: name.to_owned(),
         value,
         doc: String::new(),
         source: String::new(),
@@ -38,12 +58,31 @@ pub fn prescribe(document: &mut DocumentMut, edit: &PrescribeInput) -> Result<()
     term(document, &definition)
 }
 
-/// Takes an input out of a document, and gives its unit.
-fn remove(document: &mut DocumentMut, name: &str) -> Option<String> {
+/// Whether a name stands somewhere in a document.
+fn is_named(document: &DocumentMut, name: &str) -> bool {
+    let is_of_names = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let text = document.to_string();
+    text.split(|c: char| !is_of_names(c))
+        .any(|word| word == name)
+}
+
+fn mentions_time(tree: &Syntax) -> bool {
+    match &tree.kind {
+        SyntaxKind::Name(name) => name == "t",
+        SyntaxKind::Number(_) | SyntaxKind::Element { .. } => false,
+        SyntaxKind::Call { arguments, .. } => arguments.iter().any(mentions_time),
+        SyntaxKind::Negate(operand) => mentions_time(operand),
+        SyntaxKind::Binary(_, left, right) => mentions_time(left) || mentions_time(right),
+    }
+}
+
+/// Takes an input out of a document, and gives its unit and whether its rates are given.
+fn remove(document: &mut DocumentMut, name: &str) -> Option<(String, bool)> {
     let inputs = document
         .get_mut("inputs")
         .and_then(Item::as_table_like_mut)?;
     let input = inputs.remove(name)?;
+    let has_rates = input.get("rates").is_some();
     let unit = match input.as_str() {
         Some(unit) => unit.to_owned(),
         None => input.get("unit")?.as_str()?.to_owned(),
@@ -51,7 +90,7 @@ fn remove(document: &mut DocumentMut, name: &str) -> Option<String> {
     if inputs.is_empty() {
         document.remove("inputs");
     }
-    Some(unit)
+    Some((unit, has_rates))
 }
 
 /// Whether there is nothing with a unit in an expression but the time.

@@ -62,10 +62,12 @@ impl Resolver<'_> {
             ExprKind::Dot(_) => Err(Diagnostic::error("dot(dot(...)) is an acceleration")
                 .at(span, "already a rate")
                 .help("accelerations follow from the energies and appear nowhere in them")),
-            ExprKind::Input(_) => {
-                Err(Diagnostic::error("the rate of an input is not known")
-                    .at(span, "this is an input"))
-            }
+            ExprKind::Input(input) => match self.names.input_rate(input) {
+                Some(rate) => Ok(ExprKind::Input(rate)),
+                None => Err(Diagnostic::error("the rate of an input is not known")
+                    .at(span, "this is an input")
+                    .help("`rates = 2` in its entry says that its rates are given as well")),
+            },
             ExprKind::At {
                 field,
                 value,

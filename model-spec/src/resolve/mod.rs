@@ -10,12 +10,12 @@ use std::sync::Arc;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
 use crate::expression::{Resolver, Scope};
-use crate::ids::{DefinitionId, ParameterId};
+use crate::ids::{DefinitionId, InputId, ParameterId};
 use crate::model::{
     Basis, Coordinate, Definition, Expr, ExprKind, Field, Force, Input, MAX_ORDER, Model,
     Observable, Parameter, ParameterValue, Range, Sensor, State, Term,
 };
-use crate::names::Names;
+use crate::names::{Names, Symbol};
 use crate::order::{Reference, order};
 use crate::rate_order::{WrittenOut, rate_order};
 use crate::raw::{
@@ -314,8 +314,23 @@ impl Builder {
     }
 
     fn input(&mut self, raw: RawInput) -> Option<Input> {
+        let known = |name: &str| match self.names.get(name) {
+            Some(Symbol::Input(input)) => Some(input),
+            _ => None,
+        };
+        let own = known(&raw.name.text);
+        let before = own.and_then(|own| own.index().checked_sub(1));
+        let rate_of = before.filter(|_| raw.rate_order > 0).map(InputId::new);
+        let rate = own.and_then(|own| self.names.input_rate(own));
+        let unit = match raw.rate_order {
+            // What is wrong with the unit is said once, of the input itself.
+            0 => self.coherent_unit(raw.unit)?,
+            order => per_seconds(&Unit::parse(&raw.unit?.text).ok()?, order)?,
+        };
         Some(Input {
-            unit: self.coherent_unit(raw.unit)?,
+            unit,
+            rate,
+            rate_of,
             range: self.range(raw.range)?,
             name: raw.name.text,
             doc: raw.doc,
@@ -512,4 +527,19 @@ fn circular<'n>(kind: &str, circle: &[Reference], named: impl Fn(usize) -> &'n s
         diagnostic = diagnostic.also(place, format!("in `{}`", named(index)));
     }
     diagnostic.help("break the circle: one of them must be known without the others")
+}
+
+/// A unit per s, or per s^2; none if its dimension cannot be told.
+fn per_seconds(unit: &Unit, order: u8) -> Option<Unit> {
+    let mut dimension = unit.dimension;
+    for _ in 0..order {
+        dimension = dimension.over(Dimension::TIME)?;
+    }
+    let text = match order {
+        1 => format!("{unit}/s"),
+        _ => format!("{unit}/s^{order}"),
+    };
+    let mut unit = Unit::coherent(dimension);
+    unit.text = text;
+    Some(unit)
 }

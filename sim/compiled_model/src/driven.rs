@@ -39,9 +39,10 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
         self.evaluator.borrow().borrow_mut()
     }
 
-    fn point<'p>(&'p self, t: f64, state: &'p [f64]) -> Point<'p> {
-        let inputs = self.inputs.borrow().at(t);
-        Point { t, state, inputs }
+    /// What `of` makes of the model at a time and a state, with the inputs then.
+    fn at<T>(&self, t: f64, state: &[f64], of: impl FnOnce(&mut Evaluator, Point<'_>) -> T) -> T {
+        let inputs = &self.inputs.borrow().at(t);
+        of(&mut self.evaluator(), Point { t, state, inputs })
     }
 
     /// The switching functions, those over modes one by one. A speed is one that depends on rates,
@@ -84,14 +85,20 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
     }
 
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        self.evaluator().rates(self.point(t, y), out);
+        self.at(t, y, |evaluator, point| evaluator.rates(point, out));
     }
 
     fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
         match &self.jacobians {
             Some(jacobians) => {
                 let mut jacobians = jacobians.borrow_mut();
-                jacobians.evaluate(Jacobian::RatesByState, self.point(t, y), out);
+                let inputs = &self.inputs.borrow().at(t);
+                let point = Point {
+                    t,
+                    state: y,
+                    inputs,
+                };
+                jacobians.evaluate(Jacobian::RatesByState, point, out);
             }
             None => jacobian_by_differences(self, t, y, out),
         }
@@ -102,14 +109,22 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
     }
 
     fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        self.evaluator().guards(self.point(t, y), out);
+        self.at(t, y, |evaluator, point| evaluator.guards(point, out));
     }
 
     fn indefinite(&self, t: f64, y: &[f64]) -> Option<usize> {
         let mut evaluator = self.evaluator();
         let size = evaluator.program().degrees_of_freedom();
         let mut mass = vec![0.0; size * size];
-        evaluator.mass_matrix(self.point(t, y), &mut mass);
+        let inputs = &self.inputs.borrow().at(t);
+        evaluator.mass_matrix(
+            Point {
+                t,
+                state: y,
+                inputs,
+            },
+            &mut mass,
+        );
         first_not_positive(&mut mass, size)
     }
 

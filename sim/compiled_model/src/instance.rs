@@ -148,7 +148,7 @@ impl<'m> Instance<'m> {
         let mut observables = vec![0.0; evaluator.program().observables.len()];
         let trajectory = &motion.trajectory;
         for (&t, state) in trajectory.times.iter().zip(&trajectory.states) {
-            let inputs = motion.inputs.at(t);
+            let inputs = &motion.inputs.at(t);
             evaluator.observables(Point { t, state, inputs }, &mut observables);
             show(t, state, &observables);
         }

@@ -90,6 +90,18 @@ impl Instance<'_> {
             Solver::Exact | Solver::Auto => self.model.piecewise_linear(),
         };
         let is_free = request.solver == Solver::Auto;
+        if request.inputs.moves() {
+            let reason = "prescribed motion goes on between the samples of a record, and the exact \
+                          solver holds inputs there";
+            return match is_free {
+                true => self.chosen(
+                    request,
+                    Some(Choice::NotLinear(reason.to_owned())),
+                    progress,
+                ),
+                false => Err(Error::Request(format!("{reason}: use --solver rk"))),
+            };
+        }
         if let Err(error) = exact {
             if is_free {
                 let choice = Some(Choice::NotLinear(error.to_string()));

@@ -81,6 +81,10 @@ pub fn inputs<'d>(
 ) -> Vec<Option<(&'d Written, Unit)>> {
     let of = |input: &eomgen_model_spec::model::Input| {
         let mut columns = description.inputs.iter();
+        // Rates of prescribed motion are those of the curve through its samples.
+        if input.rate_of.is_some() {
+            return None;
+        }
         let column = columns.find(|column| column.name.text == input.name)?;
         let unit = found.keep(unit(&column.column.unit, &input.unit.text))?;
         Some((&column.column.column, unit))

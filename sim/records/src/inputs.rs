@@ -51,7 +51,9 @@ pub fn read_inputs(
 
 /// Inputs that the model or the dataset lacks.
 pub fn notes_of_inputs(description: &Description, model: &Model) -> Vec<String> {
-    let inputs = || model.inputs.iter().map(|input| input.name.as_str());
+    // Rates of prescribed motion are those of the curve through its samples.
+    let own = || model.inputs.iter().filter(|input| input.rate_of.is_none());
+    let inputs = || own().map(|input| input.name.as_str());
     let mut notes = Vec::new();
     for column in &description.inputs {
         let name = column.name.text.as_str();

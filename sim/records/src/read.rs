@@ -21,6 +21,14 @@ use crate::samples::FEWEST_SAMPLES;
 /// its place.
 pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
     let description = Description::read(path)?;
+    if let Some(input) = model.inputs.iter().find(|input| input.rate.is_some()) {
+        return Err(Refusal::Record(format!(
+            "{}: the motion of `{}` is prescribed (rates = 2), which only `simulate --record` takes from \
+             a record: between its samples nothing may be held",
+            path.display(),
+            input.name
+        )));
+    }
     let bound = bound(&description, model)?;
     let mut dataset = Dataset {
         path: path.to_owned(),

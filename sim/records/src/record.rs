@@ -6,6 +6,7 @@ use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
 use eomgen_model_spec::model::Model;
 use eomgen_model_spec::table::Written;
 use eomgen_model_spec::unit::Unit;
+use eomgen_sim::cubic_spline::CubicSpline;
 use eomgen_sim::inputs::HeldInputs;
 
 use crate::columns;
@@ -86,12 +87,30 @@ impl Columns<'_> {
         }
         Ok(Record {
             name: name.to_owned(),
-            inputs: held(&times, &input_columns),
+            inputs: self.driving(&times, &input_columns),
             path: place,
             times,
             input_columns,
             channels,
         })
+    }
+
+    /// Inputs held from sample to sample, prescribed motion on a spline through its samples.
+    fn driving(&self, times: &[f64], columns: &[Vec<f64>]) -> HeldInputs {
+        let mut inputs = held(times, columns);
+        let places = self.model.inputs.iter().zip(self.inputs).enumerate();
+        for (place, (input, column)) in places {
+            if input.rate.is_none() || input.rate_of.is_some() || column.is_none() {
+                continue;
+            }
+            let samples = times.iter().zip(&columns[place]);
+            let known = samples.filter(|(_, value)| value.is_finite());
+            let (times, values) = known.map(|(t, value)| (*t, *value)).unzip();
+            if let Some(spline) = CubicSpline::through(times, values) {
+                inputs = inputs.with_prescribed(place, spline);
+            }
+        }
+        inputs
     }
 }
 

@@ -118,7 +118,7 @@ impl ExponentialIntegrator {
                     .next_change(near)
                     .filter(|next| *next < *end - 1e-3 * self.step);
                 let until = change.unwrap_or(*end);
-                let values = inputs.at(0.5 * (motion.t + until));
+                let values = inputs.held_at(0.5 * (motion.t + until));
                 self.interval(&mut motion, until, values, &mut options)?;
                 motion.t = until;
             }
@@ -137,7 +137,7 @@ impl ExponentialIntegrator {
         inputs: &HeldInputs,
         options: &mut Options<'_, '_>,
     ) -> Result<Motion, String> {
-        let values = inputs.at(t + 1e-3 * self.step);
+        let values = inputs.held_at(t + 1e-3 * self.step);
         let mut given = vec![1.0];
         given.extend(values);
         let count = self.surfaces.guards.len();

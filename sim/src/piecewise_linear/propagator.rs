@@ -469,6 +469,6 @@ fn go_on<S: Simd>(
 
 /// The inputs in force from a time on, as many as the model has.
 fn held(inputs: &HeldInputs, t: f64, count: usize) -> &[f64] {
-    let all = inputs.at(t);
+    let all = inputs.held_at(t);
     &all[..count.min(all.len())]
 }

@@ -11,7 +11,7 @@ use super::oracle::{Oracle, OracleError};
 
 /// The size of every entry of the state.
 pub(super) fn of_state(oracle: &Oracle) -> Result<Vec<f64>, OracleError> {
-    let inputs = vec![0.0; oracle.input_count()];
+    let inputs = oracle.typical_inputs().to_vec();
     let mut sizes = of_coordinates(oracle, &inputs)?;
     let mut state = sizes.clone();
     state.resize(oracle.state_length(), 0.0);

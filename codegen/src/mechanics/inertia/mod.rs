@@ -41,6 +41,7 @@ impl Equations {
     fn inertia_moves(&self) -> bool {
         let moving = Dependence::COORDINATE
             .join(Dependence::RATE)
+            .join(Dependence::INPUT)
             .join(Dependence::TIME);
         let entries = self.mass.scalars.iter().chain(&self.mass.coupling);
         let mut nodes = entries.flatten().copied();

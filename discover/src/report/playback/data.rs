@@ -19,7 +19,11 @@ pub(super) fn json(
 ) -> String {
     let program = model.program();
     let inputs = &problem.dataset.test[0].inputs;
-    let rows = stretch.times.iter().flat_map(|t| inputs.at(*t)).copied();
+    let rows = stretch
+        .times
+        .iter()
+        .flat_map(|t| inputs.held_at(*t))
+        .copied();
     let piece = |piece: &Piece| {
         let start = best.mapped(model, &best.test.estimate.initial_states[piece.window]);
         json!({

@@ -101,7 +101,7 @@ fn seen(
         let point = Point {
             t: *t,
             state,
-            inputs: inputs.at(*t),
+            inputs: inputs.held_at(*t),
         };
         model
             .measured

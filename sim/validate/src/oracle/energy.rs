@@ -84,7 +84,8 @@ impl Oracle {
         let scene = self.scene(time, state, None, inputs)?;
         let mut defect = Conditioned::default();
         for term in self.kinetic.iter().chain(&self.potential) {
-            if term.dependence.time || term.dependence.input {
+            let dependence = &term.dependence;
+            if dependence.time || dependence.input || dependence.prescribed {
                 return Ok(false);
             }
         }

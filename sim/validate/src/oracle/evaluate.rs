@@ -180,6 +180,14 @@ impl<'s> Pass<'s> {
             Tree::Call(function, arguments) => self.call(*function, arguments, frame),
             Tree::Time => N::of(self.time()),
             Tree::Coordinate(index) => N::of(self.scene.coordinate(*index, self.directions)),
+            Tree::PrescribedInput {
+                input,
+                rate,
+                second,
+            } => {
+                let rates = (*rate, *second);
+                N::of(self.scene.prescribed(*input, rates, self.directions))
+            }
             Tree::State(index) => N::state(self, *index),
             Tree::StateRate(index) => self.state_rate(*index, frame),
             Tree::Field { leaf, set } => {

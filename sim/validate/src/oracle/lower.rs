@@ -16,6 +16,8 @@ pub(super) struct Lowering<'m> {
     /// What has been built so far.
     pub system: System,
     parameters: &'m [f64],
+    /// For each input the one that is its rate, if that is given.
+    input_rates: Vec<Option<usize>>,
     /// The quadrature places of each field.
     quadratures: Vec<usize>,
     /// Name of what is being lowered, for errors.
@@ -30,6 +32,7 @@ impl<'m> Lowering<'m> {
                 ..System::default()
             },
             parameters,
+            input_rates: input_rates(model),
             quadratures: Vec::new(),
             subject: subject.to_owned(),
         }
@@ -158,7 +161,7 @@ impl<'m> Lowering<'m> {
                     .unwrap_or(f64::NAN),
             ),
             ExprKind::Coordinate(index) => Tree::Coordinate(index.index()),
-            ExprKind::Input(index) => Tree::Input(index.index()),
+            ExprKind::Input(index) => self.input(index.index()),
             ExprKind::State(index) => Tree::State(index.index()),
             ExprKind::Definition(index) => match self.system.definitions.get(index.index()) {
                 Some(Tree::Constant(value)) => Tree::Constant(*value),
@@ -171,6 +174,19 @@ impl<'m> Lowering<'m> {
             ExprKind::ModeShape(field) => self.shape(field.index(), 0, set)?,
             _ => return Err(self.misplaced()),
         })
+    }
+
+    /// An input, with its rates if these are given.
+    fn input(&self, input: usize) -> Tree {
+        let rate_of = |input: usize| self.input_rates.get(input).copied().flatten();
+        match rate_of(input) {
+            None => Tree::Input(input),
+            Some(rate) => Tree::PrescribedInput {
+                input,
+                rate,
+                second: rate_of(rate),
+            },
+        }
     }
 
     /// The place set around an expression, if it is one of `field`.
@@ -337,4 +353,10 @@ impl<'m> Lowering<'m> {
         let scene = Scene::new(&self.system, 0.0, &[], None, &[]);
         Pass::new(&scene, Direction::Still, Direction::Still).value_at_mode(tree, field, mode)
     }
+}
+
+/// For each input the place of the one that is its rate, if that is given.
+pub(super) fn input_rates(model: &Model) -> Vec<Option<usize>> {
+    let rates = model.inputs.iter().map(|input| input.rate);
+    rates.map(|rate| rate.map(|rate| rate.index())).collect()
 }

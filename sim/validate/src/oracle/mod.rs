@@ -65,7 +65,8 @@ use tree::Tree;
 pub struct Oracle {
     system: System,
     names: Vec<String>,
-    inputs: usize,
+    input_rates: Vec<Option<usize>>,
+    typical_inputs: Vec<f64>,
     states: usize,
     initial: Vec<f64>,
     ranges: Ranges,
@@ -100,7 +101,10 @@ impl Oracle {
         let mut oracle = Self {
             system: lowering.system,
             names: coordinate_names(model, order),
-            inputs: model.inputs.len(),
+            input_rates: lower::input_rates(model),
+            typical_inputs: model
+                .typical_inputs()
+                .unwrap_or_else(|_| vec![0.0; model.inputs.len()]),
             states: model.states.len(),
             initial: initial_state(model, order, parameters),
             ranges: Ranges::of(model, parameters),
@@ -127,7 +131,19 @@ impl Oracle {
 
     /// Number of inputs.
     pub fn input_count(&self) -> usize {
-        self.inputs
+        self.input_rates.len()
+    }
+
+    /// Inputs with which the machine has its inertia: 0 of those that are no prescribed motion.
+    pub fn typical_inputs(&self) -> &[f64] {
+        &self.typical_inputs
+    }
+
+    /// How fast inputs move: those whose rates are given, at these; others are held.
+    pub fn input_rates(&self, inputs: &[f64]) -> Vec<f64> {
+        let at = |rate: usize| inputs.get(rate).copied().unwrap_or(f64::NAN);
+        let rates = self.input_rates.iter();
+        rates.map(|rate| rate.map_or(0.0, at)).collect()
     }
 
     /// Number of states of first order.
@@ -300,7 +316,7 @@ impl Oracle {
         inputs: &'s [f64],
     ) -> Result<Scene<'s>, OracleError> {
         expect_length("state entries", self.state_length(), state.len())?;
-        expect_length("inputs", self.inputs, inputs.len())?;
+        expect_length("inputs", self.input_count(), inputs.len())?;
         Ok(Scene::new(&self.system, time, state, accelerations, inputs))
     }
 

@@ -157,6 +157,24 @@ impl<'s> Scene<'s> {
         }
     }
 
+    /// An input that moves at the rates given with it, in two directions.
+    pub fn prescribed(
+        &self,
+        input: usize,
+        (rate, second): (usize, Option<usize>),
+        directions: [Direction; 2],
+    ) -> Motion {
+        let at = |place: usize| self.inputs.get(place).copied().unwrap_or(f64::NAN);
+        let (value, rate) = (at(input), at(rate));
+        // What holds a rate without the next one is nowhere differentiated by the time.
+        let second = second.map_or(0.0, at);
+        let seeds = directions.map(|direction| match direction {
+            Direction::Time => (rate, second),
+            _ => (0.0, 0.0),
+        });
+        Motion::new((value, rate), seeds)
+    }
+
     /// A state of first order and how fast it changes in two directions, where it moves at `rate`.
     pub fn state(&self, index: usize, rate: f64, directions: [Direction; 2]) -> Number {
         let seeds = directions.map(|direction| match direction {

@@ -20,8 +20,17 @@ pub(super) enum Tree {
     },
     /// The time.
     Time,
-    /// An input.
+    /// An input that is held, or of which no further rate is given.
     Input(usize),
+    /// An input whose rate is given.
+    PrescribedInput {
+        /// The input.
+        input: usize,
+        /// The input that is its rate.
+        rate: usize,
+        /// The input that is the rate of that, if it is given.
+        second: Option<usize>,
+    },
     /// The position in the innermost enclosing place set, in m (or the field's unit of x).
     Position {
         /// The place set.
@@ -108,8 +117,10 @@ pub(super) struct Dependence {
     pub position: bool,
     /// The time, explicitly.
     pub time: bool,
-    /// An input.
+    /// An input whose rate is not given.
     pub input: bool,
+    /// An input whose rate is given, or such a rate.
+    pub prescribed: bool,
     /// A time derivative is taken inside.
     pub dot: bool,
     /// It holds a sum over places or modes, itself or in a definition.
@@ -120,7 +131,7 @@ impl Dependence {
     /// Nothing that changes with the state, the time or the inputs.
     pub fn is_constant(&self) -> bool {
         let sets = self.coordinates.is_empty() && self.fields.is_empty() && self.states.is_empty();
-        sets && !self.time && !self.input
+        sets && !self.time && !self.input && !self.prescribed
     }
 
     fn absorb(&mut self, other: &Self) {
@@ -132,6 +143,7 @@ impl Dependence {
         self.position |= other.position;
         self.time |= other.time;
         self.input |= other.input;
+        self.prescribed |= other.prescribed;
         self.dot |= other.dot;
         self.nested |= other.nested;
     }
@@ -154,6 +166,7 @@ impl Tree {
             Self::PerMode { field, .. } => drop(found.indices.insert(*field)),
             Self::Time => found.time = true,
             Self::Input(_) => found.input = true,
+            Self::PrescribedInput { .. } => found.prescribed = true,
             Self::Position { .. } => found.position = true,
             Self::Coordinate(index) => drop(found.coordinates.insert(*index)),
             Self::State(index) | Self::StateRate(index) => drop(found.states.insert(*index)),

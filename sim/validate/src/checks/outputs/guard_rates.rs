@@ -29,6 +29,7 @@ pub(super) fn guard_rates(
     };
     let velocities = &sample.state[oracle.size()..2 * oracle.size()];
     let rates = [velocities, &unknowns].concat();
+    let input_rates = oracle.input_rates(&sample.inputs);
     let sizes = sizes::of_state(oracle)?;
     let fastest = rates
         .iter()
@@ -42,9 +43,9 @@ pub(super) fn guard_rates(
             let moved = length * time;
             let state = sample.state.iter().zip(&rates);
             let state: Vec<f64> = state.map(|(x, rate)| x + moved * rate).collect();
-            let guards = variant
-                .guards(sample.time + moved, &state, &sample.inputs)
-                .ok()?;
+            let inputs = sample.inputs.iter().zip(&input_rates);
+            let inputs: Vec<f64> = inputs.map(|(u, rate)| u + moved * rate).collect();
+            let guards = variant.guards(sample.time + moved, &state, &inputs).ok()?;
             let slope = |value: f64| Slope {
                 value,
                 scale: value.abs(),

@@ -1,0 +1,182 @@
+//! The cubic spline through samples, with both of its derivatives: a curve whose rate and second rate
+//! are continuous.
+//!
+//! The third derivative does not jump at the second and the last but one sample ("not-a-knot"; de
+//! Boor, *A Practical Guide to Splines*, chapter IV), so that a cubic is reproduced to its ends. Beyond
+//! the samples the first or the last value holds.
+
+/// A cubic spline through samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CubicSpline {
+    times: Vec<f64>,
+    values: Vec<f64>,
+    /// The second derivative at each sample.
+    curvatures: Vec<f64>,
+}
+
+impl CubicSpline {
+    /// Through values at ascending times, s; none without a sample, or where times do not ascend or
+    /// something is no finite number.
+    pub fn through(times: Vec<f64>, values: Vec<f64>) -> Option<Self> {
+        let ascending = times.windows(2).all(|pair| pair[0] < pair[1]);
+        let finite = times.iter().chain(&values).all(|number| number.is_finite());
+        if times.is_empty() || times.len() != values.len() || !ascending || !finite {
+            return None;
+        }
+        let curvatures = curvatures(&times, &values);
+        curvatures.iter().all(|m| m.is_finite()).then_some(Self {
+            times,
+            values,
+            curvatures,
+        })
+    }
+
+    /// Value, rate and second rate at a time, s.
+    pub fn at(&self, t: f64) -> [f64; 3] {
+        let last = self.times.len() - 1;
+        if t < self.times[0] {
+            return [self.values[0], 0.0, 0.0];
+        }
+        if t > self.times[last] || last == 0 {
+            return [self.values[last], 0.0, 0.0];
+        }
+        let after = self.times.partition_point(|time| *time <= t).clamp(1, last);
+        let (a, b) = (after - 1, after);
+        let h = self.times[b] - self.times[a];
+        let (left, right) = ((self.times[b] - t) / h, (t - self.times[a]) / h);
+        let [m_a, m_b] = [self.curvatures[a], self.curvatures[b]];
+        let [y_a, y_b] = [self.values[a], self.values[b]];
+        let bend = |s: f64| s * (s * s - 1.0) * h * h / 6.0;
+        let slope = |s: f64| (3.0 * s * s - 1.0) * h / 6.0;
+        [
+            left * y_a + right * y_b + bend(left) * m_a + bend(right) * m_b,
+            (y_b - y_a) / h - slope(left) * m_a + slope(right) * m_b,
+            left * m_a + right * m_b,
+        ]
+    }
+}
+
+/// The second derivatives at the samples: a straight line through two of them, a parabola through
+/// three, and from four on the third derivative does not jump next to the ends.
+fn curvatures(times: &[f64], values: &[f64]) -> Vec<f64> {
+    let count = times.len();
+    if count < 3 {
+        return vec![0.0; count];
+    }
+    let step: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let slope: Vec<f64> = values
+        .windows(2)
+        .zip(&step)
+        .map(|(pair, h)| (pair[1] - pair[0]) / h)
+        .collect();
+    let jumps = slope.windows(2).map(|pair| 6.0 * (pair[1] - pair[0]));
+    let mut right: Vec<f64> = jumps.collect();
+    if count == 3 {
+        return vec![right[0] / (3.0 * (step[0] + step[1])); 3];
+    }
+    // Tridiagonal in the inner samples: the outer ones are extrapolated from the two beside them.
+    let inner = count - 2;
+    let mut diagonal: Vec<f64> = (0..inner).map(|k| 2.0 * (step[k] + step[k + 1])).collect();
+    let mut lower: Vec<f64> = step[..inner].to_vec();
+    let mut upper: Vec<f64> = step[1..].to_vec();
+    let (first, second) = (step[0], step[1]);
+    diagonal[0] += first * (1.0 + first / second);
+    upper[0] -= first * first / second;
+    let (last, before) = (step[count - 2], step[count - 3]);
+    diagonal[inner - 1] += last * (1.0 + last / before);
+    lower[inner - 1] -= last * last / before;
+    // Elimination without pivoting: the matrix is diagonally dominant but for the outer rows, whose
+    // pivots stay positive.
+    for k in 1..inner {
+        let factor = lower[k] / diagonal[k - 1];
+        diagonal[k] -= factor * upper[k - 1];
+        right[k] -= factor * right[k - 1];
+    }
+    let mut curvatures = vec![0.0; count];
+    for k in (0..inner).rev() {
+        let next = if k + 1 < inner {
+            upper[k] * curvatures[k + 2]
+        } else {
+            0.0
+        };
+        curvatures[k + 1] = (right[k] - next) / diagonal[k];
+    }
+    curvatures[0] = curvatures[1] + first / second * (curvatures[1] - curvatures[2]);
+    curvatures[count - 1] =
+        curvatures[count - 2] + last / before * (curvatures[count - 2] - curvatures[count - 3]);
+    curvatures
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spline(times: &[f64], of: impl Fn(f64) -> f64) -> CubicSpline {
+        let values = times.iter().map(|t| of(*t)).collect();
+        CubicSpline::through(times.to_vec(), values).expect("a spline")
+    }
+
+    #[test]
+    fn a_cubic_is_reproduced_to_its_ends() {
+        let times = [0.0, 0.3, 0.5, 1.1, 1.2, 2.0];
+        let of = |t: f64| 1.0 - 2.0 * t + 0.5 * t * t - 0.7 * t * t * t;
+        for count in 4..=6 {
+            let spline = spline(&times[..count], of);
+            for k in 0..=20 {
+                let t = times[count - 1] * f64::from(k) / 20.0;
+                let right = [of(t), -2.0 + t - 2.1 * t * t, 1.0 - 4.2 * t];
+                for (found, right) in spline.at(t).iter().zip(right) {
+                    assert!(
+                        (found - right).abs() < 1e-12,
+                        "{count}, {t}: {found} {right}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_sine_is_met_by_the_fourth_power_of_the_step() {
+        let error = |count: u32| {
+            let times: Vec<f64> = (0..=count)
+                .map(|k| 6.0 * f64::from(k) / f64::from(count))
+                .collect();
+            let spline = spline(&times, f64::sin);
+            let off = |t: f64| {
+                let [value, rate, second] = spline.at(t);
+                [value - t.sin(), rate - t.cos(), second + t.sin()]
+            };
+            (0..=997)
+                .map(|k| off(6.0 * f64::from(k) / 997.0))
+                .fold([0.0f64; 3], |most, off| {
+                    [0, 1, 2].map(|place| most[place].max(off[place].abs()))
+                })
+        };
+        let (coarse, fine) = (error(40), error(80));
+        for (place, order) in [4.0, 3.0, 2.0].into_iter().enumerate() {
+            let found = (coarse[place] / fine[place]).log2();
+            assert!((found - order).abs() < 0.4, "{place}: {found}");
+        }
+    }
+
+    #[test]
+    fn few_samples_and_times_beyond_them_are_held() {
+        assert_eq!(spline(&[1.0], |_| 3.0).at(5.0), [3.0, 0.0, 0.0]);
+        let line = spline(&[1.0, 3.0], |t| 2.0 * t);
+        assert_eq!(line.at(2.0), [4.0, 2.0, 0.0]);
+        assert_eq!(
+            (line.at(0.0), line.at(4.0)),
+            ([2.0, 0.0, 0.0], [6.0, 0.0, 0.0])
+        );
+        let parabola = spline(&[0.0, 1.0, 3.0], |t| t * t);
+        assert!(
+            (parabola.at(2.0)[0] - 4.0).abs() < 1e-14 && (parabola.at(2.0)[2] - 2.0).abs() < 1e-14
+        );
+        assert_eq!(CubicSpline::through(vec![], vec![]), None);
+        assert_eq!(CubicSpline::through(vec![0.0, 0.0], vec![1.0, 2.0]), None);
+        assert_eq!(
+            CubicSpline::through(vec![0.0, 1.0], vec![1.0, f64::NAN]),
+            None
+        );
+    }
+}
