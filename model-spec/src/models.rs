@@ -67,6 +67,12 @@ pub const PLANETARY_ARM_RIG: ShippedModel = ShippedModel {
     text: include_str!("../models/planetary_arm_rig.toml"),
 };
 
+/// A load on the rope of a trolley, both moved as prescribed.
+pub const CRANE: ShippedModel = ShippedModel {
+    name: "crane",
+    text: include_str!("../models/crane.toml"),
+};
+
 /// A moving-coil loudspeaker, with currents as states of first order.
 pub const LOUDSPEAKER: ShippedModel = ShippedModel {
     name: "loudspeaker",
@@ -92,8 +98,9 @@ pub const TWO_LINK_ARM: ShippedModel = ShippedModel {
 };
 
 /// All of them, by name.
-pub const ALL: [ShippedModel; 12] = [
+pub const ALL: [ShippedModel; 13] = [
     CART_TWO_ARMS,
+    CRANE,
     DOUBLE_PENDULUM,
     EMPS,
     FURUTA_PENDULUM,

@@ -309,3 +309,87 @@ fn an_input_without_a_record_is_zero_with_a_warning() {
     assert!(message.contains("no input `torque`"), "{message}");
     assert!(rows(&dataset.file("a.csv")).iter().all(|row| row[1] == 0.0));
 }
+
+/// A mass on a spring whose foot is moved as prescribed: m (r'' + s'') + k r = 0.
+const MOVED_FOOT: &str = r#"
+[model]
+name = "moved_foot"
+[parameters]
+m = { value = 2, unit = "kg" }
+k = { value = 200, unit = "N/m" }
+[inputs]
+s = { unit = "m", rates = 2 }
+[coordinates]
+r = { unit = "m" }
+[kinetic]
+mass = "1/2*m*(dot(s) + dot(r))^2"
+[potential]
+spring = "1/2*k*r^2"
+[observables]
+foot = "s"
+rate = "s_dot"
+"#;
+
+/// r, r', s and s' at 2 s for s = 0.01 sin(7 t), in closed form: r'' + 100 r = 0.49 sin(7 t).
+fn moved_foot() -> [f64; 4] {
+    let (amplitude, w, natural, t) = (0.01, 7.0_f64, 10.0_f64, 2.0);
+    let forced = amplitude * w * w / (natural * natural - w * w);
+    [
+        forced * ((w * t).sin() - w / natural * (natural * t).sin()),
+        forced * w * ((w * t).cos() - (natural * t).cos()),
+        amplitude * (w * t).sin(),
+        amplitude * w * (w * t).cos(),
+    ]
+}
+
+#[test]
+fn prescribed_motion_moves_as_its_expression_and_as_its_record() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    std::fs::write(file("foot.toml"), MOVED_FOOT).expect("a file");
+    let samples = (0..=400).map(|k| f64::from(k) * 0.005);
+    let lines = samples.map(|t| format!("{t},{:e}\n", 0.01 * (7.0 * t).sin()));
+    let record = format!("t,s\n{}", lines.collect::<String>());
+    std::fs::write(file("train.csv"), record).expect("a file");
+    let description = "[records]\ntrain = [\"train.csv\"]\n[time]\ncolumn = \"t\"\nunit = \"s\"\n\
+                       [inputs.s]\ncolumn = \"s\"\nunit = \"m\"\n";
+    std::fs::write(file("dataset.toml"), description).expect("a file");
+    let last = |more: &[&str]| -> Vec<f64> {
+        let (spec, out) = (file("foot.toml"), file("out.csv"));
+        accepted(
+            &[
+                &["simulate", &spec, "--out", &out, "--tolerance", "1e-11"],
+                more,
+            ]
+            .concat(),
+        );
+        let text = std::fs::read_to_string(&out).expect("a table");
+        let row = text.lines().last().expect("a row").split(',').skip(1);
+        row.map(|field| field.parse().expect("a number")).collect()
+    };
+    let off = |found: &[f64]| {
+        let pairs = found.iter().zip(moved_foot());
+        pairs
+            .map(|(found, right)| (found - right).abs())
+            .fold(0.0, f64::max)
+    };
+    let expression = "s=0.01*sin(7*t)";
+    for (solver, bound) in [("exact", 1e-14), ("rk", 1e-11), ("radau", 1e-8)] {
+        let found = last(&["--input", expression, "--until", "2", "--solver", solver]);
+        assert!(off(&found) < bound, "{solver}: {found:?}");
+    }
+    // What a cubic spline through samples of 5 ms leaves of the rate, and of the motion.
+    let found = last(&["--record", &file("dataset.toml")]);
+    assert!(off(&found[..2]) < 1e-6 && off(&found) < 1e-5, "{found:?}");
+    let held = refused(&[
+        "simulate",
+        &file("foot.toml"),
+        "--record",
+        &file("dataset.toml"),
+        "--solver",
+        "exact",
+        "--out",
+        &file("none.csv"),
+    ]);
+    assert!(held.contains("use --solver rk"), "{held}");
+}

@@ -34,6 +34,7 @@ fn report(text: &str) -> Report {
         pivots: vec![line(text, text)],
         velocity_terms: vec![line(text, text)],
         forces: vec![line(text, text)],
+        state_rates: vec![line(text, text)],
         coefficients: vec![CoefficientLine {
             name: Formula::named(text),
             formula: Formula::named(text),

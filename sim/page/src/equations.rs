@@ -36,6 +36,7 @@ pub fn equations(report: &Report) -> Markup {
         (lines(&html! { "Generalised forces " i { "f" } }, &report.forces, |name| {
             indexed("f", &[name])
         }))
+        (lines(&html! { "Rates of states of first order" }, &report.state_rates, formula))
         (coefficients(&report.coefficients))
         (lines(&html! { "Accelerations" }, &report.accelerations, formula))
         (guards(&report.guards))

@@ -7,6 +7,7 @@
 //! missing.
 
 mod cart_two_arms;
+mod crane;
 mod double_pendulum;
 mod emps;
 mod furuta_pendulum;
@@ -66,6 +67,7 @@ impl std::error::Error for NotApplicable {}
 pub fn find(name: &str) -> Option<ClosedForm> {
     match name {
         "cart_two_arms" => Some(cart_two_arms::accelerations),
+        "crane" => Some(crane::accelerations),
         "double_pendulum" => Some(double_pendulum::accelerations),
         "emps" => Some(emps::accelerations),
         "furuta_pendulum" => Some(furuta_pendulum::accelerations),
