@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use eomgen_compiled_model::{Choice, Error, Motion, Request, Solver};
+use eomgen_sim::cubic_spline::CubicSpline;
 use eomgen_sim::inputs::HeldInputs;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, ToPyArray};
 use pyo3::exceptions::PyValueError;
@@ -54,6 +55,12 @@ pub fn simulate<'py>(
     });
     let inputs = inputs.flatten();
     let inputs = inputs.ok_or_else(|| PyValueError::new_err("inputs of another model"))?;
+    let inputs = prescribed(
+        model,
+        inputs,
+        input_times.as_slice()?,
+        input_values.as_slice()?,
+    );
     let request = Request {
         initial: initial.as_slice()?,
         times: times.as_slice()?,
@@ -131,4 +138,28 @@ fn in_words(choice: &Choice) -> String {
         }
         Choice::Stiff(reason) => format!("the motion is {reason}"),
     }
+}
+
+/// Prescribed motion that is given without its rates on a spline through its samples, so that these
+/// exist.
+fn prescribed(model: &Model, mut inputs: HeldInputs, times: &[f64], values: &[f64]) -> HeldInputs {
+    let known = &model.compiled().model().inputs;
+    for (place, input) in known.iter().enumerate() {
+        if input.rate.is_none() || input.rate_of.is_some() {
+            continue;
+        }
+        let column = |place: usize| values.iter().skip(place).step_by(known.len());
+        let has_rates = column(place + 1)
+            .chain(column(place + 2))
+            .any(|rate| *rate != 0.0);
+        let moves = column(place).any(|value| *value != values[place]);
+        if has_rates || !moves {
+            continue;
+        }
+        let samples = column(place).copied().collect();
+        if let Some(spline) = CubicSpline::through(times.to_vec(), samples) {
+            inputs = inputs.with_prescribed(place, spline);
+        }
+    }
+    inputs
 }

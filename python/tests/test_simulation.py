@@ -191,3 +191,22 @@ def test_other_threads_run_while_one_simulates(endless):
     while thread.is_alive():
         turns += 1
     assert worked[0] > 1000
+
+
+def test_prescribed_motion_moves_with_the_rates_of_its_samples():
+    crane = eomgen.load(SPECIFICATIONS / "crane.toml")
+    assert crane.inputs == ("s", "s_dot", "s_ddot", "l", "l_dot", "l_ddot")
+    drive, sample = (lambda t: 0.3 * t**2 - 0.05 * t**3), 0.01
+    r = crane.simulate(until=3, sample=sample, inputs={"s": drive, "l": 6.0})
+    # m (l theta'' + s'' cos theta + g sin theta) + c (l theta' + s' cos theta) = 0, by SciPy.
+    solve_ivp = pytest.importorskip("scipy.integrate").solve_ivp
+
+    def rates(t, y):
+        s_dot, s_ddot = 0.6 * t - 0.15 * t**2, 0.6 - 0.3 * t
+        theta, rate = y
+        across = 25 / 800 * (6 * rate + s_dot * np.cos(theta))
+        return rate, -(s_ddot * np.cos(theta) + 9.81 * np.sin(theta) + across) / 6
+
+    known = solve_ivp(rates, (0, 3), [0, 0], t_eval=r.t, rtol=1e-10, atol=1e-12, method="DOP853")
+    assert np.abs(r["theta"] - known.y[0]).max() < 1e-8
+    assert np.allclose(r["place"], drive(r.t) + 6 * np.sin(r["theta"]), rtol=0, atol=1e-12)

@@ -18,18 +18,19 @@ use crate::models::variant;
 /// A specification being written, in SI.
 #[derive(Clone, Debug, Default)]
 pub struct Spec {
-    sections: [String; 6],
+    sections: [String; 7],
     count: usize,
 }
 
 /// The sections in the order they are written.
-const SECTIONS: [&str; 6] = [
+const SECTIONS: [&str; 7] = [
     "parameters",
     "coordinates",
     "inputs",
     "kinetic",
     "potential",
     "forces",
+    "states",
 ];
 
 impl Spec {
@@ -73,6 +74,14 @@ impl Spec {
         self.entry(
             5,
             &format!("Q_{name} = {{ on = \"{on}\", value = \"{force}\" }}"),
+        )
+    }
+
+    /// A state of first order in m.
+    pub fn state(self, name: &str, rate: &str) -> Self {
+        self.entry(
+            6,
+            &format!("{name} = {{ unit = \"m\", rate = \"{rate}\" }}"),
         )
     }
 

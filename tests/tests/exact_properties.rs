@@ -117,6 +117,8 @@ enum Term {
     OneSided(f64, f64),
     Dry(f64),
     Push(f64, f64, f64),
+    /// A spring that feels a stretch late, through a filter; beyond a play, if there is one.
+    Late(f64, f64, f64),
 }
 
 fn term() -> impl Strategy<Value = Term> {
@@ -137,6 +139,12 @@ fn term() -> impl Strategy<Value = Term> {
             -3.0..3.0_f64
         )
             .prop_map(|(force, omega, phi)| Term::Push(force, omega, phi)),
+        (
+            decades(1.0, 1e3),
+            decades(1e-3, 1.0),
+            or_zero(decades(1e-4, 1e-2))
+        )
+            .prop_map(|(k, tau, b)| Term::Late(k, tau, b)),
     ]
 }
 
@@ -184,6 +192,13 @@ fn machine(masses: &[f64], starts: &[[f64; 2]; 3], terms: &[(Term, usize, usize)
                     .parameter(&w, *omega, "rad/s")
                     .parameter(&b, *phi, "rad"),
                 format!("{k}*sin({w}*t + {b})"),
+            ),
+            Term::Late(stiffness, tau, play) => (
+                spec.parameter(&k, *stiffness, "N/m")
+                    .parameter(&c, *tau, "s")
+                    .parameter(&b, *play, "m")
+                    .state(&w, &format!("({x} - {w})/{c}")),
+                format!("-{k}*deadzone({w}, {b})"),
             ),
         };
         spec = spec.force(&format!("x_{on}"), &force);

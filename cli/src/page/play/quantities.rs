@@ -42,14 +42,20 @@ impl<'m> Quantities<'m> {
         let refused = |error| Error::model(&model.source, error);
         let ranges = model.coordinate_ranges().map_err(refused)?;
         let input_ranges = model.input_ranges().map_err(refused)?;
+        let typical = model.typical_inputs().map_err(refused)?;
         let parameters = compiled.program().parameters.iter().enumerate();
         let parameters = parameters.filter_map(|(place, independent)| {
             let name = &independent.quantity.name;
             let declared = model.parameters.iter().find(|p| p.name == *name)?;
             Some(Slider::of_parameter(declared, place, independent.value))
         });
-        let inputs = model.inputs.iter().zip(input_ranges).enumerate();
-        let inputs = inputs.map(|(place, (input, range))| {
+        let inputs = model
+            .inputs
+            .iter()
+            .zip(input_ranges)
+            .zip(typical)
+            .enumerate();
+        let inputs = inputs.map(|(place, ((input, range), value))| {
             let (low, high) = range.unwrap_or((-10.0, 10.0));
             Slider {
                 name: input.name.clone(),
@@ -57,9 +63,9 @@ impl<'m> Quantities<'m> {
                 doc: &input.doc,
                 place,
                 factor: 1.0,
-                value: 0.0,
-                low: low.min(0.0),
-                high: high.max(0.0),
+                value,
+                low: low.min(value),
+                high: high.max(value),
             }
         });
         Ok(Self {
