@@ -207,6 +207,6 @@ def test_prescribed_motion_moves_with_the_rates_of_its_samples():
         across = 25 / 800 * (6 * rate + s_dot * np.cos(theta))
         return rate, -(s_ddot * np.cos(theta) + 9.81 * np.sin(theta) + across) / 6
 
-    known = solve_ivp(rates, (0, 3), [0, 0], t_eval=r.t, rtol=1e-10, atol=1e-12, method="DOP853")
+    known = solve_ivp(rates, (0, 3), [0.1, 0], t_eval=r.t, rtol=1e-10, atol=1e-12, method="DOP853")
     assert np.abs(r["theta"] - known.y[0]).max() < 1e-8
     assert np.allclose(r["place"], drive(r.t) + 6 * np.sin(r["theta"]), rtol=0, atol=1e-12)
