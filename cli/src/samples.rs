@@ -26,8 +26,10 @@ pub fn inputs(options: &Simulate, model: &Model) -> Result<HeldInputs> {
             Ok(inputs)
         }
         None => {
+            let values =
+                (model.typical_inputs(0.0)).map_err(|error| Error::model(&model.source, error))?;
             warn_of_inputs(model);
-            Ok(HeldInputs::zero(model.inputs.len()))
+            Ok(HeldInputs::constant(values))
         }
     }
 }

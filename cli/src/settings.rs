@@ -65,11 +65,13 @@ fn said(error: &EditError) -> String {
     }
 }
 
-/// Says which inputs are 0 where there is no record.
+/// Says at which values inputs rest where there is no record.
 pub fn warn_of_inputs(model: &Model) {
-    for input in model.inputs.iter().filter(|input| input.rate_of.is_none()) {
+    let values = model.typical_inputs(0.0).unwrap_or_default();
+    let own = model.inputs.iter().zip(values);
+    for (input, value) in own.filter(|(input, _)| input.rate_of.is_none()) {
         warn(&format!(
-            "warning: no record gives the input `{}`: it is 0",
+            "warning: no record gives the input `{}`: it is {value}",
             input.name
         ));
     }

@@ -85,7 +85,9 @@ fn initial_mass_matrix(
         .map_err(|error| error.diagnostic())?;
     let size = program.degrees_of_freedom();
     let mut matrix = vec![0.0; size * size];
-    let inputs = model.typical_inputs().map_err(|error| error.diagnostic())?;
+    let inputs = model
+        .typical_inputs(1.0)
+        .map_err(|error| error.diagnostic())?;
     Evaluator::new(program.clone()).mass_matrix(
         Point {
             t: 0.0,

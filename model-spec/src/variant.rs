@@ -134,17 +134,17 @@ impl Model {
             .collect())
     }
 
-    /// Inputs with which the machine has its inertia, in SI: of prescribed motion, which may stand
-    /// in the energies, the middle of its range, or 1 without one; 0 of all others.
+    /// Inputs where nobody gives them, in SI: of prescribed motion, which may stand in the energies,
+    /// the middle of its range, or this number without one; 0 of all others.
     ///
     /// # Errors
     /// As [`Model::parameter_values`].
-    pub fn typical_inputs(&self) -> Result<Vec<f64>, ModelError> {
+    pub fn typical_inputs(&self, without_range: f64) -> Result<Vec<f64>, ModelError> {
         let ranges = self.input_ranges()?;
         let typical = self.inputs.iter().zip(ranges).map(|(input, range)| {
             match (input.rate.is_some() && input.rate_of.is_none(), range) {
                 (true, Some((low, high))) => 0.5 * (low + high),
-                (true, None) => 1.0,
+                (true, None) => without_range,
                 (false, _) => 0.0,
             }
         });

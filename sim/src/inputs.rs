@@ -28,6 +28,16 @@ impl HeldInputs {
         }
     }
 
+    /// Inputs that are the same at all times.
+    pub fn constant(values: Vec<f64>) -> Self {
+        Self {
+            times: vec![0.0],
+            count: values.len(),
+            values,
+            prescribed: Vec::new(),
+        }
+    }
+
     /// Inputs from rows of `count` numbers, one row for each of the ascending times (s), each
     /// held until the next; none if there is no row, or not as many numbers as rows hold.
     pub fn new(times: Vec<f64>, values: Vec<f64>, count: usize) -> Option<Self> {

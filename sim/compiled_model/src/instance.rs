@@ -96,9 +96,10 @@ impl<'m> Instance<'m> {
         &self.initial
     }
 
-    /// Inputs of 0, as many as the model has.
+    /// Inputs where nobody gives them: 0, and prescribed motion in the middle of its range, if it has
+    /// one.
     pub fn no_inputs(&self) -> HeldInputs {
-        HeldInputs::zero(self.model.model().inputs.len())
+        HeldInputs::constant(self.model.usual_inputs())
     }
 
     /// An evaluator at these parameters.

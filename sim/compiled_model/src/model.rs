@@ -164,6 +164,13 @@ impl CompiledModel {
         units
     }
 
+    /// Inputs where nobody gives them, SI: 0, and prescribed motion in the middle of its range, if it
+    /// has one.
+    pub fn usual_inputs(&self) -> Vec<f64> {
+        let none = || vec![0.0; self.model.inputs.len()];
+        self.model.typical_inputs(0.0).unwrap_or_else(|_| none())
+    }
+
     /// The names of the observables, `energy` and `power` last.
     pub fn observable_names(&self) -> Vec<String> {
         let observables = self.program.observables.iter();

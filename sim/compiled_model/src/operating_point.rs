@@ -79,7 +79,8 @@ impl CompiledModel {
 }
 
 impl Instance<'_> {
-    /// The initial state of the specification at the time 0 with inputs of 0, some of them set, in SI.
+    /// The initial state of the specification at the time 0 with inputs of 0, prescribed
+    /// motion in the middle of its range, some of them set, in SI.
     ///
     /// # Errors
     /// An unknown name, a number that is not finite.
@@ -87,7 +88,7 @@ impl Instance<'_> {
         let mut point = OperatingPoint {
             t: 0.0,
             state: self.initial().to_vec(),
-            inputs: vec![0.0; self.model().model().inputs.len()],
+            inputs: self.model().usual_inputs(),
         };
         for (name, value) in settings {
             if !value.is_finite() {

@@ -42,7 +42,7 @@ impl<'m> Quantities<'m> {
         let refused = |error| Error::model(&model.source, error);
         let ranges = model.coordinate_ranges().map_err(refused)?;
         let input_ranges = model.input_ranges().map_err(refused)?;
-        let typical = model.typical_inputs().map_err(refused)?;
+        let typical = model.typical_inputs(0.0).map_err(refused)?;
         let parameters = compiled.program().parameters.iter().enumerate();
         let parameters = parameters.filter_map(|(place, independent)| {
             let name = &independent.quantity.name;

@@ -103,7 +103,7 @@ impl Oracle {
             names: coordinate_names(model, order),
             input_rates: lower::input_rates(model),
             typical_inputs: model
-                .typical_inputs()
+                .typical_inputs(1.0)
                 .unwrap_or_else(|_| vec![0.0; model.inputs.len()]),
             states: model.states.len(),
             initial: initial_state(model, order, parameters),
