@@ -401,7 +401,7 @@ pub struct Linearise {
     /// of 0 and t = 0 where nothing is said (repeatable).
     #[arg(long, value_name = "NAME=VALUE")]
     pub at: Vec<String>,
-    /// The JSON file to write, in place of stdout.
+    /// The file to write, in place of stdout: JSON, or arrays of NumPy if its name ends in `.npz`.
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Print one JSON document, which is what is printed in any case.

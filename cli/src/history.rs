@@ -1,4 +1,4 @@
-//! A motion drawn over time: coordinates and observables as an SVG, what has one unit in one panel.
+//! A motion drawn over time: coordinates, states of first order and observables as an SVG, what has one unit in one panel.
 
 use eomgen_compiled_model::CompiledModel;
 use eomgen_plot::{Panel, Series, TimeHistory, time_history};
@@ -18,6 +18,7 @@ pub fn figure(compiled: &CompiledModel, table: &Table) -> Result<String> {
     let mut panels: Vec<Panel<'_>> = Vec::new();
     for (names, what) in [
         (coordinates(compiled), "Coordinates"),
+        (first_order(compiled), "States of first order"),
         (observables(compiled), "Observables"),
     ] {
         let first = panels.len();
@@ -65,6 +66,13 @@ fn coordinates(compiled: &CompiledModel) -> Vec<(String, String)> {
         .zip(compiled.state_units())
         .take(degrees)
         .collect()
+}
+
+/// Names and units of states of first order.
+fn first_order(compiled: &CompiledModel) -> Vec<(String, String)> {
+    let rest = 2 * compiled.program().degrees_of_freedom();
+    let names = compiled.state_names().into_iter();
+    names.zip(compiled.state_units()).skip(rest).collect()
 }
 
 /// Names and units of what is observed beside the state.

@@ -5,6 +5,7 @@
 //! a specification and derives it, `motion` simulates it, `output` writes files whole or not at all, `error`
 //! is what can go wrong and with which exit status.
 
+mod archive;
 mod arguments;
 mod bench_files;
 mod certification;
@@ -17,8 +18,10 @@ mod error;
 mod figures;
 mod fmu;
 mod history;
+mod linearisation;
 mod model;
 mod motion;
+mod npz;
 mod operating_point;
 mod output;
 mod page;

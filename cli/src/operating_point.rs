@@ -105,3 +105,13 @@ pub fn inputs(compiled: &CompiledModel) -> (Vec<&str>, Vec<String>) {
         .map(|input| (&*input.name, input.unit.to_string()))
         .unzip()
 }
+
+/// What the numbers of a shape are amplitudes of: coordinates, then states of first order.
+pub fn shape_names(compiled: &CompiledModel) -> Vec<String> {
+    let (mut names, degrees) = (
+        compiled.state_names(),
+        compiled.program().degrees_of_freedom(),
+    );
+    names.drain(degrees..2 * degrees);
+    names
+}

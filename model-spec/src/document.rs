@@ -152,6 +152,14 @@ impl<'d> Reader<'d> {
         let entry = model
             .into_iter()
             .find(|entry| entry.name.text == "gravity")?;
+        if self.section("bodies").is_none() {
+            self.found.push(
+                Diagnostic::error("`gravity` pulls at nothing: there are no [bodies]")
+                    .at(entry.name.span, "it acts on bodies alone")
+                    .help("other weights are energies: write m*g*height in [potential]"),
+            );
+            return None;
+        }
         let components = entry.quantities(&[3], "[0, 0, \"-g\"]");
         self.found.keep(components)
     }

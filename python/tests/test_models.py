@@ -165,6 +165,21 @@ def test_a_linearisation_holds_the_jacobians(cart, states):
         assert np.allclose(c[:, column], difference, rtol=1e-5, atol=1e-5)
 
 
+def test_the_command_s_arrays_are_those_of_the_package(tmp_path, program, cart):
+    out, spec = tmp_path / "matrices.npz", tmp_path / "cart.toml"
+    spec.write_text(cart.text, encoding="utf-8")
+    point = ["--at", f"{cart.states[1]}=0.3", "--at", "t=0.5"]
+    subprocess.run([program, "linearise", spec, *point, "--out", out], check=True, capture_output=True)
+    written, found = np.load(out), cart.linearise(0.5, {cart.states[1]: 0.3})
+    for name, matrix in zip("ABCD", found):
+        assert np.array_equal(written[name], matrix), name
+    assert np.array_equal(written["x"], found.x) and written["t"].tolist() == [0.5]
+    assert np.array_equal(written["rates"], found.rates)
+    assert tuple(written["states"]) == tuple(cart.states)
+    assert tuple(written["outputs"]) == tuple(found.outputs)
+    assert written["state_units"].tolist()[0] == "m" and len(written["output_units"]) == len(found.y)
+
+
 def test_the_point_of_a_linearisation_has_names(cart):
     name = cart.states[1]
     at = cart.linearise(x={name: 0.3})

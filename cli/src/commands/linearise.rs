@@ -1,11 +1,11 @@
 //! `eomgen linearise`: the matrices A, B, C, D of a model about a state.
 
-use eomgen_compiled_model::{CompiledModel, Linearisation, OperatingPoint};
-use serde_json::{Value, json};
+use eomgen_compiled_model::CompiledModel;
 
 use crate::arguments::Linearise;
 use crate::error::{Result, say};
-use crate::operating_point::{assignments, head, inputs, linearised, model, named};
+use crate::linearisation::{arrays, document};
+use crate::operating_point::{assignments, linearised, model};
 use crate::output::Destination;
 
 /// Runs the command.
@@ -19,44 +19,17 @@ pub fn run(options: &Linearise) -> Result {
     let run = compiled.at_declared()?;
     let at = run.operating_point(&assignments("--at", &options.at)?)?;
     let found = linearised(&run, &at)?;
-    let text = format!("{:#}\n", document(&compiled, &at, &found));
-    match destination {
-        None => say(&text),
-        Some(destination) => {
-            destination.write(text.as_bytes())?;
-            destination.summarise(&summary(options, &compiled))
-        }
-    }
-}
-
-fn document(compiled: &CompiledModel, at: &OperatingPoint, found: &Linearisation) -> Value {
-    let (inputs, input_units) = inputs(compiled);
-    let observables = &compiled.program().observables;
-    let output_units: Vec<&str> = observables.iter().map(|known| &*known.unit).collect();
-    let states = compiled.state_names();
-    // A matrix without columns still has its rows.
-    let of = |matrix: &[f64], height: usize, columns: usize| match columns {
-        0 => json!(vec![Vec::<f64>::new(); height]),
-        _ => matrix.chunks(columns).map(|row| json!(row)).collect(),
+    let text = || format!("{:#}\n", document(&compiled, &at, &found));
+    let Some(destination) = destination else {
+        return say(&text());
     };
-    let (n, m, l) = (states.len(), inputs.len(), observables.len());
-    let mut document = head(compiled);
-    document.extend([
-        ("at".to_owned(), named(compiled, at)),
-        ("states".to_owned(), json!(states)),
-        ("inputs".to_owned(), json!(inputs)),
-        ("outputs".to_owned(), json!(compiled.observable_names())),
-        (
-            "units".to_owned(),
-            json!({ "states": compiled.state_units(), "inputs": input_units, "outputs": output_units }),
-        ),
-        ("rates".to_owned(), json!(found.rates)),
-        ("A".to_owned(), of(&found.a, n, n)),
-        ("B".to_owned(), of(&found.b, n, m)),
-        ("C".to_owned(), of(&found.c, l, n)),
-        ("D".to_owned(), of(&found.d, l, m)),
-    ]);
-    Value::Object(document)
+    let extension = options.out.as_deref().and_then(|out| out.extension());
+    let contents = match extension.is_some_and(|extension| extension == "npz") {
+        true => arrays(&compiled, &at, &found)?,
+        false => text().into_bytes(),
+    };
+    destination.write(&contents)?;
+    destination.summarise(&summary(options, &compiled))
 }
 
 fn summary(options: &Linearise, compiled: &CompiledModel) -> String {

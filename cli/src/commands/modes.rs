@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::Modes;
 use crate::error::{Error, Result, say};
-use crate::operating_point::{assignments, head, linearised, model, named};
+use crate::operating_point::{assignments, head, linearised, model, named, shape_names};
 
 /// Runs the command.
 pub fn run(options: &Modes) -> Result {
@@ -24,16 +24,6 @@ pub fn run(options: &Modes) -> Result {
     document.insert("coordinates".to_owned(), json!(shape_names(&compiled)));
     document.insert("modes".to_owned(), modes.iter().map(record).collect());
     say(&format!("{:#}\n", Value::Object(document)))
-}
-
-/// What the numbers of a shape are amplitudes of: coordinates, then states of first order.
-fn shape_names(compiled: &CompiledModel) -> Vec<String> {
-    let (mut names, degrees) = (
-        compiled.state_names(),
-        compiled.program().degrees_of_freedom(),
-    );
-    names.drain(degrees..2 * degrees);
-    names
 }
 
 fn record(mode: &NaturalMode) -> Value {

@@ -3,10 +3,9 @@
 //!
 //! `variables` lists what a unit has, by name and value reference; `units` are those of measurement;
 //! `description` (with `fmi2` and `fmi3`, which differ in how they say it) writes both as XML;
-//! `sources` lays out the C; `binary` compiles it where there is a compiler; `archive` packs all.
+//! `sources` lays out the C; `binary` compiles it where there is a compiler; [`crate::archive`] packs all.
 //! The C that every unit has alike is in the folder `runtime`.
 
-mod archive;
 mod binary;
 mod description;
 mod fmi2;
@@ -20,6 +19,7 @@ use eomgen_codegen::mechanics::outputs::Output;
 use eomgen_codegen::variant::Variant;
 use eomgen_model_spec::model::Model;
 
+use crate::archive::pack;
 use crate::error::{Result, warn};
 
 pub use version::Version;
@@ -56,5 +56,5 @@ pub fn file(model: &Model, variant: &Variant, version: Version) -> Result<(Strin
     for (name, text) in sources {
         files.push((format!("sources/{name}"), text.into_bytes()));
     }
-    Ok((format!("{}.fmu", program.name), archive::pack(files)?))
+    Ok((format!("{}.fmu", program.name), pack(files)?))
 }

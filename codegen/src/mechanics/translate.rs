@@ -355,6 +355,10 @@ fn along_motion_and_states(
 /// How fast a node changes while the state is held: with the time, and with inputs whose rates are
 /// given.
 pub fn explicit_rate(graph: &mut Graph, node: NodeId) -> NodeId {
+    let moves = Dependence::TIME.join(Dependence::INPUT);
+    if !graph.dependence(node).has(moves) {
+        return graph.zero();
+    }
     let tangent = |graph: &mut Graph, leaf: NodeId| match *graph.operation(leaf) {
         Operation::Time => graph.one(),
         Operation::Input(index) => rate_of_input(graph, index),

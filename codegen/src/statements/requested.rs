@@ -10,7 +10,7 @@ use super::needed::Needed;
 use super::roots::entry_roots;
 use super::rows::write_row_values;
 use super::stage::{Argument, Outcome, Size, Stage};
-use super::stages::{ORDER, guard_values, rates_of, where_not_definite};
+use super::stages::{ORDER, by_positions, guard_values, rates_of, where_not_definite};
 use super::statement::{Place, Statement};
 use crate::program::{
     BlockPlace, Extent, GradientDerivative, Jacobian, JacobianBlock, Products, RowValues, ValueId,
@@ -63,7 +63,7 @@ fn forces(
     write_row_values(&mut body, "values", 0, rows)?;
     Ok(Stage {
         name,
-        doc: doc.to_owned(),
+        doc: by_positions(file.program, doc),
         list: Vec::new(),
         arguments: Vec::new(),
         outcome: Outcome::Array("values", Size::DegreesOfFreedom),

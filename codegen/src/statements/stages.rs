@@ -10,7 +10,7 @@ use super::roots::mass_roots;
 use super::rows::write_row_values;
 use super::stage::{Outcome, Size, Stage};
 use super::statement::{Place, Statement};
-use crate::program::{Extent, Op, ValueId};
+use crate::program::{Extent, Op, Program, ValueId};
 use eomgen_model_spec::ids::FieldId;
 
 /// What arguments and results of the rates are.
@@ -208,7 +208,10 @@ pub fn mass_matrix(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
     write_modal_blocks(file, &mut body)?;
     Ok(Stage {
         name: "mass_matrix",
-        doc: "The mass matrix, in the order of the first half of [`STATE_NAMES`].".to_owned(),
+        doc: by_positions(
+            program,
+            "The mass matrix, in the order of the first half of [`STATE_NAMES`].",
+        ),
         list: Vec::new(),
         arguments: Vec::new(),
         outcome: Outcome::MassMatrix,
@@ -261,4 +264,13 @@ fn write_modal_blocks(file: &File<'_>, body: &mut Body<'_>) -> Emitted<()> {
         }
     }
     Ok(())
+}
+
+/// A description that calls coordinates and modes the first half of the state: states of first order
+/// make them less than that.
+pub(super) fn by_positions(program: &Program, doc: &str) -> String {
+    match program.first_order.is_empty() {
+        true => doc.to_owned(),
+        false => doc.replace("the first half of", "the coordinates and modes in"),
+    }
 }

@@ -145,12 +145,13 @@ impl CompiledModel {
         &self.program
     }
 
-    /// The names of the states: coordinates and modes, then their rates.
+    /// The names of the states: coordinates and modes, then their rates, then states of first order.
     pub fn state_names(&self) -> Vec<String> {
         self.program.state_names()
     }
 
-    /// The SI units of the states: those of coordinates and modes, then the same per second.
+    /// The SI units of the states: those of coordinates and modes, then the same per second, then
+    /// those of states of first order.
     pub fn state_units(&self) -> Vec<String> {
         let coordinates = self.model.coordinates.iter();
         let mut units: Vec<String> = coordinates.map(|known| known.unit.to_string()).collect();

@@ -1,8 +1,8 @@
 //! What a certificate judges: equations of motion that someone else derived, seen only
 //! through the numbers they give.
 
-/// Equations of motion of one model at one order. States are coordinates, then rates, in
-/// SI and in the order of the specification; parameters are fixed beforehand.
+/// Equations of motion of one model at one order. States are coordinates, then rates, then states of
+/// first order, in SI and in the order of the specification; parameters are fixed beforehand.
 pub trait Variant {
     /// Names of the generalised coordinates in the order of the state.
     fn coordinate_names(&self) -> Vec<String>;

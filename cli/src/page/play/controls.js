@@ -13,6 +13,9 @@ const [drawingCanvas, curvesCanvas] = [element("drawing"), element("curves")];
 class Page {
   constructor(exports) {
     this.machine = new Machine(model, exports);
+    model.inputs.forEach((input, place) => {
+      this.machine.inputs[place] = input.value;
+    });
     this.initial = Float64Array.from(model.state, (quantity) => quantity.initial);
     this.motion = new Motion(this.machine, this.initial);
     this.picture = model.drawing ? new Plane(model) : new Instruments(model);
@@ -70,7 +73,7 @@ class Page {
       this.motion.begin();
       this.remember();
     } else if (kind === "input") {
-      this.machine.inputs[place] = value ?? 0;
+      this.machine.inputs[place] = value ?? model.inputs[place].value;
       this.motion.begin();
       this.remember();
     } else {

@@ -22,12 +22,16 @@ pub(super) fn json(
         .map(|((name, unit), initial)| json!({ "name": name, "unit": printed(unit), "initial": initial }))
         .collect();
     let of = |quantity: &eomgen_codegen::program::Quantity| json!({ "name": quantity.name, "unit": printed(&quantity.unit) });
+    let inputs = program.inputs.iter().zip(compiled.usual_inputs());
+    let inputs = inputs.map(|(input, value)| {
+        json!({ "name": input.name, "unit": printed(&input.unit), "value": value })
+    });
     let evaluator = compiled.evaluator(&program.default_parameters());
     let document = json!({
         "module": encoded(module),
         "parameters": program.default_parameters(),
         "state": state,
-        "inputs": program.inputs.iter().map(of).collect::<Vec<_>>(),
+        "inputs": inputs.collect::<Vec<_>>(),
         "observables": program.observables.iter().map(of).collect::<Vec<_>>(),
         "guards": evaluator.guard_count(),
         "drawing": compiled.model().drawing.as_ref().map(drawing),

@@ -1,0 +1,75 @@
+//! A linearisation written down: as a JSON document, and as arrays of NumPy.
+
+use eomgen_compiled_model::{CompiledModel, Linearisation, OperatingPoint};
+use serde_json::{Value, json};
+
+use crate::error::Result;
+use crate::npz::{Array, archive};
+use crate::operating_point::{head, inputs, named};
+
+/// One document with the point, names, units and matrices.
+pub fn document(compiled: &CompiledModel, at: &OperatingPoint, found: &Linearisation) -> Value {
+    let (inputs, input_units) = inputs(compiled);
+    let states = compiled.state_names();
+    let outputs = compiled.observable_names();
+    // A matrix without columns still has its rows.
+    let of = |matrix: &[f64], height: usize, columns: usize| match columns {
+        0 => json!(vec![Vec::<f64>::new(); height]),
+        _ => matrix.chunks(columns).map(|row| json!(row)).collect(),
+    };
+    let (n, m, l) = (states.len(), inputs.len(), outputs.len());
+    let mut document = head(compiled);
+    document.extend([
+        ("at".to_owned(), named(compiled, at)),
+        ("states".to_owned(), json!(states)),
+        ("inputs".to_owned(), json!(inputs)),
+        ("outputs".to_owned(), json!(outputs)),
+        (
+            "units".to_owned(),
+            json!({
+                "states": compiled.state_units(),
+                "inputs": input_units,
+                "outputs": output_units(compiled),
+            }),
+        ),
+        ("rates".to_owned(), json!(found.rates)),
+        ("A".to_owned(), of(&found.a, n, n)),
+        ("B".to_owned(), of(&found.b, n, m)),
+        ("C".to_owned(), of(&found.c, l, n)),
+        ("D".to_owned(), of(&found.d, l, m)),
+    ]);
+    Value::Object(document)
+}
+
+/// The bytes of an archive of NumPy's with the same: the matrices, the point, names and units.
+pub fn arrays(
+    compiled: &CompiledModel,
+    at: &OperatingPoint,
+    found: &Linearisation,
+) -> Result<Vec<u8>> {
+    let (inputs, input_units) = inputs(compiled);
+    let inputs: Vec<String> = inputs.into_iter().map(str::to_owned).collect();
+    let (states, outputs) = (compiled.state_names(), compiled.observable_names());
+    let (n, m, l) = (states.len(), inputs.len(), outputs.len());
+    archive(&[
+        ("A", Array::Matrix(&found.a, [n, n])),
+        ("B", Array::Matrix(&found.b, [n, m])),
+        ("C", Array::Matrix(&found.c, [l, n])),
+        ("D", Array::Matrix(&found.d, [l, m])),
+        ("t", Array::Vector(&[at.t])),
+        ("x", Array::Vector(&at.state)),
+        ("u", Array::Vector(&at.inputs)),
+        ("rates", Array::Vector(&found.rates)),
+        ("states", Array::Names(&states)),
+        ("inputs", Array::Names(&inputs)),
+        ("outputs", Array::Names(&outputs)),
+        ("state_units", Array::Names(&compiled.state_units())),
+        ("input_units", Array::Names(&input_units)),
+        ("output_units", Array::Names(&output_units(compiled))),
+    ])
+}
+
+fn output_units(compiled: &CompiledModel) -> Vec<String> {
+    let observables = compiled.program().observables.iter();
+    observables.map(|known| known.unit.clone()).collect()
+}

@@ -1,0 +1,77 @@
+//! Arrays as NumPy keeps several of them in one file: an archive `.npz` with an `.npy` file of
+//! version 1.0 for each (NumPy Enhancement Proposal 1).
+
+use crate::archive::pack;
+use crate::error::Result;
+
+/// The multiple at which the numbers of an `.npy` file begin, bytes.
+const ALIGNMENT: usize = 64;
+
+/// An array.
+pub enum Array<'a> {
+    /// Numbers row by row, and how many rows and columns.
+    Matrix(&'a [f64], [usize; 2]),
+    /// Numbers.
+    Vector(&'a [f64]),
+    /// Texts.
+    Names(&'a [String]),
+}
+
+/// The bytes of an archive with these arrays.
+pub fn archive(arrays: &[(&str, Array<'_>)]) -> Result<Vec<u8>> {
+    let files = arrays.iter();
+    pack(
+        files
+            .map(|(name, array)| (format!("{name}.npy"), array.file()))
+            .collect(),
+    )
+}
+
+impl Array<'_> {
+    /// The array as an `.npy` file.
+    fn file(&self) -> Vec<u8> {
+        let (kind, shape, contents) = match self {
+            Self::Matrix(values, [rows, columns]) => (
+                "<f8".to_owned(),
+                format!("({rows}, {columns})"),
+                bytes(values),
+            ),
+            Self::Vector(values) => {
+                let shape = format!("({},)", values.len());
+                ("<f8".to_owned(), shape, bytes(values))
+            }
+            Self::Names(names) => {
+                let longest = names.iter().map(|name| name.chars().count());
+                // A text of no characters is no type of NumPy's.
+                let width = longest.max().unwrap_or(0).max(1);
+                let kind = format!("<U{width}");
+                (kind, format!("({},)", names.len()), padded(names, width))
+            }
+        };
+        let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
+        let mut file = b"\x93NUMPY\x01\x00".to_vec();
+        // The length, two bytes, and the end of the line belong to what is aligned.
+        let length =
+            (file.len() + 2 + header.len() + 1).next_multiple_of(ALIGNMENT) - file.len() - 2;
+        file.extend((length as u16).to_le_bytes());
+        file.extend(format!("{header:<width$}\n", width = length - 1).into_bytes());
+        file.extend(contents);
+        file
+    }
+}
+
+fn bytes(values: &[f64]) -> Vec<u8> {
+    values
+        .iter()
+        .flat_map(|value| value.to_le_bytes())
+        .collect()
+}
+
+/// Texts in UTF-32, each filled up to so many characters.
+fn padded(names: &[String], width: usize) -> Vec<u8> {
+    let characters = names.iter().flat_map(|name| {
+        let letters = name.chars().map(u32::from);
+        letters.chain(std::iter::repeat(0)).take(width)
+    });
+    characters.flat_map(u32::to_le_bytes).collect()
+}
