@@ -152,7 +152,8 @@ impl<'d> Reader<'d> {
         let entry = model
             .into_iter()
             .find(|entry| entry.name.text == "gravity")?;
-        if self.section("bodies").is_none() {
+        // A model without any energy lacks more than bodies.
+        if self.section("bodies").is_none() && self.section("kinetic").is_some() {
             self.found.push(
                 Diagnostic::error("`gravity` pulls at nothing: there are no [bodies]")
                     .at(entry.name.span, "it acts on bodies alone")
