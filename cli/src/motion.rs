@@ -1,10 +1,13 @@
 //! A motion on the command line: simulated with a progress bar, its samples as a table.
 
-use eomgen_compiled_model::{Choice, Instance, Motion, Request, Solver};
+use eomgen_compiled_model::{Choice, Instance, Motion, Moved, Request, Solver};
 
 use crate::error::{Result, warn};
 use crate::progress::Bar;
 use crate::table::Table;
+
+/// How many moved initial values are named.
+const MOST_MOVED: usize = 8;
 
 /// The states at all times asked for, with a progress bar for a run that takes long.
 pub fn simulate(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> {
@@ -27,7 +30,38 @@ pub fn follow(instance: &Instance<'_>, request: &Request<'_>) -> Result<Motion> 
             "note: solved by radau, because the motion is {reason}"
         ));
     }
+    note_moved("initial state", &motion.moved);
     Ok(motion)
+}
+
+/// Says what of a state was moved so that the constraints hold.
+pub fn note_moved(what: &str, all: &[Moved]) {
+    if all.is_empty() {
+        return;
+    }
+    let moved = all.iter().take(MOST_MOVED);
+    let moved = moved.map(|moved| {
+        let (from, to) = (Short(moved.from), Short(moved.to));
+        format!("{} from {from} to {to} {}", moved.name, moved.unit)
+    });
+    let mut moved: Vec<String> = moved.collect();
+    if all.len() > MOST_MOVED {
+        moved.push(format!("{} more", all.len() - MOST_MOVED));
+    }
+    warn(&format!(
+        "note: the {what} was moved onto the constraints: {}",
+        moved.join(", ")
+    ));
+}
+
+/// A number with as many digits as are worth reading.
+struct Short(f64);
+
+impl std::fmt::Display for Short {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let rounded: f64 = format!("{:.5e}", self.0).parse().unwrap_or(self.0);
+        write!(f, "{rounded}")
+    }
 }
 
 /// The work in words.

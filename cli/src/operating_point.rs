@@ -4,10 +4,12 @@
 use std::path::Path;
 
 use eomgen_compiled_model::{CompiledModel, Instance, Linearisation, OperatingPoint, Setting};
+use eomgen_sim::inputs::HeldInputs;
 use serde_json::{Map, Value, json};
 
 use crate::error::{Error, Result};
 use crate::model::{derive, load, orders};
+use crate::motion::note_moved;
 use crate::settings::with_settings;
 
 /// The model of a specification with parameters set.
@@ -48,6 +50,15 @@ pub fn with_initial(run: &Instance<'_>, assigned: &[String]) -> Result<Vec<f64>>
         }
     }
     Ok(run.operating_point(&settings)?.state)
+}
+
+/// The point moved onto the constraints of the model, with a note of what that moved.
+pub fn consistent(run: &Instance<'_>, mut at: OperatingPoint) -> Result<OperatingPoint> {
+    let inputs = HeldInputs::constant(at.inputs.clone());
+    let (state, moved) = run.consistent(&at.state, at.t, &inputs)?;
+    note_moved("state", &moved);
+    at.state = state;
+    Ok(at)
 }
 
 /// The model linearised about a point, all of it finite numbers.

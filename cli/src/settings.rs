@@ -1,7 +1,7 @@
 //! Parameter values given as `NAME=VALUE`, and inputs that nothing gives.
 
 use eomgen_model_spec::edit::{self, Edit, EditError, PrescribeInput};
-use eomgen_model_spec::model::Model;
+use eomgen_model_spec::model::{Model, ParameterValue, STABILISATION_RATE};
 
 use crate::error::{Error, Result, warn};
 
@@ -13,6 +13,25 @@ pub fn with_settings(model: Model, assignments: &[String]) -> Result<Model> {
         .collect::<Result<Vec<_>>>()?;
     model
         .with_parameters(&settings)
+        .map_err(|error| Error::model(&model.source, error))
+}
+
+/// How fast residuals of constraints decay where nothing else brings them back and the specification
+/// does not say, 1/s.
+const STABILISATION: f64 = 10.0;
+
+/// The model for whoever integrates its rates as they are: residuals of constraints decay.
+pub fn stabilised(model: Model) -> Result<Model> {
+    let declared = model
+        .parameters
+        .iter()
+        .find(|p| p.name == STABILISATION_RATE);
+    let is_off = declared.is_some_and(|p| matches!(p.value, ParameterValue::Number(0.0)));
+    if model.constraints.is_empty() || !is_off {
+        return Ok(model);
+    }
+    model
+        .with_parameters(&[(STABILISATION_RATE, STABILISATION)])
         .map_err(|error| Error::model(&model.source, error))
 }
 

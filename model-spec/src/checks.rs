@@ -8,6 +8,7 @@ use crate::ids::InputId;
 use crate::infer::Words;
 use crate::model::{
     Basis, CoefficientKind, Expr, ExprKind, Input, Model, Ordinate, ParameterValue,
+    STABILISATION_RATE,
 };
 use crate::suggest::did_you_mean;
 
@@ -119,7 +120,9 @@ pub fn warn_unused(model: &Model, warnings: &mut Diagnostics) {
     let definitions = model.definitions.iter().map(|d| (&d.name, d.span));
     let mut warn = |kind, name: &str, span| warnings.push(Diagnostic::unused(kind, name, span));
     for ((name, span), used) in parameters.zip(used.parameters) {
-        if !used {
+        // Stabilisation is part of every constraint.
+        let stabilises = !model.constraints.is_empty() && name == STABILISATION_RATE;
+        if !used && !stabilises {
             warn(Declared::Parameter, name, span);
         }
     }
@@ -186,6 +189,9 @@ fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
     for force in &model.forces {
         see(&force.on);
         see(&force.value);
+    }
+    for constraint in &model.constraints {
+        see(&constraint.zero);
     }
     for observable in &model.observables {
         see(&observable.value);

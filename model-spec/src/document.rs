@@ -6,8 +6,8 @@ use toml_edit::Document as Toml;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::entries::{
-    body, coefficient, coordinate, field, force, frame, input, line, name_of, observable,
-    parameter, point, sensor, state, term,
+    body, coefficient, constraint, coordinate, field, force, frame, input, line, name_of,
+    observable, parameter, point, sensor, state, term,
 };
 use crate::keys;
 use crate::raw::{Document, RawDrawing, RawInput};
@@ -57,7 +57,7 @@ impl<'d> Reader<'d> {
     fn document(&mut self) -> Option<Document> {
         self.refuse_unknown_sections();
         let model = self.model();
-        let document = Document {
+        let mut document = Document {
             parameters: self.collect("parameters", parameter),
             coordinates: self.collect("coordinates", coordinate),
             inputs: (self.collect("inputs", input).into_iter())
@@ -73,6 +73,7 @@ impl<'d> Reader<'d> {
             potential: self.collect("potential", term),
             dissipation: self.collect("dissipation", term),
             forces: self.collect("forces", force),
+            constraints: self.collect("constraints", constraint),
             observables: self.collect("observables", observable),
             coefficients: self.collect("coefficients", coefficient),
             sensors: self.collect("sensors", sensor),
@@ -81,6 +82,7 @@ impl<'d> Reader<'d> {
             title: model.map(|(_, title)| title).unwrap_or_default(),
         };
         self.refuse_missing_sections(&document);
+        document.declare_stabilisation_rate();
         Some(document)
     }
 

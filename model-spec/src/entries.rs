@@ -15,6 +15,7 @@ const PARAMETER_EXAMPLE: &str = "{ value = 0.5, unit = \"m\" }";
 const COORDINATE_EXAMPLE: &str = "{ unit = \"rad\", initial = 0 }";
 const STATE_EXAMPLE: &str = "{ unit = \"N\", rate = \"(k*x - z)/tau\", initial = 0 }";
 const FORCE_EXAMPLE: &str = "{ on = \"theta\", value = \"-c*dot(theta)\" }";
+const CONSTRAINT_EXAMPLE: &str = "{ zero = \"x^2 + y^2 - l^2\" }";
 const FRAME_EXAMPLE: &str = "{ in = \"link_1\", rotation = \"rotation_z(q_2)\" }";
 const BODY_EXAMPLE: &str = "{ frame = \"link_1\", mass = \"m_1\" }";
 const FIELD_EXAMPLE: &str = "{ along = \"x\", from = 0, to = \"l\", basis = \"clamped_free\", \
@@ -117,6 +118,19 @@ pub fn state(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawState> {
         rate: found.keep(rate)?,
         initial: record.quantity("initial", found),
         doc: record.text("doc", found),
+    })
+}
+
+/// An entry of `[constraints]`.
+pub fn constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm> {
+    let record = entry.record(&keys::CONSTRAINT, CONSTRAINT_EXAMPLE, found)?;
+    let help = "give the expression that stays zero: zero = \"x^2 + y^2 - l^2\"";
+    let zero = record.require("zero", help, found)?.quantity();
+    Some(RawTerm {
+        name: entry.name.clone(),
+        value: found.keep(zero)?,
+        doc: record.text("doc", found),
+        origin: record.text("source", found),
     })
 }
 

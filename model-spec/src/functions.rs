@@ -62,6 +62,20 @@ impl Function {
         self.entry().map_or(&[], |(_, _, arguments)| arguments)
     }
 
+    /// Whether it has a kink or a jump where an argument changes its sign or meets another.
+    pub fn switches(self) -> bool {
+        matches!(
+            self,
+            Self::Abs
+                | Self::Sign
+                | Self::Min
+                | Self::Max
+                | Self::Deadzone
+                | Self::Contact
+                | Self::Above
+        )
+    }
+
     fn entry(self) -> Option<&'static (&'static str, Self, &'static [&'static str])> {
         FUNCTIONS.iter().find(|(_, function, _)| *function == self)
     }

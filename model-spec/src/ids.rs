@@ -76,6 +76,8 @@ ids! {
     InputId;
     /// One of [`Model::states`](crate::model::Model::states).
     StateId;
+    /// One of [`Model::constraints`](crate::model::Model::constraints).
+    ConstraintId;
     /// One of [`Model::fields`](crate::model::Model::fields).
     FieldId;
     /// One of [`Model::observables`](crate::model::Model::observables).

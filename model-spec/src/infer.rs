@@ -64,6 +64,16 @@ impl Inference<'_> {
             ExprKind::Input(index) => Ok(Some(model.inputs[*index].unit.dimension)),
             ExprKind::State(index) => Ok(Some(model.states[*index].unit.dimension)),
             ExprKind::Definition(index) => Ok(Some(self.definitions[*index])),
+            ExprKind::Residual(index) => self.infer(&model.constraints[*index].zero),
+            ExprKind::Multiplier(index) => {
+                let constraint = &model.constraints[*index];
+                let own = self.infer(&constraint.zero)?;
+                let whole = match constraint.is_nonholonomic {
+                    true => Dimension::POWER,
+                    false => Dimension::ENERGY,
+                };
+                combined(Some(whole), own, Dimension::over).ok_or_else(out_of_range)
+            }
             ExprKind::Coefficient(index) => Ok(self.coefficients.get(index.index()).copied()),
             ExprKind::Field(field) | ExprKind::ModeCoordinate(field) => {
                 Ok(Some(model.fields[*field].unit.dimension))

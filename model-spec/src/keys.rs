@@ -33,6 +33,8 @@ pub const BODY: [&str; 6] = ["frame", "mass", "centre", "inertia", "doc", "sourc
 pub const TERM: [&str; 3] = ["value", "doc", "source"];
 /// Keys of an entry of `[forces]`.
 pub const FORCE: [&str; 4] = ["on", "value", "doc", "source"];
+/// Keys of an entry of `[constraints]`.
+pub const CONSTRAINT: [&str; 3] = ["zero", "doc", "source"];
 /// Keys of an entry of `[observables]`.
 pub const OBSERVABLE: [&str; 4] = ["value", "unit", "doc", "source"];
 /// Keys of an entry of `[coefficients]`.
@@ -46,7 +48,7 @@ pub const DRAWING: [&str; 2] = ["points", "lines"];
 pub const POINT: [&str; 2] = ["x", "y"];
 
 /// The sections, each with the keys of its entries; of `[model]` and `[drawing]` their own.
-pub const SECTIONS: [(&str, &[&str]); 17] = [
+pub const SECTIONS: [(&str, &[&str]); 18] = [
     ("model", &MODEL),
     ("parameters", &PARAMETER),
     ("coordinates", &COORDINATE),
@@ -60,6 +62,7 @@ pub const SECTIONS: [(&str, &[&str]); 17] = [
     ("potential", &TERM),
     ("dissipation", &TERM),
     ("forces", &FORCE),
+    ("constraints", &CONSTRAINT),
     ("observables", &OBSERVABLE),
     ("coefficients", &COEFFICIENT),
     ("sensors", &SENSOR),

@@ -64,7 +64,7 @@ pub fn check(source: Source) -> Result<Checked, Diagnostics> {
     let demands = space::expand(&mut document, &source)?;
     let mut resolved = resolve(document, demands, &source)?;
     let mut found = Diagnostics::new(source.clone());
-    motion::check(&resolved.model, &mut found);
+    motion::check(&mut resolved.model, &mut found);
     units_check::check(&mut resolved, &mut found);
     let (model, inertias) = (resolved.model, resolved.inertias);
     check_sensors(&model, &mut found);

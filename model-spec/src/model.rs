@@ -10,8 +10,8 @@ use std::sync::Arc;
 
 use crate::ast::BinaryOperator;
 use crate::ids::{
-    CoefficientId, CoordinateId, DefinitionId, FieldId, InputId, ObservableId, ParameterId,
-    PointId, StateId,
+    CoefficientId, ConstraintId, CoordinateId, DefinitionId, FieldId, InputId, ObservableId,
+    ParameterId, PointId, StateId,
 };
 use crate::shape_table::ShapeTable;
 use crate::source::Source;
@@ -20,6 +20,19 @@ use crate::unit::Unit;
 
 /// The highest modal truncation order accepted.
 pub const MAX_ORDER: usize = 128;
+
+/// The parameter that says how fast emitted equations bring residuals of constraints back to
+/// zero, in 1/s.
+pub const STABILISATION_RATE: &str = "stabilisation_rate";
+
+/// What the observable of a constraint's multiplier is called before the constraint's name.
+pub const MULTIPLIER: &str = "lambda_";
+
+/// What the observable of a constraint's residual is called before the constraint's name.
+pub const RESIDUAL: &str = "residual_";
+
+/// The most constraints accepted: what they cost grows with the cube of their number.
+pub const MAX_CONSTRAINTS: usize = 100;
 
 /// A mechanical system: parameters, coordinates and the terms of its Lagrangian.
 #[derive(Clone, Debug)]
@@ -52,8 +65,10 @@ pub struct Model {
     pub dissipation: Vec<Term>,
     /// Forces acting by virtual work.
     pub forces: Vec<Force>,
-    /// Quantities to be reported. `energy` and `power` are added to these for every
-    /// model and are not in this list.
+    /// Expressions that stay zero.
+    pub constraints: Vec<Constraint>,
+    /// Quantities to be reported; of each constraint its multiplier and its residual, last.
+    /// `energy` and `power` are added to these for every model and are not in this list.
     pub observables: Vec<Observable>,
     /// Names the specification gives to coefficients of the derived equations.
     pub coefficients: Vec<Coefficient>,
@@ -339,6 +354,26 @@ pub struct Force {
     pub span: Span,
 }
 
+/// An expression that stays zero along the motion. Its force on the coordinates is A^T lambda, A
+/// the derivative of the expression by the coordinates or, of a nonholonomic one, by their rates.
+#[derive(Clone, Debug)]
+pub struct Constraint {
+    /// ASCII name.
+    pub name: String,
+    /// What stays zero: of coordinates, prescribed motion and time, or linear in the rates.
+    pub zero: Expr,
+    /// Whether it holds rates: its multiplier is then in W per unit of the expression, else in J.
+    pub is_nonholonomic: bool,
+    /// Its unit, inferred.
+    pub unit: Unit,
+    /// What it is.
+    pub doc: String,
+    /// Where it comes from.
+    pub origin: String,
+    /// Where its name stands.
+    pub span: Span,
+}
+
 /// A quantity to be reported.
 #[derive(Clone, Debug)]
 pub struct Observable {
@@ -428,6 +463,8 @@ impl Expr {
             | ExprKind::State(_)
             | ExprKind::Definition(_)
             | ExprKind::Coefficient(_)
+            | ExprKind::Multiplier(_)
+            | ExprKind::Residual(_)
             | ExprKind::Field(_)
             | ExprKind::ModeCoordinate(_)
             | ExprKind::ModeShape(_) => {}
@@ -478,6 +515,10 @@ pub enum ExprKind {
     Definition(DefinitionId),
     /// An earlier entry of [`Model::coefficients`], inside coefficients only.
     Coefficient(CoefficientId),
+    /// The multiplier of a constraint, in observables only.
+    Multiplier(ConstraintId),
+    /// What the expression of a constraint is, in observables only.
+    Residual(ConstraintId),
     /// A field w(x, t), inside that field's `integral`, `at` or `diff` only.
     Field(FieldId),
     /// A field's mode coordinate `q[i]`, i the index of the innermost enclosing sum

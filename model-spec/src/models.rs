@@ -97,9 +97,16 @@ pub const TWO_LINK_ARM: ShippedModel = ShippedModel {
     text: include_str!("../models/two_link_arm.toml"),
 };
 
+/// Chaplygin's sleigh, held by a constraint that holds rates.
+pub const CHAPLYGIN_SLEIGH: ShippedModel = ShippedModel {
+    name: "chaplygin_sleigh",
+    text: include_str!("../models/chaplygin_sleigh.toml"),
+};
+
 /// All of them, by name.
-pub const ALL: [ShippedModel; 13] = [
+pub const ALL: [ShippedModel; 14] = [
     CART_TWO_ARMS,
+    CHAPLYGIN_SLEIGH,
     CRANE,
     DOUBLE_PENDULUM,
     EMPS,

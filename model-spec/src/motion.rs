@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::ids::{CoordinateId, FieldId, InputId, StateId};
-use crate::model::{Expr, ExprKind, Model, Term};
+use crate::model::{Constraint, Expr, ExprKind, MAX_CONSTRAINTS, Model, Term};
 use crate::rate_order::{WrittenOut, rate_order};
 use crate::span::Span;
 
@@ -36,14 +36,26 @@ struct Motion {
     state: Option<Span>,
     /// Where the input enters of which the fewest rates are given, if one does, with how many.
     input: Option<(u8, Span)>,
+    /// Where the multiplier or the residual of a constraint enters, if one does.
+    reaction: Option<Span>,
+    /// Where a function switches with what moves, if one does.
+    switch: Option<Span>,
     /// Whether time enters.
     time: bool,
     /// Depth of the expression with definitions written out.
     depth: usize,
 }
 
-/// Checks what every expression of a model depends on.
-pub fn check(model: &Model, found: &mut Diagnostics) {
+/// Checks what every expression of a model depends on, and fills in which constraints hold rates.
+pub fn check(model: &mut Model, found: &mut Diagnostics) {
+    let nonholonomic = check_expressions(model, found);
+    for (constraint, is_nonholonomic) in model.constraints.iter_mut().zip(nonholonomic) {
+        constraint.is_nonholonomic = is_nonholonomic;
+    }
+}
+
+/// Whether each of the constraints holds rates.
+fn check_expressions(model: &Model, found: &mut Diagnostics) -> Vec<bool> {
     let mut checker = Checker {
         definitions: vec![Motion::default(); model.definitions.len()],
         state_rates: vec![0; model.states.len()],
@@ -64,9 +76,11 @@ pub fn check(model: &Model, found: &mut Diagnostics) {
     }
     checker.energies();
     checker.forces();
+    let nonholonomic = checker.constraints();
     for observable in &model.observables {
-        checker.motion(&observable.value);
+        checker.motion_with_reactions(&observable.value);
     }
+    nonholonomic
 }
 
 struct Checker<'m, 'f> {
@@ -174,6 +188,74 @@ impl Checker<'_, '_> {
         }
     }
 
+    /// Checks what may stay zero; whether each of the constraints holds rates.
+    fn constraints(&mut self) -> Vec<bool> {
+        let model = self.model;
+        let degrees = model.coordinates.len();
+        let most = match model.fields.is_empty() {
+            true => degrees.min(MAX_CONSTRAINTS),
+            false => MAX_CONSTRAINTS,
+        };
+        if let Some(excess) = model.constraints.get(most) {
+            let help = match most < MAX_CONSTRAINTS {
+                true => {
+                    format!("{degrees} constraints already leave {degrees} coordinates no freedom")
+                }
+                false => format!("at most {MAX_CONSTRAINTS} are taken"),
+            };
+            self.found.push(
+                Diagnostic::error(format!(
+                    "{} constraints are too many",
+                    model.constraints.len()
+                ))
+                .at(excess.span, "one more than can be held")
+                .help(help),
+            );
+            return Vec::new();
+        }
+        model
+            .constraints
+            .iter()
+            .map(|constraint| self.constraint(constraint))
+            .collect()
+    }
+
+    /// Checks what stays zero; whether it holds rates.
+    fn constraint(&mut self, constraint: &Constraint) -> bool {
+        let motion = self.motion(&constraint.zero);
+        let span = constraint.zero.span;
+        let is_nonholonomic = motion.rate.is_some() && !motion.rates.is_empty();
+        let needed = if is_nonholonomic { 1 } else { 2 };
+        let problem = if let Some(place) = motion.state {
+            let help = "a constraint is one of coordinates, their rates, prescribed motion and t";
+            Some((place, "this is a state", help))
+        } else if let Some((given, place)) = motion.input.filter(|(given, _)| *given < needed) {
+            let help = "its accelerations must be known: an input whose rates are given, rates = 2";
+            let why = match given {
+                0 => "this is an input whose rate is not given",
+                _ => "this is a rate whose own rate is not given",
+            };
+            Some((place, why, help))
+        } else if let Some(place) = motion.switch {
+            let help =
+                "a constraint is smooth; what touches and leaves is a stiff spring: max(0, p)";
+            Some((place, "this switches", help))
+        } else if motion.values.is_empty() && motion.rates.is_empty() {
+            let help = "give an expression of coordinates, such as x^2 + y^2 - l^2";
+            Some((span, "this holds no coordinate", help))
+        } else {
+            None
+        };
+        if let Some((place, why, help)) = problem {
+            self.found.push(
+                Diagnostic::error(format!("`{}` is no constraint", constraint.name))
+                    .at(place, why)
+                    .help(help),
+            );
+        }
+        is_nonholonomic
+    }
+
     /// How many rates of an input are given.
     fn given_rates(&self, input: InputId) -> u8 {
         let inputs = &self.model.inputs;
@@ -181,8 +263,21 @@ impl Checker<'_, '_> {
         u8::try_from(rates.count()).unwrap_or(u8::MAX)
     }
 
-    /// What an expression depends on; reports what `dot` is used on wrongly.
+    /// What an expression depends on; reports what `dot` is used on wrongly, and reactions.
     fn motion(&mut self, expr: &Expr) -> Motion {
+        let motion = self.motion_with_reactions(expr);
+        if let Some(place) = motion.reaction {
+            self.found.push(
+                Diagnostic::error("what a constraint does is known when the motion is")
+                    .at(place, "this belongs to a constraint")
+                    .help("it may stand in [observables] alone"),
+            );
+        }
+        motion
+    }
+
+    /// What an expression depends on; reports what `dot` is used on wrongly.
+    fn motion_with_reactions(&mut self, expr: &Expr) -> Motion {
         let mut motion = Motion::default();
         self.add(expr, &mut motion, 1);
         if motion.depth > MAX_EXPANDED_DEPTH {
@@ -226,10 +321,16 @@ impl Checker<'_, '_> {
                 self.add(left, motion, depth + 1);
                 self.add(right, motion, depth + 1);
             }
-            ExprKind::Call(_, arguments) => {
+            ExprKind::Call(function, arguments) => {
                 for argument in arguments {
                     self.add(argument, motion, depth + 1);
                 }
+                if function.switches() && arguments.iter().any(may_move) {
+                    motion.switch = motion.switch.or(Some(expr.span));
+                }
+            }
+            ExprKind::Multiplier(_) | ExprKind::Residual(_) => {
+                motion.reaction = motion.reaction.or(Some(expr.span));
             }
             ExprKind::Number(_)
             | ExprKind::Pi
@@ -247,6 +348,8 @@ impl Checker<'_, '_> {
             self.found.push(diagnostic);
         }
         motion.state = motion.state.or(inner.state.map(|_| operand.span));
+        motion.reaction = motion.reaction.or(inner.reaction);
+        motion.switch = motion.switch.or(inner.switch);
         let deepest = inner.states.iter().map(|state| self.state_rates[*state]);
         motion.depth = motion.depth.max(depth + 1 + deepest.max().unwrap_or(0));
         motion.rate = motion.rate.or(Some(operand.span));
@@ -282,12 +385,38 @@ impl Motion {
         if let Some((rates, _)) = known.input {
             self.hold_input(rates, span);
         }
+        self.reaction = self.reaction.or(known.reaction.map(|_| span));
+        self.switch = self.switch.or(known.switch.map(|_| span));
         self.time |= known.time;
         self.depth = self.depth.max(depth + known.depth);
     }
 }
 
+/// Whether an expression holds more than numbers and parameters.
+fn may_move(expr: &Expr) -> bool {
+    let mut moves = false;
+    expr.visit(&mut |part| {
+        moves |= matches!(
+            part.kind,
+            ExprKind::Time
+                | ExprKind::Coordinate(_)
+                | ExprKind::Input(_)
+                | ExprKind::State(_)
+                | ExprKind::Definition(_)
+                | ExprKind::Field(_)
+                | ExprKind::ModeCoordinate(_)
+        );
+    });
+    moves
+}
+
 fn rate_error(span: Span, inner: &Motion) -> Option<Diagnostic> {
+    if let Some(place) = inner.reaction {
+        let diagnostic = Diagnostic::error("the rate of what a constraint does is not known")
+            .at(place, "this belongs to a constraint")
+            .help("dot() takes a coordinate, a definition that holds one, or a field");
+        return Some(diagnostic);
+    }
     if inner.rate.is_some() {
         let diagnostic = Diagnostic::error("dot() of a rate is an acceleration")
             .at(span, "this holds a rate")

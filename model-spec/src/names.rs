@@ -6,8 +6,9 @@ use std::collections::{HashMap, HashSet};
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::functions::reserved;
 use crate::ids::{
-    CoefficientId, CoordinateId, DefinitionId, FieldId, InputId, ParameterId, StateId,
+    CoefficientId, ConstraintId, CoordinateId, DefinitionId, FieldId, InputId, ParameterId, StateId,
 };
+use crate::model::{MULTIPLIER, RESIDUAL};
 use crate::raw::Document;
 use crate::span::Span;
 use crate::table::Name;
@@ -36,6 +37,10 @@ pub enum Symbol {
     Definition(DefinitionId),
     /// A coefficient.
     Coefficient(CoefficientId),
+    /// The multiplier of a constraint.
+    Multiplier(ConstraintId),
+    /// The residual of a constraint.
+    Residual(ConstraintId),
 }
 
 impl Symbol {
@@ -51,6 +56,8 @@ impl Symbol {
             Self::Position => "a field's position",
             Self::Definition(_) => "a definition",
             Self::Coefficient(_) => "a coefficient",
+            Self::Multiplier(_) => "the multiplier of a constraint",
+            Self::Residual(_) => "the residual of a constraint",
         }
     }
 }
@@ -100,6 +107,21 @@ impl Names {
                 Symbol::Coefficient(CoefficientId::new(index)),
                 found,
             );
+        }
+        for (index, constraint) in document.constraints.iter().enumerate() {
+            let id = ConstraintId::new(index);
+            let reported = [
+                (MULTIPLIER, Symbol::Multiplier(id)),
+                (RESIDUAL, Symbol::Residual(id)),
+            ];
+            for (prefix, symbol) in reported {
+                let name = Name {
+                    text: format!("{prefix}{}", constraint.name.text),
+                    span: constraint.name.span,
+                };
+                names.observables.insert(name.text.clone());
+                names.add(&name, symbol, found);
+            }
         }
         names.check_terms(document, found);
         names.check_observables(document, found);
@@ -199,6 +221,7 @@ impl Names {
         let terms = terms
             .chain(&document.potential)
             .chain(&document.dissipation);
+        let terms = terms.chain(&document.constraints);
         for term in terms.chain(document.forces.iter().map(|(term, _)| term)) {
             found.keep(word(&term.name));
         }

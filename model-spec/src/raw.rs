@@ -2,7 +2,7 @@
 //! nothing looked up and nothing parsed. Made by `document` and `entries`, read by
 //! `resolve`.
 
-use crate::model::Basis;
+use crate::model::{Basis, STABILISATION_RATE};
 use crate::span::Span;
 use crate::table::{Name, Number, Quantity, Written};
 
@@ -39,6 +39,8 @@ pub struct Document {
     pub dissipation: Vec<RawTerm>,
     /// `[forces]`: each with what it works on.
     pub forces: Vec<(RawTerm, Quantity)>,
+    /// `[constraints]`
+    pub constraints: Vec<RawTerm>,
     /// `[observables]`: each with its declared unit.
     pub observables: Vec<(RawTerm, Option<Written>)>,
     /// `[coefficients]`
@@ -47,6 +49,33 @@ pub struct Document {
     pub sensors: Vec<RawSensor>,
     /// `[drawing]`
     pub drawing: Option<RawDrawing>,
+}
+
+impl Document {
+    /// Where there are constraints, how fast emitted equations bring them back to zero is a
+    /// parameter: 0 unless the specification declares it.
+    pub fn declare_stabilisation_rate(&mut self) {
+        let Some(first) = self.constraints.first() else {
+            return;
+        };
+        let mut names = self.parameters.iter().map(|parameter| &parameter.name.text);
+        if names.any(|name| name == STABILISATION_RATE) {
+            return;
+        }
+        let span = first.name.span;
+        self.parameters.push(RawParameter {
+            name: Name {
+                text: STABILISATION_RATE.to_owned(),
+                span,
+            },
+            value: Quantity::Number(Number { value: 0.0, span }),
+            unit: Some(Written::inferred("1/s", span)),
+            doc: "how fast residuals of constraints decay (Baumgarte)".to_owned(),
+            origin: "0: not at all".to_owned(),
+            min: None,
+            max: None,
+        });
+    }
 }
 
 /// A `[drawing]`.

@@ -53,6 +53,15 @@ pub enum Quantity {
 }
 
 impl Written {
+    /// What stands for a string that the file does not write, with the place that asks for it.
+    pub fn inferred(text: &str, span: Span) -> Self {
+        Self {
+            text: text.to_owned(),
+            span,
+            first: None,
+        }
+    }
+
     /// The place of the bytes `start..end` of the string; the whole string if it holds
     /// escapes.
     pub fn place(&self, start: usize, end: usize) -> Span {

@@ -5,7 +5,9 @@
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
 use crate::infer::{Inference, Words, difference};
-use crate::model::{CoefficientKind, Expr, ExprKind, Model, ParameterValue, Range, Term};
+use crate::model::{
+    CoefficientKind, Expr, ExprKind, Model, ParameterValue, Range, STABILISATION_RATE, Term,
+};
 use crate::resolve::Resolved;
 use crate::unit::Unit;
 
@@ -28,10 +30,15 @@ pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
         units.states();
         units.energies();
         units.forces();
+        units.stabilisation_rate();
         units.coefficients();
     }
     let observables = units.observables(&resolved.declared);
+    let constraints: Vec<Unit> = units.constraints();
     let definitions = units.known.definitions;
+    for (constraint, unit) in resolved.model.constraints.iter_mut().zip(constraints) {
+        constraint.unit = unit;
+    }
     for (definition, dimension) in resolved.model.definitions.iter_mut().zip(definitions) {
         definition.unit = Unit::coherent(dimension);
     }
@@ -163,6 +170,45 @@ impl Units<'_, '_> {
         }
     }
 
+    /// A rate is one, also where the specification declares it itself.
+    fn stabilisation_rate(&mut self) {
+        let model = self.model;
+        let declared = model
+            .parameters
+            .iter()
+            .find(|p| p.name == STABILISATION_RATE);
+        let (Some(parameter), false) = (declared, model.constraints.is_empty()) else {
+            return;
+        };
+        if let ParameterValue::Expression(value) = &parameter.value {
+            let message = format!("`{STABILISATION_RATE}` is set while equations run");
+            self.found.push(
+                Diagnostic::error(message)
+                    .at(value.span, "this follows from other parameters")
+                    .help("give a number"),
+            );
+        }
+        if Dimension::NONE.over(Dimension::TIME) != Some(parameter.unit.dimension) {
+            let message = format!("`{STABILISATION_RATE}` is in {}", parameter.unit);
+            self.found.push(
+                Diagnostic::error(message)
+                    .at(parameter.span, "expected 1/s")
+                    .help("it is how fast residuals of constraints decay: unit = \"1/s\""),
+            );
+        }
+    }
+
+    /// The unit of every constraint.
+    fn constraints(&mut self) -> Vec<Unit> {
+        let mut units = Vec::with_capacity(self.model.constraints.len());
+        for constraint in &self.model.constraints {
+            let inferred = self.known.infer(&constraint.zero);
+            let inferred = self.found.keep(inferred).flatten();
+            units.push(Unit::coherent(inferred.unwrap_or(Dimension::NONE)));
+        }
+        units
+    }
+
     fn observables(&mut self, declared: &[Option<Unit>]) -> Vec<Unit> {
         let mut units = Vec::with_capacity(declared.len());
         for (observable, declared) in self.model.observables.iter().zip(declared) {
@@ -175,7 +221,12 @@ impl Units<'_, '_> {
                 }
                 None => {
                     let inferred = self.known.infer(&observable.value);
-                    let inferred = self.found.keep(inferred).flatten();
+                    let inferred = match observable.value.kind {
+                        // What is wrong with a constraint is said once, of itself.
+                        ExprKind::Multiplier(_) | ExprKind::Residual(_) => inferred.ok(),
+                        _ => self.found.keep(inferred),
+                    }
+                    .flatten();
                     Unit::coherent(inferred.unwrap_or(Dimension::NONE))
                 }
             };

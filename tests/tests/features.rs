@@ -36,9 +36,9 @@ macro_rules! features {
         #[test]
         fn every_file_is_tested() {
             let tested = [$(stringify!($name),)* $(stringify!($moving)),*];
-            for path in std::fs::read_dir(folder()).unwrap() {
+            for path in folders().iter().flat_map(|folder| std::fs::read_dir(folder).unwrap()) {
                 let name = path.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned();
-                assert!(tested.contains(&name.as_str()), "features/{name}.toml is in no test");
+                assert!(tested.contains(&name.as_str()), "{name}.toml is in no test");
             }
         }
     };
@@ -78,6 +78,11 @@ features! {
     // differences of the energy.
     also_by_differences {
         prescribed_motion: [0, 2];
+        moving_constraints: [0];
+        flexible_coupler: [0, 1, 4];
+        rolling_disc: [0];
+        bicycle: [0];
+        squeezing_mechanism: [0];
         rheonomic: [0, 1, 4];
         mass_of_time: [0];
         nonquadratic_kinetic: [0];
@@ -85,12 +90,19 @@ features! {
     }
 }
 
-fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/features")
+/// The specifications of these tests, and the examples with constraints.
+fn folders() -> [PathBuf; 2] {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
+    [
+        tests.join("tests/features"),
+        tests.join("../examples/constrained"),
+    ]
 }
 
 fn load(name: &str) -> Model {
-    eomgen_model_spec::load(&folder().join(format!("{name}.toml")))
+    let files = folders().map(|folder| folder.join(format!("{name}.toml")));
+    let file = files.iter().find(|file| file.exists()).unwrap_or(&files[0]);
+    eomgen_model_spec::load(file)
         .unwrap_or_else(|found| panic!("{}", found.render(false)))
         .model
 }

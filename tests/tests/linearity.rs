@@ -19,6 +19,7 @@ fn kind(model: &Model) -> String {
     match linearity(&equations) {
         Linearity::Linear => "linear".to_owned(),
         Linearity::PiecewiseLinear => "piecewise linear".to_owned(),
+        Linearity::Constrained => "with constraints".to_owned(),
         Linearity::Nonlinear(node) => written_out(&equations.graph, model, node).to_string(),
     }
 }
@@ -47,6 +48,7 @@ fn shipped_models_are_what_their_physics_says() {
             "planetary_arm" | "planetary_arm_rig" => Some("piecewise linear"),
             // The inertia that moves with the length of the rope.
             "crane" => Some("m*l^2"),
+            "chaplygin_sleigh" => Some("with constraints"),
             "emps" | "hub_beam_tip_mass" | "loudspeaker" | "shaft_and_disc" => Some("linear"),
             _ => None,
         };

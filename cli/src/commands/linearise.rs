@@ -5,7 +5,7 @@ use eomgen_compiled_model::CompiledModel;
 use crate::arguments::Linearise;
 use crate::error::{Result, say};
 use crate::linearisation::{arrays, document};
-use crate::operating_point::{assignments, linearised, model};
+use crate::operating_point::{assignments, consistent, linearised, model};
 use crate::output::Destination;
 
 /// Runs the command.
@@ -17,7 +17,10 @@ pub fn run(options: &Linearise) -> Result {
     let destination = destination.transpose()?;
     let compiled = model(&options.spec, options.order.as_deref(), &options.set)?;
     let run = compiled.at_declared()?;
-    let at = run.operating_point(&assignments("--at", &options.at)?)?;
+    let at = consistent(
+        &run,
+        run.operating_point(&assignments("--at", &options.at)?)?,
+    )?;
     let found = linearised(&run, &at)?;
     let text = || format!("{:#}\n", document(&compiled, &at, &found));
     let Some(destination) = destination else {

@@ -1,20 +1,27 @@
 //! `eomgen modes`: natural frequencies, damping and shapes of a model about a state.
 
-use eomgen_analysis::natural_modes::{NaturalMode, natural_modes};
+use eomgen_analysis::constrained_modes::constrained_modes;
+use eomgen_analysis::natural_modes::NaturalMode;
 use eomgen_compiled_model::CompiledModel;
 use serde_json::{Value, json};
 
 use crate::arguments::Modes;
 use crate::error::{Error, Result, say};
-use crate::operating_point::{assignments, head, linearised, model, named, shape_names};
+use crate::operating_point::{
+    assignments, consistent, head, linearised, model, named, shape_names,
+};
 
 /// Runs the command.
 pub fn run(options: &Modes) -> Result {
     let compiled = model(&options.spec, options.order.as_deref(), &options.set)?;
     let run = compiled.at_declared()?;
-    let at = run.operating_point(&assignments("--at", &options.at)?)?;
+    let at = consistent(
+        &run,
+        run.operating_point(&assignments("--at", &options.at)?)?,
+    )?;
     let found = linearised(&run, &at)?;
-    let modes = natural_modes(&found.a, compiled.program().degrees_of_freedom())
+    let degrees = compiled.program().degrees_of_freedom();
+    let modes = constrained_modes(&found.a, &found.held(&compiled), degrees)
         .map_err(|error| Error::input(error.to_string()))?;
     if !options.json {
         return say(&table(&compiled, &modes));

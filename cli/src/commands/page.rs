@@ -5,11 +5,13 @@ use crate::error::Result;
 use crate::model::{derive, load, orders};
 use crate::output::Destination;
 use crate::page::playable;
+use crate::settings::stabilised;
 
 /// Runs the command.
 pub fn run(options: &Page) -> Result {
     let destination = Destination::of(&options.out, false)?;
     let model = load(&options.spec)?.model;
+    let model = stabilised(model)?;
     let orders = orders(&model, options.order.as_deref())?;
     let compiled = derive(model, &orders)?;
     destination.write(playable(&compiled)?.as_bytes())?;

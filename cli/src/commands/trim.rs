@@ -1,6 +1,6 @@
 //! `eomgen trim`: an equilibrium of a model, and whether it is stable.
 
-use eomgen_analysis::natural_modes::natural_modes;
+use eomgen_analysis::constrained_modes::constrained_modes;
 use eomgen_compiled_model::{CompiledModel, Equilibrium, Error as Failure};
 use serde_json::{Value, json};
 
@@ -23,7 +23,8 @@ pub fn run(options: &Trim) -> Result {
         other => other?,
     };
     let linear = linearised(&run, &found.at)?;
-    let modes = natural_modes(&linear.a, compiled.program().degrees_of_freedom())
+    let degrees = compiled.program().degrees_of_freedom();
+    let modes = constrained_modes(&linear.a, &linear.held(&compiled), degrees)
         .map_err(|error| Error::input(error.to_string()))?;
     let largest = modes.iter().map(|mode| mode.eigenvalue.norm());
     let least = ZERO * largest.fold(0.0, f64::max);

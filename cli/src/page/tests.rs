@@ -35,6 +35,8 @@ fn report(text: &str) -> Report {
         velocity_terms: vec![line(text, text)],
         forces: vec![line(text, text)],
         state_rates: vec![line(text, text)],
+        constraints: vec![line(text, text)],
+        multipliers: vec![line(text, text)],
         coefficients: vec![CoefficientLine {
             name: Formula::named(text),
             formula: Formula::named(text),

@@ -3,9 +3,10 @@
 //! generalised forces, accelerations, energy, power and guards.
 
 use eomgen_model_spec::ids::StateId;
-use eomgen_model_spec::model::{Model, ParameterValue, Term};
+use eomgen_model_spec::model::{MULTIPLIER, Model, ParameterValue, Term};
 
 use crate::mechanics::coefficients::{NamedCoefficient, named};
+use crate::mechanics::constraints::{Constraints, reaction_power};
 use crate::mechanics::forces::{applied_forces, guards, power};
 use crate::mechanics::guard::Guard;
 use crate::mechanics::lagrange::{GradientBy, Variables};
@@ -37,6 +38,10 @@ pub struct Equations {
     pub forces: RowNodes,
     /// The accelerations and how they were solved for.
     pub accelerations: Accelerations,
+    /// The multipliers of the constraints, lambda of M q'' + c = f + A^T lambda.
+    pub multipliers: Vec<NodeId>,
+    /// The expressions of the constraints.
+    pub residuals: Vec<NodeId>,
     /// The rates of the states of first order.
     pub state_rates: Vec<NodeId>,
     /// Power of all non-conservative forces, in W: d(T + V)/dt.
@@ -84,11 +89,24 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     let applied = applied_forces(&mut translator, &variables, dissipation, &mut terms)?;
     let forces = variables.with_potential(&mut translator.graph, &applied, potential);
     let right_side = variables.difference(&mut translator.graph, &forces, &velocity_terms);
-    let accelerations = solve(&mut translator.graph, &mass, &right_side);
+    let constraints = Constraints::derive(&mut translator, &variables)?;
+    let (accelerations, multipliers) =
+        solve(&mut translator.graph, &mass, &right_side, &constraints);
+    for (constraint, multiplier) in model.constraints.iter().zip(&multipliers) {
+        let name = format!("{MULTIPLIER}{}", constraint.name);
+        translator.graph.suggest_name(*multiplier, &name);
+    }
+    translator.known_multipliers(&multipliers);
     name_accelerations(&mut translator.graph, model, &accelerations);
     let state_rates = StateId::first(model.states.len())
         .map(|index| translator.state_rate(index))
         .collect::<Derived<Vec<NodeId>>>()?;
+    let reactions = reaction_power(
+        &mut translator.graph,
+        &variables,
+        &constraints,
+        &multipliers,
+    );
     let power = power(
         &mut translator.graph,
         &variables,
@@ -98,6 +116,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         &momenta,
         &accelerations,
     );
+    let power = translator.graph.add(power, reactions);
     let observables = model
         .observables
         .iter()
@@ -126,6 +145,8 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         velocity_terms,
         forces,
         accelerations,
+        multipliers,
+        residuals: constraints.residuals,
         state_rates,
         power,
         guards,

@@ -200,22 +200,9 @@ pub(crate) fn may_rest(graph: &Graph, id: NodeId) -> bool {
     graph.reachable(&[id]).into_iter().any(|part| {
         let switches = match graph.operation(part) {
             Operation::Select { .. } => true,
-            Operation::Call(function, _) => is_piecewise(*function),
+            Operation::Call(function, _) => function.switches(),
             _ => false,
         };
         switches && !graph.dependence(part).is_parameter_only()
     })
-}
-
-fn is_piecewise(function: Function) -> bool {
-    matches!(
-        function,
-        Function::Abs
-            | Function::Sign
-            | Function::Min
-            | Function::Max
-            | Function::Deadzone
-            | Function::Contact
-            | Function::Above
-    )
 }

@@ -19,6 +19,8 @@ pub enum Linearity {
     Linear,
     /// Linear between switching surfaces that are linear themselves.
     PiecewiseLinear,
+    /// With constraints, whose multipliers are solved for with the accelerations: not read off here.
+    Constrained,
     /// Not linear because of this node, the first that is found.
     Nonlinear(NodeId),
 }
@@ -26,6 +28,9 @@ pub enum Linearity {
 /// The kind of model that the equations are.
 pub fn linearity(equations: &Equations) -> Linearity {
     let graph = &equations.graph;
+    if !equations.multipliers.is_empty() {
+        return Linearity::Constrained;
+    }
     let mut degrees = Degrees {
         graph,
         known: HashMap::new(),

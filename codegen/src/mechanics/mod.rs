@@ -1,13 +1,15 @@
 //! From a checked model to its equations of motion.
 //!
 //! `translate` with `fields` (expressions to nodes), `lagrange` and `forces` (the rows of
-//! Lagrange's equations, of `rows`, `mass_matrix` and `guard`s), `solve` (the accelerations),
+//! Lagrange's equations, of `rows`, `mass_matrix` and `guard`s), `constraints` (what stays zero),
+//! `solve` (the accelerations),
 //! `coefficients` (names as in Eq. (22)), `equations` (all of it), `outputs` (what is derived on
 //! request), `linearity` (whether a model is linear between its switches), `affine` (its
 //! coefficients then), `inertia` (whether all that moves has some).
 
 pub mod affine;
 pub mod coefficients;
+pub(crate) mod constraints;
 pub mod equations;
 pub mod fields;
 mod forces;

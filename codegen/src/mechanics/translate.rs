@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use eomgen_model_spec::ast::BinaryOperator;
 use eomgen_model_spec::diagnostic::Diagnostic;
-use eomgen_model_spec::ids::{DefinitionId, FieldId, InputId, StateId};
+use eomgen_model_spec::ids::{ConstraintId, DefinitionId, FieldId, InputId, StateId};
 use eomgen_model_spec::model::{Expr, ExprKind, Model};
 use eomgen_model_spec::span::Span;
 
@@ -57,6 +57,8 @@ pub struct Translator<'m> {
     definitions: HashMap<DefinitionId, NodeId>,
     state_rates: HashMap<StateId, NodeId>,
     coefficients: Vec<NodeId>,
+    residuals: HashMap<ConstraintId, NodeId>,
+    multipliers: Vec<NodeId>,
 }
 
 impl<'m> Translator<'m> {
@@ -82,7 +84,25 @@ impl<'m> Translator<'m> {
             definitions: HashMap::new(),
             state_rates: HashMap::new(),
             coefficients: Vec::new(),
+            residuals: HashMap::new(),
+            multipliers: Vec::new(),
         }
+    }
+
+    /// Records the nodes of the constraints' multipliers, so that observables may refer to them.
+    pub fn known_multipliers(&mut self, nodes: &[NodeId]) {
+        self.multipliers = nodes.to_vec();
+    }
+
+    /// What the expression of a constraint is.
+    pub fn residual(&mut self, index: ConstraintId) -> Derived<NodeId> {
+        if let Some(&known) = self.residuals.get(&index) {
+            return Ok(known);
+        }
+        let model = self.model;
+        let node = self.node(&model.constraints[index].zero)?;
+        self.residuals.insert(index, node);
+        Ok(node)
     }
 
     /// Records the node of the next named coefficient, so that later ones may refer to it.
@@ -115,6 +135,11 @@ impl<'m> Translator<'m> {
             ExprKind::ModeCoordinate(field) => {
                 Ok(self.graph.intern(Operation::ModeCoordinates(*field)))
             }
+            ExprKind::Residual(index) => self.residual(*index),
+            ExprKind::Multiplier(index) => match self.multipliers.get(index.index()) {
+                Some(&node) => Ok(node),
+                None => Err(error(expr, "this multiplier is not known yet")),
+            },
             ExprKind::Dot(operand) => self.dot(operand),
             ExprKind::Negate(operand) => {
                 let inner = self.node(operand)?;

@@ -61,6 +61,16 @@ impl Report {
         )?;
         let state_rates = lines(&self.state_rates);
         section(out, "Rates of states of first order", &state_rates)?;
+        section(
+            out,
+            "Constraints, which stay zero",
+            &lines(&self.constraints),
+        )?;
+        section(
+            out,
+            "Multipliers $\\lambda$, with $M\\,\\ddot{q} + c = f + A^T \\lambda$, $A$ the derivatives of the constraints",
+            &lines(&self.multipliers),
+        )?;
         let coefficients = self.coefficients.iter();
         let coefficients: Vec<String> = coefficients
             .map(|line| equation(&line.name.latex(), &line.formula))
@@ -124,6 +134,8 @@ impl Report {
             &self.velocity_terms,
             &self.forces,
             &self.state_rates,
+            &self.constraints,
+            &self.multipliers,
             &self.accelerations,
         ];
         parts

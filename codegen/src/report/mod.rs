@@ -49,6 +49,8 @@ impl Report {
             velocity_terms: writer.lines(&outline.velocity_terms),
             forces: writer.lines(&outline.forces),
             state_rates: writer.lines(&outline.state_rates),
+            constraints: writer.lines(&outline.constraints),
+            multipliers: writer.lines(&outline.multipliers),
             coefficients: writer.coefficients(evaluator),
             accelerations: writer.accelerations(),
             guards: guards.map(|guard| reader.formula(guard.value)).collect(),

@@ -2,7 +2,7 @@
 //! written, because formulas share lines.
 
 use eomgen_model_spec::ids::{CoordinateId, FieldId};
-use eomgen_model_spec::model::{Model, Term};
+use eomgen_model_spec::model::{MULTIPLIER, Model, Term};
 
 use crate::mechanics::coefficients::EquationRow;
 use crate::mechanics::equations::Equations;
@@ -30,6 +30,10 @@ pub(super) struct Outline<'a> {
     pub forces: Vec<Shown>,
     /// The rates of states of first order.
     pub state_rates: Vec<Shown>,
+    /// What stays zero.
+    pub constraints: Vec<Shown>,
+    /// The multipliers of the constraints.
+    pub multipliers: Vec<Shown>,
     /// What kind of model it is.
     pub linearity: Linearity,
 }
@@ -45,6 +49,8 @@ impl<'a> Outline<'a> {
             velocity_terms: Vec::new(),
             forces: Vec::new(),
             state_rates: Vec::new(),
+            constraints: Vec::new(),
+            multipliers: Vec::new(),
             linearity: linearity(equations),
         };
         outline.definitions = outline.definitions();
@@ -53,6 +59,8 @@ impl<'a> Outline<'a> {
         outline.velocity_terms = outline.rows(&equations.velocity_terms);
         outline.forces = outline.rows(&equations.forces);
         outline.state_rates = outline.state_rates();
+        outline.constraints = outline.of_constraints("", &equations.residuals);
+        outline.multipliers = outline.of_constraints(MULTIPLIER, &equations.multipliers);
         outline
     }
 
@@ -65,6 +73,8 @@ impl<'a> Outline<'a> {
             &self.velocity_terms,
             &self.forces,
             &self.state_rates,
+            &self.constraints,
+            &self.multipliers,
         ];
         let mut nodes: Vec<NodeId> = shown.into_iter().flatten().map(|(_, node)| *node).collect();
         nodes.extend(self.mass_matrix.iter().map(|(_, _, node)| *node));
@@ -139,6 +149,14 @@ impl<'a> Outline<'a> {
         states
             .map(|state| Formula::Symbol(Symbol::plain(&state.name).with_dots(1)))
             .zip(self.equations.state_rates.iter().copied())
+            .collect()
+    }
+
+    fn of_constraints(&self, prefix: &str, nodes: &[NodeId]) -> Vec<Shown> {
+        let constraints = self.model.constraints.iter();
+        constraints
+            .map(|constraint| Formula::named(&format!("{prefix}{}", constraint.name)))
+            .zip(nodes.iter().copied())
             .collect()
     }
 

@@ -48,6 +48,12 @@ impl Report {
             &self.forces,
         )?;
         section(out, "Rates of states of first order", &self.state_rates)?;
+        section(out, "Constraints, which stay zero", &self.constraints)?;
+        section(
+            out,
+            "Multipliers lambda, with M q'' + c = f + A^T lambda, A the derivatives of the constraints",
+            &self.multipliers,
+        )?;
         if !self.coefficients.is_empty() {
             writeln!(out, "\nCoefficients")?;
             for line in &self.coefficients {

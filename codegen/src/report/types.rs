@@ -39,6 +39,12 @@ pub struct Report {
     /// The rates of states of first order.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub state_rates: Vec<Line>,
+    /// The constraints, each with the expression that stays zero.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub constraints: Vec<Line>,
+    /// Their multipliers.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub multipliers: Vec<Line>,
     /// The coefficients the specification names.
     pub coefficients: Vec<CoefficientLine>,
     /// The accelerations in terms of these.

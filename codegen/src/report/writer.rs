@@ -44,6 +44,7 @@ impl Writer<'_> {
             Linearity::PiecewiseLinear => {
                 ("Between its switching surfaces the model is linear", None)
             }
+            Linearity::Constrained => ("The model has constraints", None),
             Linearity::Nonlinear(node) => {
                 ("The model is not linear", Some(self.reader.formula(node)))
             }

@@ -55,7 +55,9 @@ fn parts(model: &Model, expr: &Expr, into: &mut Parts) {
         | ExprKind::ModeCoordinate(_)
         | ExprKind::Time
         | ExprKind::Input(_)
-        | ExprKind::State(_) => {
+        | ExprKind::State(_)
+        | ExprKind::Multiplier(_)
+        | ExprKind::Residual(_) => {
             into.other = true;
         }
         _ => {}

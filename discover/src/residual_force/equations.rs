@@ -256,6 +256,8 @@ fn bends(model: &Model, expr: &Expr) -> Option<bool> {
         | ExprKind::Time
         | ExprKind::Input(_)
         | ExprKind::State(_)
+        | ExprKind::Multiplier(_)
+        | ExprKind::Residual(_)
         | ExprKind::Call(..) => {
             is_position = false;
         }

@@ -124,6 +124,10 @@ impl<'n> Resolver<'n> {
                 "write a sum over the modes: sum(i, {}, {name}[i])",
                 self.field_of(symbol)
             ))),
+            Symbol::Multiplier(index) if self.scope == Scope::Motion => {
+                Ok(ExprKind::Multiplier(index))
+            }
+            Symbol::Residual(index) if self.scope == Scope::Motion => Ok(ExprKind::Residual(index)),
             Symbol::Coefficient(index) => self.coefficient(index, name, span),
             other => Err(self.out_of_scope(&quoted(name), other.kind(), span)),
         }

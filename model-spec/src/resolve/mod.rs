@@ -10,10 +10,10 @@ use std::sync::Arc;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::dimension::Dimension;
 use crate::expression::{Resolver, Scope};
-use crate::ids::{DefinitionId, InputId, ParameterId};
+use crate::ids::{ConstraintId, DefinitionId, InputId, ParameterId};
 use crate::model::{
-    Basis, Coordinate, Definition, Expr, ExprKind, Field, Force, Input, MAX_ORDER, Model,
-    Observable, Parameter, ParameterValue, Range, Sensor, State, Term,
+    Basis, Constraint, Coordinate, Definition, Expr, ExprKind, Field, Force, Input, MAX_ORDER,
+    MULTIPLIER, Model, Observable, Parameter, ParameterValue, RESIDUAL, Range, Sensor, State, Term,
 };
 use crate::names::{Names, Symbol};
 use crate::order::{Reference, order};
@@ -72,7 +72,10 @@ impl Builder {
     fn model(&mut self, document: Document, source: &Source) -> Resolved {
         let drawing = self.drawing(&document);
         let observables = self.all(document.observables, Self::observable);
-        let (observables, declared) = observables.into_iter().unzip();
+        let (mut observables, mut declared): (Vec<_>, Vec<_>) = observables.into_iter().unzip();
+        let constraints = self.all(document.constraints, Self::constraint);
+        observables.extend(reported(&constraints));
+        declared.resize(observables.len(), None);
         let parameters = self.all(document.parameters, Self::parameter);
         let definitions = self.all(document.definitions, Self::definition);
         let mut model = Model {
@@ -87,6 +90,7 @@ impl Builder {
             potential: self.all(document.potential, Self::term),
             dissipation: self.all(document.dissipation, Self::term),
             forces: self.all(document.forces, Self::force),
+            constraints,
             observables,
             coefficients: self.coefficients(document.coefficients),
             sensors: self.all(document.sensors, Self::sensor),
@@ -437,6 +441,19 @@ impl Builder {
         })
     }
 
+    fn constraint(&mut self, raw: RawTerm) -> Option<Constraint> {
+        Some(Constraint {
+            zero: self.expression(&raw.value, Scope::Motion)?,
+            // Both are known when the definitions are.
+            is_nonholonomic: false,
+            unit: Unit::coherent(Dimension::NONE),
+            name: raw.name.text,
+            doc: raw.doc,
+            origin: raw.origin,
+            span: raw.name.span,
+        })
+    }
+
     fn observable(
         &mut self,
         (raw, unit): (RawTerm, Option<Written>),
@@ -471,6 +488,34 @@ impl Builder {
             span: raw.channel.span,
         })
     }
+}
+
+/// What is reported of every constraint.
+fn reported(constraints: &[Constraint]) -> Vec<Observable> {
+    let observable =
+        |prefix: &str, kind: ExprKind, doc: &str, constraint: &Constraint| Observable {
+            name: format!("{prefix}{}", constraint.name),
+            value: Expr {
+                kind,
+                span: constraint.span,
+            },
+            unit: Unit::coherent(Dimension::NONE),
+            doc: format!("{doc} of the constraint {}", constraint.name),
+            span: constraint.span,
+        };
+    let each = ConstraintId::first(constraints.len()).zip(constraints);
+    each.flat_map(|(id, constraint)| {
+        [
+            observable(
+                MULTIPLIER,
+                ExprKind::Multiplier(id),
+                "multiplier",
+                constraint,
+            ),
+            observable(RESIDUAL, ExprKind::Residual(id), "residual", constraint),
+        ]
+    })
+    .collect()
 }
 
 fn field_order((order, span): (i64, Span)) -> Result<usize, Diagnostic> {

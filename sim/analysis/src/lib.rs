@@ -13,9 +13,11 @@
 //! [`spectrum`] estimates power spectral densities, [`zero_one`] tests a series for chaos,
 //! [`poincare`] describes a stroboscopic section, [`exponent`] averages logarithmic growth,
 //! and [`classify`] weighs these against each other by a stated rule. [`modes`] says which
-//! mode of a flexible body carries the motion, [`course`] has single numbers of a course over time, [`natural_modes`] which modes a linearised machine has.
+//! mode of a flexible body carries the motion, [`course`] has single numbers of a course over time, [`natural_modes`] which modes a
+//! linearised machine has, [`constrained_modes`] which one with constraints has.
 
 pub mod classify;
+pub mod constrained_modes;
 pub mod course;
 mod error;
 pub mod exponent;

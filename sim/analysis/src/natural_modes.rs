@@ -25,7 +25,7 @@ const EQUAL: f64 = 1e-7;
 const BESIDE: f64 = 1e-11;
 
 /// Steps of the Schur form for each row, before it is given up.
-const MOST_STEPS: usize = 400;
+pub(crate) const MOST_STEPS: usize = 400;
 
 /// A natural mode: the motion exp(lambda t) v, or its real part.
 #[derive(Clone, Debug, PartialEq)]
@@ -267,7 +267,7 @@ impl Pencil {
 
 /// How often 0 is an eigenvalue, chains of any length counted: null spaces are taken away until
 /// there is none.
-fn zero_eigenvalues(mut matrix: DMatrix<f64>) -> usize {
+pub(crate) fn zero_eigenvalues(mut matrix: DMatrix<f64>) -> usize {
     let mut count = 0;
     loop {
         // Rows of one size, as in [`Pencil::rigid`]: the null space is the same.
@@ -293,7 +293,7 @@ fn zero_eigenvalues(mut matrix: DMatrix<f64>) -> usize {
 }
 
 /// An orthonormal basis of what a matrix maps to 0, as columns.
-fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+pub(crate) fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let decomposed = matrix.clone().svd(false, true);
     let Some(rows) = decomposed.v_t else {
         return DMatrix::zeros(matrix.ncols(), 0);

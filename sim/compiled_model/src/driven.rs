@@ -10,6 +10,7 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Surface, System, jacobian_by_differences};
 
 use crate::jacobians::{Jacobian, JacobianEvaluator};
+use crate::projection::Projection;
 
 /// A derived model driven by inputs, as the solvers see it; it owns or borrows both. The mass
 /// matrix has positive pivots at the evaluator's parameters.
@@ -17,6 +18,7 @@ pub struct Driven<E, I> {
     evaluator: E,
     inputs: I,
     jacobians: Option<RefCell<JacobianEvaluator>>,
+    projection: Option<Projection>,
 }
 
 impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
@@ -26,7 +28,14 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
             evaluator,
             inputs,
             jacobians: None,
+            projection: None,
         }
+    }
+
+    /// The same that keeps states on the constraints, at the same parameters.
+    pub(crate) fn with_projection(mut self, projection: Option<Projection>) -> Self {
+        self.projection = projection;
+        self
     }
 
     /// The same with its own Jacobian, at the same parameters, for implicit methods.
@@ -126,6 +135,14 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
             &mut mass,
         );
         first_not_positive(&mut mass, size)
+    }
+
+    fn project(&self, t: f64, y: &mut [f64]) -> u64 {
+        let Some(projection) = &self.projection else {
+            return 0;
+        };
+        let inputs = &self.inputs.borrow().at(t);
+        projection.after_a_step(&mut self.evaluator(), (t, inputs), y)
     }
 
     fn next_breakpoint(&self, t: f64) -> Option<f64> {

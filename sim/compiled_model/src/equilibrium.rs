@@ -72,9 +72,11 @@ impl Instance<'_> {
             let inputs = (0..at.inputs.len()).map(Setting::Input);
             free.extend(inputs.filter(|place| !is_fixed(place)));
         }
+        // With residuals among the accelerations, where these are zero the constraints hold.
+        let holding = self.stabilised(1.0);
         let mut search = Search {
-            jacobians: self.jacobian_evaluator()?,
-            instance: self,
+            jacobians: holding.jacobian_evaluator()?,
+            instance: &holding,
             free,
         };
         let residual = search.run(&mut at)?;

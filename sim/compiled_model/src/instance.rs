@@ -2,7 +2,7 @@
 
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::diagnostic::{Diagnostic, Diagnostics};
-use eomgen_model_spec::model::ParameterValue;
+use eomgen_model_spec::model::{ParameterValue, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::NOT_POSITIVE;
 use eomgen_sim::piecewise_linear::{ExactError, Propagator};
@@ -43,6 +43,34 @@ impl CompiledModel {
 }
 
 impl<'m> Instance<'m> {
+    /// The same where residuals of constraints decay at this rate (1/s).
+    pub(crate) fn stabilised(&self, rate: f64) -> Self {
+        let mut changed = Self {
+            model: self.model,
+            parameters: self.parameters.clone(),
+            values: self.values.clone(),
+            initial: self.initial.clone(),
+        };
+        let mut set = |place: Option<usize>, all: fn(&mut Self) -> &mut Vec<f64>| {
+            if let Some(value) = place.and_then(|place| all(&mut changed).get_mut(place)) {
+                *value = rate;
+            }
+        };
+        let independent = &self.model.program().parameters;
+        let place = independent
+            .iter()
+            .position(|p| p.quantity.name == STABILISATION_RATE);
+        set(place, |instance| &mut instance.parameters);
+        let place = self
+            .model
+            .model()
+            .parameters
+            .iter()
+            .position(|p| p.name == STABILISATION_RATE);
+        set(place, |instance| &mut instance.values);
+        changed
+    }
+
     fn new(compiled: &'m CompiledModel, settings: &[(&str, f64)]) -> Result<Self, Error> {
         let declared = compiled.model();
         let refused = |error| Error::model(declared, error);

@@ -3,11 +3,12 @@
 
 use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_model_spec::model::RESIDUAL;
 
 use crate::differentiated::Differentiated;
 use crate::error::Error;
 use crate::instance::Instance;
-use crate::model::evaluator;
+use crate::model::{CompiledModel, evaluator};
 
 /// Which Jacobian: of what, by what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,6 +109,34 @@ pub struct Linearisation {
     pub rates: Vec<f64>,
     /// The observables at the point.
     pub observables: Vec<f64>,
+}
+
+impl Linearisation {
+    /// What the constraints of the model hold of small motions dx, C dx = 0, row by row: their
+    /// residuals, and the rates of those of holonomic ones. Empty without constraints.
+    pub fn held(&self, model: &CompiledModel) -> Vec<f64> {
+        let states = self.rates.len();
+        let names = model.observable_names();
+        let mut held = Vec::new();
+        for constraint in &model.model().constraints {
+            let residual = format!("{RESIDUAL}{}", constraint.name);
+            let Some(row) = names.iter().position(|name| *name == residual) else {
+                continue;
+            };
+            let row = &self.c[row * states..][..states];
+            held.extend(row);
+            if !constraint.is_nonholonomic {
+                let rate = |column: usize| -> f64 {
+                    let entries = row.iter().enumerate();
+                    entries
+                        .map(|(place, entry)| entry * self.a[place * states + column])
+                        .sum()
+                };
+                held.extend((0..states).map(rate));
+            }
+        }
+        held
+    }
 }
 
 impl Instance<'_> {

@@ -39,6 +39,7 @@
 //! # Ok::<(), eomgen_compiled_model::Error>(())
 //! ```
 
+mod consistent;
 mod differentiated;
 mod driven;
 mod equilibrium;
@@ -48,6 +49,7 @@ mod jacobians;
 mod model;
 mod motion;
 mod operating_point;
+mod projection;
 mod simulate;
 
 pub use driven::Driven;
@@ -58,4 +60,5 @@ pub use jacobians::{Jacobian, JacobianEvaluator, Linearisation};
 pub use model::{CompiledModel, Orders};
 pub use motion::{Cause, Choice, Motion, Solver, Stopped};
 pub use operating_point::{OperatingPoint, Setting};
+pub use projection::Moved;
 pub use simulate::{DEFAULT_TOLERANCE, Request};

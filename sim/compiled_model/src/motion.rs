@@ -6,6 +6,7 @@ use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::Trajectory;
 
 use crate::error::Error;
+use crate::projection::Moved;
 
 /// How to integrate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,6 +62,8 @@ pub struct Motion {
     pub choice: Option<Choice>,
     /// Why the solver did not come to the end, if it did not.
     pub stopped: Option<Stopped>,
+    /// What of the initial state was moved so that the constraints hold.
+    pub moved: Vec<Moved>,
 }
 
 impl Motion {

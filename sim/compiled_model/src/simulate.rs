@@ -165,7 +165,17 @@ impl Instance<'_> {
         progress: &mut dyn FnMut(f64),
     ) -> Result<Motion, Error> {
         let evaluator = RefCell::new(self.evaluator()?);
-        let mut system = Driven::new(&evaluator, request.inputs);
+        let is_constrained = !self.model.model().constraints.is_empty();
+        if is_constrained && settings.method == Method::Adams {
+            return Err(Error::Request(
+                "adams goes on from the steps before, which the constraints of this model cut off \
+                 at every step: use --solver rk or radau"
+                    .to_owned(),
+            ));
+        }
+        let mut system = self.driven(&evaluator, request.inputs)?;
+        let (initial, moved) =
+            self.consistent(request.initial, request.span().0, request.inputs)?;
         let solver = match settings.method {
             Method::DormandPrince853 => Solver::Rk,
             Method::Adams => Solver::Adams,
@@ -175,9 +185,12 @@ impl Instance<'_> {
             system = system.with_jacobian(self.jacobian_evaluator()?);
         }
         let mut trajectory = Trajectory::default();
-        let asked = (request.initial, request.span(), request.times);
+        let asked = (initial.as_slice(), request.span(), request.times);
         let ended = simulate_into(&mut trajectory, &system, asked, settings, progress);
-        let so_far = motion(trajectory, request, solver, choice);
+        let so_far = Motion {
+            moved,
+            ..motion(trajectory, request, solver, choice)
+        };
         match ended {
             Ok(()) => Ok(so_far),
             Err(error) => {
@@ -248,6 +261,7 @@ fn motion(
         solver,
         choice,
         stopped: None,
+        moved: Vec::new(),
     }
 }
 

@@ -37,6 +37,8 @@ pub fn equations(report: &Report) -> Markup {
             indexed("f", &[name])
         }))
         (lines(&html! { "Rates of states of first order" }, &report.state_rates, formula))
+        (lines(&html! { "Constraints, which stay zero" }, &report.constraints, formula))
+        (lines(&html! { "Multipliers of the constraints" }, &report.multipliers, formula))
         (coefficients(&report.coefficients))
         (lines(&html! { "Accelerations" }, &report.accelerations, formula))
         (guards(&report.guards))

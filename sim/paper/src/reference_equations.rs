@@ -19,10 +19,11 @@ const PAPER_SCALES: (f64, f64) = (3.0885e4, 25e-6);
 
 /// The specifications that were written out by hand. A model of the same name may follow
 /// other conventions; only what has the very equations of one of them is the same machine.
-const SHIPPED: [&str; 12] = [
+const SHIPPED: [&str; 13] = [
     models::PLANETARY_ARM.text,
     models::DOUBLE_PENDULUM.text,
     models::CART_TWO_ARMS.text,
+    models::CHAPLYGIN_SLEIGH.text,
     models::CRANE.text,
     models::FURUTA_PENDULUM.text,
     models::HUB_BEAM_TIP_MASS.text,

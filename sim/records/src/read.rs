@@ -29,6 +29,14 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
             input.name
         )));
     }
+    if let Some(constraint) = model.constraints.first() {
+        return Err(Refusal::Record(format!(
+            "{}: the model has constraints (`{}`), which `compare` and `discover` do not follow yet; \
+             `simulate` does",
+            path.display(),
+            constraint.name
+        )));
+    }
     let bound = bound(&description, model)?;
     let mut dataset = Dataset {
         path: path.to_owned(),

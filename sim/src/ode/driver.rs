@@ -261,28 +261,41 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
         self.stepper.inside(self.watched, t)
     }
 
-    /// Samples from `begin` (s) to here, and enters the regime found here.
+    /// Samples from `begin` (s) to here, brings the state back onto what the motion keeps, and enters
+    /// the regime found here.
     fn accept(&mut self, begin: f64) -> Result<(), SolveError> {
-        let here = self.stepper.here();
-        if let Some(state) = here.y.iter().position(|y| !y.is_finite()) {
-            return Err(SolveError::NotFinite { t: begin, state });
-        }
+        self.check_finite(begin)?;
         self.trajectory.work.steps += 1;
         self.watched.arrive();
-        let t = here.t;
-        while let Some(&sample) = self.samples.get(self.trajectory.times.len()) {
-            if sample > t {
-                break;
-            }
-            let state = if sample < t {
-                self.inside(sample)?
-            } else {
-                self.stepper.here().y.clone()
-            };
+        let t = self.stepper.here().t;
+        while let Some(sample) = self.next_sample().filter(|sample| *sample < t) {
+            let mut state = self.inside(sample)?;
+            self.watched.project(sample, &mut state);
             self.trajectory.times.push(sample);
             self.trajectory.states.push(state);
         }
+        let mut point = self.stepper.here().clone();
+        if self.watched.project(t, &mut point.y) {
+            self.stepper.restart(point, self.stepper.step());
+            self.check_finite(begin)?;
+        }
+        while let Some(sample) = self.next_sample().filter(|sample| *sample <= t) {
+            self.trajectory.times.push(sample);
+            self.trajectory.states.push(self.stepper.here().y.clone());
+        }
         self.enter_regime()
+    }
+
+    fn next_sample(&self) -> Option<f64> {
+        self.samples.get(self.trajectory.times.len()).copied()
+    }
+
+    /// Whether the state here is made of numbers, after a step from `begin`.
+    fn check_finite(&self, begin: f64) -> Result<(), SolveError> {
+        match self.stepper.here().y.iter().position(|y| !y.is_finite()) {
+            Some(state) => Err(SolveError::NotFinite { t: begin, state }),
+            None => Ok(()),
+        }
     }
 
     /// Takes note of the switching functions that changed sign.

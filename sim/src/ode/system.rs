@@ -33,6 +33,13 @@ pub trait System {
         None
     }
 
+    /// Brings the state `y` at time `t` back onto what the motion keeps exactly, such as the
+    /// constraints of a mechanism, from which steps stray by their errors. Returns how many
+    /// evaluations of the rates that took: 0 where there is nothing to keep.
+    fn project(&self, _t: f64, _y: &mut [f64]) -> u64 {
+        0
+    }
+
     /// The next time after `t` at which the right-hand side is not smooth in time (the
     /// next sample of a recorded input, say); no step reaches across it.
     fn next_breakpoint(&self, _t: f64) -> Option<f64> {
@@ -63,6 +70,10 @@ impl<S: System + ?Sized> System for &S {
 
     fn indefinite(&self, t: f64, y: &[f64]) -> Option<usize> {
         (**self).indefinite(t, y)
+    }
+
+    fn project(&self, t: f64, y: &mut [f64]) -> u64 {
+        (**self).project(t, y)
     }
 
     fn next_breakpoint(&self, t: f64) -> Option<f64> {

@@ -98,6 +98,14 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         }
     }
 
+    /// Brings a state onto what the motion keeps; whether there is anything to keep. See
+    /// [`System::project`].
+    pub fn project(&self, t: f64, y: &mut [f64]) -> bool {
+        let evaluations = self.system.project(self.seen(t), y);
+        self.evaluations.set(self.evaluations.get() + evaluations);
+        evaluations > 0
+    }
+
     /// The derivatives of the rates by the state, row by row; see [`System::jacobian`].
     pub fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
         self.system.jacobian(self.seen(t), y, out);

@@ -12,6 +12,8 @@ pub enum ExactError {
         /// The term in the way.
         formula: String,
     },
+    /// The model has constraints.
+    Constrained,
     /// The model itself is at fault.
     Model(String),
     /// A coefficient is infinite or not a number.
@@ -50,6 +52,11 @@ impl ExactError {
                 "the model is not linear between its switches: `{formula}`; the general solver \
                  (--solver rk) takes any model"
             ),
+            Self::Constrained => {
+                "the model has constraints, which the exact solver does not solve \
+                 for; the general solver (--solver rk) does"
+                    .to_owned()
+            }
             Self::Model(message) => message.clone(),
             Self::NotFinite => "a coefficient of the equations of motion is infinite or not a \
                  number: a mass, inertia or length is zero, or a parameter far too large"

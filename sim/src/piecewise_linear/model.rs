@@ -2,8 +2,10 @@
 
 use eomgen_codegen::mechanics::affine::affine;
 use eomgen_codegen::mechanics::equations::derive;
+use eomgen_codegen::mechanics::linearity::{Linearity, linearity};
 use eomgen_codegen::program::affine::{AffineEvaluator, AffineProgram};
 use eomgen_codegen::program::lowering::lower_affine;
+use eomgen_codegen::symbolic::formula::abridged;
 use eomgen_model_spec::model::{Model, ParameterValue};
 
 use super::error::ExactError;
@@ -27,13 +29,13 @@ impl PiecewiseLinear {
         let equations =
             derive(model, orders).map_err(|error| ExactError::Model(error.message.clone()))?;
         // The node in the way is named while its graph is still there.
-        if let eomgen_codegen::mechanics::linearity::Linearity::Nonlinear(node) =
-            eomgen_codegen::mechanics::linearity::linearity(&equations)
-        {
-            let formula =
-                eomgen_codegen::symbolic::formula::abridged(&equations.graph, model, node)
-                    .to_string();
-            return Err(ExactError::NotLinear { formula });
+        match linearity(&equations) {
+            Linearity::Linear | Linearity::PiecewiseLinear => {}
+            Linearity::Constrained => return Err(ExactError::Constrained),
+            Linearity::Nonlinear(node) => {
+                let formula = abridged(&equations.graph, model, node).to_string();
+                return Err(ExactError::NotLinear { formula });
+            }
         }
         let affine = affine(equations).map_err(|_| ExactError::NotLinear {
             formula: "a function over the modes that switches".to_owned(),

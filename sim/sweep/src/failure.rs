@@ -46,7 +46,7 @@ impl From<ExactError> for Failure {
             ExactError::Stopped(error) => error.into(),
             ExactError::Held { .. } => Self::Switching,
             ExactError::NotConverged => Self::Limit,
-            ExactError::NotLinear { .. } => Self::Undefined,
+            ExactError::NotLinear { .. } | ExactError::Constrained => Self::Undefined,
             ExactError::Model(_)
             | ExactError::NotFinite
             | ExactError::NotPositiveDefinite

@@ -9,7 +9,7 @@ use super::forcing::{Frequency, frequency};
 use super::measure::{Column, Description, Failure, Measure, Worker};
 use super::span::Span;
 use eomgen_analysis::poincare::{LONGEST_PERIOD, Section};
-use eomgen_compiled_model::{CompiledModel, Driven, Instance};
+use eomgen_compiled_model::{CompiledModel, Instance};
 use eomgen_sim::ode::{Settings, Trajectory, simulate};
 
 /// Looks at the motion per forcing period: one belongs to the section, all together give the
@@ -182,10 +182,11 @@ impl Poincare<'_> {
             return Ok(propagator.simulate(initial, span, times, &inputs, quiet)?);
         }
         let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
-        let system = Driven::new(&evaluator, &inputs);
+        let system = instance.driven(&evaluator, &inputs)?;
+        let (initial, _) = instance.consistent(initial, 0.0, &inputs)?;
         Ok(simulate(
             &system,
-            initial,
+            &initial,
             span,
             times,
             &self.settings,

@@ -67,8 +67,10 @@ pub(crate) struct PhaseNodes {
 /// # Errors
 /// The node that is not linear between switching surfaces, if there is one.
 pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
-    if let Linearity::Nonlinear(node) = linearity(&equations) {
-        return Err(node);
+    match linearity(&equations) {
+        Linearity::Linear | Linearity::PiecewiseLinear => {}
+        Linearity::Constrained => return Err(equations.multipliers[0]),
+        Linearity::Nonlinear(node) => return Err(node),
     }
     let not_scalar = |guard: &&crate::mechanics::guard::Guard| {
         equations.graph.shape(guard.value) != Shape::Scalar

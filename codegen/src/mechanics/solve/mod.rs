@@ -21,6 +21,7 @@ mod modal;
 mod separation;
 mod small;
 
+use crate::mechanics::constraints::Constraints;
 use crate::mechanics::mass_matrix::MassMatrix;
 use crate::mechanics::rows::RowNodes;
 use crate::symbolic::graph::{Graph, NodeId};
@@ -57,17 +58,25 @@ pub struct SolveReport {
     pub dense_modes: bool,
 }
 
-/// Solves M a = f.
-pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &RowNodes) -> Accelerations {
+/// Solves M a = f, or M a - A^T lambda = f and A a = b; the accelerations, and lambda.
+pub(crate) fn solve(
+    graph: &mut Graph,
+    mass: &MassMatrix,
+    right: &RowNodes,
+    constraints: &Constraints,
+) -> (Accelerations, Vec<NodeId>) {
+    let (mass, right) = &bordered(graph, mass, right, constraints);
     let modal = ModalBlock::new(graph, mass, right);
-    let system = SmallSystem::new(graph, mass, right, &modal);
-    let coordinates = right.scalars.len();
+    let multipliers = constraints.rows.len();
+    let system = SmallSystem::new(graph, mass, right, &modal, multipliers);
+    let coordinates = right.scalars.len() - multipliers;
     let mut solved_in = |order: Vec<usize>| {
-        let (unknowns, mut pivots) = system.eliminate(graph, &order);
+        let (mut unknowns, mut pivots) = system.eliminate(graph, &order);
+        let lambda = unknowns.split_off(unknowns.len() - multipliers);
         pivots.rotate_left(system.interfaces);
-        let rows = system.back_substitute(graph, &modal, &unknowns);
+        let rows = system.back_substitute(graph, &modal, &unknowns, &lambda);
         let operations = count_operations(graph, &rows.nodes());
-        (operations, order, rows, pivots)
+        (operations, order, (rows, lambda), pivots)
     };
     let mut best = solved_in((0..coordinates).collect());
     let mut dearest = best.0;
@@ -78,10 +87,10 @@ pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &RowNodes) -> Accelera
             best = other;
         }
     }
-    let (operations, order, rows, mut pivots) = best;
+    let (operations, order, (rows, lambda), mut pivots) = best;
     let rows = critical_path::shorten_critical_path(graph, &rows);
     pivots.extend(modal.inverses.iter().flatten().map(ModalInverse::pivot));
-    Accelerations {
+    let accelerations = Accelerations {
         rows,
         pivots,
         report: SolveReport {
@@ -91,7 +100,44 @@ pub fn solve(graph: &mut Graph, mass: &MassMatrix, right: &RowNodes) -> Accelera
             dearest,
             dense_modes: modal.inverses.iter().flatten().any(ModalInverse::is_dense),
         },
+    };
+    (accelerations, lambda)
+}
+
+/// The symmetric system with the multipliers as further unknowns behind the coordinates,
+/// ```text
+/// [ M  -A^T ] [ a      ]   [  f ]
+/// [ -A   0  ] [ lambda ] = [ -b ]
+/// ```
+/// in which a multiplier couples to the modes as a coordinate does, through interfaces where what
+/// couples them turns. Eliminated last, its pivot is minus one of A M^-1 A^T.
+fn bordered(
+    graph: &mut Graph,
+    mass: &MassMatrix,
+    right: &RowNodes,
+    constraints: &Constraints,
+) -> (MassMatrix, RowNodes) {
+    let coordinates = right.scalars.len();
+    let size = coordinates + constraints.rows.len();
+    let zero = graph.zero();
+    let (mut mass, mut right) = (mass.clone(), right.clone());
+    for row in &mut mass.scalars {
+        row.resize(size, zero);
     }
+    for (place, row) in (coordinates..).zip(&constraints.rows) {
+        let mut last = vec![zero; size];
+        for (coordinate, entry) in row.scalars.iter().enumerate() {
+            let entry = graph.negate(*entry);
+            last[coordinate] = entry;
+            mass.scalars[coordinate][place] = entry;
+        }
+        mass.scalars.push(last);
+        let coupling = row.modal.iter().map(|entry| graph.negate(*entry));
+        mass.coupling.push(coupling.collect());
+    }
+    let sides = constraints.right.iter().map(|b| graph.negate(*b));
+    right.scalars.extend(sides);
+    (mass, right)
 }
 
 /// The orders to try beside the natural one: all others for up to four coordinates, its

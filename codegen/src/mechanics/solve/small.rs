@@ -11,6 +11,8 @@ use eomgen_model_spec::ids::FieldId;
 /// The system left when the modes are eliminated: interface forces, then coordinates.
 pub(super) struct SmallSystem {
     pub(super) interfaces: usize,
+    /// How many of the last rows are those of multipliers, whose pivots are negative.
+    multipliers: usize,
     pub(super) matrix: Vec<Vec<NodeId>>,
     pub(super) right: Vec<NodeId>,
     /// D^-1 f_q per field
@@ -35,6 +37,7 @@ impl SmallSystem {
         mass: &MassMatrix,
         right: &RowNodes,
         modal: &ModalBlock,
+        multipliers: usize,
     ) -> Self {
         let mut solved = |vectors: &[NodeId]| -> Vec<NodeId> {
             let fields = FieldId::first(vectors.len()).zip(vectors);
@@ -50,6 +53,7 @@ impl SmallSystem {
             .collect();
         let mut system = Self {
             interfaces: modal.interfaces.len(),
+            multipliers,
             matrix: Vec::new(),
             right: Vec::new(),
             free_modes,
@@ -179,15 +183,18 @@ impl SmallSystem {
         })
     }
 
-    /// Elimination without pivoting, interfaces first, then coordinates in this order.
-    /// Returns the unknowns in their own order, and the pivots.
+    /// Elimination without pivoting, interfaces first, then coordinates in this order, then
+    /// multipliers. Returns the unknowns in their own order, and the pivots, of multipliers with
+    /// the other sign: all must be positive.
     pub(super) fn eliminate(
         &self,
         graph: &mut Graph,
         coordinates: &[usize],
     ) -> (Vec<NodeId>, Vec<NodeId>) {
+        let first_multiplier = self.interfaces + coordinates.len();
         let order: Vec<usize> = (0..self.interfaces)
             .chain(coordinates.iter().map(|index| self.interfaces + index))
+            .chain((first_multiplier..).take(self.multipliers))
             .collect();
         let mut matrix = self.matrix.clone();
         let mut right = self.right.clone();
@@ -195,8 +202,14 @@ impl SmallSystem {
         let mut reciprocals = Vec::with_capacity(order.len());
         let mut pivots = Vec::with_capacity(order.len());
         for (step, &pivot_row) in order.iter().enumerate() {
-            let pivot = matrix[pivot_row][pivot_row];
-            let reciprocal = pivot_reciprocal(graph, pivot);
+            let own = matrix[pivot_row][pivot_row];
+            let (pivot, reciprocal) = if pivot_row < first_multiplier {
+                (own, pivot_reciprocal(graph, own))
+            } else {
+                let pivot = graph.negate(own);
+                let reciprocal = pivot_reciprocal(graph, pivot);
+                (pivot, graph.negate(reciprocal))
+            };
             pivots.push(pivot);
             reciprocals.push(reciprocal);
             for (place, &row) in order.iter().enumerate().skip(step + 1) {
@@ -232,12 +245,13 @@ impl SmallSystem {
     }
 
     /// The accelerations of the modes once interface forces and coordinates are known:
-    /// D^-1 (f_q - H^T a - Phi p).
+    /// D^-1 (f_q - H^T a - Phi p), where H has rows of the multipliers too.
     pub(super) fn back_substitute(
         &self,
         graph: &mut Graph,
         modal: &ModalBlock,
         unknowns: &[NodeId],
+        multipliers: &[NodeId],
     ) -> RowNodes {
         let (forces, coordinates) = unknowns.split_at(modal.interfaces.len());
         let by_field = FieldId::first(modal.inverses.len())
@@ -248,7 +262,7 @@ impl SmallSystem {
                         terms.push((-1.0, graph.multiply(interface.solved, force)));
                     }
                 }
-                for (row, &value) in coordinates.iter().enumerate() {
+                for (row, &value) in coordinates.iter().chain(multipliers).enumerate() {
                     terms.push((
                         -1.0,
                         graph.multiply(self.solved_coupling[row][field], value),

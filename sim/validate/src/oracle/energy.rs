@@ -59,7 +59,7 @@ impl Oracle {
             .map(|term| term.rows(&scene, RowTermKind::Dissipation));
         let forces = self.forces.iter().map(|force| force.rows(&scene));
         let rates = state.get(self.size()..).unwrap_or_default();
-        let mut total = Conditioned::default();
+        let mut total = self.reaction_power(&scene, &rates[..rates.len().min(self.size())]);
         for term in dissipated.chain(forces) {
             let rows = term.rows.iter().zip(&term.magnitudes);
             for ((value, magnitude), rate) in rows.zip(rates) {

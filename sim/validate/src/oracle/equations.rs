@@ -21,6 +21,8 @@ pub struct Equations {
     pub terms: Vec<RowTerm>,
     /// For every state of first order the addends of its rate, in its unit per s.
     pub state_rates: Vec<Vec<Conditioned>>,
+    /// The constraints, of whose multipliers the rows hold the forces.
+    pub constraints: Vec<ConstraintRow>,
 }
 
 /// What one addend of a term of the specification adds to every row.
@@ -66,6 +68,15 @@ pub enum RowTermKind {
     Force,
 }
 
+/// A constraint: the sum over k of gradient[k] q_k'' is right.
+#[derive(Clone, Debug)]
+pub struct ConstraintRow {
+    /// The derivative of the constraint by every coordinate, or by every rate.
+    pub gradient: Vec<Conditioned>,
+    /// What the accelerations have to make of it.
+    pub right: Conditioned,
+}
+
 /// What is left of one row, and the size of the largest term summed in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Residual {
@@ -102,28 +113,114 @@ impl Equations {
             .iter()
             .flat_map(|t| t.rows.iter().chain(&t.magnitudes));
         let mass = self.mass.iter().chain(&self.mass_magnitude);
+        let constraints = self.constraints.iter();
+        let mut entries = constraints.flat_map(|row| row.gradient.iter().chain([&row.right]));
         let mut rates = self.state_rates.iter().flatten();
-        terms.chain(mass).all(|number| number.is_finite())
+        entries.all(|entry| entry.value.is_finite() && entry.magnitude.is_finite())
+            && terms.chain(mass).all(|number| number.is_finite())
             && rates.all(|rate| rate.value.is_finite() && rate.magnitude.is_finite())
     }
 
-    /// Whether the mass matrix is positive definite, and not by rounding alone.
+    /// Whether the mass matrix is positive definite, and so that no constraint follows from
+    /// others, and not by rounding alone.
     pub fn is_definite(&self) -> bool {
-        let factor = Cholesky::new(self.scaled_mass().1);
-        factor.is_some_and(|factor| {
-            let pivots = factor.l_dirty().diagonal();
-            pivots.iter().all(|pivot| pivot * pivot > SMALLEST_PIVOT)
+        has_pivots(&self.scaled_mass().1)
+            && (self.compliance()).is_some_and(|compliance| has_pivots(&scaled(&compliance).1))
+    }
+
+    /// The derivatives of the constraints, A.
+    fn gradients(&self) -> DMatrix<f64> {
+        DMatrix::from_fn(self.constraints.len(), self.size(), |row, column| {
+            self.constraints[row].gradient[column].value
         })
+    }
+
+    /// A M^-1 A^T.
+    fn compliance(&self) -> Option<DMatrix<f64>> {
+        let gradients = self.gradients();
+        let (scale, mass) = self.scaled_mass();
+        let mut solved = gradients.transpose();
+        for mut column in solved.column_iter_mut() {
+            column.component_mul_assign(&scale);
+        }
+        let mut solved = Cholesky::new(mass)?.solve(&solved);
+        for mut column in solved.column_iter_mut() {
+            column.component_mul_assign(&scale);
+        }
+        Some(gradients * solved)
+    }
+
+    /// The multipliers of the constraints, each with the magnitude of what it is made of: lambda of
+    /// A M^-1 A^T lambda = b - A M^-1 (f - c). None if the accelerations cannot be solved for.
+    pub fn multipliers(&self) -> Option<Vec<Conditioned>> {
+        if self.constraints.is_empty() {
+            return Some(Vec::new());
+        }
+        let (scale, compliance) = scaled(&self.compliance()?);
+        let inverse = Cholesky::new(compliance)?.inverse();
+        let (free, sizes) = self.free_accelerations()?;
+        let gaps: Vec<Conditioned> = self
+            .constraints
+            .iter()
+            .map(|row| {
+                let moved = row.gradient.iter().zip(free.iter().zip(&sizes));
+                let moved = moved.map(|(entry, (a, size))| {
+                    Conditioned::new(-entry.value * a, entry.magnitude * size)
+                });
+                moved.chain([row.right]).sum()
+            })
+            .collect();
+        let row = |row: usize| {
+            let gaps = gaps.iter().enumerate();
+            gaps.map(|(column, gap)| *gap * (scale[row] * inverse[(row, column)] * scale[column]))
+                .sum()
+        };
+        Some((0..gaps.len()).map(row).collect())
+    }
+
+    /// The accelerations without constraints, and the sizes of what each is made of.
+    fn free_accelerations(&self) -> Option<(DVector<f64>, Vec<f64>)> {
+        let (scale, mass) = self.scaled_mass();
+        let factor = Cholesky::new(mass)?;
+        let right = self.right_side().component_mul(&scale);
+        let free = factor.solve(&right).component_mul(&scale);
+        let inverse = factor.inverse();
+        let mut terms = DVector::zeros(self.size());
+        for term in &self.terms {
+            terms += &term.magnitudes;
+        }
+        let size = |row: usize| -> f64 {
+            let entry = |column: usize| {
+                (scale[row] * inverse[(row, column)] * scale[column]).abs() * terms[column]
+            };
+            (0..self.size()).map(entry).sum()
+        };
+        let sizes = (0..self.size()).map(size).collect();
+        Some((free, sizes))
+    }
+
+    /// The forces of the constraints in every row, on the side of the accelerations.
+    fn reactions(&self) -> Vec<Vec<Conditioned>> {
+        let unknown = || vec![Conditioned::from(f64::NAN); self.constraints.len()];
+        let multipliers = self.multipliers().unwrap_or_else(unknown);
+        let row = |row: usize| {
+            let constraints = self.constraints.iter().zip(&multipliers);
+            let reaction = constraints.map(|(constraint, multiplier)| {
+                let entry = constraint.gradient[row];
+                Conditioned::new(
+                    -entry.value * multiplier.value,
+                    entry.magnitude * multiplier.magnitude,
+                )
+            });
+            reaction.collect()
+        };
+        (0..self.size()).map(row).collect()
     }
 
     /// The factors that scale rows and columns of the mass matrix to a unit diagonal, and
     /// the matrix so scaled.
     fn scaled_mass(&self) -> (DVector<f64>, DMatrix<f64>) {
-        let scale = self.mass.diagonal().map(|entry| entry.sqrt().recip());
-        let scaled = DMatrix::from_fn(self.size(), self.size(), |row, column| {
-            scale[row] * self.mass[(row, column)] * scale[column]
-        });
-        (scale, scaled)
+        scaled(&self.mass)
     }
 
     /// The size by which a deviation of an entry of the mass matrix is judged: the geometric
@@ -151,7 +248,13 @@ impl Equations {
     /// to a unit diagonal; none if the mass matrix is not positive definite.
     pub fn accelerations(&self) -> Option<DVector<f64>> {
         let (scale, scaled) = self.scaled_mass();
-        let right = self.right_side().component_mul(&scale);
+        let mut right = self.right_side();
+        for (row, multiplier) in self.constraints.iter().zip(self.multipliers()?) {
+            for (side, entry) in right.iter_mut().zip(&row.gradient) {
+                *side += entry.value * multiplier.value;
+            }
+        }
+        let right = right.component_mul(&scale);
         Some(Cholesky::new(scaled)?.solve(&right).component_mul(&scale))
     }
 
@@ -178,11 +281,39 @@ impl Equations {
             let addends = addends.iter().map(|addend| *addend * -1.0);
             residual(addends.chain([Conditioned::new(rate, rate.abs())]))
         });
-        let rows = self.rows_of_degrees(unknowns).into_iter();
-        rows.chain(of_states).collect()
+        let rows = self.rows_of_degrees(unknowns, &self.reactions());
+        rows.into_iter().chain(of_states).collect()
     }
 
-    fn rows_of_degrees(&self, accelerations: &[f64]) -> Vec<Residual> {
+    /// Every row's sum for given accelerations without the forces of constraints: what these and
+    /// forces that the specification does not know have to be.
+    pub fn missing_forces(&self, accelerations: &[f64]) -> Vec<Residual> {
+        self.rows_of_degrees(accelerations, &vec![Vec::new(); self.size()])
+    }
+
+    /// What is left of every constraint for given accelerations.
+    fn rows_of_constraints(&self, accelerations: &[f64]) -> Vec<Residual> {
+        let sizes = self
+            .free_accelerations()
+            .map_or_else(Vec::new, |free| free.1);
+        let constraints = self.constraints.iter();
+        constraints
+            .map(|row| {
+                let sizes = sizes.iter().copied().chain(std::iter::repeat(0.0));
+                let entries = row.gradient.iter().zip(accelerations).zip(sizes);
+                let addends = entries.map(|((entry, a), size)| {
+                    Conditioned::new(entry.value * a, entry.magnitude * size.max(a.abs()))
+                });
+                residual(addends.chain([row.right * -1.0]))
+            })
+            .collect()
+    }
+
+    fn rows_of_degrees(
+        &self,
+        accelerations: &[f64],
+        reactions: &[Vec<Conditioned>],
+    ) -> Vec<Residual> {
         (0..self.size())
             .map(|row| {
                 let masses = self.mass.row(row);
@@ -193,7 +324,7 @@ impl Equations {
                 });
                 let terms = self.terms.iter();
                 let terms = terms.map(|t| Conditioned::new(t.rows[row], t.magnitudes[row]));
-                residual(inertia.chain(terms))
+                residual(inertia.chain(terms).chain(reactions[row].iter().copied()))
             })
             .collect()
     }
@@ -206,6 +337,7 @@ impl Equations {
         }
         self.residuals(unknowns)
             .iter()
+            .chain(&self.rows_of_constraints(unknowns))
             .map(Residual::relative)
             .fold(0.0, f64::max)
     }
@@ -240,6 +372,24 @@ impl Equations {
             })
             .fold(0.0, f64::max)
     }
+}
+
+/// The factors that scale rows and columns of a positive definite matrix to a unit diagonal, and
+/// the matrix so scaled.
+fn scaled(matrix: &DMatrix<f64>) -> (DVector<f64>, DMatrix<f64>) {
+    let scale = matrix.diagonal().map(|entry| entry.sqrt().recip());
+    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |row, column| {
+        scale[row] * matrix[(row, column)] * scale[column]
+    });
+    (scale, scaled)
+}
+
+/// Whether the pivots of a matrix scaled to a unit diagonal are positive, and not by rounding alone.
+fn has_pivots(scaled: &DMatrix<f64>) -> bool {
+    Cholesky::new(scaled.clone()).is_some_and(|factor| {
+        let pivots = factor.l_dirty().diagonal();
+        pivots.iter().all(|pivot| pivot * pivot > SMALLEST_PIVOT)
+    })
 }
 
 /// The sum of a row and its largest magnitude. The sum is compensated (Neumaier), so what
@@ -284,6 +434,7 @@ mod tests {
                 vec![(-3.0).into(), 1.0.into()],
             )],
             state_rates: Vec::new(),
+            constraints: Vec::new(),
         }
     }
 

@@ -188,6 +188,10 @@ impl<'s> Pass<'s> {
                 let rates = (*rate, *second);
                 N::of(self.scene.prescribed(*input, rates, self.directions))
             }
+            Tree::Multiplier(index) => {
+                let known = self.scene.multipliers.get(*index).copied();
+                N::of(Motion::still(known.unwrap_or_else(|| f64::NAN.into())))
+            }
             Tree::State(index) => N::state(self, *index),
             Tree::StateRate(index) => self.state_rate(*index, frame),
             Tree::Field { leaf, set } => {

@@ -163,6 +163,11 @@ impl<'m> Lowering<'m> {
             ExprKind::Coordinate(index) => Tree::Coordinate(index.index()),
             ExprKind::Input(index) => self.input(index.index()),
             ExprKind::State(index) => Tree::State(index.index()),
+            ExprKind::Multiplier(index) => Tree::Multiplier(index.index()),
+            ExprKind::Residual(index) => {
+                let known = self.system.residuals.get(index.index()).cloned();
+                known.ok_or_else(|| self.misplaced())?
+            }
             ExprKind::Definition(index) => match self.system.definitions.get(index.index()) {
                 Some(Tree::Constant(value)) => Tree::Constant(*value),
                 _ => Tree::Definition(index.index()),

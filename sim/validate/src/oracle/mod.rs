@@ -20,6 +20,7 @@
 //! the motion with the rates held).
 
 mod conditioned;
+mod constraints;
 mod double_double;
 mod energy;
 mod equations;
@@ -48,6 +49,7 @@ pub use equations::{Equations, Residual, RowTerm, RowTermKind};
 pub use error::OracleError;
 pub use switches::{Side, Switch, SwitchValue};
 
+use constraints::{LoweredConstraint, lower_constraints, stabilisation_rate};
 use eomgen_model_spec::evaluate::evaluate as evaluate_constant;
 use eomgen_model_spec::model::{Expr, Model, Range};
 use evaluate::Pass;
@@ -76,6 +78,8 @@ pub struct Oracle {
     forces: Vec<LoweredForce>,
     switches: Vec<Switch>,
     observables: Vec<Option<Tree>>,
+    constraints: Vec<LoweredConstraint>,
+    stabilisation_rate: f64,
 }
 
 impl Oracle {
@@ -94,6 +98,7 @@ impl Oracle {
         for force in &model.forces {
             forces.extend(lower_force(&mut lowering, force)?);
         }
+        let constraints = lower_constraints(&mut lowering, model)?;
         let observables = lower_observables(&mut lowering, model);
         if let Some(term) = kinetic.iter().find(|term| term.dependence.input) {
             return Err(OracleError::InputRate(term.name.clone()));
@@ -114,6 +119,8 @@ impl Oracle {
             forces,
             switches: Vec::new(),
             observables,
+            constraints,
+            stabilisation_rate: stabilisation_rate(model, parameters),
         };
         oracle.switches = switches::find(&oracle, model);
         Ok(oracle)
@@ -256,6 +263,9 @@ impl Oracle {
             mass_magnitude,
             terms,
             state_rates: self.state_rates(scene),
+            constraints: (self.constraints.iter())
+                .map(|constraint| constraint.row(scene, self.stabilisation_rate))
+                .collect(),
         }
     }
 

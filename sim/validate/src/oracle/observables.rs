@@ -28,7 +28,8 @@ impl Oracle {
         state: &[f64],
         inputs: &[f64],
     ) -> Result<Vec<Conditioned>, OracleError> {
-        let scene = self.scene(time, state, None, inputs)?;
+        let mut scene = self.scene(time, state, None, inputs)?;
+        scene.multipliers = self.multipliers(&scene);
         let pass = Pass::new(&scene, Direction::Still, Direction::Still);
         let value = |tree: &Option<Tree>| match tree {
             Some(tree) => pass.value(tree).re,

@@ -2,6 +2,7 @@
 //! differentiated there. Field values at all places are formed once per state: w is
 //! linear in the modes, so neither w nor its rate depends on the row under test.
 
+use super::conditioned::Conditioned;
 use super::evaluate::Number;
 use super::integrals::IntegralTable;
 use super::switches::Imposed;
@@ -39,6 +40,15 @@ pub(super) struct Motion {
 }
 
 impl Motion {
+    /// A value that changes in no direction.
+    pub fn still(value: Conditioned) -> Self {
+        let zero = Conditioned::default();
+        Self {
+            value: Number::new(value, zero, zero, zero),
+            rate: Number::new(zero, zero, zero, zero),
+        }
+    }
+
     /// A value with its rate, and how fast each changes in two directions.
     pub fn new((value, rate): (f64, f64), [first, second]: [(f64, f64); 2]) -> Self {
         let number = |re: f64, first: f64, second: f64| {
@@ -71,6 +81,8 @@ pub(super) struct Scene<'s> {
     pub inputs: &'s [f64],
     /// Derivatives of integrals, formed when first asked for.
     pub integrals: Vec<IntegralTable>,
+    /// Multipliers of the constraints, where they are asked for.
+    pub multipliers: Vec<Conditioned>,
     /// Sides that piecewise functions take whatever the state says, if any.
     pub imposed: Option<Imposed<'s>>,
     position: &'s [f64],
@@ -97,6 +109,7 @@ impl<'s> Scene<'s> {
             time,
             inputs,
             integrals: Vec::new(),
+            multipliers: Vec::new(),
             imposed: None,
             position,
             rate,

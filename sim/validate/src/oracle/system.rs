@@ -17,6 +17,8 @@ pub(super) struct System {
     pub definitions: Vec<Tree>,
     /// Rates of states of first order in the order of the model, each addend by itself.
     pub state_rates: Vec<Vec<Tree>>,
+    /// What the expressions of constraints are, in the order of the model.
+    pub residuals: Vec<Tree>,
     /// What each definition depends on.
     pub dependences: Vec<Dependence>,
     /// The integrals whose derivatives are worth keeping for one state.

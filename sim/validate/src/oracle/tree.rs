@@ -42,6 +42,8 @@ pub(super) enum Tree {
     State(usize),
     /// The rate of a state of first order.
     StateRate(usize),
+    /// The multiplier of a constraint.
+    Multiplier(usize),
     /// A definition.
     Definition(usize),
     /// A field, or its derivative by the position, at the current place.
@@ -164,7 +166,8 @@ impl Tree {
     fn amend(&self, found: &mut Dependence, definitions: &[Dependence]) {
         match self {
             Self::PerMode { field, .. } => drop(found.indices.insert(*field)),
-            Self::Time => found.time = true,
+            // It changes with all that moves.
+            Self::Time | Self::Multiplier(_) => found.time = true,
             Self::Input(_) => found.input = true,
             Self::PrescribedInput { .. } => found.prescribed = true,
             Self::Position { .. } => found.position = true,

@@ -7,6 +7,7 @@
 //! missing.
 
 mod cart_two_arms;
+mod chaplygin_sleigh;
 mod crane;
 mod double_pendulum;
 mod emps;
@@ -67,6 +68,7 @@ impl std::error::Error for NotApplicable {}
 pub fn find(name: &str) -> Option<ClosedForm> {
     match name {
         "cart_two_arms" => Some(cart_two_arms::accelerations),
+        "chaplygin_sleigh" => Some(chaplygin_sleigh::accelerations),
         "crane" => Some(crane::accelerations),
         "double_pendulum" => Some(double_pendulum::accelerations),
         "emps" => Some(emps::accelerations),

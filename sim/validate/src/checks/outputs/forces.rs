@@ -18,8 +18,8 @@ pub(super) fn forces(
 ) {
     let mut compare = |name, accelerations: &[f64], found: Option<Vec<f64>>| {
         let Some(found) = found else { return };
-        let expected = equations.residuals(accelerations);
-        let rows_of_forces = expected.iter().take(equations.size());
+        let expected = equations.missing_forces(accelerations);
+        let rows_of_forces = expected.iter();
         let deviations = rows_of_forces.enumerate().map(|(row, expected)| {
             let found = found.get(row).copied().unwrap_or(f64::NAN);
             relative(found - expected.value, expected.scale)

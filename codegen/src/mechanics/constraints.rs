@@ -1,0 +1,117 @@
+//! Constraints: what stays zero, differentiated until accelerations appear. With lambda the forces of
+//! the constraints are A^T lambda, and the accelerations obey
+//!
+//! ```text
+//! M a + c = f + A^T lambda,    A a = b
+//! ```
+//!
+//! Holonomic, g(q, t) = 0: A = dg/dq, b = -(g'' without accelerations) - 2 w g' - w^2 g.
+//! Nonholonomic, h(q, q', t) = 0 and linear in the rates: A = dh/dq',
+//! b = -(h' without accelerations) - 2 w h. Where the residuals are zero w changes nothing; elsewhere
+//! they decay at the rate w (J. Baumgarte, Stabilization of constraints and integrals of motion in
+//! dynamical systems, Comp. Meth. Appl. Mech. Eng. 1, 1972), which is the parameter
+//! `stabilisation_rate`. How the system is solved is the business of `solve`.
+
+use eomgen_model_spec::ids::{ConstraintId, ParameterId};
+use eomgen_model_spec::model::{Constraint, STABILISATION_RATE};
+
+use crate::mechanics::lagrange::{GradientBy, Variables};
+use crate::mechanics::rows::RowNodes;
+use crate::mechanics::translate::{DeriveError, Derived, Translator, along_motion};
+use crate::symbolic::graph::{Dependence, Graph, NodeId, Operation};
+
+/// The rows A a = b.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Constraints {
+    /// The rows of A.
+    pub rows: Vec<RowNodes>,
+    /// b.
+    pub right: Vec<NodeId>,
+    /// What stays zero.
+    pub residuals: Vec<NodeId>,
+}
+
+impl Constraints {
+    pub(crate) fn derive(translator: &mut Translator, variables: &Variables) -> Derived<Self> {
+        let mut constraints = Self::default();
+        let model = translator.model;
+        let mut parameters = ParameterId::first(model.parameters.len()).zip(&model.parameters);
+        let rate = parameters.find(|(_, parameter)| parameter.name == STABILISATION_RATE);
+        let Some((rate, _)) = rate else {
+            return Ok(constraints);
+        };
+        let rate = translator.graph.intern(Operation::Parameter(rate));
+        for (id, constraint) in ConstraintId::first(model.constraints.len()).zip(&model.constraints)
+        {
+            let zero = translator.residual(id)?;
+            let (row, right) = match constraint.is_nonholonomic {
+                true => nonholonomic(&mut translator.graph, variables, zero, rate),
+                false => holonomic(&mut translator.graph, variables, zero, rate),
+            };
+            let moves = (row.nodes().iter())
+                .any(|entry| translator.graph.dependence(*entry).has(Dependence::RATE));
+            if moves {
+                return Err(not_linear(constraint));
+            }
+            constraints.rows.push(row);
+            constraints.right.push(right);
+            constraints.residuals.push(zero);
+        }
+        Ok(constraints)
+    }
+}
+
+fn holonomic(
+    graph: &mut Graph,
+    variables: &Variables,
+    zero: NodeId,
+    rate: NodeId,
+) -> (RowNodes, NodeId) {
+    let row = variables.gradient(graph, zero, GradientBy::Coordinates);
+    let first = along_motion(graph, zero);
+    let second = along_motion(graph, first);
+    let squared = graph.integer_power(rate, 2);
+    let damped = graph.multiply(rate, first);
+    let sprung = graph.multiply(squared, zero);
+    let right = graph.combine_flat(&[(-1.0, second), (-2.0, damped), (-1.0, sprung)]);
+    (row, right)
+}
+
+fn nonholonomic(
+    graph: &mut Graph,
+    variables: &Variables,
+    zero: NodeId,
+    rate: NodeId,
+) -> (RowNodes, NodeId) {
+    let row = variables.gradient(graph, zero, GradientBy::Rates);
+    let first = along_motion(graph, zero);
+    let damped = graph.multiply(rate, zero);
+    let right = graph.combine_flat(&[(-1.0, first), (-2.0, damped)]);
+    (row, right)
+}
+
+fn not_linear(constraint: &Constraint) -> DeriveError {
+    DeriveError {
+        span: constraint.zero.span,
+        message: format!(
+            "the constraint `{}` is not linear in the rates",
+            constraint.name
+        ),
+        help: Some("virtual displacements are known for constraints that are".into()),
+    }
+}
+
+/// The power of the constraints' forces, lambda A q': that of what moves them, and of residuals.
+pub(crate) fn reaction_power(
+    graph: &mut Graph,
+    variables: &Variables,
+    constraints: &Constraints,
+    multipliers: &[NodeId],
+) -> NodeId {
+    let mut terms = Vec::new();
+    for (row, multiplier) in constraints.rows.iter().zip(multipliers) {
+        let speed = variables.dot_rates(graph, row);
+        terms.push((1.0, graph.multiply(*multiplier, speed)));
+    }
+    graph.combine(&terms)
+}

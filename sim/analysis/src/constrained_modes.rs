@@ -1,0 +1,116 @@
+//! Natural modes of a linearised machine with constraints: those of the motions that they allow.
+//!
+//! With the constraints linearised too, C x = 0, and N an orthonormal basis of what they allow,
+//! x = N y moves by y' = N^T A N y (E. Eich-Soellner, C. Fuehrer, *Numerical Methods in Multibody
+//! Dynamics*, 2.6). The eigenvalue 0 is counted by null spaces, as in
+//! [`natural_modes`](crate::natural_modes).
+
+use nalgebra::{Complex, DMatrix, DVector, Schur};
+
+use crate::error::AnalysisError;
+use crate::natural_modes::{MOST_STEPS, NaturalMode, natural_modes, null_space, zero_eigenvalues};
+
+/// The natural modes of d(q, q', z)/dt = A (q, q', z) with so many degrees of freedom within the
+/// motions for which C (q, q', z) = 0, lowest frequency first; `matrix` and `held` are A and C row by
+/// row. An eigenvalue that is one several times is listed with the shapes it has.
+///
+/// # Errors
+/// As [`natural_modes`].
+pub fn constrained_modes(
+    matrix: &[f64],
+    held: &[f64],
+    degrees: usize,
+) -> Result<Vec<NaturalMode>, AnalysisError> {
+    let states = matrix.len().isqrt();
+    if held.is_empty() || states == 0 {
+        return natural_modes(matrix, degrees);
+    }
+    if states * states != matrix.len() || !held.len().is_multiple_of(states) {
+        let (expected, given) = (states * states, matrix.len());
+        return Err(AnalysisError::Lengths { expected, given });
+    }
+    let all = matrix.iter().chain(held);
+    if let Some(sample) = all.clone().position(|entry| !entry.is_finite()) {
+        return Err(AnalysisError::NotFinite { sample });
+    }
+    let mut held = DMatrix::from_row_slice(held.len() / states, states, held);
+    for mut row in held.row_iter_mut() {
+        let size = row.amax();
+        if size > 0.0 {
+            row /= size;
+        }
+    }
+    let allowed = null_space(&(held.transpose() * held));
+    let reduced = allowed.transpose() * DMatrix::from_row_slice(states, states, matrix) * &allowed;
+    let schur = Schur::try_new(reduced.clone(), f64::EPSILON, MOST_STEPS * states.max(1));
+    let schur = schur.ok_or(AnalysisError::NotConverged)?;
+    let mut eigenvalues: Vec<Complex<f64>> = schur.complex_eigenvalues().iter().copied().collect();
+    eigenvalues.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+    let shape = |motion: DVector<Complex<f64>>| shape(&motion, degrees);
+    let complex = allowed.map(Complex::from);
+    let rigid = null_space(&reduced);
+    let mut modes: Vec<NaturalMode> = rigid
+        .column_iter()
+        .map(|motion| NaturalMode {
+            eigenvalue: 0.0.into(),
+            shape: shape(&complex * motion.map(Complex::from)),
+        })
+        .collect();
+    for eigenvalue in eigenvalues
+        .into_iter()
+        .skip(zero_eigenvalues(reduced.clone()))
+        .filter(|eigenvalue| eigenvalue.im >= 0.0)
+    {
+        let mut shifted = reduced.map(Complex::from);
+        for entry in 0..shifted.nrows() {
+            shifted[(entry, entry)] -= eigenvalue;
+        }
+        let Some(rows) = shifted.svd(false, true).v_t else {
+            return Err(AnalysisError::NotConverged);
+        };
+        let motion = rows.row(rows.nrows() - 1).adjoint();
+        modes.push(NaturalMode {
+            eigenvalue,
+            shape: shape(&complex * motion),
+        });
+    }
+    Ok(modes)
+}
+
+/// Coordinates and states of first order of a motion, the largest of the coordinates 1.
+fn shape(motion: &DVector<Complex<f64>>, degrees: usize) -> Vec<Complex<f64>> {
+    let coordinates = motion.iter().take(degrees);
+    let all: Vec<Complex<f64>> = coordinates
+        .chain(motion.iter().skip(2 * degrees))
+        .copied()
+        .collect();
+    let largest = |entries: &[Complex<f64>]| {
+        let largest = entries.iter().max_by(|a, b| a.norm().total_cmp(&b.norm()));
+        largest.copied().filter(|entry| entry.norm() > 0.0)
+    };
+    let unit = largest(&all[..degrees]).or_else(|| largest(&all));
+    all.iter()
+        .map(|entry| entry / unit.unwrap_or_else(|| 1.0.into()))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_masses_held_together_swing_as_one() {
+        // x_1'' = -9 x_1, x_2'' = 0 with x_1 = x_2 and equal masses: x'' = -4.5 x.
+        let a = [
+            [0.0, 0.0, 1.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+            [-4.5, 0.0, 0.0, 0.0],
+            [-4.5, 0.0, 0.0, 0.0],
+        ];
+        let held = [[1.0, -1.0, 0.0, 0.0], [0.0, 0.0, 1.0, -1.0]];
+        let modes = constrained_modes(a.as_flattened(), held.as_flattened(), 2).unwrap();
+        assert_eq!(modes.len(), 1);
+        assert!((modes[0].eigenvalue.im - 4.5_f64.sqrt()).abs() < 1e-12);
+        assert!((modes[0].shape[0] - modes[0].shape[1]).norm() < 1e-12);
+    }
+}

@@ -1,0 +1,366 @@
+//! Machines with constraints: motions against published figures and against the same machine in
+//! independent coordinates, drift, initial states, and what a mode costs beside a constraint.
+
+use std::cell::RefCell;
+use std::path::Path;
+
+use eomgen_analysis::constrained_modes::constrained_modes;
+use eomgen_codegen::program::evaluator::Point;
+use eomgen_compiled_model::{CompiledModel, Driven, Error, Orders, Solver};
+use eomgen_sim::ode::{Settings, simulate};
+
+const ROD: &str = r#"
+[model]
+name = "rod"
+
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 0.7, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+
+[coordinates]
+x = { unit = "m", initial = "l" }
+y = { unit = "m" }
+
+[kinetic]
+load = "1/2*m*(dot(x)^2 + dot(y)^2)"
+
+[potential]
+weight = "m*g*y"
+
+[constraints]
+rod = { zero = "x^2 + y^2 - l^2" }
+"#;
+
+fn compiled(text: &str) -> CompiledModel {
+    CompiledModel::of_text("constrained.toml", text, Orders::Declared)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn feature(name: &str, orders: Orders<'_>) -> CompiledModel {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/constrained");
+    CompiledModel::load(folder.join(format!("{name}.toml")), orders)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// `model` with another line in place of one of `ROD`.
+fn changed(line: &str, by: &str) -> CompiledModel {
+    assert!(ROD.contains(line));
+    compiled(&ROD.replace(line, by))
+}
+
+fn refusal(model: &CompiledModel) -> String {
+    let run = model.at_declared().unwrap();
+    let found = run.simulate(run.initial(), &[0.0, 0.1], &run.no_inputs(), Solver::Auto);
+    match found {
+        Err(Error::Request(reason)) => reason,
+        other => panic!("not refused: {other:?}"),
+    }
+}
+
+/// Seven bodies in three loops. The end is that of the Test Set for IVP Solvers.
+#[test]
+fn the_squeezing_mechanism_ends_where_it_is_published() {
+    let model = feature("squeezing_mechanism", Orders::Declared);
+    let run = model.at_declared().unwrap();
+    let published = [
+        15.81077119629904,
+        -15.75637105984298,
+        0.04082224013073101,
+        -0.5347301163226948,
+        0.5244099658805304,
+        0.5347301163226948,
+        1.048080741042263,
+    ];
+    for (solver, tolerance) in [(Solver::Rk, 2e-8), (Solver::Radau, 2e-6)] {
+        let motion = run
+            .simulate(run.initial(), &[0.0, 0.03], &run.no_inputs(), solver)
+            .unwrap();
+        for (found, expected) in motion.trajectory.states[1].iter().zip(published) {
+            let error = (found - expected).abs() / expected.abs().max(1.0);
+            assert!(error < tolerance, "{solver}: {found} and {expected}");
+        }
+    }
+}
+
+#[test]
+fn a_rod_in_two_coordinates_swings_as_in_one_and_does_not_drift() {
+    let rod = compiled(ROD);
+    let angle = compiled(
+        &ROD.replace(
+            "x = { unit = \"m\", initial = \"l\" }",
+            "theta = { unit = \"rad\" }",
+        )
+        .replace("y = { unit = \"m\" }\n", "")
+        .replace(
+            "\n[kinetic]",
+            "\n[definitions]\nx = \"l*cos(theta)\"\ny = \"l*sin(theta)\"\n\n[kinetic]",
+        )
+        .replace("[constraints]\nrod = { zero = \"x^2 + y^2 - l^2\" }\n", ""),
+    );
+    let times: Vec<f64> = (0..=1000).map(|sample| 0.1 * f64::from(sample)).collect();
+    let motion = |model: &CompiledModel, solver| {
+        let run = model.at_declared().unwrap();
+        let motion = run
+            .simulate(run.initial(), &times, &run.no_inputs(), solver)
+            .unwrap();
+        let observables = run.observables(&motion).unwrap();
+        (motion.trajectory.states, observables)
+    };
+    let (expected, _) = motion(&angle, Solver::Rk);
+    for (solver, tolerance) in [(Solver::Rk, 2e-6), (Solver::Radau, 2e-4)] {
+        let (states, observables) = motion(&rod, solver);
+        let residual = rod
+            .observable_names()
+            .iter()
+            .position(|name| name == "residual_rod")
+            .unwrap();
+        let lambda = rod
+            .observable_names()
+            .iter()
+            .position(|name| name == "lambda_rod")
+            .unwrap();
+        for ((state, seen), angle) in states.iter().zip(&observables).zip(&expected) {
+            assert!(
+                seen[residual].abs() < 1e-10 * 0.49,
+                "{solver}: {}",
+                seen[residual]
+            );
+            let along = state[0] * state[2] + state[1] * state[3];
+            assert!(along.abs() < 1e-10, "{solver}: {along}");
+            let error = (state[0] - 0.7 * angle[0].cos()).abs();
+            assert!(error < tolerance, "{solver}: {error}");
+            // The rod's pull is 2 l lambda: m v^2/l and the weight along it.
+            let speed = state[2].powi(2) + state[3].powi(2);
+            let pull = 2.0 * speed / 0.7 - 2.0 * 9.81 * state[1] / 0.7;
+            assert!((pull + 2.0 * 0.7 * seen[lambda]).abs() < 1e-7, "{solver}");
+        }
+    }
+}
+
+#[test]
+fn initial_states_are_moved_onto_the_constraints_and_it_is_said() {
+    let model = changed(
+        "y = { unit = \"m\" }",
+        "y = { unit = \"m\", initial = 0.1, initial_rate = 2 }",
+    );
+    let run = model.at_declared().unwrap();
+    let motion = run
+        .simulate(run.initial(), &[0.0, 0.1], &run.no_inputs(), Solver::Auto)
+        .unwrap();
+    let start = &motion.trajectory.states[0];
+    assert!((start[0].hypot(start[1]) - 0.7).abs() < 1e-15);
+    assert!((start[0] * start[2] + start[1] * start[3]).abs() < 1e-14);
+    let names: Vec<&str> = motion
+        .moved
+        .iter()
+        .map(|moved| moved.name.as_str())
+        .collect();
+    assert_eq!(names, ["x", "y", "x_dot", "y_dot"]);
+    assert_eq!(
+        (motion.moved[1].from, motion.moved[1].unit.as_str()),
+        (0.1, "m")
+    );
+    // With equal masses it is the nearest point of the circle.
+    assert!((start[1] / start[0] - 0.1 / 0.7).abs() < 1e-3);
+}
+
+#[test]
+fn constraints_that_cannot_hold_are_named() {
+    let never = changed("x^2 + y^2 - l^2", "x^2 + y^2 + l^2");
+    assert!(
+        refusal(&never).contains("`rod` stays at"),
+        "{}",
+        refusal(&never)
+    );
+    let twice = "x^2 + y^2 - l^2\" }\nagain = { zero = \"2*x^2 + 2*y^2 - 2*l^2";
+    let redundant = refusal(&changed("x^2 + y^2 - l^2", twice));
+    assert!(
+        redundant.contains("`again` is redundant") && redundant.contains("`rod`"),
+        "{redundant}"
+    );
+    let flat = refusal(&changed("initial = \"l\"", "initial = 0"));
+    assert!(flat.contains("`rod` holds nothing"), "{flat}");
+}
+
+/// What runs emitted equations without projecting has to rely on the stabilisation.
+#[test]
+fn residuals_decay_at_the_rate_that_is_set() {
+    let model = compiled(ROD);
+    let run = model.with(&[("stabilisation_rate", 20.0)]).unwrap();
+    let evaluator = RefCell::new(run.evaluator().unwrap());
+    let inputs = run.no_inputs();
+    let system = Driven::new(&evaluator, &inputs);
+    let start = [0.72, 0.0, 0.1, 0.0];
+    let residual = |state: &[f64]| state[0].powi(2) + state[1].powi(2) - 0.49;
+    let rate = |state: &[f64]| 2.0 * (state[0] * state[2] + state[1] * state[3]);
+    let times = [0.0, 0.1, 0.3];
+    let settings = Settings::with_tolerance(1e-11);
+    let found = simulate(&system, &start, (0.0, 0.3), &times, &settings, &mut |_| {}).unwrap();
+    for (t, state) in times.iter().zip(&found.states) {
+        // g'' + 2 w g' + w^2 g = 0
+        let (g, g_dot) = (residual(&start), rate(&start));
+        let expected = (g + (g_dot + 20.0 * g) * t) * (-20.0 * t).exp();
+        assert!(
+            (residual(state) - expected).abs() < 1e-9,
+            "at {t}: {}",
+            residual(state)
+        );
+    }
+}
+
+#[test]
+fn a_machine_at_rest_is_found_on_its_constraints() {
+    let model = changed("initial = \"l\"", "initial = 0.3");
+    let run = model.at_declared().unwrap();
+    let found = run.equilibrium(&[]).unwrap();
+    let [x, y, ..] = found.at.state[..] else {
+        panic!("{found:?}")
+    };
+    assert!(x.abs() < 1e-9 && (y.abs() - 0.7).abs() < 1e-9, "{x}, {y}");
+}
+
+#[test]
+fn a_rolling_disc_keeps_its_energy_and_a_sleigh_turns_straight() {
+    let model = feature("rolling_disc", Orders::Declared);
+    let run = model.at_declared().unwrap();
+    let times: Vec<f64> = (0..=50).map(f64::from).collect();
+    let motion = run
+        .simulate(run.initial(), &times, &run.no_inputs(), Solver::Auto)
+        .unwrap();
+    let observables = run.observables(&motion).unwrap();
+    let energies: Vec<f64> = observables.iter().map(|row| row[row.len() - 2]).collect();
+    for energy in &energies {
+        assert!(
+            (energy / energies[0] - 1.0).abs() < 1e-6,
+            "{energy} of {}",
+            energies[0]
+        );
+    }
+    let sleigh = compiled(eomgen_model_spec::models::CHAPLYGIN_SLEIGH.text);
+    let run = sleigh.at_declared().unwrap();
+    let motion = run
+        .simulate(run.initial(), &[0.0, 60.0], &run.no_inputs(), Solver::Auto)
+        .unwrap();
+    let (first, last) = (&motion.trajectory.states[0], &motion.trajectory.states[1]);
+    // All energy ends in the motion along the edge: m v^2 = m (x'^2 + y'^2) + J theta'^2.
+    let energy = 2.0 * (first[3].powi(2) + first[4].powi(2)) + 0.12 * first[5].powi(2);
+    assert!(last[5].abs() < 1e-9, "{}", last[5]);
+    assert!((last[3].hypot(last[4]) - (energy / 2.0).sqrt()).abs() < 1e-7);
+}
+
+/// Constraints on a field's end cost a mode a few operations: those of the shape through which the
+/// loop closes, as an end mass would.
+#[test]
+fn a_mode_costs_what_it_costs_without_constraints() {
+    let per_mode = |constrained: bool| {
+        let operations = |order: usize| {
+            let mut text = feature_text("flexible_coupler");
+            if !constrained {
+                let (start, end) = (
+                    text.find("[constraints]").unwrap(),
+                    text.find("[observables]").unwrap(),
+                );
+                text.truncate(end.min(start));
+            }
+            let model = CompiledModel::of_text("coupler.toml", &text, Orders::All(order)).unwrap();
+            let program = model.program();
+            program.operations(&program.accelerations.all())
+        };
+        (operations(64) - operations(32)) as f64 / 32.0
+    };
+    let (with, without) = (per_mode(true), per_mode(false));
+    println!("{with} and {without} operations for a mode");
+    assert!(with <= without + 4.0, "{with} and {without}");
+}
+
+fn feature_text(name: &str) -> String {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/constrained");
+    std::fs::read_to_string(folder.join(format!("{name}.toml"))).unwrap()
+}
+
+/// The multipliers of the emitted equations are the forces: rows without them are what they add.
+#[test]
+fn multipliers_are_the_forces_in_the_joint() {
+    let model = feature("flexible_coupler", Orders::Declared);
+    let run = model.at_declared().unwrap();
+    let inputs = run.no_inputs();
+    let (state, _) = run.consistent(run.initial(), 0.0, &inputs).unwrap();
+    let mut evaluator = run.evaluator().unwrap();
+    let mut observables = vec![0.0; evaluator.program().observables.len()];
+    let inputs = &inputs.at(0.0);
+    let point = Point {
+        t: 0.0,
+        state: &state,
+        inputs,
+    };
+    evaluator.observables(point, &mut observables);
+    let names = model.observable_names();
+    let seen = |name: &str| observables[names.iter().position(|known| known == name).unwrap()];
+    let mut rates = vec![0.0; state.len()];
+    evaluator.rates(point, &mut rates);
+    // The rocker alone: J_3 gamma'' = l_3 (lambda_across sin(gamma) - lambda_along cos(gamma)).
+    let gamma = state[2];
+    let torque = 0.24 * (seen("lambda_across") * gamma.sin() - seen("lambda_along") * gamma.cos());
+    let degrees = state.len() / 2;
+    assert!((2e-3 * rates[degrees + 2] - torque).abs() < 1e-10 * torque.abs());
+    assert!(seen("pull") > 0.0);
+}
+
+#[test]
+fn a_constraint_that_is_not_linear_in_the_rates_is_refused_with_its_place() {
+    let text = ROD.replace("x^2 + y^2 - l^2", "dot(x)^2 - dot(y)^2");
+    let found = CompiledModel::of_text("rod.toml", &text, Orders::Declared);
+    let message = found
+        .err()
+        .map(|error| error.to_string())
+        .unwrap_or_default();
+    assert!(message.contains("not linear in the rates"), "{message}");
+}
+
+/// Meijaard, Papadopoulos, Ruina and Schwab 2007, Table 2: weave, capsize and castering over speed.
+#[test]
+fn the_bicycle_has_the_published_eigenvalues() {
+    let model = feature("bicycle", Orders::Declared);
+    let published: [(f64, [(f64, f64); 3]); 2] = [
+        (
+            5.0,
+            [
+                (-0.775_341_882_195_85, 4.464_867_713_788_23),
+                (-0.322_866_429_004_09, 0.0),
+                (-14.078_389_692_798_22, 0.0),
+            ],
+        ),
+        (
+            0.0,
+            [
+                (3.131_643_247_906_56, 0.0),
+                (5.530_943_717_653_93, 0.0),
+                (-3.131_643_247_906_56, 0.0),
+            ],
+        ),
+    ];
+    for (speed, expected) in published {
+        let run = model.with(&[("v", speed)]).unwrap();
+        let (state, moved) = run
+            .consistent(run.initial(), 0.0, &run.no_inputs())
+            .unwrap();
+        assert!(moved.is_empty(), "{moved:?}");
+        let point = Point {
+            t: 0.0,
+            state: &state,
+            inputs: &[],
+        };
+        let linear = run.linearise(point).unwrap();
+        let degrees = state.len() / 2;
+        let modes = constrained_modes(&linear.a, &linear.held(&model), degrees).unwrap();
+        for (re, im) in expected {
+            let near = modes
+                .iter()
+                .map(|mode| (mode.eigenvalue.re - re).hypot(mode.eigenvalue.im - im));
+            let near = near.fold(f64::INFINITY, f64::min);
+            let all: Vec<_> = modes.iter().map(|mode| mode.eigenvalue).collect();
+            assert!(near < 1e-9, "{speed} m/s, {re} {im}: {near:e} of {all:?}");
+        }
+    }
+}
