@@ -7,7 +7,7 @@
 //! on `legendre` nodes with `shapes`), `scene` (a state and directions in it),
 //! `evaluate` (any number type, with `functions`; [`Conditioned`] numbers tell how far they
 //! can be known), `integrals` (what all rows share),
-//! `terms` (rows of one named term), [`Oracle`] (all rows), `energy` (energies and powers), `observables`,
+//! `terms` (rows of one named term), `constraints` (what stays zero), [`Oracle`] (all rows), `energy` (energies and powers), `observables`,
 //! `switches` (where piecewise functions change side).
 //!
 //! The rows: with L = T - V, for every generalised coordinate j
@@ -16,7 +16,8 @@
 //! d/dt dT/dq_j' - dT/dq_j + dV/dq_j + dR/dq_j' - sum of value * d(on)/dq_j = 0
 //! ```
 //!
-//! and for every state of first order z' - rate = 0, where d/dt dT/dq_j' = sum over k of M_jk q_k'' + (the derivative of dT/dq_j' along
+//! less A^T lambda of the constraints, for which A q'' = b, and for every state of first order
+//! z' - rate = 0, where d/dt dT/dq_j' = sum over k of M_jk q_k'' + (the derivative of dT/dq_j' along
 //! the motion with the rates held).
 
 mod conditioned;
