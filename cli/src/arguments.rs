@@ -70,7 +70,7 @@ pub enum Command {
     Discover(Discover),
     /// Measure the motion over a grid of parameters.
     #[command(
-        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary k=10:1e5:50:log --measure max:tip,rms:tip --until 2 --out DIR\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR --engine slurm --shards 100\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
+        after_help = "Examples:\n  eomgen sweep model-spec/models/planetary_arm.toml --vary b_sp,b_pr=0:100e-6:50 --vary omega=10:60:50 --measure lyapunov,poincare --out map\n  eomgen sweep SPEC --vary b_sp,b_pr=0:100e-6:200 --vary omega=10:40:200 --measure poincare --out DIR --shard 2/3\n  eomgen sweep SPEC --vary k=10:1e5:50:log --measure max:tip,rms:tip --until 2 --out DIR\n  eomgen sweep SPEC --vary k=1:9:200 --measure poincare:y_dot --section x=0:up --until 500 --out DIR\n  eomgen sweep SPEC --vary omega=10:40:1000 --measure poincare --out DIR --engine slurm --shards 100\nA run that was interrupted goes on where it was. Shards may run one after the other or\nat once, in one folder or with their files in `parts` collected in one; then `eomgen merge DIR`."
     )]
     Sweep(Sweep),
     /// Put the shards of a sweep together; refuses where some are missing.
@@ -471,9 +471,10 @@ pub struct Sweep {
         required = true
     )]
     pub vary: Vec<String>,
-    /// What is measured: `lyapunov`, the largest Lyapunov exponent; `poincare`, the motion
-    /// once per forcing period; `max:NAME`, `rms:NAME`, `final:NAME`, a number of what an
-    /// observable, a coordinate or a rate does over time.
+    /// What is measured: `lyapunov`, the largest Lyapunov exponent; `poincare` or
+    /// `poincare:NAME`, the first or another coordinate or a rate once per forcing period, or
+    /// on `--section`; `max:NAME`, `rms:NAME`, `final:NAME`, a number of what an observable, a
+    /// coordinate or a rate does over time.
     #[arg(
         long,
         value_name = "NAME[,NAME...]",
@@ -499,9 +500,15 @@ pub struct Sweep {
     /// Forcing periods that are measured.
     #[arg(long, value_name = "PERIODS", default_value_t = 60)]
     pub periods: usize,
-    /// Time from the start that `max`, `rms` and `final` look at, in s, in place of forcing periods.
+    /// Time from the start that is looked at, in s, in place of forcing periods: `lyapunov`
+    /// measures its second half, a `--section` is looked for in all of it.
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub until: Option<f64>,
+    /// Where `poincare` looks in place of once per forcing period: where a coordinate or a
+    /// rate goes up through a value, or down with `:down`. --transient and --periods count
+    /// crossings then.
+    #[arg(long, value_name = "NAME=VALUE[:up|:down]")]
+    pub section: Option<String>,
     /// Compute part I of N only; `merge` puts the parts together.
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     pub shard: Option<String>,

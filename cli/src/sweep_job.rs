@@ -6,7 +6,7 @@ use eomgen_sweep::job::Plan;
 use eomgen_sweep::over_time::forms;
 use eomgen_sweep::parameters::columns;
 use eomgen_sweep::{
-    Axis, Grid, Job, Lyapunov, Measure, OverTime, Poincare, Span, SweepError, Window,
+    Axis, Grid, Job, Lyapunov, Measure, OverTime, Poincare, Section, Span, SweepError, Window,
 };
 
 use crate::arguments::Sweep;
@@ -15,7 +15,7 @@ use crate::model::{load, orders};
 use crate::settings::warn_of_inputs;
 
 /// What can be measured beside numbers of a course over time.
-const MEASURES: [&str; 2] = ["lyapunov", "poincare"];
+const MEASURES: [&str; 3] = ["lyapunov", "poincare", "poincare:NAME"];
 
 /// What the library refuses.
 pub fn refused(error: SweepError) -> Error {
@@ -82,25 +82,32 @@ pub fn measures<'a>(
         transient: options.transient,
         periods: options.periods,
     };
-    let frequency = &options.frequency;
+    let forcing = options.frequency.clone();
+    let section = match (&options.section, options.until) {
+        (None, _) => Section::Forcing(forcing.clone()),
+        (Some(event), Some(until)) => Section::Crossing {
+            event: event.clone(),
+            until,
+        },
+        (Some(event), None) => {
+            return Err(Error::input(format!(
+                "--section {event}: give --until as well, the time in s in which crossings are looked for"
+            )));
+        }
+    };
     let window = match options.until {
         Some(end) => Window::Until(end),
-        None => Window::Periods {
-            forcing: frequency.clone(),
-            span,
-        },
+        None => Window::Periods { forcing, span },
     };
     let measure = |name: &String| -> Result<Box<dyn Measure + 'a>> {
-        Ok(match name.as_str() {
-            "lyapunov" => Box::new(Lyapunov::new(model, frequency, span).map_err(refused)?),
-            "poincare" => {
-                Box::new(Poincare::new(model, frequency, span, lines == 1).map_err(refused)?)
-            }
-            _ => {
-                let measure = OverTime::new(model, name, &window);
-                Box::new(measure.ok_or_else(|| unknown(name))?.map_err(refused)?)
-            }
-        })
+        if name == "lyapunov" {
+            return Ok(Box::new(Lyapunov::new(model, &window).map_err(refused)?));
+        }
+        if let Some(measure) = Poincare::new(model, name, &section, span, lines == 1) {
+            return Ok(Box::new(measure.map_err(refused)?));
+        }
+        let measure = OverTime::new(model, name, &window).ok_or_else(|| unknown(name))?;
+        Ok(Box::new(measure.map_err(refused)?))
     };
     options.measure.iter().map(measure).collect()
 }

@@ -73,3 +73,4 @@ pub mod exponential;
 pub mod inputs;
 pub mod ode;
 pub mod piecewise_linear;
+pub mod variational;

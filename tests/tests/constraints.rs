@@ -364,3 +364,105 @@ fn the_bicycle_has_the_published_eigenvalues() {
         }
     }
 }
+
+/// A chain of masses on rods, in the plane: in places with rods as constraints, and in angles.
+fn chain(lengths: &[f64], masses: &[f64]) -> [String; 2] {
+    let count = lengths.len();
+    let parameters = (0..count).map(|i| {
+        let (l, m) = (lengths[i], masses[i]);
+        format!(
+            "l_{i} = {{ value = {l}, unit = \"m\" }}\nm_{i} = {{ value = {m}, unit = \"kg\" }}\n"
+        )
+    });
+    let head = format!(
+        "[model]\nname = \"chain\"\n\n[parameters]\ng = {{ value = 9.81, unit = \"m/s^2\" }}\n{}\n",
+        parameters.collect::<String>()
+    );
+    let each = |line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
+    let energies = format!(
+        "[kinetic]\n{}\n[potential]\n{}\n",
+        each(&|i| format!("m_{i} = \"1/2*m_{i}*(dot(x_{i})^2 + dot(y_{i})^2)\"\n")),
+        each(&|i| format!("m_{i} = \"m_{i}*g*y_{i}\"\n")),
+    );
+    let coordinates =
+        each(&|i| format!("x_{i} = {{ unit = \"m\" }}\ny_{i} = {{ unit = \"m\" }}\n"));
+    let before = |i: usize, of: &str| match i {
+        0 => String::new(),
+        _ => format!(" - {of}_{}", i - 1),
+    };
+    let rods = each(&|i| {
+        let (x, y) = (before(i, "x"), before(i, "y"));
+        format!("rod_{i} = {{ zero = \"(x_{i}{x})^2 + (y_{i}{y})^2 - l_{i}^2\" }}\n")
+    });
+    let places = format!("{head}[coordinates]\n{coordinates}\n{energies}[constraints]\n{rods}");
+    let angles = each(&|i| format!("a_{i} = {{ unit = \"rad\" }}\n"));
+    let plus = |i: usize, of: &str| match i {
+        0 => String::new(),
+        _ => format!("{of}_{} + ", i - 1),
+    };
+    let definitions = each(&|i| {
+        let (x, y) = (plus(i, "x"), plus(i, "y"));
+        format!("x_{i} = \"{x}l_{i}*cos(a_{i})\"\ny_{i} = \"{y}l_{i}*sin(a_{i})\"\n")
+    });
+    let angles = format!("{head}[coordinates]\n{angles}\n[definitions]\n{definitions}\n{energies}");
+    [places, angles]
+}
+
+/// Chains of random masses and rods in random motion: accelerations in places are those in angles.
+#[test]
+fn random_chains_move_in_places_as_in_angles() {
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut random = || {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for count in [1, 2, 3, 5, 8] {
+        let mut some = |low: f64, high: f64| -> Vec<f64> {
+            (0..count).map(|_| low + (high - low) * random()).collect()
+        };
+        let (lengths, masses) = (some(0.2, 2.0), some(0.1, 5.0));
+        let (angles, turns) = (some(-3.0, 3.0), some(-4.0, 4.0));
+        let [places, in_angles] = chain(&lengths, &masses);
+        let rates = |text: &str, state: &[f64]| {
+            let model = compiled(text);
+            let mut evaluator = model.at_declared().unwrap().evaluator().unwrap();
+            let mut rates = vec![0.0; state.len()];
+            let point = Point {
+                t: 0.0,
+                state,
+                inputs: &[],
+            };
+            evaluator.rates(point, &mut rates);
+            rates
+        };
+        let turned = rates(&in_angles, &[&angles[..], &turns].concat());
+        let (mut at, mut speed, mut expected) = (Vec::new(), Vec::new(), Vec::new());
+        let mut sums = [[0.0; 2]; 3];
+        for i in 0..count {
+            let (sine, cosine) = angles[i].sin_cos();
+            let (l, w, a) = (lengths[i], turns[i], turned[count + i]);
+            let own = [
+                [l * cosine, l * sine],
+                [-l * w * sine, l * w * cosine],
+                [
+                    -l * (a * sine + w * w * cosine),
+                    l * (a * cosine - w * w * sine),
+                ],
+            ];
+            for (sum, own) in sums.iter_mut().flatten().zip(own.as_flattened()) {
+                *sum += own;
+            }
+            at.extend(sums[0]);
+            speed.extend(sums[1]);
+            expected.extend(sums[2]);
+        }
+        let found = rates(&places, &[at, speed].concat());
+        let largest = expected.iter().fold(1.0_f64, |most, a| most.max(a.abs()));
+        for (found, expected) in found[2 * count..].iter().zip(&expected) {
+            let error = (found - expected).abs() / largest;
+            assert!(error < 1e-10, "{count} masses: {found} and {expected}");
+        }
+    }
+}

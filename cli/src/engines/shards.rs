@@ -46,6 +46,12 @@ impl Commands {
         add("--frequency", &options.frequency);
         add("--transient", &options.transient.to_string());
         add("--periods", &options.periods.to_string());
+        if let Some(until) = options.until {
+            add("--until", &format!("{until:?}"));
+        }
+        if let Some(section) = &options.section {
+            add("--section", section);
+        }
         let out = text(&folder)?;
         add("--out", &out);
         Ok(Self {

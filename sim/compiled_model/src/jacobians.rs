@@ -1,8 +1,9 @@
 //! Jacobians of a compiled model, computed as dense matrices. How they are derived is the business
 //! of `codegen`.
 
-use eomgen_codegen::program::Program;
 use eomgen_codegen::program::evaluator::{Evaluator, Point};
+use eomgen_codegen::program::{Op, Program, Variable};
+use eomgen_model_spec::ids::FieldId;
 use eomgen_model_spec::model::RESIDUAL;
 
 use crate::differentiated::Differentiated;
@@ -154,6 +155,36 @@ impl Instance<'_> {
         })
     }
 
+    /// Whether any rate, or any switching function, depends on each state. The angle of a rotation
+    /// that nothing restrains is one that none feels.
+    ///
+    /// # Errors
+    /// As [`Instance::jacobian_evaluator`].
+    pub fn felt_states(&self) -> Result<Vec<bool>, Error> {
+        let Differentiated { program, .. } = self.model().differentiated()?;
+        let mut felt = vec![false; program.states()];
+        if let Some(layout) = layout(program, Jacobian::RatesByState) {
+            for place in &layout.dense {
+                felt[place % layout.columns] = true;
+            }
+        }
+        let guards: Vec<_> = program.guards.iter().map(|guard| guard.value).collect();
+        for id in program.reachable(&guards) {
+            let (variable, count) = match program.value(id).op {
+                Op::Coordinate(index) => (Variable::Coordinate(index), 1),
+                Op::Rate(index) => (Variable::Rate(index), 1),
+                Op::ModeCoordinates(field) => {
+                    (Variable::ModeCoordinates(field), order(program, field))
+                }
+                Op::ModeRates(field) => (Variable::ModeRates(field), order(program, field)),
+                _ => continue,
+            };
+            let first = program.variable_place(variable);
+            felt[first..first + count].fill(true);
+        }
+        Ok(felt)
+    }
+
     /// The model linearised at a time (s) about a state and inputs, SI.
     ///
     /// # Errors
@@ -188,6 +219,11 @@ impl Instance<'_> {
             observables,
         })
     }
+}
+
+/// How many modes a field has.
+fn order(program: &Program, field: FieldId) -> usize {
+    program.fields[field.index()].order
 }
 
 /// Where a Jacobian's nonzeros stand; every program with Jacobians has all of them.

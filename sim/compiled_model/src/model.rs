@@ -194,6 +194,14 @@ impl CompiledModel {
         evaluator(&self.program, code.as_ref(), parameters)
     }
 
+    /// Derives the Jacobians, once, which are derived when they are first asked for.
+    ///
+    /// # Errors
+    /// What cannot be differentiated.
+    pub fn differentiate(&self) -> Result<(), Error> {
+        self.differentiated().map(|_| ())
+    }
+
     /// The program with Jacobians.
     pub(crate) fn differentiated(&self) -> Result<&Differentiated, Error> {
         let made = self

@@ -220,13 +220,15 @@ impl<S: System + ?Sized, M: Stepper> Driver<'_, S, M> {
             self.trajectory.work.trials += 1;
             self.watched.reset();
             // Relying on nothing: what a multistep method remembers holds on the near side only.
-            let point = M::single_step(self.watched, &start, window, self.settings.tolerance)?;
+            let tolerance = self.settings.tolerance;
+            let mut point = M::single_step(self.watched, &start, window, tolerance)?;
             if self.is_beyond(&point) {
+                self.watched
+                    .cross((start.t, &start.y), point.t, &mut point.y);
                 self.stepper.restart(point, length);
                 return self.accept(start.t);
             }
             if window > SHORTEST_CONTACT * length {
-                let tolerance = self.settings.tolerance;
                 let trials = &mut self.trajectory.work.trials;
                 if let Some(ahead) =
                     leapt_over::<S, M>(self.watched, &start, &point, tolerance, trials)?

@@ -45,6 +45,11 @@ pub trait System {
     fn next_breakpoint(&self, _t: f64) -> Option<f64> {
         None
     }
+
+    /// The motion has gone over a switching surface: `before` (time and state) is on its near
+    /// side, `t` and `y` are just beyond it. Changes in `y` what jumps there, as the distance to a
+    /// neighbouring motion does that is carried beside the motion.
+    fn cross(&self, _before: (f64, &[f64]), _t: f64, _y: &mut [f64]) {}
 }
 
 impl<S: System + ?Sized> System for &S {
@@ -78,6 +83,10 @@ impl<S: System + ?Sized> System for &S {
 
     fn next_breakpoint(&self, t: f64) -> Option<f64> {
         (**self).next_breakpoint(t)
+    }
+
+    fn cross(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
+        (**self).cross(before, t, y);
     }
 }
 

@@ -164,6 +164,12 @@ impl<'a, S: System + ?Sized> Watched<'a, S> {
         changed
     }
 
+    /// Has the system change what jumps between a point on the near side of a surface and one just
+    /// beyond it.
+    pub fn cross(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
+        self.system.cross(before, t, y);
+    }
+
     /// The state variable that changes fastest at `t` and `y`, in parts of its size.
     pub fn fastest(&self, t: f64, y: &[f64]) -> usize {
         let mut rates = vec![0.0; y.len()];

@@ -3,6 +3,7 @@
 use eomgen_compiled_model::{Cause, Error, Motion};
 use eomgen_sim::ode::SolveError;
 use eomgen_sim::piecewise_linear::ExactError;
+use eomgen_sim::variational::GrowthError;
 
 use crate::measure::Failure;
 
@@ -51,6 +52,16 @@ impl From<ExactError> for Failure {
             | ExactError::NotFinite
             | ExactError::NotPositiveDefinite
             | ExactError::NegativeHalfWidth => Self::Parameters,
+        }
+    }
+}
+
+impl From<GrowthError> for Failure {
+    fn from(error: GrowthError) -> Self {
+        match error {
+            GrowthError::Motion(error) => error.into(),
+            GrowthError::Together(_) => Self::Switching,
+            GrowthError::NoLength => Self::Undefined,
         }
     }
 }

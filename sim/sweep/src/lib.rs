@@ -2,22 +2,23 @@
 //! parallel, in parts that survive a kill and can be computed on several machines.
 //!
 //! The pipeline: [`grid`] (what is varied, [`parameters`] of the model), [`measure`] (what is
-//! measured; `forcing` is its period, [`span`] how long is looked; [`poincare`], [`lyapunov`] and [`over_time`] are
-//! measures), [`job`] (all of that as data, with a
+//! measured; `forcing` is its period, [`span`] and [`window`] say how long is looked; [`poincare`],
+//! [`lyapunov`] and [`over_time`] are measures), [`job`] (all of that as data, with a
 //! hash that names it), [`folder`] and `part` (the job and its finished chunks as files),
 //! [`shard`] (who computes which chunk), [`run`](mod@run) (computing them), [`merge`](mod@merge) (all chunks to one
 //! table). Messages and final files are the caller's.
 //!
 //! ```
 //! use eomgen_compiled_model::{CompiledModel, Orders};
-//! use eomgen_sweep::{Axis, Folder, Grid, Job, Lyapunov, Measure, Shard, Span, merge, run};
+//! use eomgen_sweep::{Axis, Folder, Grid, Job, Lyapunov, Measure, Shard, Span, Window, merge, run};
 //! use eomgen_sweep::{job::Plan, parameters};
 //!
 //! let shipped = eomgen_model_spec::models::PLANETARY_ARM;
 //! let model = CompiledModel::of_text("planetary_arm.toml", shipped.text, Orders::All(0))?;
 //! let grid = Grid::new(vec![Axis::parse("b_sp=10e-6:50e-6:3")?])?;
 //! let span = Span { transient: 2, periods: 20 };
-//! let measures: [Box<dyn Measure + '_>; 1] = [Box::new(Lyapunov::new(&model, "omega", span)?)];
+//! let window = Window::Periods { forcing: "omega".to_owned(), span };
+//! let measures: [Box<dyn Measure + '_>; 1] = [Box::new(Lyapunov::new(&model, &window)?)];
 //! let plan = Plan::new(
 //!     model.model().hash(),
 //!     &model.model().name,
@@ -59,6 +60,7 @@ pub mod poincare;
 pub mod run;
 pub mod shard;
 pub mod span;
+pub mod window;
 
 pub use error::SweepError;
 pub use folder::Folder;
@@ -67,8 +69,9 @@ pub use job::Job;
 pub use lyapunov::Lyapunov;
 pub use measure::{Column, Description, Failure, Measure, Worker};
 pub use merge::{Table, merge};
-pub use over_time::{OverTime, Window};
-pub use poincare::Poincare;
+pub use over_time::OverTime;
+pub use poincare::{Poincare, Section};
 pub use run::{Done, run};
 pub use shard::Shard;
 pub use span::Span;
+pub use window::Window;

@@ -1,69 +1,78 @@
-//! The measure `lyapunov`: how fast neighbouring motions part, with tangent vectors that are
-//! carried exactly. The numbers themselves come from [`eomgen_sim::piecewise_linear`].
+//! The measure `lyapunov`: how fast neighbouring motions part. A model that is linear between its
+//! switches has its tangent vector carried exactly by [`eomgen_sim::piecewise_linear`], any
+//! other by the variational equation, [`eomgen_sim::variational`].
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use super::error::SweepError;
-use super::forcing::{Frequency, frequency};
-use super::measure::{Column, Description, Failure, Measure, Worker};
-use super::span::Span;
+use crate::error::SweepError;
+use crate::measure::{Column, Description, Failure, Measure, Worker};
+use crate::window::{Times, Window};
 use eomgen_analysis::exponent::{FEWEST, mean_exponent};
-use eomgen_compiled_model::CompiledModel;
-use eomgen_sim::piecewise_linear::{ExactError, Lyapunov as Request};
+use eomgen_compiled_model::{CompiledModel, Driven, Instance};
+use eomgen_sim::ode::Settings;
+use eomgen_sim::piecewise_linear::Lyapunov as Request;
+use eomgen_sim::variational::{Growths, Stretches, growths};
 
-/// Measures a model at many parameter values that are linear between their switches.
+/// The relative tolerance of the general solver.
+const TOLERANCE: f64 = 1e-9;
+
+/// Measures a model at many parameter values.
 pub struct Lyapunov<'a> {
     model: &'a CompiledModel,
-    frequency: Frequency,
-    span: Span,
+    times: Times,
 }
 
 impl<'a> Lyapunov<'a> {
-    /// Measures over `span`, once per forcing period; `forcing` names the parameter that
-    /// is the angular frequency of the forcing.
+    /// Measures over a window: once per forcing period, or in stretches of the second half of a time.
     ///
     /// # Errors
-    /// A model that is not linear between its switches or has no such parameter, a span that
-    /// makes no sense.
-    pub fn new(model: &'a CompiledModel, forcing: &str, span: Span) -> Result<Self, SweepError> {
-        span.check("lyapunov", FEWEST)?;
-        if let Err(error) = model.piecewise_linear() {
-            return Err(SweepError::Request(refusal(error)));
+    /// A window that makes no sense, a model that cannot be differentiated.
+    pub fn new(model: &'a CompiledModel, window: &Window) -> Result<Self, SweepError> {
+        let times = Times::of(model.model(), window, "lyapunov", FEWEST)?;
+        if let Some(constraint) = model.model().constraints.first() {
+            return Err(SweepError::Request(format!(
+                "--measure lyapunov: the model has constraints (`{}`), and neighbouring motions that keep \
+                 them are not followed yet",
+                constraint.name
+            )));
         }
-        Ok(Self {
-            frequency: frequency(model.model(), forcing)?,
-            model,
-            span,
-        })
+        if model.piecewise_linear().is_err() {
+            let refused = |error| SweepError::Request(format!("--measure lyapunov: {error}"));
+            model.differentiate().map_err(refused)?;
+        }
+        Ok(Self { model, times })
     }
-}
 
-/// Why there are no exponents.
-fn refusal(error: &ExactError) -> String {
-    match error {
-        ExactError::NotLinear { formula } => format!(
-            "--measure lyapunov: the model is not linear between its switches: `{formula}`; \
-             exponents are measured only where tangent vectors can be carried exactly"
-        ),
-        other => format!("--measure lyapunov: {other}"),
+    /// What is said of the method, and options beside the window's.
+    fn method(&self) -> (&'static str, Vec<(String, String)>) {
+        if self.model.piecewise_linear().is_ok() {
+            return ("carried exactly", Vec::new());
+        }
+        let options = [
+            ("solver", "rk".to_owned()),
+            ("tolerance", format!("{TOLERANCE:?}")),
+        ];
+        let options = options.map(|(name, value)| (name.to_owned(), value));
+        ("that follows the variational equation", options.to_vec())
     }
 }
 
 impl Measure for Lyapunov<'_> {
     fn describe(&self) -> Description {
-        let option = |name: &str, value: String| (name.to_owned(), value);
         let column = |(name, unit, about): (&str, &str, &str)| Column::new(name, unit, about);
+        let (how, options) = self.method();
+        let when = match self.times {
+            Times::Until(_) => "over the second half of the time",
+            Times::Periods(..) => "once per forcing period",
+        };
         Description {
             name: "lyapunov".to_owned(),
-            about: "largest Lyapunov exponent of the motion from the specification's initial \
-                    state, by one tangent vector carried exactly and measured once per forcing \
-                    period"
-                .to_owned(),
-            options: BTreeMap::from([
-                option("frequency", self.frequency.name().to_owned()),
-                option("transient", self.span.transient.to_string()),
-                option("periods", self.span.periods.to_string()),
-            ]),
+            about: format!(
+                "largest Lyapunov exponent of the motion from the specification's initial state, by \
+                 one tangent vector {how} and measured {when}"
+            ),
+            options: BTreeMap::from_iter(self.times.options().into_iter().chain(options)),
             columns: [
                 ("lambda_1", "1/s", "largest Lyapunov exponent"),
                 (
@@ -92,24 +101,53 @@ impl Measure for Lyapunov<'_> {
 impl Worker for &Lyapunov<'_> {
     fn measure(&mut self, settings: &[(&str, f64)], out: &mut [f64]) -> Result<(), Failure> {
         let instance = self.model.with(settings)?;
-        let period = self.frequency.period(&instance)?;
-        let request = Request {
-            transient: self.span.transient as f64 * period,
-            interval: period,
-            intervals: self.span.periods,
-            exponents: 1,
+        let stretches = self.times.stretches(&instance)?;
+        let Growths { growths, switches } = match self.model.piecewise_linear() {
+            Ok(_) => exact(&instance, &stretches)?,
+            Err(_) => followed(&instance, &stretches)?,
         };
-        let mut propagator = instance.propagator()?;
-        let inputs = instance.no_inputs();
-        let growth = propagator.lyapunov(instance.initial(), 0.0, &inputs, &request)?;
-        let first = growth.growths.first().ok_or(Failure::Undefined)?;
-        let exponent = mean_exponent(first, period).map_err(|_| Failure::Undefined)?;
-        let whole = (self.span.transient + self.span.periods) as f64 * period;
-        let rate = growth.switches as f64 / whole;
+        let exponent =
+            mean_exponent(&growths, stretches.interval).map_err(|_| Failure::Undefined)?;
+        let whole = stretches.transient + stretches.intervals as f64 * stretches.interval;
+        let rate = switches as f64 / whole;
         let numbers = [exponent.value, exponent.standard_error, rate];
         for (place, number) in out.iter_mut().zip(numbers) {
             *place = number;
         }
         Ok(())
     }
+}
+
+/// The growth of a vector that is carried exactly.
+fn exact(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
+    let request = Request {
+        transient: stretches.transient,
+        interval: stretches.interval,
+        intervals: stretches.intervals,
+        exponents: 1,
+    };
+    let (mut propagator, inputs) = (instance.propagator()?, instance.no_inputs());
+    let growth = propagator.lyapunov(instance.initial(), 0.0, &inputs, &request)?;
+    Ok(Growths {
+        growths: growth
+            .growths
+            .into_iter()
+            .next()
+            .ok_or(Failure::Undefined)?,
+        switches: growth.switches,
+    })
+}
+
+/// The growth of a vector that follows the variational equation.
+fn followed(instance: &Instance<'_>, stretches: &Stretches) -> Result<Growths, Failure> {
+    let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
+    let system = Driven::new(&evaluator, &inputs).with_jacobian(instance.jacobian_evaluator()?);
+    let (felt, settings) = (instance.felt_states()?, Settings::with_tolerance(TOLERANCE));
+    Ok(growths(
+        &system,
+        instance.initial(),
+        &felt,
+        stretches,
+        &settings,
+    )?)
 }

@@ -9,9 +9,8 @@ use eomgen_model_spec::suggest::did_you_mean;
 
 use crate::error::SweepError;
 use crate::failure::of_motion;
-use crate::forcing::{Frequency, frequency};
 use crate::measure::{Column, Description, Failure, Measure, Worker};
-use crate::span::Span;
+use crate::window::{Times, Window};
 
 /// Samples are a thousandth of the time apart, as rows of `simulate` are.
 const SAMPLES: usize = 1000;
@@ -53,26 +52,6 @@ pub fn forms() -> impl Iterator<Item = String> {
     Statistic::ALL
         .into_iter()
         .map(|statistic| format!("{}:NAME", statistic.name()))
-}
-
-/// Which time is looked at.
-#[derive(Clone, Debug)]
-pub enum Window {
-    /// From t = 0 to this time, s.
-    Until(f64),
-    /// So many periods of a forcing after others.
-    Periods {
-        /// The parameter that is the angular frequency of the forcing.
-        forcing: String,
-        /// Which ones.
-        span: Span,
-    },
-}
-
-/// The window with its forcing looked up.
-enum Times {
-    Until(f64),
-    Periods(Frequency, Span),
 }
 
 /// What is looked at: its place among the states or the observables.
@@ -136,23 +115,7 @@ impl<'a> OverTime<'a> {
                 model.model().name
             )));
         };
-        let times = match window {
-            Window::Until(end) if *end > 0.0 && end.is_finite() => Times::Until(*end),
-            Window::Until(end) => {
-                return Err(SweepError::Request(format!(
-                    "--until {end:?}: expected a time in s above 0"
-                )));
-            }
-            Window::Periods { forcing, span } => {
-                span.check(&asked, 1)?;
-                let known = frequency(model.model(), forcing).map_err(|error| {
-                    SweepError::Request(format!(
-                        "--measure {asked}: {error}; or give --until, the time in s that is looked at"
-                    ))
-                })?;
-                Times::Periods(known, *span)
-            }
-        };
+        let times = Times::of(model.model(), window, &asked, 1)?;
         Ok(Self {
             model,
             statistic,
@@ -165,14 +128,7 @@ impl<'a> OverTime<'a> {
 
     /// The times of the samples, s: the start, and those that are looked at from the place given.
     fn times(&self, instance: &Instance<'_>) -> Result<(Vec<f64>, usize), Failure> {
-        let (begin, end) = match &self.times {
-            Times::Until(end) => (0.0, *end),
-            Times::Periods(frequency, span) => {
-                let period = frequency.period(instance)?;
-                let begin = span.transient as f64 * period;
-                (begin, begin + span.periods as f64 * period)
-            }
-        };
+        let (begin, end) = self.times.range(instance)?;
         let sample = |place: usize| match place {
             SAMPLES => end,
             _ => begin + (end - begin) * place as f64 / SAMPLES as f64,
@@ -202,19 +158,11 @@ impl<'a> OverTime<'a> {
 impl Measure for OverTime<'_> {
     fn describe(&self) -> Description {
         let option = |name: &str, value: String| (name.to_owned(), value);
-        let window = match &self.times {
-            Times::Until(end) => vec![option("until", format!("{end:?}"))],
-            Times::Periods(frequency, span) => vec![
-                option("frequency", frequency.name().to_owned()),
-                option("transient", span.transient.to_string()),
-                option("periods", span.periods.to_string()),
-            ],
-        };
         let asked = format!("{}:{}", self.statistic.name(), self.name);
         let about = format!("{} {}", self.statistic.about(), self.name);
         Description {
             about: format!("{about}, of {SAMPLES} samples and one"),
-            options: BTreeMap::from_iter(window.into_iter().chain([
+            options: BTreeMap::from_iter(self.times.options().into_iter().chain([
                 option("solver", Solver::Auto.name().to_owned()),
                 option("tolerance", format!("{TOLERANCE:?}")),
                 option("samples", (SAMPLES + 1).to_string()),

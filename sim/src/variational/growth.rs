@@ -1,0 +1,320 @@
+//! The growth of a tangent vector, from stretch to stretch.
+
+use super::beside::Beside;
+use crate::ode::{Settings, SolveError, System, Trajectory, simulate};
+
+/// Samples that say how large states are.
+const LOOKS: usize = 64;
+
+/// Within a stretch a vector is followed in pieces over which it shrinks by e^-4 at most, so that the
+/// solver's error, which is a part of the largest length, stays a small part of the last.
+const MOST_SHRINKAGE: f64 = 4.0;
+
+/// The most pieces of a stretch.
+const MOST_PIECES: u32 = 4096;
+
+/// How long and how often the growth is measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretches {
+    /// Time before anything is measured, s; the vector turns into place in its second half.
+    pub transient: f64,
+    /// Time between two measurements, s.
+    pub interval: f64,
+    /// How many measurements.
+    pub intervals: usize,
+}
+
+/// The growth of the tangent vector.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Growths {
+    /// ln |v_after| / |v_before| over every interval.
+    pub growths: Vec<f64>,
+    /// Switches over the whole time.
+    pub switches: u64,
+}
+
+/// Why a tangent vector could not be followed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GrowthError {
+    /// The motion could not be.
+    Motion(SolveError),
+    /// At this time, s, the motion goes over several switching surfaces together or touches one:
+    /// neighbouring motions do not stay neighbours there.
+    Together(f64),
+    /// The vector has shrunk to nothing or grown beyond all numbers.
+    NoLength,
+}
+
+impl From<SolveError> for GrowthError {
+    fn from(error: SolveError) -> Self {
+        Self::Motion(error)
+    }
+}
+
+/// The growth of the distance to a neighbour of the motion from `initial` at t = 0.
+///
+/// The system has to know its own Jacobian: differences reach over switching surfaces. `felt`: whether any rate or switching function depends on each state; the others, such as the
+/// angle of a rotation that nothing restrains, are left out of the length. `settings` limits all
+/// steps together.
+///
+/// # Errors
+/// A motion that cannot be followed, or whose neighbours do not stay neighbours; times that make no
+/// sense, no state that is felt.
+pub fn growths<S: System + ?Sized>(
+    system: &S,
+    initial: &[f64],
+    felt: &[bool],
+    stretches: &Stretches,
+    settings: &Settings,
+) -> Result<Growths, GrowthError> {
+    let Stretches {
+        transient,
+        interval,
+        intervals,
+    } = *stretches;
+    let problem = if !(transient >= 0.0 && interval > 0.0 && (transient + interval).is_finite()) {
+        Some("expected a transient of 0 s or more and an interval above 0 s")
+    } else if felt.len() != initial.len() || !felt.contains(&true) {
+        Some("no rate depends on any state")
+    } else {
+        None
+    };
+    if let Some(problem) = problem {
+        let problem = problem.to_owned();
+        return Err(SolveError::Request { problem }.into());
+    }
+    let mut carried = Carried::new(system, initial, felt, settings);
+    carried.settle(0.5 * transient)?;
+    let turns = (0.5 * transient / interval).ceil();
+    for turn in 1..=turns as usize {
+        carried.follow(0.5 * transient * (1.0 + turn as f64 / turns))?;
+    }
+    let growths = (1..=intervals).map(|index| carried.follow(transient + index as f64 * interval));
+    Ok(Growths {
+        growths: growths.collect::<Result<_, _>>()?,
+        switches: carried.switches,
+    })
+}
+
+/// A motion with a vector of length 1 beside it.
+struct Carried<'a, S: System + ?Sized> {
+    system: &'a S,
+    felt: &'a [bool],
+    settings: Settings,
+    t: f64,
+    y: Vec<f64>,
+    v: Vec<f64>,
+    /// How large each state has been.
+    sizes: Vec<f64>,
+    pieces: u32,
+    switches: u64,
+}
+
+impl<'a, S: System + ?Sized> Carried<'a, S> {
+    /// The first unit vector of what is felt, turned a little towards the others.
+    fn new(system: &'a S, initial: &[f64], felt: &'a [bool], settings: &Settings) -> Self {
+        let mut turned = std::iter::once(1.0).chain((2..).map(|k: u32| 0.1 / f64::from(k)));
+        let mut entry = |felt: &bool| {
+            if *felt {
+                turned.next().unwrap_or(0.0)
+            } else {
+                0.0
+            }
+        };
+        let mut carried = Self {
+            system,
+            felt,
+            settings: *settings,
+            t: 0.0,
+            y: initial.to_vec(),
+            v: felt.iter().map(&mut entry).collect(),
+            sizes: initial.iter().map(|y| y.abs()).collect(),
+            pieces: 1,
+            switches: 0,
+        };
+        let length = carried.length();
+        carried.v.iter_mut().for_each(|v| *v /= length);
+        carried
+    }
+
+    /// Follows the motion alone until `end`, s.
+    fn settle(&mut self, end: f64) -> Result<(), GrowthError> {
+        if end <= self.t {
+            return Ok(());
+        }
+        let samples: Vec<f64> = (0..=LOOKS)
+            .map(|look| end * look as f64 / LOOKS as f64)
+            .collect();
+        let span = (self.t, end);
+        let quiet = &mut |_: f64| {};
+        let motion = simulate(self.system, &self.y, span, &samples, &self.settings, quiet)?;
+        motion.states.iter().for_each(|state| self.note(state));
+        self.y = self.reckon(motion);
+        self.t = end;
+        Ok(())
+    }
+
+    /// Follows motion and vector until `end`, s, and says by which exponent the vector has grown.
+    fn follow(&mut self, end: f64) -> Result<f64, GrowthError> {
+        let (begin, mut growth, mut least) = (self.t, 0.0, 0.0_f64);
+        for piece in 1..=self.pieces {
+            let until = match piece == self.pieces {
+                true => end,
+                false => begin + (end - begin) * f64::from(piece) / f64::from(self.pieces),
+            };
+            let grown = self.piece(until)?;
+            least = least.min(grown);
+            growth += grown;
+        }
+        let finer = (-least / MOST_SHRINKAGE).ceil().max(1.0) as u32;
+        self.pieces = self.pieces.saturating_mul(finer).min(MOST_PIECES);
+        Ok(growth)
+    }
+
+    fn piece(&mut self, end: f64) -> Result<f64, GrowthError> {
+        if end <= self.t {
+            return Ok(0.0);
+        }
+        let states = self.y.len();
+        let beside = Beside::new(self.system, self.sizes.clone());
+        let (start, span) = ([&*self.y, &*self.v].concat(), (self.t, end));
+        let motion = simulate(&beside, &start, span, &[], &self.settings, &mut |_| {})?;
+        if let Some(t) = beside.together() {
+            return Err(GrowthError::Together(t));
+        }
+        let mut last = self.reckon(motion);
+        self.v = last.split_off(states);
+        self.note(&last);
+        self.y = last;
+        self.t = end;
+        for (v, felt) in self.v.iter_mut().zip(self.felt) {
+            *v = if *felt { *v } else { 0.0 };
+        }
+        let length = self.length();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(GrowthError::NoLength);
+        }
+        self.v.iter_mut().for_each(|v| *v /= length);
+        Ok(length.ln())
+    }
+
+    fn length(&self) -> f64 {
+        self.v.iter().map(|v| v * v).sum::<f64>().sqrt()
+    }
+
+    fn note(&mut self, state: &[f64]) {
+        for (size, y) in self.sizes.iter_mut().zip(state) {
+            *size = size.max(y.abs());
+        }
+    }
+
+    /// Counts what a motion took; its last state.
+    fn reckon(&mut self, motion: Trajectory) -> Vec<f64> {
+        let work = motion.work;
+        let steps = work.steps + work.rejected + work.trials;
+        self.settings.max_steps = self.settings.max_steps.saturating_sub(steps);
+        self.switches += motion.switches.len() as u64;
+        motion.last
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// x'' = -x - c x' + cos(1.3 t), and a damper and a step of force where x > 0.2.
+    struct Struck {
+        c: f64,
+        damper: f64,
+        force: f64,
+    }
+
+    impl System for Struck {
+        fn states(&self) -> usize {
+            2
+        }
+
+        fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
+            let struck = if y[0] > 0.2 {
+                self.force + self.damper * y[1]
+            } else {
+                0.0
+            };
+            (out[0], out[1]) = (y[1], -y[0] - self.c * y[1] - struck + (1.3 * t).cos());
+        }
+
+        fn jacobian(&self, _t: f64, y: &[f64], out: &mut [f64]) {
+            let damper = if y[0] > 0.2 { self.damper } else { 0.0 };
+            out.copy_from_slice(&[0.0, 1.0, -1.0, -self.c - damper]);
+        }
+
+        fn guard_count(&self) -> usize {
+            1
+        }
+
+        fn guards(&self, _t: f64, y: &[f64], out: &mut [f64]) {
+            out[0] = y[0] - 0.2;
+        }
+    }
+
+    const FELT: [bool; 2] = [true; 2];
+
+    #[test]
+    fn a_linear_oscillator_has_minus_half_its_damping() -> Result<(), GrowthError> {
+        let system = Struck {
+            c: 0.3,
+            damper: 0.0,
+            force: 0.0,
+        };
+        let period = std::f64::consts::TAU / (1.0_f64 - 0.15 * 0.15).sqrt();
+        let stretches = Stretches {
+            transient: 2.0,
+            interval: period,
+            intervals: 5,
+        };
+        let settings = Settings::default();
+        let found = growths(&system, &[0.1, 0.0], &FELT, &stretches, &settings)?;
+        // A vector comes back to its direction after half a period of its own.
+        for growth in found.growths {
+            assert!((growth / period + 0.15).abs() < 1e-8, "{growth}");
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn a_jump_of_the_rates_takes_neighbours_as_two_motions_show() -> Result<(), GrowthError> {
+        for (damper, force) in [(2.0, 0.0), (0.0, 0.5), (-0.4, 0.3), (1.0, -0.2)] {
+            let system = Struck {
+                c: 0.1,
+                damper,
+                force,
+            };
+            let stretches = Stretches {
+                transient: 0.0,
+                interval: 10.0,
+                intervals: 1,
+            };
+            let settings = Settings::with_tolerance(1e-12);
+            let start = [0.1, 0.4];
+            let found = growths(&system, &start, &FELT, &stretches, &settings)?;
+            assert!(found.switches > 1, "{damper}");
+            let (small, norm) = (1e-6, 1.0_f64.hypot(0.05));
+            let end = |side: f64| {
+                let moved = [
+                    start[0] + side * small / norm,
+                    start[1] + side * 0.05 * small / norm,
+                ];
+                simulate(&system, &moved, (0.0, 10.0), &[], &settings, &mut |_| {})
+            };
+            let (above, below) = (end(1.0)?.last, end(-1.0)?.last);
+            let apart = f64::hypot(above[0] - below[0], above[1] - below[1]);
+            let growth = (apart / (2.0 * small)).ln();
+            let found = found.growths[0];
+            assert!(
+                (found - growth).abs() < 1e-5,
+                "{damper} {force}: {found} for {growth}"
+            );
+        }
+        Ok(())
+    }
+}

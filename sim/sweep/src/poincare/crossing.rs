@@ -1,0 +1,217 @@
+//! Sections by an event: a coordinate or a rate that goes through a value in one direction. The
+//! general solver locates it as it locates switches.
+
+use std::cell::RefCell;
+
+use eomgen_compiled_model::{CompiledModel, Instance};
+use eomgen_sim::ode::{Settings, SolveError, System, simulate};
+
+use super::quantity::place;
+use crate::error::SweepError;
+use crate::measure::Failure;
+
+/// The time is gone through in so many parts, so that it can end with the last crossing asked for.
+const PARTS: usize = 64;
+
+/// Samples in each part, for the extent of the motion.
+const LOOKS: usize = 64;
+
+/// A coordinate or a rate going through a value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Crossing {
+    name: String,
+    state: usize,
+    value: f64,
+    is_upwards: bool,
+}
+
+impl Crossing {
+    /// Reads `NAME=VALUE`, upwards, or with `:up` or `:down` behind it.
+    ///
+    /// # Errors
+    /// Says which part is wrong and what would be right.
+    pub fn parse(model: &CompiledModel, text: &str) -> Result<Self, SweepError> {
+        let refused = |reason: String| {
+            SweepError::Request(format!(
+                "--section {text}: {reason}; expected NAME=VALUE, NAME=VALUE:up or \
+                 NAME=VALUE:down, such as theta_dot=0:down"
+            ))
+        };
+        let (name, rest) = text
+            .split_once('=')
+            .ok_or_else(|| refused("no `=`".to_owned()))?;
+        let (value, is_upwards) = match rest.split_once(':') {
+            None => (rest, true),
+            Some((value, "up")) => (value, true),
+            Some((value, "down")) => (value, false),
+            Some((_, other)) => return Err(refused(format!("\"{other}\" is no direction"))),
+        };
+        let number: f64 = value
+            .trim()
+            .parse()
+            .map_err(|_| refused(format!("\"{value}\" is no number")))?;
+        if !number.is_finite() {
+            return Err(refused("the value must be finite".to_owned()));
+        }
+        let name = name.trim();
+        Ok(Self {
+            state: place(model, name).map_err(refused)?,
+            name: name.to_owned(),
+            value: number,
+            is_upwards,
+        })
+    }
+
+    /// Whether the motion goes through the value between two points, and at which part of the way.
+    fn between(&self, before: &[f64], after: &[f64]) -> Option<f64> {
+        let sign = if self.is_upwards { 1.0 } else { -1.0 };
+        let above = |y: &[f64]| sign * (y[self.state] - self.value);
+        let (from, to) = (above(before), above(after));
+        (from <= 0.0 && to > 0.0).then(|| -from / (to - from))
+    }
+}
+
+impl std::fmt::Display for Crossing {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let direction = if self.is_upwards { "up" } else { "down" };
+        write!(f, "{}={:?}:{direction}", self.name, self.value)
+    }
+}
+
+/// What was seen of a motion.
+pub struct Seen {
+    /// The times of the crossings, s.
+    pub times: Vec<f64>,
+    /// The states there.
+    pub points: Vec<Vec<f64>>,
+    /// States between, about from the first of them on.
+    pub between: Vec<Vec<f64>>,
+}
+
+/// The crossings of an instance's motion, so many after others.
+///
+/// # Errors
+/// A motion that cannot be followed, or that has fewer crossings until the time `until`, s.
+pub fn crossings(
+    instance: &Instance<'_>,
+    crossing: &Crossing,
+    (transient, kept): (usize, usize),
+    until: f64,
+    settings: &Settings,
+) -> Result<Seen, Failure> {
+    let (evaluator, inputs) = (RefCell::new(instance.evaluator()?), instance.no_inputs());
+    let watched = Watched {
+        system: instance.driven(&evaluator, &inputs)?,
+        crossing,
+        found: RefCell::default(),
+    };
+    let (initial, _) = instance.consistent(instance.initial(), 0.0, &inputs)?;
+    let between = watched.follow(&initial, until, (transient, kept), settings)?;
+    let found = watched.found.into_inner();
+    let mut seen = Seen {
+        times: Vec::with_capacity(kept),
+        points: Vec::with_capacity(kept),
+        between,
+    };
+    for (t, state) in found.into_iter().skip(transient).take(kept) {
+        seen.times.push(t);
+        seen.points.push(state);
+    }
+    if seen.points.len() < kept {
+        return Err(Failure::Undefined);
+    }
+    Ok(seen)
+}
+
+/// A system with the section as one more switching surface, and what was found there.
+struct Watched<'c, S> {
+    system: S,
+    crossing: &'c Crossing,
+    found: RefCell<Vec<(f64, Vec<f64>)>>,
+}
+
+impl<S: System> Watched<'_, S> {
+    /// Follows a motion until the last crossing is found or the time is over; the samples since the
+    /// first that counts.
+    fn follow(
+        &self,
+        initial: &[f64],
+        until: f64,
+        (transient, kept): (usize, usize),
+        settings: &Settings,
+    ) -> Result<Vec<Vec<f64>>, SolveError> {
+        let (mut state, mut between, mut settings) = (initial.to_vec(), Vec::new(), *settings);
+        let count = || self.found.borrow().len();
+        for part in 0..PARTS {
+            if count() >= transient + kept {
+                break;
+            }
+            let time = |share: f64| until * (part as f64 + share) / PARTS as f64;
+            let span = (time(0.0), time(1.0));
+            let samples: Vec<f64> = (0..=LOOKS)
+                .map(|look| match look {
+                    LOOKS => span.1,
+                    _ => time(look as f64 / LOOKS as f64),
+                })
+                .collect();
+            let motion = simulate(self, &state, span, &samples, &settings, &mut |_| {})?;
+            let work = motion.work;
+            let steps = work.steps + work.rejected + work.trials;
+            settings.max_steps = settings.max_steps.saturating_sub(steps);
+            if count() > transient {
+                between.extend(motion.states);
+            }
+            state = motion.last;
+        }
+        Ok(between)
+    }
+}
+
+impl<S: System> System for Watched<'_, S> {
+    fn states(&self) -> usize {
+        self.system.states()
+    }
+
+    fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        self.system.rates(t, y, out);
+    }
+
+    fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        self.system.jacobian(t, y, out);
+    }
+
+    fn guard_count(&self) -> usize {
+        self.system.guard_count() + 1
+    }
+
+    fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
+        let (section, others) = match out.split_last_mut() {
+            Some(split) => split,
+            None => return,
+        };
+        *section = y[self.crossing.state] - self.crossing.value;
+        self.system.guards(t, y, others);
+    }
+
+    fn indefinite(&self, t: f64, y: &[f64]) -> Option<usize> {
+        self.system.indefinite(t, y)
+    }
+
+    fn next_breakpoint(&self, t: f64) -> Option<f64> {
+        self.system.next_breakpoint(t)
+    }
+
+    fn project(&self, t: f64, y: &mut [f64]) -> u64 {
+        self.system.project(t, y)
+    }
+
+    fn cross(&self, (before, start): (f64, &[f64]), t: f64, y: &mut [f64]) {
+        if let Some(part) = self.crossing.between(start, y) {
+            let on = |from: f64, to: f64| from + part * (to - from);
+            let state = start.iter().zip(&*y).map(|(from, to)| on(*from, *to));
+            let point = (on(before, t), state.collect());
+            self.found.borrow_mut().push(point);
+        }
+        self.system.cross((before, start), t, y);
+    }
+}

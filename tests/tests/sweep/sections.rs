@@ -1,0 +1,165 @@
+//! `--measure poincare:NAME` and `--section`: any coordinate, and models without a forcing.
+
+use eomgen_tests::program::{accepted, refused};
+
+use crate::place::{Place, accept, column, table};
+
+/// x = sin(t) and y = cos(1.5 t): two oscillators that nothing couples and nothing drives.
+const TWO: &str = r#"
+[model]
+name = "two"
+[parameters]
+m = { value = 1, unit = "kg" }
+k = { value = 1, unit = "N/m" }
+c = { value = 2.25, unit = "N/m" }
+[coordinates]
+x = { unit = "m", initial_rate = 1 }
+y = { unit = "m", initial = 1 }
+[kinetic]
+both = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+both = "1/2*k*x^2 + 1/2*c*y^2"
+"#;
+
+fn of_two(place: &Place, more: &[&str]) -> Vec<String> {
+    std::fs::write(place.at("two.toml"), TWO).expect("a specification");
+    let (spec, out) = (place.at("two.toml"), place.at("two"));
+    let (spec, out) = (spec.display().to_string(), out.display().to_string());
+    let given = ["sweep", &spec, "--out", &out, "--vary", "m=1:1.5:2"];
+    given
+        .iter()
+        .chain(more)
+        .map(|part| (*part).to_owned())
+        .collect()
+}
+
+fn borrowed(arguments: &[String]) -> Vec<&str> {
+    arguments.iter().map(String::as_str).collect()
+}
+
+#[test]
+fn an_autonomous_model_is_seen_where_a_coordinate_goes_through_a_value() {
+    let place = Place::new();
+    let section = [
+        "--measure",
+        "poincare:y",
+        "--section",
+        "x=0:down",
+        "--until",
+        "200",
+    ];
+    let span = ["--transient", "3", "--periods", "12"];
+    accept(&of_two(&place, &[&section[..], &span].concat()));
+    let found = table(&place.at("two"));
+    let one = |name: &str| column(&found, name)[0];
+    // x goes down through 0 at t = pi (2 k + 1), where y = cos(1.5 pi (2 k + 1)) = 0.
+    assert!((one("poincare:y_time") - std::f64::consts::TAU).abs() < 1e-7);
+    for point in 1..=12 {
+        let y = one(&format!("poincare:y_{point}"));
+        assert!(y.abs() < 1e-6, "{point}: {y}");
+    }
+    // The rates there are 1.5 and -1.5 in turn.
+    assert_eq!(one("poincare:y_period"), 2.0);
+    assert_eq!(one("poincare:y_clusters"), 2.0);
+}
+
+#[test]
+fn upwards_is_another_section() {
+    let place = Place::new();
+    let section = [
+        "--measure",
+        "poincare:y",
+        "--section",
+        "x=0.5",
+        "--until",
+        "200",
+    ];
+    let span = ["--transient", "2", "--periods", "8"];
+    accept(&of_two(&place, &[&section[..], &span].concat()));
+    let found = table(&place.at("two"));
+    for point in 1..=8_u32 {
+        // sin(t) = 1/2, upwards: t = pi/6 + 2 pi k.
+        let t = std::f64::consts::PI / 6.0 + std::f64::consts::TAU * f64::from(point + 1);
+        let y = column(&found, &format!("poincare:y_{point}"))[0];
+        assert!((y - (1.5 * t).cos()).abs() < 1e-6, "{point}: {y}");
+    }
+}
+
+#[test]
+fn another_coordinate_is_seen_once_per_forcing_period() {
+    let place = Place::new();
+    let more = [
+        "--measure",
+        "poincare:x_dot",
+        "--vary",
+        "c=500:500:1",
+        "--transient",
+        "40",
+    ];
+    let spec = place.at("oscillator.toml").display().to_string();
+    let out = place.at("map").display().to_string();
+    let given = ["sweep", &spec, "--out", &out];
+    accepted(&[&given[..], &more, &["--periods", "4"]].concat());
+    // m = 1, k = 4, omega = 2: at resonance x = -F/(c omega) cos(omega t).
+    let found = table(&place.at("map"));
+    let rate = column(&found, "poincare:x_dot_mean")[0];
+    assert!(rate.abs() < 1e-9, "{rate}");
+}
+
+#[test]
+fn sections_that_make_no_sense_are_refused() {
+    let place = Place::new();
+    for (more, what) in [
+        (
+            &[
+                "--measure",
+                "poincare:z",
+                "--section",
+                "x=0",
+                "--until",
+                "9",
+            ][..],
+            "`z`",
+        ),
+        (
+            &["--measure", "poincare", "--section", "x", "--until", "9"],
+            "no `=`",
+        ),
+        (
+            &[
+                "--measure",
+                "poincare",
+                "--section",
+                "x=0:over",
+                "--until",
+                "9",
+            ],
+            "no direction",
+        ),
+        (
+            &[
+                "--measure",
+                "poincare",
+                "--section",
+                "x=NaN",
+                "--until",
+                "9",
+            ],
+            "finite",
+        ),
+        (
+            &["--measure", "poincare", "--section", "x=0"],
+            "--until as well",
+        ),
+        (
+            &["--measure", "poincare", "--section", "x=0", "--until", "-1"],
+            "above 0",
+        ),
+        (&["--measure", "poincare"], "--section NAME=VALUE"),
+    ] {
+        let arguments = of_two(&place, more);
+        let message = refused(&borrowed(&arguments));
+        assert!(message.contains(what), "{more:?}: {message}");
+        assert!(!place.at("two").exists());
+    }
+}
