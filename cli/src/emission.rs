@@ -47,9 +47,26 @@ pub fn files(
             let source = c::emit_casadi(program).map_err(refused)?;
             Ok(vec![text(format!("{name}_casadi.c"), source)])
         }
-        Target::Fmu2 => Ok(vec![fmu::file(model, variant, Version::Two)?]),
-        Target::Fmu3 => Ok(vec![fmu::file(model, variant, Version::Three)?]),
+        Target::Fmu2 | Target::Fmu3 => {
+            without_impacts(model, "a functional mock-up unit")?;
+            let version = match options.target {
+                Target::Fmu2 => Version::Two,
+                _ => Version::Three,
+            };
+            Ok(vec![fmu::file(model, variant, version)?])
+        }
     }
+}
+
+/// Refuses a model with impacts where nobody would make its rates jump.
+pub fn without_impacts(model: &Model, what: &str) -> Result<()> {
+    model.impacts.first().map_or(Ok(()), |impact| {
+        Err(Error::input(format!(
+            "the model has impacts (`{}`), which {what} does not follow: bodies would fall through each \
+             other; `eomgen simulate` follows them",
+            impact.name
+        )))
+    })
 }
 
 /// What has to be derived for what is asked for.

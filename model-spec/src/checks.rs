@@ -193,6 +193,10 @@ fn for_each_expression(model: &Model, see: &mut impl FnMut(&Expr)) {
     for constraint in &model.constraints {
         see(&constraint.zero);
     }
+    for impact in &model.impacts {
+        see(&impact.when);
+        see(&impact.restitution);
+    }
     for observable in &model.observables {
         see(&observable.value);
     }

@@ -6,7 +6,7 @@ use toml_edit::Document as Toml;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, quoted};
 use crate::entries::{
-    body, coefficient, constraint, coordinate, field, force, frame, input, line, name_of,
+    body, coefficient, constraint, coordinate, field, force, frame, impact, input, line, name_of,
     observable, parameter, point, sensor, state, term,
 };
 use crate::keys;
@@ -74,6 +74,7 @@ impl<'d> Reader<'d> {
             dissipation: self.collect("dissipation", term),
             forces: self.collect("forces", force),
             constraints: self.collect("constraints", constraint),
+            impacts: self.collect("impacts", impact),
             observables: self.collect("observables", observable),
             coefficients: self.collect("coefficients", coefficient),
             sensors: self.collect("sensors", sensor),

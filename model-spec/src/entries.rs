@@ -16,6 +16,7 @@ const COORDINATE_EXAMPLE: &str = "{ unit = \"rad\", initial = 0 }";
 const STATE_EXAMPLE: &str = "{ unit = \"N\", rate = \"(k*x - z)/tau\", initial = 0 }";
 const FORCE_EXAMPLE: &str = "{ on = \"theta\", value = \"-c*dot(theta)\" }";
 const CONSTRAINT_EXAMPLE: &str = "{ zero = \"x^2 + y^2 - l^2\" }";
+const IMPACT_EXAMPLE: &str = "{ when = \"y\", restitution = 0.8 }";
 const FRAME_EXAMPLE: &str = "{ in = \"link_1\", rotation = \"rotation_z(q_2)\" }";
 const BODY_EXAMPLE: &str = "{ frame = \"link_1\", mass = \"m_1\" }";
 const FIELD_EXAMPLE: &str = "{ along = \"x\", from = 0, to = \"l\", basis = \"clamped_free\", \
@@ -132,6 +133,23 @@ pub fn constraint(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<RawTerm>
         doc: record.text("doc", found),
         origin: record.text("source", found),
     })
+}
+
+/// An entry of `[impacts]` and its restitution.
+pub fn impact(entry: &Entry<'_>, found: &mut Diagnostics) -> Option<(RawTerm, Quantity)> {
+    let record = entry.record(&keys::IMPACT, IMPACT_EXAMPLE, found)?;
+    let help = "give the distance that falls through zero: when = \"y\"";
+    let when = record.require("when", help, found).map(Entry::quantity);
+    let help = "say what part of the speed comes back, from 0 to 1: restitution = 0.8";
+    let restitution = record.require("restitution", help, found);
+    let restitution = restitution.map(Entry::quantity);
+    let term = RawTerm {
+        name: entry.name.clone(),
+        value: found.keep(when?)?,
+        doc: record.text("doc", found),
+        origin: record.text("source", found),
+    };
+    Some((term, found.keep(restitution?)?))
 }
 
 /// A `[fields.NAME]`.

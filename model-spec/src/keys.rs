@@ -35,6 +35,8 @@ pub const TERM: [&str; 3] = ["value", "doc", "source"];
 pub const FORCE: [&str; 4] = ["on", "value", "doc", "source"];
 /// Keys of an entry of `[constraints]`.
 pub const CONSTRAINT: [&str; 3] = ["zero", "doc", "source"];
+/// Keys of an entry of `[impacts]`.
+pub const IMPACT: [&str; 4] = ["when", "restitution", "doc", "source"];
 /// Keys of an entry of `[observables]`.
 pub const OBSERVABLE: [&str; 4] = ["value", "unit", "doc", "source"];
 /// Keys of an entry of `[coefficients]`.
@@ -48,7 +50,7 @@ pub const DRAWING: [&str; 2] = ["points", "lines"];
 pub const POINT: [&str; 2] = ["x", "y"];
 
 /// The sections, each with the keys of its entries; of `[model]` and `[drawing]` their own.
-pub const SECTIONS: [(&str, &[&str]); 18] = [
+pub const SECTIONS: [(&str, &[&str]); 19] = [
     ("model", &MODEL),
     ("parameters", &PARAMETER),
     ("coordinates", &COORDINATE),
@@ -63,6 +65,7 @@ pub const SECTIONS: [(&str, &[&str]); 18] = [
     ("dissipation", &TERM),
     ("forces", &FORCE),
     ("constraints", &CONSTRAINT),
+    ("impacts", &IMPACT),
     ("observables", &OBSERVABLE),
     ("coefficients", &COEFFICIENT),
     ("sensors", &SENSOR),

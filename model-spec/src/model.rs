@@ -34,6 +34,9 @@ pub const RESIDUAL: &str = "residual_";
 /// The most constraints accepted: what they cost grows with the cube of their number.
 pub const MAX_CONSTRAINTS: usize = 100;
 
+/// The most impacts accepted: what they cost grows with the cube of their number.
+pub const MAX_IMPACTS: usize = 100;
+
 /// A mechanical system: parameters, coordinates and the terms of its Lagrangian.
 #[derive(Clone, Debug)]
 pub struct Model {
@@ -67,6 +70,8 @@ pub struct Model {
     pub forces: Vec<Force>,
     /// Expressions that stay zero.
     pub constraints: Vec<Constraint>,
+    /// Distances that do not fall below zero: bodies hit each other there.
+    pub impacts: Vec<Impact>,
     /// Quantities to be reported; of each constraint its multiplier and its residual, last.
     /// `energy` and `power` are added to these for every model and are not in this list.
     pub observables: Vec<Observable>,
@@ -365,6 +370,27 @@ pub struct Constraint {
     /// Whether it holds rates: its multiplier is then in W per unit of the expression, else in J.
     pub is_nonholonomic: bool,
     /// Its unit, inferred.
+    pub unit: Unit,
+    /// What it is.
+    pub doc: String,
+    /// Where it comes from.
+    pub origin: String,
+    /// Where its name stands.
+    pub span: Span,
+}
+
+/// A unilateral contact: a distance g(q, t) that does not fall below zero. Where it falls to zero the
+/// rates jump by M^-1 A^T P, A the distance's derivative by the coordinates and P an impulse that is
+/// not negative, so that its rate comes back as restitution times what it was (Newton).
+#[derive(Clone, Debug)]
+pub struct Impact {
+    /// ASCII name.
+    pub name: String,
+    /// The distance: of coordinates, prescribed motion and time.
+    pub when: Expr,
+    /// The part of its rate that comes back, from 0 to 1, of parameters.
+    pub restitution: Expr,
+    /// The distance's unit, inferred.
     pub unit: Unit,
     /// What it is.
     pub doc: String,

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::ids::{CoordinateId, FieldId, InputId, StateId};
-use crate::model::{Constraint, Expr, ExprKind, MAX_CONSTRAINTS, Model, Term};
+use crate::model::{Constraint, Expr, ExprKind, MAX_CONSTRAINTS, MAX_IMPACTS, Model, Term};
 use crate::rate_order::{WrittenOut, rate_order};
 use crate::span::Span;
 
@@ -77,6 +77,7 @@ fn check_expressions(model: &Model, found: &mut Diagnostics) -> Vec<bool> {
     checker.energies();
     checker.forces();
     let nonholonomic = checker.constraints();
+    checker.impacts();
     for observable in &model.observables {
         checker.motion_with_reactions(&observable.value);
     }
@@ -237,8 +238,7 @@ impl Checker<'_, '_> {
             };
             Some((place, why, help))
         } else if let Some(place) = motion.switch {
-            let help =
-                "a constraint is smooth; what touches and leaves is a stiff spring: max(0, p)";
+            let help = "a constraint is smooth; what touches and leaves stands in [impacts]";
             Some((place, "this switches", help))
         } else if motion.values.is_empty() && motion.rates.is_empty() {
             let help = "give an expression of coordinates, such as x^2 + y^2 - l^2";
@@ -254,6 +254,47 @@ impl Checker<'_, '_> {
             );
         }
         is_nonholonomic
+    }
+
+    /// Checks what may not fall below zero.
+    fn impacts(&mut self) {
+        let model = self.model;
+        if let Some(excess) = model.impacts.get(MAX_IMPACTS) {
+            self.found.push(
+                Diagnostic::error(format!("{} impacts are too many", model.impacts.len()))
+                    .at(excess.span, "one more than is taken")
+                    .help(format!("at most {MAX_IMPACTS} are taken")),
+            );
+            return;
+        }
+        for impact in &model.impacts {
+            let motion = self.motion(&impact.when);
+            let problem = if let Some(place) = motion.rate {
+                Some((place, "this is a rate", "give a distance"))
+            } else if let Some(place) = motion.state {
+                let help = "a distance is one of coordinates, prescribed motion and t";
+                Some((place, "this is a state", help))
+            } else if let Some((_, place)) = motion.input.filter(|(given, _)| *given < 2) {
+                let help =
+                    "its accelerations must be known: an input whose rates are given, rates = 2";
+                Some((place, "this is an input whose rates are not given", help))
+            } else if let Some(place) = motion.switch {
+                let help = "give each of the smooth distances an impact of its own";
+                Some((place, "this switches", help))
+            } else if motion.values.is_empty() {
+                let help = "give a distance between bodies, such as y, or x_2 - x_1 - d";
+                Some((impact.when.span, "this holds no coordinate", help))
+            } else {
+                None
+            };
+            if let Some((place, why, help)) = problem {
+                self.found.push(
+                    Diagnostic::error(format!("`{}` is no impact", impact.name))
+                        .at(place, why)
+                        .help(help),
+                );
+            }
+        }
     }
 
     /// How many rates of an input are given.

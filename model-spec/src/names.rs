@@ -222,6 +222,7 @@ impl Names {
             .chain(&document.potential)
             .chain(&document.dissipation);
         let terms = terms.chain(&document.constraints);
+        let terms = terms.chain(document.impacts.iter().map(|(term, _)| term));
         for term in terms.chain(document.forces.iter().map(|(term, _)| term)) {
             found.keep(word(&term.name));
         }

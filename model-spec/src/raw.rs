@@ -41,6 +41,8 @@ pub struct Document {
     pub forces: Vec<(RawTerm, Quantity)>,
     /// `[constraints]`
     pub constraints: Vec<RawTerm>,
+    /// `[impacts]`: each with its restitution.
+    pub impacts: Vec<(RawTerm, Quantity)>,
     /// `[observables]`: each with its declared unit.
     pub observables: Vec<(RawTerm, Option<Written>)>,
     /// `[coefficients]`

@@ -35,7 +35,11 @@ pub fn check(resolved: &mut Resolved, found: &mut Diagnostics) {
     }
     let observables = units.observables(&resolved.declared);
     let constraints: Vec<Unit> = units.constraints();
+    let impacts: Vec<Unit> = units.impacts();
     let definitions = units.known.definitions;
+    for (impact, unit) in resolved.model.impacts.iter_mut().zip(impacts) {
+        impact.unit = unit;
+    }
     for (constraint, unit) in resolved.model.constraints.iter_mut().zip(constraints) {
         constraint.unit = unit;
     }
@@ -203,6 +207,19 @@ impl Units<'_, '_> {
         let mut units = Vec::with_capacity(self.model.constraints.len());
         for constraint in &self.model.constraints {
             let inferred = self.known.infer(&constraint.zero);
+            let inferred = self.found.keep(inferred).flatten();
+            units.push(Unit::coherent(inferred.unwrap_or(Dimension::NONE)));
+        }
+        units
+    }
+
+    /// The unit of every distance; what comes back of a speed is a number.
+    fn impacts(&mut self) -> Vec<Unit> {
+        let mut units = Vec::with_capacity(self.model.impacts.len());
+        for impact in &self.model.impacts {
+            let subject = format!("the restitution of `{}`", impact.name);
+            self.expect_quantity(&impact.restitution, Dimension::NONE, &subject);
+            let inferred = self.known.infer(&impact.when);
             let inferred = self.found.keep(inferred).flatten();
             units.push(Unit::coherent(inferred.unwrap_or(Dimension::NONE)));
         }

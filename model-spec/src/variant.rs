@@ -291,6 +291,7 @@ impl Model {
                 check_range(&input.name, range, &values)?;
             }
         }
+        self.check_restitutions(&values)?;
         for field in &self.fields {
             let (from, to) = (evaluate(&field.from, &values), evaluate(&field.to, &values));
             let length = to - from;
@@ -299,6 +300,22 @@ impl Model {
                 return Err(ModelError::new(message)
                     .at(field.to.span)
                     .help("`to` is greater than `from`"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Model {
+    /// Whether every impact gives back a part of the speed.
+    fn check_restitutions(&self, parameters: &[f64]) -> Result<(), ModelError> {
+        for impact in &self.impacts {
+            let value = evaluate(&impact.restitution, parameters);
+            if !(0.0..=1.0).contains(&value) {
+                let message = format!("the restitution of `{}` is {value}", impact.name);
+                return Err(ModelError::new(message)
+                    .at(impact.restitution.span)
+                    .help("from 0, nothing comes back, to 1, all of the speed does"));
             }
         }
         Ok(())

@@ -83,6 +83,9 @@ features! {
         rolling_disc: [0];
         bicycle: [0];
         squeezing_mechanism: [0];
+        bouncing_ball: [0];
+        dropped_box: [0];
+        beam_stop: [0, 1, 4];
         rheonomic: [0, 1, 4];
         mass_of_time: [0];
         nonquadratic_kinetic: [0];
@@ -90,12 +93,13 @@ features! {
     }
 }
 
-/// The specifications of these tests, and the examples with constraints.
-fn folders() -> [PathBuf; 2] {
+/// The specifications of these tests, and the examples with constraints and impacts.
+fn folders() -> [PathBuf; 3] {
     let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
     [
         tests.join("tests/features"),
         tests.join("../examples/constrained"),
+        tests.join("../examples/impacts"),
     ]
 }
 

@@ -20,6 +20,7 @@ fn kind(model: &Model) -> String {
         Linearity::Linear => "linear".to_owned(),
         Linearity::PiecewiseLinear => "piecewise linear".to_owned(),
         Linearity::Constrained => "with constraints".to_owned(),
+        Linearity::Impacts => "with impacts".to_owned(),
         Linearity::Nonlinear(node) => written_out(&equations.graph, model, node).to_string(),
     }
 }

@@ -9,6 +9,7 @@ use crate::mechanics::coefficients::{NamedCoefficient, named};
 use crate::mechanics::constraints::{Constraints, reaction_power};
 use crate::mechanics::forces::{applied_forces, guards, power};
 use crate::mechanics::guard::Guard;
+use crate::mechanics::impacts::{Impact, impacts};
 use crate::mechanics::lagrange::{GradientBy, Variables};
 use crate::mechanics::mass_matrix::{MassMatrix, ModalMassBlock};
 use crate::mechanics::rows::RowNodes;
@@ -42,6 +43,8 @@ pub struct Equations {
     pub multipliers: Vec<NodeId>,
     /// The expressions of the constraints.
     pub residuals: Vec<NodeId>,
+    /// The impacts.
+    pub impacts: Vec<Impact<NodeId, RowNodes>>,
     /// The rates of the states of first order.
     pub state_rates: Vec<NodeId>,
     /// Power of all non-conservative forces, in W: d(T + V)/dt.
@@ -132,6 +135,12 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
     moving.extend(accelerations.rows.nodes());
     moving.extend(&state_rates);
     let guards = guards(&mut translator.graph, &moving);
+    let impacts = impacts(
+        &mut translator,
+        &variables,
+        (&mass, &constraints),
+        &accelerations.rows,
+    )?;
     let modal_blocks = mass.assembled_blocks(&mut translator.graph);
     let definitions = translator.definition_nodes();
     Ok(Equations {
@@ -147,6 +156,7 @@ pub fn derive(model: &Model, orders: &[usize]) -> Derived<Equations> {
         accelerations,
         multipliers,
         residuals: constraints.residuals,
+        impacts,
         state_rates,
         power,
         guards,

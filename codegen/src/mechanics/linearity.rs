@@ -21,6 +21,8 @@ pub enum Linearity {
     PiecewiseLinear,
     /// With constraints, whose multipliers are solved for with the accelerations: not read off here.
     Constrained,
+    /// With impacts, at which rates jump.
+    Impacts,
     /// Not linear because of this node, the first that is found.
     Nonlinear(NodeId),
 }
@@ -30,6 +32,9 @@ pub fn linearity(equations: &Equations) -> Linearity {
     let graph = &equations.graph;
     if !equations.multipliers.is_empty() {
         return Linearity::Constrained;
+    }
+    if !equations.impacts.is_empty() {
+        return Linearity::Impacts;
     }
     let mut degrees = Degrees {
         graph,

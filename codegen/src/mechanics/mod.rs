@@ -2,7 +2,7 @@
 //!
 //! `translate` with `fields` (expressions to nodes), `lagrange` and `forces` (the rows of
 //! Lagrange's equations, of `rows`, `mass_matrix` and `guard`s), `constraints` (what stays zero),
-//! `solve` (the accelerations),
+//! `solve` (the accelerations), `impacts` (what impulses do),
 //! `coefficients` (names as in Eq. (22)), `equations` (all of it), `outputs` (what is derived on
 //! request), `linearity` (whether a model is linear between its switches), `affine` (its
 //! coefficients then), `inertia` (whether all that moves has some).
@@ -14,6 +14,7 @@ pub mod equations;
 pub mod fields;
 mod forces;
 pub mod guard;
+pub mod impacts;
 pub(crate) mod inertia;
 mod lagrange;
 pub mod linearity;

@@ -1,6 +1,7 @@
 //! The program: its values, quantities, rows and blocks.
 
 use super::value::{Extent, Op, Value, ValueId};
+use crate::mechanics::impacts::Impact;
 use crate::mechanics::outputs::{Outputs, Products};
 use crate::symbolic::graph::Variable;
 use eomgen_model_spec::ids::FieldId;
@@ -114,6 +115,8 @@ pub struct Program {
     pub observable_values: Vec<ValueId>,
     /// Switching surfaces.
     pub guards: Vec<ProgramGuard>,
+    /// Impacts.
+    pub impacts: Vec<Impact<ValueId, RowValues>>,
     /// Prepared pivots, which must be positive for the accelerations to exist.
     pub pivots: Vec<ValueId>,
     /// Values of the coefficients the specification names.

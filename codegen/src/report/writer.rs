@@ -45,6 +45,10 @@ impl Writer<'_> {
                 ("Between its switching surfaces the model is linear", None)
             }
             Linearity::Constrained => ("The model has constraints", None),
+            Linearity::Impacts => (
+                "The model has impacts, between which this is how it moves",
+                None,
+            ),
             Linearity::Nonlinear(node) => {
                 ("The model is not linear", Some(self.reader.formula(node)))
             }

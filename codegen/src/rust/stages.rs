@@ -5,9 +5,7 @@ use super::generics::{generic, inlined};
 use super::literals::{doc, linked_doc};
 use super::signature::{Signature, stage_with};
 use super::types::literal;
-use crate::statements::{
-    Argument, Expression, File, ORDER, Outcome, Size, Stage, where_not_definite,
-};
+use crate::statements::{Argument, Expression, File, ORDER, Outcome, Size, Stage, where_they_end};
 
 /// The rates written to where the caller wants them, and the same returned: what is
 /// returned has to be filled with zeros first.
@@ -20,7 +18,7 @@ pub(super) fn rates(file: &File<'_>, written: &Stage, writer: &mut Writer) -> St
     );
     let lines = format!(
         "Rates of the state, returned.\n\n{ORDER}{}",
-        where_not_definite(file)
+        where_they_end(file)
     );
     let signature = Signature::of("rates", "[T; STATES]");
     function(file, written, writer) + &stage_with(file, &linked_doc(&lines), &signature, &call)

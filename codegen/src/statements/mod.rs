@@ -40,6 +40,6 @@ pub(crate) use preparation::{Preparation, Prepared, preparation};
 pub(crate) use requested::{nonzeros, rates_in_regime, requested};
 pub(crate) use roots::stage_roots;
 pub(crate) use stage::{Argument, Outcome, Size, Stage};
-pub(crate) use stages::{ORDER, guards, mass_matrix, observables, rates, where_not_definite};
+pub(crate) use stages::{ORDER, guards, mass_matrix, observables, rates, where_they_end};
 pub(crate) use statement::{Place, Statement};
 pub(crate) use used::Used;

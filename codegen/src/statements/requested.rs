@@ -10,7 +10,7 @@ use super::needed::Needed;
 use super::roots::entry_roots;
 use super::rows::write_row_values;
 use super::stage::{Argument, Outcome, Size, Stage};
-use super::stages::{ORDER, by_positions, guard_values, rates_of, where_not_definite};
+use super::stages::{ORDER, by_positions, guard_values, rates_of, where_they_end};
 use super::statement::{Place, Statement};
 use crate::program::{
     BlockPlace, Extent, GradientDerivative, Jacobian, JacobianBlock, Products, RowValues, ValueId,
@@ -297,7 +297,7 @@ pub fn rates_in_regime(file: &File<'_>, needed: &mut Needed) -> Emitted<Option<S
         "Rates of the state within a regime, written to `rates`: those of [`rates_into`] where\n\
          [`regime`] is `REGIME`, for half-widths that are not negative. Beyond the regime they go\n\
          on as they are within, and on its surfaces they are those of its side.\n\n{ORDER}{}",
-        where_not_definite(file)
+        where_they_end(file)
     );
     Ok(Some(Stage {
         arguments: vec![Argument::Regime],

@@ -21,6 +21,11 @@ const NOT_DEFINITE: &str = "\n\n\
     The mass matrix varies with the state. Where it is not positive definite, rates of velocities \
     are\nNaN, though [`Coefficients::positive_definite`], which knows the parameters alone, is true.";
 
+/// Of a model with impacts.
+const BETWEEN_IMPACTS: &str = "\n\n\
+    These are the rates between the impacts of the specification: where bodies hit, and what rests on \
+    what,\nis not known here.";
+
 /// The most numbers whose copy every compiler writes out: one cache line.
 const COPIED_AT_ONCE: usize = 8;
 
@@ -32,18 +37,21 @@ pub fn rates(file: &File<'_>, needed: &mut Needed) -> Emitted<Stage> {
         "rates_into",
         format!(
             "Rates of the state, written to `rates`.\n\n{ORDER}{}",
-            where_not_definite(file)
+            where_they_end(file)
         ),
     )
 }
 
-/// What is said of rates where the mass matrix may lose its definiteness.
-pub fn where_not_definite(file: &File<'_>) -> &'static str {
+/// What is said of rates where the mass matrix may lose its definiteness, and where they jump.
+pub fn where_they_end(file: &File<'_>) -> String {
+    let mut said = String::new();
     if file.program.may_lose_definiteness() {
-        NOT_DEFINITE
-    } else {
-        ""
+        said += NOT_DEFINITE;
     }
+    if !file.program.impacts.is_empty() {
+        said += BETWEEN_IMPACTS;
+    }
+    said
 }
 
 /// A stage that writes the rates out of a body that has their values.

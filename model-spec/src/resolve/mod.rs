@@ -12,8 +12,9 @@ use crate::dimension::Dimension;
 use crate::expression::{Resolver, Scope};
 use crate::ids::{ConstraintId, DefinitionId, InputId, ParameterId};
 use crate::model::{
-    Basis, Constraint, Coordinate, Definition, Expr, ExprKind, Field, Force, Input, MAX_ORDER,
-    MULTIPLIER, Model, Observable, Parameter, ParameterValue, RESIDUAL, Range, Sensor, State, Term,
+    Basis, Constraint, Coordinate, Definition, Expr, ExprKind, Field, Force, Impact, Input,
+    MAX_ORDER, MULTIPLIER, Model, Observable, Parameter, ParameterValue, RESIDUAL, Range, Sensor,
+    State, Term,
 };
 use crate::names::{Names, Symbol};
 use crate::order::{Reference, order};
@@ -91,6 +92,7 @@ impl Builder {
             dissipation: self.all(document.dissipation, Self::term),
             forces: self.all(document.forces, Self::force),
             constraints,
+            impacts: self.all(document.impacts, Self::impact),
             observables,
             coefficients: self.coefficients(document.coefficients),
             sensors: self.all(document.sensors, Self::sensor),
@@ -446,6 +448,20 @@ impl Builder {
             zero: self.expression(&raw.value, Scope::Motion)?,
             // Both are known when the definitions are.
             is_nonholonomic: false,
+            unit: Unit::coherent(Dimension::NONE),
+            name: raw.name.text,
+            doc: raw.doc,
+            origin: raw.origin,
+            span: raw.name.span,
+        })
+    }
+
+    fn impact(&mut self, (raw, restitution): (RawTerm, Quantity)) -> Option<Impact> {
+        let restitution = self.expression(&restitution, Scope::Parameters);
+        Some(Impact {
+            when: self.expression(&raw.value, Scope::Motion)?,
+            restitution: restitution?,
+            // Known when the definitions are.
             unit: Unit::coherent(Dimension::NONE),
             name: raw.name.text,
             doc: raw.doc,

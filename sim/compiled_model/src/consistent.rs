@@ -8,6 +8,7 @@ use eomgen_codegen::program::evaluator::{Evaluator, Point};
 use eomgen_model_spec::model::{Constraint, RESIDUAL, STABILISATION_RATE};
 use eomgen_sim::inputs::HeldInputs;
 
+use crate::contacts::first_overlap;
 use crate::driven::Driven;
 use crate::error::Error;
 use crate::instance::Instance;
@@ -22,7 +23,7 @@ const INDEPENDENT: f64 = 1e-9;
 
 impl Instance<'_> {
     /// The model as the general solver sees it, with an evaluator of it: states stay on its
-    /// constraints.
+    /// constraints, and bodies hit at its impacts. A motion of its own, as contacts are remembered.
     ///
     /// # Errors
     /// As [`Instance::evaluator`].
@@ -31,7 +32,10 @@ impl Instance<'_> {
         evaluator: &'d RefCell<Evaluator>,
         inputs: &'d HeldInputs,
     ) -> Result<Driven<&'d RefCell<Evaluator>, &'d HeldInputs>, Error> {
-        Ok(Driven::new(evaluator, inputs).with_projection(self.projection()?))
+        let impacts = self.model().model().impacts.iter();
+        let impacts = impacts.map(|impact| impact.name.clone()).collect();
+        let driven = Driven::new(evaluator, inputs).with_projection(self.projection()?);
+        Ok(driven.with_impacts(impacts))
     }
 
     /// What keeps states on the constraints, if there are any.
@@ -62,10 +66,11 @@ impl Instance<'_> {
         t: f64,
         inputs: &HeldInputs,
     ) -> Result<(Vec<f64>, Vec<Moved>), Error> {
+        let inputs = &inputs.at(t);
         let Some(projection) = self.projection()? else {
+            self.above_zero(t, state, inputs)?;
             return Ok((state.to_vec(), Vec::new()));
         };
-        let inputs = &inputs.at(t);
         let mut own = self.evaluator()?;
         let mut found = state.to_vec();
         let at = (t, &inputs[..]);
@@ -79,6 +84,7 @@ impl Instance<'_> {
             };
             return Err(error);
         }
+        self.above_zero(t, &found, inputs)?;
         let names = self.model().state_names();
         let units = self.model().state_units();
         let largest = state
@@ -95,6 +101,24 @@ impl Instance<'_> {
                 to: *to,
             });
         Ok((found.clone(), moved.collect()))
+    }
+
+    /// Whether no distance of an impact is below zero.
+    fn above_zero(&self, t: f64, state: &[f64], inputs: &[f64]) -> Result<(), Error> {
+        let impacts = &self.model().model().impacts;
+        if impacts.is_empty() {
+            return Ok(());
+        }
+        let below = first_overlap(&mut self.evaluator()?, Point { t, state, inputs });
+        let Some((place, distance)) = below else {
+            return Ok(());
+        };
+        let impact = &impacts[place];
+        Err(Error::Request(format!(
+            "the impact `{}` begins at {distance:.6e} {}, below zero: give an initial state in which \
+             nothing overlaps",
+            impact.name, impact.unit
+        )))
     }
 
     /// Which constraint has no derivative of its own, if one has none.

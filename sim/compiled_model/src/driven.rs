@@ -9,6 +9,7 @@ use eomgen_codegen::program::{Op, ValueId};
 use eomgen_sim::inputs::HeldInputs;
 use eomgen_sim::ode::{Surface, System, jacobian_by_differences};
 
+use crate::contacts::Contacts;
 use crate::jacobians::{Jacobian, JacobianEvaluator};
 use crate::projection::Projection;
 
@@ -19,6 +20,7 @@ pub struct Driven<E, I> {
     inputs: I,
     jacobians: Option<RefCell<JacobianEvaluator>>,
     projection: Option<Projection>,
+    contacts: Option<RefCell<Contacts>>,
 }
 
 impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
@@ -29,6 +31,7 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
             inputs,
             jacobians: None,
             projection: None,
+            contacts: None,
         }
     }
 
@@ -36,6 +39,25 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
     pub(crate) fn with_projection(mut self, projection: Option<Projection>) -> Self {
         self.projection = projection;
         self
+    }
+
+    /// The same where bodies hit at the impacts of these names, if there are any: those of the
+    /// program, in its order.
+    pub(crate) fn with_impacts(mut self, names: Vec<String>) -> Self {
+        self.contacts = (!names.is_empty()).then(|| RefCell::new(Contacts::new(names)));
+        self
+    }
+
+    /// The impact at which bodies overlap, where the motion ended for that.
+    pub(crate) fn overlap(&self) -> Option<String> {
+        let contacts = self.contacts.as_ref()?.borrow();
+        contacts.overlap().map(str::to_owned)
+    }
+
+    /// Whether a contact is closed.
+    fn rests(&self) -> bool {
+        let contacts = self.contacts.as_ref();
+        contacts.is_some_and(|contacts| contacts.borrow().rest())
     }
 
     /// The same with its own Jacobian, at the same parameters, for implicit methods.
@@ -67,23 +89,32 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> Driven<E, I> {
             let count = program.value(guard.value).extent.length();
             std::iter::repeat_n((&guard.formula, moves), count)
         });
-        all.zip(here.iter().zip(&there))
+        let own = all
+            .zip(here.iter().zip(&there))
             .map(|((formula, moves), (here, there))| Surface {
                 formula: formula.clone(),
                 is_speed: moves && here == there,
-            })
-            .collect()
+            });
+        let contacts = self.contacts.iter();
+        let names = contacts.flat_map(|contacts| contacts.borrow().names.clone());
+        let impacts = names.map(|formula| Surface {
+            formula,
+            is_speed: false,
+        });
+        own.chain(impacts).collect()
     }
 
     /// The switching functions where nothing moves, with coordinates of this size.
     fn guards_at_rest(&self, size: f64) -> Vec<f64> {
-        let mut values = vec![0.0; self.guard_count()];
+        let mut values = vec![0.0; self.evaluator().guard_count()];
         let mut state = vec![0.0; self.states()];
         let degrees = self.evaluator().program().degrees_of_freedom();
         for (place, coordinate) in state[..degrees].iter_mut().enumerate() {
             *coordinate = size / (place + 2) as f64;
         }
-        self.guards(0.0, &state, &mut values);
+        self.at(0.0, &state, |evaluator, point| {
+            evaluator.guards(point, &mut values);
+        });
         values
     }
 }
@@ -94,12 +125,17 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
     }
 
     fn rates(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        self.at(t, y, |evaluator, point| evaluator.rates(point, out));
+        self.at(t, y, |evaluator, point| {
+            evaluator.rates(point, out);
+            if let Some(contacts) = &self.contacts {
+                contacts.borrow_mut().add_to_rates(evaluator, point, out);
+            }
+        });
     }
 
     fn jacobian(&self, t: f64, y: &[f64], out: &mut [f64]) {
         match &self.jacobians {
-            Some(jacobians) => {
+            Some(jacobians) if !self.rests() => {
                 let mut jacobians = jacobians.borrow_mut();
                 let inputs = &self.inputs.borrow().at(t);
                 let point = Point {
@@ -109,16 +145,24 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
                 };
                 jacobians.evaluate(Jacobian::RatesByState, point, out);
             }
-            None => jacobian_by_differences(self, t, y, out),
+            _ => jacobian_by_differences(self, t, y, out),
         }
     }
 
     fn guard_count(&self) -> usize {
-        self.evaluator().guard_count()
+        let contacts = self.contacts.as_ref();
+        let contacts = contacts.map_or(0, |contacts| contacts.borrow().names.len());
+        self.evaluator().guard_count() + contacts
     }
 
     fn guards(&self, t: f64, y: &[f64], out: &mut [f64]) {
-        self.at(t, y, |evaluator, point| evaluator.guards(point, out));
+        self.at(t, y, |evaluator, point| {
+            let (own, more) = out.split_at_mut(evaluator.guard_count());
+            evaluator.guards(point, own);
+            if let Some(contacts) = &self.contacts {
+                contacts.borrow_mut().guards(evaluator, point, more);
+            }
+        });
     }
 
     fn indefinite(&self, t: f64, y: &[f64]) -> Option<usize> {
@@ -138,11 +182,28 @@ impl<E: Borrow<RefCell<Evaluator>>, I: Borrow<HeldInputs>> System for Driven<E, 
     }
 
     fn project(&self, t: f64, y: &mut [f64]) -> u64 {
-        let Some(projection) = &self.projection else {
+        if self.projection.is_none() && self.contacts.is_none() {
             return 0;
-        };
+        }
         let inputs = &self.inputs.borrow().at(t);
-        projection.after_a_step(&mut self.evaluator(), (t, inputs), y)
+        let (at, mut evaluations) = ((t, &inputs[..]), 0);
+        if let Some(projection) = &self.projection {
+            evaluations += projection.after_a_step(&mut self.evaluator(), at, y);
+        }
+        if let Some(contacts) = &self.contacts {
+            evaluations += contacts.borrow_mut().keep(&mut self.evaluator(), at, y);
+        }
+        evaluations
+    }
+
+    fn cross(&self, before: (f64, &[f64]), t: f64, y: &mut [f64]) {
+        if let Some(contacts) = &self.contacts {
+            let inputs = &self.inputs.borrow().at(t);
+            let mut evaluator = self.evaluator();
+            contacts
+                .borrow_mut()
+                .cross(&mut evaluator, inputs, before, t, y);
+        }
     }
 
     fn next_breakpoint(&self, t: f64) -> Option<f64> {

@@ -40,6 +40,7 @@
 //! ```
 
 mod consistent;
+mod contacts;
 mod differentiated;
 mod driven;
 mod equilibrium;

@@ -166,6 +166,13 @@ impl Instance<'_> {
     ) -> Result<Motion, Error> {
         let evaluator = RefCell::new(self.evaluator()?);
         let is_constrained = !self.model.model().constraints.is_empty();
+        if !self.model.model().impacts.is_empty() && settings.method == Method::Adams {
+            return Err(Error::Request(
+                "adams goes on from the steps before, which the impacts of this model cut off: use \
+                 --solver rk or radau"
+                    .to_owned(),
+            ));
+        }
         if is_constrained && settings.method == Method::Adams {
             return Err(Error::Request(
                 "adams goes on from the steps before, which the constraints of this model cut off \
@@ -195,7 +202,13 @@ impl Instance<'_> {
             Ok(()) => Ok(so_far),
             Err(error) => {
                 let (t, surfaces) = (SolveError::time(&error), system.surfaces());
-                let reason = self.named(&surfaces, |names| error.named(names));
+                let reason = match system.overlap() {
+                    Some(name) => format!(
+                        "nothing keeps the distance of the impact `{name}` above zero: bodies are \
+                         pressed into each other, or hit each other without end"
+                    ),
+                    None => self.named(&surfaces, |names| error.named(names)),
+                };
                 let cause = self.cause(&error);
                 stopped(so_far, Stopped { t, reason, cause })
             }

@@ -37,6 +37,14 @@ pub fn read_dataset(path: &Path, model: &Model) -> Result<Dataset, Refusal> {
             constraint.name
         )));
     }
+    if let Some(impact) = model.impacts.first() {
+        return Err(Refusal::Record(format!(
+            "{}: the model has impacts (`{}`), which `compare` and `discover` do not follow yet; \
+             `simulate` does",
+            path.display(),
+            impact.name
+        )));
+    }
     let bound = bound(&description, model)?;
     let mut dataset = Dataset {
         path: path.to_owned(),

@@ -14,6 +14,8 @@ pub enum ExactError {
     },
     /// The model has constraints.
     Constrained,
+    /// Rates jump at impacts.
+    Impacts,
     /// The model itself is at fault.
     Model(String),
     /// A coefficient is infinite or not a number.
@@ -57,6 +59,9 @@ impl ExactError {
                  for; the general solver (--solver rk) does"
                     .to_owned()
             }
+            Self::Impacts => "the model has impacts, at which rates jump, and the exact solver \
+                 does not stop there; the general solver (--solver rk) does"
+                .to_owned(),
             Self::Model(message) => message.clone(),
             Self::NotFinite => "a coefficient of the equations of motion is infinite or not a \
                  number: a mass, inertia or length is zero, or a parameter far too large"

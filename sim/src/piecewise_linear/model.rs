@@ -32,6 +32,7 @@ impl PiecewiseLinear {
         match linearity(&equations) {
             Linearity::Linear | Linearity::PiecewiseLinear => {}
             Linearity::Constrained => return Err(ExactError::Constrained),
+            Linearity::Impacts => return Err(ExactError::Impacts),
             Linearity::Nonlinear(node) => {
                 let formula = abridged(&equations.graph, model, node).to_string();
                 return Err(ExactError::NotLinear { formula });

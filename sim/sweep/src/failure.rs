@@ -47,7 +47,9 @@ impl From<ExactError> for Failure {
             ExactError::Stopped(error) => error.into(),
             ExactError::Held { .. } => Self::Switching,
             ExactError::NotConverged => Self::Limit,
-            ExactError::NotLinear { .. } | ExactError::Constrained => Self::Undefined,
+            ExactError::NotLinear { .. } | ExactError::Constrained | ExactError::Impacts => {
+                Self::Undefined
+            }
             ExactError::Model(_)
             | ExactError::NotFinite
             | ExactError::NotPositiveDefinite

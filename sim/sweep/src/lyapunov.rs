@@ -37,6 +37,13 @@ impl<'a> Lyapunov<'a> {
                 constraint.name
             )));
         }
+        if let Some(impact) = model.model().impacts.first() {
+            return Err(SweepError::Request(format!(
+                "--measure lyapunov: the model has impacts (`{}`), over which neighbouring motions are not \
+                 followed yet",
+                impact.name
+            )));
+        }
         if model.piecewise_linear().is_err() {
             let refused = |error| SweepError::Request(format!("--measure lyapunov: {error}"));
             model.differentiate().map_err(refused)?;

@@ -70,6 +70,7 @@ pub fn affine(mut equations: Equations) -> Result<AffineEquations, NodeId> {
     match linearity(&equations) {
         Linearity::Linear | Linearity::PiecewiseLinear => {}
         Linearity::Constrained => return Err(equations.multipliers[0]),
+        Linearity::Impacts => return Err(equations.impacts[0].distance),
         Linearity::Nonlinear(node) => return Err(node),
     }
     let not_scalar = |guard: &&crate::mechanics::guard::Guard| {

@@ -1,7 +1,7 @@
 //! Machine code of a program, as the evaluator calls it. How it is made is not known here.
 
 use super::point::Point;
-use crate::program::{Products, Program, RowValues, ValueId};
+use crate::program::{Impact, Products, Program, RowValues, ValueId};
 
 /// What is computed together in one call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +12,10 @@ pub enum Stage {
     Observables,
     /// The switching surfaces.
     Guards,
+    /// The distances of the impacts.
+    Distances,
+    /// Everything of the impacts.
+    Impacts,
     /// The blocks of the mass matrix.
     Mass,
     /// Velocity terms and generalised forces.
@@ -34,10 +38,12 @@ pub enum Stage {
 
 impl Stage {
     /// Every stage.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::Rates,
         Self::Observables,
         Self::Guards,
+        Self::Distances,
+        Self::Impacts,
         Self::Mass,
         Self::Forces,
         Self::BiasForces,
@@ -55,6 +61,12 @@ impl Stage {
             Self::Rates => program.rate_roots(),
             Self::Observables => program.observable_values.clone(),
             Self::Guards => program.guards.iter().map(|guard| guard.value).collect(),
+            Self::Distances => program
+                .impacts
+                .iter()
+                .map(|impact| impact.distance)
+                .collect(),
+            Self::Impacts => program.impacts.iter().flat_map(of_impact).collect(),
             Self::Mass => {
                 let mass = &program.mass;
                 let mut roots: Vec<ValueId> = mass.scalars.iter().flatten().copied().collect();
@@ -76,6 +88,19 @@ impl Stage {
             | Self::ParameterProduct => self.output_roots(program),
         }
     }
+}
+
+/// The values of an impact.
+fn of_impact(impact: &Impact<ValueId, RowValues>) -> Vec<ValueId> {
+    let mut values = vec![
+        impact.distance,
+        impact.rate,
+        impact.acceleration,
+        impact.restitution,
+    ];
+    values.extend(&impact.delassus);
+    values.extend(impact.column.all());
+    values
 }
 
 impl Stage {

@@ -4,6 +4,7 @@
 
 mod code;
 mod functions;
+mod impacts;
 mod matrices;
 mod operands;
 mod outputs;
@@ -17,6 +18,7 @@ use std::sync::Arc;
 use crate::program::{Extent, Op, Program, ValueId};
 pub use code::{MachineCode, Stage};
 pub use functions::{Law, call, law};
+pub use impacts::ImpactAt;
 pub use places::Places;
 pub use point::Point;
 use step::step;

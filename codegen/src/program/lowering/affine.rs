@@ -84,6 +84,7 @@ pub fn lower_affine(
             forces: RowValues::default(),
             observable_values: Vec::new(),
             guards: Vec::new(),
+            impacts: Vec::new(),
             pivots,
             coefficient_values: Vec::new(),
             outputs: Outputs::default(),

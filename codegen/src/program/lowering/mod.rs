@@ -80,6 +80,8 @@ pub fn lower_with_outputs(
         .iter()
         .map(|coefficient| lowering.value(coefficient.value))
         .collect();
+    let impacts = equations.impacts.iter();
+    let impacts = impacts.map(|impact| lowering.impact(impact)).collect();
     let outputs = lowering.outputs(outputs);
     Program {
         name: model.name.clone(),
@@ -121,6 +123,7 @@ pub fn lower_with_outputs(
         forces,
         observable_values,
         guards,
+        impacts,
         pivots,
         coefficient_values,
         outputs,

@@ -7,7 +7,7 @@ use std::hash::{Hash, Hasher};
 use crate::mechanics::equations::Equations;
 use crate::mechanics::rows::RowNodes;
 use crate::program::{
-    Extent, MassBlocks, Op, ProgramTable, RowValues, ScaledValue, Value, ValueId,
+    Extent, Impact, MassBlocks, Op, ProgramTable, RowValues, ScaledValue, Value, ValueId,
 };
 use crate::symbolic::graph::{Assembly, Graph, NodeId, Operation, Shape, Variable};
 
@@ -92,6 +92,20 @@ impl<'g> Lowering<'g> {
         RowValues {
             scalars: rows.scalars.iter().map(|id| self.value(*id)).collect(),
             modal: rows.modal.iter().map(|id| self.value(*id)).collect(),
+        }
+    }
+
+    pub(super) fn impact(
+        &mut self,
+        impact: &Impact<NodeId, RowNodes>,
+    ) -> Impact<ValueId, RowValues> {
+        Impact {
+            distance: self.value(impact.distance),
+            rate: self.value(impact.rate),
+            acceleration: self.value(impact.acceleration),
+            restitution: self.value(impact.restitution),
+            column: self.rows(&impact.column),
+            delassus: impact.delassus.iter().map(|id| self.value(*id)).collect(),
         }
     }
 

@@ -1,0 +1,94 @@
+//! Impacts: how fast distances change, and what impulses there do to the rates.
+//!
+//! An impulse P at the distance g(q, t) changes the rates by D P with D = M^-1 A^T and A = dg/dq, and
+//! the rate of a distance g_i by A_i D_j P_j, which is Delassus' matrix (B. Brogliato, *Nonsmooth
+//! Mechanics*, chapter 5). A force at a contact that stays closed acts alike: a = a_0 + D lambda. The
+//! columns D are solved for as the accelerations are, so that a field costs O(S); with constraints an
+//! impulse moves along them. When bodies hit and what comes back is for those who follow the motion.
+
+use eomgen_model_spec::ids::FieldId;
+use eomgen_model_spec::model::Model;
+
+use crate::mechanics::constraints::Constraints;
+use crate::mechanics::lagrange::{GradientBy, Variables};
+use crate::mechanics::mass_matrix::MassMatrix;
+use crate::mechanics::rows::RowNodes;
+use crate::mechanics::solve::solve;
+use crate::mechanics::translate::{Derived, Translator, along_motion};
+use crate::symbolic::graph::{Graph, NodeId, Space};
+
+/// An impact, of nodes `N` in the equations or values in the program, and rows `R` of them.
+#[derive(Clone, Debug)]
+pub struct Impact<N, R> {
+    /// g, the distance.
+    pub distance: N,
+    /// g'.
+    pub rate: N,
+    /// g'' where no contact is closed.
+    pub acceleration: N,
+    /// The part of g' that comes back.
+    pub restitution: N,
+    /// D, by which an impulse of 1 changes the rates.
+    pub column: R,
+    /// A D of all impacts: by how much impulses of 1 at each of them change g'.
+    pub delassus: Vec<N>,
+}
+
+/// The impacts of a model.
+pub(crate) fn impacts(
+    translator: &mut Translator,
+    variables: &Variables,
+    (mass, constraints): (&MassMatrix, &Constraints),
+    accelerations: &RowNodes,
+) -> Derived<Vec<Impact<NodeId, RowNodes>>> {
+    let model: &Model = translator.model;
+    let mut found = Vec::with_capacity(model.impacts.len());
+    let mut gradients = Vec::with_capacity(model.impacts.len());
+    let zero = translator.graph.zero();
+    let along_constraints = Constraints {
+        right: vec![zero; constraints.rows.len()],
+        ..constraints.clone()
+    };
+    for impact in &model.impacts {
+        let distance = translator.node(&impact.when)?;
+        let restitution = translator.node(&impact.restitution)?;
+        let graph = &mut translator.graph;
+        let gradient = variables.gradient(graph, distance, GradientBy::Coordinates);
+        let rate = along_motion(graph, distance);
+        let of_rates = along_motion(graph, rate);
+        let of_accelerations = product(graph, &gradient, accelerations);
+        let (solved, _) = solve(graph, mass, &gradient, &along_constraints);
+        found.push(Impact {
+            distance,
+            rate,
+            acceleration: graph.add(of_rates, of_accelerations),
+            restitution,
+            column: solved.rows,
+            delassus: Vec::new(),
+        });
+        gradients.push(gradient);
+    }
+    let columns: Vec<RowNodes> = found.iter().map(|impact| impact.column.clone()).collect();
+    for (impact, gradient) in found.iter_mut().zip(&gradients) {
+        let graph = &mut translator.graph;
+        let entries = columns.iter();
+        impact.delassus = entries
+            .map(|column| product(graph, gradient, column))
+            .collect();
+    }
+    Ok(found)
+}
+
+/// The product of two rows.
+fn product(graph: &mut Graph, a: &RowNodes, b: &RowNodes) -> NodeId {
+    let mut terms = Vec::new();
+    for (a, b) in a.scalars.iter().zip(&b.scalars) {
+        terms.push((1.0, graph.multiply(*a, *b)));
+    }
+    let fields = FieldId::first(a.modal.len());
+    for (field, (a, b)) in fields.zip(a.modal.iter().zip(&b.modal)) {
+        let product = graph.multiply(*a, *b);
+        terms.push((1.0, graph.total_over(Space::Modes(field), product)));
+    }
+    graph.combine(&terms)
+}

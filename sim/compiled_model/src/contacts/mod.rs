@@ -1,0 +1,379 @@
+//! The impacts of a model while it moves: which contacts are closed, how rates jump where bodies hit,
+//! and which forces hold what rests. `complementarity` has the law that contacts push and do not pull.
+//!
+//! Where a distance falls to zero the impulses obey Newton's law for all contacts that touch
+//! together, as Moreau takes it (B. Brogliato, *Nonsmooth Mechanics*, chapter 5): no impulse is negative, no
+//! rate g' comes out below -e g', and there is an impulse only where it comes out just so. Bouncing has
+//! infinitely many impacts in a finite time; a contact closes when the next flight would be shorter
+//! than a part of the time that the motion has taken so far. What is closed opens when its force falls
+//! to zero.
+
+mod complementarity;
+
+use std::collections::VecDeque;
+
+use eomgen_codegen::program::evaluator::{Evaluator, ImpactAt, Point};
+
+use complementarity::{balance, complementary};
+
+/// A flight that is this short beside the time since the start is rest.
+const SHORTEST_FLIGHT: f64 = 1e-8;
+
+/// A distance this small beside the largest coordinate is rounding.
+const ROUNDING: f64 = 1e-11;
+
+/// A rate that an impact leaves negative is wrong if it is this large beside those before.
+const UNSOLVED: f64 = 1e-6;
+
+/// Rounding of a distance, beside the largest coordinate and how far that has come.
+const OF_A_DISTANCE: f64 = 64.0 * f64::EPSILON;
+
+/// A flight no higher than so many times the rounding of its distance is rest.
+const LOWEST_FLIGHT: f64 = 1000.0;
+
+/// A distance this far below zero, beside the largest that a coordinate was, is no error of a step.
+const OVERLAP: f64 = 1e-6;
+
+/// So many impacts within the shortest flights for each of them have no end.
+const MOST_IN_A_ROW: usize = 256;
+
+/// Corrections of a state with closed contacts; each squares what is left.
+const CORRECTIONS: usize = 2;
+
+/// The contacts of a model that moves.
+pub(crate) struct Contacts {
+    /// The names of the impacts.
+    pub names: Vec<String>,
+    /// When the motion began, s.
+    start: Option<f64>,
+    /// Those that are closed.
+    closed: Vec<usize>,
+    /// What is added to each distance, so that one that leaves from zero is positive.
+    offsets: Vec<f64>,
+    /// The impacts where they were last looked at.
+    at: Vec<ImpactAt>,
+    /// The largest that any coordinate has been.
+    size: f64,
+    /// When the last impacts were, s.
+    recent: VecDeque<f64>,
+    /// The distance that nothing keeps above zero.
+    overlap: Option<usize>,
+}
+
+/// The first distance that is below zero, and not by rounding, if one is: its place and value.
+pub(crate) fn first_overlap(own: &mut Evaluator, point: Point<'_>) -> Option<(usize, f64)> {
+    first_below(own, point, ROUNDING * largest(point.state))
+}
+
+/// The first distance that is below zero by more than is allowed.
+fn first_below(own: &mut Evaluator, point: Point<'_>, allowed: f64) -> Option<(usize, f64)> {
+    let mut distances = vec![0.0; own.program().impacts.len()];
+    own.distances(point, &mut distances);
+    let mut all = distances.into_iter().enumerate();
+    all.find(|(_, distance)| *distance < -allowed || distance.is_nan())
+}
+
+impl Contacts {
+    pub fn new(names: Vec<String>) -> Self {
+        let count = names.len();
+        Self {
+            names,
+            start: None,
+            closed: Vec::new(),
+            offsets: vec![0.0; count],
+            at: Vec::new(),
+            size: 0.0,
+            recent: VecDeque::with_capacity(MOST_IN_A_ROW),
+            overlap: None,
+        }
+    }
+
+    /// Whether anything rests.
+    pub fn rest(&self) -> bool {
+        !self.closed.is_empty()
+    }
+
+    /// What is positive as long as the contacts stay as they are: the distances of those that are
+    /// open, the forces of those that are closed. Where it is first asked for the motion begins.
+    pub fn guards(&mut self, own: &mut Evaluator, point: Point<'_>, out: &mut [f64]) {
+        if self.start.is_none() {
+            self.begin(own, point);
+        }
+        if self.closed.is_empty() {
+            own.distances(point, out);
+        } else {
+            own.impacts(point, &mut self.at);
+            for (slot, impact) in out.iter_mut().zip(&self.at) {
+                *slot = impact.distance;
+            }
+        }
+        for (slot, offset) in out.iter_mut().zip(&self.offsets) {
+            *slot += offset;
+        }
+        if !self.closed.is_empty() {
+            for (place, force) in self.closed.iter().zip(self.forces()) {
+                out[*place] = force;
+            }
+        }
+    }
+
+    /// Adds what the forces of closed contacts accelerate.
+    pub fn add_to_rates(&mut self, own: &mut Evaluator, point: Point<'_>, rates: &mut [f64]) {
+        if self.closed.is_empty() {
+            return;
+        }
+        own.impacts(point, &mut self.at);
+        let forces = self.forces();
+        let degrees = own.program().degrees_of_freedom();
+        self.push(&self.closed, &forces, &mut rates[degrees..]);
+    }
+
+    /// The impact whose distance nothing keeps above zero, where the motion ended for that.
+    pub fn overlap(&self) -> Option<&str> {
+        self.overlap.map(|place| self.names[place].as_str())
+    }
+
+    /// Brings a state onto the closed contacts, and opens those that would have to pull; how many
+    /// evaluations that took. A state in which bodies overlap is made of no numbers, which ends the
+    /// motion.
+    pub fn keep(
+        &mut self,
+        own: &mut Evaluator,
+        (t, inputs): (f64, &[f64]),
+        state: &mut [f64],
+    ) -> u64 {
+        let degrees = own.program().degrees_of_freedom();
+        self.size = self.size.max(largest(&state[..degrees]));
+        let deepest = OVERLAP * self.size;
+        if let Some((place, _)) = first_below(own, Point { t, state, inputs }, deepest) {
+            self.overlap = Some(place);
+            state.fill(f64::NAN);
+            return 1;
+        }
+        if self.closed.is_empty() {
+            return 0;
+        }
+        for _ in 0..CORRECTIONS {
+            own.impacts(Point { t, state, inputs }, &mut self.at);
+            let (coordinates, rates) = state.split_at_mut(degrees);
+            let corrections = self.balanced(&self.closed, |impact| impact.distance);
+            self.push(&self.closed, &corrections, coordinates);
+            let corrections = self.balanced(&self.closed, |impact| impact.rate);
+            self.push(&self.closed, &corrections, rates);
+        }
+        own.impacts(Point { t, state, inputs }, &mut self.at);
+        if self.forces().iter().any(|force| *force < 0.0) {
+            let touching = std::mem::take(&mut self.closed);
+            self.close(&touching, rounding_of(state, degrees, t));
+        }
+        CORRECTIONS as u64 + 1
+    }
+
+    /// What happens where the motion goes over a surface, from a state `before` to one just beyond,
+    /// at the time `t`: bodies that hit jump.
+    pub fn cross(
+        &mut self,
+        own: &mut Evaluator,
+        inputs: &[f64],
+        (t_before, before): (f64, &[f64]),
+        t: f64,
+        state: &mut [f64],
+    ) {
+        let count = self.names.len();
+        let degrees = own.program().degrees_of_freedom();
+        let (mut near, mut beyond) = (vec![0.0; count], vec![0.0; count]);
+        own.distances(Point { t, state, inputs }, &mut beyond);
+        let is_hit = |place: &usize, contacts: &Self| {
+            !contacts.closed.contains(place) && beyond[*place] + contacts.offsets[*place] < 0.0
+        };
+        let Some(first) = (0..count).find(|place| is_hit(place, self)) else {
+            return;
+        };
+        let point = Point {
+            t: t_before,
+            state: before,
+            inputs,
+        };
+        own.distances(point, &mut near);
+        own.impacts(Point { t, state, inputs }, &mut self.at);
+        let shortest = SHORTEST_FLIGHT * (t - self.start.unwrap_or(t));
+        let touching: Vec<usize> = (0..count)
+            .filter(|place| {
+                let impact = &self.at[*place];
+                self.closed.contains(place)
+                    || is_hit(place, self)
+                    || impact.distance + self.offsets[*place] <= -impact.rate * shortest
+            })
+            .collect();
+        // How long ago the first of them hit.
+        let ago = |place: &usize| {
+            let (from, to) = (near[*place] + self.offsets[*place], beyond[*place]);
+            let to = to + self.offsets[*place];
+            (t - t_before) * (to / (to - from)).clamp(0.0, 1.0)
+        };
+        let hits = touching.iter().filter(|place| is_hit(place, self));
+        let ago = hits.map(ago).fold(0.0, f64::max);
+        let wanted = |place: &usize| {
+            let impact = &self.at[*place];
+            match self.closed.contains(place) {
+                true => impact.rate,
+                false => (1.0 + impact.restitution) * (impact.rate - ago * impact.acceleration),
+            }
+        };
+        let rates: Vec<f64> = touching.iter().map(wanted).collect();
+        let delassus = self.delassus(&touching);
+        let impulses = complementary(&delassus, &rates);
+        let rounding = rounding_of(before, degrees, t);
+        if impulses.iter().all(|impulse| *impulse == 0.0) && rates.iter().all(|rate| *rate >= 0.0) {
+            // Nothing hit: what leaves slowly went below zero by rounding.
+            self.leave(&touching, rounding);
+            return;
+        }
+        if !solves(&delassus, &rates, &impulses) || self.without_end(t, shortest) {
+            self.overlap = Some(first);
+            state.fill(f64::NAN);
+            return;
+        }
+        let (coordinates, rates) = state.split_at_mut(degrees);
+        self.push(&touching, &impulses, rates);
+        let moved: Vec<f64> = impulses.iter().map(|impulse| impulse * ago).collect();
+        self.push(&touching, &moved, coordinates);
+        own.impacts(Point { t, state, inputs }, &mut self.at);
+        // Where a distance was located to rounding, so that this does not add up.
+        let mut below = touching.clone();
+        below.retain(|place| self.at[*place].distance < 0.0);
+        let corrections = self.balanced(&below, |impact| impact.distance);
+        self.push(&below, &corrections, &mut state[..degrees]);
+        own.impacts(Point { t, state, inputs }, &mut self.at);
+        self.settle(&touching, shortest, LOWEST_FLIGHT * rounding);
+    }
+
+    /// Whether impacts follow each other faster than the shortest flights, s.
+    fn without_end(&mut self, t: f64, shortest: f64) -> bool {
+        let first = match self.recent.len() < MOST_IN_A_ROW {
+            true => None,
+            false => self.recent.pop_front(),
+        };
+        self.recent.push_back(t);
+        first.is_some_and(|first| t - first < MOST_IN_A_ROW as f64 * shortest)
+    }
+
+    /// Closes those that touch and would fly for a shorter time than this, s, or not as high.
+    fn settle(&mut self, touching: &[usize], shortest: f64, lowest: f64) {
+        self.closed.clear();
+        loop {
+            let forces = self.forces();
+            let rests = |place: &&usize| {
+                let impact = &self.at[**place];
+                let held = self.closed.iter().zip(&forces);
+                let pushed: f64 = held
+                    .map(|(other, force)| impact.delassus[*other] * force)
+                    .sum();
+                let acceleration = impact.acceleration + pushed;
+                !self.closed.contains(place)
+                    && acceleration < 0.0
+                    && (2.0 * impact.rate <= -acceleration * shortest
+                        || impact.rate * impact.rate <= -2.0 * acceleration * lowest)
+            };
+            let Some(next) = touching.iter().find(rests) else {
+                break;
+            };
+            self.closed.push(*next);
+        }
+        self.leave(touching, f64::MIN_POSITIVE);
+    }
+
+    /// Closes those of the contacts that touch which then push.
+    fn close(&mut self, touching: &[usize], rounding: f64) {
+        let accelerations: Vec<f64> = touching.iter().map(|i| self.at[*i].acceleration).collect();
+        let forces = complementary(&self.delassus(touching), &accelerations);
+        let pushing = touching
+            .iter()
+            .zip(forces)
+            .filter(|(_, force)| *force > 0.0);
+        self.closed = pushing.map(|(place, _)| *place).collect();
+        // They leave without speed: for a while rounding of the state moves them more.
+        self.leave(touching, rounding);
+    }
+
+    /// Has the distances of those that touch begin above zero, and by so much.
+    fn leave(&mut self, touching: &[usize], above: f64) {
+        for place in touching {
+            let distance = self.at[*place].distance;
+            self.offsets[*place] = above.max(-2.0 * distance);
+        }
+    }
+
+    /// What touches and does not move at the start is closed if it pushes.
+    fn begin(&mut self, own: &mut Evaluator, point: Point<'_>) {
+        self.start = Some(point.t);
+        own.impacts(point, &mut self.at);
+        let small = ROUNDING * largest(point.state);
+        let touching: Vec<usize> = (0..self.at.len())
+            .filter(|place| self.at[*place].distance <= small)
+            .collect();
+        let still = touching
+            .iter()
+            .filter(|place| self.at[**place].rate.abs() <= small);
+        let still: Vec<usize> = still.copied().collect();
+        self.leave(&touching, f64::MIN_POSITIVE);
+        let degrees = own.program().degrees_of_freedom();
+        self.close(&still, rounding_of(point.state, degrees, point.t));
+    }
+
+    /// The forces of the closed contacts, in which their distances do not accelerate.
+    fn forces(&self) -> Vec<f64> {
+        self.balanced(&self.closed, |impact| impact.acceleration)
+    }
+
+    /// What at these contacts brings a quantity of theirs to zero.
+    fn balanced(&self, places: &[usize], quantity: impl Fn(&ImpactAt) -> f64) -> Vec<f64> {
+        let quantities: Vec<f64> = places
+            .iter()
+            .map(|place| quantity(&self.at[*place]))
+            .collect();
+        let rows: Vec<usize> = (0..places.len()).collect();
+        balance(&self.delassus(places), &quantities, &rows)
+    }
+
+    /// Adds what impulses at these contacts do.
+    fn push(&self, places: &[usize], impulses: &[f64], rates: &mut [f64]) {
+        for (place, impulse) in places.iter().zip(impulses) {
+            for (rate, entry) in rates.iter_mut().zip(&self.at[*place].column) {
+                *rate += entry * impulse;
+            }
+        }
+    }
+
+    /// Delassus' matrix of these contacts.
+    fn delassus(&self, places: &[usize]) -> Vec<Vec<f64>> {
+        let row = |place: &usize| {
+            let entries = &self.at[*place].delassus;
+            places.iter().map(|other| entries[*other]).collect()
+        };
+        places.iter().map(row).collect()
+    }
+}
+
+/// Whether impulses leave no rate negative.
+fn solves(delassus: &[Vec<f64>], rates: &[f64], impulses: &[f64]) -> bool {
+    let worst = rates
+        .iter()
+        .fold(0.0_f64, |most, rate| most.max(rate.abs()));
+    delassus.iter().zip(rates).all(|(row, rate)| {
+        let pushed: f64 = row.iter().zip(impulses).map(|(w, p)| w * p).sum();
+        pushed + rate >= -UNSOLVED * worst
+    })
+}
+
+/// By how much rounding of state and time changes distances.
+fn rounding_of(state: &[f64], degrees: usize, t: f64) -> f64 {
+    let (coordinates, rates) = state[..2 * degrees].split_at(degrees);
+    f64::MIN_POSITIVE + OF_A_DISTANCE * (largest(coordinates) + t.abs() * largest(rates))
+}
+
+fn largest(entries: &[f64]) -> f64 {
+    entries
+        .iter()
+        .fold(0.0, |most, entry| entry.abs().max(most))
+}

@@ -1,0 +1,476 @@
+//! Machines that hit and rest: jumps against dense algebra and textbook formulas, bouncing against its
+//! closed form, what lifts off again, and what is refused.
+
+use std::path::Path;
+
+use eomgen_codegen::program::evaluator::{Evaluator, ImpactAt, Point};
+use eomgen_compiled_model::{CompiledModel, Error, Motion, Orders, Solver};
+use eomgen_tests::program::refused;
+use nalgebra::{DMatrix, DVector};
+
+/// A generator of numbers between -1 and 1.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
+    }
+}
+
+fn example(name: &str, orders: Orders<'_>) -> CompiledModel {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/impacts");
+    CompiledModel::load(folder.join(format!("{name}.toml")), orders)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A shipped model with more behind it.
+fn with_impacts(name: &str, impacts: &str, order: usize) -> CompiledModel {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../model-spec/models");
+    let text = std::fs::read_to_string(folder.join(format!("{name}.toml"))).expect("a model");
+    let orders = match order {
+        0 => Orders::Declared,
+        order => Orders::All(order),
+    };
+    CompiledModel::of_text("hitting.toml", &(text + impacts), orders)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn simulated(model: &CompiledModel, settings: &[(&str, f64)], times: &[f64]) -> Motion {
+    let run = model.with(settings).unwrap();
+    let motion = run.simulate(run.initial(), times, &run.no_inputs(), Solver::Auto);
+    motion.unwrap_or_else(|error| panic!("{settings:?}: {error}"))
+}
+
+#[test]
+fn a_ball_bounces_as_often_and_as_high_as_its_closed_form_and_rests() {
+    let model = example("bouncing_ball", Orders::Declared);
+    let g = 9.81;
+    for e in [0.0, 0.2, 0.5, 0.8, 0.9, 0.97, 1.0] {
+        let times: Vec<f64> = (0..=40).map(|step| f64::from(step) * 0.1).collect();
+        let motion = simulated(&model, &[("e", e)], &times);
+        for (t, state) in times.iter().zip(&motion.trajectory.states) {
+            // Flights from speeds v, e v, e^2 v; the first begins in the middle.
+            let v0 = (2.0_f64 * g).sqrt();
+            let (mut begin, mut v) = (-v0 / g, v0);
+            while v > 1e-9 && begin + 2.0 * v / g < *t {
+                begin += 2.0 * v / g;
+                v *= e;
+            }
+            let since = t - begin;
+            let height = if v > 1e-9 {
+                v * since - 0.5 * g * since * since
+            } else {
+                0.0
+            };
+            assert!(
+                (state[0] - height).abs() < 1e-10,
+                "{e} {t}: {} {height}",
+                state[0]
+            );
+        }
+    }
+}
+
+#[test]
+fn what_rests_on_a_table_leaves_where_that_falls_faster() {
+    // Without restitution the ball stays on the table until a omega^2 sin(omega t) = g.
+    let model = example("bouncing_ball", Orders::Declared);
+    let (a, omega, g) = (0.03, 20.0_f64, 9.81);
+    let run = model.with(&[("a", a), ("e", 0.0)]).unwrap();
+    let mut initial = run.initial().to_vec();
+    initial[0] = 0.0;
+    initial[1] = a * omega;
+    let leaves = (g / (a * omega * omega)).asin() / omega;
+    let (y0, v0) = (
+        a * (omega * leaves).sin(),
+        a * omega * (omega * leaves).cos(),
+    );
+    let times: Vec<f64> = (0..20).map(|step| f64::from(step) * 0.01).collect();
+    let motion = run.simulate(&initial, &times, &run.no_inputs(), Solver::Rk);
+    let mut flew = 0;
+    for (t, state) in times.iter().zip(&motion.unwrap().trajectory.states) {
+        let since = t - leaves;
+        let free = y0 + v0 * since - 0.5 * g * since * since;
+        let table = a * (omega * t).sin();
+        let expected = match since > 0.0 && free > table {
+            true => free,
+            false => table,
+        };
+        flew += usize::from(expected > table);
+        // Landed once, it rests on the table again.
+        assert!(
+            (state[0] - expected).abs() < 1e-9,
+            "{t}: {} {expected}",
+            state[0]
+        );
+    }
+    assert!(flew > 3);
+}
+
+#[test]
+fn two_carts_keep_their_momentum_and_lose_what_restitution_says() {
+    let text = |e: f64| {
+        format!(
+            r#"
+[model]
+name = "carts"
+[parameters]
+m = {{ value = 2, unit = "kg" }}
+M = {{ value = 5, unit = "kg" }}
+e = {{ value = {e:?}, unit = "1" }}
+[coordinates]
+x = {{ unit = "m", initial_rate = 3 }}
+z = {{ unit = "m", initial = 1, initial_rate = -1 }}
+[kinetic]
+both = "1/2*m*dot(x)^2 + 1/2*M*dot(z)^2"
+[impacts]
+bumper = {{ when = "z - x", restitution = "e" }}
+"#
+        )
+    };
+    for e in [0.0, 0.25, 1.0] {
+        let model = CompiledModel::of_text("carts.toml", &text(e), Orders::Declared).unwrap();
+        let state = simulated(&model, &[], &[0.0, 1.0]).trajectory.states[1].clone();
+        let centre = (2.0 * 3.0 - 5.0) / 7.0;
+        let (x, z) = (centre - 5.0 / 7.0 * 4.0 * e, centre + 2.0 / 7.0 * 4.0 * e);
+        assert!(
+            (state[2] - x).abs() < 1e-12 && (state[3] - z).abs() < 1e-12,
+            "{e}: {state:?}"
+        );
+        // They met at t = 1/4 at x = 3/4.
+        assert!((state[0] - 0.75 - 0.75 * x).abs() < 1e-12, "{e}: {state:?}");
+    }
+}
+
+#[test]
+fn a_box_that_falls_flat_hits_with_both_edges_at_once_and_one_that_leans_with_one() {
+    let model = example("dropped_box", Orders::Declared);
+    let (m, inertia, b, h, g, e) = (2.0, 0.0867, 0.3, 0.2, 9.81, 0.3);
+    let run = model.at_declared().unwrap();
+    let flat = run.simulate(
+        &[0.0, 0.7, 0.0, 0.0, 0.0, 0.0],
+        &[0.0, 0.33],
+        &run.no_inputs(),
+        Solver::Rk,
+    );
+    let state = flat.unwrap().trajectory.states[1].clone();
+    let hit = (2.0_f64 * 0.5 / g).sqrt();
+    let since = 0.33 - hit;
+    assert!(
+        (state[4] - (e * g * hit - g * since)).abs() < 1e-9,
+        "{state:?}"
+    );
+    assert!(
+        state[2].abs() < 1e-12 && state[5].abs() < 1e-10,
+        "{state:?}"
+    );
+    // One edge, by the rigid body's own impulse: P = (1 + e) v / (1/m + r^2/I).
+    let phi = 0.2_f64;
+    let height = h * phi.cos() + b * phi.sin();
+    let fallen = (2.0 * (0.7 - height) / g).sqrt();
+    let arm = h * phi.sin() - b * phi.cos();
+    let impulse = (1.0 + e) * g * fallen / (1.0 / m + arm * arm / inertia);
+    let t = fallen + 0.005;
+    let leaning = simulated(&model, &[], &[0.0, t]).trajectory.states[1].clone();
+    let expected = (-g * t + impulse / m, arm * impulse / inertia);
+    assert!(
+        (leaning[4] - expected.0).abs() < 1e-9,
+        "{leaning:?} {expected:?}"
+    );
+    assert!(
+        (leaning[5] - expected.1).abs() < 1e-9,
+        "{leaning:?} {expected:?}"
+    );
+}
+
+#[test]
+fn a_box_comes_to_rest_for_every_restitution_and_width() {
+    let model = example("dropped_box", Orders::Declared);
+    let mut numbers = Numbers(0x1234_5678_9abc_def1);
+    for _ in 0..60 {
+        let (b, e) = (0.25 + 0.2 * numbers.next(), 0.35 + 0.3 * numbers.next());
+        let motion = simulated(&model, &[("b", b), ("e", e)], &[0.0, 20.0]);
+        let state = &motion.trajectory.states[1];
+        // Flat on one of its sides.
+        let height = 0.2 * state[2].cos().abs() + b * state[2].sin().abs();
+        assert!((state[1] - height).abs() < 1e-9, "{b} {e}: {state:?}");
+        assert!((2.0 * state[2]).sin().abs() < 1e-9, "{b} {e}: {state:?}");
+        assert!(
+            state[3..].iter().all(|rate| rate.abs() < 1e-9),
+            "{b} {e}: {state:?}"
+        );
+    }
+}
+
+/// The derivatives of a distance by the coordinates, by central differences.
+fn gradient(own: &mut Evaluator, state: &[f64], degrees: usize, place: usize) -> DVector<f64> {
+    let mut at = |index: usize, step: f64| {
+        let mut moved = state.to_vec();
+        moved[index] += step;
+        let mut all = vec![0.0; own.program().impacts.len()];
+        let point = Point {
+            t: 0.3,
+            state: &moved,
+            inputs: &[],
+        };
+        own.distances(point, &mut all);
+        all[place]
+    };
+    let step = 1e-4;
+    DVector::from_fn(degrees, |index, _| {
+        let first = at(index, step) - at(index, -step);
+        let second = at(index, 2.0 * step) - at(index, -2.0 * step);
+        (8.0 * first - second) / (12.0 * step)
+    })
+}
+
+/// Impulses and rates against the mass matrix and differences.
+fn agrees_with_dense_algebra(model: &CompiledModel, settings: &[(&str, f64)], seed: u64) {
+    let run = model.with(settings).unwrap();
+    let mut own = run.evaluator().unwrap();
+    let degrees = own.program().degrees_of_freedom();
+    let mut numbers = Numbers(seed);
+    let count = own.program().impacts.len();
+    assert!(count > 0);
+    for _ in 0..20 {
+        let states = own.program().states();
+        let state: Vec<f64> = (0..states).map(|_| 0.4 * numbers.next()).collect();
+        let point = Point {
+            t: 0.3,
+            state: &state,
+            inputs: &[],
+        };
+        let mut at: Vec<ImpactAt> = Vec::new();
+        own.impacts(point, &mut at);
+        let mut mass = vec![0.0; degrees * degrees];
+        own.mass_matrix(point, &mut mass);
+        let mass = DMatrix::from_row_slice(degrees, degrees, &mass);
+        let mut rates = vec![0.0; states];
+        own.rates(point, &mut rates);
+        let gradients: Vec<DVector<f64>> = (0..count)
+            .map(|place| gradient(&mut own, &state, degrees, place))
+            .collect();
+        for (place, impact) in at.iter().enumerate() {
+            let column = DVector::from_column_slice(&impact.column);
+            let row = &gradients[place];
+            let off = (&mass * &column - row).norm();
+            assert!(off < 1e-8 * row.norm(), "column {place}: {off}");
+            for (other, entry) in impact.delassus.iter().enumerate() {
+                let expected = row.dot(&DVector::from_column_slice(&at[other].column));
+                let size = row.norm() * DVector::from_column_slice(&at[other].column).norm();
+                assert!((entry - expected).abs() < 1e-8 * size, "{entry} {expected}");
+            }
+            // Along the motion.
+            let along = |step: f64, own: &mut Evaluator| {
+                let moved: Vec<f64> = state
+                    .iter()
+                    .zip(&rates)
+                    .map(|(x, r)| x + step * r)
+                    .collect();
+                let point = Point {
+                    t: 0.3 + step,
+                    state: &moved,
+                    inputs: &[],
+                };
+                let mut there = Vec::new();
+                own.impacts(point, &mut there);
+                [there[place].distance, there[place].rate]
+            };
+            let size = rates
+                .iter()
+                .fold(1.0_f64, |most, rate| most.max(rate.abs()));
+            let step = 1e-3 / size;
+            let [near, far] = [step, 2.0 * step].map(|step| {
+                let (after, before) = (along(step, &mut own), along(-step, &mut own));
+                [after[0] - before[0], after[1] - before[1]]
+            });
+            let slope = |index: usize| (8.0 * near[index] - far[index]) / (12.0 * step);
+            let wrong = (impact.rate - slope(0)).abs();
+            assert!(
+                wrong < 1e-8 * size,
+                "rate {place}: {} {}",
+                impact.rate,
+                slope(0)
+            );
+            let wrong = (impact.acceleration - slope(1)).abs();
+            let bound = 1e-8 * size * size.max(1.0);
+            assert!(
+                wrong < bound,
+                "acceleration {place}: {} {}",
+                impact.acceleration,
+                slope(1)
+            );
+        }
+    }
+}
+
+#[test]
+fn jumps_are_those_of_dense_algebra_for_rigid_and_flexible_machines() {
+    let walls = "\n[impacts]\nwall = { when = \"l_1 - l_1*sin(theta_1) - l_2*sin(theta_2)\", restitution = 0.5 }\n\
+                 knee = { when = \"2 + theta_2 - theta_1\", restitution = 0 }\n";
+    agrees_with_dense_algebra(&with_impacts("double_pendulum", walls, 0), &[], 3);
+    let stops = "\n[impacts]\ntip = { when = \"l + at(w, l) + l*theta\", restitution = 0.5 }\n\
+                 middle = { when = \"l - at(w, l/2) - cos(theta)*at(w, l)\", restitution = 1 }\n";
+    for order in [1, 3, 12] {
+        agrees_with_dense_algebra(&with_impacts("hub_beam_tip_mass", stops, order), &[], 5);
+    }
+    agrees_with_dense_algebra(&example("dropped_box", Orders::Declared), &[], 7);
+    let shaken = [("a", 0.05)];
+    agrees_with_dense_algebra(&example("bouncing_ball", Orders::Declared), &shaken, 9);
+}
+
+#[test]
+fn an_impact_moves_along_the_constraints() {
+    // A rod pendulum that swings against a wall: e of its speed comes back, and the rod is kept.
+    let text = r#"
+[model]
+name = "rod"
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 0.7, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+x = { unit = "m", initial = "l" }
+y = { unit = "m" }
+[kinetic]
+load = "1/2*m*(dot(x)^2 + dot(y)^2)"
+[potential]
+weight = "m*g*y"
+[constraints]
+rod = { zero = "x^2 + y^2 - l^2" }
+[impacts]
+wall = { when = "x", restitution = 0.5 }
+"#;
+    let model = CompiledModel::of_text("rod.toml", text, Orders::Declared).unwrap();
+    let times: Vec<f64> = (0..=100).map(|step| f64::from(step) * 0.02).collect();
+    let motion = simulated(&model, &[], &times);
+    let run = model.at_declared().unwrap();
+    let energy =
+        |state: &[f64]| state[2].powi(2) + state[3].powi(2) + 2.0 * 9.81 * (state[1] + 0.7);
+    let first = energy(run.initial());
+    let states = &motion.trajectory.states;
+    for state in states {
+        assert!((state[0].hypot(state[1]) - 0.7).abs() < 1e-12, "{state:?}");
+        assert!(state[0] > -1e-9, "{state:?}");
+        let part = energy(state) / first;
+        let bounces = (part.ln() / 0.25_f64.ln()).round();
+        assert!((part / 0.25_f64.powf(bounces) - 1.0).abs() < 1e-7, "{part}");
+    }
+    assert!(energy(&states[100]) < 0.1 * first);
+}
+
+#[test]
+fn a_stiff_spring_in_the_place_of_a_stop_comes_to_the_same() {
+    // Restitution 1: a stiff contact spring gives all back, the sooner the stiffer it is.
+    let hitting = example("beam_stop", Orders::All(2));
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/impacts");
+    let text = std::fs::read_to_string(folder.join("beam_stop.toml")).expect("an example");
+    let (before, after) = text.split_once("[impacts]").expect("impacts");
+    let after = &after[after.find("[observables]").expect("observables")..];
+    let before = before.replace(
+        "[coordinates]",
+        "k_c = { value = 1e8, unit = \"N/m\" }\n\n[coordinates]",
+    );
+    let spring = "stop = \"1/2*k_c*max(0, -at(w, l) - d)^2\"\n\n";
+    let soft = [&before, spring, after].concat();
+    let soft = CompiledModel::of_text("soft.toml", &soft, Orders::All(2))
+        .unwrap_or_else(|error| panic!("{error}"));
+    let times = [0.0, 0.04, 0.05];
+    let hard = simulated(&hitting, &[("e", 1.0)], &times);
+    let distances = [1e8, 1e10].map(|stiffness| {
+        let soft = simulated(&soft, &[("k_c", stiffness)], &times);
+        let pairs = hard.trajectory.states.iter().zip(&soft.trajectory.states);
+        let distances = pairs.flat_map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b).abs()));
+        distances.fold(0.0, f64::max)
+    });
+    assert!(distances[1] < 3e-4, "{distances:?}");
+    assert!(distances[1] < 0.15 * distances[0], "{distances:?}");
+}
+
+#[test]
+fn what_cannot_hold_is_said() {
+    let model = example("bouncing_ball", Orders::Declared);
+    let run = model.at_declared().unwrap();
+    let at = |initial: &[f64], solver| run.simulate(initial, &[0.0, 1.0], &run.no_inputs(), solver);
+    for (found, what) in [
+        (
+            at(&[-0.1, 0.0], Solver::Auto),
+            "`table` begins at -1.000000e-1 m",
+        ),
+        (at(&[1.0, 0.0], Solver::Adams), "rk or radau"),
+        (at(&[1.0, 0.0], Solver::Exact), "rates jump"),
+    ] {
+        let message = found.expect_err(what).to_string();
+        assert!(message.contains(what), "{message}");
+    }
+    let refusal = model
+        .with(&[("e", 1.2)])
+        .err()
+        .expect("refused")
+        .to_string();
+    assert!(refusal.contains('1'), "{refusal}");
+    // Walls that close in on a ball: ever more impacts, and no end.
+    let text = r#"
+[model]
+name = "closing"
+[parameters]
+m = { value = 1, unit = "kg" }
+v = { value = 0.1, unit = "m/s" }
+d = { value = 1, unit = "m" }
+[coordinates]
+y = { unit = "m", initial = 0.5, initial_rate = 1 }
+[kinetic]
+ball = "1/2*m*dot(y)^2"
+[impacts]
+floor = { when = "y", restitution = 1 }
+ceiling = { when = "d - v*t - y", restitution = 1 }
+"#;
+    let model = CompiledModel::of_text("closing.toml", text, Orders::Declared).unwrap();
+    let run = model.at_declared().unwrap();
+    let found = run.simulate(
+        run.initial(),
+        &[0.0, 9.0, 12.0],
+        &run.no_inputs(),
+        Solver::Rk,
+    );
+    let Err(Error::Stopped { t, reason }) = found else {
+        panic!("not stopped: {found:?}");
+    };
+    assert!(t.is_some_and(|t| (9.9..10.0).contains(&t)), "{t:?}");
+    assert!(reason.contains("without end"), "{reason}");
+}
+
+#[test]
+fn hosts_that_do_not_follow_impacts_refuse_them() {
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/impacts/bouncing_ball.toml");
+    let spec = spec.display().to_string();
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("out").display().to_string();
+    for arguments in [
+        &["generate", &spec, "--target", "fmu3", "--out", &out][..],
+        &["generate", &spec, "--target", "fmu2", "--out", &out],
+        &["page", &spec, "--out", &out],
+        &[
+            "sweep",
+            &spec,
+            "--vary",
+            "e=0:1:3",
+            "--until",
+            "1",
+            "--measure",
+            "lyapunov",
+            "--out",
+            &out,
+        ],
+    ] {
+        let message = refused(arguments);
+        assert!(
+            message.contains("impacts (`table`)"),
+            "{arguments:?}: {message}"
+        );
+        assert!(!Path::new(&out).exists());
+    }
+}
